@@ -1,0 +1,1 @@
+"""A body in, a moving picture out."""

@@ -1,0 +1,1 @@
+"""What all parts share: the body, its picture, messages, the bus, settings."""

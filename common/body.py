@@ -1,0 +1,315 @@
+"""The ten-cylinder body: definition parameters (BDPs), joints, angles (BAPs) and their limits."""
+
+import math
+from typing import Final
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+
+
+class Elliptic(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A cylinder of elliptic section: torso, head, legs (table 1)."""
+
+    long_radius: float
+    """Half width along the body's left-right axis."""
+    short_radius: float
+    """Half width along the body's front-back axis."""
+    height: float
+
+    def __post_init__(self) -> None:
+        """Refuse what no body could have."""
+        _refuse_unless_positive(self)
+
+
+class Round(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A cylinder of circular section: arms (table 1)."""
+
+    radius: float
+    height: float
+
+    def __post_init__(self) -> None:
+        """Refuse what no body could have."""
+        _refuse_unless_positive(self)
+
+
+class Bdp(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The body definition parameters: 6 x 3 + 4 x 2 = 26 lengths, all in one unit.
+
+    Universal BDPs are in metres; what a viewer measures is in its own pixels until unified.
+
+    Source: Huang & Chung 2004, table 1 (P5).
+    """
+
+    torso: Elliptic
+    head: Elliptic
+    r_upper_leg: Elliptic
+    l_upper_leg: Elliptic
+    r_lower_leg: Elliptic
+    l_lower_leg: Elliptic
+    r_upper_arm: Round
+    l_upper_arm: Round
+    r_lower_arm: Round
+    l_lower_arm: Round
+
+    def scaled(self, factor: float) -> "Bdp":
+        """The same body with every length times `factor`."""
+        return _from_lengths([length * factor for length in self.lengths()])
+
+    def lengths(self) -> list[float]:
+        """The 26 numbers, in the order of the fields."""
+        return [
+            float(length) for part in LIMBS for length in msgspec.structs.astuple(_part(self, part))
+        ]
+
+
+LIMBS: Final = (
+    "torso",
+    "head",
+    "r_upper_leg",
+    "l_upper_leg",
+    "r_lower_leg",
+    "l_lower_leg",
+    "r_upper_arm",
+    "l_upper_arm",
+    "r_lower_arm",
+    "l_lower_arm",
+)
+"""The ten cylinders, in the order of Bdp's fields and of every array of limbs."""
+
+SPHERICAL_JOINTS: Final = ("navel", "neck", "r_shoulder", "l_shoulder", "r_hip", "l_hip")
+FLEXION_JOINTS: Final = ("r_elbow", "l_elbow", "r_knee", "l_knee")
+
+POSITION_NAMES: Final = ("x", "y", "z")
+"""Place of the navel in the world: the first three entries of a pose."""
+
+DOF_NAMES: Final = (
+    "torso_x",
+    "torso_y",
+    "torso_z",
+    "neck_x",
+    "neck_y",
+    "neck_z",
+    "r_shoulder_x",
+    "r_shoulder_y",
+    "r_shoulder_z",
+    "l_shoulder_x",
+    "l_shoulder_y",
+    "l_shoulder_z",
+    "r_elbow_x",
+    "l_elbow_x",
+    "r_hip_x",
+    "r_hip_y",
+    "r_hip_z",
+    "l_hip_x",
+    "l_hip_y",
+    "l_hip_z",
+    "r_knee_x",
+    "l_knee_x",
+)
+"""The 22 angles of a pose, degrees (P7, M17)."""
+
+POSE_NAMES: Final = POSITION_NAMES + DOF_NAMES
+"""The 25 motion parameters (P22): a pose is a vector in this order, metres and degrees."""
+
+POSE_INDEX: Final = {name: i for i, name in enumerate(POSE_NAMES)}
+
+FIXED_ANGLES: Final = ("torso_x", "torso_z", "neck_x", "neck_y", "neck_z")
+"""What the paper does not estimate: three angles of the head, two of the torso (P22)."""
+
+ANGLE_NAMES: Final = tuple(name for name in DOF_NAMES if name not in FIXED_ANGLES)
+"""The 17 angles that are estimated and published as BAPs (M17)."""
+
+ANGLE_INDEX: Final = {name: i for i, name in enumerate(ANGLE_NAMES)}
+
+ANGLES_IN_POSE: Final = tuple(POSE_INDEX[name] for name in ANGLE_NAMES)
+"""Where the 17 angles stand in a pose."""
+
+JOINT_NAMES: Final = (
+    "pelvis",
+    "neck",
+    "head_top",
+    "l_shoulder",
+    "l_elbow",
+    "l_wrist",
+    "l_hip",
+    "l_knee",
+    "l_ankle",
+    "r_shoulder",
+    "r_elbow",
+    "r_wrist",
+    "r_hip",
+    "r_knee",
+    "r_ankle",
+)
+"""The 15 landmarks that are published, in the order of `joints_m`."""
+
+LIMITS_DEG: Final[dict[str, tuple[float, float]]] = {
+    "neck_z": (-45.0, 45.0),
+    "torso_z": (-45.0, 45.0),
+    "r_shoulder_x": (-180.0, 180.0),
+    "l_shoulder_x": (-180.0, 180.0),
+    "r_shoulder_z": (0.0, 180.0),
+    "l_shoulder_z": (180.0, 360.0),
+    "r_elbow_x": (-140.0, 140.0),
+    "l_elbow_x": (-140.0, 140.0),
+    "r_hip_x": (-60.0, 130.0),
+    "l_hip_x": (-60.0, 130.0),
+    "r_hip_z": (90.0, 210.0),
+    "l_hip_z": (150.0, 270.0),
+    "r_knee_x": (-150.0, 0.0),
+    "l_knee_x": (-150.0, 0.0),
+}
+"""Where joints can be (P30, P35; neck and waist: T6 by C7). The thesis's 150..210 for hips would
+forbid the paper's own side kick: outwards the hips are wider here."""
+
+REST_DEG: Final[dict[str, float]] = {
+    "r_shoulder_z": 180.0,
+    "l_shoulder_z": 180.0,
+    "r_shoulder_y": 90.0,
+    "l_shoulder_y": -90.0,
+    "r_hip_z": 180.0,
+    "l_hip_z": 180.0,
+}
+"""The angles of a body that stands with hanging arms, where they are not zero (C3). The sign of
+theta_Y makes positive elbow flexion point outwards and up (C5)."""
+
+THESIS_RATIOS: Final = {
+    "stature": 175.0,
+    "head": 25.0,
+    "torso": 52.0,
+    "upper_arm": 25.0,
+    "lower_arm": 35.0,
+    "upper_leg": 46.0,
+    "lower_leg": 52.0,
+}
+"""Lengths of the model of Demir 2006, table 3.1 (T4)."""
+
+THESIS_DIAMETERS: Final = {
+    "head": 20.0,
+    "torso": 40.0,
+    "upper_arm": 10.0,
+    "lower_arm": 10.0,
+    "upper_leg": 20.0,
+    "lower_leg": 20.0,
+}
+"""Widths of the model of Demir 2006, table 3.2, whose "radii" are diameters (T5, M18)."""
+
+TORSO_DEPTH_SHARE: Final = 0.6
+"""Depth of a trunk over its width: an assumption, the documents give none (M10)."""
+
+
+def rest_pose() -> Vector:
+    """A pose of a body that stands at the origin and faces +z, arms hanging, shape (25,)."""
+    pose = np.zeros(len(POSE_NAMES))
+    for name, angle_deg in REST_DEG.items():
+        pose[POSE_INDEX[name]] = angle_deg
+    return pose
+
+
+def thesis_bdp(stature: float) -> Bdp:
+    """The thesis's proportions at a stature: what is known of a body before it is measured.
+
+    Args:
+        stature: Height from sole to crown, in the unit that the lengths shall have.
+
+    Source: Demir 2006, tables 3.1 and 3.2 (T4, T5, M18); trunk depth: TORSO_DEPTH_SHARE.
+    """
+    unit = stature / THESIS_RATIOS["stature"]
+
+    def elliptic(name: str, depth_share: float) -> Elliptic:
+        radius = THESIS_DIAMETERS[name] / 2 * unit
+        return Elliptic(radius, radius * depth_share, THESIS_RATIOS[name] * unit)
+
+    def round_(name: str) -> Round:
+        return Round(THESIS_DIAMETERS[name] / 2 * unit, THESIS_RATIOS[name] * unit)
+
+    upper_leg, lower_leg = elliptic("upper_leg", 1.0), elliptic("lower_leg", 1.0)
+    upper_arm, lower_arm = round_("upper_arm"), round_("lower_arm")
+    return Bdp(
+        torso=elliptic("torso", TORSO_DEPTH_SHARE),
+        head=elliptic("head", 1.0),
+        r_upper_leg=upper_leg,
+        l_upper_leg=upper_leg,
+        r_lower_leg=lower_leg,
+        l_lower_leg=lower_leg,
+        r_upper_arm=upper_arm,
+        l_upper_arm=upper_arm,
+        r_lower_arm=lower_arm,
+        l_lower_arm=lower_arm,
+    )
+
+
+SHOULDER_DROP: Final = 0.45
+"""How far a shoulder lies below the top of the trunk, in long radii of the trunk (P18)."""
+
+WRIST_SHARE, ANKLE_SHARE = 0.754, 0.925
+"""Where the wrist lies on the way from shoulder to fingertip, the ankle from hip to sole, both
+straight: the cylinders of the paper run to the tips (mean adult segment lengths: upper arm 0.186,
+forearm 0.146, hand 0.108, thigh 0.245, shank 0.246, foot 0.039 statures)."""
+
+
+def body_vector(bdp: Bdp) -> Vector:
+    """The body as the kernel wants it, shape (BODY_SIZE,): 26 lengths, attachments, landmarks.
+
+    Entries 0-25 are the BDPs in the order of LIMBS; then shoulder_x, shoulder_y, hip_x (from
+    the navel, in body axes, both sides alike), and how far along the lower arm the wrist and
+    along the lower leg the ankle lies (shares of that cylinder, right then left).
+    """
+    torso, leg = bdp.torso, bdp.r_upper_leg
+
+    def share_on_lower(upper: float, lower: float, share: float) -> float:
+        return min(1.0, max(0.0, (share * (upper + lower) - upper) / lower))
+
+    return np.array(
+        [
+            *bdp.lengths(),
+            torso.long_radius,
+            torso.height - SHOULDER_DROP * torso.long_radius,
+            torso.long_radius - leg.long_radius,
+            share_on_lower(bdp.r_upper_arm.height, bdp.r_lower_arm.height, WRIST_SHARE),
+            share_on_lower(bdp.l_upper_arm.height, bdp.l_lower_arm.height, WRIST_SHARE),
+            share_on_lower(bdp.r_upper_leg.height, bdp.r_lower_leg.height, ANKLE_SHARE),
+            share_on_lower(bdp.l_upper_leg.height, bdp.l_lower_leg.height, ANKLE_SHARE),
+        ]
+    )
+
+
+BODY_SIZE: Final = 33
+
+
+def stature(bdp: Bdp) -> float:
+    """Height of the standing body from sole to crown."""
+    return bdp.head.height + bdp.torso.height + bdp.r_upper_leg.height + bdp.r_lower_leg.height
+
+
+def wrapped_deg(angle_deg: float) -> float:
+    """The same angle in (-180, 180]."""
+    turned = math.remainder(angle_deg, 360.0)
+    return 180.0 if turned == -180.0 else turned
+
+
+def _part(bdp: Bdp, name: str) -> Elliptic | Round:
+    part: Elliptic | Round = getattr(bdp, name)
+    return part
+
+
+def _from_lengths(lengths: list[float]) -> Bdp:
+    parts: dict[str, Elliptic | Round] = {}
+    at = 0
+    for name in LIMBS:
+        if name.endswith("arm"):
+            parts[name] = Round(*lengths[at : at + 2])
+            at += 2
+        else:
+            parts[name] = Elliptic(*lengths[at : at + 3])
+            at += 3
+    return msgspec.convert(parts, Bdp, from_attributes=True)
+
+
+def _refuse_unless_positive(part: Elliptic | Round) -> None:
+    for name, length in zip(part.__struct_fields__, msgspec.structs.astuple(part), strict=True):
+        if not (math.isfinite(length) and length > 0):
+            raise ValueError(f"{name} must be a positive length, got {length}")

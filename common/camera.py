@@ -1,0 +1,213 @@
+"""Cameras: intrinsics, extrinsics, distortion; the paper's orthogonal rig as a special case."""
+
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import cv2
+import msgspec
+import numpy as np
+
+from common.body import Vector
+
+PAPER_ROTATIONS: Final = (
+    ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)),
+    ((0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (1.0, 0.0, 0.0)),
+)
+"""World to camera for camera 1 (looks along -z) and camera 2 (looks along +x) (C1)."""
+
+Row = tuple[float, float, float]
+Matrix = tuple[Row, Row, Row]
+
+
+class CalibrationError(ValueError):
+    """A calibration that is none: its text names the file, the fault and the cure."""
+
+
+class Camera(msgspec.Struct, frozen=True):
+    """One camera: x_cam = R x_world + t, x right, y down, z forward, metres and pixels.
+
+    The centre of the top-left pixel is (0.5, 0.5). Distortion is in OpenCV's order.
+    """
+
+    name: str
+    K: Matrix
+    R: Matrix
+    t: Row
+    distortion: tuple[float, ...] = ()
+
+
+class Rig(msgspec.Struct, frozen=True):
+    """Cameras that look at one room, and the size of their pictures."""
+
+    width: int
+    height: int
+    cameras: tuple[Camera, ...]
+    fps: float | None = None
+    distortion: tuple[float, ...] = ()
+    """Holds for every camera that has none of its own."""
+
+
+class PaperRig(NamedTuple):
+    """What the paper's equations need of a rig whose cameras look along -z and +x (C1)."""
+
+    focal_1_px: float
+    focal_2_px: float
+    distance_1_m: float
+    """Zc1 > 0."""
+    distance_2_m: float
+    """-Xc2 > 0."""
+
+
+def load_rig(path: Path, wanted: tuple[str, ...] = ()) -> Rig:
+    """Read and check a `calibration.json`.
+
+    Args:
+        path: The file.
+        wanted: Names of the cameras to keep, in this order; all when empty.
+
+    Raises:
+        CalibrationError: When the file cannot be read, misses a part, or contradicts itself.
+    """
+    try:
+        rig = msgspec.json.decode(path.read_bytes(), type=Rig)
+    except OSError as error:
+        raise CalibrationError(f"cannot read the calibration {path}: {error.strerror}") from error
+    except (msgspec.DecodeError, RecursionError) as error:
+        raise CalibrationError(f"{path} is no calibration: {error}") from error
+    if wanted:
+        by_name = {camera.name: camera for camera in rig.cameras}
+        missing = [name for name in wanted if name not in by_name]
+        if missing:
+            raise CalibrationError(
+                f"{path} has no camera {missing[0]!r}; it has {', '.join(by_name)}"
+            )
+        rig = msgspec.structs.replace(rig, cameras=tuple(by_name[name] for name in wanted))
+    check_rig(rig, str(path))
+    return rig
+
+
+def check_rig(rig: Rig, where: str) -> None:
+    """Refuse a rig that no cameras could form.
+
+    Raises:
+        CalibrationError: With the camera's name, the number that was got and what was expected.
+    """
+    if rig.width <= 0 or rig.height <= 0:
+        raise CalibrationError(f"{where}: picture size {rig.width}x{rig.height} is not positive")
+    if not rig.cameras:
+        raise CalibrationError(f"{where}: it names no camera")
+    for camera in rig.cameras:
+        values = np.concatenate([np.ravel(camera.K), np.ravel(camera.R), camera.t])
+        if not np.isfinite(values).all():
+            raise CalibrationError(f"{where}: camera {camera.name} has a number that is not finite")
+        rotation = np.array(camera.R)
+        off = float(np.abs(rotation @ rotation.T - np.eye(3)).max())
+        if off > 1e-3 or np.linalg.det(rotation) < 0:
+            raise CalibrationError(
+                f"{where}: R of camera {camera.name} is no rotation (R R^T is {off:.3g} off the "
+                f"identity, determinant {np.linalg.det(rotation):.3g}); calibrate again"
+            )
+        if camera.K[0][0] <= 0 or camera.K[1][1] <= 0:
+            raise CalibrationError(f"{where}: camera {camera.name} has no positive focal length")
+
+
+def fitted(rig: Rig, size: tuple[int, int], where: str) -> Rig:
+    """The rig for pictures of another size of the same shape: K scaled, the rest kept.
+
+    Raises:
+        CalibrationError: When the shapes differ by more than a pixel's rounding.
+    """
+    width, height = size
+    scale_x, scale_y = width / rig.width, height / rig.height
+    if abs(scale_x / scale_y - 1.0) > 0.02:
+        raise CalibrationError(
+            f"{where} is for {rig.width}x{rig.height} pictures, the clip has {width}x{height}: "
+            "another camera or a cropped picture; calibrate for this one"
+        )
+    scale = np.diag([scale_x, scale_y, 1.0])
+    cameras = tuple(
+        msgspec.structs.replace(camera, K=as_matrix(scale @ np.array(camera.K)))
+        for camera in rig.cameras
+    )
+    return msgspec.structs.replace(rig, width=width, height=height, cameras=cameras)
+
+
+def paper_rig(
+    size: tuple[int, int],
+    focals_px: tuple[float, float],
+    distances_m: tuple[float, float],
+    heights_m: tuple[float, float] = (1.0, 1.0),
+) -> Rig:
+    """The paper's rig: camera 1 on +z, camera 2 on -x, both level (C1)."""
+    width, height = size
+    places = ((0.0, heights_m[0], distances_m[0]), (-distances_m[1], heights_m[1], 0.0))
+    cameras = []
+    for n in (0, 1):
+        K = ((focals_px[n], 0.0, width / 2), (0.0, focals_px[n], height / 2), (0.0, 0.0, 1.0))
+        t = -np.array(PAPER_ROTATIONS[n]) @ np.array(places[n])
+        cameras.append(Camera(f"cam{n + 1}", K, PAPER_ROTATIONS[n], as_row(t)))
+    return Rig(width, height, tuple(cameras))
+
+
+def as_paper_rig(rig: Rig) -> PaperRig | None:
+    """The paper's four numbers for a rig of its kind (within 1 degree and 5 cm), else None."""
+    if len(rig.cameras) != 2:
+        return None
+    for camera, rotation in zip(rig.cameras, PAPER_ROTATIONS, strict=True):
+        off = np.array(camera.R) @ np.array(rotation).T
+        if np.degrees(np.arccos(np.clip((np.trace(off) - 1) / 2, -1, 1))) > 1.0:
+            return None
+    first, second = (centre(camera) for camera in rig.cameras)
+    if max(abs(first[0]), abs(second[2])) > 0.05:
+        return None
+    return PaperRig(
+        rig.cameras[0].K[0][0], rig.cameras[1].K[0][0], float(first[2]), float(-second[0])
+    )
+
+
+def centre(camera: Camera) -> Vector:
+    """Where the camera stands in the world, shape (3,), metres."""
+    place: Vector = -np.array(camera.R).T @ np.array(camera.t)
+    return place
+
+
+def project(camera: Camera, points_m: Vector) -> Vector:
+    """World points (n, 3) to pixels (n, 2), perspective and distortion included.
+
+    A point on or behind the camera's plane gives NaN.
+    """
+    seen = np.asarray(points_m, float) @ np.array(camera.R).T + np.array(camera.t)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        plane = np.where(seen[:, 2:] > 1e-9, seen[:, :2] / seen[:, 2:], np.nan)
+    K = np.array(camera.K)
+    if any(camera.distortion):
+        rays = np.concatenate([np.nan_to_num(plane), np.ones((len(plane), 1))], axis=1)
+        bent, _ = cv2.projectPoints(
+            rays[:, None], np.zeros(3), np.zeros(3), K, np.array(camera.distortion)
+        )
+        pixels: Vector = np.where(np.isnan(plane), np.nan, bent[:, 0].astype(np.float64))
+        return pixels
+    pixels = plane * np.array([K[0, 0], K[1, 1]]) + K[:2, 2]
+    return pixels
+
+
+def ray(camera: Camera, pixel: tuple[float, float]) -> Vector:
+    """Direction in the world, shape (3,), unit length, of what a pixel shows."""
+    K = np.array(camera.K)
+    straight = cv2.undistortPoints(
+        np.array([[pixel]], float), K, np.array(camera.distortion or (0.0,) * 5)
+    )[0, 0]
+    direction: Vector = np.array(camera.R).T @ np.array([straight[0], straight[1], 1.0])
+    return direction / float(np.linalg.norm(direction))
+
+
+def as_row(values: Vector) -> Row:
+    """Three numbers as a plain tuple."""
+    x, y, z = (float(value) for value in values)
+    return (x, y, z)
+
+
+def as_matrix(values: Vector) -> Matrix:
+    """Nine numbers as plain tuples."""
+    a, b, c = (as_row(row) for row in values)
+    return (a, b, c)

@@ -1,0 +1,215 @@
+"""The settings: one frozen value with defaults; a TOML file only departs from them."""
+
+import math
+import os
+from pathlib import Path
+from typing import Literal
+
+import msgspec
+
+Mode = Literal["default", "paper"]
+
+
+class SettingsError(ValueError):
+    """Settings that no run could mean: the text names the file, the place and the cure."""
+
+
+class CameraSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Where one view's frames come from."""
+
+    source: str = ""
+    """A video file; environment variables are filled in."""
+    device: int = -1
+    """Number of a camera of this host; -1: none."""
+    background: str = ""
+    """A picture of the empty room, or a video of it."""
+    calibrated_as: str = ""
+    """Its name in the calibration; by its place in the file when empty."""
+
+    def __post_init__(self) -> None:
+        """Refuse a view with two sources."""
+        if self.source and self.device >= 0:
+            raise ValueError(f"source and device are both set: {self.source}, {self.device}")
+
+
+class SilhouetteSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How a person is told from the room (P3)."""
+
+    empty_frames: int = 8
+    """How many opening frames show the empty room in a clip; if somebody stands there already,
+    the background is estimated from the whole clip instead."""
+    min_height_share: float = 0.15
+    """A region lower than this share of the picture is nobody."""
+
+    def __post_init__(self) -> None:
+        """Refuse what no run could mean."""
+        _within("empty_frames", self.empty_frames, 1, 1000)
+        _within("min_height_share", self.min_height_share, 0.01, 1.0)
+
+
+class SearchSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The overlapped tritree's widths (P41), degrees."""
+
+    arm_window_deg: int = 64
+    leg_window_deg: int = 32
+    stop_deg: int = 4
+
+    def __post_init__(self) -> None:
+        """Widths that halve down to the stop on whole degrees keep the grid exact (P36)."""
+        for name in ("arm_window_deg", "leg_window_deg"):
+            ratio = getattr(self, name) / self.stop_deg if self.stop_deg > 0 else 0.0
+            if ratio < 2 or math.log2(ratio) % 1:
+                raise ValueError(
+                    f"{name} must be stop_deg times 2, 4, 8 ..., got {getattr(self, name)}"
+                )
+
+
+class BodySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What is assumed of the person until measured."""
+
+    stature_m: float = 1.75
+    """Assumed where no calibration gives the scale, and of a body before it is measured."""
+    opening_frames: int = 5
+    """How many accepted frames of the opening posture make the BDPs (their median)."""
+    opening_wait_s: float = 3.0
+    """How long to wait for the opening posture before going on with the thesis's proportions."""
+
+    def __post_init__(self) -> None:
+        """Refuse what no run could mean."""
+        _within("stature_m", self.stature_m, 0.5, 2.6)
+        _within("opening_frames", self.opening_frames, 1, 100)
+        _within("opening_wait_s", self.opening_wait_s, 0.0, 60.0)
+
+
+class RecognizerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How postures are named."""
+
+    model: str = ""
+    """A file that `tritrack train` wrote; the one in the package when empty."""
+    window_frames: int = 40
+    """The stretch of motion that is judged at each frame (section 5: about 40)."""
+
+    def __post_init__(self) -> None:
+        """Refuse what no run could mean."""
+        _within("window_frames", self.window_frames, 5, 600)
+
+
+class PageSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The live page."""
+
+    port: int = 8080
+    """0: no page."""
+
+    def __post_init__(self) -> None:
+        """Refuse what no run could mean."""
+        _within("port", self.port, 0, 65535)
+
+
+class BusSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Where the processes meet."""
+
+    endpoint: str = "tcp/127.0.0.1:7447"
+    """The integrator's host listens there, all others connect to it. Name another host's address
+    to spread a rig over hosts; nothing outside this machine is heard otherwise."""
+
+
+class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One run: where pictures come from, how they are looked at, where the processes meet."""
+
+    room: str = "room"
+    """Name of the place: part of every topic, so that two rigs can share a network."""
+    mode: Mode = "default"
+    clip: str = ""
+    """A clip folder with cam1.*, cam2.*; environment variables are filled in."""
+    calibration: str = ""
+    """A calibration.json; the one beside the clip or one folder up when empty."""
+    size: str = "160x120"
+    """Bound of the working picture: aspect kept."""
+    every: int = 1
+    """Take every n-th frame of a recorded clip."""
+    pictures: bool = False
+    """Publish small pictures for the page; otherwise no picture leaves a viewer."""
+    camera_1: CameraSettings | None = None
+    camera_2: CameraSettings | None = None
+    silhouette: SilhouetteSettings = SilhouetteSettings()
+    search: SearchSettings = SearchSettings()
+    body: BodySettings = BodySettings()
+    recognizer: RecognizerSettings = RecognizerSettings()
+    page: PageSettings = PageSettings()
+    bus: BusSettings = BusSettings()
+
+    def __post_init__(self) -> None:
+        """Refuse what no run could mean."""
+        if not self.room or set(self.room) & set("/*$#? "):
+            raise ValueError(f"room must be a plain word, got {self.room!r}")
+        size_of(self.size)
+        _within("every", self.every, 1, 1000)
+
+
+def load(path: Path) -> Settings:
+    """Read a settings file, or take a clip folder as one with nothing else set.
+
+    Relative paths in the file are relative to the file.
+
+    Raises:
+        SettingsError: When it cannot be read, or holds an unknown or ill-typed setting.
+    """
+    if path.is_dir():
+        return Settings(clip=str(path))
+    try:
+        text = path.read_bytes()
+    except OSError as error:
+        raise SettingsError(f"cannot read the settings {path}: {error.strerror}") from error
+    try:
+        settings = msgspec.toml.decode(text, type=Settings)
+    except msgspec.DecodeError as error:
+        raise SettingsError(f"{path}: {error}") from error
+    return _with_full_paths(settings, path.parent)
+
+
+def size_of(text: str) -> tuple[int, int]:
+    """A picture size as it is written, `160x120`.
+
+    Raises:
+        ValueError: When it is no size, or none between 32x32 and 4096x4096.
+    """
+    width, _, height = text.partition("x")
+    if not (width.isdecimal() and height.isdecimal()):
+        raise ValueError(f"size must look like 160x120, got {text!r}")
+    _within("width", int(width), 32, 4096)
+    _within("height", int(height), 32, 4096)
+    return int(width), int(height)
+
+
+def working_size(source: tuple[int, int], bound: tuple[int, int]) -> tuple[int, int]:
+    """Largest size of the source's shape within the bound; never larger than the source."""
+    shrink = min(1.0, bound[0] / source[0], bound[1] / source[1])
+    return max(1, round(source[0] * shrink)), max(1, round(source[1] * shrink))
+
+
+def _with_full_paths(settings: Settings, folder: Path) -> Settings:
+    def full(name: str) -> str:
+        return str(folder / os.path.expandvars(name)) if name else ""
+
+    def camera(given: CameraSettings | None) -> CameraSettings | None:
+        if given is None:
+            return None
+        return msgspec.structs.replace(
+            given, source=full(given.source), background=full(given.background)
+        )
+
+    return msgspec.structs.replace(
+        settings,
+        clip=full(settings.clip),
+        calibration=full(settings.calibration),
+        camera_1=camera(settings.camera_1),
+        camera_2=camera(settings.camera_2),
+        recognizer=msgspec.structs.replace(
+            settings.recognizer, model=full(settings.recognizer.model)
+        ),
+    )
+
+
+def _within(name: str, value: float, low: float, high: float) -> None:
+    if not low <= value <= high:
+        raise ValueError(f"{name} must be from {low} to {high}, got {value}")

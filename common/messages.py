@@ -1,0 +1,330 @@
+"""Everything that is ever said on the bus, and the table of topics it is said on."""
+
+import math
+from collections.abc import Iterator
+from typing import Final, Literal, NamedTuple, TypeVar
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body import ANGLE_NAMES, JOINT_NAMES, POSE_NAMES, Bdp, Elliptic, Round
+
+PROTOCOL: Final = 1
+MAX_BYTES: Final = 1_000_000
+"""No message of ours is larger (a 1920x1080 silhouette has 259 kB)."""
+
+ViewerNumber = Literal[1, 2]
+Facing = Literal["facade", "flank"]
+Status = Literal["empty", "measuring", "tracking", "predicted", "lost"]
+Views = Literal["both", "1", "2", "none"]
+Pixel = tuple[float, float]
+Point = tuple[float, float, float]
+Bits = NDArray[np.uint64]
+
+
+class MalformedMessage(ValueError):
+    """Bytes that are no message of ours; the text says why."""
+
+
+class Message(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What all messages carry."""
+
+    protocol: int = PROTOCOL
+
+
+class Moment(Message, frozen=True, kw_only=True):
+    """A message that speaks of a frame."""
+
+    frame: int
+    captured_s: float
+    """When it was taken: seconds since the clip began, or by the room's clock for a camera."""
+    clock_s: float
+    """The same moment by the room's clock (the integrator host's monotonic clock): for latency."""
+
+
+class Box(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The boundary of a silhouette, pixels: first and last column, first and last row (P11)."""
+
+    left: int
+    right: int
+    top: int
+    bottom: int
+
+
+class Measure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What one viewer reads off the opening posture, in its own pixels (section 2.4)."""
+
+    height_px: float
+    """t_n: height of the silhouette."""
+    centre_px: Pixel
+    """Where the centre of the body (x_c, y_c) lies in the picture."""
+    depth_px: float
+    """Half width of the trunk as this view shows it: SR_torso where it sees the flank (P21)."""
+    bdp_px: Bdp | None = None
+    """All BDPs but the trunk's depth, where this view sees the facade."""
+    arms_z_deg: tuple[float, float] | None = None
+    """theta_Z of the right and the left shoulder in the opening posture (P19)."""
+
+
+class Report(Moment, frozen=True, kw_only=True):
+    """What one viewer made of one frame."""
+
+    viewer: ViewerNumber
+    width: int
+    height: int
+    silhouette: bytes
+    """np.packbits(mask, axis=1): the outline and nothing else of the picture."""
+    box: Box | None
+    """None where nobody is seen."""
+    area_px: int = 0
+    blobs: int = 0
+    """How many regions were large enough to be a person (P4)."""
+    cut: bool = False
+    """The silhouette touches the picture's border: the person is partly outside."""
+    upper_body_px: float = 0.0
+    """W_u-body: width of the upper body, the evidence behind `vote` (P25)."""
+    vote: Facing = "facade"
+    """What this view alone takes itself for (P26)."""
+    thresholds_px: tuple[float, float] = (0.0, 0.0)
+    """th_low and th_high that the vote was held against."""
+    measure: Measure | None = None
+    refusal: str = ""
+    """Why the posture is not the opening posture, where it is not."""
+    root_px: Pixel | None = None
+    """Where the navel lies in the picture."""
+    angles_deg: dict[str, float] = {}
+    """The angles that this view estimates; names as in ANGLE_NAMES."""
+    squatting: bool = False
+    """The navel is lower than in the opening posture (P33)."""
+    score: float = 0.0
+    """Similarity of silhouette and model in that pose, in [0, 1]."""
+    matches: int = 0
+    """How many times a model was matched for this frame."""
+    guide_frame: int = -1
+    """This viewer's frame that the guide in use had heard of; -1: none."""
+
+
+class Guide(Moment, frozen=True, kw_only=True):
+    """What the integrator tells the viewers for their next frame."""
+
+    frames: tuple[int, int]
+    """The last frame of each viewer that it has heard of; -1: none."""
+    status: Status = "empty"
+    bdp: Bdp | None = None
+    """Universal BDPs, metres; None until somebody was seen."""
+    measured: bool = False
+    """True once they come from the opening posture, False while they are a prior."""
+    facing: tuple[Facing, Facing] = ("facade", "flank")
+    scale_px_per_m: tuple[float, float] = (0.0, 0.0)
+    """Size of a metre at the body in each picture: reference scale times r_t,n (section 4.2)."""
+    reference_px_per_m: tuple[float, float] = (0.0, 0.0)
+    """The same at the place where the BDPs were taken, where r_t1 = r_t2 = 1."""
+    root_px: tuple[Pixel, Pixel] = ((0.0, 0.0), (0.0, 0.0))
+    """Where to expect the navel in each picture."""
+    rest_y_m: float = 0.0
+    """Height of the navel in the opening posture (P33)."""
+    pose: tuple[float, ...] = ()
+    """Predicted pose, POSE_NAMES order, metres and degrees."""
+
+
+class Body(Moment, frozen=True, kw_only=True):
+    """One body: the universal BAPs and the joints they give."""
+
+    status: Status
+    views: Views
+    joints_m: tuple[Point, ...] = ()
+    """JOINT_NAMES order, world; empty where there is no pose."""
+    joints_px: tuple[tuple[Pixel, ...], ...] = ()
+    """The same joints in the picture of each camera."""
+    pose: tuple[float, ...] = ()
+    """POSE_NAMES order; the angles are the smooth ones."""
+    angles_raw_deg: tuple[float, ...] = ()
+    """ANGLE_NAMES order, before smoothing."""
+    confidence: tuple[float, ...] = ()
+    """JOINT_NAMES order, in [0, 1]."""
+    score: tuple[float, float] = (0.0, 0.0)
+    facing: tuple[Facing, Facing] = ("facade", "flank")
+    bdp: Bdp | None = None
+    matches: int = 0
+
+
+class Posture(Moment, frozen=True, kw_only=True):
+    """What the body is doing."""
+
+    name: str
+    """One of the model's posture names, or "" while nothing can be said."""
+    log_likelihoods: dict[str, float] = {}
+    """log P(window | model) of each posture."""
+    segment: tuple[int, int] = (0, 0)
+    """First and last frame of the window that was judged."""
+
+
+class Picture(Moment, frozen=True, kw_only=True):
+    """A small picture for the page; published only where the settings say so."""
+
+    viewer: ViewerNumber
+    jpeg: bytes
+
+
+class Pulse(Message, frozen=True, kw_only=True):
+    """How a process is doing, once a second and at its end."""
+
+    process: str
+    state: Literal["starting", "ready", "running", "ended", "failed"]
+    detail: str = ""
+    frames: int = 0
+    fps: float = 0.0
+    deadline_misses: int = 0
+    dropped: int = 0
+    guide_misses: int = 0
+    malformed: int = 0
+    late: int = 0
+    latency_p50_ms: float = 0.0
+    latency_p99_ms: float = 0.0
+    memory_mb: float = 0.0
+
+
+class Start(Message, frozen=True, kw_only=True):
+    """When recorded clips begin, by the room's clock, so that all viewers begin together."""
+
+    at_s: float
+
+
+class Ended(Message, frozen=True, kw_only=True):
+    """A viewer's clip is over."""
+
+    viewer: ViewerNumber
+    frames: int
+
+
+class ClockQuestion(Message, frozen=True, kw_only=True):
+    """A viewer asks what the room's clock says, and whether it may begin."""
+
+    viewer: ViewerNumber
+    ready: bool
+
+
+class ClockAnswer(Message, frozen=True, kw_only=True):
+    """The room's clock at the moment of the answer, and the start if it is fixed."""
+
+    now_s: float
+    start_s: float | None = None
+
+
+class Topic(NamedTuple):
+    """Where a message is said and how often to expect it."""
+
+    key: str
+    hz: float
+    """0: not regular."""
+    newest_only: bool
+    """True where only the newest counts; False where every message does."""
+
+
+TOPICS: Final[dict[type[Message], Topic]] = {
+    Report: Topic("tritrack/{room}/viewer/{viewer}/report", 15.0, newest_only=False),
+    Guide: Topic("tritrack/{room}/body/guide", 15.0, newest_only=True),
+    Body: Topic("tritrack/{room}/body/pose", 15.0, newest_only=False),
+    Posture: Topic("tritrack/{room}/posture", 15.0, newest_only=False),
+    Picture: Topic("tritrack/{room}/viewer/{viewer}/picture", 15.0, newest_only=True),
+    Pulse: Topic("tritrack/{room}/pulse/{process}", 1.0, newest_only=False),
+    Start: Topic("tritrack/{room}/start", 0.0, newest_only=False),
+    Ended: Topic("tritrack/{room}/viewer/{viewer}/ended", 0.0, newest_only=False),
+}
+
+Said = TypeVar("Said", bound=Message)
+
+_LENGTHS: Final[dict[tuple[type[Message], str], tuple[int, ...]]] = {
+    (Guide, "pose"): (0, len(POSE_NAMES)),
+    (Body, "pose"): (0, len(POSE_NAMES)),
+    (Body, "joints_m"): (0, len(JOINT_NAMES)),
+    (Body, "joints_px"): (0, 1, 2),
+    (Body, "angles_raw_deg"): (0, len(ANGLE_NAMES)),
+    (Body, "confidence"): (0, len(JOINT_NAMES)),
+}
+
+
+def key_of(message: Message, room: str) -> str:
+    """The key that a message is said on."""
+    fields = {
+        name: getattr(message, name) for name in ("viewer", "process") if hasattr(message, name)
+    }
+    return TOPICS[type(message)].key.format(room=room, **fields)
+
+
+def pattern_of(kind: type[Message], room: str) -> str:
+    """The key expression that hears every message of a kind."""
+    return TOPICS[kind].key.format(room=room, viewer="*", process="*")
+
+
+def encode(message: Message) -> bytes:
+    """A message as MessagePack."""
+    return msgspec.msgpack.encode(message)
+
+
+def decode(payload: bytes, kind: type[Said]) -> Said:
+    """Bytes from the bus as a message that can be trusted.
+
+    Raises:
+        MalformedMessage: When they are too long, no MessagePack, of another protocol, of the
+            wrong shape, or hold a number that is not finite.
+    """
+    if len(payload) > MAX_BYTES:
+        raise MalformedMessage(f"{len(payload)} bytes, at most {MAX_BYTES} are taken")
+    try:
+        message = msgspec.msgpack.decode(payload, type=kind)
+    except (msgspec.DecodeError, RecursionError, ValueError) as error:
+        raise MalformedMessage(f"no {kind.__name__}: {error}") from error
+    _refuse_what_no_process_would_say(message)
+    return message
+
+
+def pack(mask: NDArray[np.bool_]) -> bytes:
+    """A mask (H, W) as the bytes of a report."""
+    return np.packbits(mask, axis=1).tobytes()
+
+
+def unpack(report: Report) -> NDArray[np.bool_]:
+    """The silhouette of a report, (H, W), True inside the person."""
+    rows = np.frombuffer(report.silhouette, np.uint8).reshape(report.height, -1)
+    return np.unpackbits(rows, axis=1, count=report.width).astype(np.bool_)
+
+
+def _refuse_what_no_process_would_say(message: Message) -> None:
+    if message.protocol != PROTOCOL:
+        raise MalformedMessage(f"protocol {message.protocol}, this is {PROTOCOL}")
+    for name in message.__struct_fields__:
+        value = getattr(message, name)
+        allowed = _LENGTHS.get((type(message), name))
+        if allowed is not None and len(value) not in allowed:
+            raise MalformedMessage(f"{name} has {len(value)} entries, not {allowed[-1]}")
+        if not all(math.isfinite(number) for number in _numbers(value)):
+            raise MalformedMessage(f"{name} holds a number that is not finite")
+    if isinstance(message, Report):
+        _refuse_a_false_report(message)
+
+
+def _refuse_a_false_report(report: Report) -> None:
+    if report.width <= 0 or report.height <= 0:
+        raise MalformedMessage(f"a picture of {report.width}x{report.height}")
+    due = report.height * ((report.width + 7) // 8)
+    if len(report.silhouette) != due:
+        raise MalformedMessage(f"silhouette has {len(report.silhouette)} bytes, not {due}")
+    unknown = [name for name in report.angles_deg if name not in ANGLE_NAMES]
+    if unknown:
+        raise MalformedMessage(f"unknown angle {unknown[0]!r}")
+
+
+def _numbers(value: object) -> Iterator[float]:
+    if isinstance(value, float):
+        yield value
+    elif isinstance(value, tuple):
+        for item in value:
+            yield from _numbers(item)
+    elif isinstance(value, dict):
+        for item in value.values():
+            yield from _numbers(item)
+    elif isinstance(value, Measure | Bdp | Elliptic | Round):
+        for item in msgspec.structs.astuple(value):
+            yield from _numbers(item)

@@ -1,0 +1,1 @@
+"""Two reports (or one) in, one body out."""

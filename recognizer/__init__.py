@@ -1,0 +1,1 @@
+"""A body's angles in, a posture's name out."""

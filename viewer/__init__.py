@@ -1,0 +1,1 @@
+"""One camera: frames in, a report of one silhouette out."""
