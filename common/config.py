@@ -14,6 +14,11 @@ class SettingsError(ValueError):
     """Settings that no run could mean: the text names the file, the place and the cure."""
 
 
+def _within(name: str, value: float, low: float, high: float) -> None:
+    if not low <= value <= high:
+        raise ValueError(f"{name} must be from {low} to {high}, got {value}")
+
+
 class CameraSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Where one view's frames come from."""
 
@@ -208,8 +213,3 @@ def _with_full_paths(settings: Settings, folder: Path) -> Settings:
             settings.recognizer, model=full(settings.recognizer.model)
         ),
     )
-
-
-def _within(name: str, value: float, low: float, high: float) -> None:
-    if not low <= value <= high:
-        raise ValueError(f"{name} must be from {low} to {high}, got {value}")
