@@ -122,8 +122,8 @@ class Guide(Moment, frozen=True, kw_only=True):
     """The same at the place where the BDPs were taken, where r_t1 = r_t2 = 1."""
     root_px: tuple[Pixel, Pixel] = ((0.0, 0.0), (0.0, 0.0))
     """Where to expect the navel in each picture."""
-    rest_y_m: float = 0.0
-    """Height of the navel in the opening posture (P33)."""
+    rest_row_px: tuple[float, float] = (0.0, 0.0)
+    """Row of each picture where the navel would be if the person stood upright there (P33)."""
     pose: tuple[float, ...] = ()
     """Predicted pose, POSE_NAMES order, metres and degrees."""
 

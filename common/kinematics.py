@@ -1,0 +1,146 @@
+"""From angles to places: the chain of coordinate systems from world to limb (section 2.2)."""
+
+import math
+from typing import Any, Final
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body import Vector
+
+TORSO, HEAD = 0, 1
+ARM_LIMBS: Final = ((6, 8), (7, 9))
+"""Upper and lower arm, right then left: places in LIMBS."""
+LEG_LIMBS: Final = ((2, 4), (3, 5))
+"""Upper and lower leg, right then left."""
+ALL_LIMBS: Final = 0x3FF
+"""Limbs as bits: bit i is LIMBS[i]."""
+
+FRAME: Final = 12
+"""A limb's frame: origin (3), then its rotation to the world row by row (9); +y is its axis."""
+
+_LENGTH_AT: Final = np.array([2, 5, 8, 11, 14, 17, 19, 21, 23, 25])
+"""Where each limb's height stands in a body vector."""
+
+
+@numba.njit(cache=True, fastmath=False)
+def turned_x(matrix: Any, angle_deg: float, out: Any) -> None:
+    """out = matrix R_x(angle), both row by row (9,); may be the same array."""
+    s, c = math.sin(math.radians(angle_deg)), math.cos(math.radians(angle_deg))
+    for row in range(0, 9, 3):
+        y, z = matrix[row + 1], matrix[row + 2]
+        out[row] = matrix[row]
+        out[row + 1] = c * y + s * z
+        out[row + 2] = c * z - s * y
+
+
+@numba.njit(cache=True)
+def turned_y(matrix: Any, angle_deg: float, out: Any) -> None:
+    """out = matrix R_y(angle)."""
+    s, c = math.sin(math.radians(angle_deg)), math.cos(math.radians(angle_deg))
+    for row in range(0, 9, 3):
+        x, z = matrix[row], matrix[row + 2]
+        out[row] = c * x - s * z
+        out[row + 1] = matrix[row + 1]
+        out[row + 2] = s * x + c * z
+
+
+@numba.njit(cache=True)
+def turned_z(matrix: Any, angle_deg: float, out: Any) -> None:
+    """out = matrix R_z(angle)."""
+    s, c = math.sin(math.radians(angle_deg)), math.cos(math.radians(angle_deg))
+    for row in range(0, 9, 3):
+        x, y = matrix[row], matrix[row + 1]
+        out[row] = c * x + s * y
+        out[row + 1] = c * y - s * x
+        out[row + 2] = matrix[row + 2]
+
+
+@numba.njit(cache=True)
+def _shifted(frame: Any, x: float, y: float, z: float, out: Any) -> None:
+    """The origin of `out` = the point (x, y, z) of `frame`."""
+    for i in range(3):
+        row = 3 + 3 * i
+        out[i] = frame[i] + frame[row] * x + frame[row + 1] * y + frame[row + 2] * z
+
+
+@numba.njit(cache=True)
+def _spherical(navel: Any, x: float, y: float, pose: Any, at: int, out: Any) -> None:
+    """M_N^S = T(x, y, 0) R_z R_x R_y with the angles pose[at : at + 3] = (x, y, z)."""
+    _shifted(navel, x, y, 0.0, out)
+    turned_z(navel[3:], pose[at + 2], out[3:])
+    turned_x(out[3:], pose[at], out[3:])
+    turned_y(out[3:], pose[at + 1], out[3:])
+
+
+@numba.njit(cache=True)
+def _flexion(parent: Any, length: float, angle_deg: float, out: Any) -> None:
+    """M_S^F = T(0, length, 0) R_x."""
+    _shifted(parent, 0.0, length, 0.0, out)
+    turned_x(parent[3:], angle_deg, out[3:])
+
+
+@numba.njit(cache=True)
+def place_limbs(body: Any, pose: Any, limbs: int, frames: Any) -> None:
+    """Write the frames of some limbs into `frames` (10, FRAME).
+
+    M_W^N = T R_y R_x (R_z innermost: the paper keeps it at 0), then M_N^S and M_S^F (P8).
+
+    Args:
+        body: Body vector.
+        pose: The 25 motion parameters.
+        limbs: Bits of the limbs that are wanted; a lower limb's upper limb is placed too.
+        frames: The others of its rows are left alone; row 0 is always written.
+    """
+    navel = frames[0]
+    navel[0], navel[1], navel[2] = pose[0], pose[1], pose[2]
+    for i in range(9):
+        navel[3 + i] = 1.0 if i % 4 == 0 else 0.0
+    turned_y(navel[3:], pose[4], navel[3:])
+    turned_x(navel[3:], pose[3], navel[3:])
+    turned_z(navel[3:], pose[5], navel[3:])
+    if limbs & 2:
+        _spherical(navel, 0.0, body[2], pose, 6, frames[1])
+    for side in range(2):
+        sign = -1.0 if side == 0 else 1.0
+        arm, leg = 6 + side, 2 + side
+        if limbs >> arm & 5:
+            _spherical(navel, sign * body[26], body[27], pose, 9 + 3 * side, frames[arm])
+            if limbs >> (arm + 2) & 1:
+                _flexion(frames[arm], body[_LENGTH_AT[arm]], pose[15 + side], frames[arm + 2])
+        if limbs >> leg & 5:
+            _spherical(navel, sign * body[28], 0.0, pose, 17 + 3 * side, frames[leg])
+            if limbs >> (leg + 2) & 1:
+                _flexion(frames[leg], body[_LENGTH_AT[leg]], pose[23 + side], frames[leg + 2])
+
+
+def limb_frames(body: Vector, pose: Vector) -> Vector:
+    """The frames of all ten limbs, (10, FRAME), world metres."""
+    frames = np.empty((10, FRAME))
+    place_limbs(body, pose, ALL_LIMBS, frames)
+    return frames
+
+
+def segments(body: Vector, pose: Vector) -> NDArray[np.float64]:
+    """Both ends of each cylinder's axis, (10, 2, 3), world metres, in the order of LIMBS."""
+    frames = limb_frames(body, pose)
+    ends = frames[:, :3] + body[_LENGTH_AT][:, None] * frames[:, [4, 7, 10]]
+    return np.stack([frames[:, :3], ends], axis=1)
+
+
+def joints(body: Vector, pose: Vector) -> NDArray[np.float64]:
+    """The 15 landmarks, (15, 3), world metres, in the order of JOINT_NAMES."""
+    limb = segments(body, pose)
+    wrists = [_along(limb[8 + side], body[29 + side]) for side in (0, 1)]
+    ankles = [_along(limb[4 + side], body[31 + side]) for side in (0, 1)]
+    rows = [limb[TORSO, 0], limb[TORSO, 1], limb[HEAD, 1]]
+    for side in (1, 0):
+        rows += [limb[6 + side, 0], limb[6 + side, 1], wrists[side]]
+        rows += [limb[2 + side, 0], limb[2 + side, 1], ankles[side]]
+    return np.array(rows)
+
+
+def _along(ends: NDArray[np.float64], share: float) -> NDArray[np.float64]:
+    point: NDArray[np.float64] = ends[0] + share * (ends[1] - ends[0])
+    return point

@@ -1,0 +1,132 @@
+"""The posed model as one viewer sees it: scaled orthography around the navel."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body import POSE_INDEX, POSE_NAMES, Vector, body_vector, rest_pose, thesis_bdp
+from common.camera import PAPER_ROTATIONS, Camera
+from common.kernel import VIEW, Bits
+from common.messages import Box, Facing, Guide, ViewerNumber
+from viewer.tritree import search, window
+
+FLANK_YAW_DEG = -90.0
+"""Yaw of the trunk while viewer 1 sees the flank: the person has turned to camera 2. Silhouettes
+cannot tell this from its opposite (limitation L4)."""
+
+
+class Figure(NamedTuple):
+    """A model laid over a silhouette."""
+
+    seen: Bits
+    """The silhouette, packed (H, words)."""
+    seen_px: int
+    width: int
+    """Of the picture, pixels."""
+    body: Vector
+    pose: Vector
+    """Its position is 0: the place in the picture is in `view`."""
+    view: Vector
+    score: float = 0.0
+    matches: int = 0
+
+
+class Turn(NamedTuple):
+    """One angle that a search turns, and what goes along."""
+
+    step: Vector
+    """(25,): how much each pose parameter moves with the angle."""
+    at: int
+    """The pose parameter that holds the angle itself."""
+    moving: int
+    """Limbs that move, as bits."""
+
+
+def turn(limbs: tuple[int, ...], **coupled: float) -> Turn:
+    """A search direction: pose parameter names with their factors, the leading one first."""
+    step = np.zeros(len(POSE_NAMES))
+    for name, factor in coupled.items():
+        step[POSE_INDEX[name]] = factor
+    return Turn(step, POSE_INDEX[next(iter(coupled))], sum(1 << limb for limb in limbs))
+
+
+def searched(
+    figure: Figure,
+    how: Turn,
+    width_deg: int,
+    stop_deg: int,
+    limits_deg: tuple[float, float],
+    wide: bool = False,
+) -> Figure:
+    """The figure with one angle set to the best that the tritree meets.
+
+    Args:
+        figure: The model so far.
+        how: What turns.
+        width_deg: Width of the window around the present angle (P41).
+        stop_deg: Where the search stops.
+        limits_deg: Of the joint, or of this posture (P31).
+        wide: Nothing is known of the angle: search windows that tile the whole range.
+    """
+    low, high = limits_deg
+    centres = np.arange(low + width_deg / 2, high, width_deg) if wide else [figure.pose[how.at]]
+    best_angle, best_score, matches = figure.pose[how.at], -1.0, 0
+    for centre in centres:
+        bounds = window(float(centre), width_deg, low, high)
+        angle, score, more = search(
+            figure.seen,
+            figure.seen_px,
+            figure.width,
+            figure.body,
+            figure.pose,
+            figure.view,
+            how.step,
+            how.moving,
+            *bounds,
+            stop_deg,
+        )
+        matches += more
+        if score > best_score:
+            best_angle, best_score = angle, score
+    pose = np.where(how.step != 0.0, best_angle * how.step, figure.pose)
+    return figure._replace(pose=pose, score=best_score, matches=figure.matches + matches)
+
+
+def view_at(rotation: NDArray[np.float64], px_per_m: float, root_px: tuple[float, float]) -> Vector:
+    """Scaled orthography: the kernel's view that shows the navel at a pixel (section 3.2)."""
+    view = np.zeros(VIEW)
+    view[:9] = rotation.ravel()
+    view[12] = view[13] = px_per_m
+    view[14:16] = root_px
+    view[16] = 1.0
+    return view
+
+
+def rotation_of(camera: Camera | None, viewer: ViewerNumber) -> NDArray[np.float64]:
+    """World to camera: the calibrated one, or the paper's for this viewer (C1)."""
+    return np.array(PAPER_ROTATIONS[viewer - 1] if camera is None else camera.R)
+
+
+def first_guess(box: Box, facing: Facing, viewer: ViewerNumber) -> tuple[Vector, Vector, float]:
+    """Body, pose and scale before any guide: the thesis's proportions at the silhouette's height.
+
+    Returns:
+        Body vector for a stature of 1, rest pose, and the pixels of that stature.
+    """
+    pose = rest_pose()
+    pose[POSE_INDEX["torso_y"]] = yaw_of(facing, viewer)
+    return body_vector(thesis_bdp(1.0)), pose, float(box.bottom + 1 - box.top)
+
+
+def yaw_of(facing: Facing, viewer: ViewerNumber) -> float:
+    """Yaw of the trunk, degrees, that a facing of this viewer stands for (P49)."""
+    return 0.0 if (facing == "facade") == (viewer == 1) else FLANK_YAW_DEG
+
+
+def guided(guide: Guide) -> tuple[Vector, Vector]:
+    """Body and pose that a guide tells; the pose at the origin."""
+    assert guide.bdp is not None
+    pose = np.array(guide.pose)
+    pose[:3] = 0.0
+    return body_vector(guide.bdp), pose

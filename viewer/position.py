@@ -1,0 +1,97 @@
+"""Where the body is in the picture: shifts of the drawn model (section 3.2)."""
+
+from typing import Any, Final
+
+import numba
+import numpy as np
+
+from common.kernel import draw_limbs, popcount, score
+from common.kinematics import ALL_LIMBS
+from viewer.figure import Figure
+
+SHIFTS_PX: Final = (0, -1, 1, -2, 2, -5, 5)
+"""The printed candidates and the incumbent, the least first: ties stay (P27)."""
+
+MOST_PASSES: Final = 3
+"""One pass leaves a pixel at shifts of 3, 4, 6 and more (P27)."""
+
+
+@numba.njit(cache=True)
+def shifted_counts(model: Any, seen: Any, width: int, right: int, down: int) -> tuple[int, int]:
+    """Pixels of a shifted model inside the picture, and those of them that are seen.
+
+    Args:
+        model: Packed rows (H, words).
+        seen: The silhouette, packed alike.
+        width: Of the picture, pixels.
+        right: Shift to the right, pixels, less than 64 either way.
+        down: Shift downwards.
+    """
+    height, words = model.shape
+    last_ones = np.uint64(0xFFFFFFFFFFFFFFFF) >> np.uint64(64 * words - width)
+    drawn = hit = 0
+    for row in range(max(0, down), min(height, height + down)):
+        for word in range(words):
+            bits = model[row - down, word]
+            if right > 0:
+                bits <<= np.uint64(right)
+                if word > 0:
+                    bits |= model[row - down, word - 1] >> np.uint64(64 - right)
+            elif right < 0:
+                bits >>= np.uint64(-right)
+                if word + 1 < words:
+                    bits |= model[row - down, word + 1] << np.uint64(64 + right)
+            if word == words - 1:
+                bits &= last_ones
+            drawn += popcount(bits)
+            hit += popcount(bits & seen[row, word])
+    return drawn, hit
+
+
+@numba.njit(cache=True)
+def best_shift(
+    seen: Any, seen_px: int, width: int, body: Any, pose: Any, view: Any, shifts: Any, passes: int
+) -> tuple[int, int, float, int]:
+    """(right, down, score, matches) of the best shift of the posed model: first x, then y."""
+    model = np.zeros_like(seen)
+    draw_limbs(body, pose, view, ALL_LIMBS, width, model)
+    place = np.zeros(2, np.int64)
+    best, matches = -1.0, 0
+    for axis in range(2):
+        for _ in range(passes):
+            start = place[axis]
+            winner = start
+            for shift in shifts:
+                if shift == 0 and best >= 0.0:
+                    continue
+                place[axis] = start + shift
+                drawn, hit = shifted_counts(model, seen, width, place[0], place[1])
+                matches += 1
+                value = score(hit, drawn, seen_px)
+                if value > best:
+                    best, winner = value, start + shift
+            place[axis] = winner
+            if winner == start:
+                break
+    return place[0], place[1], best, matches
+
+
+def located(figure: Figure) -> Figure:
+    """The figure shifted to where it fits best: columns first, then rows (P27, P28)."""
+    right, down, value, matches = best_shift(
+        figure.seen,
+        figure.seen_px,
+        figure.width,
+        figure.body,
+        figure.pose,
+        figure.view,
+        _SHIFTS,
+        MOST_PASSES,
+    )
+    view = figure.view.copy()
+    view[14] += right
+    view[15] += down
+    return figure._replace(view=view, score=value, matches=figure.matches + matches)
+
+
+_SHIFTS = np.array(SHIFTS_PX)
