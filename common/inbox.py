@@ -1,0 +1,101 @@
+"""What a process hears: checked on arrival, bounded, counted."""
+
+import logging
+from collections.abc import Callable
+from typing import Final, Generic, NamedTuple
+
+from common.mailbox import Mailbox
+from common.messages import (
+    TOPICS,
+    ClockQuestion,
+    MalformedMessage,
+    Message,
+    Said,
+    decode,
+    key_of,
+    pattern_of,
+)
+
+QUESTIONS: Final[dict[type[Message], str]] = {ClockQuestion: "tritrack/{room}/clock"}
+"""Where each kind of question is answered."""
+
+BOUND: Final = 64
+"""Messages that wait for a reader: four seconds at 15 Hz; older ones are of no use to anyone."""
+
+log = logging.getLogger(__name__)
+
+
+class Alive(NamedTuple):
+    """A process came (it announced itself) or went (it closed, died or fell silent)."""
+
+    name: str
+    alive: bool
+
+
+class Inbox(Generic[Said]):
+    """Heard messages of one kind, oldest first; where only the newest counts, one a key."""
+
+    def __init__(self, kind: type[Said], room: str) -> None:
+        """Empty, for one kind of message in one room."""
+        self.malformed = 0
+        """How many payloads were refused."""
+        self._kind = kind
+        self._room = room
+        self._mailbox: Mailbox[Said] = Mailbox(BOUND)
+
+    @property
+    def dropped(self) -> int:
+        """How many messages gave way to later ones although each one counts."""
+        return self._mailbox.dropped
+
+    def take(self, timeout_s: float) -> Said | None:
+        """The oldest message; None when none came in time, or the bus is closed."""
+        return self._mailbox.take(timeout_s)
+
+    def drain(self) -> list[Said]:
+        """All messages that wait, oldest first."""
+        return self._mailbox.drain()
+
+    def close(self) -> None:
+        """Hear no more."""
+        self._mailbox.close()
+
+    def offer(self, key: str, payload: bytes) -> None:
+        """Take in what came on a key; what is no such message is counted and logged once."""
+        try:
+            message = decode(payload, self._kind)
+            if key_of(message, self._room) != key:
+                raise MalformedMessage(f"it belongs on {key_of(message, self._room)}")
+        except MalformedMessage as error:
+            self.malformed += 1
+            if self.malformed == 1:
+                pattern = pattern_of(self._kind, self._room)
+                log.warning("%s: dropped a message from %s: %s", pattern, key, error)
+            return
+        self._mailbox.put(message, slot=key if TOPICS[self._kind].newest_only else None)
+
+
+def checked(payload: bytes, kind: type[Said], where: str) -> Said | None:
+    """A question or an answer that can be trusted, or None after a line in the log."""
+    try:
+        return decode(payload, kind)
+    except MalformedMessage as error:
+        log.warning("%s: dropped what came: %s", where, error)
+        return None
+
+
+def answered(
+    reply: Callable[[Said], Message], kind: type[Said], payload: bytes, where: str
+) -> Message | None:
+    """What `reply` says to a question; None when either of them fails, which is logged.
+
+    The bus's threads swallow exceptions, so a failing `reply` must end here and be seen.
+    """
+    question = checked(payload, kind, where)
+    if question is None:
+        return None
+    try:
+        return reply(question)
+    except Exception:
+        log.exception("%s: no answer to %s", where, question)
+        return None

@@ -1,0 +1,359 @@
+"""The bus, live over real sessions on the loopback and local in one process."""
+
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from typing import NamedTuple
+
+import msgspec
+import pytest
+import zenoh
+
+from common.bus import Bus, BusError, open_client, open_hub
+from common.config import BusSettings
+from common.inbox import BOUND, Alive, Inbox
+from common.local_bus import LocalBus
+from common.mailbox import Mailbox
+from common.messages import (
+    MAX_BYTES,
+    ClockAnswer,
+    ClockQuestion,
+    Guide,
+    Picture,
+    Posture,
+    Pulse,
+    Report,
+    encode,
+)
+
+ROOM = "hall"
+SOON_S = 5.0
+"""Patience with the network: a test that passes takes milliseconds of it."""
+
+
+class Place(NamedTuple):
+    settings: BusSettings
+    hub: Bus
+
+
+def a_guide(frame: int) -> Guide:
+    return Guide(frame=frame, captured_s=frame / 15, clock_s=0.0, frames=(frame, frame))
+
+
+def a_report(viewer: int, frame: int) -> Report:
+    fields = {"viewer": viewer, "width": 8, "height": 2, "silhouette": b"\x00\xff", "box": None}
+    times = {"frame": frame, "captured_s": frame / 15, "clock_s": 0.0}
+    return msgspec.convert({**fields, **times}, Report)
+
+
+@pytest.fixture
+def endpoint() -> str:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+@pytest.fixture
+def place(endpoint: str) -> Iterator[Place]:
+    settings = BusSettings(endpoint)
+    with open_hub(settings, ROOM) as hub:
+        yield Place(settings, hub)
+
+
+def client(place: Place, doors: ExitStack) -> Bus:
+    return doors.enter_context(open_client(place.settings, ROOM, SOON_S))
+
+
+def foreigner(place: Place) -> zenoh.Session:
+    config = zenoh.Config()
+    config.insert_json5("mode", '"client"')
+    config.insert_json5("connect/endpoints", f'["{place.settings.endpoint}"]')
+    config.insert_json5("scouting/multicast/enabled", "false")
+    return zenoh.open(config)
+
+
+def once_heard(inbox: Inbox[Pulse], speaker: Bus) -> None:
+    """Return when the speaker's messages reach the inbox: declarations travel too."""
+    deadline = time.monotonic() + SOON_S
+    while time.monotonic() < deadline:
+        speaker.publish(Pulse(process="probe", state="ready"))
+        if inbox.take(0.05) is not None:
+            time.sleep(0.05)
+            inbox.drain()
+            return
+    pytest.fail("nothing arrived")
+
+
+def test_two_viewers_an_integrator_and_a_recognizer_hear_each_other(place: Place) -> None:
+    """D2: clients speak to each other through the hub, which peers would not relay."""
+    with ExitStack() as doors:
+        first, second, recognizer = (client(place, doors) for _ in range(3))
+        reports = place.hub.subscribe(Report)
+        pulses = [bus.subscribe(Pulse) for bus in (place.hub, recognizer)]
+        guides = [bus.subscribe(Guide) for bus in (first, second)]
+        postures = second.subscribe(Posture)
+        for speaker in (first, second):
+            for inbox in pulses:
+                once_heard(inbox, speaker)
+        for frame in range(3):
+            first.publish(a_report(1, frame))
+            second.publish(a_report(2, frame))
+        heard = [reports.take(SOON_S) for _ in range(6)]
+        assert sorted((r.viewer, r.frame) for r in heard if r) == [
+            (viewer, frame) for viewer in (1, 2) for frame in range(3)
+        ]
+        place.hub.publish(a_guide(7))
+        assert [inbox.take(SOON_S) for inbox in guides] == [a_guide(7)] * 2
+        said = Posture(frame=3, captured_s=0.2, clock_s=9.0, name="squat")
+        recognizer.publish(said)
+        assert postures.take(SOON_S) == said
+
+
+def test_who_comes_late_gets_the_newest_guide(place: Place) -> None:
+    place.hub.keep(Guide)
+    with ExitStack() as doors:
+        early = client(place, doors)
+        assert early.latest(Guide, SOON_S) is None
+        for frame in (1, 2, 3):
+            place.hub.publish(a_guide(frame))
+        assert client(place, doors).latest(Guide, SOON_S) == a_guide(3)
+
+
+def test_a_room_does_not_hear_another(place: Place) -> None:
+    with open_client(place.settings, "cellar", SOON_S) as cellar, ExitStack() as doors:
+        own, others = cellar.subscribe(Pulse), client(place, doors).subscribe(Pulse)
+        once_heard(own, cellar)
+        assert others.take(0.1) is None
+
+
+@pytest.mark.parametrize(
+    "payload",
+    [
+        b"",
+        b"\xc1 no message",
+        b"\x91" * 5000,
+        encode(a_report(1, 4))[:-3],
+        encode(a_report(1, 4)).replace(
+            b"\xa5score\xcb" + bytes(8), b"\xa5score\xcb\x7f\xf8" + bytes(6)
+        ),
+        encode(msgspec.structs.replace(a_report(1, 4), protocol=99)),
+        encode(a_report(2, 4)),
+        bytes(MAX_BYTES + 1),
+    ],
+    ids=["empty", "garbage", "nested", "cut off", "NaN", "foreign", "another's key", "too long"],
+)
+def test_a_malformed_message_is_counted_logged_once_and_the_next_good_one_arrives(
+    place: Place, payload: bytes, caplog: pytest.LogCaptureFixture
+) -> None:
+    assert payload != encode(a_report(1, 4))
+    inbox = place.hub.subscribe(Report)
+    with foreigner(place) as stranger:
+        for said in (payload, payload, encode(a_report(1, 5))):
+            stranger.put(f"tritrack/{ROOM}/viewer/1/report", said)
+        assert inbox.take(SOON_S) == a_report(1, 5)
+    assert (inbox.malformed, len(caplog.records)) == (2, 1)
+    assert f"tritrack/{ROOM}/viewer/*/report" in caplog.text
+
+
+def test_a_reader_that_sleeps_keeps_the_latest_and_counts_the_rest(place: Place) -> None:
+    """Every report counts, so the queue is bounded and what it loses is not lost in silence."""
+    spoken = BOUND + 20
+    with ExitStack() as doors:
+        speaker = client(place, doors)
+        pulses, inbox = place.hub.subscribe(Pulse), place.hub.subscribe(Report)
+        once_heard(pulses, speaker)
+        for frame in range(spoken):
+            speaker.publish(a_report(1, frame))
+        speaker.publish(Pulse(process="probe", state="ended"))
+        assert pulses.take(SOON_S) is not None
+        deadline = time.monotonic() + SOON_S
+        while inbox.dropped < spoken - BOUND and time.monotonic() < deadline:
+            time.sleep(0.01)
+        assert inbox.dropped == spoken - BOUND
+        assert [report.frame for report in inbox.drain()] == list(range(spoken - BOUND, spoken))
+
+
+def test_of_guides_a_slow_reader_gets_the_newest_alone(place: Place) -> None:
+    with ExitStack() as doors:
+        reader = client(place, doors)
+        inbox, pulses = reader.subscribe(Guide), reader.subscribe(Pulse)
+        once_heard(pulses, place.hub)
+        for frame in range(200):
+            place.hub.publish(a_guide(frame))
+        deadline = time.monotonic() + SOON_S
+        heard = [inbox.take(SOON_S)]
+        while heard[-1] != a_guide(199) and time.monotonic() < deadline:
+            time.sleep(0.02)
+            heard.extend(inbox.drain())
+        assert heard[-1] == a_guide(199)
+        assert inbox.drain() == []
+
+
+def test_the_newest_of_one_viewer_does_not_hide_the_others() -> None:
+    bus = LocalBus(ROOM)
+    inbox = bus.subscribe(Picture)
+    for frame in range(3):
+        for viewer in (1, 2):
+            moment = {"frame": frame, "captured_s": 0.0, "clock_s": 0.0}
+            bus.publish(msgspec.convert({"viewer": viewer, "jpeg": b"", **moment}, Picture))
+    assert [(picture.viewer, picture.frame) for picture in inbox.drain()] == [(1, 2), (2, 2)]
+    assert inbox.dropped == 0
+
+
+def test_the_clock_answers_and_survives_a_bad_question(
+    place: Place, caplog: pytest.LogCaptureFixture
+) -> None:
+    def reply(question: ClockQuestion) -> ClockAnswer:
+        if not question.ready:
+            raise KeyError("a mistake of the process's own")
+        return ClockAnswer(now_s=12.5, start_s=float(question.viewer))
+
+    with ExitStack() as doors:
+        viewer = client(place, doors)
+        assert viewer.ask(ClockQuestion(viewer=1, ready=True), ClockAnswer, 0.2) is None
+        place.hub.answer(ClockQuestion, reply)
+        with foreigner(place) as stranger:
+            replies = stranger.get(f"tritrack/{ROOM}/clock", payload=b"?", timeout=SOON_S)
+            assert list(replies) == []
+        assert viewer.ask(ClockQuestion(viewer=1, ready=False), ClockAnswer, SOON_S) is None
+        answer = viewer.ask(ClockQuestion(viewer=2, ready=True), ClockAnswer, SOON_S)
+        assert answer == ClockAnswer(now_s=12.5, start_s=2.0)
+    assert "a mistake of the process's own" in caplog.text
+
+
+PART = """
+import sys, time
+from common.bus import open_client
+from common.config import BusSettings
+with open_client(BusSettings(sys.argv[1]), sys.argv[2], 5.0) as bus:
+    bus.announce("viewer-1")
+    time.sleep(60)
+"""
+
+
+def test_a_killed_process_is_seen_to_go(place: Place) -> None:
+    alive = place.hub.watch_alive()
+    part = subprocess.Popen([sys.executable, "-c", PART, place.settings.endpoint, ROOM])
+    try:
+        assert alive.take(SOON_S) == Alive("viewer-1", alive=True)
+    finally:
+        part.kill()
+        part.wait()
+    assert alive.take(SOON_S) == Alive("viewer-1", alive=False)
+
+
+def test_who_watches_late_hears_who_lives_already(place: Place) -> None:
+    with ExitStack() as doors:
+        client(place, doors).announce("animator")
+        watcher = client(place, doors)
+        assert watcher.watch_alive().take(SOON_S) == Alive("animator", alive=True)
+
+
+def test_a_client_without_a_hub_says_so_in_bounded_time(endpoint: str) -> None:
+    began_s = time.monotonic()
+    with (
+        pytest.raises(BusError, match=rf"{endpoint}.*start the integrator") as caught,
+        open_client(BusSettings(endpoint), ROOM, 0.3),
+    ):
+        pass
+    assert time.monotonic() - began_s < 0.3 + SOON_S
+    assert "\n" not in str(caught.value)
+
+
+def test_a_port_that_accepts_and_stays_silent_is_no_hub() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        endpoint = f"tcp/127.0.0.1:{silent.getsockname()[1]}"
+        with pytest.raises(BusError), open_client(BusSettings(endpoint), ROOM, 0.1):
+            pass
+
+
+def test_a_client_waits_for_a_hub_that_comes_later(endpoint: str) -> None:
+    part = subprocess.Popen([sys.executable, "-c", PART, endpoint, ROOM])
+    try:
+        time.sleep(0.5)
+        with open_hub(BusSettings(endpoint), ROOM) as hub:
+            assert hub.watch_alive().take(SOON_S) == Alive("viewer-1", alive=True)
+    finally:
+        part.kill()
+        part.wait()
+
+
+def test_a_client_finds_a_hub_that_was_started_again(endpoint: str) -> None:
+    settings = BusSettings(endpoint)
+    with ExitStack() as doors:
+        with open_hub(settings, ROOM):
+            viewer = doors.enter_context(open_client(settings, ROOM, SOON_S))
+            viewer.announce("viewer-1")
+            viewer.publish(a_report(1, 1))
+        with open_hub(settings, ROOM) as hub:
+            assert hub.watch_alive().take(SOON_S) == Alive("viewer-1", alive=True)
+            once_heard(hub.subscribe(Pulse), viewer)
+
+
+def test_a_second_hub_is_told_that_the_port_is_taken(place: Place) -> None:
+    with (
+        pytest.raises(BusError, match=rf"{place.settings.endpoint}.*another \[bus\] endpoint"),
+        open_hub(place.settings, ROOM),
+    ):
+        pass
+
+
+@pytest.mark.parametrize("endpoint", ["7447", "", "udp/127.0.0.1:7447:x"])
+def test_an_endpoint_that_is_none_is_refused(endpoint: str) -> None:
+    with pytest.raises(BusError), open_hub(BusSettings(endpoint), ROOM):
+        pass
+
+
+def test_a_closed_bus_wakes_who_waits(endpoint: str) -> None:
+    with open_hub(BusSettings(endpoint), ROOM) as hub:
+        inbox, watcher = hub.subscribe(Report), hub.watch_alive()
+    assert inbox.take(60.0) is None
+    assert watcher.take(60.0) is None
+
+
+def test_the_local_bus_hands_on_what_was_encoded_and_refuses_what_is_not_finite() -> None:
+    bus = LocalBus(ROOM)
+    inbox = bus.subscribe(Report)
+    said = a_report(1, 3)
+    bus.publish(said)
+    bus.publish(msgspec.structs.replace(said, score=float("nan")))
+    heard = inbox.drain()
+    assert heard == [said]
+    assert heard[0] is not said
+    assert inbox.malformed == 1
+
+
+def test_the_local_bus_keeps_answers_and_announces_as_the_live_one() -> None:
+    bus = LocalBus(ROOM)
+    bus.publish(a_guide(1))
+    assert bus.latest(Guide, 0.0) is None
+    bus.keep(Guide)
+    bus.publish(a_guide(2))
+    assert bus.latest(Guide, 0.0) == a_guide(2)
+    question = ClockQuestion(viewer=1, ready=True)
+    assert bus.ask(question, ClockAnswer, 0.0) is None
+    bus.answer(ClockQuestion, lambda asked: ClockAnswer(now_s=float(asked.viewer)))
+    assert bus.ask(question, ClockAnswer, 0.0) == ClockAnswer(now_s=1.0)
+    bus.announce("viewer-1")
+    watcher = bus.watch_alive()
+    bus.announce("viewer-2")
+    assert watcher.drain() == [Alive("viewer-1", alive=True), Alive("viewer-2", alive=True)]
+
+
+def test_the_local_bus_is_a_bus() -> None:
+    bus: Bus = LocalBus()
+    assert bus.subscribe(Pulse).take(0.0) is None
+
+
+def test_a_mailbox_that_is_closed_still_gives_what_waits() -> None:
+    mailbox: Mailbox[int] = Mailbox(bound=2)
+    for item in (1, 2, 3):
+        mailbox.put(item)
+    mailbox.close()
+    mailbox.put(4)
+    assert not mailbox.over
+    assert [mailbox.take(0.0), mailbox.take(0.0), mailbox.take(0.0)] == [2, 3, None]
+    assert (mailbox.dropped, mailbox.over) == (1, True)
