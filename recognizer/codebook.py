@@ -1,0 +1,47 @@
+"""The vector quantiser: 64 symbols that stand for all feature vectors."""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recognizer.features import Features
+
+Codebook = NDArray[np.float64]
+"""The codewords: (SYMBOLS, 16); a symbol is the number of a row."""
+
+Symbols = NDArray[np.int64]
+
+SYMBOLS: Final = 64
+"""Size of the alphabet (section 5.1)."""
+
+STARTS: Final = 4
+"""Runs of k-means from different codewords; the tightest is kept."""
+
+
+def fit(seen: Features, seed: int = 0) -> Codebook:
+    """Codewords for the feature vectors (n, 16) of the people to learn from, and of nobody else.
+
+    k-means with a seed, in one thread: the same vectors give the same codewords, bit for bit. The
+    paper does not say how its symbols were found (P57).
+
+    Raises:
+        ValueError: When fewer than 64 different vectors are given.
+    """
+    from sklearn.cluster import KMeans
+    from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
+
+    different = len(np.unique(seen, axis=0))
+    if different < SYMBOLS:
+        raise ValueError(
+            f"{different} different poses are too few for {SYMBOLS} symbols: give more clips"
+        )
+    with threadpool_limits(1):
+        found = KMeans(SYMBOLS, n_init=STARTS, random_state=seed).fit(seen)
+    return np.asarray(found.cluster_centers_, np.float64)
+
+
+def symbols(codebook: Codebook, seen: Features) -> Symbols:
+    """The nearest codeword of each feature vector, shape (n,); the lower number where two tie."""
+    apart = np.square(codebook).sum(axis=1) - 2.0 * seen @ codebook.T
+    return np.argmin(apart, axis=1)

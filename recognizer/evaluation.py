@@ -1,0 +1,114 @@
+"""How well postures of unseen people are named: table 2 of the paper, with intervals."""
+
+import math
+from collections.abc import Collection, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recognizer.features import Angles
+from recognizer.postures import POSTURES, Topology, name, train
+
+Z_95 = 1.959964
+"""Standard normal quantile of a two-sided interval of 95 %."""
+
+
+class Recording(NamedTuple):
+    """One performance of one posture."""
+
+    performer: str
+    posture: str
+    angles_deg: Angles
+
+
+class Outcome(NamedTuple):
+    """What a recording was taken for."""
+
+    truth: str
+    named: str
+
+
+def recognise(
+    learnt_from: Sequence[Recording],
+    tested_on: Sequence[Recording],
+    topology: Topology = "left-right",
+    seed: int = 0,
+) -> list[Outcome]:
+    """Train on some people and name what others do.
+
+    Raises:
+        ValueError: When somebody is in both sets: that would measure memory.
+    """
+    performers = sorted({recording.performer for recording in learnt_from})
+    both = sorted({recording.performer for recording in tested_on} & set(performers))
+    if both:
+        raise ValueError(f"{', '.join(both)}: in training and in test; split by performer")
+    sequences: dict[str, list[Angles]] = {}
+    for recording in learnt_from:
+        sequences.setdefault(recording.posture, []).append(recording.angles_deg)
+    model = train(sequences, topology, seed, performers)
+    return [Outcome(one.posture, name(model, one.angles_deg)) for one in tested_on]
+
+
+def leave_one_performer_out(
+    recordings: Sequence[Recording], topology: Topology = "left-right", seed: int = 0
+) -> Iterator[Outcome]:
+    """Each performer named by a model of all others."""
+    for performer in sorted({recording.performer for recording in recordings}):
+        yield from recognise(
+            [one for one in recordings if one.performer != performer],
+            [one for one in recordings if one.performer == performer],
+            topology,
+            seed,
+        )
+
+
+def confusion(outcomes: Collection[Outcome], names: Sequence[str]) -> NDArray[np.int64]:
+    """How often each posture (row) was taken for each (column), shape (p, p + 1).
+
+    The last column counts those that got no name, or one that is not asked for.
+    """
+    counts = np.zeros((len(names), len(names) + 1), np.int64)
+    column = {posture: i for i, posture in enumerate(names)}
+    for outcome in outcomes:
+        counts[column[outcome.truth], column.get(outcome.named, len(names))] += 1
+    return counts
+
+
+def wilson(correct: int, tested: int) -> tuple[float, float]:
+    """Wilson's 95 % interval of a share; (0, 1) where nothing was tested."""
+    if tested == 0:
+        return 0.0, 1.0
+    share, z2 = correct / tested, Z_95**2
+    centre = share + z2 / (2 * tested)
+    reach = Z_95 * math.sqrt(share * (1 - share) / tested + z2 / (4 * tested**2))
+    return (centre - reach) / (1 + z2 / tested), (centre + reach) / (1 + z2 / tested)
+
+
+def table(counts: NDArray[np.int64], names: Sequence[str]) -> str:
+    """Table 2 as text: correct of tested for each posture, what it was mistaken for, the total.
+
+    Args:
+        counts: (p, p + 1), what `confusion` gives.
+
+    Source: Huang & Chung 2004, table 2 (P59).
+    """
+    width = max(len(posture) for posture in (*names, "posture"))
+    lines = [f"{'posture':{width}}  {'movement':11}  correct  mistaken for"]
+    for row, posture in enumerate(names):
+        result = f"{counts[row, row]:3d}/{counts[row].sum():<3d}"
+        movement = POSTURES.get(posture, "")
+        mistaken = ", ".join(_mistaken(counts[row], row, names))
+        lines.append(f"{posture:{width}}  {movement:11}  {result}  {mistaken}".rstrip())
+    correct, tested = int(np.trace(counts)), int(counts.sum())
+    low, high = wilson(correct, tested)
+    share = correct / tested if tested else 0.0
+    total = f"{correct}/{tested} = {share:.1%} (95 % interval {low:.1%} to {high:.1%})"
+    return "\n".join([*lines, f"all: {total}"])
+
+
+def _mistaken(row: NDArray[np.int64], own: int, names: Sequence[str]) -> Iterator[str]:
+    for column, count in enumerate(row.tolist()):
+        if count and column != own:
+            yield f"{names[column] if column < len(names) else 'nothing'} {count}"

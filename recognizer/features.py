@@ -1,0 +1,68 @@
+"""The feature vector: ten angles of a pose, as directions that know no seam."""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body import ANGLE_INDEX
+
+Angles = NDArray[np.float64]
+"""Angles of a stretch of frames: (n, 17) degrees, ANGLE_NAMES order, NaN where there is no pose."""
+
+Features = NDArray[np.float64]
+"""Feature vectors: (n, 16), each entry in [-1, 1]."""
+
+ANGLES: Final = (
+    "r_shoulder_x",
+    "r_shoulder_z",
+    "l_shoulder_x",
+    "l_shoulder_z",
+    "r_elbow_x",
+    "l_elbow_x",
+    "r_hip_x",
+    "r_hip_z",
+    "l_hip_x",
+    "l_hip_z",
+)
+"""The ten angles that describe a posture (section 5.1, P57)."""
+
+LIMBS: Final = ("r_shoulder", "l_shoulder", "r_hip", "l_hip")
+ELBOWS: Final = ("r_elbow", "l_elbow")
+
+FEATURE_NAMES: Final = tuple(
+    [f"{limb}_{axis}" for limb in LIMBS for axis in ("right", "up", "forward")]
+    + [f"{elbow}_{part}" for elbow in ELBOWS for part in ("cos", "sin")]
+)
+"""The order of a feature vector; a model says for which order it was trained."""
+
+
+def with_pose(angles_deg: Angles) -> Angles:
+    """The rows (m, 17) in which all ten angles are known: frames without a pose are dropped.
+
+    An observation that was not made is no symbol: a hidden Markov model takes the next one, and
+    carrying the old pose on would tell it of a standstill that nobody saw.
+    """
+    wanted = [ANGLE_INDEX[name] for name in ANGLES]
+    return angles_deg[np.isfinite(angles_deg[:, wanted]).all(axis=1)]
+
+
+def features(angles_deg: Angles) -> Features:
+    """The ten angles of each frame as a point of a space without seams, shape (n, 16).
+
+    The observation stays the paper's, the space in which symbols are neighbours is ours. As
+    numbers, theta_X = 179 and -179 lie far apart; with theta_X = 90 (arm forward) every theta_Z is
+    the same pose; and (theta_X, theta_Z), (180 - theta_X, theta_Z + 180) are one direction. So
+    upper arms and thighs enter as the direction that their pair of angles gives in the body's own
+    frame, Rz(theta_Z) Rx(theta_X) (0, 1, 0), and elbows as cosine and sine.
+
+    Source: Huang & Chung 2004, section 5.1 (P57); section 2.2, M_N^S (C3, C4).
+    """
+    radians = {name: np.radians(angles_deg[:, ANGLE_INDEX[name]]) for name in ANGLES}
+    columns = []
+    for limb in LIMBS:
+        x, z = radians[f"{limb}_x"], radians[f"{limb}_z"]
+        columns += [np.sin(z) * np.cos(x), np.cos(z) * np.cos(x), np.sin(x)]
+    for elbow in ELBOWS:
+        columns += [np.cos(radians[f"{elbow}_x"]), np.sin(radians[f"{elbow}_x"])]
+    return np.stack(columns, axis=1)

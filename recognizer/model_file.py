@@ -1,0 +1,146 @@
+"""A posture model on disk: one npz of numbers with a JSON header, and no pickle."""
+
+import tokenize
+import zipfile
+import zlib
+from collections.abc import Collection, Mapping
+from pathlib import Path
+from typing import Final, Literal
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from recognizer.codebook import SYMBOLS
+from recognizer.features import FEATURE_NAMES
+from recognizer.postures import STATES, Card, PostureModel
+
+VERSION: Final = 1
+MAX_BYTES: Final = 10_000_000
+"""No model is larger unpacked: fifteen postures take 50 kB."""
+
+CURE: Final = "make one with `tritrack train --what postures`"
+
+DAMAGE: Final = (
+    *(ValueError, KeyError, EOFError, RecursionError, MemoryError, NotImplementedError),
+    *(msgspec.DecodeError, tokenize.TokenError, zipfile.BadZipFile, zlib.error, RuntimeError),
+)
+"""What reading a damaged or foreign archive, array or header raises."""
+
+
+class ModelError(ValueError):
+    """A file that holds no usable model; the text names the file, what is wrong and the cure."""
+
+
+class Kind(msgspec.Struct, frozen=True):
+    """As much of a header as every version has."""
+
+    format: Literal["tritrack postures"]
+    version: int
+
+
+class Header(Kind, frozen=True, forbid_unknown_fields=True):
+    """What the numbers mean."""
+
+    postures: tuple[str, ...]
+    features: tuple[str, ...]
+    card: Card
+
+
+def save(model: PostureModel, path: Path) -> None:
+    """Write a model; the same model gives the same bytes.
+
+    Raises:
+        ModelError: When the file cannot be written.
+    """
+    header = Header("tritrack postures", VERSION, model.names, FEATURE_NAMES, model.card)
+    try:
+        with path.open("wb") as file:
+            np.savez(
+                file,
+                header=np.frombuffer(msgspec.json.encode(header), np.uint8),
+                codebook=model.codebook,
+                start=model.start,
+                transition=model.transition,
+                emission=model.emission,
+            )
+    except OSError as error:
+        raise ModelError(f"cannot write the model {path}: {error.strerror}") from error
+
+
+def load(path: Path, postures: Collection[str] | None = None) -> PostureModel:
+    """Read a model that `save` wrote.
+
+    Args:
+        postures: The names that the model must know, no fewer and no others; None takes any.
+
+    Raises:
+        ModelError: When the file cannot be read, is damaged, foreign, of another version or
+            feature order, holds no probabilities, or knows other postures.
+    """
+    try:
+        model = _read(path)
+        _refuse_unless(model, postures)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise ModelError(f"cannot read the model {path}: {reason}; {CURE}") from error
+    except DAMAGE as error:
+        reason = (str(error).splitlines() or [type(error).__name__])[0]
+        raise ModelError(f"no usable posture model in {path}: {reason}; {CURE}") from error
+    return model
+
+
+def _read(path: Path) -> PostureModel:
+    with zipfile.ZipFile(path) as archive:
+        unpacked = sum(member.file_size for member in archive.infolist())
+    if unpacked > MAX_BYTES:
+        raise ValueError(f"{unpacked} bytes unpacked, at most {MAX_BYTES} are taken")
+    with np.load(path, allow_pickle=False) as file:
+        header = _header(file["header"].tobytes())
+        arrays = {name: file[name] for name in _shapes(header)}
+    _refuse_false_arrays(arrays, _shapes(header))
+    return PostureModel(names=header.postures, card=header.card, **arrays)
+
+
+def _header(text: bytes) -> Header:
+    version = msgspec.json.decode(text, type=Kind).version
+    if version != VERSION:
+        raise ValueError(f"it has version {version}, this tritrack reads {VERSION}")
+    header = msgspec.json.decode(text, type=Header)
+    if header.features != FEATURE_NAMES:
+        raise ValueError("it was made for other features than this tritrack computes")
+    return header
+
+
+def _shapes(header: Header) -> dict[str, tuple[int, ...]]:
+    p = len(header.postures)
+    return {
+        "codebook": (SYMBOLS, len(FEATURE_NAMES)),
+        "start": (p, STATES),
+        "transition": (p, STATES, STATES),
+        "emission": (p, STATES, SYMBOLS),
+    }
+
+
+def _refuse_false_arrays(
+    arrays: Mapping[str, NDArray[np.float64]], shapes: Mapping[str, tuple[int, ...]]
+) -> None:
+    for name, array in arrays.items():
+        if array.shape != shapes[name] or array.dtype != np.float64:
+            raise ValueError(f"{name} is {array.dtype} {array.shape}, not float64 {shapes[name]}")
+        if not np.isfinite(array).all():
+            raise ValueError(f"{name} holds a number that is not finite")
+        if name == "codebook":
+            continue
+        if (array < 0).any() or not np.allclose(array.sum(axis=-1), 1.0, rtol=0, atol=1e-9):
+            raise ValueError(f"the rows of {name} are no probabilities")
+    if (arrays["emission"] == 0).any():
+        raise ValueError("emission calls a symbol impossible")
+
+
+def _refuse_unless(model: PostureModel, postures: Collection[str] | None) -> None:
+    if not model.names or len(set(model.names)) < len(model.names):
+        raise ValueError(f"{len(model.names)} postures with {len(set(model.names))} names")
+    if postures is not None and set(postures) != set(model.names):
+        differing = ", ".join(sorted(set(postures) ^ set(model.names)))
+        raise ValueError(f"its postures are not those asked for (differing: {differing})")

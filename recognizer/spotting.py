@@ -1,0 +1,126 @@
+"""Naming as it happens: the motion under way, in a sliding window that is judged at every frame."""
+
+from dataclasses import dataclass, replace
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body import ANGLE_NAMES
+from recognizer.codebook import symbols
+from recognizer.features import FEATURE_NAMES, Features, features, with_pose
+from recognizer.postures import PostureModel, forward, likeliest
+
+NAMED_FROM_FRAMES: Final = 15
+"""A second of motion: less of it fits too many postures."""
+
+STILL_FRAMES: Final = 12
+"""So long a standstill parts two motions. Shorter ones occur within a motion, between two kicks."""
+
+STILL: Final = 0.15
+"""Spread of feature vectors (root mean square distance from their mean; 0.15 is one limb swaying by
+9 degrees) below which a body stands still: of true angles, 0.07 at most in T-poses and 0.19 at
+least in a second of any motion (r01, r04)."""
+
+MISSED_FRAMES: Final = 15
+"""So many frames in a row without a pose end what was going on: the next pose begins anew."""
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """What is remembered of the last frames; the oldest first."""
+
+    model: PostureModel
+    window_frames: int
+    seen: Features  # (n, 16), n <= window_frames
+    frames: tuple[int, ...] = ()
+    """Which calls of `step`, counted from 0, had these poses."""
+    next_frame: int = 0
+    moving_frames: int = 0
+    """Poses since the last standstill ended; 0 during one."""
+    named: bool = False
+    """The last judgement gave a name."""
+    missed: int = 0
+    """How many frames without a pose came last."""
+
+
+class Judgement(NamedTuple):
+    """What the window looks like."""
+
+    name: str
+    """The likeliest posture; "" while too little, or nothing but standing, was seen."""
+    log_likelihoods: dict[str, float]
+    """log P(window | model) of each posture; empty where there is no name."""
+    first: int
+    last: int
+    """First and last frame of the window, counted in calls of `step`; both that of this call where
+    the window is empty."""
+
+
+def init(model: PostureModel, window_frames: int) -> State:
+    """Nothing seen yet."""
+    return State(model, window_frames, seen=np.empty((0, len(FEATURE_NAMES))))
+
+
+def step(state: State, angles_deg: NDArray[np.float64] | None) -> tuple[State, Judgement]:
+    """Take one frame and judge the window that ends with it.
+
+    The models know motions and no standing. So a standstill (the opening posture, say) has no
+    name; a motion is named when a second of it was seen, without what came before the standstill;
+    and one that ends in standing keeps its name until nothing but standing is in the window. A
+    frame without a pose adds nothing.
+
+    Args:
+        angles_deg: (17,) ANGLE_NAMES order; None or NaN where there is no pose.
+    """
+    state = _cut(_remember(state, angles_deg))
+    scores = _scores(state)
+    name = likeliest(scores) if scores else ""
+    now = state.next_frame - 1
+    first, last = (state.frames[0], state.frames[-1]) if state.frames else (now, now)
+    return replace(state, named=bool(scores)), Judgement(name, scores, first, last)
+
+
+def _remember(state: State, angles_deg: NDArray[np.float64] | None) -> State:
+    row = np.empty((0, len(ANGLE_NAMES))) if angles_deg is None else angles_deg[np.newaxis]
+    row = with_pose(row)
+    now, keep = state.next_frame, state.window_frames
+    if len(row):
+        seen = np.concatenate([state.seen, features(row)])[-keep:]
+        moving = 0 if _stands(seen) else state.moving_frames + 1
+        frames = (*state.frames, now)[-keep:]
+        return replace(
+            state, seen=seen, frames=frames, next_frame=now + 1, moving_frames=moving, missed=0
+        )
+    missed = state.missed + 1
+    if missed >= MISSED_FRAMES:
+        state = init(state.model, keep)
+    return replace(state, next_frame=now + 1, missed=missed)
+
+
+def _cut(state: State) -> State:
+    """Without what came before the last standstill ended, once enough came after it."""
+    if state.moving_frames < _needed(state):
+        return state
+    keep = state.moving_frames
+    return replace(state, seen=state.seen[-keep:], frames=state.frames[-keep:])
+
+
+def _scores(state: State) -> dict[str, float]:
+    begun = state.named or state.moving_frames >= _needed(state)
+    if not begun or len(state.seen) < _needed(state) or _spread(state.seen) < STILL:
+        return {}
+    totals = forward(state.model, symbols(state.model.codebook, state.seen))
+    return dict(zip(state.model.names, totals.tolist(), strict=True))
+
+
+def _needed(state: State) -> int:
+    return min(NAMED_FROM_FRAMES, state.window_frames)
+
+
+def _stands(seen: Features) -> bool:
+    return len(seen) >= STILL_FRAMES and _spread(seen[-STILL_FRAMES:]) < STILL
+
+
+def _spread(seen: Features) -> float:
+    return float(np.sqrt(np.square(seen - seen.mean(axis=0)).sum(axis=1).mean()))
