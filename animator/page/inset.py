@@ -1,0 +1,103 @@
+"""What a camera shows on the page: its silhouette or picture, and the fitted body's outline."""
+
+import math
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from animator.scene import Figure, half_sizes, limb_colours
+from common.body import LIMBS, Vector, body_vector
+from common.camera import Camera, project
+from common.kinematics import limb_frames
+from common.messages import Picture, Report, unpack
+
+Image = NDArray[np.uint8]
+"""(H, W, 3), red, green, blue."""
+
+NIGHT: Final = np.array([28, 33, 41], np.float32)
+"""What is not the person, where no picture may be shown."""
+SEEN: Final = np.array([112, 152, 158], np.float32)
+"""The person as the camera's silhouette has it."""
+TINT: Final = 0.35
+"""Share of SEEN over a picture: enough to tell the silhouette, the picture stays readable."""
+
+WIDTH_PX: Final = 320
+"""Least width of an inset: at 160x120 an outline would be as thick as an arm."""
+SECTION_POINTS: Final = 24
+"""Points on the rim of a cylinder's section: the outline is within 1 % of the radius."""
+SHIFT: Final = 4
+"""Bits of a pixel's fraction that cv2 draws with."""
+FARTHEST: Final = 2**20
+"""No corner lies farther out, in those fractions: cv2's own numbers would overflow."""
+
+
+def section_rims(figure: Figure) -> NDArray[np.float64]:
+    """Points on the rims of both end sections of each limb, (10, 2 * SECTION_POINTS, 3), metres."""
+    turn = np.linspace(0.0, 2.0 * math.pi, SECTION_POINTS, endpoint=False)
+    circle = np.stack([np.cos(turn), np.zeros_like(turn), np.sin(turn)], axis=1)
+    both = np.concatenate([circle, circle + np.array([0.0, 1.0, 0.0])])
+    sizes = np.array([half_sizes(getattr(figure.bdp, limb)) for limb in LIMBS])
+    frames = limb_frames(body_vector(figure.bdp), figure.pose)
+    turned = (both * sizes[:, None]) @ frames[:, 3:].reshape(-1, 3, 3).transpose(0, 2, 1)
+    rims: NDArray[np.float64] = turned + frames[:, None, :3]
+    return rims
+
+
+def limb_outlines(camera: Camera, rims_m: NDArray[np.float64]) -> list[Vector]:
+    """The outline of each limb in a camera's picture: convex, (k, 2) pixels, in the order of LIMBS.
+
+    A limb that is not wholly before the camera has none: (0, 2).
+    """
+    pixels = project(camera, rims_m.reshape(-1, 3)).reshape(*rims_m.shape[:2], 2)
+    return [
+        cv2.convexHull(limb.astype(np.float32))[:, 0].astype(np.float64)
+        if np.isfinite(limb).all()
+        else np.empty((0, 2))
+        for limb in pixels
+    ]
+
+
+def inset(report: Report, picture: Picture | None) -> Image:
+    """The silhouette over the picture where there is one, else over NIGHT; WIDTH_PX wide or more.
+
+    A picture that cannot be decoded is left out.
+    """
+    times = math.ceil(WIDTH_PX / report.width)
+    size = (report.width * times, report.height * times)
+    seen = cv2.resize(unpack(report).astype(np.float32), size)[:, :, None]
+    shown = _decoded(picture, size)
+    if shown is None:
+        painted = NIGHT + seen * (SEEN - NIGHT)
+    else:
+        painted = shown + TINT * seen * (SEEN - shown)
+    image: Image = painted.astype(np.uint8)
+    return image
+
+
+def draw_outlines(image: Image, outlines: list[Vector], width_px: int) -> None:
+    """Draw limbs into an inset, in the colours of their sides.
+
+    Args:
+        image: Changed in place.
+        outlines: From `limb_outlines`.
+        width_px: Width of the picture that the outlines' pixels are of.
+    """
+    times = image.shape[1] / width_px
+    for outline, colour in zip(outlines, limb_colours(), strict=True):
+        corners = np.rint((outline * times - 0.5) * 2**SHIFT)
+        if len(corners) and np.abs(corners).max() < FARTHEST:
+            cv2.polylines(
+                image, [corners.astype(np.int32)], True, colour.tolist(), 1, cv2.LINE_AA, SHIFT
+            )
+
+
+def _decoded(picture: Picture | None, size: tuple[int, int]) -> NDArray[np.float32] | None:
+    if picture is None or not picture.jpeg:
+        return None
+    decoded = cv2.imdecode(np.frombuffer(picture.jpeg, np.uint8), cv2.IMREAD_COLOR_RGB)
+    if decoded is None:
+        return None
+    fitting: NDArray[np.float32] = cv2.resize(decoded, size).astype(np.float32)
+    return fitting

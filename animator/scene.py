@@ -1,0 +1,251 @@
+"""What is to be shown: the newest messages as shapes in the room, before anything draws them."""
+
+import math
+from collections.abc import Mapping
+from typing import Final, NamedTuple
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body import JOINT_NAMES, LIMBS, Bdp, Elliptic, Round, Vector, body_vector
+from common.camera import Camera, Rig, centre
+from common.kinematics import HEAD, TORSO, limb_frames
+from common.messages import Body, Picture, Posture, Pulse, Report
+
+Colour = tuple[int, int, int]
+Colours = NDArray[np.uint8]
+
+LEFT: Final[Colour] = (224, 146, 68)
+"""The body's left side: amber. It and RIGHT stay apart for colour-blind eyes."""
+RIGHT: Final[Colour] = (66, 122, 184)
+TRUNK: Final[Colour] = (140, 152, 166)
+UNSURE: Final[Colour] = (222, 225, 229)
+"""What a limb fades to as its confidence falls to 0."""
+
+SECTORS: Final = 24
+"""Sides of a shape that stands for a round one: no corner is seen at the page's size."""
+RIM: Final = 0.12
+"""Share of a cylinder's radius and height that rounds each of its rims."""
+
+BEHIND, ABOVE = 1.3, 0.45
+"""How far behind and above the cameras the spectator stands, in distances of the farthest one."""
+
+_DISTAL: Final = {
+    "upper_leg": "knee",
+    "lower_leg": "ankle",
+    "upper_arm": "elbow",
+    "lower_arm": "wrist",
+}
+_JOINT_OF_LIMB: Final = tuple(
+    JOINT_NAMES.index(
+        {"torso": "pelvis", "head": "head_top"}.get(limb) or f"{limb[0]}_{_DISTAL[limb[2:]]}"
+    )
+    for limb in LIMBS
+)
+"""The landmark whose confidence is a limb's: the one at its far end."""
+
+
+class Snapshot(msgspec.Struct, frozen=True):
+    """The newest of everything that is shown; what was not heard yet is missing."""
+
+    body: Body | None = None
+    reports: Mapping[int, Report] = {}
+    """By viewer."""
+    pictures: Mapping[int, Picture] = {}
+    """By viewer."""
+    posture: Posture | None = None
+    pulses: Mapping[str, Pulse] = {}
+    """By process."""
+
+
+class Figure(NamedTuple):
+    """A body that can be drawn."""
+
+    bdp: Bdp
+    pose: Vector
+    """(25,), POSE_NAMES order."""
+    confidence: tuple[float, ...] = ()
+    """JOINT_NAMES order, in [0, 1]; empty: sure of all."""
+
+
+class Mesh(NamedTuple):
+    """Triangles of a unit shape."""
+
+    vertices: Vector
+    """(n, 3)."""
+    faces: NDArray[np.uint32]
+    """(m, 3), counter-clockwise seen from outside."""
+
+
+class Shapes(NamedTuple):
+    """Copies of one unit shape: scaled, then turned, then moved."""
+
+    positions: Vector
+    """(n, 3), metres."""
+    wxyzs: Vector
+    """(n, 4), unit quaternions."""
+    scales: Vector
+    """(n, 3), metres."""
+    colours: Colours
+    """(n, 3), red, green, blue."""
+
+
+class Frustum(NamedTuple):
+    """A camera in the room: looks along its +z, its picture's rows run along +y."""
+
+    position: Vector
+    wxyz: Vector
+    fov_rad: float
+    """Vertical angle of view."""
+    aspect: float
+    """Width of the view over its height."""
+
+
+class Viewpoint(NamedTuple):
+    """Where the spectator stands, and what they look at."""
+
+    position: Vector
+    look_at: Vector
+
+
+def quaternion(rotation: Vector) -> Vector:
+    """A rotation matrix (3, 3) as a unit quaternion q = (w, x, y, z).
+
+    The matrix tells 4 q q^T; its row with the largest diagonal entry is a multiple of q that no
+    rounding can spoil.
+    """
+    (a, b, c), (d, e, f), (g, h, i) = rotation
+    products = np.array(
+        [
+            [1 + a + e + i, h - f, c - g, d - b],
+            [h - f, 1 + a - e - i, d + b, c + g],
+            [c - g, d + b, 1 - a + e - i, h + f],
+            [d - b, c + g, h + f, 1 - a - e + i],
+        ]
+    )
+    row: Vector = products[products.diagonal().argmax()]
+    return row / float(np.linalg.norm(row))
+
+
+def unit_cylinder() -> Mesh:
+    """A cylinder of radius 1 from (0, 0, 0) to (0, 1, 0), its rims rounded by RIM."""
+    quarter = np.radians([0.0, 30.0, 60.0, 90.0])
+    radii = 1.0 - RIM * (1.0 - np.sin(quarter))
+    heights = RIM * (1.0 - np.cos(quarter))
+    return _turned_on_a_lathe(
+        np.concatenate([[0.0], radii, radii[::-1], [0.0]]),
+        np.concatenate([[0.0], heights, 1.0 - heights[::-1], [1.0]]),
+    )
+
+
+def unit_ball() -> Mesh:
+    """A ball of radius 1 around the origin."""
+    angles = np.linspace(0.0, math.pi, SECTORS // 2 + 1)
+    radii = np.sin(angles)
+    radii[[0, -1]] = 0.0
+    return _turned_on_a_lathe(radii, -np.cos(angles))
+
+
+def figure(body: Body | None) -> Figure | None:
+    """What can be drawn of a body; None where it has no pose or no measures."""
+    if body is None or not body.pose or body.bdp is None:
+        return None
+    return Figure(body.bdp, np.array(body.pose), body.confidence)
+
+
+def limb_shapes(figure: Figure) -> Shapes:
+    """The ten limbs as copies of the unit cylinder, in the order of LIMBS (P55)."""
+    frames = limb_frames(body_vector(figure.bdp), figure.pose)
+    wxyzs = np.array([quaternion(frame[3:].reshape(3, 3)) for frame in frames])
+    scales = np.array([half_sizes(getattr(figure.bdp, limb)) for limb in LIMBS])
+    return Shapes(frames[:, :3], wxyzs, scales, limb_colours(figure.confidence))
+
+
+def round_shapes(limbs: Shapes) -> Shapes:
+    """The head, then a ball where each arm's and leg's cylinder begins: copies of the unit ball.
+
+    The balls close the gap that two cylinders leave at a bent joint.
+    """
+    shapes = rows_of(limbs, [HEAD, *(i for i in range(len(LIMBS)) if i not in (TORSO, HEAD))])
+    shapes.scales[1:, 1] = np.minimum(shapes.scales[1:, 0], shapes.scales[1:, 2])
+    shapes.scales[0, 1] /= 2
+    w, x, y, z = shapes.wxyzs[0]
+    up = np.array([2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)])
+    shapes.positions[0] += shapes.scales[0, 1] * up
+    return shapes
+
+
+def rows_of(shapes: Shapes, rows: list[int]) -> Shapes:
+    """Some of the copies, in the order that is asked for."""
+    return Shapes(
+        shapes.positions[rows], shapes.wxyzs[rows], shapes.scales[rows], shapes.colours[rows]
+    )
+
+
+def limb_colours(confidence: tuple[float, ...] = ()) -> Colours:
+    """The colour of each limb, (10, 3): by side, faded where its far joint is not sure."""
+    sides = {"l": LEFT, "r": RIGHT}
+    full = np.array([sides[limb[0]] if limb[1] == "_" else TRUNK for limb in LIMBS], float)
+    sure = np.array(confidence)[list(_JOINT_OF_LIMB), None] if confidence else np.ones((10, 1))
+    faded: Colours = np.rint(UNSURE + sure * (full - UNSURE)).astype(np.uint8)
+    return faded
+
+
+def frustum(camera: Camera, size: tuple[int, int]) -> Frustum:
+    """Where a camera stands and what it sees; a principal point off the centre is not shown."""
+    (width, height), K = size, np.array(camera.K)
+    return Frustum(
+        position=centre(camera),
+        wxyz=quaternion(np.array(camera.R).T),
+        fov_rad=2.0 * math.atan(height / (2.0 * K[1, 1])),
+        aspect=float((width / K[0, 0]) / (height / K[1, 1])),
+    )
+
+
+def viewpoint(rig: Rig) -> Viewpoint:
+    """A place behind and above the cameras, from which both of their pictures can be read.
+
+    It looks at the middle of the room: the place that is nearest to the axes of all cameras. One
+    camera alone, or two that face each other, are looked at from the side.
+    """
+    places = np.array([centre(camera) for camera in rig.cameras])
+    axes = np.array([camera.R[2] for camera in rig.cameras])
+    across = np.eye(3) - axes[:, :, None] * axes[:, None, :]
+    middle = np.linalg.lstsq(
+        across.reshape(-1, 3), (across @ places[:, :, None]).ravel(), rcond=1e-6
+    )[0]
+    out = (places - middle) * (1.0, 0.0, 1.0)
+    distance_m = max(1.0, float(np.linalg.norm(out, axis=1).max()))
+    back = (out / distance_m).sum(axis=0)
+    if len(out) == 1 or float(np.linalg.norm(back)) < 0.5:
+        back = back + np.cross(out[0] / distance_m, (0.0, 1.0, 0.0))
+    back = back / max(float(np.linalg.norm(back)), 1e-9)
+    return Viewpoint(middle + distance_m * (BEHIND * back + (0.0, ABOVE, 0.0)), middle)
+
+
+def half_sizes(part: Elliptic | Round) -> tuple[float, float, float]:
+    """Half width from side to side, height, and half width from front to back of a cylinder."""
+    if isinstance(part, Elliptic):
+        return part.long_radius, part.height, part.short_radius
+    return part.radius, part.height, part.radius
+
+
+def _turned_on_a_lathe(radii: Vector, heights: Vector) -> Mesh:
+    """The surface that a profile sweeps round the y axis; it begins and ends on that axis."""
+    turn = np.linspace(0.0, 2.0 * math.pi, SECTORS, endpoint=False)
+    rings = [
+        np.stack([r * np.cos(turn), np.full(SECTORS, y), r * np.sin(turn)], axis=1)
+        for r, y in zip(radii, heights, strict=True)
+    ]
+    at = np.arange(SECTORS)
+    here, after = at, (at + 1) % SECTORS
+    faces = [
+        ring * SECTORS + np.stack(corners, axis=1)
+        for ring in range(len(rings) - 1)
+        for corners in (
+            (here, here + SECTORS, after + SECTORS),
+            (here, after + SECTORS, after),
+        )
+    ]
+    return Mesh(np.concatenate(rings), np.concatenate(faces).astype(np.uint32))

@@ -1,0 +1,156 @@
+"""The cameras' pictures on the page: golden pictures of three poses, from geometry (P55)."""
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from animator.page.inset import (
+    NIGHT,
+    SEEN,
+    Image,
+    draw_outlines,
+    inset,
+    limb_outlines,
+    section_rims,
+)
+from animator.scene import Figure
+from common.body import LIMBS, POSE_INDEX, Vector, body_vector, rest_pose, stature, thesis_bdp
+from common.camera import paper_rig, project
+from common.kinematics import segments
+from common.messages import Picture, Report, pack
+
+BDP = thesis_bdp(1.75)
+FOCAL_PX, DISTANCE_M = 401.0, 4.5
+RIG = paper_rig((320, 240), (FOCAL_PX, FOCAL_PX), (DISTANCE_M, DISTANCE_M), (1.0, 1.0))
+LEG_M = BDP.r_upper_leg.height + BDP.r_lower_leg.height
+PX_PER_M = FOCAL_PX / DISTANCE_M
+"""Of what stands in the middle of the room."""
+
+
+def standing(**angles_deg: float) -> Vector:
+    """A pose on the floor in the middle of the room, legs straight unless told."""
+    pose = rest_pose()
+    pose[POSE_INDEX["y"]] = LEG_M
+    for name, angle_deg in angles_deg.items():
+        pose[POSE_INDEX[name]] = angle_deg
+    return pose
+
+
+T_POSE = standing(r_shoulder_z=90.0, l_shoulder_z=270.0)
+ARMS_UP = standing(r_shoulder_z=0.0, l_shoulder_z=360.0)
+SQUAT = standing(y=LEG_M / 2, r_hip_x=60.0, l_hip_x=60.0, r_knee_x=-120.0, l_knee_x=-120.0)
+
+
+def report(mask: np.ndarray) -> Report:
+    height, width = mask.shape
+    return Report(
+        frame=0,
+        captured_s=0.0,
+        clock_s=0.0,
+        viewer=1,
+        width=width,
+        height=height,
+        silhouette=pack(mask),
+        box=None,
+    )
+
+
+def drawn(pose: Vector) -> Image:
+    """The fitted outline alone, as camera 1 shows it."""
+    image = inset(report(np.zeros((120, 160), bool)), None)
+    draw_outlines(image, limb_outlines(RIG.cameras[0], section_rims(Figure(BDP, pose))), RIG.width)
+    return image
+
+
+def extent_m(pose: Vector) -> tuple[float, float, float]:
+    """Width, height and top of the drawn outline, metres at the middle of the room."""
+    rows, columns = np.nonzero((drawn(pose) != NIGHT.astype(np.uint8)).any(axis=2))
+    top = 1.0 - (rows.min() + 0.5 - RIG.height / 2) / PX_PER_M
+    return float(np.ptp(columns) / PX_PER_M), float(np.ptp(rows) / PX_PER_M), float(top)
+
+
+def test_the_t_pose_is_as_wide_as_its_arms_and_trunk() -> None:
+    """P55, first golden picture: an arm's front is nearer by its radius; 3 px are the lines'."""
+    width_m, _, top_m = extent_m(T_POSE)
+    span_m = 2 * (BDP.torso.long_radius + BDP.r_upper_arm.height + BDP.r_lower_arm.height)
+    nearer = DISTANCE_M / (DISTANCE_M - BDP.r_lower_arm.radius)
+    assert width_m == pytest.approx(span_m * nearer, abs=3 / PX_PER_M)
+    assert width_m > 0.8 * stature(BDP)
+    assert top_m == pytest.approx(stature(BDP), abs=0.06)
+
+
+def test_a_squat_is_lower_than_standing_by_half_the_legs() -> None:
+    """P55, second golden picture: the navel sinks by half a leg, and so does the crown."""
+    standing_m, squatting_m = extent_m(standing())[2], extent_m(SQUAT)[2]
+    assert standing_m - squatting_m == pytest.approx(LEG_M / 2, abs=0.05)
+
+
+def test_raised_arms_reach_above_the_crown() -> None:
+    """P55, third golden picture: shoulder height plus the arm's length."""
+    top_m = extent_m(ARMS_UP)[2]
+    shoulder_m = segments(body_vector(BDP), ARMS_UP)[LIMBS.index("r_upper_arm"), 0, 1]
+    reach_m = shoulder_m + BDP.r_upper_arm.height + BDP.r_lower_arm.height
+    assert top_m == pytest.approx(reach_m, abs=0.05)
+    assert top_m > stature(BDP) + 0.1
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(st.floats(-180.0, 180.0), min_size=22, max_size=22), st.sampled_from([0, 1]))
+def test_the_outline_of_a_limb_contains_its_axis(angles_deg: list[float], n: int) -> None:
+    pose = np.array([0.2, 0.9, -0.3, *angles_deg])
+    camera = RIG.cameras[n]
+    outlines = limb_outlines(camera, section_rims(Figure(BDP, pose)))
+    for outline, ends in zip(outlines, segments(body_vector(BDP), pose), strict=True):
+        axis = project(camera, np.linspace(ends[0], ends[1], 5))
+        hull = outline.astype(np.float32)
+        assert all(cv2.pointPolygonTest(hull, point.tolist(), True) > -1e-2 for point in axis)
+
+
+def test_a_sideways_cylinder_is_drawn_as_wide_as_two_radii() -> None:
+    """Worked by hand: a hanging lower arm at the camera's distance, f times 2 r over z."""
+    pose = standing()
+    outline = limb_outlines(RIG.cameras[0], section_rims(Figure(BDP, pose)))[
+        LIMBS.index("r_lower_arm")
+    ]
+    expected_px = 2 * BDP.r_lower_arm.radius * PX_PER_M
+    assert np.ptp(outline[:, 0]) == pytest.approx(expected_px, rel=0.03)
+
+
+def test_a_limb_behind_the_camera_has_no_outline_and_is_not_drawn() -> None:
+    pose = standing(z=DISTANCE_M)
+    outlines = limb_outlines(RIG.cameras[0], section_rims(Figure(BDP, pose)))
+    assert all(len(outline) == 0 for outline in outlines)
+    assert (drawn(pose) == NIGHT.astype(np.uint8)).all()
+
+
+def test_without_a_picture_only_the_silhouette_is_shown() -> None:
+    """Privacy: nothing but person and not-person can be read from it."""
+    mask = np.zeros((120, 160), bool)
+    mask[20:100, 60:90] = True
+    image = inset(report(mask), None)
+    assert image.shape == (240, 320, 3)
+    assert (image[120, 150] == SEEN.astype(np.uint8)).all()
+    assert (image[10, 10] == NIGHT.astype(np.uint8)).all()
+
+
+def test_a_picture_is_shown_beneath_the_silhouette_where_one_is_sent() -> None:
+    red = np.zeros((60, 80, 3), np.uint8)
+    red[:, :, 2] = 200
+    jpeg = cv2.imencode(".jpg", red)[1].tobytes()
+    mask = np.zeros((120, 160), bool)
+    mask[:, :80] = True
+    image = inset(report(mask), picture(jpeg))
+    assert np.abs(image[120, 300].astype(int) - [200, 0, 0]).max() < 6
+    assert image[120, 20, 1] > 30
+
+
+@pytest.mark.parametrize("jpeg", [b"", b"no picture at all"], ids=["empty", "garbage"])
+def test_a_picture_that_is_none_is_left_out(jpeg: bytes) -> None:
+    blank = report(np.zeros((120, 160), bool))
+    assert (inset(blank, picture(jpeg)) == inset(blank, None)).all()
+
+
+def picture(jpeg: bytes) -> Picture:
+    return Picture(frame=0, captured_s=0.0, clock_s=0.0, viewer=1, jpeg=jpeg)

@@ -1,0 +1,175 @@
+"""The shapes in the room, held against the body's own geometry and the cameras' (P55)."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from animator.scene import (
+    LEFT,
+    RIGHT,
+    TRUNK,
+    Figure,
+    Mesh,
+    Shapes,
+    figure,
+    frustum,
+    limb_colours,
+    limb_shapes,
+    quaternion,
+    round_shapes,
+    unit_ball,
+    unit_cylinder,
+    viewpoint,
+)
+from common.body import (
+    JOINT_NAMES,
+    LIMBS,
+    POSE_INDEX,
+    POSE_NAMES,
+    Vector,
+    body_vector,
+    rest_pose,
+    thesis_bdp,
+)
+from common.camera import Camera, Rig, centre, paper_rig, project, ray
+from common.kinematics import segments
+from common.messages import Body
+
+BDP = thesis_bdp(1.75)
+RIG = paper_rig((320, 240), (401.0, 401.0), (4.5, 4.5), (1.0, 1.0))
+
+poses = st.lists(
+    st.sampled_from([-180.0, -90.0, 0.0, 90.0, 180.0]) | st.floats(-360.0, 360.0),
+    min_size=len(POSE_NAMES),
+    max_size=len(POSE_NAMES),
+).map(lambda angles: np.array([0.3, 0.9, -0.4, *angles[3:]]))
+
+
+def placed(mesh: Mesh, shapes: Shapes, i: int) -> NDArray[np.float64]:
+    """The vertices of one copy, in the room; turned by scipy, not by us."""
+    turn = Rotation.from_quat(shapes.wxyzs[i], scalar_first=True)
+    return turn.apply(mesh.vertices * shapes.scales[i]) + shapes.positions[i]
+
+
+def volume(mesh: Mesh) -> float:
+    a, b, c = (mesh.vertices[mesh.faces[:, i]] for i in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+
+
+@settings(max_examples=50, deadline=None)
+@given(poses)
+def test_every_cylinder_stands_between_the_two_ends_of_its_limb(pose: Vector) -> None:
+    """P55: the model is drawn from the universal BAPs, in whatever posture."""
+    shapes = limb_shapes(Figure(BDP, pose))
+    ends = segments(body_vector(BDP), pose)
+    for i in range(len(LIMBS)):
+        axis = Mesh(np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), unit_cylinder().faces)
+        assert np.abs(placed(axis, shapes, i) - ends[i]).max() < 1e-6, LIMBS[i]
+
+
+def test_the_unit_cylinder_runs_from_the_origin_one_up_with_radius_one() -> None:
+    vertices = unit_cylinder().vertices
+    assert vertices[:, 1].min() == 0.0
+    assert vertices[:, 1].max() == 1.0
+    assert np.hypot(vertices[:, 0], vertices[:, 2]).max() == pytest.approx(1.0)
+
+
+def test_a_trunk_is_as_wide_and_as_deep_as_its_two_radii() -> None:
+    trunk = placed(unit_cylinder(), limb_shapes(Figure(BDP, rest_pose())), LIMBS.index("torso"))
+    assert np.ptp(trunk[:, 0]) == pytest.approx(2 * BDP.torso.long_radius)
+    assert np.ptp(trunk[:, 2]) == pytest.approx(2 * BDP.torso.short_radius, rel=0.01)
+
+
+def test_unit_shapes_are_closed_and_show_their_outer_side() -> None:
+    """Their volume, summed over outward faces, is a cylinder's and a ball's, little less."""
+    assert 0.94 * np.pi < volume(unit_cylinder()) < np.pi
+    assert 0.96 * 4 / 3 * np.pi < volume(unit_ball()) < 4 / 3 * np.pi
+
+
+@settings(max_examples=50, deadline=None)
+@given(poses)
+def test_the_head_is_round_and_fills_the_way_from_neck_to_crown(pose: Vector) -> None:
+    balls = round_shapes(limb_shapes(Figure(BDP, pose)))
+    head = placed(unit_ball(), balls, 0)
+    neck, crown = segments(body_vector(BDP), pose)[LIMBS.index("head")]
+    assert np.linalg.norm(head - neck, axis=1).min() < 1e-6
+    assert np.linalg.norm(head - crown, axis=1).min() < 1e-6
+
+
+def test_a_ball_closes_the_gap_at_a_bent_elbow() -> None:
+    pose = rest_pose()
+    pose[POSE_INDEX["r_elbow_x"]] = 90.0
+    elbow = segments(body_vector(BDP), pose)[LIMBS.index("r_lower_arm"), 0]
+    balls = round_shapes(limb_shapes(Figure(BDP, pose)))
+    at = int(np.linalg.norm(balls.positions - elbow, axis=1).argmin())
+    assert np.allclose(balls.positions[at], elbow)
+    assert np.allclose(balls.scales[at], BDP.r_lower_arm.radius)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.lists(st.floats(-4.0, 4.0), min_size=3, max_size=3))
+def test_a_quaternion_turns_as_its_matrix_does(turn: list[float]) -> None:
+    matrix = Rotation.from_rotvec(turn).as_matrix()
+    again = Rotation.from_quat(quaternion(matrix), scalar_first=True).as_matrix()
+    assert np.allclose(again, matrix, rtol=0.0, atol=1e-14)
+
+
+@pytest.mark.parametrize("camera", RIG.cameras, ids=["camera 1", "camera 2"])
+def test_a_frustum_stands_at_its_camera_and_spans_its_picture(camera: Camera) -> None:
+    """Its four corners, seen through the camera, are the corners of the picture (C1)."""
+    shape = frustum(camera, (RIG.width, RIG.height))
+    turn = Rotation.from_quat(shape.wxyz, scalar_first=True)
+    half = np.tan(shape.fov_rad / 2)
+    corners = np.array([[shape.aspect * half, half, 1.0], [-shape.aspect * half, -half, 1.0]])
+    seen = project(camera, turn.apply(corners) + shape.position)
+    assert np.allclose(seen, [[RIG.width, RIG.height], [0.0, 0.0]])
+    assert np.allclose(turn.apply([0.0, 0.0, 1.0]), ray(camera, (160.0, 120.0)))
+
+
+def test_the_papers_frusta_look_along_minus_z_and_plus_x() -> None:
+    """C1."""
+    looks = [
+        Rotation.from_quat(frustum(camera, (320, 240)).wxyz, scalar_first=True).apply([0, 0, 1])
+        for camera in RIG.cameras
+    ]
+    assert np.allclose(looks, [[0, 0, -1], [1, 0, 0]])
+
+
+def test_the_spectator_looks_the_way_both_cameras_do() -> None:
+    """From there both pictures, which hang between camera and body, show their right side."""
+    view = viewpoint(RIG)
+    assert np.allclose(view.look_at, [0.0, 1.0, 0.0])
+    for camera in RIG.cameras:
+        half_way = (centre(camera) + view.look_at) / 2
+        assert np.array(camera.R[2]) @ (half_way - view.position) > 0.5
+    assert view.position[1] > 2.0
+
+
+def test_one_camera_alone_is_looked_at_from_the_side() -> None:
+    """Else its picture would hide the body."""
+    alone = viewpoint(Rig(320, 240, RIG.cameras[:1]))
+    out = alone.position - alone.look_at
+    assert abs(out[0]) > 1.0
+    assert out[2] > 1.0
+
+
+def test_left_and_right_have_their_colours_and_what_is_unsure_fades() -> None:
+    sure = limb_colours()
+    assert tuple(sure[LIMBS.index("l_upper_arm")]) == LEFT
+    assert tuple(sure[LIMBS.index("r_lower_leg")]) == RIGHT
+    assert tuple(sure[LIMBS.index("torso")]) == TRUNK
+    doubt = tuple(0.0 if name == "r_wrist" else 1.0 for name in JOINT_NAMES)
+    changed = (limb_colours(doubt) != sure).any(axis=1)
+    assert [limb for limb, other in zip(LIMBS, changed, strict=True) if other] == ["r_lower_arm"]
+    assert limb_colours(doubt)[LIMBS.index("r_lower_arm")].min() > 200
+
+
+def test_a_body_without_pose_or_measures_is_not_drawn() -> None:
+    nobody = Body(frame=0, captured_s=0.0, clock_s=0.0, status="empty", views="none")
+    unmeasured = Body(
+        frame=0, captured_s=0.0, clock_s=0.0, status="tracking", views="1", pose=tuple(rest_pose())
+    )
+    assert figure(None) is figure(nobody) is figure(unmeasured) is None
