@@ -56,7 +56,7 @@ class Bdp(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True)
 
     def scaled(self, factor: float) -> "Bdp":
         """The same body with every length times `factor`."""
-        return _from_lengths([length * factor for length in self.lengths()])
+        return body_of_lengths([length * factor for length in self.lengths()])
 
     def lengths(self) -> list[float]:
         """The 26 numbers, in the order of the fields."""
@@ -296,7 +296,8 @@ def _part(bdp: Bdp, name: str) -> Elliptic | Round:
     return part
 
 
-def _from_lengths(lengths: list[float]) -> Bdp:
+def body_of_lengths(lengths: list[float]) -> Bdp:
+    """The body with the 26 numbers of `Bdp.lengths`."""
     parts: dict[str, Elliptic | Round] = {}
     at = 0
     for name in LIMBS:

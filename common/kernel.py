@@ -323,10 +323,14 @@ def count_both(one: Any, other: Any) -> int:
 
 def pack_words(mask: Mask) -> Bits:
     """A mask (H, W) as rows of 64-pixel words, (H, ceil(W / 64))."""
-    height, width = mask.shape
-    rows = np.zeros((height, 8 * ((width + 63) // 64)), np.uint8)
     packed = np.packbits(mask, axis=1, bitorder="little")
-    rows[:, : packed.shape[1]] = packed
+    return words_of_rows(packed.tobytes(), mask.shape[1], mask.shape[0])
+
+
+def words_of_rows(packed: bytes, width: int, height: int) -> Bits:
+    """Rows of whole bytes, the first pixel lowest (`Report.silhouette`), as rows of words."""
+    rows = np.zeros((height, 8 * ((width + 63) // 64)), np.uint8)
+    rows[:, : (width + 7) // 8] = np.frombuffer(packed, np.uint8).reshape(height, -1)
     return rows.view("<u8").astype(np.uint64, copy=False)
 
 

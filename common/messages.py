@@ -74,7 +74,7 @@ class Report(Moment, frozen=True, kw_only=True):
     width: int
     height: int
     silhouette: bytes
-    """np.packbits(mask, axis=1): the outline and nothing else of the picture."""
+    """`pack(mask)`: the outline and nothing else of the picture."""
     box: Box | None
     """None where nobody is seen."""
     area_px: int = 0
@@ -281,14 +281,14 @@ def decode(payload: bytes, kind: type[Said]) -> Said:
 
 
 def pack(mask: NDArray[np.bool_]) -> bytes:
-    """A mask (H, W) as the bytes of a report."""
-    return np.packbits(mask, axis=1).tobytes()
+    """A mask (H, W) as the bytes of a report: rows of whole bytes, the first pixel lowest."""
+    return np.packbits(mask, axis=1, bitorder="little").tobytes()
 
 
 def unpack(report: Report) -> NDArray[np.bool_]:
     """The silhouette of a report, (H, W), True inside the person."""
     rows = np.frombuffer(report.silhouette, np.uint8).reshape(report.height, -1)
-    return np.unpackbits(rows, axis=1, count=report.width).astype(np.bool_)
+    return np.unpackbits(rows, axis=1, count=report.width, bitorder="little").astype(np.bool_)
 
 
 def _refuse_what_no_process_would_say(message: Message) -> None:

@@ -5,10 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import POSE_INDEX, POSE_NAMES, Vector, body_vector, rest_pose, thesis_bdp
+from common.body import POSE_INDEX, POSE_NAMES, Vector
 from common.camera import PAPER_ROTATIONS, Camera
-from common.kernel import VIEW, Bits
-from common.messages import Box, Facing, Guide, ViewerNumber
+from common.kernel import VIEW, Bits, count, pack_words
+from common.messages import Facing, ViewerNumber
+from common.similarity import Mask
 from viewer.tritree import search, window
 
 FLANK_YAW_DEG = -90.0
@@ -108,25 +109,12 @@ def rotation_of(camera: Camera | None, viewer: ViewerNumber) -> NDArray[np.float
     return np.array(PAPER_ROTATIONS[viewer - 1] if camera is None else camera.R)
 
 
-def first_guess(box: Box, facing: Facing, viewer: ViewerNumber) -> tuple[Vector, Vector, float]:
-    """Body, pose and scale before any guide: the thesis's proportions at the silhouette's height.
-
-    Returns:
-        Body vector for a stature of 1, rest pose, and the pixels of that stature.
-    """
-    pose = rest_pose()
-    pose[POSE_INDEX["torso_y"]] = yaw_of(facing, viewer)
-    return body_vector(thesis_bdp(1.0)), pose, float(box.bottom + 1 - box.top)
-
-
 def yaw_of(facing: Facing, viewer: ViewerNumber) -> float:
     """Yaw of the trunk, degrees, that a facing of this viewer stands for (P49)."""
     return 0.0 if (facing == "facade") == (viewer == 1) else FLANK_YAW_DEG
 
 
-def guided(guide: Guide) -> tuple[Vector, Vector]:
-    """Body and pose that a guide tells; the pose at the origin."""
-    assert guide.bdp is not None
-    pose = np.array(guide.pose)
-    pose[:3] = 0.0
-    return body_vector(guide.bdp), pose
+def figure_of(mask: Mask, body: Vector, pose: Vector, view: Vector) -> Figure:
+    """A model laid over a silhouette, not yet matched."""
+    bits = pack_words(mask)
+    return Figure(bits, count(bits), mask.shape[1], body, pose, view)

@@ -102,11 +102,9 @@ def arm_angle_deg(side: str, dx: float, dy: float) -> float:
     return outward if side == "r" else 360.0 - outward
 
 
-def refusal_of(mask: Mask, box: Box, cut: bool) -> str:
+def refusal_of(mask: Mask, box: Box) -> str:
     """Why a silhouette is not the opening posture; empty when it is (P10)."""
     height, width = box.bottom + 1 - box.top, box.right + 1 - box.left
-    if cut:
-        return "the person is partly outside the picture"
     if width < SPAN_LEAST * height:
         return "the arms are not stretched out to the sides"
     found = outline_of(mask, box)

@@ -1,0 +1,293 @@
+"""Two reports in, one body out: position, body, facing, pose, in the order of section 4."""
+
+from typing import Final, Literal, NamedTuple
+
+import numpy as np
+
+from common.body import (
+    ANGLE_NAMES,
+    ANGLES_IN_POSE,
+    LIMITS_DEG,
+    POSE_INDEX,
+    Vector,
+    body_vector,
+    rest_pose,
+)
+from common.camera import Rig, project
+from common.config import Settings
+from common.kernel import count, count_both, draw_limbs, score, view_of, words_of_rows
+from common.kinematics import ALL_LIMBS, joints
+from common.messages import Body, Facing, Guide, Pixel, Point, Report, Status, Views
+from integrator import opening, smoothing
+from integrator.arbiter import Sight, arbitrate
+from integrator.assumed import assumed_rig
+from integrator.fusion import fused
+from integrator.opening import Opening
+from integrator.pairing import Pair
+from integrator.place import pixels_of, place_of, scales_at, scales_since
+
+YAW_DEG: Final = (0.0, -90.0)
+"""Yaw of the trunk while viewer 1, or viewer 2, sees the facade (P49)."""
+
+LOST_SCORE, LOST_FRAMES = 0.35, 5
+"""A model that fits this badly in every view is not believed; for so many frames, it is lost."""
+
+Seen = tuple[Report | None, Report | None]
+
+
+class State(NamedTuple):
+    """What the integrator remembers between pairs."""
+
+    settings: Settings
+    rig: Rig | None
+    """None until somebody is seen, where no calibration is given."""
+    scale_source: Literal["calibrated", "assumed"]
+    smooth: smoothing.State
+    opening: Opening = Opening()
+    pose: Vector | None = None
+    """Last fused pose; None while nobody is there."""
+    facing: tuple[Facing, Facing] = ("facade", "flank")
+    frames: tuple[int, int] = (-1, -1)
+    """The last frame that was heard of each viewer."""
+    last_s: float | None = None
+    badly: int = 0
+    """For how many frames the model has fitted badly."""
+
+
+def init(rig: Rig | None, period_s: float, settings: Settings) -> State:
+    """An integrator that has heard nothing.
+
+    Args:
+        rig: The calibrated cameras of viewer 1 and viewer 2, for the working size; None: a rig
+            of the paper's kind is assumed when somebody is seen.
+        period_s: Time between frames.
+        settings: Of the run.
+    """
+    source: Literal["calibrated", "assumed"] = "assumed" if rig is None else "calibrated"
+    return State(settings, rig, source, smoothing.init(len(ANGLE_NAMES), period_s))
+
+
+def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
+    """One instant: what each viewer reports of it becomes one body, and a guide for the next.
+
+    Universal BDPs come from the opening posture (P46), the arbiter settles the facing (P48),
+    position and angles are fused (P50-P54) and smoothed; the viewers are told BDPs, positions
+    and facing for their next frame (P2).
+    """
+    newest = max((r for r in pair if r is not None), key=lambda report: report.clock_s)
+    dt_s = 0.0 if state.last_s is None else max(0.0, newest.captured_s - state.last_s)
+    state = state._replace(frames=_heard(state.frames, pair), last_s=newest.captured_s)
+    seen = _with_somebody(pair)
+    state = _with_rig(state, seen)
+    if seen == (None, None) or state.rig is None:
+        return _empty(state, pair, newest)
+    known, settled_at = opening.step(
+        state.opening, state.rig, seen, state.settings.body.opening_frames, dt_s
+    )
+    state = _faced(state._replace(opening=known), seen)
+    pose = _posed(state, state.rig, seen, settled_at)
+    return _told(state._replace(pose=pose), state.rig, pair, newest, dt_s, settled_at is not None)
+
+
+def _heard(frames: tuple[int, int], pair: Pair) -> tuple[int, int]:
+    first, second = pair
+    return (
+        frames[0] if first is None else first.frame,
+        frames[1] if second is None else second.frame,
+    )
+
+
+def _with_somebody(pair: Pair) -> Seen:
+    first, second = pair
+    return (
+        first if first is not None and first.root_px is not None else None,
+        second if second is not None and second.root_px is not None else None,
+    )
+
+
+def _with_rig(state: State, seen: Seen) -> State:
+    """The rig, assumed at the first sight of a whole person where none is calibrated."""
+    first, second = seen
+    lead = first or second
+    if state.rig is not None or lead is None or lead.cut:
+        return state
+    other = second if first is not None else None
+    return state._replace(rig=assumed_rig(lead, other, state.settings.body.stature_m))
+
+
+def _faced(state: State, seen: Seen) -> State:
+    """Facade and flank, settled between the views' votes (P48); one view alone decides itself."""
+    first, second = seen
+    if first is None or second is None:
+        own = first or second
+        assert own is not None
+        other: Facing = "flank" if own.vote == "facade" else "facade"
+        facing = (own.vote, other) if second is None else (other, own.vote)
+        return state._replace(facing=facing)
+    sights = [
+        Sight(before, report.vote, report.upper_body_px, *report.thresholds_px)
+        for before, report in zip(state.facing, (first, second), strict=True)
+    ]
+    ratio = 1.0
+    if state.settings.mode == "default" and state.pose is not None and state.rig is not None:
+        scales = scales_at(state.rig, state.pose[:3])
+        ratio = scales[1] / scales[0]
+    return state._replace(facing=arbitrate(sights[0], sights[1], ratio))
+
+
+def _posed(state: State, rig: Rig, seen: Seen, settled_at: Vector | None) -> Vector:
+    """Position and angles of this instant, not yet smoothed (P50-P54)."""
+    front = 0 if state.facing[0] == "facade" else 1
+    before = rest_pose() if state.pose is None else state.pose
+    pose = fused(before, seen[front], seen[1 - front])
+    if settled_at is None:
+        first, second = seen
+        roots = (first and first.root_px, second and second.root_px)
+        pose[:3] = place_of(rig, roots, before[:3], front)
+    else:
+        pose[:3] = settled_at
+    pose[POSE_INDEX["torso_y"]] = YAW_DEG[front]
+    return pose
+
+
+def _told(
+    state: State, rig: Rig, pair: Pair, newest: Report, dt_s: float, settled_now: bool
+) -> tuple[State, Body, Guide]:
+    """The body that is published and the guide that the viewers get."""
+    assert state.pose is not None
+    assert state.opening.bdp is not None
+    body = body_vector(state.opening.bdp)
+    raw = state.pose[list(ANGLES_IN_POSE)]
+    scores = [_score(body, state.pose, rig, n, report) for n, report in enumerate(pair)]
+    fits = max(scores) >= LOST_SCORE
+    smooth, angles, _ = smoothing.step(state.smooth, raw if fits else None, dt_s)
+    state = state._replace(smooth=smooth, badly=0 if fits else state.badly + 1)
+    pose = state.pose.copy()
+    pose[list(ANGLES_IN_POSE)] = angles
+    status = _status(state)
+    places = joints(body, pose)
+    confident = max(scores) if fits else 0.0
+    told = Body(
+        frame=_frame_of(pair),
+        captured_s=newest.captured_s,
+        clock_s=newest.clock_s,
+        status=status,
+        views=_views(_with_somebody(pair)),
+        joints_m=tuple(_point(place) for place in places),
+        joints_px=tuple(
+            tuple(_pixel(pixel) for pixel in project(camera, places)) for camera in rig.cameras
+        ),
+        pose=tuple(pose.tolist()),
+        angles_raw_deg=tuple(raw.tolist()),
+        confidence=(confident,) * len(places),
+        score=(scores[0], scores[1]),
+        facing=state.facing,
+        bdp=state.opening.bdp,
+        matches=sum(report.matches for report in pair if report is not None),
+    )
+    return state, told, _guide(state, rig, pair, newest, status, settled_now)
+
+
+def _status(state: State) -> Status:
+    """By presence, the opening and the fit together: never by S alone (M25)."""
+    if state.badly >= LOST_FRAMES:
+        return "lost"
+    if state.badly:
+        return "predicted"
+    known = state.opening
+    waiting = known.waited_s < state.settings.body.opening_wait_s
+    return "measuring" if not known.measured and waiting else "tracking"
+
+
+def _score(body: Vector, pose: Vector, rig: Rig, n: int, report: Report | None) -> float:
+    """S of the whole body in one picture, true perspective; 0 where that view has nobody."""
+    if report is None or report.root_px is None:
+        return 0.0
+    seen = words_of_rows(report.silhouette, report.width, report.height)
+    drawn = np.zeros_like(seen)
+    draw_limbs(body, pose, view_of(rig.cameras[n]), ALL_LIMBS, report.width, drawn)
+    return float(score(count_both(drawn, seen), count(drawn), count(seen)))
+
+
+def _guide(
+    state: State, rig: Rig, pair: Pair, newest: Report, status: Status, settled_now: bool
+) -> Guide:
+    """What the viewers need for their next frame: each starts where it had the body itself."""
+    assert state.pose is not None
+    place, known = state.pose[:3], state.opening
+    measured_at = np.array(known.measured_at_m) if known.measured else place
+    roots = list(pixels_of(rig, place))
+    for n, report in enumerate(pair):
+        if report is not None and report.root_px is not None and not settled_now:
+            roots[n] = report.root_px
+    upright = pixels_of(rig, np.array([place[0], measured_at[1], place[2]]))
+    return Guide(
+        frame=_frame_of(pair),
+        captured_s=newest.captured_s,
+        clock_s=newest.clock_s,
+        frames=state.frames,
+        status=status,
+        bdp=known.bdp,
+        measured=known.measured,
+        facing=state.facing,
+        scale_px_per_m=scales_since(rig, place, measured_at),
+        reference_px_per_m=scales_at(rig, measured_at),
+        root_px=(roots[0], roots[1]),
+        rest_row_px=(upright[0][1], upright[1][1]),
+        pose=tuple(_within_limits(state.pose).tolist()),
+    )
+
+
+def _empty(state: State, pair: Pair, newest: Report) -> tuple[State, Body, Guide]:
+    """Nobody is in any view: what was learnt of the body is kept, its pose is not."""
+    fresh = smoothing.init(len(ANGLE_NAMES), state.smooth.period_s)
+    state = state._replace(pose=None, badly=0, smooth=fresh)
+    when = {"captured_s": newest.captured_s, "clock_s": newest.clock_s}
+    body = Body(
+        frame=_frame_of(pair),
+        **when,
+        status="empty",
+        views="none",
+        facing=state.facing,
+        bdp=state.opening.bdp,
+    )
+    guide = Guide(
+        frame=_frame_of(pair),
+        **when,
+        frames=state.frames,
+        bdp=state.opening.bdp,
+        measured=state.opening.measured,
+        facing=state.facing,
+        pose=tuple(rest_pose().tolist()),
+    )
+    return state, body, guide
+
+
+def _within_limits(pose: Vector) -> Vector:
+    kept = pose.copy()
+    for name, (low, high) in LIMITS_DEG.items():
+        at = POSE_INDEX[name]
+        kept[at] = min(high, max(low, kept[at]))
+    return kept
+
+
+def _views(seen: Seen) -> Views:
+    names: dict[tuple[bool, bool], Views] = {(True, True): "both", (True, False): "1"}
+    names |= {(False, True): "2", (False, False): "none"}
+    return names[seen[0] is not None, seen[1] is not None]
+
+
+def _frame_of(pair: Pair) -> int:
+    """Rows are counted by camera 1's frames; -1 for an instant that it missed."""
+    first, second = pair
+    return first.frame if first is not None else -1 if second is not None else 0
+
+
+def _point(place: Vector) -> Point:
+    x, y, z = (float(value) for value in place)
+    return (x, y, z)
+
+
+def _pixel(pixel: Vector) -> Pixel:
+    u, v = (float(value) for value in np.nan_to_num(pixel, nan=-1.0))
+    return (u, v)

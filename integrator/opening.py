@@ -1,0 +1,82 @@
+"""Universal BDPs from the opening posture: several frames of both views, their median (4.2)."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from common.body import Bdp, Vector, body_of_lengths, thesis_bdp
+from common.camera import Rig
+from common.messages import Report
+from integrator.perspective import universal_bdp
+from integrator.place import place_of, scales_at
+
+STATURES_M: Final = (0.8, 2.3)
+"""What a silhouette's height may say of a person; beyond, it is not the whole person."""
+
+
+class Opening(NamedTuple):
+    """What is known of the body, and what its opening posture has told so far."""
+
+    bdp: Bdp | None = None
+    """Universal BDPs, metres: a prior until measured; None until somebody is seen."""
+    measured: bool = False
+    measured_at_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Where the navel was in the opening posture."""
+    waited_s: float = 0.0
+    """For how long somebody was in view before that."""
+    bodies: tuple[Bdp, ...] = ()
+    """Universal BDPs of the frames accepted so far."""
+    places_m: tuple[tuple[float, float, float], ...] = ()
+
+
+def prior(rig: Rig, seen: tuple[Report | None, Report | None]) -> Bdp:
+    """The thesis's proportions at the height that the silhouettes show (T4)."""
+    first, second = seen
+    roots = (first and first.root_px, second and second.root_px)
+    scales = scales_at(rig, place_of(rig, roots, np.zeros(3), 0))
+    heights = [
+        (report.box.bottom + 1 - report.box.top) / scale
+        for report, scale in zip(seen, scales, strict=True)
+        if report is not None and report.box is not None
+    ]
+    low, high = STATURES_M
+    return thesis_bdp(min(high, max(low, float(np.mean(heights)))))
+
+
+def step(
+    opening: Opening, rig: Rig, seen: tuple[Report | None, Report | None], due: int, dt_s: float
+) -> tuple[Opening, Vector | None]:
+    """One pair of reports more; the navel's place where it is now settled, else None.
+
+    Args:
+        opening: What is known so far.
+        rig: Two cameras.
+        seen: Reports with a body in them.
+        due: How many accepted frames make the body (their median).
+        dt_s: Since the frame before.
+    """
+    if opening.bdp is None:
+        opening = opening._replace(bdp=prior(rig, seen))
+    if opening.measured:
+        return opening, None
+    opening = opening._replace(waited_s=opening.waited_s + dt_s)
+    front, side = (None if report is None else report.measure for report in seen)
+    if front is None or side is None or front.bdp_px is None:
+        return opening, None
+    place = place_of(rig, (front.centre_px, side.centre_px), np.zeros(3), 0)
+    body = universal_bdp(front, side, scales_at(rig, place)[0])
+    x, y, z = (float(value) for value in place)
+    opening = opening._replace(
+        bodies=(*opening.bodies, body), places_m=(*opening.places_m, (x, y, z))
+    )
+    return _settled(opening, due)
+
+
+def _settled(opening: Opening, due: int) -> tuple[Opening, Vector | None]:
+    """The medians, once enough frames have told."""
+    if len(opening.bodies) < due:
+        return opening, None
+    lengths = np.median([body.lengths() for body in opening.bodies], axis=0)
+    place = np.median(opening.places_m, axis=0)
+    x, y, z = (float(value) for value in place)
+    return Opening(body_of_lengths(lengths.tolist()), True, (x, y, z), opening.waited_s), place

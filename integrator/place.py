@@ -1,0 +1,82 @@
+"""Where the body is, from where each view has its navel; how large a metre is there."""
+
+import numpy as np
+
+from common.body import Vector
+from common.camera import Camera, Rig, as_paper_rig, centre, project, ray
+from common.messages import Pixel
+from integrator.perspective import ground_position, px_per_m, scaling_factors, triangulate
+
+Roots = tuple[Pixel | None, Pixel | None]
+
+
+def place_of(rig: Rig, roots_px: Roots, before_m: Vector, facade: int) -> Vector:
+    """The navel in the world, (3,), metres, from its pixels in one or both views.
+
+    In a rig of the paper's kind X and Z come from the two columns (Eq. 3) and Y from the row of
+    the facade view (P50); in any other from the point nearest to both rays. One view alone
+    keeps the depth that the body had before.
+
+    Args:
+        rig: Two cameras.
+        roots_px: Of each view; None where it has none.
+        before_m: Where the navel was, (3,).
+        facade: 0 or 1: which view sees the facade.
+    """
+    first, second = roots_px
+    if first is None or second is None:
+        alone = 0 if second is None else 1
+        pixel = first or second
+        assert pixel is not None
+        return _at_depth(rig.cameras[alone], pixel, before_m)
+    paper = as_paper_rig(rig)
+    if paper is None:
+        return triangulate((rig.cameras[0], rig.cameras[1]), (first, second))
+    x_m, z_m = ground_position(
+        first[0] - rig.cameras[0].K[0][2], second[0] - rig.cameras[1].K[0][2], paper
+    )
+    camera, row = rig.cameras[facade], roots_px[facade][1]  # type: ignore[index]
+    scale = px_per_m(camera, np.array([x_m, 0.0, z_m]))
+    return np.array([x_m, centre(camera)[1] - (row - camera.K[1][2]) / scale, z_m])
+
+
+def scales_at(rig: Rig, place_m: Vector) -> tuple[float, float]:
+    """Size of a metre at a place, in each picture, pixels."""
+    first, second = (px_per_m(camera, place_m) for camera in rig.cameras)
+    return first, second
+
+
+def scales_since(rig: Rig, place_m: Vector, measured_at_m: Vector) -> tuple[float, float]:
+    """The same by the perspective scaling factors since the body was measured (P45).
+
+    In a rig of the paper's kind: the scale where the BDPs were taken, times r_t1 and r_t2.
+    """
+    paper = as_paper_rig(rig)
+    if paper is None:
+        return scales_at(rig, place_m)
+    factors = scaling_factors(
+        (float(place_m[0]), float(place_m[2])),
+        (float(measured_at_m[0]), float(measured_at_m[2])),
+        paper,
+    )
+    reference = scales_at(rig, measured_at_m)
+    return reference[0] * factors[0], reference[1] * factors[1]
+
+
+def pixels_of(rig: Rig, place_m: Vector) -> tuple[Pixel, Pixel]:
+    """Where both views show a place; the picture's centre where one cannot."""
+    found: list[Pixel] = []
+    for camera in rig.cameras:
+        u, v = project(camera, place_m[None])[0]
+        seen = bool(np.isfinite(u) and np.isfinite(v))
+        found.append((float(u), float(v)) if seen else (rig.width / 2, rig.height / 2))
+    return found[0], found[1]
+
+
+def _at_depth(camera: Camera, pixel: Pixel, before_m: Vector) -> Vector:
+    """The point that a pixel shows at the depth of another point."""
+    forward = np.array(camera.R)[2]
+    depth = float(forward @ (before_m - centre(camera)))
+    direction = ray(camera, pixel)
+    point: Vector = centre(camera) + direction * (depth / float(forward @ direction))
+    return point
