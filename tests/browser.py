@@ -1,0 +1,122 @@
+"""A headless browser for tests of the page: what it shows, and whom it asks."""
+
+import base64
+import itertools
+import json
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from websockets.sync.client import ClientConnection, connect
+
+FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--no-first-run",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-quic",
+    "--remote-debugging-port=0",
+)
+
+
+class NotNow(RuntimeError):
+    """The browser refused, as it does while a page is being loaded."""
+
+
+class Tab:
+    """One page in the browser, driven by the DevTools protocol."""
+
+    def __init__(self, socket: ClientConnection) -> None:
+        self._socket = socket
+        self._ids = itertools.count(1)
+        self._session: str | None = None
+        self.asked: list[str] = []
+        """Every address that the page asked for."""
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        session = self.call("Target.attachToTarget", targetId=target, flatten=True)
+        self._session = session["sessionId"]
+        self.call("Network.enable")
+        self.call(
+            "Emulation.setDeviceMetricsOverride",
+            width=1360,
+            height=800,
+            deviceScaleFactor=1,
+            mobile=False,
+        )
+
+    def call(self, method: str, **parameters: Any) -> dict[str, Any]:
+        """Ask the browser, and wait for its answer.
+
+        Raises:
+            NotNow: With the browser's reason.
+        """
+        number = next(self._ids)
+        question = {"id": number, "method": method, "params": parameters}
+        if self._session:
+            question["sessionId"] = self._session
+        self._socket.send(json.dumps(question))
+        while True:
+            said = json.loads(self._socket.recv(timeout=60))
+            if said.get("method") == "Network.requestWillBeSent":
+                self.asked.append(said["params"]["request"]["url"])
+            if said.get("method") == "Network.webSocketCreated":
+                self.asked.append(said["params"]["url"])
+            if said.get("id") == number and "error" in said:
+                raise NotNow(f"{method}: {said['error']['message']}")
+            if said.get("id") == number:
+                return said["result"]
+
+    def screenshot(self) -> np.ndarray:
+        """What is seen now, (800, 1360, 3), red, green, blue."""
+        png = base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
+        return cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR_RGB)
+
+    def text(self) -> str:
+        """Every word on the page."""
+        answer = self.call("Runtime.evaluate", expression="document.body?.innerText ?? ''")
+        return answer["result"]["value"]
+
+
+def waited(tab: Tab, until: Callable[[np.ndarray, str], bool], seconds: float = 60.0) -> np.ndarray:
+    """The first screenshot that fits together with the page's text, or the last one in time."""
+    patience_s = time.monotonic() + seconds
+    while True:
+        with suppress(NotNow):
+            picture = tab.screenshot()
+            if until(picture, tab.text()) or time.monotonic() > patience_s:
+                return picture
+        time.sleep(0.3)
+
+
+@contextmanager
+def open_tab(chromium: str) -> Iterator[Tab]:
+    """A fresh browser with one empty page; gone afterwards."""
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        command = [chromium, *FLAGS, f"--user-data-dir={profile}", "about:blank"]
+        with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as browser:
+            try:
+                address = next(
+                    line.split()[-1] for line in browser.stderr if "DevTools listening" in line
+                )
+                with connect(address, max_size=None) as socket:
+                    yield Tab(socket)
+            finally:
+                browser.terminate()
+                browser.wait(20)
+
+
+def saved(picture: np.ndarray, path: Path) -> Path:
+    """The screenshot as a file, to be looked at when a test fails."""
+    cv2.imwrite(str(path), cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
+    return path

@@ -1,0 +1,88 @@
+"""A body that moves by formula, for the page: `python tests/show_page.py [PORT]` shows it."""
+
+import itertools
+import math
+import sys
+import time
+
+import cv2
+import numpy as np
+
+from animator.page.inset import limb_outlines, section_rims
+from animator.page.live import LivePage
+from animator.scene import Figure, Snapshot
+from common.body import POSE_INDEX, Vector, rest_pose, thesis_bdp
+from common.camera import Camera, paper_rig
+from common.messages import Body, Posture, Pulse, Report, pack
+
+RATE_HZ = 15
+BDP = thesis_bdp(1.72)
+LEG_M = BDP.r_upper_leg.height + BDP.r_lower_leg.height
+RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
+
+
+def snapshot_at(frame: int) -> Snapshot:
+    """What a run without fault would say of a body that walks in place."""
+    seconds = frame / RATE_HZ
+    moment = {"frame": frame, "captured_s": seconds, "clock_s": seconds}
+    pose = pose_at(seconds)
+    masks = [silhouette(camera, pose) for camera in RIG.cameras]
+    return Snapshot(
+        body=Body(
+            **moment,
+            status="tracking",
+            views="both",
+            pose=tuple(pose.tolist()),
+            score=(0.86, 0.79),
+            bdp=BDP,
+        ),
+        reports={
+            n: Report(**moment, viewer=n, width=160, height=120, silhouette=pack(mask), box=None)
+            for n, mask in enumerate(masks, start=1)
+        },
+        posture=Posture(
+            **moment,
+            name="walk_in_place",
+            log_likelihoods={"walk_in_place": -61.0, "squat": -142.5, "kick_left_side": -171.2},
+            segment=(max(0, frame - 39), frame),
+        ),
+        pulses={
+            name: Pulse(process=name, state="running", fps=15.0, latency_p50_ms=ms)
+            for name, ms in (("viewer 1", 4.0), ("viewer 2", 4.5), ("integrator", 11.0))
+        },
+    )
+
+
+def pose_at(seconds: float) -> Vector:
+    """Arms and legs swing against each other, once a second."""
+    pose = rest_pose()
+    swing = math.sin(2.0 * math.pi * seconds)
+    pose[POSE_INDEX["y"]] = LEG_M
+    for side, sign in (("r", 1.0), ("l", -1.0)):
+        pose[POSE_INDEX[f"{side}_shoulder_x"]] = sign * 40.0 * swing
+        pose[POSE_INDEX[f"{side}_hip_x"]] = 60.0 * max(0.0, -sign * swing)
+        pose[POSE_INDEX[f"{side}_knee_x"]] = -120.0 * max(0.0, -sign * swing)
+    return pose
+
+
+def silhouette(camera: Camera, pose: Vector) -> np.ndarray:
+    """The body as a camera would see it, (120, 160)."""
+    mask = np.zeros((120, 160), np.uint8)
+    for outline in limb_outlines(camera, section_rims(Figure(BDP, pose))):
+        cv2.fillConvexPoly(mask, np.rint(outline - 0.5).astype(np.int32), 1)
+    return mask.astype(bool)
+
+
+def main(port: int) -> None:
+    page = LivePage(RIG, port)
+    print(f"open {page.address} in a browser; Ctrl-C ends")
+    try:
+        for frame in itertools.count():
+            page.show(snapshot_at(frame))
+            time.sleep(1.0 / RATE_HZ)
+    except KeyboardInterrupt:
+        page.close()
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 8080)
