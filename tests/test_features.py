@@ -1,0 +1,110 @@
+"""The feature vector, held against the paper's list of angles and its rotations."""
+
+import numpy as np
+import pytest
+from acting import standing
+from hypothesis import given
+from hypothesis import strategies as st
+
+from common.body import ANGLE_INDEX
+from recognizer.features import ANGLES, FEATURE_NAMES, features, with_pose
+
+degrees = st.floats(-360.0, 360.0)
+
+
+def one(**angles_deg: float) -> np.ndarray:
+    """The features (16,) of a standing body with some angles set."""
+    row = standing(1)
+    for name, angle_deg in angles_deg.items():
+        row[0, ANGLE_INDEX[name]] = angle_deg
+    return features(row)[0]
+
+
+def direction(vector: np.ndarray, limb: str) -> list[float]:
+    return [vector[FEATURE_NAMES.index(f"{limb}_{axis}")] for axis in ("right", "up", "forward")]
+
+
+def rotated(x_deg: float, z_deg: float) -> np.ndarray:
+    """Rz Rx (0, 1, 0), from the matrices of section 2.2."""
+    x, z = np.radians([x_deg, z_deg])
+    rx = np.array([[1, 0, 0], [0, np.cos(x), -np.sin(x)], [0, np.sin(x), np.cos(x)]])
+    rz = np.array([[np.cos(z), -np.sin(z), 0], [np.sin(z), np.cos(z), 0], [0, 0, 1]])
+    return rz @ rx @ np.array([0.0, 1.0, 0.0])
+
+
+def test_ten_angles_are_the_papers() -> None:
+    """P57: theta_X, theta_Z of both shoulders, theta_X of both elbows, both of both hips."""
+    two = {
+        f"{side}_{joint}_{axis}" for side in "rl" for joint in ("shoulder", "hip") for axis in "xz"
+    }
+    assert len(ANGLES) == 10
+    assert set(ANGLES) == two | {"r_elbow_x", "l_elbow_x"}
+
+
+def test_features_depend_on_the_ten_angles_and_on_no_other() -> None:
+    """P57."""
+    base = standing(1)
+    changing = set()
+    for name, column in ANGLE_INDEX.items():
+        moved = base.copy()
+        moved[0, column] += 20.0
+        if not np.allclose(features(moved), features(base)):
+            changing.add(name)
+    assert changing == set(ANGLES)
+
+
+@given(degrees, degrees, st.sampled_from(["r_shoulder", "l_shoulder", "r_hip", "l_hip"]))
+def test_a_limb_is_the_direction_that_the_papers_rotations_give(
+    x_deg: float, z_deg: float, limb: str
+) -> None:
+    """Section 2.2 with C3, C4; the body's right is -x."""
+    seen = direction(one(**{f"{limb}_x": x_deg, f"{limb}_z": z_deg}), limb)
+    x, y, z = rotated(x_deg, z_deg)
+    assert seen == pytest.approx([-x, y, z], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("limb", "x_deg", "z_deg", "points"),
+    [
+        ("r_shoulder", 0.0, 0.0, [0, 1, 0]),
+        ("r_shoulder", 0.0, 90.0, [1, 0, 0]),
+        ("l_shoulder", 0.0, 270.0, [-1, 0, 0]),
+        ("l_hip", 90.0, 180.0, [0, 0, 1]),
+    ],
+    ids=["up", "right arm out", "left arm out", "thigh raised forward"],
+)
+def test_printed_angles_point_where_they_should(
+    limb: str, x_deg: float, z_deg: float, points: list[float]
+) -> None:
+    """C3, C4."""
+    seen = direction(one(**{f"{limb}_x": x_deg, f"{limb}_z": z_deg}), limb)
+    assert seen == pytest.approx(points, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["r_shoulder_x", "l_shoulder_x", "r_elbow_x", "l_elbow_x"])
+def test_179_and_minus_179_degrees_are_neighbours(name: str) -> None:
+    """P57: two degrees apart, not 358 (a limb of length 1 moves by 2 pi / 180)."""
+    apart = np.linalg.norm(one(**{name: 179.0}) - one(**{name: -179.0}))
+    assert apart == pytest.approx(np.radians(2.0), rel=1e-3)
+
+
+@given(degrees)
+def test_an_arm_straight_forward_has_one_feature_whatever_theta_z(z_deg: float) -> None:
+    """The pair of angles is degenerate there; the limb is not."""
+    seen = one(r_shoulder_x=90.0, r_shoulder_z=z_deg)
+    assert seen == pytest.approx(one(r_shoulder_x=90.0, r_shoulder_z=0.0), abs=1e-9)
+
+
+@given(degrees, degrees)
+def test_twin_angles_of_one_direction_are_one_feature(x_deg: float, z_deg: float) -> None:
+    twin = one(l_hip_x=180.0 - x_deg, l_hip_z=z_deg + 180.0)
+    assert twin == pytest.approx(one(l_hip_x=x_deg, l_hip_z=z_deg), abs=1e-9)
+
+
+def test_frames_without_a_pose_are_dropped() -> None:
+    angles_deg = standing(5)
+    angles_deg[1] = np.nan
+    angles_deg[3, ANGLE_INDEX["l_elbow_x"]] = np.nan
+    angles_deg[4, ANGLE_INDEX["torso_y"]] = np.nan  # not among the ten: the pose counts
+    assert len(with_pose(angles_deg)) == 3
+    assert with_pose(np.full((4, 17), np.nan)).shape == (0, 17)
