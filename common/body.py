@@ -245,39 +245,49 @@ def thesis_bdp(stature: float) -> Bdp:
 SHOULDER_DROP: Final = 0.45
 """How far a shoulder lies below the top of the trunk, in long radii of the trunk (P18)."""
 
-WRIST_SHARE, ANKLE_SHARE = 0.754, 0.925
-"""Where the wrist lies on the way from shoulder to fingertip, the ankle from hip to sole, both
-straight: the cylinders of the paper run to the tips (mean adult segment lengths: upper arm 0.186,
-forearm 0.146, hand 0.108, thigh 0.245, shank 0.246, foot 0.039 statures)."""
+ELBOW_SHARE, WRIST_SHARE = 0.423, 0.754
+"""Where elbow and wrist lie on a straight arm from shoulder to fingertip. The cylinders end where
+the paper cuts the silhouette (arms in halves, trunk to legs 4 : 6), joints where bodies bend: the
+published landmarks lie on the cylinders at mean adult heights (upper arm 0.186 statures, forearm
+0.146, hand 0.108)."""
+HIP_SHARE, KNEE_SHARE, ANKLE_SHARE = 0.530 / 0.84, 0.285 / 0.84, 0.039 / 0.84
+"""Heights of hip, knee and ankle over the top of the trunk (0.530, 0.285, 0.039 statures)."""
 
 
 def body_vector(bdp: Bdp) -> Vector:
     """The body as the kernel wants it, shape (BODY_SIZE,): 26 lengths, attachments, landmarks.
 
-    Entries 0-25 are the BDPs in the order of LIMBS; then shoulder_x, shoulder_y, hip_x (from
-    the navel, in body axes, both sides alike), and how far along the lower arm the wrist and
-    along the lower leg the ankle lies (shares of that cylinder, right then left).
+    Entries 0-25 are the BDPs in the order of LIMBS. 26-28: shoulder_x, shoulder_y, hip_x from the
+    navel, in body axes, both sides alike. 29-36: how far elbow, wrist, knee and ankle lie from
+    the shoulder or hip along the straight limb, right then left each. 37: how far the anatomical
+    hips lie above the navel.
     """
     torso, leg = bdp.torso, bdp.r_upper_leg
-
-    def share_on_lower(upper: float, lower: float, share: float) -> float:
-        return min(1.0, max(0.0, (share * (upper + lower) - upper) / lower))
-
+    top = torso.height + leg.height + bdp.r_lower_leg.height
+    arms = [
+        bdp.r_upper_arm.height + bdp.r_lower_arm.height,
+        bdp.l_upper_arm.height + bdp.l_lower_arm.height,
+    ]
+    legs = [
+        bdp.r_upper_leg.height + bdp.r_lower_leg.height,
+        bdp.l_upper_leg.height + bdp.l_lower_leg.height,
+    ]
     return np.array(
         [
             *bdp.lengths(),
             torso.long_radius,
             torso.height - SHOULDER_DROP * torso.long_radius,
             torso.long_radius - leg.long_radius,
-            share_on_lower(bdp.r_upper_arm.height, bdp.r_lower_arm.height, WRIST_SHARE),
-            share_on_lower(bdp.l_upper_arm.height, bdp.l_lower_arm.height, WRIST_SHARE),
-            share_on_lower(bdp.r_upper_leg.height, bdp.r_lower_leg.height, ANKLE_SHARE),
-            share_on_lower(bdp.l_upper_leg.height, bdp.l_lower_leg.height, ANKLE_SHARE),
+            *(ELBOW_SHARE * arm for arm in arms),
+            *(WRIST_SHARE * arm for arm in arms),
+            *(length - KNEE_SHARE * top for length in legs),
+            *(length - ANKLE_SHARE * top for length in legs),
+            HIP_SHARE * top - legs[0],
         ]
     )
 
 
-BODY_SIZE: Final = 33
+BODY_SIZE: Final = 38
 
 
 def stature(bdp: Bdp) -> float:

@@ -131,16 +131,24 @@ def segments(body: Vector, pose: Vector) -> NDArray[np.float64]:
 
 def joints(body: Vector, pose: Vector) -> NDArray[np.float64]:
     """The 15 landmarks, (15, 3), world metres, in the order of JOINT_NAMES."""
+    frames = limb_frames(body, pose)
     limb = segments(body, pose)
-    wrists = [_along(limb[8 + side], body[29 + side]) for side in (0, 1)]
-    ankles = [_along(limb[4 + side], body[31 + side]) for side in (0, 1)]
-    rows = [limb[TORSO, 0], limb[TORSO, 1], limb[HEAD, 1]]
+    up = frames[TORSO, [4, 7, 10]]
+    pelvis = limb[TORSO, 0] + body[37] * up
+    rows = [pelvis, limb[TORSO, 1], limb[HEAD, 1]]
     for side in (1, 0):
-        rows += [limb[6 + side, 0], limb[6 + side, 1], wrists[side]]
-        rows += [limb[2 + side, 0], limb[2 + side, 1], ankles[side]]
+        arm, leg = ARM_LIMBS[side], LEG_LIMBS[side]
+        rows.append(limb[arm[0], 0])
+        rows += [_along(limb[list(arm)], body[at + side]) for at in (29, 31)]
+        rows.append(limb[leg[0], 0] + body[37] * up)
+        rows += [_along(limb[list(leg)], body[at + side]) for at in (33, 35)]
     return np.array(rows)
 
 
-def _along(ends: NDArray[np.float64], share: float) -> NDArray[np.float64]:
-    point: NDArray[np.float64] = ends[0] + share * (ends[1] - ends[0])
+def _along(chain: NDArray[np.float64], distance_m: float) -> NDArray[np.float64]:
+    """The point so far along two cylinders that follow each other, (2, 2, 3)."""
+    lengths = np.linalg.norm(chain[:, 1] - chain[:, 0], axis=1)
+    part = 0 if distance_m <= lengths[0] else 1
+    share = (distance_m - part * lengths[0]) / lengths[part]
+    point: NDArray[np.float64] = chain[part, 0] + share * (chain[part, 1] - chain[part, 0])
     return point
