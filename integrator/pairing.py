@@ -1,0 +1,144 @@
+"""Two viewers' reports, matched by when they were taken."""
+
+from typing import Final, NamedTuple, TypeVar
+
+from common.messages import Report, ViewerNumber
+
+QUEUE: Final = 32
+"""How many reports of one viewer wait for the other: two seconds at 15 frames a second."""
+
+NEVER_S: Final = float("-inf")
+
+Item = TypeVar("Item")
+
+
+class Pair(NamedTuple):
+    """What the viewers report of one instant; None where a viewer does not."""
+
+    first: Report | None
+    second: Report | None
+
+
+class State(NamedTuple):
+    """What waits for its partner, and what was lost."""
+
+    period_s: float
+    waiting: tuple[tuple[Report, ...], tuple[Report, ...]]
+    """Reports of viewer 1 and viewer 2, oldest first."""
+    over: tuple[bool, bool]
+    """Viewers that say nothing more: nobody waits for them."""
+    passed_s: tuple[float, float] = (NEVER_S, NEVER_S)
+    """A report of viewer n must be younger than this: the rest of its instant has gone out."""
+    heard_s: tuple[float, float] = (NEVER_S, NEVER_S)
+    """The youngest report of each viewer."""
+    dropped: int = 0
+    """Reports that a full queue pushed out."""
+    late: int = 0
+    """Reports that came after their instant had gone out, or out of order."""
+
+
+def init(period_s: float, viewers: tuple[ViewerNumber, ...] = (1, 2)) -> State:
+    """Nothing waits.
+
+    Args:
+        period_s: Time between frames; half of it is how far a pair may lie apart.
+        viewers: Those that report in this run; a single viewer's reports pass through.
+    """
+    return State(period_s, ((), ()), (1 not in viewers, 2 not in viewers))
+
+
+def step(state: State, report: Report) -> tuple[State, list[Pair]]:
+    """Take a report in; give out what is complete now, in the order of time.
+
+    A report goes out with the other viewer's of the same instant (half a period apart at most),
+    or alone as soon as the other viewer has said something later. So what goes out follows from
+    what each viewer said, not from how the two were heard interleaved, as long as no queue
+    overflows and nothing was called overdue.
+    """
+    own = report.viewer - 1
+    if state.over[own] or report.captured_s <= state.heard_s[own]:
+        return state._replace(late=state.late + 1), []
+    queue = (*state.waiting[own], report)
+    state = state._replace(
+        heard_s=_with(state.heard_s, own, report.captured_s),
+        waiting=_with(state.waiting, own, queue[-QUEUE:]),
+        dropped=state.dropped + max(0, len(queue) - QUEUE),
+    )
+    return _settled(state)
+
+
+def end(state: State, viewer: ViewerNumber) -> tuple[State, list[Pair]]:
+    """A viewer has said its last: what waits for it goes out, and nothing waits for it again."""
+    return _settled(state._replace(over=_with(state.over, viewer - 1, True)))
+
+
+def flush(state: State) -> tuple[State, list[Pair]]:
+    """Everything is over: what waits goes out."""
+    return _settled(state._replace(over=(True, True)))
+
+
+def overdue(state: State, now_s: float, wait_s: float) -> tuple[State, list[Pair]]:
+    """Let reports out alone that have waited for their partner long enough (live runs only).
+
+    Args:
+        state: What waits.
+        now_s: The room's clock.
+        wait_s: How old a report may grow by that clock.
+    """
+    pairs: list[Pair] = []
+    for own in (0, 1):
+        while state.waiting[own] and state.waiting[own][0].clock_s + wait_s < now_s:
+            state, pair = _alone(state, own)
+            pairs.append(pair)
+    return state, pairs
+
+
+def _settled(state: State) -> tuple[State, list[Pair]]:
+    """Give out every pair that nothing to come can change."""
+    pairs: list[Pair] = []
+    while True:
+        state = _without_late(state)
+        first, second = state.waiting
+        if first and second:
+            apart_s = second[0].captured_s - first[0].captured_s
+            if abs(apart_s) <= state.period_s / 2:
+                state, pair = _together(state)
+            else:
+                state, pair = _alone(state, 0 if apart_s > 0 else 1)
+        elif (first and state.over[1]) or (second and state.over[0]):
+            state, pair = _alone(state, 0 if first else 1)
+        else:
+            return state, pairs
+        pairs.append(pair)
+
+
+def _without_late(state: State) -> State:
+    """Reports whose instant has gone out already are counted, and are no more."""
+    kept = [
+        tuple(report for report in queue if report.captured_s > passed_s)
+        for queue, passed_s in zip(state.waiting, state.passed_s, strict=True)
+    ]
+    late = sum(len(queue) for queue in state.waiting) - len(kept[0]) - len(kept[1])
+    return state._replace(waiting=(kept[0], kept[1]), late=state.late + late)
+
+
+def _together(state: State) -> tuple[State, Pair]:
+    (first, *others_1), (second, *others_2) = state.waiting
+    newest_s = max(first.captured_s, second.captured_s)
+    state = state._replace(
+        waiting=(tuple(others_1), tuple(others_2)), passed_s=(newest_s, newest_s)
+    )
+    return state, Pair(first, second)
+
+
+def _alone(state: State, own: int) -> tuple[State, Pair]:
+    """The oldest report of one viewer; its partner, should it still come, will be late."""
+    report, *others = state.waiting[own]
+    partner_s = report.captured_s + state.period_s / 2
+    passed_s = _with(state.passed_s, 1 - own, max(state.passed_s[1 - own], partner_s))
+    state = state._replace(waiting=_with(state.waiting, own, tuple(others)), passed_s=passed_s)
+    return state, Pair(report, None) if own == 0 else Pair(None, report)
+
+
+def _with(both: tuple[Item, Item], place: int, item: Item) -> tuple[Item, Item]:
+    return (item, both[1]) if place == 0 else (both[0], item)

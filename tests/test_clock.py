@@ -1,0 +1,56 @@
+"""The room's clock from another host: the law of the round trip, held against simulated delays."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from common.clock import HISTORY, Exchange, Offset, init, step
+
+delays = st.floats(0.0, 5.0)
+
+
+def exchange(sent_s: float, skew_s: float, there_s: float, back_s: float) -> Exchange:
+    """A question to a room whose clock is ahead of this host's by `skew_s`."""
+    return Exchange(sent_s, sent_s + there_s + skew_s, sent_s + there_s + back_s)
+
+
+def told(asked: list[Exchange]) -> Offset:
+    state = init()
+    for one in asked:
+        state, offset = step(state, one)
+    return offset
+
+
+@given(st.floats(-1e4, 1e4), st.lists(st.tuples(delays, delays), min_size=1))
+def test_the_offset_errs_by_half_the_least_round_trip_at_most(
+    skew_s: float, trips: list[tuple[float, float]]
+) -> None:
+    """However lopsided the ways there and back."""
+    got = told([exchange(float(n), skew_s, *trip) for n, trip in enumerate(trips)])
+    least_s = min(there + back for there, back in trips[-HISTORY:])
+    assert got.error_s == pytest.approx(least_s / 2, abs=1e-9)
+    assert abs(got.offset_s - skew_s) <= least_s / 2 + 1e-9
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_skew_of_200_ms_is_found_through_asymmetric_jitter(seed: int) -> None:
+    """20 questions, 1-5 ms there and 2-40 ms back."""
+    random = np.random.default_rng(seed)
+    trips = zip(
+        0.001 + random.exponential(0.002, 20), 0.002 + random.exponential(0.01, 20), strict=False
+    )
+    got = told([exchange(float(n), 0.2, float(a), float(b)) for n, (a, b) in enumerate(trips)])
+    assert abs(got.offset_s - 0.2) <= got.error_s < 0.005
+
+
+def test_an_equal_way_there_and_back_gives_the_skew_itself() -> None:
+    assert told([exchange(0.0, -3.0, 0.5, 0.5)]) == Offset(-3.0, 0.5)
+
+
+def test_old_exchanges_are_forgotten_so_that_a_drift_is_followed() -> None:
+    """The best one of all is too old to count."""
+    old = exchange(0.0, 1.0, 0.0, 0.0)
+    later = [exchange(float(n), 2.0, 0.01, 0.01) for n in range(1, HISTORY + 1)]
+    assert told([old, *later]).offset_s == pytest.approx(2.0)
+    assert told([old, *later[:-1]]).offset_s == pytest.approx(1.0)

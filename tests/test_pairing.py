@@ -1,0 +1,219 @@
+"""Pairs of reports: by the time they were taken, whatever the order they are heard in."""
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from common import clock
+from common.clock import Exchange
+from common.messages import Report, ViewerNumber
+from integrator.pairing import QUEUE, Pair, State, end, flush, init, overdue, step
+
+PERIOD_S = 1 / 15
+
+
+def report(viewer: ViewerNumber, captured_s: float, frame: int = 0) -> Report:
+    return Report(
+        viewer=viewer,
+        frame=frame,
+        captured_s=captured_s,
+        clock_s=captured_s,
+        width=8,
+        height=1,
+        silhouette=b"\0",
+        box=None,
+    )
+
+
+def heard(state: State, reports: Sequence[Report]) -> tuple[State, list[Pair]]:
+    pairs: list[Pair] = []
+    for one in reports:
+        state, more = step(state, one)
+        pairs += more
+    return state, pairs
+
+
+def times(pairs: Sequence[Pair]) -> list[tuple[float | None, float | None]]:
+    return [
+        tuple(None if one is None else one.captured_s for one in pair)  # type: ignore[misc]
+        for pair in pairs
+    ]
+
+
+def test_reports_of_one_instant_go_out_together() -> None:
+    state, pairs = heard(
+        init(1.0), [report(1, 0.0), report(2, 0.5), report(2, 1.4), report(1, 1.0)]
+    )
+    assert times(pairs) == [(0.0, 0.5), (1.0, 1.4)]
+    assert (state.dropped, state.late) == (0, 0)
+
+
+def test_a_report_goes_out_alone_once_its_partner_cannot_come() -> None:
+    """The other viewer lost a frame, and says so by sending the next."""
+    state, pairs = heard(init(1.0), [report(1, 0.0), report(1, 1.0)])
+    assert pairs == []
+    state, pairs = step(state, report(2, 1.1))
+    assert times(pairs) == [(0.0, None), (1.0, 1.1)]
+
+
+def test_half_a_period_apart_is_together_and_more_is_not() -> None:
+    assert times(heard(init(1.0), [report(1, 0.0), report(2, 0.5)])[1]) == [(0.0, 0.5)]
+    assert times(heard(init(1.0), [report(1, 0.0), report(2, 0.5001)])[1]) == [(0.0, None)]
+
+
+def test_what_waits_goes_out_at_the_end() -> None:
+    state, _ = heard(init(1.0), [report(2, 0.0), report(2, 1.0)])
+    state, pairs = flush(state)
+    assert times(pairs) == [(None, 0.0), (None, 1.0)]
+    assert state.waiting == ((), ())
+
+
+def test_nobody_waits_for_a_viewer_that_has_ended() -> None:
+    state, pairs = heard(init(1.0), [report(1, 0.0), report(2, 0.0), report(1, 1.0)])
+    assert times(pairs) == [(0.0, 0.0)]
+    state, pairs = end(state, 2)
+    assert times(pairs) == [(1.0, None)]
+    assert times(step(state, report(1, 2.0))[1]) == [(2.0, None)]
+
+
+@pytest.mark.parametrize("viewer", [1, 2])
+def test_a_single_viewers_reports_pass_through(viewer: ViewerNumber) -> None:
+    other: ViewerNumber = 2 if viewer == 1 else 1
+    state = init(1.0, viewers=(viewer,))
+    for second in range(3):
+        state, pairs = step(state, report(viewer, float(second)))
+        assert [one for pair in pairs for one in pair if one] == [report(viewer, float(second))]
+    assert step(state, report(other, 3.0)) == (state._replace(late=1), [])
+
+
+def test_a_report_that_comes_too_late_is_counted_and_dropped() -> None:
+    state, _ = heard(init(1.0), [report(1, 0.0)])
+    state, pairs = overdue(state, now_s=0.21, wait_s=0.2)
+    assert times(pairs) == [(0.0, None)]
+    state, pairs = step(state, report(2, 0.3))
+    assert (pairs, state.late, state.waiting) == ([], 1, ((), ()))
+    _, pairs = heard(state, [report(2, 1.1), report(1, 1.0)])
+    assert times(pairs) == [(1.0, 1.1)]
+
+
+def test_a_viewer_that_repeats_itself_is_not_heard_twice() -> None:
+    state, pairs = heard(
+        init(1.0), [report(1, 1.0), report(1, 1.0), report(1, 0.0), report(2, 1.0)]
+    )
+    assert times(pairs) == [(1.0, 1.0)]
+    assert state.late == 2
+
+
+def test_only_what_waited_long_enough_is_overdue() -> None:
+    state, _ = heard(init(1.0), [report(1, 0.0), report(1, 1.0)])
+    assert overdue(state, now_s=0.2, wait_s=0.2) == (state, [])
+    state, pairs = overdue(state, now_s=0.3, wait_s=0.2)
+    assert times(pairs) == [(0.0, None)]
+    assert state.late == 0
+
+
+def test_a_full_queue_drops_its_oldest_and_counts() -> None:
+    state, pairs = heard(init(1.0), [report(1, float(second)) for second in range(QUEUE + 5)])
+    assert pairs == []
+    assert state.dropped == 5
+    assert state.waiting[0][0].captured_s == 5.0
+    _, pairs = flush(state)
+    assert len(pairs) == QUEUE
+
+
+@st.composite
+def talks(draw: st.DrawFn) -> tuple[list[Report], list[Report]]:
+    """Two viewers with jitter of 45 % of a period, lost frames and a shift between them."""
+    both: list[list[Report]] = []
+    for viewer in (1, 2):
+        shift = draw(st.floats(-0.5, 0.5))
+        frames = draw(st.sets(st.integers(0, 20)))
+        both.append(
+            [
+                report(viewer, n + shift + draw(st.floats(-0.45, 0.45)), n)  # type: ignore[arg-type]
+                for n in sorted(frames)
+            ]
+        )
+    return both[0], both[1]
+
+
+@st.composite
+def interleaved(draw: st.DrawFn) -> tuple[list[Report], list[Report]]:
+    """The same talk as heard in two ways."""
+    first, second = draw(talks())
+    ways = []
+    for _ in range(2):
+        turns = draw(st.permutations([0] * len(first) + [1] * len(second)))
+        speakers = (iter(first), iter(second))
+        ways.append([next(speakers[turn]) for turn in turns])
+    return ways[0], ways[1]
+
+
+@given(interleaved())
+def test_what_goes_out_does_not_depend_on_how_the_viewers_are_interleaved(
+    ways: tuple[list[Report], list[Report]],
+) -> None:
+    ends = []
+    for way in ways:
+        state, pairs = heard(init(1.0), way)
+        state, rest = flush(state)
+        ends.append((pairs + rest, state.late, state.dropped))
+    assert ends[0] == ends[1]
+
+
+@given(talks(), st.floats(0.0, 3.0))
+def test_every_report_goes_out_once_in_the_order_of_time_or_is_counted(
+    talk: tuple[list[Report], list[Report]], wait_s: float
+) -> None:
+    """Even where reports are called overdue: nothing is lost without a count."""
+    state, pairs = init(1.0), []
+    for one in sorted((*talk[0], *talk[1]), key=lambda one: one.captured_s + 0.3 * one.viewer):
+        state, more = step(state, one)
+        state, old = overdue(state, one.clock_s, wait_s)
+        pairs += more + old
+    state, rest = flush(state)
+    pairs += rest
+    out = [[one for one in view if one] for view in zip(*pairs, strict=True)] or [[], []]
+    assert len(out[0]) + len(out[1]) + state.late == len(talk[0]) + len(talk[1])
+    for view in out:
+        assert all(a.captured_s < b.captured_s for a, b in itertools.pairwise(view))
+    for first, second in pairs:
+        if first and second:
+            assert abs(first.captured_s - second.captured_s) <= 0.5
+
+
+def exchanges(skew_s: float, seed: int) -> list[Exchange]:
+    """Questions to a room whose clock is ahead; the way back is the slower one."""
+    random = np.random.default_rng(seed)
+    asked = []
+    for sent_s in np.arange(20.0):
+        there, back = 0.001 + random.exponential(0.004), 0.002 + random.exponential(0.02)
+        answered_s = float(sent_s + there)
+        asked.append(Exchange(float(sent_s), answered_s + skew_s, float(answered_s + back)))
+    return asked
+
+
+def corrected_pairs(offset_s: float) -> list[Pair]:
+    """Two viewers of one instant; viewer 2's clock is 200 ms behind the room's."""
+    talk = []
+    for n in range(40):
+        talk.append(report(1, n * PERIOD_S, n))
+        talk.append(report(2, n * PERIOD_S - 0.2 + offset_s, n))
+    state, pairs = heard(init(PERIOD_S), talk)
+    return pairs + flush(state)[1]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_viewers_whose_clocks_differ_by_200_ms_pair_after_correction_only(seed: int) -> None:
+    state, offset = clock.init(), None
+    for one in exchanges(0.2, seed):
+        state, offset = clock.step(state, one)
+    assert offset is not None
+    right = [p for p in corrected_pairs(offset.offset_s) if p.first and p.second]
+    assert [p.first.frame for p in right] == [p.second.frame for p in right] == list(range(40))
+    wrong = [p for p in corrected_pairs(0.0) if p.first and p.second]
+    assert all(p.first.frame != p.second.frame for p in wrong)
