@@ -50,12 +50,18 @@ def test_standing_has_no_name(model: PostureModel) -> None:
 @pytest.mark.parametrize("posture", list(POSTURES))
 def test_what_came_before_a_standstill_is_left_out(model: PostureModel, posture: str) -> None:
     """The opening posture, then a motion: the window begins where the motion did."""
-    rows = [*standing(30), *perform(posture, performer=9)]
-    said = watch(model, rows)
-    assert all(one.name == "" for one in said[:30])
+    opening = 14  # frames, as in the development clips
+    said = watch(model, [*standing(opening), *perform(posture, performer=9, frames=30)])
+    assert all(one.name == "" for one in said[:opening])
     assert said[-1].name == posture
-    assert 30 <= said[-1].first <= 40
-    assert said[-1].last == 69
+    assert opening <= said[-1].first <= opening + 10
+    assert said[-1].last == opening + 29
+
+
+def test_a_pause_of_half_a_second_belongs_to_the_motion(model: PostureModel) -> None:
+    squat = perform("squat", performer=9, frames=20)
+    said = watch(model, [*squat[:14], *standing(8), *squat[:14]])
+    assert said[-1].first == 0
 
 
 def test_a_motion_that_ends_in_standing_keeps_its_name_while_it_is_in_the_window(
