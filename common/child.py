@@ -1,0 +1,95 @@
+"""A Python module run as a child process: bounded waits, and a word on how it died."""
+
+import contextlib
+import fcntl
+import io
+import select
+import signal
+import subprocess
+import sys
+import time
+from typing import Final, cast
+
+PIPE_BYTES: Final = 1 << 20
+"""How far a child may run ahead of its reader: 18 pictures of 160x120; as much as Linux grants."""
+
+END_S: Final = 1.0
+"""How long a child that closed its pipe may take to be gone."""
+
+
+class Broken(RuntimeError):
+    """The child died or was stuck, and is gone; the text says how."""
+
+
+class Child:
+    """A process that answers lines with bytes; it has nothing to save and is ended by a kill."""
+
+    def __init__(self, module: str, stall_s: float) -> None:
+        """Start it; when it gives nothing for `stall_s` it counts as stuck."""
+        self._stall_s = stall_s
+        # -P: a stranger's numpy.py in the working directory is not ours to run.
+        self._process = subprocess.Popen(
+            [sys.executable, "-P", "-m", module],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            bufsize=0,
+        )
+        # Unbuffered pipes are plain files, which Popen's type does not say.
+        self._requests = cast(io.FileIO, self._process.stdin)
+        self._answers = cast(io.FileIO, self._process.stdout)
+        self._poll = select.poll()
+        self._poll.register(self._answers, select.POLLIN)
+        if hasattr(fcntl, "F_SETPIPE_SZ"):
+            with contextlib.suppress(OSError):
+                fcntl.fcntl(self._answers, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
+
+    @property
+    def pid(self) -> int:
+        """Its process number."""
+        return self._process.pid
+
+    def ask(self, request: bytes) -> None:
+        """Send one line.
+
+        Raises:
+            Broken: When it died.
+        """
+        try:
+            self._requests.write(request + b"\n")
+        except BrokenPipeError as error:
+            raise Broken(self._last_words()) from error
+
+    def read_into(self, room: memoryview) -> None:
+        """Fill `room`, plain bytes, from what it answers.
+
+        Raises:
+            Broken: When it died or was stuck before that.
+        """
+        until_s = time.monotonic() + self._stall_s
+        while room:
+            if not self._poll.poll(max(0.0, 1000 * (until_s - time.monotonic()))):
+                self.kill()
+                raise Broken(f"it gave nothing for {self._stall_s:g} s")
+            got = self._answers.readinto(room)
+            if not got:
+                raise Broken(self._last_words())
+            room = room[got:]
+
+    def kill(self) -> None:
+        """End it, from any thread; who reads then meets Broken."""
+        self._process.kill()
+
+    def close(self) -> None:
+        """End it and let go of its pipes."""
+        self.kill()
+        with self._process:
+            pass
+
+    def _last_words(self) -> str:
+        try:
+            code = self._process.wait(END_S)
+        except subprocess.TimeoutExpired:
+            self.kill()
+            return "it closed its pipe"
+        return f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"

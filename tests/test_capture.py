@@ -1,0 +1,254 @@
+"""Frames through the child that decodes: real files, broken files, a child that dies or hangs."""
+
+import os
+import signal
+import struct
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from common.clips import View
+from common.decoding import Decoder, DecoderDied, Picture, Undecodable
+from viewer.capture import WAITING, Frame, Live, RoomClock, recorded
+
+SIZE = (64, 48)
+FRAMES = 40
+
+
+@pytest.fixture(scope="module")
+def decoder() -> Iterator[Decoder]:
+    with Decoder() as shared:
+        yield shared
+
+
+def picture_of(index: int, size: tuple[int, int] = SIZE) -> Picture:
+    """Grey, brighter with every frame: it can be told from its neighbours after JPEG."""
+    return np.full((size[1], size[0], 3), 5 * (index % 40) + 20, np.uint8)
+
+
+def written(path: Path, frames: int = FRAMES, size: tuple[int, int] = SIZE, fps: float = 15) -> str:
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), fps, size)
+    for index in range(frames):
+        writer.write(picture_of(index, size))
+    writer.release()
+    return str(path)
+
+
+def view_of(source: str | int, fps: float = 15.0, frames: int = FRAMES) -> View:
+    return View(1, source, SIZE, SIZE, fps, frames)
+
+
+def shown(picture: Picture) -> int:
+    """The index that a picture was written with."""
+    return round((float(picture.mean()) - 20) / 5)
+
+
+def uncompressed(path: Path, size: tuple[int, int] = (160, 120), frames: int = 20) -> str:
+    """A bgr24 AVI as old capture cards write it: valid, bottom row first, and OpenCV aborts."""
+    width, height = size
+    rows = 3 * width * height
+
+    def chunk(name: bytes, body: bytes) -> bytes:
+        return name + struct.pack("<I", len(body)) + body
+
+    head = (66667, rows * 15, 0, 16, frames, 0, 1, rows, width, height, 0, 0, 0, 0)
+    stream = struct.pack(
+        "<4s4sIHHIIIIIIII4H", b"vids", b"DIB ", 0, 0, 0, 0, 1, 15, 0, frames, rows, 0, 0, 0, 0,
+        width, height,
+    )  # fmt: skip
+    form = struct.pack("<IiiHHIIiiII", 40, width, height, 1, 24, 0, rows, 0, 0, 0, 0)
+    streams = chunk(b"LIST", b"strl" + chunk(b"strh", stream) + chunk(b"strf", form))
+    header = chunk(b"LIST", b"hdrl" + chunk(b"avih", struct.pack("<14I", *head)) + streams)
+    noise = np.random.default_rng(0)
+    movie = b"".join(chunk(b"00db", noise.bytes(rows)) for _ in range(frames))
+    path.write_bytes(chunk(b"RIFF", b"AVI " + header + chunk(b"LIST", b"movi" + movie)))
+    return str(path)
+
+
+def test_every_frame_comes_in_order_at_the_size_asked_for(tmp_path: Path, decoder: Decoder) -> None:
+    video = written(tmp_path / "cam1.avi", size=(128, 96))
+    frames = list(decoder.frames(video, SIZE))
+    assert [frame.index for frame in frames] == list(range(FRAMES))
+    assert [shown(frame.picture) for frame in frames] == list(range(FRAMES))
+    assert {frame.picture.shape for frame in frames} == {(48, 64, 3)}
+    assert decoder.came == FRAMES
+
+
+def test_a_pixel_is_the_mean_of_what_it_covers(tmp_path: Path, decoder: Decoder) -> None:
+    """P1: pictures are resampled by area, so halving means the mean of four."""
+    full = np.random.default_rng(3).integers(0, 256, (96, 128, 3)).astype(np.uint8)
+    cv2.imwrite(str(tmp_path / "plate.png"), full)
+    (still,) = decoder.frames(str(tmp_path / "plate.png"), SIZE)
+    means = full.reshape(48, 2, 64, 2, 3).mean(axis=(1, 3))
+    assert np.abs(still.picture - means).max() <= 0.5
+
+
+def test_every_third_frame_keeps_its_index_and_the_rest_is_counted(
+    tmp_path: Path, decoder: Decoder
+) -> None:
+    frames = list(decoder.frames(written(tmp_path / "cam1.avi"), SIZE, every=3))
+    assert [frame.index for frame in frames] == list(range(0, FRAMES, 3))
+    assert [shown(frame.picture) for frame in frames] == list(range(0, FRAMES, 3))
+    assert decoder.came == FRAMES
+
+
+def test_one_child_reads_video_after_video(tmp_path: Path, decoder: Decoder) -> None:
+    videos = [written(tmp_path / f"{n}.avi", frames=n) for n in (3, 5, 8)]
+    list(decoder.frames(videos[0], SIZE))
+    pid = decoder.pid
+    assert [len(list(decoder.frames(video, SIZE))) for video in videos] == [3, 5, 8]
+    with pytest.raises(Undecodable):
+        decoder.probe(str(tmp_path / "none.avi"))
+    assert decoder.probe(videos[2]).frames == 8
+    assert decoder.pid == pid
+
+
+def test_a_video_left_in_the_middle_does_not_leak_into_the_next(
+    tmp_path: Path, decoder: Decoder
+) -> None:
+    first, second = written(tmp_path / "1.avi"), written(tmp_path / "2.avi", frames=4)
+    frames = decoder.frames(first, SIZE)
+    next(frames)
+    frames.close()
+    assert [shown(frame.picture) for frame in decoder.frames(second, SIZE)] == [0, 1, 2, 3]
+
+
+def test_the_probe_tells_size_rate_and_length(tmp_path: Path, decoder: Decoder) -> None:
+    info = decoder.probe(written(tmp_path / "cam1.avi", frames=7, size=(160, 120), fps=25))
+    assert (info.width, info.height, info.fps, info.frames) == (160, 120, 25.0, 7)
+
+
+def test_a_film_that_aborts_opencv_costs_the_child_alone(tmp_path: Path) -> None:
+    video, good = uncompressed(tmp_path / "raw.avi"), written(tmp_path / "cam1.avi")
+    with Decoder() as own:
+        with pytest.raises(DecoderDied, match=r"raw\.avi .* frames \(killed by SIG.*convert"):
+            list(own.frames(video, SIZE))
+        assert len(list(own.frames(good, SIZE))) == FRAMES
+
+
+def test_a_killed_child_is_reported_with_how_far_it_came(tmp_path: Path) -> None:
+    video = written(tmp_path / "cam1.avi", frames=400, size=(320, 240))
+    with Decoder() as own:
+        frames = own.frames(video, (320, 240))
+        for _ in range(5):
+            next(frames)
+        assert own.pid is not None
+        os.kill(own.pid, signal.SIGKILL)
+        with pytest.raises(DecoderDied) as caught:
+            list(frames)
+    assert (caught.value.source, caught.value.how) == (video, "killed by SIGKILL")
+    assert 5 <= caught.value.frames < 400
+    assert "\n" not in str(caught.value)
+
+
+def test_a_stuck_child_is_waited_for_in_bounded_time(tmp_path: Path) -> None:
+    video = written(tmp_path / "cam1.avi", frames=400, size=(320, 240))
+    with Decoder(stall_s=0.3) as own:
+        frames = own.frames(video, (320, 240))
+        next(frames)
+        assert own.pid is not None
+        os.kill(own.pid, signal.SIGSTOP)
+        with pytest.raises(DecoderDied, match=r"gave nothing for 0\.3 s"):
+            list(frames)
+
+
+def test_a_film_cut_off_gives_what_it_has_and_says_how_much(
+    tmp_path: Path, decoder: Decoder
+) -> None:
+    whole = Path(written(tmp_path / "whole.avi", size=(320, 240)))
+    cut = tmp_path / "cut.avi"
+    cut.write_bytes(whole.read_bytes()[: whole.stat().st_size // 2])
+    claimed = decoder.probe(str(cut)).frames
+    frames = list(decoder.frames(str(cut), SIZE))
+    assert [shown(frame.picture) for frame in frames[:10]] == list(range(10))
+    assert decoder.came == len(frames) < claimed == FRAMES
+
+
+@pytest.mark.parametrize("content", [None, b"", b"no film\n" * 99, b"RIFF\xff\xff\xff\x7fAVI LIST"])
+def test_what_is_no_film_is_refused_in_one_line(
+    tmp_path: Path, decoder: Decoder, content: bytes | None
+) -> None:
+    path = tmp_path / "cam1.avi"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(Undecodable, match=r"^[^\n]*cam1\.avi gives no picture: convert it[^\n]*$"):
+        decoder.probe(str(path))
+
+
+def test_a_camera_that_is_not_there_is_refused(decoder: Decoder) -> None:
+    with pytest.raises(Undecodable, match="camera 63 gives no picture: see that it is plugged in"):
+        decoder.probe(63)
+
+
+def test_a_recorded_view_is_as_fast_as_it_can_and_keeps_the_cameras_times(
+    tmp_path: Path, decoder: Decoder
+) -> None:
+    view = view_of(written(tmp_path / "cam1.avi"))
+    frames = list(recorded(view, 2, decoder))
+    assert [frame.captured_s for frame in frames] == [n / 15 for n in range(0, FRAMES, 2)]
+    assert [frame.clock_s for frame in frames] == [frame.captured_s for frame in frames]
+
+
+def all_of(live: Live) -> list[Frame]:
+    frames = []
+    while not live.over:
+        frame = live.take(5.0)
+        if frame is not None:
+            frames.append(frame)
+    return frames
+
+
+def test_live_frames_come_no_sooner_than_they_are_due(tmp_path: Path) -> None:
+    view = view_of(written(tmp_path / "cam1.avi"), fps=100.0)
+    start_s = time.monotonic() + 0.4
+    with Live(view, 1, RoomClock(start_s + 1000.0, offset_s=1000.0)) as live:
+        early_s = []
+        while (frame := live.take(5.0)) is not None:
+            assert frame.clock_s == start_s + 1000.0 + frame.captured_s
+            early_s.append(frame.clock_s - 1000.0 - time.monotonic())
+    assert max(early_s) <= 0.0
+    assert len(early_s) + live.dropped == live.came == FRAMES
+
+
+def test_a_late_reader_gets_the_newest_frames_and_the_loss_is_counted(tmp_path: Path) -> None:
+    """The whole film is overdue and nobody reads: the oldest give way, the camera never waits."""
+    view = view_of(written(tmp_path / "cam1.avi"))
+    with Live(view, 1, RoomClock(start_s=time.monotonic() - 1000.0)) as live:
+        deadline = time.monotonic() + 5.0
+        while live.came < FRAMES and time.monotonic() < deadline:
+            time.sleep(0.01)
+        assert live.dropped == FRAMES - WAITING
+        assert [frame.index for frame in all_of(live)] == [FRAMES - 2, FRAMES - 1]
+        assert live.take(60.0) is None
+
+
+def test_a_live_film_that_breaks_the_decoder_tells_the_reader(tmp_path: Path) -> None:
+    view = view_of(uncompressed(tmp_path / "raw.avi"))
+    with Live(view, 1, RoomClock(time.monotonic())) as live, pytest.raises(DecoderDied):
+        all_of(live)
+    with (
+        Live(view_of(str(tmp_path / "none.avi")), 1, RoomClock(0.0)) as nothing,
+        pytest.raises(Undecodable),
+    ):
+        nothing.take(5.0)
+
+
+def test_a_live_view_can_be_left_at_any_moment(tmp_path: Path) -> None:
+    view = view_of(written(tmp_path / "cam1.avi"))
+    with Live(view, 1, RoomClock(time.monotonic() + 1e6)) as live:
+        assert live.take(0.05) is None
+        assert not live.over
+    assert live.over
+
+
+@pytest.mark.parametrize("folder", ["kth_160x120", "le2i", "weizmann"])
+def test_filmed_people_are_read_to_their_end(data_dir: Path, decoder: Decoder, folder: str) -> None:
+    for video in sorted((data_dir / "real" / folder).glob("*.[am][vk][iv]")):
+        claimed = decoder.probe(str(video)).frames
+        indices = [frame.index for frame in decoder.frames(str(video), (160, 120), every=20)]
+        assert indices == list(range(0, claimed, 20))
+        assert decoder.came == claimed

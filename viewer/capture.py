@@ -1,0 +1,131 @@
+"""Frames of one view: as fast as they can be decoded, or each at its moment."""
+
+import threading
+import time
+from collections.abc import Iterator
+from typing import Final, NamedTuple, Self
+
+import msgspec
+
+from common.clips import View
+from common.decoding import Decoded, Decoder, Picture
+from common.mailbox import Mailbox
+from common.rate import Clock, wait_until
+
+WAITING: Final = 2
+"""Frames that may wait for a late viewer: one hides a short delay, more would only be stale."""
+
+
+class Frame(msgspec.Struct, frozen=True):
+    """One picture and when it was taken."""
+
+    index: int
+    """Its place in the video, also where only every n-th frame is taken."""
+    captured_s: float
+    """Seconds since the clip began, or by the room's clock for a camera."""
+    clock_s: float
+    """The same moment by the room's clock; offline the same as `captured_s`."""
+    picture: Picture
+    """(height, width, 3), BGR, at the working size."""
+
+
+def recorded(view: View, every: int, decoder: Decoder) -> Iterator[Frame]:
+    """Every n-th frame of a video, as fast as they come.
+
+    Raises:
+        Undecodable: When there is none.
+        DecoderDied: When the decoder broke; the frames before that are good.
+    """
+    for decoded in decoder.frames(view.source, view.size, every):
+        captured_s = view.captured_s(decoded.index)
+        yield Frame(decoded.index, captured_s, captured_s, decoded.picture)
+
+
+class RoomClock(NamedTuple):
+    """When a recorded clip begins, and how to tell the time in the room."""
+
+    start_s: float
+    """By the room's clock."""
+    offset_s: float = 0.0
+    """The room's clock less this host's monotonic one."""
+
+
+class Live:
+    """A view's frames, each given out when it is due; the oldest give way to a late reader.
+
+    A thread takes them from the decoder, so a camera is never kept waiting.
+    """
+
+    def __init__(
+        self, view: View, every: int, room: RoomClock, clock: Clock = time.monotonic
+    ) -> None:
+        """Begin to decode at once; the first frame of a video comes at the room's start."""
+        self._view = view
+        self._room = room
+        self._clock = clock
+        self._stop = threading.Event()
+        self._decoder = Decoder()
+        self._waiting: Mailbox[Frame] = Mailbox(WAITING)
+        self._failure: Exception | None = None
+        self._thread = threading.Thread(target=self._run, args=(every,), daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> Self:
+        """Already running."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End the decoder and the thread."""
+        self._stop.set()
+        self._decoder.stop()
+        self._thread.join()
+
+    @property
+    def dropped(self) -> int:
+        """Frames that a late reader never saw."""
+        return self._waiting.dropped
+
+    @property
+    def came(self) -> int:
+        """How many frames the video really had; 0 until its end was reached."""
+        return self._decoder.came
+
+    @property
+    def over(self) -> bool:
+        """True when the last frame was taken."""
+        return self._waiting.over
+
+    def take(self, timeout_s: float) -> Frame | None:
+        """The next frame; None when none came in time or it is over.
+
+        Raises:
+            Undecodable: When the source has no picture.
+            DecoderDied: When the decoder broke, after the last good frame.
+        """
+        frame = self._waiting.take(timeout_s)
+        if frame is None and self.over and self._failure is not None:
+            raise self._failure
+        return frame
+
+    def _run(self, every: int) -> None:
+        """Hand on each frame at its moment; in a thread of its own."""
+        frames = self._decoder.frames(self._view.source, self._view.size, every)
+        try:
+            for decoded in frames:
+                frame = self._timed(decoded)
+                if not wait_until(frame.clock_s - self._room.offset_s, self._stop, self._clock):
+                    return
+                self._waiting.put(frame)
+        except Exception as error:  # Whatever ended this thread is the reader's to hear.
+            self._failure = error
+        finally:
+            frames.close()
+            self._decoder.close()
+            self._waiting.close()
+
+    def _timed(self, decoded: Decoded) -> Frame:
+        if isinstance(self._view.source, int):
+            now_s = decoded.grabbed_s + self._room.offset_s
+            return Frame(decoded.index, now_s, now_s, decoded.picture)
+        captured_s = self._view.captured_s(decoded.index)
+        return Frame(decoded.index, captured_s, self._room.start_s + captured_s, decoded.picture)
