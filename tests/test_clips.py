@@ -1,0 +1,288 @@
+"""Clips as users have them: complete, odd, and broken in every way that a folder can be."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+
+from common.camera import paper_rig, project
+from common.clips import Clip, ClipError, View, open_clip, shortfall
+from common.config import CameraSettings, Settings
+from common.decoding import Decoder
+
+SIZE = (320, 240)
+
+
+@pytest.fixture(scope="module")
+def decoder() -> Iterator[Decoder]:
+    with Decoder() as shared:
+        yield shared
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A clip of two views, calibrated one folder up."""
+    clip = tmp_path / "r01_walk"
+    clip.mkdir()
+    for number in (1, 2):
+        film(clip / f"cam{number}.avi")
+    calibrate(tmp_path / "calibration.json")
+    return clip
+
+
+def film(path: Path, frames: int = 12, size: tuple[int, int] = SIZE, fps: float = 15.0) -> str:
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), fps, size)
+    for _ in range(frames):
+        writer.write(np.zeros((size[1], size[0], 3), np.uint8))
+    writer.release()
+    return str(path)
+
+
+def calibrate(path: Path, size: tuple[int, int] = SIZE, names: tuple[str, ...] = ()) -> None:
+    rig = paper_rig(size, (400.0, 420.0), (4.5, 4.0))
+    cameras: list[dict[str, Any]] = [
+        {"name": camera.name, "K": camera.K, "R": camera.R, "t": camera.t} for camera in rig.cameras
+    ]
+    if names:
+        cameras = [{**cameras[0], "name": name} for name in names]
+    path.write_text(json.dumps({"width": size[0], "height": size[1], "cameras": cameras}))
+
+
+def tell(folder: Path, **facts: object) -> None:
+    (folder / "meta.json").write_text(json.dumps(facts))
+
+
+def opened(folder: Path, decoder: Decoder, **settings: Any) -> Clip:
+    return open_clip(Settings(clip=str(folder), **settings), decoder)
+
+
+def refusal(settings: Settings, decoder: Decoder) -> str:
+    with pytest.raises(ClipError) as caught:
+        open_clip(settings, decoder)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def test_a_folder_of_two_views_is_a_clip(folder: Path, decoder: Decoder) -> None:
+    tell(folder, performer="r01", posture="squat", take=2, room=7, measures={"stature_m": 1.7})
+    clip = opened(folder, decoder)
+    assert (clip.name, clip.meta.performer, clip.meta.take) == ("r01_walk", "r01", 2)
+    assert [(v.number, v.size, v.source_size, v.fps, v.frames) for v in clip.views] == [
+        (1, (160, 120), SIZE, 15.0, 12),
+        (2, (160, 120), SIZE, 15.0, 12),
+    ]
+    assert clip.warnings == ()
+
+
+def test_the_calibration_is_scaled_to_the_working_picture(folder: Path, decoder: Decoder) -> None:
+    """Half the picture, half the pixel coordinates: with the corner at 0, all of K halves."""
+    rig = opened(folder, decoder).rig
+    assert rig is not None
+    full = paper_rig(SIZE, (400.0, 420.0), (4.5, 4.0))
+    points_m = np.array([[0.3, 1.2, 0.4], [-0.5, 0.1, -0.2]])
+    assert (rig.width, rig.height) == (160, 120)
+    for small, large in zip(rig.cameras, full.cameras, strict=True):
+        assert project(small, points_m) == pytest.approx(project(large, points_m) / 2)
+
+
+def test_a_calibration_beside_the_videos_goes_before_the_parents(
+    folder: Path, decoder: Decoder
+) -> None:
+    calibrate(folder / "calibration.json", names=("left", "right"))
+    rig = opened(folder, decoder).rig
+    assert rig is not None
+    assert [camera.name for camera in rig.cameras] == ["left", "right"]
+
+
+def test_two_of_several_cameras_are_taken_by_name(folder: Path, decoder: Decoder) -> None:
+    calibrate(folder / "four.json", names=("a", "b", "c", "d"))
+    settings = Settings(
+        clip=str(folder),
+        calibration=str(folder / "four.json"),
+        camera_1=CameraSettings(calibrated_as="d"),
+        camera_2=CameraSettings(calibrated_as="b"),
+    )
+    rig = open_clip(settings, decoder).rig
+    assert rig is not None
+    assert [camera.name for camera in rig.cameras] == ["d", "b"]
+    wrong = Settings(
+        clip=str(folder),
+        calibration=settings.calibration,
+        camera_1=CameraSettings(calibrated_as="x"),
+    )
+    assert "no camera 'x'; it has a, b, c, d" in refusal(wrong, decoder)
+
+
+def test_one_video_makes_a_single_view_clip(folder: Path, decoder: Decoder) -> None:
+    (folder / "cam1.avi").unlink()
+    clip = opened(folder, decoder)
+    assert [view.number for view in clip.views] == [2]
+    assert clip.rig is not None
+    assert [camera.name for camera in clip.rig.cameras] == ["cam2"]
+
+
+def test_files_under_any_name_are_taken_from_the_settings(tmp_path: Path, decoder: Decoder) -> None:
+    settings = Settings(
+        camera_1=CameraSettings(source=film(tmp_path / "front.avi")),
+        camera_2=CameraSettings(source=film(tmp_path / "side.avi")),
+    )
+    clip = open_clip(settings, decoder)
+    assert [view.source for view in clip.views] == [
+        str(tmp_path / "front.avi"),
+        str(tmp_path / "side.avi"),
+    ]
+    assert (clip.name, clip.rig) == ("front", None)
+
+
+def test_a_view_of_another_host_is_not_touched(folder: Path, decoder: Decoder) -> None:
+    (folder / "cam2.avi").write_bytes(b"")
+    settings = Settings(clip=str(folder), camera_2=CameraSettings(device=63))
+    clip = open_clip(settings, decoder, numbers=(1,))
+    assert [view.number for view in clip.views] == [1]
+
+
+def test_an_upright_picture_keeps_its_shape(tmp_path: Path, decoder: Decoder) -> None:
+    settings = Settings(camera_1=CameraSettings(source=film(tmp_path / "a.avi", size=(270, 480))))
+    assert open_clip(settings, decoder).views[0].size == (68, 120)
+
+
+def test_capture_times_place_the_frames_and_the_rate_carries_on_behind_them(
+    folder: Path, decoder: Decoder
+) -> None:
+    tell(folder, fps=15, capture_s={"cam1": [0.0, 0.2, 0.3], "cam2": [0.0, 0.1, 0.3]})
+    clip = opened(folder, decoder)
+    first = clip.views[0]
+    assert [first.captured_s(index) for index in (0, 1, 2)] == [0.0, 0.2, 0.3]
+    assert first.captured_s(5) == pytest.approx(0.3 + 3 / 15)
+    assert len(clip.warnings) == 2
+    assert "3 capture times for camera 1" in clip.warnings[0]
+
+
+def test_without_capture_times_the_rate_places_the_frames() -> None:
+    view = View(1, "cam1.avi", SIZE, SIZE, 25.0, 100)
+    assert [view.captured_s(index) for index in (0, 1, 50)] == [0.0, 0.04, 2.0]
+
+
+def test_clips_of_different_length_and_size_run_on_with_a_word(
+    folder: Path, decoder: Decoder
+) -> None:
+    film(folder / "cam2.avi", frames=9, size=(640, 480))
+    clip = opened(folder, decoder)
+    assert [view.size for view in clip.views] == [(160, 120), (160, 120)]
+    assert clip.warnings == (
+        "the views differ in size: 320x240 and 640x480",
+        "the views differ in length: 12 and 9 frames",
+    )
+    assert clip.rig is not None
+    assert clip.rig.cameras[1].K[0][0] == pytest.approx(420 / 2)
+
+
+def test_rates_that_differ_need_capture_times(folder: Path, decoder: Decoder) -> None:
+    film(folder / "cam2.avi", fps=25.0)
+    said = refusal(Settings(clip=str(folder)), decoder)
+    assert "15 frames a second" in said
+    assert "set fps or capture_s" in said
+    times = [n / 15 for n in range(12)]
+    tell(folder, capture_s={"cam1": times, "cam2": times})
+    assert len(opened(folder, decoder).views) == 2
+
+
+def test_a_missing_folder_file_or_source_is_named(tmp_path: Path, decoder: Decoder) -> None:
+    gone = str(tmp_path / "gone")
+    assert f"no clip folder {gone}" in refusal(Settings(clip=gone), decoder)
+    assert "set clip" in refusal(Settings(), decoder)
+    assert "neither cam1.* nor cam2.*" in refusal(Settings(clip=str(tmp_path)), decoder)
+    view = CameraSettings(source=gone + ".avi")
+    assert "gone.avi: check the path" in refusal(Settings(camera_1=view), decoder)
+    file = film(tmp_path / "walk.avi")
+    assert "walk.avi is a file" in refusal(Settings(clip=file), decoder)
+    plate = CameraSettings(source=file, background=str(tmp_path / "plate.png"))
+    assert "plate.png: check the path" in refusal(Settings(camera_1=plate), decoder)
+
+
+@pytest.mark.parametrize(
+    ("content", "word"), [(b"", "is empty"), (b"text\n" * 50, "no picture")], ids=["empty", "text"]
+)
+def test_a_file_that_is_no_video_is_named(
+    folder: Path, decoder: Decoder, content: bytes, word: str
+) -> None:
+    (folder / "cam2.avi").write_bytes(content)
+    said = refusal(Settings(clip=str(folder)), decoder)
+    assert "cam2.avi" in said
+    assert word in said
+
+
+def test_a_video_cut_off_in_its_head_is_refused(folder: Path, decoder: Decoder) -> None:
+    video = folder / "cam1.avi"
+    video.write_bytes(video.read_bytes()[:150])
+    assert "cam1.avi gives no picture" in refusal(Settings(clip=str(folder)), decoder)
+
+
+def test_two_videos_of_one_camera_are_not_guessed_between(folder: Path, decoder: Decoder) -> None:
+    film(folder / "cam1.mkv")
+    (folder / "cam1.png").write_bytes(b"a still beside the video is none of the two")
+    said = refusal(Settings(clip=str(folder)), decoder)
+    assert "2 videos of camera 1 (cam1.avi, cam1.mkv)" in said
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("{", "cannot read"),
+        ('{"fps": "fast"}', "$.fps"),
+        ('{"fps": 0}', "rate of 0"),
+        ('{"capture_s": {"cam1": [0.0, 0.2, 0.1]}}', "capture_s of cam1 does not increase"),
+    ],
+)
+def test_a_bad_meta_file_is_named_with_the_place(
+    folder: Path, decoder: Decoder, text: str, word: str
+) -> None:
+    (folder / "meta.json").write_text(text)
+    said = refusal(Settings(clip=str(folder)), decoder)
+    assert "meta.json" in said
+    assert word in said
+
+
+def test_a_calibration_for_another_shape_or_too_few_cameras_is_refused(
+    folder: Path, decoder: Decoder
+) -> None:
+    calibrate(folder / "calibration.json", size=(640, 360))
+    said = refusal(Settings(clip=str(folder)), decoder)
+    assert "640x360" in said
+    assert "320x240" in said
+    calibrate(folder / "calibration.json", names=("only",))
+    assert "has 1 camera, the clip has a view 2" in refusal(Settings(clip=str(folder)), decoder)
+    (folder / "calibration.json").write_text("{}")
+    assert "is no calibration" in refusal(Settings(clip=str(folder)), decoder)
+    named = Settings(clip=str(folder), calibration=str(folder / "gone.json"))
+    assert "gone.json" in refusal(named, decoder)
+
+
+def test_a_video_that_ended_early_is_told() -> None:
+    view = View(1, "cam1.avi", SIZE, SIZE, 15.0, 69)
+    assert shortfall(view, 69) == ""
+    assert shortfall(view, 40) == "cam1.avi ends after 40 of 69 frames: it was cut off"
+
+
+def test_the_development_clips_open_with_truth_and_gaps(data_dir: Path, decoder: Decoder) -> None:
+    """The truth's clock and the capture times agree, also where frames are missing."""
+    for folder in (
+        data_dir / "dev" / "r01_t1_01_walk_in_place",
+        data_dir / "dev_stress" / "frame_drops",
+    ):
+        clip = opened(folder, decoder)
+        truth = np.load(folder / "truth.npz")
+        assert clip.warnings == ()
+        assert clip.rig is not None
+        for view in clip.views:
+            of_frame = truth[f"frames_cam{view.number}"]
+            assert view.frames == len(of_frame)
+            times_s = [view.captured_s(index) for index in range(view.frames)]
+            assert times_s == pytest.approx(truth["time"][of_frame], abs=1e-3)
+            joints_px = project(clip.rig.cameras[view.number - 1], truth["joints3d"][30, :, :])
+            seen_px = truth[f"joints2d_cam{view.number}"][30] / 2
+            assert joints_px == pytest.approx(seen_px, abs=0.3)
