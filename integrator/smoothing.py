@@ -11,11 +11,15 @@ from common.body import Vector
 
 
 class Smoothing(NamedTuple):
-    """How much is believed of what is measured."""
+    """How much is believed of what is measured.
+
+    With 3 to 6 degrees of white noise on the true angles of r01 and r04 this errs least, or within
+    6 % of it, at the pace that was filmed and at twice that pace.
+    """
 
     noise_deg: float = 6.0
     """Standard deviation of a measured angle."""
-    acceleration_deg_s2: float = 3000.0
+    acceleration_deg_s2: float = 1000.0
     """Standard deviation of the acceleration between two frames."""
 
 
