@@ -13,6 +13,7 @@ from common.messages import Facing, Guide, Measure, Report, ViewerNumber, pack
 from viewer import silhouette
 from viewer.arms import facade_arms, flank_arms
 from viewer.background import Background
+from viewer.capture import Frame
 from viewer.facing import thresholds_px, upper_body_px, vote
 from viewer.figure import Figure, figure_of, rotation_of, view_at, yaw_of
 from viewer.legs import facade_legs, flank_legs, squats
@@ -35,16 +36,6 @@ FOLLOWED = ("measuring", "tracking", "predicted")
 
 SQUAT_ANGLES = ("r_hip_x", "l_hip_x", "r_knee_x", "l_knee_x")
 FLANK_ANGLES = ("r_shoulder_x", "l_shoulder_x", *SQUAT_ANGLES)
-
-
-class Frame(NamedTuple):
-    """One picture and when it was taken."""
-
-    index: int
-    captured_s: float
-    clock_s: float
-    picture: NDArray[np.uint8]
-    """(H, W, 3), BGR, at the working size."""
 
 
 class State(NamedTuple):
@@ -160,9 +151,7 @@ def _found(state: State, seen: Seen, guide: Guide | None) -> Figure:
     return figure_of(seen.mask, body_vector(bdp), pose, view)
 
 
-def _opening(
-    seen: Seen, guide: Guide | None, facing: Facing
-) -> tuple[Measure | None, str]:
+def _opening(seen: Seen, guide: Guide | None, facing: Facing) -> tuple[Measure | None, str]:
     """What the opening posture tells, or why this is not it; nothing once measured."""
     assert seen.box is not None
     if guide is not None and guide.measured:

@@ -1,0 +1,121 @@
+"""The same steps as live, in one process and in lock-step: deterministic, as fast as it goes."""
+
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from typing import Any, NamedTuple
+
+import msgspec
+
+from common.camera import Rig
+from common.clips import Clip, open_clip, shortfall
+from common.config import Settings
+from common.decoding import Decoder
+from common.messages import Body, Guide, Report, ViewerNumber
+from integrator import merge
+from integrator.pairing import Pair
+from viewer import track
+from viewer.capture import Frame, recorded
+from viewer.room import empty_room
+
+
+class Tracked(NamedTuple):
+    """What tracking a clip gave."""
+
+    clip: Clip
+    bodies: list[Body]
+    facts: dict[str, Any]
+    """For the summary: seconds of each stage, scale_source, warnings."""
+
+
+class Decoders:
+    """One decoder a view, kept over many clips: a child's start costs more than a clip."""
+
+    def __init__(self) -> None:
+        """None started yet."""
+        self._doors = ExitStack()
+        self.of = {number: self._doors.enter_context(Decoder()) for number in (1, 2)}
+
+    def __enter__(self) -> "Decoders":
+        """Nothing to do before the first clip."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End the children."""
+        self._doors.close()
+
+
+def track_clip(
+    settings: Settings, decoders: Decoders, views: tuple[ViewerNumber, ...] = (1, 2)
+) -> Tracked:
+    """Track one clip from its videos to its bodies.
+
+    Raises:
+        ClipError: When the clip cannot be used.
+        DecoderDied: When a video broke the decoder.
+    """
+    began = time.perf_counter()
+    clip = open_clip(settings, decoders.of[1], views)
+    warnings = list(clip.warnings)
+    viewers: dict[ViewerNumber, track.State] = {}
+    rig = both_cameras(clip)
+    for view in clip.views:
+        room, odd = empty_room(view, settings.silhouette, decoders.of[view.number])
+        warnings += [odd] if odd else []
+        camera = None if rig is None else rig.cameras[view.number - 1]
+        viewers[view.number] = track.init(view.number, room, camera, settings)
+    prepared = time.perf_counter()
+    state = merge.init(rig, clip.every / clip.views[0].fps, settings)
+    guide: Guide | None = None
+    bodies: list[Body] = []
+    spent = {"viewers": 0.0, "integrator": 0.0}
+    for frames in _instants(clip, decoders):
+        start = time.perf_counter()
+        reports: dict[int, Report] = {}
+        for number, frame in frames.items():
+            viewers[number], reports[number] = track.step(viewers[number], frame, guide)
+        middle = time.perf_counter()
+        state, body, guide = merge.step(state, Pair(reports.get(1), reports.get(2)))
+        bodies.append(body)
+        spent["viewers"] += middle - start
+        spent["integrator"] += time.perf_counter() - middle
+    warnings += [
+        odd for view in clip.views if (odd := shortfall(view, decoders.of[view.number].came))
+    ]
+    done = time.perf_counter()
+    seconds = {"preparation": prepared - began, **spent, "all": done - began}
+    facts = {
+        "clip": clip.name,
+        "seconds": {name: round(value, 4) for name, value in seconds.items()},
+        "frames_a_second": round(len(bodies) / (done - prepared), 1),
+        "scale_source": state.scale_source,
+        "warnings": warnings,
+    }
+    return Tracked(clip, bodies, facts)
+
+
+def both_cameras(clip: Clip) -> Rig | None:
+    """The clip's rig with a camera for each viewer; a viewer that is not there gets the other's."""
+    if clip.rig is None:
+        return None
+    own = {view.number: camera for view, camera in zip(clip.views, clip.rig.cameras, strict=True)}
+    any_camera = clip.rig.cameras[0]
+    cameras = (own.get(1, any_camera), own.get(2, any_camera))
+    return msgspec.structs.replace(clip.rig, cameras=cameras)
+
+
+def _instants(clip: Clip, decoders: Decoders) -> Iterator[dict[ViewerNumber, Frame]]:
+    """The frames of all views, those of one instant together, in the order of time."""
+    streams = {
+        view.number: recorded(view, clip.every, decoders.of[view.number]) for view in clip.views
+    }
+    waiting = {number: next(stream, None) for number, stream in streams.items()}
+    tolerance_s = 0.5 * clip.every / clip.views[0].fps
+    while any(waiting.values()):
+        first_s = min(frame.captured_s for frame in waiting.values() if frame is not None)
+        now: dict[ViewerNumber, Frame] = {}
+        for number, frame in waiting.items():
+            if frame is not None and frame.captured_s - first_s <= tolerance_s:
+                now[number] = frame
+                waiting[number] = next(streams[number], None)
+        yield now

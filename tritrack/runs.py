@@ -1,0 +1,145 @@
+"""Run folders: the poses, the summary and the postures of a run, as files."""
+
+import json
+import os
+import platform
+import tempfile
+from collections.abc import Iterable, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Final
+
+import msgspec
+import numpy as np
+
+from common.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES
+from common.config import Settings
+from common.messages import Body, Posture
+
+VERSIONS_OF: Final = ("tritrack", "numpy", "opencv-python-headless", "numba", "eclipse-zenoh")
+
+
+class RunError(RuntimeError):
+    """A run folder that cannot be written; the text names it and the cure."""
+
+
+def write_run(
+    folder: Path, bodies: Sequence[Body], settings: Settings, facts: dict[str, Any]
+) -> None:
+    """Write `poses.npz` and `summary.json`, each whole or not at all.
+
+    Args:
+        folder: Made where it is not there.
+        bodies: One a row, in the order of time.
+        settings: As resolved for the run.
+        facts: What else the summary tells: seconds, scale_source, warnings ...
+
+    Raises:
+        RunError: When the folder or a file cannot be written: no space, no right.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with _replacing(folder / "poses.npz") as path, path.open("wb") as file:
+            np.savez(file, allow_pickle=False, **poses(bodies))
+        _write_json(folder / "summary.json", _summary(bodies, settings, facts))
+    except OSError as error:
+        raise RunError(
+            f"cannot write {folder}: {error.strerror}; free some space or name another --out"
+        ) from error
+
+
+def write_postures(folder: Path, postures: Iterable[Posture], performed: str) -> None:
+    """Write `posture.json`: the name and scores of each frame, and of the whole performance."""
+    rows = [
+        {
+            "frame": posture.frame,
+            "time_s": round(posture.captured_s, 4),
+            "name": posture.name,
+            "segment": posture.segment,
+            "log_likelihoods": {
+                name: round(value, 3) for name, value in posture.log_likelihoods.items()
+            },
+        }
+        for posture in postures
+    ]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        _write_json(folder / "posture.json", {"posture": performed, "frames": rows})
+    except OSError as error:
+        raise RunError(f"cannot write {folder}: {error.strerror}") from error
+
+
+def poses(bodies: Sequence[Body]) -> dict[str, Any]:
+    """The arrays of `poses.npz`; a row without a pose is NaN."""
+    n = len(bodies)
+
+    def rows(values: Iterable[Any], shape: tuple[int, ...]) -> Any:
+        empty = np.full(shape, np.nan)
+        table = [np.reshape(value, shape) if len(value) else empty for value in values]
+        return np.array(table, np.float64).reshape(n, *shape)
+
+    in_pose = list(ANGLES_IN_POSE)
+    return {
+        "frame": np.array([body.frame for body in bodies], np.int64),
+        "time_s": np.array([body.captured_s for body in bodies], np.float64),
+        "joints_m": rows((body.joints_m for body in bodies), (len(JOINT_NAMES), 3)),
+        "joint_names": np.array(JOINT_NAMES),
+        "joints_px": rows((body.joints_px for body in bodies), (2, len(JOINT_NAMES), 2)),
+        "angles_deg": rows(
+            ([body.pose[i] for i in in_pose] if body.pose else () for body in bodies),
+            (len(ANGLE_NAMES),),
+        ),
+        "angle_names": np.array(ANGLE_NAMES),
+        "angles_raw_deg": rows((body.angles_raw_deg for body in bodies), (len(ANGLE_NAMES),)),
+        "confidence": np.array(
+            [body.confidence or (0.0,) * len(JOINT_NAMES) for body in bodies], np.float64
+        ).reshape(n, len(JOINT_NAMES)),
+        "status": np.array([body.status for body in bodies], "U9"),
+        "views": np.array([body.views for body in bodies], "U4"),
+        "score": np.array([body.score for body in bodies], np.float64).reshape(n, 2),
+        "facing": np.array([body.facing for body in bodies], "U6").reshape(n, 2),
+    }
+
+
+def _summary(bodies: Sequence[Body], settings: Settings, facts: dict[str, Any]) -> dict[str, Any]:
+    with_pose = [body for body in bodies if body.joints_m]
+    return {
+        "frames": len(bodies),
+        "frames_with_pose": len(with_pose),
+        "status": {
+            status: sum(body.status == status for body in bodies)
+            for status in ("empty", "measuring", "tracking", "predicted", "lost")
+        },
+        "matches_a_frame": round(float(np.mean([b.matches for b in with_pose])), 1)
+        if with_pose
+        else 0.0,
+        **facts,
+        "bdp_m": msgspec.to_builtins(bodies[-1].bdp) if bodies else None,
+        "versions": {name: version(name) for name in VERSIONS_OF}
+        | {"python": platform.python_version()},
+        "settings": msgspec.to_builtins(settings),
+    }
+
+
+def _write_json(path: Path, value: Any) -> None:
+    with _replacing(path) as new:
+        new.write_text(json.dumps(value, indent=1) + "\n")
+
+
+class _replacing:
+    """A file beside another that takes its place when all of it was written."""
+
+    def __init__(self, path: Path) -> None:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        os.close(handle)
+        self._new, self._path = Path(name), path
+
+    def __enter__(self) -> Path:
+        return self._new
+
+    def __exit__(self, kind: object, *_: object) -> None:
+        if kind is None:
+            self._new.chmod(0o644)
+            self._new.replace(self._path)
+        else:
+            self._new.unlink(missing_ok=True)

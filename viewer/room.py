@@ -1,0 +1,56 @@
+"""The empty room of a view: from a plate, from the clip's opening frames, or from the clip."""
+
+from itertools import islice
+
+from common.clips import View
+from common.config import SilhouetteSettings
+from common.decoding import Decoder
+from viewer.background import Background, Frame, is_empty_opening, learn, learn_from_clip
+
+SAMPLE = 40
+"""How many frames, spread over a clip, tell whether its opening is empty."""
+
+LOOKED_AT = 1500
+"""How many frames of a clip are looked at for that: a long recording is judged by its start."""
+
+
+def empty_room(
+    view: View, settings: SilhouetteSettings, decoder: Decoder
+) -> tuple[Background, str]:
+    """What the room looks like without the person, and what is odd about how that is known.
+
+    Args:
+        view: A recorded file's view.
+        settings: How many opening frames show the empty room.
+        decoder: Reads the file; left at its start.
+
+    Raises:
+        Undecodable: When the plate or the file has no picture.
+        DecoderDied: When the decoder broke on it.
+    """
+    if view.background:
+        plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
+        return learn(plate), ""
+    opening, sample = _looked_at(view, settings.empty_frames, decoder)
+    if is_empty_opening(opening, sample):
+        return learn(opening), ""
+    return learn_from_clip(sample), (
+        f"{view.source} does not open with an empty room: the background is estimated from the "
+        f"clip (name an empty picture with camera_{view.number}.background)"
+    )
+
+
+def _looked_at(view: View, due: int, decoder: Decoder) -> tuple[list[Frame], list[Frame]]:
+    """The opening frames, and frames from everywhere in the clip."""
+    assert isinstance(view.source, str)
+    stride = max(1, min(view.frames, LOOKED_AT) // SAMPLE)
+    opening: list[Frame] = []
+    sample: list[Frame] = []
+    for count, got in enumerate(decoder.frames(view.source, view.size)):
+        if count >= LOOKED_AT:
+            break
+        if len(opening) < due:
+            opening.append(got.picture)
+        if count % stride == 0:
+            sample.append(got.picture)
+    return opening, sample
