@@ -23,13 +23,13 @@ TRUNK: Final[Colour] = (140, 152, 166)
 UNSURE: Final[Colour] = (222, 225, 229)
 """What a limb fades to as its confidence falls to 0."""
 
-SECTORS: Final = 24
-"""Sides of a shape that stands for a round one: no corner is seen at the page's size."""
-RIM: Final = 0.12
-"""Share of a cylinder's radius and height that rounds each of its rims."""
-
 BEHIND, ABOVE = 1.3, 0.45
 """How far behind and above the cameras the spectator stands, in distances of the farthest one."""
+
+NEAR_ENDS: Final = [i for i in range(len(LIMBS)) if i not in (TORSO, HEAD)]
+HANDS: Final = [LIMBS.index("r_lower_arm"), LIMBS.index("l_lower_arm")]
+BALLS: Final = 1 + len(NEAR_ENDS) + len(HANDS)
+"""How many round shapes a body has."""
 
 _DISTAL: Final = {
     "upper_leg": "knee",
@@ -67,15 +67,6 @@ class Figure(NamedTuple):
     """(25,), POSE_NAMES order."""
     confidence: tuple[float, ...] = ()
     """JOINT_NAMES order, in [0, 1]; empty: sure of all."""
-
-
-class Mesh(NamedTuple):
-    """Triangles of a unit shape."""
-
-    vertices: Vector
-    """(n, 3)."""
-    faces: NDArray[np.uint32]
-    """(m, 3), counter-clockwise seen from outside."""
 
 
 class Shapes(NamedTuple):
@@ -128,25 +119,6 @@ def quaternion(rotation: Vector) -> Vector:
     return row / float(np.linalg.norm(row))
 
 
-def unit_cylinder() -> Mesh:
-    """A cylinder of radius 1 from (0, 0, 0) to (0, 1, 0), its rims rounded by RIM."""
-    quarter = np.radians([0.0, 30.0, 60.0, 90.0])
-    radii = 1.0 - RIM * (1.0 - np.sin(quarter))
-    heights = RIM * (1.0 - np.cos(quarter))
-    return _turned_on_a_lathe(
-        np.concatenate([[0.0], radii, radii[::-1], [0.0]]),
-        np.concatenate([[0.0], heights, 1.0 - heights[::-1], [1.0]]),
-    )
-
-
-def unit_ball() -> Mesh:
-    """A ball of radius 1 around the origin."""
-    angles = np.linspace(0.0, math.pi, SECTORS // 2 + 1)
-    radii = np.sin(angles)
-    radii[[0, -1]] = 0.0
-    return _turned_on_a_lathe(radii, -np.cos(angles))
-
-
 def figure(body: Body | None) -> Figure | None:
     """What can be drawn of a body; None where it has no pose or no measures."""
     if body is None or not body.pose or body.bdp is None:
@@ -163,16 +135,17 @@ def limb_shapes(figure: Figure) -> Shapes:
 
 
 def round_shapes(limbs: Shapes) -> Shapes:
-    """The head, then a ball where each arm's and leg's cylinder begins: copies of the unit ball.
+    """What is round, as copies of the unit ball: the head, every near end of an arm's or a leg's
+    cylinder, the two hands.
 
-    The balls close the gap that two cylinders leave at a bent joint.
+    The balls close the gap that two cylinders leave at a bent joint; a model's arms end round.
     """
-    shapes = rows_of(limbs, [HEAD, *(i for i in range(len(LIMBS)) if i not in (TORSO, HEAD))])
-    shapes.scales[1:, 1] = np.minimum(shapes.scales[1:, 0], shapes.scales[1:, 2])
-    shapes.scales[0, 1] /= 2
-    w, x, y, z = shapes.wxyzs[0]
-    up = np.array([2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)])
-    shapes.positions[0] += shapes.scales[0, 1] * up
+    far = limbs.positions + limbs.scales[:, 1:2] * _axes(limbs.wxyzs)
+    shapes = rows_of(limbs, [HEAD, *NEAR_ENDS, *HANDS])
+    shapes.scales[:, 1] = np.minimum(shapes.scales[:, 0], shapes.scales[:, 2])
+    shapes.scales[0, 1] = limbs.scales[HEAD, 1] / 2
+    shapes.positions[0] = (limbs.positions[HEAD] + far[HEAD]) / 2
+    shapes.positions[-len(HANDS) :] = far[HANDS]
     return shapes
 
 
@@ -231,21 +204,10 @@ def half_sizes(part: Elliptic | Round) -> tuple[float, float, float]:
     return part.radius, part.height, part.radius
 
 
-def _turned_on_a_lathe(radii: Vector, heights: Vector) -> Mesh:
-    """The surface that a profile sweeps round the y axis; it begins and ends on that axis."""
-    turn = np.linspace(0.0, 2.0 * math.pi, SECTORS, endpoint=False)
-    rings = [
-        np.stack([r * np.cos(turn), np.full(SECTORS, y), r * np.sin(turn)], axis=1)
-        for r, y in zip(radii, heights, strict=True)
-    ]
-    at = np.arange(SECTORS)
-    here, after = at, (at + 1) % SECTORS
-    faces = [
-        ring * SECTORS + np.stack(corners, axis=1)
-        for ring in range(len(rings) - 1)
-        for corners in (
-            (here, here + SECTORS, after + SECTORS),
-            (here, after + SECTORS, after),
-        )
-    ]
-    return Mesh(np.concatenate(rings), np.concatenate(faces).astype(np.uint32))
+def _axes(wxyzs: Vector) -> Vector:
+    """Where each quaternion (n, 4) turns the y axis to, (n, 3)."""
+    w, x, y, z = wxyzs.T
+    axes: Vector = np.stack(
+        [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)], axis=1
+    )
+    return axes

@@ -12,12 +12,13 @@ from animator.page.inset import (
     Image,
     draw_outlines,
     inset,
+    limb_ends,
     limb_outlines,
-    section_rims,
 )
 from animator.scene import Figure
 from common.body import LIMBS, POSE_INDEX, Vector, body_vector, rest_pose, stature, thesis_bdp
-from common.camera import paper_rig, project
+from common.camera import Camera, paper_rig, project
+from common.kernel import draw_body, view_of
 from common.kinematics import segments
 from common.messages import Picture, Report, pack
 
@@ -60,7 +61,7 @@ def report(mask: np.ndarray) -> Report:
 def drawn(pose: Vector) -> Image:
     """The fitted outline alone, as camera 1 shows it."""
     image = inset(report(np.zeros((120, 160), bool)), None)
-    draw_outlines(image, limb_outlines(RIG.cameras[0], section_rims(Figure(BDP, pose))), RIG.width)
+    draw_outlines(image, limb_outlines(RIG.cameras[0], limb_ends(Figure(BDP, pose))), RIG.width)
     return image
 
 
@@ -72,11 +73,11 @@ def extent_m(pose: Vector) -> tuple[float, float, float]:
 
 
 def test_the_t_pose_is_as_wide_as_its_arms_and_trunk() -> None:
-    """P55, first golden picture: an arm's front is nearer by its radius; 3 px are the lines'."""
+    """P55, first golden picture: arms end round, a radius beyond their axes; a line has 3 px."""
     width_m, _, top_m = extent_m(T_POSE)
-    span_m = 2 * (BDP.torso.long_radius + BDP.r_upper_arm.height + BDP.r_lower_arm.height)
-    nearer = DISTANCE_M / (DISTANCE_M - BDP.r_lower_arm.radius)
-    assert width_m == pytest.approx(span_m * nearer, abs=3 / PX_PER_M)
+    arm = BDP.r_lower_arm
+    span_m = 2 * (BDP.torso.long_radius + BDP.r_upper_arm.height + arm.height + arm.radius)
+    assert width_m == pytest.approx(span_m, abs=3 / PX_PER_M)
     assert width_m > 0.8 * stature(BDP)
     assert top_m == pytest.approx(stature(BDP), abs=0.06)
 
@@ -91,9 +92,24 @@ def test_raised_arms_reach_above_the_crown() -> None:
     """P55, third golden picture: shoulder height plus the arm's length."""
     top_m = extent_m(ARMS_UP)[2]
     shoulder_m = segments(body_vector(BDP), ARMS_UP)[LIMBS.index("r_upper_arm"), 0, 1]
-    reach_m = shoulder_m + BDP.r_upper_arm.height + BDP.r_lower_arm.height
+    arm = BDP.r_lower_arm
+    reach_m = shoulder_m + BDP.r_upper_arm.height + arm.height + arm.radius
     assert top_m == pytest.approx(reach_m, abs=0.05)
     assert top_m > stature(BDP) + 0.1
+
+
+@pytest.mark.parametrize("pose", [T_POSE, ARMS_UP, SQUAT], ids=["t pose", "arms up", "squat"])
+@pytest.mark.parametrize("camera", RIG.cameras, ids=["camera 1", "camera 2"])
+def test_what_is_drawn_is_what_was_matched(pose: Vector, camera: Camera) -> None:
+    """The kernel's own pixels but for 3 at the border: to it a section has one depth."""
+    matched = draw_body(body_vector(BDP), pose, view_of(camera), (RIG.width, RIG.height))
+    filled = np.zeros(matched.shape, np.uint8)
+    for outline in limb_outlines(camera, limb_ends(Figure(BDP, pose))):
+        cv2.fillConvexPoly(filled, np.rint(outline - 0.5).astype(np.int32), 1)
+    square = np.ones((7, 7), np.uint8)
+    border = cv2.dilate(filled, square) - cv2.erode(filled, square)
+    assert not (matched != filled.astype(bool))[border == 0].any()
+    assert np.count_nonzero(filled) == pytest.approx(np.count_nonzero(matched), rel=0.13)
 
 
 @settings(max_examples=40, deadline=None)
@@ -101,7 +117,7 @@ def test_raised_arms_reach_above_the_crown() -> None:
 def test_the_outline_of_a_limb_contains_its_axis(angles_deg: list[float], n: int) -> None:
     pose = np.array([0.2, 0.9, -0.3, *angles_deg])
     camera = RIG.cameras[n]
-    outlines = limb_outlines(camera, section_rims(Figure(BDP, pose)))
+    outlines = limb_outlines(camera, limb_ends(Figure(BDP, pose)))
     for outline, ends in zip(outlines, segments(body_vector(BDP), pose), strict=True):
         axis = project(camera, np.linspace(ends[0], ends[1], 5))
         hull = outline.astype(np.float32)
@@ -111,7 +127,7 @@ def test_the_outline_of_a_limb_contains_its_axis(angles_deg: list[float], n: int
 def test_a_sideways_cylinder_is_drawn_as_wide_as_two_radii() -> None:
     """Worked by hand: a hanging lower arm at the camera's distance, f times 2 r over z."""
     pose = standing()
-    outline = limb_outlines(RIG.cameras[0], section_rims(Figure(BDP, pose)))[
+    outline = limb_outlines(RIG.cameras[0], limb_ends(Figure(BDP, pose)))[
         LIMBS.index("r_lower_arm")
     ]
     expected_px = 2 * BDP.r_lower_arm.radius * PX_PER_M
@@ -120,7 +136,7 @@ def test_a_sideways_cylinder_is_drawn_as_wide_as_two_radii() -> None:
 
 def test_a_limb_behind_the_camera_has_no_outline_and_is_not_drawn() -> None:
     pose = standing(z=DISTANCE_M)
-    outlines = limb_outlines(RIG.cameras[0], section_rims(Figure(BDP, pose)))
+    outlines = limb_outlines(RIG.cameras[0], limb_ends(Figure(BDP, pose)))
     assert all(len(outline) == 0 for outline in outlines)
     assert (drawn(pose) == NIGHT.astype(np.uint8)).all()
 

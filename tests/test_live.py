@@ -126,6 +126,15 @@ def test_a_body_appears_moves_and_goes_again(page: LivePage) -> None:
     assert not limbs.visible
 
 
+def test_a_cameras_picture_hangs_in_the_room_while_its_viewer_speaks(page: LivePage) -> None:
+    frustum = page._server.scene.get_handle_by_name("/camera 2")
+    assert frustum.image is None
+    page.show(snapshot_at(0))
+    assert frustum.image.shape == (240, 320, 3)
+    page.show(Snapshot())
+    assert frustum.image is None
+
+
 def test_a_run_with_one_camera_has_one_frustum() -> None:
     rig = type(RIG)(RIG.width, RIG.height, RIG.cameras[:1])
     page = LivePage(rig, free_port())
@@ -150,6 +159,11 @@ def share_like(picture: np.ndarray, colour: tuple[int, int, int]) -> float:
     return float(np.mean(np.abs(hue_deg(middle) - hue_deg(np.array(colour))) < 12.0))
 
 
+def share_dark(picture: np.ndarray) -> float:
+    """Share of the room that is as dark as the background of a silhouette."""
+    return float(np.mean(picture[230:, :1000].max(axis=2) < 70))
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here: the page is not looked at")
 def test_a_browser_shows_the_body_and_asks_nobody_else(page: LivePage, tmp_path: Path) -> None:
@@ -158,12 +172,13 @@ def test_a_browser_shows_the_body_and_asks_nobody_else(page: LivePage, tmp_path:
         empty = waited(tab, lambda _, text: "nobody in view" in text)
         assert share_like(empty, LEFT) + share_like(empty, RIGHT) < 0.002
         page.show(snapshot_at(4))
-        body = waited(tab, lambda seen, _: share_like(seen, LEFT) > 0.01)
+        body = waited(tab, lambda seen, _: share_like(seen, LEFT) > 0.01 and share_dark(seen) > 0.1)
         text = tab.text()
         asked = tab.asked
     where = saved(body, tmp_path / "page.png")
     assert share_like(body, LEFT) > 0.01, f"no left side drawn: look at {where}"
     assert share_like(body, RIGHT) > 0.01, f"no right side drawn: look at {where}"
+    assert share_dark(body) > 0.1, f"no silhouettes hang in the room: look at {where}"
     assert "walk in place" in text
     assert "15.0 fps · 11 ms latency" in text
     own = (page.address, page.address.replace("http", "ws"), "data:", "blob:")

@@ -1,6 +1,7 @@
 """The page's words: what is likeliest comes first, and what was sent cannot become markup."""
 
 import re
+from typing import Any
 
 import pytest
 
@@ -14,7 +15,7 @@ from animator.page.panel import (
     views_table,
 )
 from common.body import rest_pose
-from common.messages import Body, Posture, Pulse, Status
+from common.messages import Body, Posture, Pulse, Report, Status
 
 LIKELIHOODS = {"squat": -90.5, "walk_in_place": -61.25, "kick_left_side": -140.0}
 
@@ -40,6 +41,20 @@ def body(status: Status = "tracking") -> Body:
         pose=tuple(rest_pose()),
         score=(0.83, 0.71),
         facing=("facade", "flank"),
+    )
+
+
+def report(**told: Any) -> Report:
+    return Report(
+        frame=41,
+        captured_s=2.7,
+        clock_s=0.0,
+        viewer=1,
+        width=8,
+        height=1,
+        silhouette=b"\0",
+        box=None,
+        **told,
     )
 
 
@@ -74,10 +89,20 @@ def test_names_from_the_bus_cannot_become_markup() -> None:
 
 
 def test_each_view_says_what_it_sees_and_its_score() -> None:
-    html = views_table(body(), 2)
+    html = views_table(body(), {}, 2)
     assert re.search("camera 1: front or back.*0.83.*camera 2: side.*0.71", html)
-    assert "camera 2" not in views_table(body(), 1)
-    assert "front" not in views_table(None, 2)
+    assert "camera 2" not in views_table(body(), {}, 1)
+    assert "front" not in views_table(None, {}, 2)
+
+
+def test_the_person_is_told_what_is_in_the_way() -> None:
+    """The refusal of the opening posture matters while the body is being measured, not later."""
+    refused = report(refusal="raise both arms <sideways>")
+    told = "raise both arms &lt;sideways&gt;"
+    assert told in views_table(body("measuring"), {1: refused}, 1)
+    assert told not in views_table(body("tracking"), {1: refused}, 1)
+    assert "partly outside" in views_table(body(), {1: report(cut=True)}, 1)
+    assert "nothing heard" in views_table(body(), {}, 1)
 
 
 @pytest.mark.parametrize("status", STATUS_WORDS)

@@ -12,7 +12,6 @@ from animator.scene import (
     RIGHT,
     TRUNK,
     Figure,
-    Mesh,
     Shapes,
     figure,
     frustum,
@@ -20,10 +19,9 @@ from animator.scene import (
     limb_shapes,
     quaternion,
     round_shapes,
-    unit_ball,
-    unit_cylinder,
     viewpoint,
 )
+from animator.solids import Mesh, unit_ball, unit_cylinder
 from common.body import (
     JOINT_NAMES,
     LIMBS,
@@ -54,11 +52,6 @@ def placed(mesh: Mesh, shapes: Shapes, i: int) -> NDArray[np.float64]:
     return turn.apply(mesh.vertices * shapes.scales[i]) + shapes.positions[i]
 
 
-def volume(mesh: Mesh) -> float:
-    a, b, c = (mesh.vertices[mesh.faces[:, i]] for i in range(3))
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
-
-
 @settings(max_examples=50, deadline=None)
 @given(poses)
 def test_every_cylinder_stands_between_the_two_ends_of_its_limb(pose: Vector) -> None:
@@ -70,23 +63,10 @@ def test_every_cylinder_stands_between_the_two_ends_of_its_limb(pose: Vector) ->
         assert np.abs(placed(axis, shapes, i) - ends[i]).max() < 1e-6, LIMBS[i]
 
 
-def test_the_unit_cylinder_runs_from_the_origin_one_up_with_radius_one() -> None:
-    vertices = unit_cylinder().vertices
-    assert vertices[:, 1].min() == 0.0
-    assert vertices[:, 1].max() == 1.0
-    assert np.hypot(vertices[:, 0], vertices[:, 2]).max() == pytest.approx(1.0)
-
-
 def test_a_trunk_is_as_wide_and_as_deep_as_its_two_radii() -> None:
     trunk = placed(unit_cylinder(), limb_shapes(Figure(BDP, rest_pose())), LIMBS.index("torso"))
     assert np.ptp(trunk[:, 0]) == pytest.approx(2 * BDP.torso.long_radius)
     assert np.ptp(trunk[:, 2]) == pytest.approx(2 * BDP.torso.short_radius, rel=0.01)
-
-
-def test_unit_shapes_are_closed_and_show_their_outer_side() -> None:
-    """Their volume, summed over outward faces, is a cylinder's and a ball's, little less."""
-    assert 0.94 * np.pi < volume(unit_cylinder()) < np.pi
-    assert 0.96 * 4 / 3 * np.pi < volume(unit_ball()) < 4 / 3 * np.pi
 
 
 @settings(max_examples=50, deadline=None)
@@ -97,6 +77,16 @@ def test_the_head_is_round_and_fills_the_way_from_neck_to_crown(pose: Vector) ->
     neck, crown = segments(body_vector(BDP), pose)[LIMBS.index("head")]
     assert np.linalg.norm(head - neck, axis=1).min() < 1e-6
     assert np.linalg.norm(head - crown, axis=1).min() < 1e-6
+
+
+def test_the_hands_are_balls_at_the_arms_ends() -> None:
+    pose = rest_pose()
+    pose[POSE_INDEX["l_elbow_x"]] = 70.0
+    ends = segments(body_vector(BDP), pose)[:, 1]
+    balls = round_shapes(limb_shapes(Figure(BDP, pose)))
+    hands = [ends[LIMBS.index("r_lower_arm")], ends[LIMBS.index("l_lower_arm")]]
+    assert np.allclose(balls.positions[-2:], hands)
+    assert np.allclose(balls.scales[-2:], BDP.r_lower_arm.radius)
 
 
 def test_a_ball_closes_the_gap_at_a_bent_elbow() -> None:

@@ -18,39 +18,45 @@ Image = NDArray[np.uint8]
 
 NIGHT: Final = np.array([28, 33, 41], np.float32)
 """What is not the person, where no picture may be shown."""
-SEEN: Final = np.array([112, 152, 158], np.float32)
+SEEN: Final = np.array([80, 116, 124], np.float32)
 """The person as the camera's silhouette has it."""
 TINT: Final = 0.35
 """Share of SEEN over a picture: enough to tell the silhouette, the picture stays readable."""
 
 WIDTH_PX: Final = 320
 """Least width of an inset: at 160x120 an outline would be as thick as an arm."""
-SECTION_POINTS: Final = 24
-"""Points on the rim of a cylinder's section: the outline is within 1 % of the radius."""
+END_POINTS: Final = 64
+"""Points on an end of a limb: the outline is within 3 % of the radius."""
+GOLDEN_RAD: Final = math.pi * (3.0 - math.sqrt(5.0))
+"""Turn from one point to the next that spreads points evenly over a ball."""
 SHIFT: Final = 4
 """Bits of a pixel's fraction that cv2 draws with."""
 FARTHEST: Final = 2**20
 """No corner lies farther out, in those fractions: cv2's own numbers would overflow."""
 
 
-def section_rims(figure: Figure) -> NDArray[np.float64]:
-    """Points on the rims of both end sections of each limb, (10, 2 * SECTION_POINTS, 3), metres."""
-    turn = np.linspace(0.0, 2.0 * math.pi, SECTION_POINTS, endpoint=False)
+def limb_ends(figure: Figure) -> NDArray[np.float64]:
+    """Points on both ends of each limb, (10, 2 * END_POINTS, 3), metres: their hull is the limb.
+
+    A trunk, a head and a leg end in a flat section, an arm in a ball: as they are matched.
+    """
+    turn = np.linspace(0.0, 2.0 * math.pi, END_POINTS, endpoint=False)
     circle = np.stack([np.cos(turn), np.zeros_like(turn), np.sin(turn)], axis=1)
-    both = np.concatenate([circle, circle + np.array([0.0, 1.0, 0.0])])
-    sizes = np.array([half_sizes(getattr(figure.bdp, limb)) for limb in LIMBS])
-    frames = limb_frames(body_vector(figure.bdp), figure.pose)
-    turned = (both * sizes[:, None]) @ frames[:, 3:].reshape(-1, 3, 3).transpose(0, 2, 1)
-    rims: NDArray[np.float64] = turned + frames[:, None, :3]
-    return rims
+    ends = []
+    for limb, frame in zip(LIMBS, limb_frames(body_vector(figure.bdp), figure.pose), strict=True):
+        long, height, short = half_sizes(getattr(figure.bdp, limb))
+        near = (_ball() if limb.endswith("arm") else circle) * (long, long, short)
+        local = np.concatenate([near, near + np.array([0.0, height, 0.0])])
+        ends.append(local @ frame[3:].reshape(3, 3).T + frame[:3])
+    return np.array(ends)
 
 
-def limb_outlines(camera: Camera, rims_m: NDArray[np.float64]) -> list[Vector]:
+def limb_outlines(camera: Camera, ends_m: NDArray[np.float64]) -> list[Vector]:
     """The outline of each limb in a camera's picture: convex, (k, 2) pixels, in the order of LIMBS.
 
     A limb that is not wholly before the camera has none: (0, 2).
     """
-    pixels = project(camera, rims_m.reshape(-1, 3)).reshape(*rims_m.shape[:2], 2)
+    pixels = project(camera, ends_m.reshape(-1, 3)).reshape(*ends_m.shape[:2], 2)
     return [
         cv2.convexHull(limb.astype(np.float32))[:, 0].astype(np.float64)
         if np.isfinite(limb).all()
@@ -91,6 +97,16 @@ def draw_outlines(image: Image, outlines: list[Vector], width_px: int) -> None:
             cv2.polylines(
                 image, [corners.astype(np.int32)], True, colour.tolist(), 1, cv2.LINE_AA, SHIFT
             )
+
+
+def _ball() -> NDArray[np.float64]:
+    """Points spread over the unit ball, (END_POINTS, 3)."""
+    height = 1.0 - (2.0 * np.arange(END_POINTS) + 1.0) / END_POINTS
+    turn, radius = GOLDEN_RAD * np.arange(END_POINTS), np.sqrt(1.0 - height**2)
+    points: NDArray[np.float64] = np.stack(
+        [radius * np.cos(turn), height, radius * np.sin(turn)], axis=1
+    )
+    return points
 
 
 def _decoded(picture: Picture | None, size: tuple[int, int]) -> NDArray[np.float32] | None:

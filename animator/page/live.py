@@ -8,9 +8,9 @@ import viser
 
 from animator.page import panel
 from animator.page.door import HOST, close_server, open_server
-from animator.page.inset import draw_outlines, inset, limb_outlines, section_rims
+from animator.page.inset import draw_outlines, inset, limb_ends, limb_outlines
 from animator.scene import (
-    Mesh,
+    BALLS,
     Shapes,
     Snapshot,
     figure,
@@ -18,17 +18,16 @@ from animator.scene import (
     limb_shapes,
     round_shapes,
     rows_of,
-    unit_ball,
-    unit_cylinder,
     viewpoint,
 )
+from animator.solids import Mesh, unit_ball, unit_cylinder
 from common.body import LIMBS
 from common.camera import Rig
 from common.kinematics import HEAD
 from common.messages import Body
 
 FLOOR_M: Final = 8.0
-"""Side of the floor that is drawn: the paper's rooms and the cameras' places fit on it."""
+"""Side of the floor that is drawn round the middle of the room: a person's range and more."""
 CELL_M: Final = 0.5
 PLANE_SHARE: Final = 0.6
 """Where a camera's picture hangs on the way from the camera to the middle of the room."""
@@ -106,6 +105,7 @@ class LivePage:
             "/floor",
             FLOOR_M,
             FLOOR_M,
+            position=tuple(np.rint(spectator.look_at) * (1.0, 0.0, 1.0)),
             plane="xz",
             cell_size=CELL_M,
             section_size=2 * CELL_M,
@@ -118,7 +118,7 @@ class LivePage:
 
     def _build_body(self) -> None:
         self._cylinders = self._add_shapes("/body/cylinders", unit_cylinder(), len(CYLINDERS))
-        self._balls = self._add_shapes("/body/balls", unit_ball(), len(LIMBS) - 1)
+        self._balls = self._add_shapes("/body/balls", unit_ball(), BALLS)
 
     def _add_shapes(self, name: str, mesh: Mesh, count: int) -> viser.BatchedMeshHandle:
         return self._server.scene.add_batched_meshes_simple(
@@ -177,21 +177,19 @@ class LivePage:
 
     def _show_cameras(self, snapshot: Snapshot) -> None:
         standing = figure(snapshot.body)
-        rims = None if standing is None else section_rims(standing)
+        ends = None if standing is None else limb_ends(standing)
         for n, camera in enumerate(self._rig.cameras, start=1):
             report = snapshot.reports.get(n)
-            if report is None:
-                continue
-            image = inset(report, snapshot.pictures.get(n))
-            if rims is not None:
-                draw_outlines(image, limb_outlines(camera, rims), self._rig.width)
+            image = None if report is None else inset(report, snapshot.pictures.get(n))
+            if image is not None and ends is not None:
+                draw_outlines(image, limb_outlines(camera, ends), self._rig.width)
             self._frustums[n - 1].image = image
 
     def _show_panel(self, snapshot: Snapshot) -> None:
         body, pulses = snapshot.body, snapshot.pulses.values()
         self._headline.content = panel.posture_headline(snapshot.posture)
         self._status.content = panel.status_line(body, pulses)
-        self._views.content = panel.views_table(body, len(self._rig.cameras))
+        self._views.content = panel.views_table(body, snapshot.reports, len(self._rig.cameras))
         self._bars.content = panel.likelihood_bars(snapshot.posture)
         self._pulses.content = panel.pulse_table(pulses)
 

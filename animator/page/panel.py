@@ -1,11 +1,11 @@
 """What the page says beside the room: posture, views, body and processes, as pieces of HTML."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from html import escape
 from typing import Final
 
 from animator.scene import LEFT, RIGHT, TRUNK, Colour
-from common.messages import Body, Facing, Posture, Pulse, Status
+from common.messages import Body, Facing, Posture, Pulse, Report, Status
 
 ACCENT: Final[Colour] = (62, 142, 126)
 QUIET: Final = "opacity:.62;font-size:.85em"
@@ -56,16 +56,18 @@ def bar_shares(ranked: list[float]) -> list[float]:
     ]
 
 
-def views_table(body: Body | None, cameras: int) -> str:
-    """What each camera sees of the body, and how well the model covers its silhouette."""
+def views_table(body: Body | None, reports: Mapping[int, Report], cameras: int) -> str:
+    """What each camera sees of the body, how well the model covers it, and what is in the way."""
     rows = []
-    for n in range(cameras):
-        facing = FACING_WORDS[body.facing[n]] if body and body.pose else "–"
-        score = body.score[n] if body and body.pose else 0.0
-        rows.append(_bar(f"camera {n + 1}: {facing}", score, f"{score:.2f}"))
-    return _block(
-        f'<div style="{QUIET}">what each camera sees, and its score</div>' + "".join(rows)
-    )
+    for n in range(1, cameras + 1):
+        facing = FACING_WORDS[body.facing[n - 1]] if body and body.pose else "–"
+        score = body.score[n - 1] if body and body.pose else 0.0
+        rows.append(_bar(f"camera {n}: {facing}", score, f"{score:.2f}"))
+        hint = _hint(body, reports.get(n))
+        if hint:
+            rows.append(f'<div style="{QUIET}">{escape(hint)}</div>')
+    title = f'<div style="{QUIET}">what each camera sees, and its score</div>'
+    return _block(title + "".join(rows))
 
 
 def status_line(body: Body | None, pulses: Iterable[Pulse]) -> str:
@@ -110,6 +112,15 @@ def legend() -> str:
 def spoken(name: str) -> str:
     """A posture's name as one says it."""
     return name.replace("_", " ")
+
+
+def _hint(body: Body | None, report: Report | None) -> str:
+    """What the person could do about what this camera sees."""
+    if report is None:
+        return "nothing heard from it"
+    if report.cut:
+        return "the person is partly outside the picture"
+    return report.refusal if body and body.status == "measuring" else ""
 
 
 def _pulse_row(pulse: Pulse) -> str:
