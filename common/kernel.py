@@ -134,7 +134,7 @@ def spans(p: Any, width: int, height: int, first: Any, last: Any) -> tuple[int, 
     """
     ax, ay, ra, bx, by, rb = p[0], p[1], p[2] + EDGE, p[3], p[4], p[5] + EDGE
     shear, stretch = p[6], p[7]
-    top = max(0, math.ceil(min(ay - ra, by - rb) - 0.5))
+    top = min(height, max(0, math.ceil(min(ay - ra, by - rb) - 0.5)))
     bottom = min(height, math.floor(max(ay + ra, by + rb) - 0.5) + 1)
     dx, dy = bx - ax, by - ay
     length_2, taper = dx * dx + dy * dy, ra - rb
