@@ -1,0 +1,223 @@
+"""Clips of performances on disk: two films, what they are of, and the truth."""
+
+import itertools
+import json
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Final, Literal
+
+import cv2
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from common.camera import Rig, project
+from synth.exposure import blurred, default_rig, exposures
+from synth.motions import POSTURES, Motion, movement, performance
+from synth.people import MEASURE_NAMES, Person, measure_vector, person
+from synth.render import Shot, render
+from synth.skeleton import ANGLES, JOINTS
+
+FPS: Final = 15.0
+"""The paper's frame rate (P1)."""
+JPEG_QUALITY: Final = 95
+Packed = NDArray[np.uint8]
+"""A mask as `np.packbits(mask, axis=1)` leaves it."""
+
+PHASES: Final = ("empty", "tpose", "transition", "motion")
+ROOM_SEED: Final = 7919
+"""Keeps the rooms of one set apart from those of the next: a prime larger than any set."""
+
+
+class SynthError(ValueError):
+    """A set of clips that cannot be made: the text says what to ask for instead."""
+
+
+def write_set(
+    out: Path,
+    motion: Literal["postures", "free"],
+    performers: int,
+    takes: int,
+    seed: int,
+    size: tuple[int, int],
+    postures: tuple[str, ...] = POSTURES,
+    progress: Callable[[int, int], None] | None = None,
+) -> list[Path]:
+    """Clips of several people, with `calibration.json` beside them.
+
+    Args:
+        out: Folder, made where it is missing; clips of the same names are replaced.
+        motion: The named postures, or people who turn and move at random.
+        performers: How many people; the first of seed s is person(s * performers).
+        takes: Of each posture by each person.
+        seed: The same one gives the same clips, byte for byte.
+        size: Width and height of the pictures.
+        postures: Which ones; all 15 by default; not asked for when the motion is free.
+        progress: Told how many clips are done, of how many.
+
+    Returns:
+        The clips' folders, in order.
+
+    Raises:
+        SynthError: When nothing would be written, or a posture or the motion is not known.
+    """
+    names = ("free",) if motion == "free" else postures
+    _refuse_what_cannot_be(motion, performers, takes, size, names)
+    rig = default_rig(*size)
+    out.mkdir(parents=True, exist_ok=True)
+    write_rig(out / "calibration.json", rig)
+    folders = []
+    jobs = list(itertools.product(range(performers), range(1, takes + 1), names))
+    for done, (number, take, posture) in enumerate(jobs, 1):
+        someone = person(seed * performers + number)
+        own = take + 1000 * seed
+        moved = performance(someone, posture, own, FPS)
+        folders.append(out / clip_name(someone, posture, take))
+        room = seed * ROOM_SEED + number
+        write_clip(folders[-1], someone, moved, rig, room, own, take)
+        if progress is not None:
+            progress(done, len(jobs))
+    return folders
+
+
+def clip_name(someone: Person, posture: str, take: int) -> str:
+    """The folder of a clip, as `data/README.md` names them."""
+    number = POSTURES.index(posture) + 1 if posture in POSTURES else 0
+    return f"{someone.name}_t{take}_{number:02d}_{posture}"
+
+
+def write_clip(
+    folder: Path, someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int, take: int
+) -> None:
+    """One clip: cam1.avi, cam2.avi (Motion JPEG), meta.json, truth.npz.
+
+    Args:
+        folder: Made where it is missing.
+        someone: Who performs.
+        motion: What they do.
+        rig: Two cameras.
+        room_seed: Of the room.
+        seed: Of noise and exposure.
+        take: Number of the take, for the notes.
+
+    Raises:
+        SynthError: When a film cannot be written there.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    masks = _film(folder, render(someone, motion, rig, room_seed, seed), rig, motion.fps)
+    meta = _meta(someone, motion, room_seed, seed, take)
+    (folder / "meta.json").write_text(json.dumps(meta, indent=1) + "\n")
+    gain = exposures(len(motion.phase), seed, motion.fps)
+    np.savez_compressed(
+        folder / "truth.npz",
+        allow_pickle=False,
+        **_truth(someone, motion, rig, take),
+        mask_cam1=masks[0],
+        mask_cam2=masks[1],
+        gain=gain.astype(np.float32),
+    )
+
+
+def write_rig(path: Path, rig: Rig) -> None:
+    """A `calibration.json` that `common.camera.load_rig` reads."""
+    path.write_bytes(msgspec.json.format(msgspec.json.encode(rig), indent=1))
+
+
+def _film(folder: Path, shots: Iterable[Shot], rig: Rig, fps: float) -> tuple[Packed, Packed]:
+    """Write both films; the masks of all frames, packed, (n, h, bytes) each."""
+    films = [_writer(folder / f"cam{n}.avi", rig, fps) for n in (1, 2)]
+    masks: tuple[list[Packed], list[Packed]] = ([], [])
+    try:
+        for shot in shots:
+            films[0].write(shot.frame1)
+            films[1].write(shot.frame2)
+            masks[0].append(np.packbits(shot.mask1, axis=1))
+            masks[1].append(np.packbits(shot.mask2, axis=1))
+    finally:
+        for film in films:
+            film.release()
+    return np.stack(masks[0]), np.stack(masks[1])
+
+
+def _writer(path: Path, rig: Rig, fps: float) -> cv2.VideoWriter:
+    code = cv2.VideoWriter.fourcc(*"MJPG")
+    film = cv2.VideoWriter(str(path), code, fps, (rig.width, rig.height))
+    if not film.isOpened():
+        raise SynthError(f"cannot write {path}: is the folder writable, the disk full?")
+    film.set(cv2.VIDEOWRITER_PROP_QUALITY, JPEG_QUALITY)
+    return film
+
+
+def _meta(
+    someone: Person, motion: Motion, room_seed: int, seed: int, take: int
+) -> dict[str, object]:
+    counts = np.bincount(motion.phase, minlength=4).tolist()
+    return {
+        "performer": someone.name,
+        "posture": motion.posture,
+        "posture_id": _number(motion.posture),
+        "take": take,
+        "room": room_seed,
+        "fps": motion.fps,
+        "n_frames": len(motion.phase),
+        "phases": dict(zip(PHASES, counts, strict=True)),
+        "sex": someone.sex,
+        "look": someone.look._asdict(),
+        "measures": {name: round(someone.measures[name], 4) for name in MEASURE_NAMES},
+        "seed": seed,
+        "style": {name: round(value, 4) for name, value in motion.style._asdict().items()},
+    }
+
+
+def _truth(someone: Person, motion: Motion, rig: Rig, take: int) -> dict[str, np.ndarray]:
+    """The arrays of `truth.npz` but those that the films give."""
+    count = len(motion.phase)
+    seen = [_projected(rig, n, motion) for n in (0, 1)]
+    return {
+        "joints3d": motion.joints_m.astype(np.float32),
+        "joint_names": np.array(JOINTS),
+        "joints2d_cam1": seen[0],
+        "joints2d_cam2": seen[1],
+        "mask_shape": np.array([rig.height, rig.width]),
+        "phase": motion.phase,
+        "present": motion.present,
+        "time": (np.arange(count) / motion.fps).astype(np.float32),
+        "frames_cam1": np.arange(count, dtype=np.int32),
+        "frames_cam2": np.arange(count, dtype=np.int32),
+        "angles": motion.angles_deg.astype(np.float32),
+        "angle_names": np.array(ANGLES),
+        "root": motion.root_m.astype(np.float32),
+        "posture_id": np.array(_number(motion.posture)),
+        "posture": np.array(motion.posture),
+        "class5": np.array(movement(motion.posture)),
+        "performer": np.array(someone.name),
+        "take": np.array(take),
+        "measures": measure_vector(someone),
+        "measure_names": np.array(MEASURE_NAMES),
+        "blurred": blurred(motion),
+    }
+
+
+def _projected(rig: Rig, n: int, motion: Motion) -> np.ndarray:
+    pixels = project(rig.cameras[n], motion.joints_m.reshape(-1, 3))
+    return pixels.reshape(len(motion.phase), -1, 2).astype(np.float32)
+
+
+def _number(posture: str) -> int:
+    """Its place among the postures, -1 for free motion."""
+    return POSTURES.index(posture) if posture in POSTURES else -1
+
+
+def _refuse_what_cannot_be(
+    motion: str, performers: int, takes: int, size: tuple[int, int], names: tuple[str, ...]
+) -> None:
+    if motion not in ("postures", "free"):
+        raise SynthError(f"motion must be postures or free, got {motion!r}")
+    for what, number in (("performers", performers), ("takes", takes)):
+        if number < 1:
+            raise SynthError(f"{what} must be at least 1, got {number}")
+    if min(size) < 32 or max(size) > 4096:
+        raise SynthError(f"a picture has 32 to 4096 pixels each way, got {size[0]}x{size[1]}")
+    unknown = [name for name in names if name not in (*POSTURES, "free")]
+    if unknown or not names:
+        raise SynthError(f"unknown posture {unknown or names}; known are {', '.join(POSTURES)}")
