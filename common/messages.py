@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body import ANGLE_NAMES, JOINT_NAMES, POSE_NAMES, Bdp, Elliptic, Round
+from common.camera import Camera, Rig
 
 PROTOCOL: Final = 1
 MAX_BYTES: Final = 1_000_000
@@ -185,10 +186,11 @@ class Pulse(Message, frozen=True, kw_only=True):
     memory_mb: float = 0.0
 
 
-class Start(Message, frozen=True, kw_only=True):
-    """When recorded clips begin, by the room's clock, so that all viewers begin together."""
+class Cameras(Message, frozen=True, kw_only=True):
+    """The rig that a run uses, once it is known."""
 
-    at_s: float
+    rig: Rig
+    scale_source: Literal["calibrated", "assumed"]
 
 
 class Ended(Message, frozen=True, kw_only=True):
@@ -229,7 +231,7 @@ TOPICS: Final[dict[type[Message], Topic]] = {
     Posture: Topic("tritrack/{room}/posture", 15.0, newest_only=False),
     Picture: Topic("tritrack/{room}/viewer/{viewer}/picture", 15.0, newest_only=True),
     Pulse: Topic("tritrack/{room}/pulse/{process}", 1.0, newest_only=False),
-    Start: Topic("tritrack/{room}/start", 0.0, newest_only=False),
+    Cameras: Topic("tritrack/{room}/cameras", 0.0, newest_only=False),
     Ended: Topic("tritrack/{room}/viewer/{viewer}/ended", 0.0, newest_only=False),
 }
 
@@ -325,6 +327,6 @@ def _numbers(value: object) -> Iterator[float]:
     elif isinstance(value, dict):
         for item in value.values():
             yield from _numbers(item)
-    elif isinstance(value, Measure | Bdp | Elliptic | Round):
+    elif isinstance(value, Measure | Bdp | Elliptic | Round | Rig | Camera):
         for item in msgspec.structs.astuple(value):
             yield from _numbers(item)

@@ -12,12 +12,25 @@ from common.body import (
     Vector,
     body_vector,
     rest_pose,
+    thesis_bdp,
 )
-from common.camera import Rig, project
+from common.camera import Rig, paper_rig, project
 from common.config import Settings
-from common.kernel import count, count_both, draw_limbs, score, view_of, words_of_rows
+from common.kernel import count, count_both, draw_body, draw_limbs, score, view_of, words_of_rows
 from common.kinematics import ALL_LIMBS, joints
-from common.messages import Body, Facing, Guide, Pixel, Point, Report, Status, Views
+from common.messages import (
+    Body,
+    Box,
+    Facing,
+    Guide,
+    Pixel,
+    Point,
+    Report,
+    Status,
+    ViewerNumber,
+    Views,
+    pack,
+)
 from integrator import opening, smoothing
 from integrator.arbiter import Sight, arbitrate
 from integrator.assumed import assumed_rig
@@ -31,6 +44,8 @@ YAW_DEG: Final = (0.0, -90.0)
 
 LOST_SCORE, LOST_FRAMES = 0.35, 5
 """A model that fits this badly in every view is not believed; for so many frames, it is lost."""
+
+VIEWERS: Final[tuple[ViewerNumber, ...]] = (1, 2)
 
 Seen = tuple[Report | None, Report | None]
 
@@ -291,3 +306,33 @@ def _point(place: Vector) -> Point:
 def _pixel(pixel: Vector) -> Pixel:
     u, v = (float(value) for value in np.nan_to_num(pixel, nan=-1.0))
     return (u, v)
+
+
+def rehearse(settings: Settings, size: tuple[int, int]) -> None:
+    """Merge made-up reports, so that all is compiled and loaded before the first real ones."""
+    width, height = size
+    body = body_vector(thesis_bdp(1.75))
+    state = init(None, 1.0, settings)
+    for index in range(3):
+        reports = []
+        for viewer in VIEWERS:
+            rig = paper_rig(size, (1.25 * width,) * 2, (4.5, 4.5))
+            pose = rest_pose()
+            pose[POSE_INDEX["y"]] = 1.0
+            mask = draw_body(body, pose, view_of(rig.cameras[viewer - 1]), size)
+            rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+            box = Box(int(columns[0]), int(columns[-1]), int(rows[0]), int(rows[-1]))
+            reports.append(
+                Report(
+                    frame=index,
+                    captured_s=float(index),
+                    clock_s=float(index),
+                    viewer=viewer,
+                    width=width,
+                    height=height,
+                    silhouette=pack(mask),
+                    box=box,
+                    root_px=(width / 2, height / 2),
+                )
+            )
+        state, _, _ = step(state, Pair(reports[0], reports[1]))

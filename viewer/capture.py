@@ -81,6 +81,11 @@ class Live:
         self._thread.join()
 
     @property
+    def offset_s(self) -> float:
+        """The room's clock less this host's monotonic one."""
+        return self._room.offset_s
+
+    @property
     def dropped(self) -> int:
         """Frames that a late reader never saw."""
         return self._waiting.dropped

@@ -1,0 +1,108 @@
+"""The animator process: everything that is said, shown on the live page."""
+
+import gc
+import logging
+import threading
+import time
+from typing import Final
+
+from animator.page.live import LivePage
+from animator.scene import Snapshot
+from common.bus import Bus, open_client
+from common.camera import Rig
+from common.config import Settings
+from common.inbox import Inbox
+from common.messages import Body, Cameras, Picture, Posture, Pulse, Report
+from common.process import READY_S, Heart, Place, process
+from common.rate import Pace
+
+HEAR_S: Final = 0.05
+MOST_REPORTS: Final = 16
+"""Reports that wait for their body: it comes within a frame or two."""
+
+log = logging.getLogger(__name__)
+
+
+class Ears:
+    """All that the page shows, as it comes in."""
+
+    def __init__(self, bus: Bus) -> None:
+        """Listen from now on."""
+        self.bodies = bus.subscribe(Body)
+        self._others: tuple[Inbox[Report], Inbox[Picture], Inbox[Posture], Inbox[Pulse]] = (
+            bus.subscribe(Report),
+            bus.subscribe(Picture),
+            bus.subscribe(Posture),
+            bus.subscribe(Pulse),
+        )
+        self._reports: list[Report] = []
+        self._snapshot = Snapshot()
+
+    def with_body(self, body: Body) -> Snapshot:
+        """The newest of everything, with the reports that the body was made of."""
+        reports, pictures, postures, pulses = (inbox.drain() for inbox in self._others)
+        self._reports = [*self._reports, *reports][-MOST_REPORTS:]
+        of_body = {
+            report.viewer: report
+            for report in self._reports
+            if abs(report.captured_s - body.captured_s) < 1e-6 or report.frame == body.frame
+        }
+        before = self._snapshot
+        self._snapshot = Snapshot(
+            body=body,
+            reports={**before.reports, **of_body},
+            pictures={**before.pictures, **{picture.viewer: picture for picture in pictures}},
+            posture=postures[-1] if postures else before.posture,
+            pulses={**before.pulses, **{pulse.process: pulse for pulse in pulses}},
+        )
+        return self._snapshot
+
+
+def run(page: LivePage, ears: Ears, bus: Bus, period_s: float, stop: threading.Event) -> None:
+    """Show every body that is published; when late, the newest only."""
+    pace = Pace(period_s)
+    heart = Heart(bus, "animator", pace)
+    heart.beat("ready", page.address)
+    while not stop.is_set():
+        body = ears.bodies.take(HEAR_S)
+        if body is not None:
+            page.show(ears.with_body((ears.bodies.drain() or [body])[-1]))
+            pace.done(body.clock_s, time.monotonic())
+            heart.beat("running", page.address, dropped=ears.bodies.dropped)
+    heart.beat("ended", page.address)
+
+
+def known_rig(bus: Bus, given: Rig | None, stop: threading.Event) -> Rig | None:
+    """The calibrated rig, or the assumed one once the integrator tells it."""
+    told = bus.subscribe(Cameras)
+    kept = bus.latest(Cameras, HEAR_S) if given is None else None
+    rig = given if kept is None else kept.rig
+    while rig is None and not stop.is_set():
+        heard = told.take(HEAR_S)
+        rig = None if heard is None else heard.rig
+    return rig
+
+
+def main(settings: Settings, rig: Rig | None, period_s: float, place: Place = Place()) -> None:
+    """Open the page, show until stopped, close.
+
+    Raises:
+        PageError: When the port is taken.
+        BusError: When the integrator does not answer.
+    """
+    with (
+        process("animator", place) as stop,
+        open_client(settings.bus, settings.room, READY_S) as bus,
+    ):
+        bus.announce("animator")
+        ears = Ears(bus)
+        known = known_rig(bus, rig, stop)
+        if known is None:
+            return
+        page = LivePage(known, settings.page.port)
+        log.info("the page is at %s", page.address)
+        gc.freeze()
+        try:
+            run(page, ears, bus, period_s, stop)
+        finally:
+            page.close()

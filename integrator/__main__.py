@@ -1,0 +1,119 @@
+"""The integrator process: pairs of reports in, bodies and guides out; the room's clock."""
+
+import gc
+import logging
+import threading
+import time
+from typing import Final
+
+from common.bus import Bus, open_hub
+from common.clips import Clip
+from common.config import Settings
+from common.messages import (
+    Cameras,
+    ClockAnswer,
+    ClockQuestion,
+    Ended,
+    Guide,
+    Report,
+    ViewerNumber,
+)
+from common.process import Heart, Place, process
+from common.rate import Pace
+from integrator import merge, pairing
+from integrator.pairing import Pair
+
+LEAD_S: Final = 0.5
+"""From the last viewer's being ready to the first frame: time for all to hear of it."""
+HEAR_S: Final = 0.02
+OVERDUE_PERIODS: Final = 1.0
+"""A report whose partner is a frame late goes on alone."""
+
+log = logging.getLogger(__name__)
+
+
+class Starter:
+    """Answers what the room's clock says, and fixes the start once every viewer is ready."""
+
+    def __init__(self, expected: frozenset[ViewerNumber]) -> None:
+        """Viewers that belong to the run."""
+        self._missing = set(expected)
+        self._start_s: float | None = None
+
+    def answer(self, question: ClockQuestion) -> ClockAnswer:
+        """What the clock says now; the start, if it is fixed. Called by the bus's own thread."""
+        now_s = time.monotonic()
+        if question.ready:
+            self._missing.discard(question.viewer)
+        if not self._missing and self._start_s is None:
+            self._start_s = now_s + LEAD_S
+        return ClockAnswer(now_s=now_s, start_s=self._start_s)
+
+
+def run(
+    state: merge.State,
+    viewers: tuple[ViewerNumber, ...],
+    period_s: float,
+    bus: Bus,
+    stop: threading.Event,
+) -> None:
+    """Pair and merge what the viewers report, until each has ended."""
+    pace = Pace(period_s)
+    heart = Heart(bus, "integrator", pace)
+    reports, ended = bus.subscribe(Report), bus.subscribe(Ended)
+    pairs_of = pairing.init(period_s, viewers)
+    going = set(viewers)
+    told_rig = False
+    starter = Starter(frozenset(viewers))
+    bus.answer(ClockQuestion, starter.answer)
+    heart.beat("ready")
+    while going and not stop.is_set():
+        report = reports.take(HEAR_S)
+        pairs: list[Pair] = []
+        if report is not None:
+            pairs_of, pairs = pairing.step(pairs_of, report)
+        pairs_of, alone = pairing.overdue(pairs_of, time.monotonic(), OVERDUE_PERIODS * period_s)
+        for over in ended.drain() if report is None else ():
+            going.discard(over.viewer)
+            pairs_of, last = pairing.end(pairs_of, over.viewer)
+            alone += last
+        for pair in pairs + alone:
+            state, body, guide = merge.step(state, pair)
+            bus.publish(guide)
+            bus.publish(body)
+            pace.done(body.clock_s, time.monotonic())
+        if not told_rig and state.rig is not None:
+            bus.publish(Cameras(rig=state.rig, scale_source=state.scale_source))
+            told_rig = True
+        heart.beat(
+            "running",
+            dropped=pairs_of.dropped + reports.dropped,
+            late=pairs_of.late,
+            malformed=reports.malformed,
+        )
+    heart.beat("ended", dropped=pairs_of.dropped, late=pairs_of.late, malformed=reports.malformed)
+
+
+def main(settings: Settings, clip: Clip, place: Place = Place()) -> None:
+    """Open the room, merge until the viewers end, close.
+
+    Args:
+        settings: Of the run.
+        clip: What the viewers look at: their numbers, the rate, the rig.
+        place: Where this process runs.
+
+    Raises:
+        BusError: When the endpoint is taken.
+    """
+    period_s = clip.every / clip.views[0].fps
+    viewers = tuple(view.number for view in clip.views)
+    with process("integrator", place) as stop, open_hub(settings.bus, settings.room) as bus:
+        bus.keep(Guide)
+        bus.keep(Cameras)
+        bus.announce("integrator")
+        state = merge.init(clip.rig, period_s, settings)
+        merge.rehearse(settings, clip.views[0].size)
+        gc.collect()
+        gc.freeze()
+        run(state, viewers, period_s, bus, stop)
+        stop.wait(0.2)

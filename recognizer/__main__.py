@@ -1,0 +1,98 @@
+"""The recognizer process: bodies in, the posture's name out."""
+
+import gc
+import logging
+import threading
+import time
+from collections import deque
+from pathlib import Path
+
+import numpy as np
+
+from common.body import ANGLES_IN_POSE, rest_pose
+from common.bus import Bus, open_client
+from common.config import Settings
+from common.messages import Body, Posture
+from common.process import READY_S, Heart, Place, process
+from common.rate import Pace
+from recognizer import spotting
+from recognizer.model_file import load
+from recognizer.postures import PostureModel
+
+SHIPPED = Path(__file__).parent / "postures.npz"
+"""The model that is used when the settings name none."""
+HEAR_S = 0.05
+MOVING = ("tracking", "predicted")
+"""States in which a body's angles say what it does; the opening posture is no motion."""
+
+log = logging.getLogger(__name__)
+
+
+def step(state: spotting.State, frames: deque[int], body: Body) -> tuple[spotting.State, Posture]:
+    """One body more: the judgement of the window that ends with it.
+
+    Args:
+        state: Of the window.
+        frames: Frame numbers of all steps so far that a window can reach; this one is added.
+        body: As the integrator published it.
+    """
+    in_motion = body.status in MOVING and body.pose
+    angles = np.array([body.pose[i] for i in ANGLES_IN_POSE]) if in_motion else None
+    state, judged = spotting.step(state, angles)
+    frames.append(body.frame)
+    newest = state.next_frame - 1
+    return state, Posture(
+        frame=body.frame,
+        captured_s=body.captured_s,
+        clock_s=body.clock_s,
+        name=judged.name,
+        log_likelihoods=judged.log_likelihoods,
+        segment=(frames[judged.first - newest - 1], frames[judged.last - newest - 1]),
+    )
+
+
+def reach(window_frames: int) -> deque[int]:
+    """Room for the frame numbers that a window may name."""
+    return deque(maxlen=window_frames + 4 * spotting.MISSED_FRAMES)
+
+
+def run(
+    model: PostureModel, settings: Settings, bus: Bus, period_s: float, stop: threading.Event
+) -> None:
+    """Judge every body that is published until stopped."""
+    window = settings.recognizer.window_frames
+    state, frames = spotting.init(model, window), reach(window)
+    pace = Pace(period_s)
+    heart = Heart(bus, "recognizer", pace)
+    bodies = bus.subscribe(Body)
+    heart.beat("ready")
+    while not stop.is_set():
+        body = bodies.take(HEAR_S)
+        if body is not None:
+            state, posture = step(state, frames, body)
+            bus.publish(posture)
+            pace.done(body.clock_s, time.monotonic())
+            heart.beat("running", dropped=bodies.dropped, malformed=bodies.malformed)
+    heart.beat("ended", dropped=bodies.dropped, malformed=bodies.malformed)
+
+
+def main(settings: Settings, period_s: float, place: Place = Place()) -> None:
+    """Load the model, name postures until stopped, close.
+
+    Raises:
+        ModelError: When the model cannot be used.
+        BusError: When the integrator does not answer.
+    """
+    path = Path(settings.recognizer.model) if settings.recognizer.model else SHIPPED
+    model = load(path)
+    rehearsal = spotting.init(model, settings.recognizer.window_frames)
+    for _ in range(spotting.NAMED_FROM_FRAMES + 2):
+        rehearsal, _ = spotting.step(rehearsal, rest_pose()[list(ANGLES_IN_POSE)])
+    with (
+        process("recognizer", place) as stop,
+        open_client(settings.bus, settings.room, READY_S) as bus,
+    ):
+        bus.announce("recognizer")
+        gc.collect()
+        gc.freeze()
+        run(model, settings, bus, period_s, stop)

@@ -1,0 +1,160 @@
+"""The viewer process: one camera's frames in, its reports out."""
+
+import gc
+import logging
+import threading
+import time
+from typing import Final
+
+from common import clock
+from common.bus import Bus, open_client
+from common.clips import View, open_clip, shortfall
+from common.config import Settings
+from common.decoding import Decoder
+from common.inbox import Inbox
+from common.messages import (
+    ClockAnswer,
+    ClockQuestion,
+    Ended,
+    Guide,
+    Picture,
+    ViewerNumber,
+)
+from common.process import READY_S, Heart, Place, process
+from common.rate import Pace
+from viewer import track
+from viewer.capture import Frame, Live, RoomClock
+from viewer.jpeg import jpeg_of
+from viewer.room import empty_room
+
+WAIT_SHARE: Final = 0.5
+"""How long a viewer waits for the guide of its last frame, in frame periods."""
+EXCHANGES: Final = 5
+ASK_S: Final = 0.5
+
+log = logging.getLogger(__name__)
+
+
+class StartError(RuntimeError):
+    """The run did not begin; the text says what was waited for."""
+
+
+class Guides:
+    """The newest guide, and how often it came too late."""
+
+    def __init__(self, inbox: Inbox[Guide], viewer: ViewerNumber) -> None:
+        """Guides for this viewer."""
+        self.misses = 0
+        self.newest: Guide | None = None
+        self._inbox, self._viewer = inbox, viewer
+
+    def of_frame(self, index: int, wait_s: float) -> Guide | None:
+        """The guide that has heard of this viewer's frame; else the newest, counted as a miss."""
+        until_s = time.monotonic() + wait_s
+        while self._heard() < index:
+            left_s = until_s - time.monotonic()
+            guide = self._inbox.take(max(0.0, left_s))
+            if guide is not None:
+                self.newest = guide
+            elif left_s <= 0:
+                self.misses += 1
+                break
+        return self.newest
+
+    def _heard(self) -> int:
+        return -1 if self.newest is None else self.newest.frames[self._viewer - 1]
+
+
+def run(view: View, state: track.State, live: Live, bus: Bus, stop: threading.Event) -> None:
+    """Look at every frame when it is due and publish what it shows, until the clip's end."""
+    period_s = state.settings.every / view.fps
+    pace = Pace(period_s)
+    heart = Heart(bus, f"viewer {view.number}", pace)
+    guides = Guides(bus.subscribe(Guide), view.number)
+    before = -1
+    while not stop.is_set() and not live.over:
+        frame = live.take(period_s)
+        if frame is None:
+            continue
+        guide = guides.of_frame(before, WAIT_SHARE * period_s)
+        state, report = track.step(state, frame, guide)
+        bus.publish(report)
+        pace.done(frame.clock_s - live.offset_s, time.monotonic())
+        if state.settings.pictures:
+            bus.publish(_picture(view.number, frame))
+        heart.beat("running", dropped=live.dropped, guide_misses=guides.misses)
+        before = frame.index
+    bus.publish(Ended(viewer=view.number, frames=pace.frames))
+    odd = shortfall(view, live.came) if not stop.is_set() else ""
+    if odd:
+        log.warning(odd)
+    heart.beat("ended", odd, dropped=live.dropped, guide_misses=guides.misses)
+
+
+def main(settings: Settings, viewer: ViewerNumber, place: Place = Place()) -> None:
+    """Learn the room, wait for the others, look at the clip, close the doors in order.
+
+    Raises:
+        ClipError: When the clip cannot be used.
+        BusError: When the integrator does not answer.
+        DecoderDied: When the video broke the decoder.
+        StartError: When the other viewer never got ready.
+    """
+    name = f"viewer {viewer}"
+    with process(name, place) as stop, open_client(settings.bus, settings.room, READY_S) as bus:
+        heart = Heart(bus, name, Pace(1.0))
+        heart.beat("starting")
+        with Decoder() as decoder:
+            clip = open_clip(settings, decoder, (viewer,))
+            view = clip.views[0]
+            room, odd = empty_room(view, settings.silhouette, decoder)
+        for warning in (*clip.warnings, *([odd] if odd else [])):
+            log.warning(warning)
+        state = track.init(viewer, room, clip.rig.cameras[0] if clip.rig else None, settings)
+        track.rehearse(state, view.size)
+        gc.collect()
+        gc.freeze()
+        bus.announce(name)
+        heart.beat("ready", odd)
+        room_clock = met(bus, viewer, stop)
+        if room_clock is not None:
+            with Live(view, settings.every, room_clock) as live:
+                run(view, state, live, bus, stop)
+
+
+def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | None:
+    """The room's clock and the start of the run, once all viewers are ready; None when stopped.
+
+    Raises:
+        StartError: When that takes too long.
+    """
+    asked, offset = clock.init(), clock.Offset(0.0, 0.0)
+    until_s = time.monotonic() + READY_S
+    start_s: float | None = None
+    while start_s is None or len(asked) < EXCHANGES:
+        if stop.is_set():
+            return None
+        if time.monotonic() > until_s:
+            raise StartError(
+                f"viewer {viewer} is ready, but the run did not begin within {READY_S:g} s: "
+                "start the other viewer, or take it out of the settings"
+            )
+        sent_s = time.monotonic()
+        answer = bus.ask(ClockQuestion(viewer=viewer, ready=True), ClockAnswer, ASK_S)
+        if answer is not None:
+            exchange = clock.Exchange(sent_s, answer.now_s, time.monotonic())
+            asked, offset = clock.step(asked, exchange)
+            start_s = answer.start_s
+        stop.wait(0.02)
+    log.info("the room's clock is %.6f s from ours (within %.6f)", offset.offset_s, offset.error_s)
+    return RoomClock(start_s, offset.offset_s)
+
+
+def _picture(viewer: ViewerNumber, frame: Frame) -> Picture:
+    return Picture(
+        frame=frame.index,
+        captured_s=frame.captured_s,
+        clock_s=frame.clock_s,
+        viewer=viewer,
+        jpeg=jpeg_of(frame.picture),
+    )
