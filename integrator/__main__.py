@@ -26,6 +26,10 @@ from integrator.pairing import Pair
 LEAD_S: Final = 0.5
 """From the last viewer's being ready to the first frame: time for all to hear of it."""
 HEAR_S: Final = 0.02
+LAST_WORDS_S: Final = 1.0
+"""All others meet here: how long the room stays open after the last body."""
+SUPERVISED_S: Final = 60.0
+"""The same where a supervisor ends the processes in order."""
 OVERDUE_PERIODS: Final = 1.0
 """A report whose partner is a frame late goes on alone."""
 
@@ -116,4 +120,4 @@ def main(settings: Settings, clip: Clip, place: Place = Place()) -> None:
         gc.collect()
         gc.freeze()
         run(state, viewers, period_s, bus, stop)
-        stop.wait(0.2)
+        stop.wait(SUPERVISED_S if place.supervised else LAST_WORDS_S)
