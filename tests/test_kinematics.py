@@ -1,0 +1,243 @@
+"""Ten cylinders and their chain, held against section 2 and against scipy's rotations."""
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from posing import BODY, posed
+from scipy.spatial.transform import Rotation
+
+from common.body import (
+    ANGLE_NAMES,
+    DOF_NAMES,
+    FLEXION_JOINTS,
+    JOINT_NAMES,
+    LIMBS,
+    LIMITS_DEG,
+    POSE_INDEX,
+    POSE_NAMES,
+    SPHERICAL_JOINTS,
+    THESIS_RATIOS,
+    Bdp,
+    Elliptic,
+    Round,
+    Vector,
+    body_of_lengths,
+    body_vector,
+    rest_pose,
+    stature,
+    thesis_bdp,
+    wrapped_deg,
+)
+from common.kinematics import joints, limb_frames, segments
+
+degrees = st.floats(-360.0, 360.0)
+poses = st.lists(degrees, min_size=22, max_size=22).map(
+    lambda angles: np.array([0.3, 0.9, -0.4, *angles])
+)
+
+
+def axis(limb: str, **angles_deg: float) -> Vector:
+    """Where a limb of a standing body points, world, unit length."""
+    first, last = segments(BODY, posed(**angles_deg))[LIMBS.index(limb)]
+    return (last - first) / np.linalg.norm(last - first)
+
+
+def spherical(x_deg: float, y_deg: float, z_deg: float) -> Rotation:
+    """R_z R_x R_y of section 2.2, by scipy."""
+    return Rotation.from_euler("ZXY", [z_deg, x_deg, y_deg], degrees=True)
+
+
+def test_a_body_is_six_elliptic_and_four_round_cylinders() -> None:
+    """P5: 6 x 3 + 4 x 2 = 26 lengths, table 1."""
+    parts = [getattr(thesis_bdp(1.75), name) for name in LIMBS]
+    assert [type(part) for part in parts] == [Elliptic] * 6 + [Round] * 4
+    assert all("arm" in name for name in LIMBS[6:])
+    assert len(thesis_bdp(1.75).lengths()) == 26
+    assert body_of_lengths(thesis_bdp(1.75).lengths()) == thesis_bdp(1.75)
+
+
+@pytest.mark.parametrize(
+    ("part", "fault"),
+    [
+        ({"short_radius": 1.0, "height": 1.0}, "missing required field `long_radius`"),
+        ({"long_radius": 1.0, "short_radius": 1.0, "height": 0.0}, "positive length, got 0"),
+        ({"long_radius": 1.0, "short_radius": float("inf"), "height": 1.0}, "got inf"),
+        ({"long_radius": 1, "short_radius": 1, "height": 1, "radius": 1}, "unknown field `radius`"),
+    ],
+)
+def test_a_trunk_that_is_no_elliptic_cylinder_is_refused(
+    part: dict[str, float], fault: str
+) -> None:
+    """P5: table 1 has a dash for the radius of elliptic parts."""
+    body = msgspec.to_builtins(thesis_bdp(1.75)) | {"torso": part}
+    with pytest.raises(msgspec.ValidationError, match=fault):
+        msgspec.convert(body, Bdp)
+
+
+def test_ten_joints_have_22_angles_of_which_17_are_estimated() -> None:
+    """P6, P7, P22, M17: six spherical joints and four hinges; 25 parameters with the position."""
+    assert len(SPHERICAL_JOINTS + FLEXION_JOINTS) == 10
+    assert len(DOF_NAMES) == 3 * len(SPHERICAL_JOINTS) + len(FLEXION_JOINTS) == 22
+    assert len(POSE_NAMES) == 25
+    counted = {"torso": 1, "shoulder": 6, "elbow": 2, "hip": 6, "knee": 2, "neck": 0}
+    assert {joint: sum(joint in name for name in ANGLE_NAMES) for joint in counted} == counted
+    assert len(ANGLE_NAMES) == 17
+    assert {n for n in ANGLE_NAMES if "torso" in n} == {"torso_y"}
+
+
+@pytest.mark.parametrize(
+    ("limb", "angles_deg", "points"),
+    [
+        ("r_upper_arm", {"r_shoulder_z": 0.0}, [0, 1, 0]),
+        ("r_upper_arm", {"r_shoulder_z": 90.0}, [-1, 0, 0]),
+        ("r_upper_arm", {}, [0, -1, 0]),
+        ("l_upper_arm", {"l_shoulder_z": 270.0}, [1, 0, 0]),
+        ("l_upper_leg", {}, [0, -1, 0]),
+        ("r_upper_leg", {"r_hip_x": 90.0}, [0, 0, 1]),
+        ("l_upper_arm", {"l_shoulder_x": -90.0}, [0, 0, -1]),
+    ],
+    ids=["up", "right out", "hanging", "left out", "leg down", "thigh forward", "arm back"],
+)
+def test_limbs_point_where_the_conventions_say(
+    limb: str, angles_deg: dict[str, float], points: list[float]
+) -> None:
+    """C3, C4, P8: the person's right is -x, forward is +z."""
+    assert axis(limb, **angles_deg) == pytest.approx(points, abs=1e-12)
+
+
+@given(poses)
+def test_the_chain_is_the_papers_transforms(pose: Vector) -> None:
+    """P8: M_W^N = T R_y R_x (R_z innermost), M_N^S = T R_z R_x R_y, M_S^F = T R_x."""
+    frames = limb_frames(BODY, pose)
+    value = {name: pose[i] for name, i in POSE_INDEX.items()}
+    navel = Rotation.from_euler(
+        "YXZ", [value["torso_y"], value["torso_x"], value["torso_z"]], degrees=True
+    )
+    for side, sign in (("r", -1.0), ("l", 1.0)):
+        for joint, upper, lower, place in (
+            ("shoulder", "upper_arm", "lower_arm", (sign * BODY[26], BODY[27], 0.0)),
+            ("hip", "upper_leg", "lower_leg", (sign * BODY[28], 0.0, 0.0)),
+        ):
+            x, y, z = (value[f"{side}_{joint}_{a}"] for a in "xyz")
+            turned = navel * spherical(x, y, z)
+            frame = frames[LIMBS.index(f"{side}_{upper}")]
+            origin = pose[:3] + navel.apply(place)
+            assert frame[:3] == pytest.approx(origin, abs=1e-12)
+            assert frame[3:] == pytest.approx(turned.as_matrix().ravel(), abs=1e-12)
+            length = getattr(thesis_bdp(1.0), f"{side}_{upper}").height
+            hinge = value[f"{side}_{'elbow' if joint == 'shoulder' else 'knee'}_x"]
+            frame = frames[LIMBS.index(f"{side}_{lower}")]
+            assert frame[:3] == pytest.approx(origin + turned.apply([0, length, 0]), abs=1e-12)
+            bent = turned * Rotation.from_euler("x", hinge, degrees=True)
+            assert frame[3:] == pytest.approx(bent.as_matrix().ravel(), abs=1e-12)
+
+
+@given(poses)
+def test_every_frame_is_a_rotation(pose: Vector) -> None:
+    """P8."""
+    for frame in limb_frames(BODY, pose):
+        turned = frame[3:].reshape(3, 3)
+        assert turned @ turned.T == pytest.approx(np.eye(3), abs=1e-12)
+        assert np.linalg.det(turned) == pytest.approx(1.0)
+
+
+def test_the_order_of_the_navels_turns_matters() -> None:
+    """P8: R_y R_x and R_x R_y differ by 0.17 for (x, y) = (30, 20) degrees; ours is the first."""
+    turned = limb_frames(BODY, posed(torso_x=30.0, torso_y=20.0))[0, 3:].reshape(3, 3)
+    x, y = (Rotation.from_euler(a, d, degrees=True) for a, d in (("x", 30.0), ("y", 20.0)))
+    assert turned == pytest.approx((y * x).as_matrix(), abs=1e-12)
+    assert np.abs(turned - (x * y).as_matrix()).max() == pytest.approx(0.17, abs=5e-3)
+
+
+@given(st.floats(0.0, 180.0), st.floats(-140.0, 140.0))
+def test_both_signs_of_theta_y_span_the_same_poses(shoulder_deg: float, elbow_deg: float) -> None:
+    """C5: (+90, e) and (-90, -e) are twins."""
+    one = posed(r_shoulder_z=shoulder_deg, r_shoulder_y=90.0, r_elbow_x=elbow_deg)
+    twin = posed(r_shoulder_z=shoulder_deg, r_shoulder_y=-90.0, r_elbow_x=-elbow_deg)
+    assert segments(BODY, one) == pytest.approx(segments(BODY, twin), abs=1e-12)
+
+
+@pytest.mark.parametrize(("side", "sign"), [("r", -1.0), ("l", 1.0)])
+def test_positive_flexion_of_a_hanging_arm_bends_outwards_and_up(side: str, sign: float) -> None:
+    """C5: within the frontal plane, by the theta_Y of a resting body; -theta_Y bends inwards."""
+    outward = posed()[POSE_INDEX[f"{side}_shoulder_y"]]
+    out = axis(f"{side}_lower_arm", **{f"{side}_elbow_x": 60.0})
+    assert out == pytest.approx([sign * np.sin(np.pi / 3), -0.5, 0.0], abs=1e-12)
+    inwards = {f"{side}_elbow_x": 60.0, f"{side}_shoulder_y": -outward}
+    assert axis(f"{side}_lower_arm", **inwards) == pytest.approx([-out[0], -0.5, 0], abs=1e-12)
+
+
+@given(st.floats(0.0, 75.0))
+def test_a_knee_bent_twice_as_far_keeps_the_foot_under_the_hip(hip_deg: float) -> None:
+    """C6, P34: exact for thigh = shank."""
+    leg = Elliptic(0.05, 0.05, 0.28)
+    equal = msgspec.structs.replace(
+        thesis_bdp(1.0), **{f"{s}_{p}_leg": leg for s in "rl" for p in ("upper", "lower")}
+    )
+    limb = segments(body_vector(equal), posed(r_hip_x=hip_deg, r_knee_x=-2.0 * hip_deg))
+    hip, foot = limb[LIMBS.index("r_upper_leg"), 0], limb[LIMBS.index("r_lower_leg"), 1]
+    assert foot[[0, 2]] == pytest.approx(hip[[0, 2]], abs=1e-12)
+
+
+def test_with_the_thesis_legs_the_foot_is_three_percent_off() -> None:
+    """C6: thigh 46, shank 52: 0.03 statures at 60 degrees."""
+    limb = segments(BODY, posed(r_hip_x=60.0, r_knee_x=-120.0))
+    off = limb[LIMBS.index("r_lower_leg"), 1, 2] - limb[LIMBS.index("r_upper_leg"), 0, 2]
+    assert abs(off) == pytest.approx(0.03, abs=2e-3)
+
+
+def test_the_theses_body_adds_up() -> None:
+    """T4, T5, M18: head, torso and legs make 175; a trunk is 40 wide, not 80."""
+    body = thesis_bdp(175.0)
+    assert stature(body) == pytest.approx(175.0)
+    assert sum(THESIS_RATIOS[part] for part in ("head", "torso", "upper_leg", "lower_leg")) == 175
+    assert [2 * body.torso.long_radius, 2 * body.r_upper_arm.radius] == [40.0, 10.0]
+    assert body.scaled(2.0) == thesis_bdp(350.0)
+
+
+def test_limits_are_the_documents() -> None:
+    """P30, P35, C7: the thesis counts from +x, 90 degrees more than theta_Z."""
+    thesis = {"neck_z": (45.0, 135.0), "torso_z": (45.0, 135.0)}
+    for name, (low, high) in thesis.items():
+        assert LIMITS_DEG[name] == (low - 90.0, high - 90.0)
+    assert LIMITS_DEG["r_shoulder_z"] == (0.0, 180.0)
+    assert LIMITS_DEG["l_shoulder_z"] == (180.0, 360.0)
+    assert LIMITS_DEG["r_shoulder_x"] == LIMITS_DEG["l_shoulder_x"] == (-180.0, 180.0)
+    assert LIMITS_DEG["r_knee_x"] == LIMITS_DEG["l_knee_x"] == (-150.0, 0.0)
+    for side in "rl":  # 240..300 of the thesis are within ours
+        low, high = LIMITS_DEG[f"{side}_hip_z"]
+        assert low <= 150.0
+        assert high >= 210.0
+
+
+def test_landmarks_of_a_standing_body_lie_where_bodies_bend() -> None:
+    """Mean adult heights: hip 0.530, knee 0.285, ankle 0.039 of the stature, chin up 0.84."""
+    places = dict(zip(JOINT_NAMES, joints(BODY, rest_pose()), strict=True))
+    sole = segments(BODY, rest_pose())[:, :, 1].min()
+    top = places["neck"][1] - sole
+    for name, height in (("hip", 0.530), ("knee", 0.285), ("ankle", 0.039)):
+        for side in "rl":
+            assert (places[f"{side}_{name}"][1] - sole) / top == pytest.approx(height / 0.84)
+    assert places["pelvis"][1] == pytest.approx(places["l_hip"][1])
+    assert places["l_shoulder"][0] == -places["r_shoulder"][0] > 0
+
+
+@given(poses)
+def test_landmarks_of_a_limb_keep_their_distances_while_it_is_straight(pose: Vector) -> None:
+    """Elbow and wrist on the arm's line: what `joints_m` says of a straight arm is straight."""
+    pose[POSE_INDEX["l_elbow_x"]] = 0.0
+    places = dict(zip(JOINT_NAMES, joints(BODY, pose), strict=True))
+    upper = places["l_elbow"] - places["l_shoulder"]
+    lower = places["l_wrist"] - places["l_elbow"]
+    assert np.linalg.norm(np.cross(upper, lower)) == pytest.approx(0.0, abs=1e-12)
+    ratio = np.linalg.norm(lower) / np.linalg.norm(upper)
+    assert ratio == pytest.approx(0.146 / 0.186, abs=0.01)  # forearm over upper arm, adults
+
+
+@pytest.mark.parametrize(
+    ("angle_deg", "wrapped"), [(190.0, -170.0), (-180.0, 180.0), (540.0, 180.0), (-10.0, -10.0)]
+)
+def test_wrapped_angles_lie_in_one_turn(angle_deg: float, wrapped: float) -> None:
+    assert wrapped_deg(angle_deg) == wrapped
