@@ -3,6 +3,7 @@
 import contextlib
 import fcntl
 import io
+import os
 import select
 import signal
 import subprocess
@@ -22,22 +23,28 @@ class Broken(RuntimeError):
 
 
 class Child:
-    """A process that answers lines with bytes; it has nothing to save and is ended by a kill."""
+    """A process that answers lines with bytes; it has nothing to save and is ended by a kill.
+
+    It gets the number of the pipe that it answers on as its argument.
+    """
 
     def __init__(self, module: str, stall_s: float) -> None:
         """Start it; when it gives nothing for `stall_s` it counts as stuck."""
         self._stall_s = stall_s
+        # A pipe of its own: what libraries print from their import on must not mix with answers.
+        read_end, write_end = os.pipe()
         # -P: a stranger's numpy.py in the working directory is not ours to run.
         self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", module],
+            [sys.executable, "-P", "-m", module, str(write_end)],
             stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             bufsize=0,
+            pass_fds=[write_end],
         )
-        # Unbuffered pipes are plain files, which Popen's type does not say.
+        os.close(write_end)
         self._requests = cast(io.FileIO, self._process.stdin)
-        self._answers = cast(io.FileIO, self._process.stdout)
+        self._answers = io.FileIO(read_end)
         self._poll = select.poll()
         self._poll.register(self._answers, select.POLLIN)
         if hasattr(fcntl, "F_SETPIPE_SZ"):
@@ -83,7 +90,7 @@ class Child:
     def close(self) -> None:
         """End it and let go of its pipes."""
         self.kill()
-        with self._process:
+        with self._process, self._answers:
             pass
 
     def _last_words(self) -> str:

@@ -1,4 +1,4 @@
-"""The child that decodes: `python -m common.decoder` answers one source a line."""
+"""The child that decodes: `python -m common.decoder PIPE` answers one source a line."""
 
 import itertools
 import json
@@ -37,9 +37,7 @@ def main() -> None:
     # Ctrl-C reaches the asker too, who ends this process: it must not look like a broken film.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     cv2.setNumThreads(1)
-    # What libraries print must not mix with the answers.
-    answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    answers = os.fdopen(int(sys.argv[1]), "wb")
     for line in sys.stdin:
         serve(json.loads(line), answers)
         answers.flush()

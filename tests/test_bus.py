@@ -1,5 +1,6 @@
 """The bus, live over real sessions on the loopback and local in one process."""
 
+import signal
 import socket
 import subprocess
 import sys
@@ -245,6 +246,19 @@ def test_a_killed_process_is_seen_to_go(place: Place) -> None:
     assert alive.take(SOON_S) == Alive("viewer-1", alive=False)
 
 
+def test_a_process_that_hangs_counts_as_gone(place: Place) -> None:
+    """Zenoh's own lease of 10 s would be 150 frames."""
+    alive = place.hub.watch_alive()
+    part = subprocess.Popen([sys.executable, "-c", PART, place.settings.endpoint, ROOM])
+    try:
+        assert alive.take(SOON_S) == Alive("viewer-1", alive=True)
+        part.send_signal(signal.SIGSTOP)
+        assert alive.take(SOON_S) == Alive("viewer-1", alive=False)
+    finally:
+        part.kill()
+        part.wait()
+
+
 def test_who_watches_late_hears_who_lives_already(place: Place) -> None:
     with ExitStack() as doors:
         client(place, doors).announce("animator")
@@ -266,8 +280,10 @@ def test_a_client_without_a_hub_says_so_in_bounded_time(endpoint: str) -> None:
 def test_a_port_that_accepts_and_stays_silent_is_no_hub() -> None:
     with socket.create_server(("127.0.0.1", 0)) as silent:
         endpoint = f"tcp/127.0.0.1:{silent.getsockname()[1]}"
+        began_s = time.monotonic()
         with pytest.raises(BusError), open_client(BusSettings(endpoint), ROOM, 0.1):
             pass
+    assert time.monotonic() - began_s < SOON_S
 
 
 def test_a_client_waits_for_a_hub_that_comes_later(endpoint: str) -> None:
@@ -341,6 +357,16 @@ def test_the_local_bus_keeps_answers_and_announces_as_the_live_one() -> None:
     watcher = bus.watch_alive()
     bus.announce("viewer-2")
     assert watcher.drain() == [Alive("viewer-1", alive=True), Alive("viewer-2", alive=True)]
+
+
+def test_an_answer_that_fails_is_none_and_is_logged(caplog: pytest.LogCaptureFixture) -> None:
+    def reply(question: ClockQuestion) -> ClockAnswer:
+        raise KeyError(f"viewer {question.viewer} is not known")
+
+    bus = LocalBus(ROOM)
+    bus.answer(ClockQuestion, reply)
+    assert bus.ask(ClockQuestion(viewer=2, ready=True), ClockAnswer, 0.0) is None
+    assert "viewer 2 is not known" in caplog.text
 
 
 def test_the_local_bus_is_a_bus() -> None:

@@ -1,5 +1,6 @@
 """Frames through the child that decodes: real files, broken files, a child that dies or hangs."""
 
+import io
 import os
 import signal
 import struct
@@ -9,10 +10,21 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+import psutil
 import pytest
 
 from common.clips import View
-from common.decoding import Decoder, DecoderDied, Picture, Undecodable
+from common.decoding import (
+    FRAME,
+    HEADER,
+    INFO,
+    MAGIC,
+    STALL_S,
+    Decoder,
+    DecoderDied,
+    Picture,
+    Undecodable,
+)
 from viewer.capture import WAITING, Frame, Live, RoomClock, recorded
 
 SIZE = (64, 48)
@@ -79,11 +91,11 @@ def test_every_frame_comes_in_order_at_the_size_asked_for(tmp_path: Path, decode
 
 
 def test_a_pixel_is_the_mean_of_what_it_covers(tmp_path: Path, decoder: Decoder) -> None:
-    """P1: pictures are resampled by area, so halving means the mean of four."""
-    full = np.random.default_rng(3).integers(0, 256, (96, 128, 3)).astype(np.uint8)
+    """P1: pictures are resampled by area, so a third of the size means the mean of nine."""
+    full = np.random.default_rng(3).integers(0, 256, (144, 192, 3)).astype(np.uint8)
     cv2.imwrite(str(tmp_path / "plate.png"), full)
     (still,) = decoder.frames(str(tmp_path / "plate.png"), SIZE)
-    means = full.reshape(48, 2, 64, 2, 3).mean(axis=(1, 3))
+    means = full.reshape(48, 3, 64, 3, 3).mean(axis=(1, 3))
     assert np.abs(still.picture - means).max() <= 0.5
 
 
@@ -154,6 +166,54 @@ def test_a_stuck_child_is_waited_for_in_bounded_time(tmp_path: Path) -> None:
         os.kill(own.pid, signal.SIGSTOP)
         with pytest.raises(DecoderDied, match=r"gave nothing for 0\.3 s"):
             list(frames)
+
+
+def test_ctrl_c_is_not_taken_for_a_broken_film(tmp_path: Path) -> None:
+    """A terminal sends it to the child as well as to the process that will end it in order."""
+    video = written(tmp_path / "cam1.avi", frames=400, size=(320, 240))
+    with Decoder() as own:
+        frames = own.frames(video, (320, 240))
+        next(frames)
+        assert own.pid is not None
+        os.kill(own.pid, signal.SIGINT)
+        assert len(list(frames)) == 399
+
+
+def test_what_opencv_prints_does_not_mix_with_the_pictures(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its log goes to standard output from the level INFO on."""
+    monkeypatch.setenv("OPENCV_LOG_LEVEL", "VERBOSE")
+    with Decoder() as own:
+        assert len(list(own.frames(written(tmp_path / "cam1.avi"), SIZE))) == FRAMES
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        b"INFO: a library talks" * 99,
+        HEADER.pack(MAGIC, FRAME, 0, 0.0, 7) + bytes(7),
+        HEADER.pack(MAGIC, INFO, 0, 0.0, 1 << 31),
+    ],
+    ids=["words", "short picture", "endless"],
+)
+def test_what_is_no_answer_ends_the_child(answer: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Babbler:
+        def __init__(self, module: str, stall_s: float) -> None:
+            self.said = io.BytesIO(answer)
+
+        def ask(self, request: bytes) -> None: ...
+
+        def read_into(self, room: memoryview) -> None:
+            assert self.said.readinto(room) == len(room)
+
+        def close(self) -> None: ...
+
+    monkeypatch.setattr("common.decoding.Child", Babbler)
+    own = Decoder()
+    with pytest.raises(DecoderDied, match="sent what is no answer"):
+        list(own.frames("cam1.avi", SIZE))
+    assert own.pid is None
 
 
 def test_a_film_cut_off_gives_what_it_has_and_says_how_much(
@@ -243,6 +303,20 @@ def test_a_live_view_can_be_left_at_any_moment(tmp_path: Path) -> None:
         assert live.take(0.05) is None
         assert not live.over
     assert live.over
+
+
+def test_a_view_whose_decoder_is_stuck_can_be_left(tmp_path: Path) -> None:
+    large = (640, 480)
+    video = written(tmp_path / "cam1.avi", frames=200, size=large)
+    began_s = time.monotonic()
+    with Live(View(1, video, large, large, 100.0, 200), 1, RoomClock(began_s)) as live:
+        assert live.take(5.0) is not None
+        child = max(psutil.Process().children(), key=psutil.Process.create_time)
+        child.suspend()
+        while live.take(0.2) is not None:
+            pass
+        assert not live.over
+    assert time.monotonic() - began_s < STALL_S / 2
 
 
 @pytest.mark.parametrize("folder", ["kth_160x120", "le2i", "weizmann"])
