@@ -1,0 +1,144 @@
+"""How far every pixel is from the empty room, shadows forgiven (section 1: subtraction)."""
+
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from viewer.background import Floats, Frame
+
+Bytes = NDArray[np.uint8]
+Triple = tuple[np.float32, np.float32, np.float32]
+KERNEL: Final = njit(cache=True, fastmath=True, error_model="numpy")
+"""A whole-picture pass; compiled once and kept on disk."""
+INLINE: Final = njit(fastmath=True, error_model="numpy", inline="always")
+"""What a pass does at a pixel; calls that carry arrays would cost more than the work."""
+BLUE, GREEN, RED = np.float32(0.114), np.float32(0.587), np.float32(0.299)
+ONE, WHITE = np.float32(1.0), np.float32(255.0)
+
+DIFFERS: Final = np.float32(4.75)
+"""Distance from the room, in spreads, at which a pixel is as likely person as room."""
+SEED: Final = np.float32(7.0)
+"""Distance that only things reach: where it is passed, a region is looked for."""
+DARKEST: Final = np.float32(0.7)
+"""A soft shadow leaves at least this share of the light."""
+SHADE: Final = np.float32(3.0)
+"""Spreads by which a shadow may change the colour at equal brightness."""
+STEEP: Final = np.float32(0.25)
+"""Evidence of one spread."""
+SURE: Final = np.float32(2.0)
+"""Evidence stops here, so that one pixel cannot outvote its neighbours."""
+PULL: Final = np.float32(0.3)
+"""What a neighbour at an edge weighs against a pixel's own evidence."""
+CORNER: Final = np.float32(0.7)
+"""What a neighbour at a corner weighs against one at an edge."""
+FOLLOW: Final = np.float32(0.2)
+"""Share of a difference that the room takes on then: a time constant of 2.4 s at 15 fps."""
+
+
+@KERNEL
+def seeds(frame: Frame, room: Floats, weight: Floats, gain: Floats, cell: int) -> Bytes:
+    """(rows, columns) of cells, 1 where one of two pixels of a cell is surely no room."""
+    height, width = frame.shape[:2]
+    out = np.zeros(((height + cell - 1) // cell, (width + cell - 1) // cell), np.uint8)
+    for i in range(out.shape[0]):
+        for k in (0, cell // 2):
+            y = min(i * cell + k, height - 1)
+            given, empty, sure = frame[y], room[y], weight[y]
+            for j in range(out.shape[1]):
+                x = min(j * cell + k, width - 1)
+                out[i, j] |= _unshaded(given, empty, sure, gain, x) > SEED * SEED
+    return out
+
+
+@KERNEL
+def label(
+    mask: Bytes, frame: Frame, room: Floats, weight: Floats, gain: Floats, cells: Bytes, cell: int
+) -> None:
+    """Tell person from room inside the cells: a pixel's evidence and its neighbours'."""
+    height, width = mask.shape
+    evidence = np.zeros((height, width), np.float32)
+    for i, j in np.argwhere(cells):
+        for y in range(i * cell, min((i + 1) * cell, height)):
+            given, empty, sure = frame[y], room[y], weight[y]
+            for x in range(j * cell, min((j + 1) * cell, width)):
+                far = np.sqrt(_unshaded(given, empty, sure, gain, x))
+                evidence[y, x] = min(max((far - DIFFERS) * STEEP, -SURE), SURE)
+    settle(mask, evidence, cells, cell, PULL)
+
+
+@KERNEL
+def settle(mask: Bytes, evidence: Floats, cells: Bytes, cell: int, pull: np.float32) -> None:
+    """Set the mask where a pixel and its eight neighbours together speak for the person."""
+    height, width = mask.shape
+    for i, j in np.argwhere(cells):
+        for y in range(i * cell, min((i + 1) * cell, height)):
+            up, down = max(y - 1, 0), min(y + 1, height - 1)
+            for x in range(j * cell, min((j + 1) * cell, width)):
+                left, right = max(x - 1, 0), min(x + 1, width - 1)
+                edges = evidence[up, x] + evidence[down, x] + evidence[y, left] + evidence[y, right]
+                corners = evidence[up, left] + evidence[up, right]
+                corners += evidence[down, left] + evidence[down, right]
+                mask[y, x] = evidence[y, x] + pull * (edges + CORNER * corners) > 0
+
+
+@KERNEL
+def followed(
+    frame: Frame,
+    room: Floats,
+    weight: Floats,
+    gain: Floats,
+    corners: tuple[int, int, int, int],
+) -> Floats:
+    """The room, a little nearer to what a frame shows outside (left, right, top, bottom)."""
+    height, width = frame.shape[:2]
+    left, right, top, bottom = corners
+    out = room.copy()
+    for y in range(height):
+        given, empty, sure, now = frame[y], room[y], weight[y], out[y]
+        for x in range(width):
+            calm = _distance(given, empty, sure, gain, x) < DIFFERS * DIFFERS
+            near = (left <= x) & (x <= right) & (top <= y) & (y <= bottom)
+            rate = FOLLOW if calm & (not near) else np.float32(0)
+            b, g, r = _off(given, empty, gain, x)
+            now[x, 0] += rate * b / gain[0]
+            now[x, 1] += rate * g / gain[1]
+            now[x, 2] += rate * r / gain[2]
+    return out
+
+
+@INLINE
+def _off(given: Bytes, room: Floats, gain: Floats, x: int) -> Triple:
+    """How a pixel of a row differs from the room in this light, per channel."""
+    return (
+        np.float32(given[x, 0]) - min(room[x, 0] * gain[0], WHITE),
+        np.float32(given[x, 1]) - min(room[x, 1] * gain[1], WHITE),
+        np.float32(given[x, 2]) - min(room[x, 2] * gain[2], WHITE),
+    )
+
+
+@INLINE
+def _distance(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> np.float32:
+    """How far a pixel of a row is from the room, in spreads squared."""
+    b, g, r = _off(given, room, gain, x)
+    luma = BLUE * b + GREEN * g + RED * r
+    return luma * luma * weight[x, 0] + _square(b - luma, g - luma, r - luma) * weight[x, 1]
+
+
+@INLINE
+def _unshaded(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> np.float32:
+    """The same, but by colour alone where a soft shadow may lie: the room, only darker."""
+    b, g, r = _off(given, room, gain, x)
+    due_b, due_g, due_r = given[x, 0] - b, given[x, 1] - g, given[x, 2] - r
+    luma = BLUE * b + GREEN * g + RED * r
+    total = luma * luma * weight[x, 0] + _square(b - luma, g - luma, r - luma) * weight[x, 1]
+    part = luma / max(BLUE * due_b + GREEN * due_g + RED * due_r, ONE)
+    colour = _square(b - part * due_b, g - part * due_g, r - part * due_r) * weight[x, 1]
+    shaded = (part < 0) & (part > DARKEST - ONE) & (colour < SHADE * SHADE)
+    return min(colour, total) if shaded else total
+
+
+@INLINE
+def _square(b: np.float32, g: np.float32, r: np.float32) -> np.float32:
+    return b * b + g * g + r * r

@@ -1,0 +1,144 @@
+"""The silhouette of the one person in a frame (section 1: subtraction, threshold, cleaning)."""
+
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from common.config import SilhouetteSettings
+from common.messages import Box
+from viewer.background import Background, Floats, Frame, light_gain
+from viewer.difference import Bytes, followed, label, seeds
+from viewer.outline import redraw
+
+Mask = NDArray[np.bool_]
+"""A silhouette: (height, width), True inside the person."""
+
+
+ROUNDS: Final = 2
+"""How often the outline is drawn again; one pixel further each time."""
+CELLS: Final = 60
+"""Rows of the coarse picture on which regions are told apart."""
+HOLE_SHARE: Final = 0.001
+"""Holes up to this share of the picture are closed; between arm and trunk there are larger."""
+PART_SHARE: Final = 0.0002
+"""Specks below this share of the picture are dropped."""
+FOLLOW_EVERY: Final = 8
+"""Frames between two looks at the slow light."""
+
+
+class Seen(NamedTuple):
+    """What of a person a frame shows."""
+
+    mask: Mask
+    box: Box | None
+    """None where nobody is seen; the mask is empty then."""
+    area_px: int
+    blobs: int
+    """How many regions were large enough to be a person (P4)."""
+    cut: bool
+    """The silhouette touches the picture's border."""
+
+
+class State(NamedTuple):
+    """What one frame hands to the next."""
+
+    settings: SilhouetteSettings
+    room: Floats
+    """(H, W, 3) grey levels of the empty room in the slow light of the day."""
+    weight: Floats
+    """(H, W, 2) 1 / spread^2 of brightness and colour."""
+    frames: int
+
+
+def init(background: Background, settings: SilhouetteSettings) -> State:
+    """Begin with the room as it was learnt."""
+    return State(settings, background.centre, np.float32(1) / background.spread**2, 0)
+
+
+def step(state: State, frame: Frame, near_px: tuple[float, float] | None) -> tuple[State, Seen]:
+    """Find the person in a frame.
+
+    Args:
+        state: From `init` or the step before.
+        frame: (H, W, 3) at the background's size.
+        near_px: Where the centre of the body is expected; None: the largest region is taken.
+
+    Raises:
+        ValueError: When the frame is not of the background's size.
+
+    Source: Huang & Chung 2004, section 1; requirements P3, P4, T8.
+    """
+    if frame.shape != state.room.shape:
+        raise ValueError(f"a frame of {frame.shape}, the background has {state.room.shape}")
+    gain = light_gain(frame, state.room)
+    cell = max(1, round(frame.shape[0] / CELLS))
+    found = seeds(frame, state.room, state.weight, gain, cell)
+    cells, blobs = _choose(found, cell, state.settings.min_height_share, near_px)
+    mask = np.zeros(frame.shape[:2], np.uint8)
+    if blobs:
+        label(mask, frame, state.room, state.weight, gain, cells, cell)
+        for _ in range(ROUNDS if cell > 2 else 1):
+            _tidy(mask)
+            inside = cv2.boxFilter(
+                mask, -1, (3, 3), normalize=False, borderType=cv2.BORDER_REPLICATE
+            )
+            redraw(mask, inside, frame, state.room, gain, cells, cell)
+        _tidy(mask)
+    seen = _seen(mask, blobs, state.settings.min_height_share)
+    return _follow(state, frame, gain, seen.box), seen
+
+
+def _choose(
+    found: Bytes, cell: int, least_share: float, near_px: tuple[float, float] | None
+) -> tuple[Bytes, int]:
+    """The cells around the person's region, and how many regions could be a person."""
+    around = np.ones((3, 3), np.uint8)
+    joined = cv2.dilate(found, around)
+    _, labels, stats, centres = cv2.connectedComponentsWithStatsWithAlgorithm(
+        joined, 8, cv2.CV_32S, cv2.CCL_GRANA
+    )
+    # joining made every region two cells taller
+    tall = stats[1:, cv2.CC_STAT_HEIGHT] - 2 >= least_share * found.shape[0]
+    large = 1 + np.flatnonzero(tall)
+    if not large.size:
+        return joined, 0
+    if near_px is None:
+        best = large[np.argmax(stats[large, cv2.CC_STAT_AREA])]
+    else:
+        off = (centres[large] + 0.5) * cell - near_px
+        best = large[np.argmin(np.hypot(off[:, 0], off[:, 1]))]
+    return (labels == best).astype(np.uint8), int(large.size)
+
+
+def _tidy(mask: Bytes) -> None:
+    """Close small holes and drop specks, in place."""
+    contours, tree = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+    for number, contour in enumerate(contours):
+        hole = tree[0, number, 3] >= 0
+        limit = (HOLE_SHARE if hole else PART_SHARE) * mask.size
+        if len(contour) < 4 * limit and cv2.contourArea(contour) < limit:
+            cv2.drawContours(mask, contours, number, int(hole), cv2.FILLED)
+
+
+def _seen(mask: Bytes, blobs: int, least_share: float) -> Seen:
+    left, top, width, height = cv2.boundingRect(mask)
+    if height < least_share * mask.shape[0]:
+        return Seen(np.zeros(mask.shape, np.bool_), None, 0, 0, cut=False)
+    box = Box(left=left, right=left + width - 1, top=top, bottom=top + height - 1)
+    cut = not (left and top) or left + width == mask.shape[1] or top + height == mask.shape[0]
+    return Seen(mask.view(np.bool_), box, cv2.countNonZero(mask), blobs, cut)
+
+
+def _follow(state: State, frame: Frame, gain: Floats, box: Box | None) -> State:
+    """Let the room take on the slow light, but nothing near the person."""
+    frames = state.frames + 1
+    if frames % FOLLOW_EVERY:
+        return state._replace(frames=frames)
+    margin = frame.shape[0] // 12
+    corners = (1, 0, 1, 0)
+    if box is not None:
+        corners = (box.left - margin, box.right + margin, box.top - margin, box.bottom + margin)
+    room = followed(frame, state.room, state.weight, gain, corners)
+    return state._replace(room=room, frames=frames)
