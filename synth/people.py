@@ -102,9 +102,9 @@ MEASURES: Final[dict[str, tuple[float, float, float]]] = {
     "upper_arm_radius_m": (0.029, 0.026, 0.004),
     "forearm_radius_m": (0.0205, 0.0182, 0.002),
     "thigh_radius_m": (0.058, 0.053, 0.008),
-    "shin_radius_m": (0.037, 0.031, 0.006),
+    "shin_radius_m": (0.037, 0.031, 0.008),
     "head_halfwidth_m": (0.049, 0.049, 0.002),
-    "head_halfdepth_m": (0.062, 0.063, 0.004),
+    "head_halfdepth_m": (0.064, 0.066, 0.01),
 }
 """Shares of the stature: middle of men, middle of women, largest departure. Chosen so that a
 dozen people differ at least as much as the performers of the development clips do."""
@@ -131,9 +131,9 @@ STYLE_RANGES: Final[dict[str, tuple[float, float]]] = {
     "both_to": (96.0, 142.0),
     "over": (146.0, 166.0),
     "yaw": (-4.0, 4.0),
-    "snap": (0.7, 1.45),
+    "snap": (0.65, 1.55),
     "cross": (2.5, 9.0),
-    "phase": (0.0, 1.0),
+    "phase": (0.0, 1.25),
     "delay": (0.0, 0.05),
     "x0": (-0.09, 0.09),
     "z0": (-0.07, 0.07),

@@ -121,12 +121,12 @@ def _placed(mesh: Mesh, motion: Motion) -> NDArray[np.float64]:
 
 
 def _moments(places: NDArray[np.float64], i: int, smeared: bool) -> list[NDArray[np.float64]]:
-    """The surface at the frame's time, and before and after it while the shutter is open."""
+    """The surface at the frame's time, then before and after it while the shutter is open."""
     if not smeared:
         return [places[i]]
     before, after = places[max(i - 1, 0)], places[min(i + 1, len(places) - 1)]
-    half = SHUTTER / 2 * (after - before) / 2
-    return [places[i], places[i] - half, places[i] + half]
+    frame = (after - before) / 2
+    return [places[i] + SHUTTER * share * frame for share in (0.0, -0.4, -0.2, 0.2, 0.4)]
 
 
 def _bodies(scene: _Scene, moments: list[NDArray[np.float64]]) -> list[Body]:

@@ -18,8 +18,10 @@ LIGHT_MAP_PX: Final = 128
 LIGHT_REACH_M: Final = 2.3
 """How far from the middle of the room the lamps' pictures reach."""
 MIDDLE_M: Final = (0.0, 0.9, 0.0)
+OVERHEAD_M: Final = 2.3
+"""What is higher gets no shadow: the ceiling is not behind anybody."""
 BESIDE_M: Final = 1.0
-"""Nothing nearer to a lamp than this gets a shadow: nobody is that tall."""
+"""What is not that far ahead of a lamp gets no shadow: it is beside or behind it."""
 LAMP_SPREAD_M: Final = 0.25
 """Half the size of the lamp: what stands in the room throws soft shadows, too."""
 SAMPLES: Final = 2
@@ -66,17 +68,23 @@ def furnished(seed: int, rig: Rig) -> Room:
     for n in range(len(rig.cameras)):
         picture, points = _seen(rig, n, boxes, key, rng)
         pictures.append(picture)
-        maps.append(tuple(lamp_pixels(lamp, points).astype(np.float32) for lamp in lamps))
+        maps.append(tuple(_shadow_map(lamp, points) for lamp in lamps))
     return Room(tuple(pictures), lamps, tuple(maps))
+
+
+def _shadow_map(lamp: Lamp, points_m: NDArray[np.float64]) -> NDArray[np.float32]:
+    """Where in the lamp's picture the points (h, w, 3) lie; outside for high ones."""
+    pixels = lamp_pixels(lamp, points_m)
+    ahead = (points_m - lamp.place_m) @ lamp.rotation[2]
+    pixels[(points_m[..., 1] > OVERHEAD_M) | (ahead < BESIDE_M)] = -LIGHT_MAP_PX
+    return pixels.astype(np.float32)
 
 
 def lamp_pixels(lamp: Lamp, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
     """Where points (..., 3) lie in a lamp's picture; outside of it what is beside the lamp."""
     seen = (points_m - lamp.place_m) @ lamp.rotation.T
-    ahead = seen[..., 2:]
-    plane = seen[..., :2] / np.where(ahead > BESIDE_M, ahead, 1.0)
-    pixels: NDArray[np.float64] = plane * lamp.focal_px + LIGHT_MAP_PX / 2
-    return np.where(ahead > BESIDE_M, pixels, -LIGHT_MAP_PX)
+    pixels: NDArray[np.float64] = seen[..., :2] / np.maximum(seen[..., 2:], 0.1) * lamp.focal_px
+    return pixels + LIGHT_MAP_PX / 2
 
 
 def _lamp(place: Vector) -> Lamp:

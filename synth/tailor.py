@@ -8,6 +8,8 @@ from common.body import Vector
 from synth.people import Person
 from synth.rings import Ring
 
+SKIRT: Final = 3.2
+"""How square a hanging shirt is: two thighs are behind its front."""
 STEP_M: Final = 0.002
 """Length over which cloth ends: a hem is a step in the radius."""
 
@@ -42,16 +44,18 @@ def trunk(p: Person, at: dict[str, Vector]) -> list[Ring]:
         ring(0.64, chest[0], chest[1] + bust, 1.0, 0.006 + bust, 2.6),
         ring(0.76, 0.99 * chest[0], chest[1], 1.0, 0.0, 2.6),
         ring(0.84, 0.4 * chest[0] + 0.68 * shoulder, 0.86 * chest[1], 1.0, -0.004),
-        ring(0.89, 0.92 * shoulder, 0.72 * chest[1], 1.0, -0.008, 2.2),
+        ring(0.89, 0.98 * shoulder, 0.74 * chest[1], 1.0, -0.008, 2.2),
         ring(0.935, 0.62 * shoulder, 0.6 * chest[1], 1.0, -0.008, 2.0),
         ring(0.975, 0.3 * shoulder + 0.6 * neck_radius, 0.85 * neck_radius, 1.0, -0.008, 2.0),
         ring(1.01, 0.9 * neck_radius, 0.7 * neck_radius, 1.0, -0.005, 2.0),
     ]
-    return _hemmed(rings, hem, top)
+    thigh_depth = 1.1 * m["thigh_radius_m"] + look.loose_legs_m
+    return _hemmed(rings, hem, top, thigh_depth)
 
 
-def _hemmed(rings: list[Ring], hem: float, loose: float) -> list[Ring]:
-    """Trousers below the hem, the shirt over them: it hangs straight down from the widest ring."""
+def _hemmed(rings: list[Ring], hem: float, loose: float, thigh_depth: float) -> list[Ring]:
+    """Trousers below the hem, the shirt over them: it hangs straight down from the widest ring,
+    before the thighs."""
     widest = rings[2]
     drop = max(hem, widest.centre[1])
     heights = [ring.centre[1] for ring in rings]
@@ -59,7 +63,8 @@ def _hemmed(rings: list[Ring], hem: float, loose: float) -> list[Ring]:
         float(np.interp(drop, heights, values))
         for values in zip(*[(r.half_x, r.half_z, r.share, r.centre[2]) for r in rings], strict=True)
     )
-    edge = Ring((0.0, hem, dz), x + loose, z + loose, widest.bones, share, "shirt", widest.square)
+    deep = max(z, thigh_depth - dz) + loose
+    edge = Ring((0.0, hem, dz), x + loose, deep, widest.bones, share, "shirt", SKIRT)
     tucked = edge._replace(centre=(0.0, hem - STEP_M, dz), half_x=0.9 * x, half_z=0.9 * z)
     under = [ring for ring in rings if ring.centre[1] < hem - STEP_M]
     over = [ring for ring in rings if ring.centre[1] > drop]
@@ -75,9 +80,9 @@ def arm(p: Person, at: dict[str, Vector], side: str) -> list[Ring]:
     sleeve_ends = {"none": 0.04, "short": 0.62 * upper, "long": upper + 0.97 * fore}[look.sleeve]
     arm, elbow = f"{side}_upper_arm", f"{side}_forearm"
     girth = (
-        (-0.95 * thick, 0.2 * thick, 0.0),
-        (-0.75 * thick, 0.66 * thick, 0.0),
-        (-0.35 * thick, 0.98 * thick, 0.0),
+        (-0.92 * thick, 0.25 * thick, 0.0),
+        (-0.7 * thick, 0.76 * thick, 0.0),
+        (-0.3 * thick, 1.04 * thick, 0.0),
         (0.1 * upper, 1.1 * thick, 0.0),
         (0.3 * upper, 1.1 * thick, 0.0),
         (0.5 * upper, thick, 0.0),
@@ -129,9 +134,10 @@ def leg(p: Person, at: dict[str, Vector], side: str) -> list[Ring]:
     knee_radius, ankle_radius = 0.35 * thick + 0.52 * calf, 0.66 * calf
     ends = 0.85 * thigh if look.shorts else thigh + 0.97 * shin
     girth = (
-        (-0.1 * thigh, 0.55 * thick, 0.0),
-        (-0.02 * thigh, 0.94 * thick, 0.0),
-        (0.16 * thigh, 1.0 * thick, 0.0),
+        (-0.1 * thigh, 0.3 * thick, 0.0),
+        (-0.02 * thigh, 0.68 * thick, 0.0),
+        (0.1 * thigh, 0.92 * thick, 0.0),
+        (0.24 * thigh, 1.0 * thick, 0.0),
         (0.5 * thigh, 0.3 * knee_radius + 0.68 * thick, 0.0),
         (0.8 * thigh, 0.75 * knee_radius + 0.25 * thick, 0.06),
         (0.93 * thigh, knee_radius, 0.3),
