@@ -1,22 +1,32 @@
 """The same steps as live, in one process and in lock-step: deterministic, as fast as it goes."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import msgspec
+from rich.console import Console
+from rich.progress import Progress
 
+from common import config
 from common.camera import Rig
 from common.clips import Clip, open_clip, shortfall
-from common.config import Settings
-from common.decoding import Decoder
+from common.config import Mode, Settings, SettingsError
+from common.decoding import Decoder, DecoderDied, Undecodable
+from common.footage import ClipError
 from common.messages import Body, Guide, Report, ViewerNumber
 from integrator import merge
 from integrator.pairing import Pair
+from tritrack.runs import write_run
 from viewer import track
 from viewer.capture import Frame, recorded
 from viewer.room import empty_room
+
+
+class ClipsFailed(RuntimeError):
+    """Some clips could not be tracked; what was wrong with each was said before."""
 
 
 class Tracked(NamedTuple):
@@ -119,3 +129,39 @@ def _instants(clip: Clip, decoders: Decoders) -> Iterator[dict[ViewerNumber, Fra
                 now[number] = frame
                 waiting[number] = next(streams[number], None)
         yield now
+
+
+def track_all(
+    clips: Sequence[Path],
+    out: Path,
+    mode: Mode,
+    views: tuple[ViewerNumber, ...],
+    size: str,
+    console: Console,
+) -> dict[str, Any]:
+    """Track clip after clip and write a run folder for each.
+
+    A clip that cannot be used is said and left out; the others are tracked.
+
+    Raises:
+        ClipsFailed: At the end, when any could not be used.
+        RunError: When a run folder cannot be written.
+    """
+    done: dict[str, Any] = {}
+    failed = 0
+    with Decoders() as decoders, Progress(console=console, transient=True) as progress:
+        for path in progress.track(clips, description="tracking"):
+            try:
+                settings = msgspec.structs.replace(config.load(path), mode=mode, size=size)
+                tracked = track_clip(settings, decoders, views)
+            except (SettingsError, ClipError, DecoderDied, Undecodable) as error:
+                failed += 1
+                progress.console.print(f"error: {error}", style="red", markup=False)
+                continue
+            for warning in tracked.facts["warnings"]:
+                progress.console.print(f"warning: {warning}", style="yellow", markup=False)
+            write_run(out / tracked.clip.name, tracked.bodies, settings, tracked.facts)
+            done[tracked.clip.name] = tracked.facts
+    if failed:
+        raise ClipsFailed(f"{failed} of {len(clips)} clips could not be tracked")
+    return {"clips": done}

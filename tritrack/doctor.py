@@ -1,0 +1,181 @@
+"""The installation, looked over: what is there, what is missing, what to do about it."""
+
+import os
+import shutil
+import socket
+import sys
+import tempfile
+from collections.abc import Callable
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import NamedTuple
+
+from rich.table import Table
+
+REQUIRED = {
+    "numpy": "numpy",
+    "opencv-python-headless": "cv2",
+    "eclipse-zenoh": "zenoh",
+    "hmmlearn": "hmmlearn",
+    "filterpy": "filterpy",
+    "msgspec": "msgspec",
+    "numba": "numba",
+}
+"""Distribution and the module that it brings."""
+
+
+class Finding(NamedTuple):
+    """One thing that was looked at."""
+
+    what: str
+    ok: bool
+    detail: str
+    cure: str = ""
+    needed: bool = True
+    """False: tritrack works without it, less of it."""
+
+
+def examine() -> list[Finding]:
+    """Look at everything, one after the other; nothing that fails keeps the rest from it."""
+    checks: list[Callable[[], Finding]] = [
+        _python,
+        *(
+            lambda name=name, module=module: _package(name, module)
+            for name, module in REQUIRED.items()
+        ),
+        _own_names,
+        _kernel,
+        _decoder,
+        _bus,
+        _model,
+        _page,
+        _browser,
+        _cores,
+    ]
+    return [_tried(check) for check in checks]
+
+
+def table_of(findings: list[Finding]) -> Table:
+    """The findings as a table for a person."""
+    table = Table("", "what", "found", "what to do")
+    for finding in findings:
+        mark = (
+            "[green]ok[/]"
+            if finding.ok
+            else "[red]missing[/]"
+            if finding.needed
+            else "[yellow]-[/]"
+        )
+        table.add_row(mark, finding.what, finding.detail, "" if finding.ok else finding.cure)
+    return table
+
+
+def _tried(check: Callable[[], Finding]) -> Finding:
+    try:
+        return check()
+    except Exception as error:
+        name = getattr(check, "__name__", "package").strip("_")
+        return Finding(name, False, str(error), "see what it says")
+
+
+def _python() -> Finding:
+    found = ".".join(str(part) for part in sys.version_info[:3])
+    return Finding("python", sys.version_info >= (3, 11), found, "install Python 3.11 or newer")
+
+
+def _package(name: str, module: str) -> Finding:
+    try:
+        import_module(module)
+        return Finding(name, True, version(name))
+    except (ImportError, PackageNotFoundError) as error:
+        return Finding(name, False, str(error), f"pip install {name}")
+
+
+def _own_names() -> Finding:
+    """Other packages named common or viewer exist: none of them may be found instead of ours."""
+    home = Path(__file__).resolve().parents[1]
+    foreign = [
+        name
+        for name in ("common", "viewer", "integrator", "recognizer", "animator", "synth")
+        if not str(import_module(name).__file__).startswith(str(home))
+    ]
+    return Finding(
+        "own packages",
+        not foreign,
+        ", ".join(foreign) or "all from one place",
+        "another installed package has the same name: use a virtual environment of its own",
+    )
+
+
+def _kernel() -> Finding:
+    from common.kernel import warm
+
+    return Finding("matching kernel", True, f"compiled or loaded in {warm():.1f} s")
+
+
+def _decoder() -> Finding:
+    import cv2
+    import numpy as np
+
+    from common.decoding import Decoder
+
+    with tempfile.TemporaryDirectory() as folder, Decoder() as decoder:
+        path = Path(folder) / "try.avi"
+        writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 15, (64, 48))
+        for _ in range(3):
+            writer.write(np.zeros((48, 64, 3), np.uint8))
+        writer.release()
+        came = sum(1 for _ in decoder.frames(str(path), (64, 48)))
+    return Finding(
+        "video decoder", came == 3, f"{came} of 3 frames", "reinstall opencv-python-headless"
+    )
+
+
+def _bus() -> Finding:
+    from common.bus import open_client, open_hub
+    from common.config import BusSettings
+    from common.messages import ClockAnswer, ClockQuestion
+
+    with socket.socket() as door:
+        door.bind(("127.0.0.1", 0))
+        settings = BusSettings(endpoint=f"tcp/127.0.0.1:{door.getsockname()[1]}")
+    with open_hub(settings, "doctor") as hub, open_client(settings, "doctor", 5.0) as client:
+        hub.answer(ClockQuestion, lambda _: ClockAnswer(now_s=1.0))
+        heard = client.ask(ClockQuestion(viewer=1, ready=False), ClockAnswer, 2.0)
+    cure = "allow programs to talk over 127.0.0.1"
+    return Finding("bus on loopback", heard is not None, "answered" if heard else "silent", cure)
+
+
+def _model() -> Finding:
+    from recognizer.__main__ import SHIPPED
+    from recognizer.model_file import load
+
+    model = load(SHIPPED)
+    return Finding("posture model", True, f"{len(model.names)} postures")
+
+
+def _page() -> Finding:
+    try:
+        return Finding("live page (viser)", True, version("viser"), needed=False)
+    except PackageNotFoundError:
+        return Finding(
+            "live page (viser)", False, "not installed", "pip install 'tritrack[page]'", False
+        )
+
+
+def _browser() -> Finding:
+    path = (
+        shutil.which("chromium")
+        or shutil.which("chromium-browser")
+        or shutil.which("google-chrome")
+    )
+    detail = path or "none: only the browser tests need one"
+    return Finding("browser", path is not None, detail, "install chromium", needed=False)
+
+
+def _cores() -> Finding:
+    cores = (
+        len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    )
+    return Finding("cores", cores >= 2, str(cores), "a live run wants two", needed=False)
