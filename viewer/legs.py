@@ -19,6 +19,9 @@ _SQUAT = [
     turn(LEG_LIMBS[i], **{f"{side}_hip_x": 1.0, f"{side}_knee_x": -2.0})
     for i, side in enumerate(SIDES)
 ]
+_BOTH_SQUAT = turn(
+    LEG_LIMBS[0] + LEG_LIMBS[1], r_hip_x=1.0, r_knee_x=-2.0, l_hip_x=1.0, l_knee_x=-2.0
+)
 _SQUAT_LIMITS_DEG: Final = (0.0, -LIMITS_DEG["r_knee_x"][0] / 2)
 """The knee, bent twice as far as the hip, ends the range (P34)."""
 
@@ -43,10 +46,17 @@ def facade_legs(figure: Figure, settings: SearchSettings, squatting: bool) -> Fi
 
 
 def flank_legs(figure: Figure, settings: SearchSettings, near: int) -> Figure:
-    """theta_X of the hip and then of the knee, the near leg first (P35)."""
+    """theta_X of the hip and then of the knee, the near leg first (P35).
+
+    Both legs share the silhouette, and a leg alone moves behind the other unseen: they are also
+    searched together as one squat, and the better explanation is kept.
+    """
     width, stop = settings.leg_window_deg, settings.stop_deg
+    apart = figure
     for i in (near, 1 - near):
         side = SIDES[i]
-        figure = searched(figure, _HIP_X[i], width, stop, LIMITS_DEG[f"{side}_hip_x"])
-        figure = searched(figure, _KNEE[i], width, stop, LIMITS_DEG[f"{side}_knee_x"])
-    return figure
+        apart = searched(apart, _HIP_X[i], width, stop, LIMITS_DEG[f"{side}_hip_x"])
+        apart = searched(apart, _KNEE[i], width, stop, LIMITS_DEG[f"{side}_knee_x"])
+    together = searched(figure, _BOTH_SQUAT, width, stop, _SQUAT_LIMITS_DEG)
+    better = apart if apart.score >= together.score else together
+    return better._replace(matches=apart.matches + together.matches - figure.matches)
