@@ -15,6 +15,9 @@ PAPER_ROTATIONS: Final = (
 )
 """World to camera for camera 1 (looks along -z) and camera 2 (looks along +x) (C1)."""
 
+DISTORTIONS: Final = (0, 4, 5, 8, 12, 14)
+"""How many numbers OpenCV's distortion models have."""
+
 Row = tuple[float, float, float]
 Matrix = tuple[Row, Row, Row]
 
@@ -82,8 +85,17 @@ def load_rig(path: Path, wanted: tuple[str, ...] = ()) -> Rig:
                 f"{path} has no camera {missing[0]!r}; it has {', '.join(by_name)}"
             )
         rig = msgspec.structs.replace(rig, cameras=tuple(by_name[name] for name in wanted))
+    rig = _with_shared_distortion(rig)
     check_rig(rig, str(path))
     return rig
+
+
+def _with_shared_distortion(rig: Rig) -> Rig:
+    cameras = tuple(
+        msgspec.structs.replace(camera, distortion=camera.distortion or rig.distortion)
+        for camera in rig.cameras
+    )
+    return msgspec.structs.replace(rig, cameras=cameras)
 
 
 def check_rig(rig: Rig, where: str) -> None:
@@ -97,7 +109,8 @@ def check_rig(rig: Rig, where: str) -> None:
     if not rig.cameras:
         raise CalibrationError(f"{where}: it names no camera")
     for camera in rig.cameras:
-        values = np.concatenate([np.ravel(camera.K), np.ravel(camera.R), camera.t])
+        K = np.array(camera.K)
+        values = np.concatenate([K.ravel(), np.ravel(camera.R), camera.t, camera.distortion])
         if not np.isfinite(values).all():
             raise CalibrationError(f"{where}: camera {camera.name} has a number that is not finite")
         rotation = np.array(camera.R)
@@ -107,8 +120,18 @@ def check_rig(rig: Rig, where: str) -> None:
                 f"{where}: R of camera {camera.name} is no rotation (R R^T is {off:.3g} off the "
                 f"identity, determinant {np.linalg.det(rotation):.3g}); calibrate again"
             )
-        if camera.K[0][0] <= 0 or camera.K[1][1] <= 0:
+        if K[0, 0] <= 0 or K[1, 1] <= 0:
             raise CalibrationError(f"{where}: camera {camera.name} has no positive focal length")
+        if K[0, 1] or K[1, 0] or K[2].tolist() != [0.0, 0.0, 1.0]:
+            raise CalibrationError(
+                f"{where}: K of camera {camera.name} must be fx 0 cx, 0 fy cy, 0 0 1; "
+                f"it is transposed or skewed: {camera.K}"
+            )
+        if len(camera.distortion) not in DISTORTIONS:
+            raise CalibrationError(
+                f"{where}: camera {camera.name} has {len(camera.distortion)} distortion numbers, "
+                f"OpenCV's model has {', '.join(map(str, DISTORTIONS[1:]))}"
+            )
 
 
 def fitted(rig: Rig, size: tuple[int, int], where: str) -> Rig:

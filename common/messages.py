@@ -305,6 +305,8 @@ def _refuse_what_no_process_would_say(message: Message) -> None:
             raise MalformedMessage(f"{name} holds a number that is not finite")
     if isinstance(message, Report):
         _refuse_a_false_report(message)
+    if isinstance(message, Body) and any(len(own) != len(JOINT_NAMES) for own in message.joints_px):
+        raise MalformedMessage(f"joints_px has no {len(JOINT_NAMES)} joints in a camera")
 
 
 def _refuse_a_false_report(report: Report) -> None:

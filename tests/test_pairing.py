@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from common import clock
 from common.clock import Exchange
 from common.messages import Report, ViewerNumber
-from integrator.pairing import QUEUE, Pair, State, end, flush, init, overdue, step
+from integrator.pairing import Pair, State, end, flush, init, overdue, step
 
 PERIOD_S = 1 / 15
 
@@ -117,12 +117,12 @@ def test_only_what_waited_long_enough_is_overdue() -> None:
 
 
 def test_a_full_queue_drops_its_oldest_and_counts() -> None:
-    state, pairs = heard(init(1.0), [report(1, float(second)) for second in range(QUEUE + 5)])
+    state, pairs = heard(init(1.0), [report(1, float(second)) for second in range(32 + 5)])
     assert pairs == []
     assert state.dropped == 5
     assert state.waiting[0][0].captured_s == 5.0
     _, pairs = flush(state)
-    assert len(pairs) == QUEUE
+    assert len(pairs) == 32
 
 
 @st.composite

@@ -1,0 +1,163 @@
+"""The body's tables, held against the counts and lengths that both documents print."""
+
+import math
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from common.body import (
+    ANGLE_NAMES,
+    ANGLES_IN_POSE,
+    BODY_SIZE,
+    DOF_NAMES,
+    FIXED_ANGLES,
+    FLEXION_JOINTS,
+    LIMBS,
+    LIMITS_DEG,
+    POSE_NAMES,
+    REST_DEG,
+    SPHERICAL_JOINTS,
+    THESIS_DIAMETERS,
+    THESIS_RATIOS,
+    Bdp,
+    Elliptic,
+    Round,
+    body_of_lengths,
+    body_vector,
+    rest_pose,
+    stature,
+    thesis_bdp,
+    wrapped_deg,
+)
+
+lengths_26 = st.lists(st.floats(1e-3, 1e3), min_size=26, max_size=26)
+
+
+def test_ten_cylinders_have_26_numbers() -> None:
+    """P5, table 1: six elliptic ones with three, four round ones with two."""
+    bdp = thesis_bdp(1.75)
+    kinds = [type(getattr(bdp, name)) for name in LIMBS]
+    assert Bdp.__struct_fields__ == LIMBS
+    assert (kinds.count(Elliptic), kinds.count(Round)) == (6, 4)
+    assert kinds[6:] == [Round] * 4
+    assert len(bdp.lengths()) == 6 * 3 + 4 * 2 == 26
+
+
+def test_ten_joints_have_22_degrees_of_freedom_and_17_angles_are_estimated() -> None:
+    """P6, P7, M17: six spherical and four flexion joints, three for the place; the head's three
+    angles and two of the trunk stay fixed (P22)."""
+    assert (len(SPHERICAL_JOINTS), len(FLEXION_JOINTS)) == (6, 4)
+    assert len(DOF_NAMES) == 3 * 6 + 4 == 22
+    assert len(POSE_NAMES) == 25
+    assert len(FIXED_ANGLES) == 5
+    assert len(ANGLE_NAMES) == 25 - 3 - 3 - 2 == 17
+    parts = [name.rsplit("_", 1)[0].split("_")[-1] for name in ANGLE_NAMES]
+    counts = {part: parts.count(part) for part in parts}
+    assert counts == {"torso": 1, "shoulder": 6, "elbow": 2, "hip": 6, "knee": 2}
+    assert tuple(POSE_NAMES[at] for at in ANGLES_IN_POSE) == ANGLE_NAMES
+
+
+def test_the_thesis_lengths_add_up_to_the_stature() -> None:
+    """T4: head + torso + legs = 175."""
+    table = THESIS_RATIOS
+    assert table["head"] + table["torso"] + table["upper_leg"] + table["lower_leg"] == 175.0
+    assert (table["upper_arm"], table["lower_arm"], table["stature"]) == (25.0, 35.0, 175.0)
+    assert stature(thesis_bdp(1.75)) == pytest.approx(1.75)
+
+
+def test_the_thesis_widths_are_diameters() -> None:
+    """T5, M18: as diameters the torso is 40 of 175 wide, as radii it would be 80."""
+    bdp = thesis_bdp(175.0)
+    assert 2 * bdp.torso.long_radius == pytest.approx(40.0)
+    assert 2 * bdp.head.long_radius == pytest.approx(20.0)
+    assert 2 * bdp.r_upper_arm.radius == 2 * bdp.l_lower_arm.radius == pytest.approx(10.0)
+    assert 2 * bdp.r_lower_leg.long_radius == pytest.approx(20.0)
+    assert set(THESIS_DIAMETERS) == set(THESIS_RATIOS) - {"stature"}
+
+
+def test_neck_and_waist_bend_by_what_the_thesis_allows() -> None:
+    """T6 by C7: 45..135 of the thesis, whose angles are the paper's plus 90."""
+    for name in ("neck_z", "torso_z"):
+        assert tuple(limit + 90.0 for limit in LIMITS_DEG[name]) == (45.0, 135.0)
+
+
+def test_limits_are_the_papers_and_the_standing_body_is_within_them() -> None:
+    """P30: theta_Z of the right shoulder 0..180, of the left 180..360; C3: legs at 180."""
+    assert LIMITS_DEG["r_shoulder_z"] == (0.0, 180.0)
+    assert LIMITS_DEG["l_shoulder_z"] == (180.0, 360.0)
+    pose = dict(zip(POSE_NAMES, rest_pose().tolist(), strict=True))
+    for name, (low, high) in LIMITS_DEG.items():
+        assert low <= pose[name] <= high, name
+    assert (pose["r_hip_z"], pose["l_hip_z"]) == (180.0, 180.0)
+    assert {name for name, angle in pose.items() if angle} == set(REST_DEG)
+
+
+@pytest.mark.parametrize("wrong", [0.0, -0.1, math.nan, math.inf])
+def test_a_length_that_is_none_is_refused_with_its_name(wrong: float) -> None:
+    """P5: in code and on arrival."""
+    with pytest.raises(ValueError, match="short_radius must be a positive length"):
+        Elliptic(1.0, wrong, 1.0)
+    with pytest.raises(ValueError, match="radius must be a positive length"):
+        Round(wrong, 1.0)
+    told = msgspec.to_builtins(thesis_bdp(1.75))
+    told["r_upper_arm"]["height"] = wrong
+    with pytest.raises(msgspec.ValidationError, match=r"r_upper_arm"):
+        msgspec.convert(told, Bdp)
+
+
+def test_a_body_with_a_part_too_few_or_too_many_is_refused() -> None:
+    """P5: a BDP message rejects others."""
+    told = msgspec.to_builtins(thesis_bdp(1.75))
+    for wrong in (
+        {name: told[name] for name in LIMBS[1:]},
+        told | {"tail": told["head"]},
+        told | {"head": told["r_upper_arm"]},
+    ):
+        with pytest.raises(msgspec.ValidationError):
+            msgspec.convert(wrong, Bdp)
+
+
+@given(lengths_26)
+def test_26_numbers_make_a_body_and_come_back_in_order(lengths: list[float]) -> None:
+    bdp = body_of_lengths(lengths)
+    assert bdp.lengths() == lengths
+    assert (bdp.torso.height, bdp.head.long_radius) == (lengths[2], lengths[3])
+    assert (bdp.r_upper_arm.radius, bdp.l_lower_arm.height) == (lengths[18], lengths[25])
+
+
+@given(lengths_26, st.floats(0.01, 100.0))
+def test_a_scaled_body_is_similar(lengths: list[float], factor: float) -> None:
+    bdp = body_of_lengths(lengths)
+    scaled = bdp.scaled(factor)
+    assert scaled.lengths() == pytest.approx([length * factor for length in lengths])
+    assert stature(scaled) == pytest.approx(stature(bdp) * factor)
+    assert body_vector(scaled) == pytest.approx(body_vector(bdp) * factor)
+
+
+def test_shoulders_and_hips_are_where_the_paper_puts_them() -> None:
+    """P18: the shoulder is a long radius aside of the trunk's axis and 0.45 of it below the top;
+    legs stand within the trunk's width."""
+    bdp = thesis_bdp(1.75)
+    body = body_vector(bdp)
+    radius = bdp.torso.long_radius
+    assert len(body) == BODY_SIZE
+    assert body[:26].tolist() == bdp.lengths()
+    assert body[26] == pytest.approx(radius)
+    assert body[27] == pytest.approx(bdp.torso.height - 0.45 * radius)
+    assert body[28] + bdp.r_upper_leg.long_radius == pytest.approx(radius)
+
+
+@given(st.floats(-1e4, 1e4), st.integers(-5, 5))
+def test_a_wrapped_angle_is_the_same_direction_in_one_turn(angle: float, turns: int) -> None:
+    wrapped = wrapped_deg(angle + 360.0 * turns)
+    assert -180.0 < wrapped <= 180.0
+    there, here = np.deg2rad([angle, wrapped])
+    assert math.cos(there) == pytest.approx(math.cos(here), abs=1e-9)
+    assert math.sin(there) == pytest.approx(math.sin(here), abs=1e-9)
+
+
+def test_half_a_turn_is_180_from_both_sides() -> None:
+    assert [wrapped_deg(angle) for angle in (180.0, -180.0, 540.0)] == [180.0] * 3
