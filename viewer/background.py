@@ -23,8 +23,9 @@ GUESSED: Final = 4.0
 """Spread of a pixel whose room was guessed, grey levels."""
 CHANGES: Final = 12.0
 """Grey levels of brightness that tell a change from noise while no model stands."""
-EDGE_SHARE: Final = 0.6
-"""Outlines of what differs from an empty room are this much fainter, or more, in the room."""
+EDGE_SHARE: Final = 0.45
+"""Of an empty opening the outlines of what differs later keep less than this share of their
+steepness; where somebody stood there, more (0.05-0.41 and 0.49-2.5 on the development clips)."""
 GAIN_SAMPLES: Final = 1500.0
 """Pixels that are asked for the light; more change the answer by less than 0.1 %."""
 
@@ -111,8 +112,9 @@ def is_empty_opening(opening: Sequence[Frame], sample: Sequence[Frame]) -> bool:
         even = frame / light_gain(frame, room)
         differs = _large(np.abs((even - room) @ LUMA) > CHANGES)
         outline = cv2.morphologyEx(differs, cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8)) > 0
-        in_room += float(_slope(room @ LUMA)[outline].sum())
-        in_frames += float(_slope((even @ LUMA).astype(np.float32))[outline].sum())
+        steeper = _slope((even @ LUMA).astype(np.float32)) - _slope(room @ LUMA)
+        in_frames += float(steeper[outline].clip(min=0).sum())
+        in_room -= float(steeper[outline].clip(max=0).sum())
     return in_room <= EDGE_SHARE * in_frames
 
 
@@ -140,7 +142,8 @@ def light_gain(frame: Frame, room: Floats) -> Floats:
             for c in range(3):
                 given, asked = np.float32(frame[y, x, c]), room[y, x, c]
                 at = int(given / max(asked, np.float32(1)) * unit)
-                if asked > 20 and given < 250 and at < bins:
+                # what became white may be brighter than it shows; what was white already counts
+                if asked > 20 and (given < 250 or asked >= 250) and at < bins:
                     seen[c, at] += given
                     due[c, at] += asked
     gain = np.ones(3, np.float32)

@@ -24,6 +24,8 @@ HOLE_SHARE: Final = 0.001
 """Holes up to this share of the picture are closed; between arm and trunk there are larger."""
 PART_SHARE: Final = 0.0002
 """Specks below this share of the picture are dropped."""
+APART_SHARE: Final = 0.2
+"""Regions this share of the picture's height apart can still be one body."""
 FOLLOW_EVERY: Final = 8
 """Frames between two looks at the slow light."""
 
@@ -109,7 +111,21 @@ def _choose(
     else:
         off = (centres[large] + 0.5) * cell - near_px
         best = large[np.argmin(np.hypot(off[:, 0], off[:, 1]))]
-    return (labels == best).astype(np.uint8), int(large.size)
+    own = _same_body(stats, int(best), found.shape[0])
+    return own[labels].astype(np.uint8), int(np.count_nonzero(~own[large])) + 1
+
+
+def _same_body(stats: NDArray[np.int32], best: int, rows: int) -> Mask:
+    """Which regions (row 0: none) stand over or under the best one, or all but touch it.
+
+    Clothes of the wall's colour part a body across; people who stand side by side do not overlap.
+    """
+    left, top, width, height, _ = stats.T
+    overlap = np.minimum(left + width, left[best] + width[best]) - np.maximum(left, left[best])
+    gap = np.maximum(top, top[best]) - np.minimum(top + height, top[best] + height[best])
+    own = (overlap > 0.5 * width) & (gap < APART_SHARE * rows)
+    own[0], own[best] = False, True
+    return np.asarray(own, np.bool_)
 
 
 def _tidy(mask: Bytes) -> None:
