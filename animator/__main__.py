@@ -11,7 +11,6 @@ from animator.scene import Snapshot
 from common.bus import Bus, open_client
 from common.camera import Rig
 from common.config import Settings
-from common.inbox import Inbox
 from common.messages import Body, Cameras, Picture, Posture, Pulse, Report
 from common.process import READY_S, Heart, Place, process
 from common.rate import Pace
@@ -29,31 +28,31 @@ class Ears:
     def __init__(self, bus: Bus) -> None:
         """Listen from now on."""
         self.bodies = bus.subscribe(Body)
-        self._others: tuple[Inbox[Report], Inbox[Picture], Inbox[Posture], Inbox[Pulse]] = (
-            bus.subscribe(Report),
-            bus.subscribe(Picture),
-            bus.subscribe(Posture),
-            bus.subscribe(Pulse),
-        )
-        self._reports: list[Report] = []
+        self._reports = bus.subscribe(Report)
+        self._pictures = bus.subscribe(Picture)
+        self._postures = bus.subscribe(Posture)
+        self._pulses = bus.subscribe(Pulse)
+        self._waiting: list[Report] = []
         self._snapshot = Snapshot()
 
     def with_body(self, body: Body) -> Snapshot:
         """The newest of everything, with the reports that the body was made of."""
-        reports, pictures, postures, pulses = (inbox.drain() for inbox in self._others)
-        self._reports = [*self._reports, *reports][-MOST_REPORTS:]
-        of_body = {
-            report.viewer: report
-            for report in self._reports
-            if abs(report.captured_s - body.captured_s) < 1e-6 or report.frame == body.frame
-        }
+        self._waiting = [*self._waiting, *self._reports.drain()][-MOST_REPORTS:]
+        reports = dict(self._snapshot.reports)
+        for report in self._waiting:
+            if report.captured_s <= body.captured_s:
+                reports[report.viewer] = report
+        pictures = dict(self._snapshot.pictures)
+        pictures.update((picture.viewer, picture) for picture in self._pictures.drain())
+        pulses = {pulse.process: pulse for pulse in self._pulses.drain()}
+        postures = self._postures.drain()
         before = self._snapshot
         self._snapshot = Snapshot(
             body=body,
-            reports={**before.reports, **of_body},
-            pictures={**before.pictures, **{picture.viewer: picture for picture in pictures}},
+            reports=reports,
+            pictures=pictures,
             posture=postures[-1] if postures else before.posture,
-            pulses={**before.pulses, **{pulse.process: pulse for pulse in pulses}},
+            pulses={**before.pulses, **pulses},
         )
         return self._snapshot
 

@@ -29,7 +29,7 @@ def fit(seen: Features, seed: int = 0) -> Codebook:
         ValueError: When fewer than 64 different vectors are given.
     """
     from sklearn.cluster import KMeans
-    from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
+    from threadpoolctl import threadpool_limits
 
     different = len(np.unique(seen, axis=0))
     if different < SYMBOLS:

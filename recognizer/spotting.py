@@ -30,7 +30,8 @@ MISSED_FRAMES: Final = 15
 class State:
     """What is remembered of the last frames; the oldest first."""
 
-    model: PostureModel
+    model: PostureModel | None
+    """None: motions are followed, but not named."""
     window_frames: int
     seen: Features  # (n, 16), n <= window_frames
     frames: tuple[int, ...] = ()
@@ -57,7 +58,7 @@ class Judgement(NamedTuple):
     the window is empty."""
 
 
-def init(model: PostureModel, window_frames: int) -> State:
+def init(model: PostureModel | None, window_frames: int) -> State:
     """Nothing seen yet."""
     return State(model, window_frames, seen=np.empty((0, len(FEATURE_NAMES))))
 
@@ -79,6 +80,19 @@ def step(state: State, angles_deg: NDArray[np.float64] | None) -> tuple[State, J
     now = state.next_frame - 1
     first, last = (state.frames[0], state.frames[-1]) if state.frames else (now, now)
     return replace(state, named=bool(scores)), Judgement(name, scores, first, last)
+
+
+def motion_of(angles_deg: NDArray[np.float64], window_frames: int) -> NDArray[np.float64]:
+    """The rows that a window at the end of a recording would be judged by: what models learn from.
+
+    Args:
+        angles_deg: (n, 17), NaN in rows without a pose or from before the motion.
+        window_frames: Length of the window.
+    """
+    state = init(None, window_frames)
+    for row in angles_deg:
+        state, _ = step(state, row)
+    return angles_deg[list(state.frames)]
 
 
 def _remember(state: State, angles_deg: NDArray[np.float64] | None) -> State:
@@ -108,7 +122,12 @@ def _cut(state: State) -> State:
 
 def _scores(state: State) -> dict[str, float]:
     begun = state.named or state.moving_frames >= _needed(state)
-    if not begun or len(state.seen) < _needed(state) or _spread(state.seen) < STILL:
+    if (
+        state.model is None
+        or not begun
+        or len(state.seen) < _needed(state)
+        or _spread(state.seen) < STILL
+    ):
         return {}
     totals = forward(state.model, symbols(state.model.codebook, state.seen))
     return dict(zip(state.model.names, totals.tolist(), strict=True))

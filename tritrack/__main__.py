@@ -240,6 +240,37 @@ def bench(
     bench_main(json_wanted, quick)
 
 
+@calibrate_app.command()
+def markers(
+    measured: Annotated[Path, typer.Argument(help="Points on the line markers (TOML).")],
+) -> None:
+    """Say how far each camera is turned, tilted and rolled away from the marked lines.
+
+    Example: tritrack calibrate markers configs/markers.toml
+    """
+    from integrator.calibration import run_markers
+
+    for aim in run_markers(measured):
+        console.print(str(aim))
+
+
+@calibrate_app.command()
+def poles(
+    measured: Annotated[Path, typer.Argument(help="Tops of the poles in both pictures (TOML).")],
+    out: Annotated[Path, typer.Option(help="The file to write.")] = Path("calibration.json"),
+) -> None:
+    """Find focal lengths and distances from poles at known places, with error bars.
+
+    Example: tritrack calibrate poles configs/poles.toml --out clips/calibration.json
+    """
+    from integrator.calibration import run_poles
+
+    quality = run_poles(measured, out)
+    for camera in quality.cameras:
+        console.print(str(camera))
+    console.print(f"written to {out}")
+
+
 def two_camera_clip(settings: Settings) -> Any:
     """The clip that settings name, with a camera for each viewer where it is calibrated."""
     import msgspec

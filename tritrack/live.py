@@ -5,7 +5,6 @@ import signal
 import socket
 import threading
 import time
-from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -73,9 +72,8 @@ def live(settings: Settings, out: Path, console: Console) -> dict[str, Any]:
 
 
 def performed(postures: list[Posture]) -> str:
-    """The posture of a whole clip: the name that most of its judged frames were given."""
-    named = Counter(posture.name for posture in postures if posture.name)
-    return named.most_common(1)[0][0] if named else ""
+    """The posture of a whole clip: the last name given, by a window that saw most of it."""
+    return next((posture.name for posture in reversed(postures) if posture.name), "")
 
 
 def free_settings(settings: Settings) -> Settings:
@@ -98,6 +96,8 @@ def _facts(heard: Heard, clip: Clip, seconds: float) -> dict[str, Any]:
     ]
     return {
         "clip": clip.name,
+        "performer": clip.meta.performer,
+        "posture_meant": clip.meta.posture,
         "seconds": {"all": round(seconds, 3)},
         "scale_source": source,
         "posture": performed(heard.postures),

@@ -96,6 +96,8 @@ def track_clip(
     seconds = {"preparation": prepared - began, **spent, "all": done - began}
     facts = {
         "clip": clip.name,
+        "performer": clip.meta.performer,
+        "posture_meant": clip.meta.posture,
         "seconds": {name: round(value, 4) for name, value in seconds.items()},
         "frames_a_second": round(len(bodies) / (done - prepared), 1),
         "scale_source": state.scale_source,

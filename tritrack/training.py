@@ -1,0 +1,92 @@
+"""Posture models from clips or runs."""
+
+import json
+import zipfile
+from collections import defaultdict
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+from rich.console import Console
+from rich.progress import Progress
+
+from common import config
+from common.config import Mode, RecognizerSettings
+from recognizer.__main__ import MOVING
+from recognizer.evaluation import Recording
+from recognizer.model_file import save
+from recognizer.postures import train
+from recognizer.spotting import motion_of
+from tritrack.offline import Decoders, track_clip
+from tritrack.runs import poses
+
+
+class TrainingError(ValueError):
+    """Clips or runs that nothing can be learnt from; the text names the folder and the cure."""
+
+
+def train_postures(
+    paths: Sequence[Path], out: Path, mode: Mode, console: Console
+) -> dict[str, Any]:
+    """Learn a model of each posture and write it.
+
+    Args:
+        paths: Clip folders whose `meta.json` names posture and performer, or their run folders.
+        out: The file to write.
+        mode: How clips are tracked.
+        console: For the progress.
+
+    Raises:
+        TrainingError: When a folder is neither, or names no posture.
+    """
+    learnt: dict[str, list[Any]] = defaultdict(list)
+    performers = set()
+    for recording in recordings(paths, mode, console):
+        learnt[recording.posture].append(recording.angles_deg)
+        performers.add(recording.performer)
+    try:
+        model = train(dict(learnt), performers=sorted(performers))
+        out.parent.mkdir(parents=True, exist_ok=True)
+        save(model, out)
+    except (ValueError, OSError) as error:
+        raise TrainingError(str(error)) from error
+    return {
+        "model": str(out),
+        "sequences": {name: len(given) for name, given in sorted(learnt.items())},
+        "performers": sorted(performers),
+    }
+
+
+def recordings(paths: Sequence[Path], mode: Mode, console: Console) -> list[Recording]:
+    """What was performed in each clip or run: the motion after the opening posture."""
+    with Decoders() as decoders, Progress(console=console, transient=True) as progress:
+        return [
+            _of_run(path) if (path / "poses.npz").is_file() else _of_clip(path, mode, decoders)
+            for path in progress.track(paths, description="reading")
+        ]
+
+
+def _of_clip(path: Path, mode: Mode, decoders: Decoders) -> Recording:
+    settings = msgspec.structs.replace(config.load(path), mode=mode)
+    tracked = track_clip(settings, decoders)
+    return _recording(path, tracked.facts, poses(tracked.bodies))
+
+
+def _of_run(path: Path) -> Recording:
+    try:
+        facts = json.loads((path / "summary.json").read_text())
+        with np.load(path / "poses.npz", allow_pickle=False) as arrays:
+            return _recording(path, facts, {name: arrays[name] for name in arrays.files})
+    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        raise TrainingError(f"{path} is no run folder: {error}; track the clip again") from error
+
+
+def _recording(path: Path, facts: dict[str, Any], arrays: dict[str, Any]) -> Recording:
+    posture = facts.get("posture_meant", "")
+    if not posture:
+        raise TrainingError(f"{path} names no posture: write it into the clip's meta.json")
+    angles = np.where(np.isin(arrays["status"], MOVING)[:, None], arrays["angles_deg"], np.nan)
+    window = RecognizerSettings().window_frames
+    return Recording(facts.get("performer", ""), posture, motion_of(angles, window))
