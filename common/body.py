@@ -245,13 +245,16 @@ def thesis_bdp(stature: float) -> Bdp:
 SHOULDER_DROP: Final = 0.45
 """How far a shoulder lies below the top of the trunk, in long radii of the trunk (P18)."""
 
-ELBOW_SHARE, WRIST_SHARE = 0.423, 0.754
-"""Where elbow and wrist lie on a straight arm from shoulder to fingertip. The cylinders end where
-the paper cuts the silhouette (arms in halves, trunk to legs 4 : 6), joints where bodies bend: the
-published landmarks lie on the cylinders at mean adult heights (upper arm 0.186 statures, forearm
-0.146, hand 0.108)."""
-HIP_SHARE, KNEE_SHARE, ANKLE_SHARE = 0.530 / 0.84, 0.285 / 0.84, 0.039 / 0.84
-"""Heights of hip, knee and ankle over the top of the trunk (0.530, 0.285, 0.039 statures)."""
+SHOULDERS_APART: Final = 0.20
+"""Between the joint centres of the shoulders, in statures: acromia are 0.23 apart (ANSUR II), the
+centres some 15 mm a side further in."""
+ELBOW_SHARE, WRIST_SHARE = 0.186 / 0.415, 0.332 / 0.415
+"""Where elbow and wrist lie between the shoulder's joint centre and the tip of a straight arm. The
+cylinders end where the paper cuts the silhouette (arms in halves, trunk to legs 4 : 6), joints
+where bodies bend: the published landmarks lie on the cylinders at mean adult lengths (upper arm
+0.186 statures, forearm 0.146, hand 0.108, of which the outer quarter is too thin to be seen)."""
+HIP_SHARE, KNEE_SHARE, ANKLE_SHARE = 0.530, 0.285, 0.039
+"""Heights of hip, knee and ankle above the sole, in statures."""
 
 
 def body_vector(bdp: Bdp) -> Vector:
@@ -260,10 +263,11 @@ def body_vector(bdp: Bdp) -> Vector:
     Entries 0-25 are the BDPs in the order of LIMBS. 26-28: shoulder_x, shoulder_y, hip_x from the
     navel, in body axes, both sides alike. 29-36: how far elbow, wrist, knee and ankle lie from
     the shoulder or hip along the straight limb, right then left each. 37: how far the anatomical
-    hips lie above the navel.
+    hips lie above the navel. 38: how far the joint centres of the shoulders, and with them the
+    arms' landmarks, lie within the cylinders'.
     """
-    torso, leg = bdp.torso, bdp.r_upper_leg
-    top = torso.height + leg.height + bdp.r_lower_leg.height
+    torso, leg, height = bdp.torso, bdp.r_upper_leg, stature(bdp)
+    inset = torso.long_radius - SHOULDERS_APART / 2 * height
     arms = [
         bdp.r_upper_arm.height + bdp.r_lower_arm.height,
         bdp.l_upper_arm.height + bdp.l_lower_arm.height,
@@ -278,16 +282,17 @@ def body_vector(bdp: Bdp) -> Vector:
             torso.long_radius,
             torso.height - SHOULDER_DROP * torso.long_radius,
             torso.long_radius - leg.long_radius,
-            *(ELBOW_SHARE * arm for arm in arms),
-            *(WRIST_SHARE * arm for arm in arms),
-            *(length - KNEE_SHARE * top for length in legs),
-            *(length - ANKLE_SHARE * top for length in legs),
-            HIP_SHARE * top - legs[0],
+            *(ELBOW_SHARE * (inset + arm) for arm in arms),
+            *(WRIST_SHARE * (inset + arm) for arm in arms),
+            *(length - KNEE_SHARE * height for length in legs),
+            *(length - ANKLE_SHARE * height for length in legs),
+            HIP_SHARE * height - legs[0],
+            inset,
         ]
     )
 
 
-BODY_SIZE: Final = 38
+BODY_SIZE: Final = 39
 
 
 def stature(bdp: Bdp) -> float:

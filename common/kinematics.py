@@ -133,13 +133,14 @@ def joints(body: Vector, pose: Vector) -> NDArray[np.float64]:
     """The 15 landmarks, (15, 3), world metres, in the order of JOINT_NAMES."""
     frames = limb_frames(body, pose)
     limb = segments(body, pose)
-    up = frames[TORSO, [4, 7, 10]]
+    across, up = frames[TORSO, [3, 6, 9]], frames[TORSO, [4, 7, 10]]
     pelvis = limb[TORSO, 0] + body[37] * up
     rows = [pelvis, limb[TORSO, 1], limb[HEAD, 1]]
     for side in (1, 0):
         arm, leg = ARM_LIMBS[side], LEG_LIMBS[side]
-        rows.append(limb[arm[0], 0])
-        rows += [_along(limb[list(arm)], body[at + side]) for at in (29, 31)]
+        inwards = (body[38] if side == 0 else -body[38]) * across
+        rows.append(limb[arm[0], 0] + inwards)
+        rows += [_along(limb[list(arm)], body[at + side]) + inwards for at in (29, 31)]
         rows.append(limb[leg[0], 0] + body[37] * up)
         rows += [_along(limb[list(leg)], body[at + side]) for at in (33, 35)]
     return np.array(rows)

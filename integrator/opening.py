@@ -2,6 +2,7 @@
 
 from typing import Final, NamedTuple
 
+import msgspec
 import numpy as np
 
 from common.body import Bdp, Vector, body_of_lengths, thesis_bdp
@@ -12,6 +13,10 @@ from integrator.place import place_of, scales_at
 
 STATURES_M: Final = (0.8, 2.3)
 """What a silhouette's height may say of a person; beyond, it is not the whole person."""
+
+LEG_KEPT: Final = (0.85, 1.05)
+"""Share of the measured leg that the height of the navel above the floor may leave; beyond, the
+floor is not where the calibration says."""
 
 
 class Opening(NamedTuple):
@@ -79,4 +84,21 @@ def _settled(opening: Opening, due: int) -> tuple[Opening, Vector | None]:
     lengths = np.median([body.lengths() for body in opening.bodies], axis=0)
     place = np.median(opening.places_m, axis=0)
     x, y, z = (float(value) for value in place)
-    return Opening(body_of_lengths(lengths.tolist()), True, (x, y, z), opening.waited_s), place
+    body = _on_the_floor(body_of_lengths(lengths.tolist()), y)
+    return Opening(body, True, (x, y, z), opening.waited_s), place
+
+
+def _on_the_floor(body: Bdp, navel_m: float) -> Bdp:
+    """The body with legs that reach from its navel to the floor, y = 0.
+
+    Toes are nearer to the camera than the body is, so the lowest row of a silhouette lies some
+    50 mm below the soles. A navel that no legs could carry leaves the body as it is.
+    """
+    half = navel_m / 2
+    if not LEG_KEPT[0] <= half / body.r_upper_leg.height <= LEG_KEPT[1]:
+        return body
+    legs = {
+        name: msgspec.structs.replace(getattr(body, name), height=half)
+        for name in ("r_upper_leg", "l_upper_leg", "r_lower_leg", "l_lower_leg")
+    }
+    return msgspec.structs.replace(body, **legs)

@@ -213,13 +213,15 @@ def test_limits_are_the_documents() -> None:
 
 
 def test_landmarks_of_a_standing_body_lie_where_bodies_bend() -> None:
-    """Mean adult heights: hip 0.530, knee 0.285, ankle 0.039 of the stature, chin up 0.84."""
+    """Mean adults: hip 0.530, knee 0.285, ankle 0.039 statures high, shoulders 0.20 apart."""
     places = dict(zip(JOINT_NAMES, joints(BODY, rest_pose()), strict=True))
     sole = segments(BODY, rest_pose())[:, :, 1].min()
-    top = places["neck"][1] - sole
+    stature = places["head_top"][1] - sole
     for name, height in (("hip", 0.530), ("knee", 0.285), ("ankle", 0.039)):
         for side in "rl":
-            assert (places[f"{side}_{name}"][1] - sole) / top == pytest.approx(height / 0.84)
+            assert (places[f"{side}_{name}"][1] - sole) / stature == pytest.approx(height)
+    across = places["l_shoulder"][0] - places["r_shoulder"][0]
+    assert across == pytest.approx(0.20 * stature)
     assert places["pelvis"][1] == pytest.approx(places["l_hip"][1])
     assert places["l_shoulder"][0] == -places["r_shoulder"][0] > 0
 

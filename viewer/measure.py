@@ -7,7 +7,16 @@ import cv2
 import msgspec
 import numpy as np
 
-from common.body import POSE_INDEX, Bdp, Elliptic, Round, Vector, body_vector, rest_pose
+from common.body import (
+    POSE_INDEX,
+    THESIS_RATIOS,
+    Bdp,
+    Elliptic,
+    Round,
+    Vector,
+    body_vector,
+    rest_pose,
+)
 from common.camera import PAPER_ROTATIONS
 from common.kernel import count, count_both, draw_limbs, pack_words, score
 from common.kinematics import ALL_LIMBS
@@ -22,6 +31,8 @@ SHOULDER_DROP: Final = 0.45
 """Shoulder below the top of the trunk, in long radii of the trunk (P18)."""
 HEAD_LONG, HEAD_SHORT, LEG_LONG, LEG_SHORT = 0.20, 0.16, 0.20, 0.18
 """Radii over the width of the trunk (P17); the leg's depth as M10 reads it."""
+CENTRE_SHARE: Final = 1 - (1 - TORSO_SHARE) * (1 - THESIS_RATIOS["head"] / THESIS_RATIOS["stature"])
+"""Centre of the body below the crown over the stature, by the thesis's head (T4) and P16."""
 FLAT_TORSO: Final = 0.6
 """Depth of the trunk over its width until the side view has said it."""
 
@@ -36,6 +47,9 @@ GRID: Final = 8
 ENOUGH: Final = 1e-3
 """Fine tuning stops when a round adds less than this to S (P20)."""
 MOST_ROUNDS: Final = 4
+TIP_PX: Final = 1.0
+"""How far fine tuning may move an arm's tip from where it was seen: hands are thinner than the
+cylinders, so S alone would cut them off (P20: within 1 px)."""
 
 
 class Outline(NamedTuple):
@@ -155,10 +169,16 @@ def measure_front(mask: Mask, box: Box) -> Measure:
 
 
 def measure_side(mask: Mask, box: Box) -> Measure:
-    """The trunk's half depth as the flank view shows it (P21)."""
-    x1, x2 = projection_width(mask)
+    """The trunk's half depth as the flank view shows it (P21).
+
+    Read above y_c alone, as the width in the facade is (P13): legs that stand apart or before one
+    another would hide the trunk's edges. This view finds no shoulders, so y_c is where the
+    thesis's proportions have it.
+    """
+    height = box.bottom + 1 - box.top
+    x1, x2 = projection_width(mask[: box.top + round(CENTRE_SHARE * height)])
     return Measure(
-        height_px=float(box.bottom + 1 - box.top),
+        height_px=float(height),
         centre_px=((x1 + x2 + 1) / 2, float(box.top)),
         depth_px=(x2 + 1 - x1) / 2,
     )
@@ -182,7 +202,7 @@ def fine_tuned(
         2 * bdp.l_upper_arm.height,
         *arms_z_deg,
     ]
-    spans = [max(1.0, values[0] / 4), max(1.0, values[1]), 4.0, 4.0, 8.0, 8.0]
+    spans = [max(1.0, values[0] / 4), max(1.0, values[1]), TIP_PX, TIP_PX, 8.0, 8.0]
 
     def score_of(trial: list[float]) -> float:
         body, pose = body_vector(_tuned(bdp, trial)), rest_pose()

@@ -6,11 +6,14 @@ import numba
 import numpy as np
 
 from common.kernel import draw_limbs, popcount, score
-from common.kinematics import ALL_LIMBS
 from viewer.figure import Figure
 
 SHIFTS_PX: Final = (0, -1, 1, -2, 2, -5, 5)
 """The printed candidates and the incumbent, the least first: ties stay (P27)."""
+
+UPRIGHT: Final = 0b111111
+"""Limbs that are shifted: trunk, head and legs. The arms still have the angles of the frame before,
+and pull the body after them when they move (by 60 mm while they were lowered)."""
 
 MOST_PASSES: Final = 3
 """One pass leaves a pixel at shifts of 3, 4, 6 and more (P27)."""
@@ -52,9 +55,9 @@ def shifted_counts(model: Any, seen: Any, width: int, right: int, down: int) -> 
 def best_shift(
     seen: Any, seen_px: int, width: int, body: Any, pose: Any, view: Any, shifts: Any, passes: int
 ) -> tuple[int, int, float, int]:
-    """(right, down, score, matches) of the best shift of the posed model: first x, then y."""
+    """(right, down, score, matches) of the best shift of the posed model: x, then y."""
     model = np.zeros_like(seen)
-    draw_limbs(body, pose, view, ALL_LIMBS, width, model)
+    draw_limbs(body, pose, view, UPRIGHT, width, model)
     place = np.zeros(2, np.int64)
     best, matches = -1.0, 0
     for axis in range(2):
