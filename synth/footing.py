@@ -20,6 +20,10 @@ SMOOTH_M: Final = 0.006
 """Ankles that differ in height by this much share the weight in proportion."""
 
 
+LEASH: Final = 0.1
+"""Share of the way to the leash's end that the pelvis is drawn in a frame."""
+
+
 class Posed(NamedTuple):
     """A body over time."""
 
@@ -38,7 +42,7 @@ def posed(
         measures: Of the body.
         angles_deg: (n, 27), in the order of ANGLES.
         start_m: (2,) x and z of the pelvis in the first frame.
-        leash: (n, 2) where the pelvis is drawn to, a tenth of the way a frame; feet then slide.
+        leash: (n, 2) where the pelvis is drawn to; feet then slide.
     """
     angle = {name: angles_deg[:, i] for i, name in enumerate(ANGLES)}
     bones = bone_frames(measures, angle)
@@ -86,5 +90,5 @@ def _planted(
     for i, step in enumerate(steps):
         root[i + 1, [0, 2]] = root[i, [0, 2]] + step
         if leash is not None:
-            root[i + 1, [0, 2]] += 0.1 * (leash[i + 1] - root[i + 1, [0, 2]])
+            root[i + 1, [0, 2]] += LEASH * (leash[i + 1] - root[i + 1, [0, 2]])
     return root

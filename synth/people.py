@@ -1,7 +1,7 @@
 """People who never were: a body, a way of moving and clothes for every seed."""
 
 import math
-from typing import Final, Literal, NamedTuple
+from typing import Final, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -10,6 +10,10 @@ from common.body import Vector
 Sleeve = Literal["none", "short", "long"]
 Hair = Literal["short", "bob", "tail", "bald"]
 Pattern = Literal["plain", "hoops", "bars", "checks", "print"]
+PATTERNS: Final[tuple[Pattern, ...]] = ("plain", "hoops", "bars", "checks", "print")
+"""What shirts show, in the order of the renderer's numbers."""
+
+Choice = TypeVar("Choice")
 Colour = tuple[int, int, int]
 """Blue, green, red; 0-255."""
 
@@ -198,26 +202,29 @@ def _measures(seed: int, sex: Literal["m", "f"], rng: np.random.Generator) -> di
 
 
 def _look(sex: Literal["m", "f"], rng: np.random.Generator) -> Look:
-    def one_of(*choices: str) -> str:
-        return choices[int(rng.integers(len(choices)))]
-
     shirt = _dye(rng)
+    sleeves: tuple[Sleeve, ...] = ("short", "short", "long", "none" if sex == "f" else "long")
+    cuts: tuple[Hair, ...] = ("bob", "tail", "short") if sex == "f" else ("short", "short", "bald")
     return Look(
-        sleeve=one_of("short", "short", "long", "none" if sex == "f" else "long"),  # type: ignore[arg-type]
+        sleeve=_one_of(rng, sleeves),
         shorts=bool(rng.random() < 0.25),
-        hair=one_of(*(("bob", "tail", "short") if sex == "f" else ("short", "short", "bald"))),  # type: ignore[arg-type]
-        pattern=one_of("plain", "hoops", "bars", "checks", "print"),  # type: ignore[arg-type]
+        hair=_one_of(rng, cuts),
+        pattern=_one_of(rng, PATTERNS),
         pitch_m=float(rng.uniform(0.02, 0.05)),
         loose_top_m=float(rng.uniform(0.008, 0.024)),
         loose_legs_m=float(rng.uniform(0.006, 0.026)),
-        hem_m=float(rng.uniform(-0.06, 0.09)),
-        skin=_SKINS[int(rng.integers(len(_SKINS)))],
-        hair_colour=_HAIRS[int(rng.integers(len(_HAIRS)))],
+        hem_m=float(rng.uniform(-0.03, 0.1)),
+        skin=_one_of(rng, _SKINS),
+        hair_colour=_one_of(rng, _HAIRS),
         shirt=shirt,
         shirt_second=_dye(rng),
         trousers=_dye(rng, dark=0.6),
         shoes=_dye(rng, dark=0.45),
     )
+
+
+def _one_of(rng: np.random.Generator, choices: tuple[Choice, ...]) -> Choice:
+    return choices[int(rng.integers(len(choices)))]
 
 
 def _dye(rng: np.random.Generator, dark: float = 1.0) -> Colour:

@@ -6,13 +6,15 @@ from typing import Any, Final
 import numba
 import numpy as np
 
+from synth.people import PATTERNS
+
 AMBIENT: Final = 0.52
 """Light that comes from everywhere, as a share of all."""
 WRAP: Final = 0.35
 """How far the key light reaches round a body: cloth scatters."""
 THREADS: Final = 90.0
 """Threads of the coarse weave a metre: cloth and skin are never quite even."""
-PLAIN, HOOPS, BARS, CHECKS, PRINT = 0, 1, 2, 3, 4
+HOOPS, BARS, CHECKS, PRINT = (PATTERNS.index(n) for n in ("hoops", "bars", "checks", "print"))
 
 
 @numba.njit(cache=True)

@@ -13,7 +13,7 @@ from common.camera import Camera, Rig, project
 from synth.exposure import blurred, exposures
 from synth.mesh import Mesh, body_mesh
 from synth.motions import Motion
-from synth.people import Look, Person
+from synth.people import PATTERNS, Look, Person
 from synth.raster import cover, draw, expose, gather, shade, skin
 from synth.rings import MATERIAL, MATERIALS
 from synth.room import LIGHT_MAP_PX, Lamp, Room, furnished, lamp_pixels, lit_from
@@ -27,10 +27,10 @@ SHUTTER: Final = 0.4
 """How long the shutter is open, as a share of the frame period."""
 NOISE: Final = 1.7
 """Standard deviation of the sensor's noise in a dark pixel, grey levels."""
-KEY_DARK, FOOT_DARK = 0.3, 0.38
+KEY_DARK, FOOT_DARK = 0.2, 0.3
 """How much of the light the person takes away: from the lamp, and under the feet."""
-PATTERNS: Final = ("plain", "hoops", "bars", "checks", "print")
-
+BLURS_PX: Final = (7, 15)
+"""How soft those two shadows are, in pixels of the lamp's picture."""
 
 Body = tuple[NDArray[np.float32], Mask]
 """Colours times coverage, and coverage, (h, w, 4); the exact mask (h, w)."""
@@ -104,7 +104,6 @@ def _palette(look: Look) -> NDArray[np.float64]:
         "shirt": look.shirt,
         "trousers": look.trousers,
         "shoes": look.shoes,
-        "sole": look.shoes,
         "dark": tuple(0.72 * value for value in look.skin),
         "lips": tuple(0.8 * value for value in look.skin),
     }
@@ -191,7 +190,7 @@ def _darkness(scene: _Scene, places: NDArray[np.float64]) -> list[NDArray[np.flo
     """Light that arrives in each pixel of each camera, (h, w), 0 to 1."""
     soft = [
         _lamp_mask(scene.mesh, lamp, places, blur)
-        for lamp, blur in zip(scene.room.lamps, (7, 15), strict=True)
+        for lamp, blur in zip(scene.room.lamps, BLURS_PX, strict=True)
     ]
     found = []
     for maps in scene.room.shadows_px:

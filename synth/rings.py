@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from common.body import Vector
 from synth.skeleton import BONE_INDEX
 
-MATERIALS: Final = ("skin", "hair", "shirt", "trousers", "shoes", "sole", "dark", "lips")
+MATERIALS: Final = ("skin", "hair", "shirt", "trousers", "shoes", "dark", "lips")
 MATERIAL: Final = {name: i for i, name in enumerate(MATERIALS)}
 """What a face is made of: colour and pattern depend on it."""
 
@@ -59,6 +59,7 @@ def lofted(rings: list[Ring], along: str) -> Loft:
 
 
 def _faces(count: int, descending: bool) -> tuple[NDArray[np.int64], list[int]]:
+    """Faces between `count` rings and over both ends, and the ring that each belongs to."""
     faces, bands = [], []
     for i in range(count - 1):
         for k in range(SIDES):

@@ -62,7 +62,7 @@ def furnished(seed: int, rig: Rig) -> Room:
     boxes = _walls(rng, rig)
     back, side = float(boxes[0].low[2]), float(boxes[0].high[0])
     boxes += _furniture(rng, back, side)
-    key = np.array([rng.uniform(-2.2, 2.2), rng.uniform(2.3, 3.0), rng.uniform(2.0, 3.4)])
+    key = np.array([rng.uniform(-2.2, 2.2), rng.uniform(2.8, 3.8), rng.uniform(1.6, 3.0)])
     lamps = (_lamp(key), _lamp(np.array([0.05, 5.5, 0.05])))
     pictures, maps = [], []
     for n in range(len(rig.cameras)):

@@ -62,7 +62,7 @@ def write_set(
         SynthError: When nothing would be written, or a posture or the motion is not known.
     """
     names = ("free",) if motion == "free" else postures
-    _refuse_what_cannot_be(motion, performers, takes, size, names)
+    _refuse_what_cannot_be(motion, performers, takes, seed, size, names)
     rig = default_rig(*size)
     out.mkdir(parents=True, exist_ok=True)
     write_rig(out / "calibration.json", rig)
@@ -209,13 +209,20 @@ def _number(posture: str) -> int:
 
 
 def _refuse_what_cannot_be(
-    motion: str, performers: int, takes: int, size: tuple[int, int], names: tuple[str, ...]
+    motion: str,
+    performers: int,
+    takes: int,
+    seed: int,
+    size: tuple[int, int],
+    names: tuple[str, ...],
 ) -> None:
     if motion not in ("postures", "free"):
         raise SynthError(f"motion must be postures or free, got {motion!r}")
     for what, number in (("performers", performers), ("takes", takes)):
         if number < 1:
             raise SynthError(f"{what} must be at least 1, got {number}")
+    if seed < 0:
+        raise SynthError(f"seed must not be negative, got {seed}")
     if min(size) < 32 or max(size) > 4096:
         raise SynthError(f"a picture has 32 to 4096 pixels each way, got {size[0]}x{size[1]}")
     unknown = [name for name in names if name not in (*POSTURES, "free")]

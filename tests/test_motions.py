@@ -209,9 +209,10 @@ def test_walks_go_where_they_should(seed: int) -> None:
     assert 0.3 < travel["walk_slow_bigswing"][2] < travel["walk_toward"][2]
 
 
-def test_free_motion_uses_every_joint_and_every_facing() -> None:
+@pytest.mark.parametrize("seed", [2, 5, 11])
+def test_free_motion_uses_every_joint_and_every_facing(seed: int) -> None:
     """At least 80 % of each joint's range, limbs faster than 300 degrees a second, all round."""
-    motion = performance(person(2), "free", 4)
+    motion = performance(person(seed), "free", seed)
     angles = motion.angles_deg[motion.phase == MOTION]
     for i, name in enumerate(ANGLES):
         joint = name[2:] if name[1] == "_" else name

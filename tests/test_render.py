@@ -249,6 +249,7 @@ def test_the_yardstick_takes_the_truth_for_perfect(folder: Path, tmp_path: Path)
     [
         ({"performers": 0}, "performers must be at least 1, got 0"),
         ({"takes": -1}, "takes must be at least 1, got -1"),
+        ({"seed": -1}, "seed must not be negative, got -1"),
         ({"size": (8, 8)}, "8x8"),
         ({"postures": ("jump",)}, "jump.*walk_in_place"),
         ({"motion": "dance"}, "postures or free, got 'dance'"),
