@@ -28,13 +28,11 @@ class State(NamedTuple):
     over: tuple[bool, bool]
     """Viewers that say nothing more: nobody waits for them."""
     passed_s: tuple[float, float] = (NEVER_S, NEVER_S)
-    """A report of viewer n must be younger than this: the rest of its instant has gone out."""
-    heard_s: tuple[float, float] = (NEVER_S, NEVER_S)
-    """The youngest report of each viewer."""
+    """A report of viewer n must be younger than this: its instant has gone out already."""
     dropped: int = 0
     """Reports that a full queue pushed out."""
     late: int = 0
-    """Reports that came after their instant had gone out, or out of order."""
+    """Reports that came after their instant had gone out, or after their viewer had ended."""
 
 
 def init(period_s: float, viewers: tuple[ViewerNumber, ...] = (1, 2)) -> State:
@@ -56,11 +54,10 @@ def step(state: State, report: Report) -> tuple[State, list[Pair]]:
     overflows and nothing was called overdue.
     """
     own = report.viewer - 1
-    if state.over[own] or report.captured_s <= state.heard_s[own]:
+    if state.over[own]:
         return state._replace(late=state.late + 1), []
     queue = (*state.waiting[own], report)
     state = state._replace(
-        heard_s=_with(state.heard_s, own, report.captured_s),
         waiting=_with(state.waiting, own, queue[-QUEUE:]),
         dropped=state.dropped + max(0, len(queue) - QUEUE),
     )
@@ -135,8 +132,10 @@ def _alone(state: State, own: int) -> tuple[State, Pair]:
     """The oldest report of one viewer; its partner, should it still come, will be late."""
     report, *others = state.waiting[own]
     partner_s = report.captured_s + state.period_s / 2
-    passed_s = _with(state.passed_s, 1 - own, max(state.passed_s[1 - own], partner_s))
-    state = state._replace(waiting=_with(state.waiting, own, tuple(others)), passed_s=passed_s)
+    state = state._replace(
+        waiting=_with(state.waiting, own, tuple(others)),
+        passed_s=_with((partner_s, partner_s), own, report.captured_s),
+    )
     return state, Pair(report, None) if own == 0 else Pair(None, report)
 
 

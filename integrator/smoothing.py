@@ -49,11 +49,6 @@ def init(n: int, period_s: float, settings: Smoothing = Smoothing()) -> State:
     return State(settings, period_s, np.zeros(2 * n), None)
 
 
-def restarted(state: State) -> State:
-    """The same filter after a loss: nothing measured yet."""
-    return state._replace(x=np.zeros_like(state.x), P=None)
-
-
 def step(state: State, angles_deg: Vector | None, dt_s: float) -> tuple[State, Vector, Vector]:
     """One instant: predicted at constant speed, then drawn to what was measured.
 

@@ -108,6 +108,13 @@ def test_a_viewer_that_repeats_itself_is_not_heard_twice() -> None:
     assert state.late == 2
 
 
+def test_a_report_that_overtook_an_older_one_makes_that_one_late() -> None:
+    state, pairs = heard(init(1.0), [report(1, 1.0), report(1, 0.0)])
+    state, pairs = flush(state)
+    assert times(pairs) == [(1.0, None)]
+    assert state.late == 1
+
+
 def test_only_what_waited_long_enough_is_overdue() -> None:
     state, _ = heard(init(1.0), [report(1, 0.0), report(1, 1.0)])
     assert overdue(state, now_s=0.2, wait_s=0.2) == (state, [])
@@ -181,6 +188,8 @@ def test_every_report_goes_out_once_in_the_order_of_time_or_is_counted(
     assert len(out[0]) + len(out[1]) + state.late == len(talk[0]) + len(talk[1])
     for view in out:
         assert all(a.captured_s < b.captured_s for a, b in itertools.pairwise(view))
+    moments = [max(one.captured_s for one in pair if one) for pair in pairs]
+    assert all(a < b for a, b in itertools.pairwise(moments))
     for first, second in pairs:
         if first and second:
             assert abs(first.captured_s - second.captured_s) <= 0.5
