@@ -19,7 +19,6 @@ from common.body import (
 )
 from common.camera import PAPER_ROTATIONS
 from common.kernel import count, count_both, draw_limbs, pack_words, score
-from common.kinematics import ALL_LIMBS
 from common.messages import Box, Measure
 from common.similarity import Mask
 from viewer.figure import view_at
@@ -47,6 +46,8 @@ GRID: Final = 8
 ENOUGH: Final = 1e-3
 """Fine tuning stops when a round adds less than this to S (P20)."""
 MOST_ROUNDS: Final = 4
+ABOVE_CENTRE: Final = 0b1111000011
+"""Limbs that fine tuning matches: trunk, head and arms."""
 TIP_PX: Final = 1.0
 """How far fine tuning may move an arm's tip from where it was seen: hands are thinner than the
 cylinders, so S alone would cut them off (P20: within 1 px)."""
@@ -190,8 +191,11 @@ def fine_tuned(
     """Trunk radius, arm radius, arm angles and arm length, each set in turn to what scores best.
 
     Coordinate descent on S by the tritree itself, until a round gains less than ENOUGH (P20).
+    Only what lies above y_c is matched: legs that stand apart would widen the trunk (P13).
     """
-    seen = pack_words(mask)
+    upper = mask.copy()
+    upper[round(centre_px[1]) :] = False
+    seen = pack_words(upper)
     seen_px = count(seen)
     view = view_at(np.array(PAPER_ROTATIONS[0]), 1.0, centre_px)
     # trunk radius, arm radius, arm lengths right and left (px), angles right and left (deg)
@@ -231,7 +235,7 @@ def _match(
     seen: object, seen_px: int, width: int, body: Vector, pose: Vector, view: Vector
 ) -> float:
     drawn = np.zeros_like(seen)
-    draw_limbs(body, pose, view, ALL_LIMBS, width, drawn)
+    draw_limbs(body, pose, view, ABOVE_CENTRE, width, drawn)
     return float(score(count_both(drawn, seen), count(drawn), seen_px))
 
 
