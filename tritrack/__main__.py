@@ -85,7 +85,7 @@ def live(
 
     Example: tritrack live configs/live.toml --out runs/monday
     """
-    from tritrack.live import live as run_live
+    from tritrack.session import live as run_live
 
     settings = with_mode(config.load(settings_file), mode)
     facts = run_live(settings, out, console)

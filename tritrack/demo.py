@@ -9,7 +9,7 @@ from rich.console import Console
 
 from common.config import PageSettings, Settings
 from synth.write import write_set
-from tritrack.live import free_settings, live
+from tritrack.session import free_settings, live
 
 PERFORMER_SEED: Final = 90_001
 """Of a person that no model was trained on: training uses seeds below 1,000."""

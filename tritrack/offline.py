@@ -22,7 +22,7 @@ from integrator.pairing import Pair
 from tritrack.runs import write_run
 from viewer import track
 from viewer.capture import Frame, recorded
-from viewer.room import empty_room
+from viewer.empty import empty_room
 
 
 class ClipsFailed(RuntimeError):

@@ -25,7 +25,7 @@ from common.rate import Pace
 from viewer import track
 from viewer.capture import Frame, Live, RoomClock
 from viewer.jpeg import jpeg_of
-from viewer.room import empty_room
+from viewer.empty import empty_room
 
 WAIT_SHARE: Final = 0.5
 """How long a viewer waits for the guide of its last frame, in frame periods."""
