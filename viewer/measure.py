@@ -85,7 +85,7 @@ def without_head(mask: Mask, torso_width: float) -> Mask:
     The mask is padded by as much on both sides: the closing joins the legs, so that the opening
     keeps them.
     """
-    line = max(1, round(0.8 * torso_width))
+    line = 2 * round(0.4 * torso_width) + 1  # odd, or the mask would move aside
     padded = cv2.copyMakeBorder(mask.astype(np.uint8), 0, 0, line, line, cv2.BORDER_CONSTANT)
     element = np.ones((1, line), np.uint8)
     closed = cv2.morphologyEx(padded, cv2.MORPH_CLOSE, element)
