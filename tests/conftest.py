@@ -4,6 +4,10 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("untimed", deadline=None)
+settings.load_profile("untimed")
 
 
 @pytest.fixture(scope="session")
@@ -14,3 +18,12 @@ def data_dir() -> Path:
     if not folder.is_dir():
         pytest.skip("no development clips: set TRITRACK_DATA to their folder")
     return folder
+
+
+@pytest.fixture(scope="session")
+def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A made-up clip with truth: a person of no training set raises the right arm."""
+    from synth.write import write_set
+
+    out = tmp_path_factory.mktemp("clips")
+    return write_set(out, "postures", 1, 1, 90_001, (160, 120), ("raise_right_lateral",))[0]

@@ -69,7 +69,7 @@ def pixel_by_pixel(limb: Vector, size: tuple[int, int]) -> Mask:
 
 def two_discs_and_what_lies_between(limb: Vector, size: tuple[int, int]) -> Mask:
     """Another definition: two discs, and the quadrangle of the points where tangents touch."""
-    ax, ay, ra, bx, by, rb, shear, stretch = limb + [0, 0, EDGE, 0, 0, EDGE, 0, 0]
+    ax, ay, ra, bx, by, rb, shear, stretch = limb + np.array([0, 0, EDGE, 0, 0, EDGE, 0, 0])
     width, height = size
     y, x = np.mgrid[:height, :width] + 0.5
     x = (x - shear * y) / stretch

@@ -41,6 +41,17 @@ def full(score: Score, width_deg: int) -> float:
     return max(range(0, width_deg + 1, STOP), key=score)
 
 
+def searched_with(score: Score, width_deg: int) -> tuple[Found, list[float]]:
+    """What a search found, and the angles that it asked for."""
+    tried: list[float] = []
+
+    def asked(angle_deg: float) -> float:
+        tried.append(angle_deg)
+        return score(angle_deg)
+
+    return tritree(asked, (0, width_deg), STOP), tried
+
+
 def matches_of_path(winners: tuple[int, ...], width_deg: int) -> int:
     """Matches of a search whose rounds are won by left (0), middle (1) or right (2) at will."""
     low, high, probes, matches = 0, width_deg, [np.nan] * 3, 0
@@ -87,9 +98,7 @@ def test_worst_cost_is_about_half_of_the_full_search(
     met: set[float] = set()
     costs = []
     for target in np.linspace(0.0, width_deg, 1001).tolist():
-        tried: list[float] = []
-        score = peak_at(target)
-        found = tritree(lambda a: tried.append(a) or score(a), (0, width_deg), STOP)
+        found, tried = searched_with(peak_at(target), width_deg)
         assert len(set(tried)) == len(tried) == found.matches
         costs.append(found.matches)
         met.update(tried)
@@ -150,8 +159,7 @@ def test_the_search_ends_with_the_best_that_it_met(seed: int, width_deg: int) ->
     """M14: no score, however wild, keeps it from ending."""
     random = np.random.default_rng(seed)
     scores = {a: float(random.random()) for a in range(0, width_deg + 1, STOP)}
-    tried: list[float] = []
-    found = tritree(lambda a: tried.append(a) or scores[int(a)], (0, width_deg), STOP)
+    found, tried = searched_with(lambda angle_deg: scores[int(angle_deg)], width_deg)
     assert found.score == max(scores[int(a)] for a in tried)
     assert scores[int(found.angle_deg)] == found.score
 
