@@ -19,7 +19,7 @@ ONE, WHITE = np.float32(1.0), np.float32(255.0)
 
 DIFFERS: Final = np.float32(4.75)
 """Distance from the room, in spreads, at which a pixel is as likely person as room."""
-SEED: Final = np.float32(7.0)
+SEED: Final = np.float32(6.0)
 """Distance that only things reach: where it is passed, a region is looked for."""
 DARKEST: Final = np.float32(0.7)
 """A soft shadow leaves at least this share of the light."""
@@ -29,6 +29,8 @@ STEEP: Final = np.float32(0.25)
 """Evidence of one spread."""
 SURE: Final = np.float32(2.0)
 """Evidence stops here, so that one pixel cannot outvote its neighbours."""
+KNOWN: Final = np.float32(1.0)
+"""Evidence of a colour that only the body has."""
 PULL: Final = np.float32(0.3)
 """What a neighbour at an edge weighs against a pixel's own evidence."""
 CORNER: Final = np.float32(0.7)
@@ -48,13 +50,20 @@ def seeds(frame: Frame, room: Floats, weight: Floats, gain: Floats, cell: int) -
             given, empty, sure = frame[y], room[y], weight[y]
             for j in range(out.shape[1]):
                 x = min(j * cell + k, width - 1)
-                out[i, j] |= _unshaded(given, empty, sure, gain, x) > SEED * SEED
+                out[i, j] |= unshaded(given, empty, sure, gain, x) > SEED * SEED
     return out
 
 
 @KERNEL
 def label(
-    mask: Bytes, frame: Frame, room: Floats, weight: Floats, gain: Floats, cells: Bytes, cell: int
+    mask: Bytes,
+    frame: Frame,
+    room: Floats,
+    weight: Floats,
+    gain: Floats,
+    known: Floats,
+    cells: Bytes,
+    cell: int,
 ) -> None:
     """Tell person from room inside the cells: a pixel's evidence and its neighbours'."""
     height, width = mask.shape
@@ -63,8 +72,9 @@ def label(
         for y in range(i * cell, min((i + 1) * cell, height)):
             given, empty, sure = frame[y], room[y], weight[y]
             for x in range(j * cell, min((j + 1) * cell, width)):
-                far = np.sqrt(_unshaded(given, empty, sure, gain, x))
-                evidence[y, x] = min(max((far - DIFFERS) * STEEP, -SURE), SURE)
+                far = np.sqrt(unshaded(given, empty, sure, gain, x))
+                told = (far - DIFFERS) * STEEP + KNOWN * known[shade_of(given, gain, x)]
+                evidence[y, x] = min(max(told, -SURE), SURE)
     settle(mask, evidence, cells, cell, PULL)
 
 
@@ -127,7 +137,7 @@ def _distance(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) 
 
 
 @INLINE
-def _unshaded(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> np.float32:
+def unshaded(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> np.float32:
     """The same, but by colour alone where a soft shadow may lie: the room, only darker."""
     b, g, r = _off(given, room, gain, x)
     due_b, due_g, due_r = given[x, 0] - b, given[x, 1] - g, given[x, 2] - r
@@ -142,3 +152,16 @@ def _unshaded(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) 
 @INLINE
 def _square(b: np.float32, g: np.float32, r: np.float32) -> np.float32:
     return b * b + g * g + r * r
+
+
+@INLINE
+def shade_of(given: Bytes, gain: Floats, x: int) -> int:
+    """Number of a pixel's colour, under the room's light."""
+    b = np.float32(given[x, 0]) / gain[0]
+    g = np.float32(given[x, 1]) / gain[1]
+    r = np.float32(given[x, 2]) / gain[2]
+    luma = BLUE * b + GREEN * g + RED * r
+    bright = min(int(luma) >> 5, 7)
+    blue = min(max((int(b - luma) + 64) >> 3, 0), 15)
+    red = min(max((int(r - luma) + 64) >> 3, 0), 15)
+    return (bright << 8) + (blue << 4) + red

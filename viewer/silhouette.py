@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from common.config import SilhouetteSettings
 from common.messages import Box
+from viewer.appearance import counted, familiar, fresh
 from viewer.background import Background, Floats, Frame, light_gain
 from viewer.difference import Bytes, followed, label, seeds
 from viewer.outline import redraw
@@ -17,7 +18,7 @@ Mask = NDArray[np.bool_]
 
 
 ROUNDS: Final = 2
-"""How often the outline is drawn again; one pixel further each time."""
+"""How often the outline is drawn again, a pixel further each time; once where pixels are large."""
 CELLS: Final = 60
 """Rows of the coarse picture on which regions are told apart."""
 HOLE_SHARE: Final = 0.001
@@ -51,12 +52,14 @@ class State(NamedTuple):
     """(H, W, 3) grey levels of the empty room in the slow light of the day."""
     weight: Floats
     """(H, W, 2) 1 / spread^2 of brightness and colour."""
+    colours: Floats
+    """Counts of the colours of room and body (see appearance)."""
     frames: int
 
 
 def init(background: Background, settings: SilhouetteSettings) -> State:
     """Begin with the room as it was learnt."""
-    return State(settings, background.centre, np.float32(1) / background.spread**2, 0)
+    return State(settings, background.centre, np.float32(1) / background.spread**2, fresh(), 0)
 
 
 def step(state: State, frame: Frame, near_px: tuple[float, float] | None) -> tuple[State, Seen]:
@@ -80,16 +83,37 @@ def step(state: State, frame: Frame, near_px: tuple[float, float] | None) -> tup
     cells, blobs = _choose(found, cell, state.settings.min_height_share, near_px)
     mask = np.zeros(frame.shape[:2], np.uint8)
     if blobs:
-        label(mask, frame, state.room, state.weight, gain, cells, cell)
-        for _ in range(ROUNDS if cell > 2 else 1):
-            _tidy(mask)
-            inside = cv2.boxFilter(
-                mask, -1, (3, 3), normalize=False, borderType=cv2.BORDER_REPLICATE
-            )
-            redraw(mask, inside, frame, state.room, gain, cells, cell)
-        _tidy(mask)
+        _cut_out(mask, state, frame, gain, cells, cell)
     seen = _seen(mask, blobs, state.settings.min_height_share)
+    if seen.box is not None:
+        state = _learn_colours(state, mask, frame, gain, cells, cell)
     return _follow(state, frame, gain, seen.box), seen
+
+
+def _cut_out(
+    mask: Bytes, state: State, frame: Frame, gain: Floats, cells: Bytes, cell: int
+) -> None:
+    """Draw the person into an empty mask: subtraction, outline, cleaning."""
+    known = familiar(state.colours)
+    label(mask, frame, state.room, state.weight, gain, known, cells, cell)
+    for _ in range(ROUNDS if cell > 2 else 1):
+        _tidy(mask)
+        redraw(mask, _inside(mask), frame, state.room, gain, cells, cell)
+    _tidy(mask)
+
+
+def _learn_colours(
+    state: State, mask: Bytes, frame: Frame, gain: Floats, cells: Bytes, cell: int
+) -> State:
+    room, weight = state.room, state.weight
+    colours = counted(state.colours, _inside(mask), frame, room, weight, gain, cells, cell)
+    return state._replace(colours=colours)
+
+
+def _inside(mask: Bytes) -> Bytes:
+    """How many pixels of every 3x3 neighbourhood are in the mask."""
+    border = cv2.BORDER_REPLICATE
+    return np.asarray(cv2.boxFilter(mask, -1, (3, 3), normalize=False, borderType=border))
 
 
 def _choose(

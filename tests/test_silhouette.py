@@ -1,0 +1,206 @@
+"""The silhouette, held against drawn people and clips whose masks are known (P3, P4)."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from common.config import SilhouetteSettings
+from viewer.background import Frame, learn
+from viewer.silhouette import Mask, Seen, State, init, step
+
+HEIGHT, WIDTH = 240, 320
+SETTINGS = SilhouetteSettings()
+Picture = NDArray[np.float64]
+
+
+def room() -> Picture:
+    """A striped wall over a floor."""
+    picture = np.full((HEIGHT, WIDTH, 3), (150.0, 160.0, 165.0))
+    picture[:, ::16] *= 0.9
+    picture[:, 8::16] *= 0.95
+    picture[180:] = (90.0, 120.0, 150.0)
+    picture[180::12] *= 0.9
+    return picture
+
+
+def body(x: int = 160) -> Mask:
+    """Somebody who stands with arms and legs apart."""
+    drawn = np.zeros((HEIGHT, WIDTH), np.uint8)
+    cv2.circle(drawn, (x, 60), 11, 1, -1)
+    cv2.rectangle(drawn, (x - 16, 70), (x + 16, 130), 1, -1)
+    for side in (-1, 1):
+        cv2.line(drawn, (x + side * 12, 128), (x + side * 22, 205), 1, 13)
+        cv2.line(drawn, (x + side * 14, 76), (x + side * 44, 120), 1, 8)
+    return drawn.astype(np.bool_)
+
+
+def dressed(picture: Picture, mask: Mask) -> Picture:
+    """The body in a red jumper and dark trousers, before the picture."""
+    out = picture.copy()
+    out[mask] = (60, 60, 150)
+    lower = mask.copy()
+    lower[:130] = False
+    out[lower] = (60, 50, 45)
+    return out
+
+
+def shot(picture: Picture, sigma: float, seed: int) -> Frame:
+    noise = np.random.default_rng(seed).normal(0, sigma, picture.shape)
+    return np.clip(np.rint(picture + noise), 0, 255).astype(np.uint8)
+
+
+def begin(sigma: float = 2.0) -> State:
+    return init(learn([shot(room(), sigma, seed) for seed in range(8)]), SETTINGS)
+
+
+def see(frame: Frame, near_px: tuple[float, float] | None = None) -> Seen:
+    return step(begin(), frame, near_px)[1]
+
+
+def iou(a: Mask, b: Mask) -> float:
+    return float(np.count_nonzero(a & b) / np.count_nonzero(a | b))
+
+
+@pytest.mark.parametrize("sigma", [1.0, 2.0, 4.0])
+def test_noise_of_up_to_4_grey_levels_leaves_the_silhouette(sigma: float) -> None:
+    """P3: IoU of 0.95 or more on rendered scenes."""
+    state = begin(sigma)
+    scores = []
+    for seed in range(20, 26):
+        state, seen = step(state, shot(dressed(room(), body()), sigma, seed), None)
+        scores.append(iou(seen.mask, body()))
+    assert min(scores) >= 0.95
+
+
+@pytest.mark.parametrize("sigma", [1.0, 4.0])
+def test_empty_room_stays_empty(sigma: float) -> None:
+    """P3: nobody there is an empty mask, never a ghost."""
+    state = begin(sigma)
+    for seed in range(100, 140):
+        state, seen = step(state, shot(room(), sigma, seed), None)
+        assert not seen.mask.any()
+        assert (seen.box, seen.area_px, seen.blobs, seen.cut) == (None, 0, 0, False)
+
+
+@pytest.mark.parametrize("gain", [0.85, 1.0, 1.15])
+def test_step_of_the_exposure_does_not_move_the_silhouette(gain: float) -> None:
+    """P3: report under gain change."""
+    seen = see(shot(dressed(room(), body()) * gain, 2.0, 50))
+    assert iou(seen.mask, body()) >= 0.95
+
+
+def test_soft_shadow_is_not_the_person() -> None:
+    """P3: report under shadow. A third of the light is gone on floor and wall beside the body."""
+    dark = np.zeros((HEIGHT, WIDTH), np.float64)
+    cv2.ellipse(dark, (200, 205), (60, 12), 0, 0, 360, 0.25, -1)
+    cv2.rectangle(dark, (205, 80), (240, 175), 0.25, -1)
+    shade = (1 - cv2.GaussianBlur(dark, (0, 0), 5))[..., None]
+    seen = see(shot(dressed(room() * shade, body()), 2.0, 51))
+    assert iou(seen.mask, body()) >= 0.95
+
+
+def test_slow_light_is_followed_and_who_stands_is_not_absorbed() -> None:
+    """One side of the room grows a third brighter in 300 frames; the person stands still."""
+    state = begin()
+    slope = np.linspace(0, 1, WIDTH)[:, None]
+    for frame in range(300):
+        light = 1 + 0.33 * frame / 300 * slope
+        state, seen = step(state, shot(dressed(room() * light, body()), 2.0, frame), None)
+    assert iou(seen.mask, body()) >= 0.93
+    assert seen.blobs == 1
+
+
+def test_of_two_people_the_expected_one_is_taken_and_both_are_counted() -> None:
+    """P4: nearest to the prediction, else the largest."""
+    left, right = body(80), body(240)
+    right[:60] = False
+    frame = shot(dressed(dressed(room(), left), right), 2.0, 52)
+    for near_px, expected in (((90.0, 120.0), left), ((250.0, 120.0), right), (None, left)):
+        seen = see(frame, near_px)
+        assert seen.blobs == 2
+        assert iou(seen.mask, expected) >= 0.93
+
+
+def test_body_is_whole_where_its_belt_has_the_colour_of_the_wall() -> None:
+    picture = dressed(room(), body())
+    picture[120:140] = room()[120:140]
+    seen = see(shot(picture, 2.0, 53))
+    assert seen.box is not None
+    assert seen.blobs == 1
+    assert seen.box.bottom > 200
+
+
+def test_who_is_too_small_is_nobody() -> None:
+    small = np.zeros((HEIGHT, WIDTH), np.bool_)
+    small[100:120, 100:140] = True
+    assert see(shot(dressed(room(), small), 2.0, 54)).box is None
+
+
+def test_box_area_and_border_are_the_masks() -> None:
+    """P11 on what is seen; a person half out of the picture is cut."""
+    seen = see(shot(dressed(room(), body(5)), 2.0, 55))
+    rows, columns = np.nonzero(seen.mask)
+    assert seen.box is not None
+    assert (seen.box.left, seen.box.right) == (columns.min(), columns.max()) == (0, columns.max())
+    assert (seen.box.top, seen.box.bottom) == (rows.min(), rows.max())
+    assert seen.area_px == len(rows)
+    assert seen.cut
+    assert not see(shot(dressed(room(), body()), 2.0, 56)).cut
+
+
+def test_step_leaves_the_state_that_it_was_given() -> None:
+    """The same frame on the same state gives the same answer, however often it is asked."""
+    state = begin()._replace(frames=7)
+    frame = shot(dressed(room(), body()), 2.0, 57)
+    room_before, colours_before = state.room.copy(), state.colours.copy()
+    first, again = step(state, frame, None), step(state, frame, None)
+    assert np.array_equal(state.room, room_before)
+    assert np.array_equal(state.colours, colours_before)
+    assert np.array_equal(first[1].mask, again[1].mask)
+    assert np.array_equal(first[0].room, again[0].room)
+
+
+def test_frame_of_another_size_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"a frame of \(120, 160, 3\)"):
+        step(begin(), np.zeros((120, 160, 3), np.uint8), None)
+
+
+@pytest.mark.parametrize("size", [(320, 240), (160, 120)], ids=["320x240", "160x120"])
+@pytest.mark.parametrize(
+    ("name", "camera", "least"),
+    [
+        ("r04_t1_12_squat", 2, 0.93),
+        ("r07_t1_08_raise_both_forward_up", 1, 0.91),
+        ("r07_t1_12_squat", 2, 0.90),
+    ],
+)
+def test_silhouettes_of_the_development_clips(
+    data_dir: Path, name: str, camera: int, least: float, size: tuple[int, int]
+) -> None:
+    """Mean IoU with the true masks; the last empty frame stays empty."""
+    frames, truth = clip(data_dir / "dev" / name, camera, size)
+    state = init(learn(frames[:8]), SETTINGS)
+    scores = []
+    for frame, mask in zip(frames[8:], truth[8:], strict=True):
+        state, seen = step(state, frame, None)
+        if mask.any():
+            scores.append(iou(seen.mask, mask))
+        else:
+            assert seen.box is None
+    assert np.mean(scores) >= least
+
+
+def clip(folder: Path, camera: int, size: tuple[int, int]) -> tuple[list[Frame], Mask]:
+    """Frames and true masks at a size; a small pixel is body where half of its four are."""
+    video = cv2.VideoCapture(str(folder / f"cam{camera}.avi"))
+    frames = []
+    while (read := video.read())[0]:
+        frames.append(cv2.resize(read[1], size, interpolation=cv2.INTER_AREA))
+    packed = np.load(folder / "truth.npz")[f"mask_cam{camera}"]
+    masks = np.unpackbits(packed, axis=2)[..., :WIDTH]
+    each = WIDTH // size[0]
+    blocks = masks.reshape(len(masks), size[1], each, size[0], each)
+    return frames, blocks.mean(axis=(2, 4)) >= 0.5
