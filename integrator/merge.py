@@ -7,7 +7,6 @@ import numpy as np
 from common.body import (
     ANGLE_NAMES,
     ANGLES_IN_POSE,
-    LIMITS_DEG,
     POSE_INDEX,
     Vector,
     body_vector,
@@ -146,7 +145,7 @@ def _faced(state: State, seen: Seen) -> State:
     ratio = 1.0
     if state.settings.mode == "default" and state.pose is not None and state.rig is not None:
         scales = scales_at(state.rig, state.pose[:3])
-        ratio = scales[1] / scales[0]
+        ratio = scales[0] / scales[1]
     return state._replace(facing=arbitrate(sights[0], sights[1], ratio))
 
 
@@ -249,7 +248,7 @@ def _guide(
         reference_px_per_m=scales_at(rig, measured_at),
         root_px=(roots[0], roots[1]),
         rest_row_px=(upright[0][1], upright[1][1]),
-        pose=tuple(_within_limits(state.pose).tolist()),
+        pose=tuple(state.pose.tolist()),
     )
 
 
@@ -276,14 +275,6 @@ def _empty(state: State, pair: Pair, newest: Report) -> tuple[State, Body, Guide
         pose=tuple(rest_pose().tolist()),
     )
     return state, body, guide
-
-
-def _within_limits(pose: Vector) -> Vector:
-    kept = pose.copy()
-    for name, (low, high) in LIMITS_DEG.items():
-        at = POSE_INDEX[name]
-        kept[at] = min(high, max(low, kept[at]))
-    return kept
 
 
 def _views(seen: Seen) -> Views:

@@ -225,5 +225,15 @@ def _end(one: Running) -> None:
 def _refuse_failures(running: Sequence[Running]) -> None:
     for one in running:
         if one.process.exitcode:
-            said = one.words.recv() if one.words.poll() else f"exit code {one.process.exitcode}"
-            raise PartFailed(f"{one.part.name}: {said}")
+            raise PartFailed(f"{one.part.name}: {_last_words(one)}")
+
+
+def _last_words(one: Running) -> str:
+    """Why a process ended; one that was killed says nothing."""
+    try:
+        if one.words.poll():
+            return str(one.words.recv())
+    except EOFError:
+        pass
+    code = one.process.exitcode or 0
+    return f"killed by signal {-code}" if code < 0 else f"ended with exit code {code}"

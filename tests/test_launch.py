@@ -1,0 +1,178 @@
+"""Live runs: real processes over a real Zenoh session on loopback."""
+
+import json
+import multiprocessing
+import os
+import shutil
+import signal
+import socket
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+import zenoh
+from rich.console import Console
+
+from common.config import BusSettings, PageSettings, Settings
+from common.messages import Body, Pulse
+from tritrack.launch import Heard, Part, PartFailed, run
+from tritrack.session import free_settings, live
+from tritrack.offline import Decoders, track_clip
+from tritrack.runs import poses
+
+QUIET = Console(quiet=True)
+
+
+def ends_at_once() -> None:
+    """A part that does nothing."""
+
+
+def fails(text: str) -> None:
+    raise RuntimeError(text)
+
+
+def settings_of(clip: Path, **changes: object) -> Settings:
+    return free_settings(Settings(clip=str(clip), page=PageSettings(port=0), **changes))  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def slow_clip(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The made-up clip at a third of its rate, which a busy machine keeps up with too."""
+    folder = tmp_path_factory.mktemp("slow") / clip.name
+    shutil.copytree(clip, folder)
+    shutil.copy(clip.parent / "calibration.json", folder)
+    meta = json.loads((folder / "meta.json").read_text())
+    (folder / "meta.json").write_text(json.dumps({**meta, "fps": 5}))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def lived(slow_clip: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict]:
+    """One live run of it, and what its summary tells."""
+    out = tmp_path_factory.mktemp("lived")
+    return out, live(settings_of(slow_clip), out, QUIET)
+
+
+@pytest.mark.slow
+def test_a_live_run_is_two_viewer_processes_and_an_integrator(lived: tuple[Path, dict]) -> None:
+    """P1, D2, D4: every frame of both views is looked at, merged and judged, at the clip's pace."""
+    processes = lived[1]["processes"]
+    assert set(processes) == {"viewer 1", "viewer 2", "integrator", "recognizer"}
+    for name, told in processes.items():
+        assert (name, told["frames"], told["dropped"]) == (name, 69, 0)
+        assert (name, told["state"]) == (name, "ended")
+        assert told["fps"] == pytest.approx(5.0, rel=0.05)
+    assert {"deadline_misses", "guide_misses", "latency_p99_ms"} <= set(processes["viewer 1"])
+
+
+@pytest.mark.slow
+def test_a_live_run_equals_an_offline_one(slow_clip: Path, lived: tuple[Path, dict]) -> None:
+    """One code path, two shells; P2: report t used the guide of t - 1."""
+    out, facts = lived
+    assert [facts["processes"][f"viewer {n}"]["guide_misses"] for n in (1, 2)] == [0, 0]
+    with Decoders() as decoders:
+        offline = poses(track_clip(Settings(clip=str(slow_clip)), decoders).bodies)
+    with np.load(out / "poses.npz") as found:
+        for name, values in offline.items():
+            np.testing.assert_array_equal(found[name], values, err_msg=name)
+
+
+@pytest.mark.slow
+def test_a_run_folder_holds_all_that_it_should(lived: tuple[Path, dict]) -> None:
+    out, _ = lived
+    names = {path.name for path in out.iterdir()}
+    assert names == {"poses.npz", "summary.json", "posture.json", "log.txt"}
+
+
+@pytest.mark.slow
+def test_a_killed_viewer_is_named_and_what_was_tracked_is_kept(clip: Path, tmp_path: Path) -> None:
+    killer = threading.Timer(6.0, kill_viewer, (2,))
+    killer.start()
+    with pytest.raises(PartFailed, match="viewer 2"):
+        live(settings_of(clip), tmp_path, QUIET)
+    with np.load(tmp_path / "poses.npz") as found:
+        assert 0 < len(found["frame"]) < 69
+
+
+def kill_viewer(number: int) -> None:
+    """SIGKILL this test's own viewer, once it is looking at frames."""
+    until_s = time.monotonic() + 30
+    while time.monotonic() < until_s:
+        for child in multiprocessing.active_children():
+            if child.name == f"viewer {number}" and child.pid is not None:
+                time.sleep(1.0)
+                os.kill(child.pid, signal.SIGKILL)
+                return
+        time.sleep(0.05)
+
+
+@pytest.mark.slow
+def test_no_process_is_left_behind(lived: tuple[Path, dict]) -> None:
+    assert [p for p in psutil.Process().children(recursive=True) if "decoder" in p.name()] == []
+    assert multiprocessing.active_children() == []
+
+
+@pytest.mark.slow
+def test_what_foreign_sessions_say_is_counted_and_dropped(clip: Path, tmp_path: Path) -> None:
+    """A malformed, truncated, oversized, NaN or foreign message does no harm."""
+    settings = settings_of(clip)
+    babbler = threading.Thread(target=babble, args=(settings.bus, settings.room), daemon=True)
+    babbler.start()
+    facts = live(settings, tmp_path, QUIET)
+    assert facts["processes"]["integrator"]["malformed"] > 0
+    with np.load(tmp_path / "poses.npz") as found:
+        assert len(found["frame"]) == 69
+
+
+def babble(bus: BusSettings, room: str) -> None:
+    """Say nonsense on the reports' key for as long as somebody listens."""
+    config = zenoh.Config()
+    config.insert_json5("mode", '"client"')
+    config.insert_json5("connect/endpoints", f'["{bus.endpoint}"]')
+    config.insert_json5("scouting/multicast/enabled", "false")
+    until_s = time.monotonic() + 30
+    while time.monotonic() < until_s:
+        try:
+            session = zenoh.open(config)
+            break
+        except zenoh.ZError:
+            time.sleep(0.1)
+    with session:
+        for _ in range(100):
+            for nonsense in (b"", b"\xc1", b"\x81\xa5frame\xcb\x7f\xf8", b"x" * 2_000_000):
+                session.put(f"tritrack/{room}/viewer/1/report", nonsense)
+            time.sleep(0.05)
+
+
+def test_a_part_that_fails_is_named_with_its_reason(tmp_path: Path) -> None:
+    parts = [Part("integrator", fails, ("the roof leaks",))]
+    with pytest.raises(PartFailed, match="integrator: the roof leaks"):
+        run(parts, settings_of(tmp_path), threading.Event(), ignore, Heard([], [], {}, []))
+
+
+def test_an_endpoint_in_use_is_refused_in_one_line(clip: Path, tmp_path: Path) -> None:
+    with socket.socket() as door:
+        door.bind(("127.0.0.1", 0))
+        door.listen()
+        endpoint = f"tcp/127.0.0.1:{door.getsockname()[1]}"
+        settings = Settings(
+            clip=str(clip), page=PageSettings(port=0), bus=BusSettings(endpoint=endpoint)
+        )
+        with pytest.raises(PartFailed, match=endpoint):
+            live(settings, tmp_path, QUIET)
+
+
+def ignore(_pulses: dict[str, Pulse]) -> None:
+    """Show nothing."""
+
+
+def test_bodies_are_heard_in_order_by_their_frame() -> None:
+    """The run folder has one row a frame of camera 1 (design: poses.npz)."""
+    bodies = [
+        Body(frame=i, captured_s=i / 15, clock_s=0.0, status="empty", views="none")
+        for i in range(3)
+    ]
+    assert poses(bodies)["frame"].tolist() == [0, 1, 2]
