@@ -34,8 +34,9 @@ def fused(before: Vector, facade: Report | None, flank: Report | None) -> Vector
     """The universal pose from both views' angles.
 
     Arms: theta_X of the shoulders from the flank, the rest from the facade (P51). Legs: theta_Z
-    of the hips from the facade; theta_X of hips and knees from the flank where the leg is lifted,
-    else the facade's: those of a squat, or 0 (P52, P53). What no view tells stays as it was.
+    of the hips from the facade; theta_X of hips and knees from the facade where it finds the knees
+    bent, squatting; else from the flank where the leg is lifted, else 0 (P52, P53). What no view
+    tells stays as it was.
 
     Args:
         before: Pose of the frame before, (25,); its position and trunk are not touched.
@@ -51,10 +52,10 @@ def fused(before: Vector, facade: Report | None, flank: Report | None) -> Vector
         hip_x, knee_x = f"{side}_hip_x", f"{side}_knee_x"
         if facade is not None:
             _take(pose, facade, (f"{side}_hip_z",))
-        if flank is not None and (facade is None or lifted(pose[POSE_INDEX[f"{side}_hip_z"]])):
-            _take(pose, flank, (hip_x, knee_x))
-        elif facade is not None and facade.squatting:
+        if facade is not None and facade.squatting:
             _take(pose, facade, (hip_x, knee_x))
+        elif flank is not None and (facade is None or lifted(pose[POSE_INDEX[f"{side}_hip_z"]])):
+            _take(pose, flank, (hip_x, knee_x))
         elif facade is not None:
             pose[POSE_INDEX[hip_x]] = pose[POSE_INDEX[knee_x]] = 0.0
     return pose

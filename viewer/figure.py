@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from common.body import POSE_INDEX, POSE_NAMES, Vector
 from common.camera import PAPER_ROTATIONS, Camera
-from common.kernel import VIEW, Bits, count, pack_words
+from common.kernel import VIEW, Bits, count, count_both, draw_limbs, pack_words, score
+from common.kinematics import ALL_LIMBS
 from common.messages import Facing, ViewerNumber
 from common.similarity import Mask
 from viewer.tritree import search, window
@@ -59,6 +60,7 @@ def searched(
     stop_deg: int,
     limits_deg: tuple[float, float],
     wide: bool = False,
+    least_gain: float = -1.0,
 ) -> Figure:
     """The figure with one angle set to the best that the tritree meets.
 
@@ -69,6 +71,7 @@ def searched(
         stop_deg: Where the search stops.
         limits_deg: Of the joint, or of this posture (P31).
         wide: Nothing is known of the angle: search windows that tile the whole range.
+        least_gain: What must be added to the figure's score for the angle to change.
     """
     low, high = limits_deg
     centres = np.arange(low + width_deg / 2, high, width_deg) if wide else [figure.pose[how.at]]
@@ -90,8 +93,18 @@ def searched(
         matches += more
         if score > best_score:
             best_angle, best_score = angle, score
+    if best_score < figure.score + least_gain:
+        return figure._replace(matches=figure.matches + matches)
     pose = np.where(how.step != 0.0, best_angle * how.step, figure.pose)
     return figure._replace(pose=pose, score=best_score, matches=figure.matches + matches)
+
+
+def matched(figure: Figure) -> Figure:
+    """The figure with the score of the whole body as it stands."""
+    drawn = np.zeros_like(figure.seen)
+    draw_limbs(figure.body, figure.pose, figure.view, ALL_LIMBS, figure.width, drawn)
+    value = float(score(count_both(drawn, figure.seen), count(drawn), figure.seen_px))
+    return figure._replace(score=value, matches=figure.matches + 1)
 
 
 def view_at(rotation: NDArray[np.float64], px_per_m: float, root_px: tuple[float, float]) -> Vector:
