@@ -8,8 +8,11 @@ import pytest
 from numpy.typing import NDArray
 
 from common.config import SilhouetteSettings
-from viewer.background import Frame, learn
-from viewer.silhouette import Mask, Seen, State, init, step
+from viewer.appearance import counted, familiar
+from viewer.background import Frame, learn, learn_from_clip, light_gain
+from viewer.difference import followed, label, seeds
+from viewer.outline import redraw
+from viewer.silhouette import Mask, Seen, State, init, step, warm
 
 HEIGHT, WIDTH = 240, 320
 SETTINGS = SilhouetteSettings()
@@ -161,6 +164,19 @@ def test_step_leaves_the_state_that_it_was_given() -> None:
     assert np.array_equal(state.colours, colours_before)
     assert np.array_equal(first[1].mask, again[1].mask)
     assert np.array_equal(first[0].room, again[0].room)
+
+
+def test_after_warming_no_frame_waits_for_the_compiler() -> None:
+    kernels = [light_gain, seeds, label, redraw, familiar, counted, followed]
+    warm()
+    compiled = [list(kernel.signatures) for kernel in kernels]
+    assert all(compiled)
+    still = [shot(dressed(room(), body()), 2.0, seed) for seed in range(5)]
+    for background in (learn([shot(room(), 2.0, 9)]), learn_from_clip(still)):
+        state = init(background, SETTINGS)
+        for seed in range(9):
+            state, _ = step(state, shot(dressed(room(), body(150)), 2.0, seed), None)
+    assert [list(kernel.signatures) for kernel in kernels] == compiled
 
 
 def test_frame_of_another_size_is_refused() -> None:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from common.config import SilhouetteSettings
 from common.messages import Box
 from viewer.appearance import counted, familiar, fresh
-from viewer.background import Background, Floats, Frame, light_gain
+from viewer.background import Background, Floats, Frame, learn, light_gain
 from viewer.difference import Bytes, followed, label, seeds
 from viewer.outline import redraw
 
@@ -88,6 +88,15 @@ def step(state: State, frame: Frame, near_px: tuple[float, float] | None) -> tup
     if seen.box is not None:
         state = _learn_colours(state, mask, frame, gain, cells, cell)
     return _follow(state, frame, gain, seen.box), seen
+
+
+def warm() -> None:
+    """Compile every kernel (seconds, once on a host), so that no frame has to wait for it."""
+    empty = np.full((120, 160, 3), 128, np.uint8)
+    person = cv2.rectangle(empty.copy(), (60, 30), (100, 90), (0, 0, 0), cv2.FILLED)
+    state = init(learn([empty]), SilhouetteSettings())
+    for _ in range(FOLLOW_EVERY):
+        state, _ = step(state, person, None)
 
 
 def _cut_out(
