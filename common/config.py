@@ -76,14 +76,11 @@ class BodySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Assumed where no calibration gives the scale, and of a body before it is measured."""
     opening_frames: int = 5
     """How many accepted frames of the opening posture make the BDPs (their median)."""
-    opening_wait_s: float = 3.0
-    """How long to wait for the opening posture before going on with the thesis's proportions."""
 
     def __post_init__(self) -> None:
         """Refuse what no run could mean."""
         _within("stature_m", self.stature_m, 0.5, 2.6)
         _within("opening_frames", self.opening_frames, 1, 100)
-        _within("opening_wait_s", self.opening_wait_s, 0.0, 60.0)
 
 
 class RecognizerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -96,7 +96,7 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
     if seen == (None, None) or state.rig is None:
         return _empty(state, pair, newest)
     known, settled_at = opening.step(
-        state.opening, state.rig, seen, state.settings.body.opening_frames, dt_s
+        state.opening, state.rig, seen, state.settings.body.opening_frames
     )
     state = _faced(state._replace(opening=known), seen)
     pose = _posed(state, state.rig, seen, settled_at)
@@ -208,9 +208,7 @@ def _status(state: State) -> Status:
         return "lost"
     if state.badly:
         return "predicted"
-    known = state.opening
-    waiting = known.waited_s < state.settings.body.opening_wait_s
-    return "measuring" if not known.measured and waiting else "tracking"
+    return "measuring" if state.opening.under_way else "tracking"
 
 
 def _score(body: Vector, pose: Vector, rig: Rig, n: int, report: Report | None) -> float:

@@ -27,11 +27,16 @@ class Opening(NamedTuple):
     measured: bool = False
     measured_at_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Where the navel was in the opening posture."""
-    waited_s: float = 0.0
-    """For how long somebody was in view before that."""
     bodies: tuple[Bdp, ...] = ()
     """Universal BDPs of the frames accepted so far."""
     places_m: tuple[tuple[float, float, float], ...] = ()
+    refused: int = 0
+    """Frames since the last accepted one."""
+
+    @property
+    def under_way(self) -> bool:
+        """Somebody takes the opening posture, and it has not told enough yet."""
+        return bool(self.bodies) and not self.measured
 
 
 def prior(rig: Rig, seen: tuple[Report | None, Report | None]) -> Bdp:
@@ -49,30 +54,35 @@ def prior(rig: Rig, seen: tuple[Report | None, Report | None]) -> Bdp:
 
 
 def step(
-    opening: Opening, rig: Rig, seen: tuple[Report | None, Report | None], due: int, dt_s: float
+    opening: Opening, rig: Rig, seen: tuple[Report | None, Report | None], due: int
 ) -> tuple[Opening, Vector | None]:
     """One pair of reports more; the navel's place where it is now settled, else None.
+
+    A posture that is broken off for as many frames as it is due begins afresh.
 
     Args:
         opening: What is known so far.
         rig: Two cameras.
         seen: Reports with a body in them.
         due: How many accepted frames make the body (their median).
-        dt_s: Since the frame before.
     """
     if opening.bdp is None:
         opening = opening._replace(bdp=prior(rig, seen))
     if opening.measured:
         return opening, None
-    opening = opening._replace(waited_s=opening.waited_s + dt_s)
     front, side = (None if report is None else report.measure for report in seen)
     if front is None or side is None or front.bdp_px is None:
-        return opening, None
+        broken_off = opening.refused + 1 >= due
+        return opening._replace(
+            refused=opening.refused + 1,
+            bodies=() if broken_off else opening.bodies,
+            places_m=() if broken_off else opening.places_m,
+        ), None
     place = place_of(rig, (front.centre_px, side.centre_px), np.zeros(3), 0)
     body = universal_bdp(front, side, scales_at(rig, place)[0])
     x, y, z = (float(value) for value in place)
     opening = opening._replace(
-        bodies=(*opening.bodies, body), places_m=(*opening.places_m, (x, y, z))
+        bodies=(*opening.bodies, body), places_m=(*opening.places_m, (x, y, z)), refused=0
     )
     return _settled(opening, due)
 
@@ -85,7 +95,7 @@ def _settled(opening: Opening, due: int) -> tuple[Opening, Vector | None]:
     place = np.median(opening.places_m, axis=0)
     x, y, z = (float(value) for value in place)
     body = _on_the_floor(body_of_lengths(lengths.tolist()), y)
-    return Opening(body, True, (x, y, z), opening.waited_s), place
+    return Opening(body, True, (x, y, z)), place
 
 
 def _on_the_floor(body: Bdp, navel_m: float) -> Bdp:
