@@ -25,9 +25,9 @@ CHANGES: Final = 12.0
 """Grey levels of brightness that tell a change from noise while no model stands."""
 EDGE_SHARE: Final = 0.45
 """Of an empty opening the outlines of what differs later keep less than this share of their
-steepness; where somebody stood there, more (0.05-0.41 and 0.49-2.5 on the development clips)."""
+steepness; where somebody stood there, more (0.05-0.41 and 0.49-2.5 on every third development clip)."""
 GAIN_SAMPLES: Final = 1500.0
-"""Pixels that are asked for the light; more change the answer by less than 0.1 %."""
+"""About how many pixels, on a grid, are asked for the light: a median of so many is steady."""
 
 
 class Background(NamedTuple):
