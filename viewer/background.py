@@ -25,7 +25,7 @@ CHANGES: Final = 12.0
 """Grey levels of brightness that tell a change from noise while no model stands."""
 EDGE_SHARE: Final = 0.45
 """Of an empty opening the outlines of what differs later keep less than this share of their
-steepness; where somebody stood there, more (0.05-0.41 and 0.49-2.5 on every third development clip)."""
+steepness, otherwise more: 0.05-0.41 and 0.49-2.5 on every third development clip."""
 GAIN_SAMPLES: Final = 1500.0
 """About how many pixels, on a grid, are asked for the light: a median of so many is steady."""
 
