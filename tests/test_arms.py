@@ -46,8 +46,16 @@ def within_range(pose: Vector, side: str) -> bool:
 
 @pytest.mark.parametrize(
     ("side", "shoulder_z_deg", "limit_deg"),
-    [("r", 170, 20), ("r", 140, 80), ("r", 110, 140), ("r", 30, 140)]
-    + [("l", 190, 20), ("l", 220, 80), ("l", 250, 140), ("l", 330, 140)],
+    [
+        ("r", 170, 20),
+        ("r", 140, 80),
+        ("r", 110, 140),
+        ("r", 30, 140),
+        ("l", 190, 20),
+        ("l", 220, 80),
+        ("l", 250, 140),
+        ("l", 330, 140),
+    ],
 )
 def test_the_inward_limit_is_the_papers(side: str, shoulder_z_deg: float, limit_deg: float) -> None:
     """P31: th_a = 2 (180 - theta_Z) beyond 110, else 140; the left arm mirrored."""

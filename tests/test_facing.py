@@ -1,6 +1,7 @@
 """Facade or flank, held against drawn figures that turn, and the printed rules (section 3.1)."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -84,7 +85,7 @@ def test_a_vote_changes_only_beyond_a_threshold(width_px: float, before: Facing)
 
 
 def flips(votes: list[Facing]) -> int:
-    return sum(one != other for one, other in zip(votes, votes[1:], strict=False))
+    return sum(one != other for one, other in pairwise(votes))
 
 
 def test_two_thresholds_flip_twice_a_turn_where_one_flips_thirteen_times() -> None:

@@ -1,0 +1,134 @@
+"""A person in the paper's rig, seen by two viewers whose silhouettes are exact."""
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from posing import box_of, posed
+
+from common.body import Bdp, Vector, body_vector, thesis_bdp
+from common.camera import Rig, paper_rig
+from common.config import Settings
+from common.kernel import draw_body, view_of
+from common.messages import Body, Box, Guide, Report, ViewerNumber, pack
+from common.similarity import Mask
+from integrator import merge
+from integrator.pairing import Pair
+from viewer import track
+from viewer.capture import Frame
+from viewer.silhouette import Seen
+
+WIDTH, HEIGHT = 160, 120
+RIG = paper_rig((WIDTH, HEIGHT), (200.0, 200.0), (4.0, 4.0))
+PERSON = thesis_bdp(1.75)
+NAVEL_M = PERSON.r_upper_leg.height + PERSON.r_lower_leg.height
+PERIOD_S = 1 / 15
+PAPER = Settings(mode="paper")
+NOBODY = np.zeros((HEIGHT, WIDTH), np.bool_)
+
+
+def standing(place_m: tuple[float, float] = (0.0, 0.0), **angles_deg: float) -> Vector:
+    """The person on the floor at (X, Z); `down_m` lowers the navel."""
+    down_m = angles_deg.pop("down_m", 0.0)
+    pose = posed(**angles_deg)
+    pose[:3] = place_m[0], NAVEL_M - down_m, place_m[1]
+    return pose
+
+
+def opening(place_m: tuple[float, float] = (0.0, 0.0)) -> Vector:
+    return standing(place_m, r_shoulder_z=95.0, l_shoulder_z=265.0)
+
+
+def squatting(hip_deg: float, **angles_deg: float) -> Vector:
+    hip = np.radians(hip_deg)
+    down_m = NAVEL_M * (1 - float(np.cos(hip)))
+    legs = {f"{side}_hip_x": hip_deg for side in "rl"}
+    legs |= {f"{side}_knee_x": -2 * hip_deg for side in "rl"}
+    return standing(down_m=down_m, **legs, **angles_deg)
+
+
+def silhouettes(pose: Vector, body: Bdp = PERSON, rig: Rig = RIG) -> tuple[Mask, Mask]:
+    """What both cameras see of a pose, in true perspective."""
+    first, second = (
+        draw_body(body_vector(body), pose, view_of(camera), (rig.width, rig.height))
+        for camera in rig.cameras
+    )
+    return first, second
+
+
+def exact(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let viewers take the picture for the silhouette."""
+
+    def step(state: None, picture: Mask, _near: object) -> tuple[None, Seen]:
+        if not picture.any():
+            return state, Seen(mask=picture, box=None, area_px=0, blobs=0, cut=False)
+        box = box_of(picture)
+        cut = box.left == 0 or box.top == 0 or box.right == WIDTH - 1 or box.bottom == HEIGHT - 1
+        return state, Seen(picture, box, int(picture.sum()), 1, cut)
+
+    monkeypatch.setattr("viewer.silhouette.init", lambda *_: None)
+    monkeypatch.setattr("viewer.silhouette.step", step)
+
+
+class Told(NamedTuple):
+    """What came of one instant."""
+
+    reports: tuple[Report | None, Report | None]
+    body: Body
+    guide: Guide
+
+
+class Stage:
+    """Two viewers and an integrator, stepped in lock-step."""
+
+    def __init__(
+        self,
+        rig: Rig | None = RIG,
+        settings: Settings = PAPER,
+        views: Sequence[ViewerNumber] = (1, 2),
+    ) -> None:
+        cameras = (None, None) if rig is None else rig.cameras
+        self.viewers = {
+            n: track.init(n, None, cameras[n - 1], settings)  # type: ignore[arg-type]
+            for n in views
+        }
+        self.state = merge.init(rig, PERIOD_S, settings)
+        self.guide: Guide | None = None
+        self.at = 0
+
+    def see(self, masks: tuple[Mask | None, Mask | None]) -> Told:
+        """One instant; None where a viewer says nothing."""
+        reports: list[Report | None] = [None, None]
+        for n, viewer in self.viewers.items():
+            mask = masks[n - 1]
+            if mask is None:
+                continue
+            moment = self.at * PERIOD_S
+            frame = Frame(self.at, moment, moment, mask)
+            self.viewers[n], reports[n - 1] = track.step(viewer, frame, self.guide)
+        self.state, body, self.guide = merge.step(self.state, Pair(reports[0], reports[1]))
+        self.at += 1
+        return Told((reports[0], reports[1]), body, self.guide)
+
+    def show(self, poses: Iterable[Vector], body: Bdp = PERSON) -> list[Told]:
+        return [self.see(silhouettes(pose, body)) for pose in poses]
+
+
+def between(first: Vector, last: Vector, frames: int) -> list[Vector]:
+    """A movement at constant speed, without its first pose."""
+    return [first + (last - first) * (i + 1) / frames for i in range(frames)]
+
+
+def report(viewer: ViewerNumber, mask: Mask | None = None, **said: object) -> Report:
+    """A report of a silhouette, with anything else that it may say."""
+    seen = NOBODY if mask is None else mask
+    box: Box | None = box_of(seen) if seen.any() else None
+    given = {"frame": 0, "captured_s": 0.0, "clock_s": 0.0, "box": box, **said}
+    return Report(
+        viewer=viewer,
+        width=WIDTH,
+        height=HEIGHT,
+        silhouette=pack(seen),
+        **given,  # type: ignore[arg-type]
+    )

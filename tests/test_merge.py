@@ -1,0 +1,293 @@
+"""Two reports in, one body out: held against a person who stands, squats, lifts and leaves."""
+
+import msgspec
+import numpy as np
+import pytest
+from staging import (
+    NOBODY,
+    PAPER,
+    PERSON,
+    RIG,
+    Stage,
+    Told,
+    between,
+    exact,
+    opening,
+    report,
+    silhouettes,
+    squatting,
+    standing,
+)
+
+from common.body import JOINT_NAMES, POSE_INDEX, Vector, body_vector, stature
+from common.camera import project
+from common.config import Mode, Settings
+from common.kinematics import joints
+from common.messages import decode, encode
+from integrator import merge
+from integrator.merge import LOST_FRAMES
+from integrator.pairing import Pair
+from integrator.place import scales_at
+
+MODES = pytest.mark.parametrize("mode", ["paper", "default"])
+
+
+@pytest.fixture(autouse=True)
+def exact_silhouettes(monkeypatch: pytest.MonkeyPatch) -> None:
+    exact(monkeypatch)
+
+
+def angle(told: Told, name: str) -> float:
+    return told.body.pose[POSE_INDEX[name]]
+
+
+def place(told: Told) -> tuple[float, ...]:
+    return told.body.pose[:3]
+
+
+def errors_m(told: Told, truth: Vector) -> Vector:
+    """Distance of each joint from the true one."""
+    true = joints(body_vector(PERSON), truth)
+    distances: Vector = np.linalg.norm(np.array(told.body.joints_m) - true, axis=1)
+    return distances
+
+
+def after_opening(stage: Stage) -> Stage:
+    """The body measured, the arms let down."""
+    stage.show([opening()] * 7 + between(opening(), standing(), 12))
+    return stage
+
+
+MOVES = {
+    "stand": standing(),
+    "squat": squatting(50.0),
+    "right": standing(r_hip_x=55.0, r_knee_x=-50.0),
+    "left": standing(l_hip_x=55.0, l_knee_x=-50.0),
+}
+
+
+@MODES
+def test_standing_squatting_and_lifting_are_told_apart(mode: Mode) -> None:
+    """P52-P54, M16: rendered, through both viewers and the integrator.
+
+    Both hips must bend in a squat and none while standing, one at least while a leg is lifted.
+    Which one is not asked: the flank's silhouette cannot tell legs apart, and the facade's theta_Z
+    wanders past 185 while a leg points at it.
+    """
+    bent: dict[str, list[float]] = {}
+    for name, target in MOVES.items():
+        stage = after_opening(Stage(settings=Settings(mode=mode)))
+        last = stage.show(between(standing(), target, 16) + [target] * 4)[-1]
+        bent[name] = sorted(angle(last, f"{side}_hip_x") for side in "rl")
+        assert last.body.status == "tracking"
+        front = next(
+            r for r, f in zip(last.reports, last.body.facing, strict=True) if f == "facade"
+        )
+        assert front is not None
+        assert front.squatting == (name == "squat")
+    assert bent["stand"] == pytest.approx([0.0, 0.0], abs=10.0)
+    assert bent["squat"] == pytest.approx([50.0, 50.0], abs=8.0)
+    for lifted in ("right", "left"):
+        assert bent[lifted][1] == pytest.approx(55.0, abs=10.0)
+        assert bent[lifted][0] < 20.0
+
+
+@MODES
+@pytest.mark.parametrize("side", ["r", "l"])
+def test_an_arm_raised_sideways_is_the_facades(mode: Mode, side: str) -> None:
+    """P51: theta_Z down from the opening posture to 120 degrees (240)."""
+    target_deg = 120.0 if side == "r" else 240.0
+    target = standing(**{f"{side}_shoulder_z": target_deg})
+    stage = after_opening(Stage(settings=Settings(mode=mode)))
+    last = stage.show(between(standing(), target, 12) + [target] * 4)[-1]
+    assert angle(last, f"{side}_shoulder_z") == pytest.approx(target_deg, abs=8.0)
+    assert errors_m(last, target).mean() < 0.1
+
+
+@MODES
+def test_the_body_is_followed_through_the_room(mode: Mode) -> None:
+    """P27, P44, P50: 0.4 m to the side and 0.4 m back, within 6 cm on the floor."""
+    stage = after_opening(Stage(settings=Settings(mode=mode)))
+    path = between(standing(), standing((0.4, 0.0)), 15)
+    path += between(standing((0.4, 0.0)), standing((0.4, -0.4)), 15)
+    for told, truth in zip(stage.show(path), path, strict=True):
+        assert place(told)[::2] == pytest.approx(truth[[0, 2]], abs=0.06)
+        assert told.body.views == "both"
+
+
+def test_the_guide_carries_the_scale_of_where_the_body_is() -> None:
+    """P2, P29, P45: r_t1 and r_t2 for the viewers' next frame, from this frame's place."""
+    stage = after_opening(Stage())
+    path = between(standing(), standing((0.3, 0.5)), 20)
+    told = stage.show(path)
+    for before, after in zip(told, told[1:], strict=False):
+        assert before.guide.scale_px_per_m == pytest.approx(
+            scales_at(RIG, np.array(before.body.pose[:3])), rel=1e-6
+        )
+        assert after.reports[0] is not None
+        assert after.reports[0].guide_frame == before.guide.frame
+    last = told[-1].guide
+    factors = np.array(last.scale_px_per_m) / np.array(last.reference_px_per_m)
+    assert factors == pytest.approx([4.0 / 3.5, 4.0 / 4.3], rel=0.03)
+
+
+def test_a_raised_hand_does_not_change_the_scale() -> None:
+    """P29: the highest pixel is the hand then; T' / T "is not usable" (section 4.2)."""
+    stage = after_opening(Stage())
+    before = stage.show([standing()])[-1].guide.scale_px_per_m
+    raised = standing(r_shoulder_z=20.0, l_shoulder_z=340.0)
+    after = stage.show(between(standing(), raised, 16) + [raised] * 4)[-1].guide.scale_px_per_m
+    assert after == pytest.approx(before, rel=0.02)
+
+
+@MODES
+def test_an_empty_room_has_nobody_though_it_scores(mode: Mode) -> None:
+    """M25: S of an empty silhouette is e^-1 for any model; presence decides, not S."""
+    stage = Stage(settings=Settings(mode=mode))
+    for told in [stage.see((NOBODY, NOBODY)) for _ in range(3)]:
+        assert (told.body.status, told.body.views) == ("empty", "none")
+        assert told.body.joints_m == ()
+        assert told.body.score == (0.0, 0.0)
+    stage.show([opening()] * 2)
+    gone = stage.see((NOBODY, NOBODY))
+    assert gone.body.status == "empty"
+    assert gone.guide.bdp is not None
+
+
+@MODES
+def test_a_pose_is_told_from_the_first_frame_on(mode: Mode) -> None:
+    """Measuring, by prior proportions; tracking once five frames have made the body (P46)."""
+    told = Stage(settings=Settings(mode=mode)).show([opening()] * 8)
+    assert [t.body.status for t in told] == ["measuring"] * 4 + ["tracking"] * 4
+    for t in told:
+        assert len(t.body.joints_m) == len(t.body.confidence) == 15
+        assert errors_m(t, opening()).mean() < 0.15
+        assert decode(encode(t.body), type(t.body)) == t.body
+        assert decode(encode(t.guide), type(t.guide)) == t.guide
+    assert [t.guide.measured for t in told] == [False] * 4 + [True] * 4
+    assert told[-1].guide.bdp is not None
+    assert stature(told[-1].guide.bdp) == pytest.approx(1.75, abs=0.08)
+
+
+@MODES
+def test_who_never_stretches_the_arms_is_tracked_by_prior_proportions(mode: Mode) -> None:
+    """P10: nothing is measured, and nothing is waited for."""
+    told = Stage(settings=Settings(mode=mode)).show([standing()] * 8)
+    assert {t.body.status for t in told} == {"tracking"}
+    assert not told[-1].guide.measured
+    assert errors_m(told[-1], standing()).mean() < 0.15
+
+
+def test_a_body_that_fits_nothing_is_predicted_then_lost_then_found() -> None:
+    """L1: found again by itself, once the person is there."""
+    stage = after_opening(Stage())
+    stage.show([standing()])
+    block = NOBODY.copy()
+    block[2:14, 10:150] = True  # a banner
+    states = [stage.see((block, block)).body for _ in range(LOST_FRAMES + 1)]
+    assert [body.status for body in states] == ["predicted"] * (LOST_FRAMES - 1) + ["lost"] * 2
+    assert set(states[-1].confidence) == {0.0}
+    again = stage.show([standing()] * 6)[-1]
+    assert again.body.status == "tracking"
+    assert errors_m(again, standing()).mean() < 0.12
+
+
+@MODES
+@pytest.mark.parametrize("silent", [0, 1])
+def test_one_viewer_alone_carries_on(mode: Mode, silent: int) -> None:
+    """The other falls silent while tracking: position across the line of sight, views named."""
+    stage = after_opening(Stage(settings=Settings(mode=mode)))
+    stage.show([standing()])
+    for _ in range(5):
+        masks = list(silhouettes(standing()))
+        masks[silent] = None  # type: ignore[call-overload]
+        told = stage.see((masks[0], masks[1]))
+    assert told.body.views == ("2" if silent == 0 else "1")
+    assert told.body.status == "tracking"
+    assert told.body.score[silent] == 0.0
+    assert errors_m(told, standing()).mean() < 0.12
+    both = stage.show([standing()])[-1]
+    assert both.body.views == "both"
+
+
+@MODES
+@pytest.mark.parametrize("alone", [1, 2])
+def test_a_run_with_one_viewer_tells_a_body(mode: Mode, alone: int) -> None:
+    told = Stage(settings=Settings(mode=mode), views=(alone,)).show([standing()] * 6)  # type: ignore[arg-type]
+    assert {t.body.views for t in told} == {str(alone)}
+    assert len(told[-1].body.joints_m) == 15
+    assert told[-1].reports[2 - alone] is None
+
+
+@MODES
+def test_without_a_calibration_the_person_sets_the_scale(mode: Mode) -> None:
+    """scale_source: a body of 1.75 m on the floor, and the measure's own within 5 %."""
+    stage = Stage(rig=None, settings=Settings(mode=mode))
+    assert stage.state.scale_source == "assumed"
+    first = stage.show([opening()])[-1]
+    assert first.body.bdp is not None
+    assert stature(first.body.bdp) == pytest.approx(1.75, abs=0.02)
+    last = stage.show([opening()] * 6)[-1]
+    assert last.body.bdp is not None
+    assert stature(last.body.bdp) == pytest.approx(1.75, rel=0.05)
+    feet = [last.body.joints_m[JOINT_NAMES.index(f"{side}_ankle")][1] for side in "rl"]
+    assert feet == pytest.approx([0.07, 0.07], abs=0.06)
+    assert Stage().state.scale_source == "calibrated"
+
+
+def test_a_person_partly_outside_sets_no_scale() -> None:
+    stage = Stage(rig=None)
+    cut = NOBODY.copy()
+    cut[40:120, 70:90] = True
+    assert stage.see((cut, cut)).body.status == "empty"
+    assert stage.state.rig is None
+
+
+def test_joints_in_the_pictures_are_the_joints_in_the_world() -> None:
+    """C1."""
+    told = after_opening(Stage()).show([standing((0.2, 0.1))])[-1]
+    world = np.array(told.body.joints_m)
+    for camera, pixels in zip(RIG.cameras, told.body.joints_px, strict=True):
+        assert np.array(pixels) == pytest.approx(project(camera, world), abs=1e-6)
+
+
+def turned(yaw_deg: float) -> Vector:
+    return standing(torso_y=yaw_deg)
+
+
+@MODES
+def test_a_turn_to_camera_2_exchanges_facade_and_flank(mode: Mode) -> None:
+    """P47-P49: exactly one facade at any time; theta_Y^T is 0 or -90."""
+    stage = after_opening(Stage(settings=Settings(mode=mode)))
+    path = between(turned(0.0), turned(-90.0), 20) + [turned(-90.0)] * 3
+    told = stage.show(path)
+    assert all(set(t.body.facing) == {"facade", "flank"} for t in told)
+    assert told[0].body.facing == ("facade", "flank")
+    assert told[-1].body.facing == ("flank", "facade")
+    assert told[-1].guide.pose[POSE_INDEX["torso_y"]] == -90.0
+    changes = sum(a.body.facing != b.body.facing for a, b in zip(told, told[1:], strict=False))
+    assert changes == 1
+
+
+def test_a_late_partner_is_not_waited_for() -> None:
+    """Reports of one instant alone are told as such; the guide says who was heard last."""
+    state = merge.init(RIG, 1 / 15, PAPER)
+    masks = silhouettes(standing())
+    first = report(1, masks[0], root_px=(80.0, 61.0), frame=7)
+    state, body, guide = merge.step(state, Pair(first, None))
+    assert (body.frame, body.views, guide.frames) == (7, "1", (7, -1))
+    second = msgspec.structs.replace(report(2, masks[1], root_px=(80.0, 61.0)), frame=9)
+    state, body, guide = merge.step(state, Pair(None, second))
+    assert (body.frame, body.views, guide.frames) == (-1, "2", (7, 9))
+
+
+def test_an_integrator_is_a_value() -> None:
+    """The same pairs give the same bodies again."""
+    stage = after_opening(Stage())
+    state, masks = stage.state, silhouettes(standing())
+    pair = Pair(
+        report(1, masks[0], root_px=(80.0, 61.0), frame=30, captured_s=2.0),
+        report(2, masks[1], root_px=(80.0, 61.0), frame=30, captured_s=2.0),
+    )
+    one, other = merge.step(state, pair), merge.step(state, pair)
+    assert one[1:] == other[1:]

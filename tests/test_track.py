@@ -1,0 +1,243 @@
+"""One viewer's thinking, held against persons drawn in the paper's rig."""
+
+import msgspec
+import numpy as np
+import pytest
+from posing import posed
+from staging import (
+    NAVEL_M,
+    NOBODY,
+    PAPER,
+    PERSON,
+    RIG,
+    Stage,
+    between,
+    exact,
+    opening,
+    silhouettes,
+    squatting,
+    standing,
+)
+
+from common.body import ANGLE_NAMES, POSE_INDEX, Vector, stature
+from common.camera import project
+from common.messages import Guide, Report, ViewerNumber, unpack
+from common.similarity import Mask
+from viewer import track
+from viewer.capture import Frame
+
+
+@pytest.fixture(autouse=True)
+def exact_silhouettes(monkeypatch: pytest.MonkeyPatch) -> None:
+    exact(monkeypatch)
+
+
+def viewer(number: ViewerNumber) -> track.State:
+    return track.init(number, None, RIG.cameras[number - 1], PAPER)  # type: ignore[arg-type]
+
+
+def frame(mask: Mask, index: int = 0) -> Frame:
+    return Frame(index, index / 15, index / 15, mask)  # type: ignore[arg-type]
+
+
+def guide(pose: Vector, **said: object) -> Guide:
+    """What an integrator would say that knows the person and the pose."""
+    place = pose[:3]
+    upright = np.array([place[0], NAVEL_M, place[2]])
+    first, second = (project(camera, np.stack([place, upright])) for camera in RIG.cameras)
+    scales = (200.0 / (4.0 - place[2]), 200.0 / (4.0 + place[0]))
+    given = {
+        "frame": 0,
+        "captured_s": 0.0,
+        "clock_s": 0.0,
+        "frames": (0, 0),
+        "status": "tracking",
+        "bdp": PERSON,
+        "measured": True,
+        "scale_px_per_m": scales,
+        "reference_px_per_m": scales,
+        "root_px": (tuple(first[0]), tuple(second[0])),
+        "rest_row_px": (float(first[1, 1]), float(second[1, 1])),
+        "pose": tuple(pose.tolist()),
+    }
+    return Guide(**{**given, **said})  # type: ignore[arg-type]
+
+
+def looked(number: ViewerNumber, truth: Vector, told: Guide | None) -> Report:
+    _, report = track.step(viewer(number), frame(silhouettes(truth)[number - 1]), told)
+    return report
+
+
+def test_the_stages_follow_each_other_as_in_the_paper(monkeypatch: pytest.MonkeyPatch) -> None:
+    """P23: silhouette, facade or flank, position, arms, legs."""
+    called: list[str] = []
+
+    def noted(name: str) -> None:
+        inner = getattr(track, name)
+        monkeypatch.setattr(track, name, lambda *a: called.append(name) or inner(*a))
+
+    for name in ("thresholds_px", "located", "facade_arms", "facade_legs"):
+        noted(name)
+    noted("flank_arms")
+    noted("flank_legs")
+    looked(1, standing(), guide(standing()))
+    assert called == ["thresholds_px", "located", "facade_arms", "facade_legs"]
+    called.clear()
+    looked(2, standing(), guide(standing()))
+    assert called == ["thresholds_px", "located", "flank_arms", "flank_legs"]
+
+
+@pytest.mark.parametrize(("number", "vote"), [(1, "facade"), (2, "flank")])
+def test_viewer_1_begins_as_the_facade_and_viewer_2_as_the_flank(
+    number: ViewerNumber, vote: str
+) -> None:
+    """P47."""
+    assert viewer(number).vote == vote
+    assert looked(number, standing(), None).vote == vote
+
+
+def test_a_report_tells_the_angles_that_its_view_can_see() -> None:
+    """P30, P35, P51: theta_X of shoulders from the flank, theta_Y, theta_Z, elbow from the front."""
+    facade = looked(1, standing(), guide(standing())).angles_deg
+    flank = looked(2, standing(), guide(standing())).angles_deg
+    arms = {f"{side}_{name}" for side in "rl" for name in ("shoulder_y", "shoulder_z", "elbow_x")}
+    hips_z, bends = {"r_hip_z", "l_hip_z"}, {"r_hip_x", "l_hip_x", "r_knee_x", "l_knee_x"}
+    assert set(facade) == arms | hips_z | bends
+    assert set(flank) == {"r_shoulder_x", "l_shoulder_x"} | bends
+    assert set(facade) | set(flank) <= set(ANGLE_NAMES)
+
+
+def test_an_empty_silhouette_is_nobody_whatever_it_scores() -> None:
+    """M25: no position, no angles, score 0; the next frame is met as usual."""
+    state, report = track.step(viewer(1), frame(NOBODY), guide(standing()))
+    assert report.box is None
+    assert report.root_px is None
+    assert (report.score, report.matches, report.angles_deg) == (0.0, 0, {})
+    _, after = track.step(state, frame(silhouettes(standing())[0], 1), None)
+    assert after.root_px is not None
+
+
+def test_a_silhouette_travels_as_it_was_seen() -> None:
+    mask = silhouettes(standing())[0]
+    assert (unpack(looked(1, standing(), None)) == mask).all()
+
+
+@pytest.mark.parametrize("number", [1, 2])
+def test_a_followed_body_is_found_where_and_how_it_stands(number: ViewerNumber) -> None:
+    """P23: from last frame's pose, 5 cm and 10 degrees off."""
+    truth = standing((0.1, -0.1), r_shoulder_z=120.0, l_hip_z=190.0)
+    before = standing((0.15, -0.05), r_shoulder_z=130.0, l_hip_z=180.0)
+    report = looked(number, truth, guide(before))
+    true_px = project(RIG.cameras[number - 1], truth[None, :3])[0]
+    assert report.root_px == pytest.approx(true_px, abs=2.0)
+    assert report.score > 0.8
+    if number == 1:
+        assert report.angles_deg["r_shoulder_z"] == pytest.approx(120.0, abs=4.0)
+        assert report.angles_deg["l_hip_z"] == pytest.approx(190.0, abs=4.0)
+
+
+@pytest.mark.parametrize("status", [None, "empty", "lost"])
+def test_a_body_that_nobody_knows_of_is_found_with_its_arms_wherever_they_are(
+    status: str | None,
+) -> None:
+    """L1: no guide, or one that has lost it: the box places the model, arms are searched widely."""
+    truth = standing((0.3, 0.2), r_shoulder_z=60.0, l_shoulder_z=250.0)
+    told = None if status is None else guide(posed(), status=status, root_px=((0, 0), (0, 0)))
+    report = looked(1, truth, told)
+    assert report.angles_deg["r_shoulder_z"] == pytest.approx(60.0, abs=6.0)
+    assert report.angles_deg["l_shoulder_z"] == pytest.approx(250.0, abs=6.0)
+    assert report.root_px is not None
+    true_px = project(RIG.cameras[0], truth[None, :3])[0]
+    assert report.root_px == pytest.approx(true_px, abs=4.0)
+
+
+def test_the_opening_posture_is_measured_until_it_is_known() -> None:
+    """P10-P21: BDPs in the front view, depth in the side view, reasons otherwise."""
+    front, side = looked(1, opening(), None), looked(2, opening(), None)
+    assert front.measure is not None
+    assert front.measure.bdp_px is not None
+    assert side.measure is not None
+    assert side.measure.bdp_px is None
+    hanging = looked(1, standing(), None)
+    assert hanging.measure is None
+    assert "arms" in hanging.refusal
+    known = looked(1, opening(), guide(opening()))
+    assert (known.measure, known.refusal) == (None, "")
+
+
+def test_a_person_partly_outside_is_not_measured() -> None:
+    report = looked(1, opening((1.4, 0.0)), None)
+    assert report.cut
+    assert report.measure is None
+    assert "outside the picture" in report.refusal
+
+
+def test_a_report_says_which_guide_it_used_and_a_late_one_still_serves() -> None:
+    """P2: frame t uses the guide of t - 1; an older one is only farther from the truth."""
+    poses = between(standing(), standing(r_shoulder_z=120.0), 6)
+    states = {}
+    for late in (1, 3):
+        state = viewer(1)
+        for t, pose in enumerate(poses):
+            known = standing() if t < late else poses[t - late]
+            told = guide(known, frames=(t - late, t - late))
+            state, report = track.step(state, frame(silhouettes(pose)[0], t), told)
+            assert report.guide_frame == t - late
+        states[late] = report
+    for report in states.values():
+        assert report.angles_deg["r_shoulder_z"] == pytest.approx(120.0, abs=4.0)
+    assert looked(1, standing(), None).guide_frame == -1
+
+
+def test_the_vote_follows_the_width_of_the_trunk_with_hysteresis() -> None:
+    """P24-P26: from the state that the integrator settled, not from its own last vote."""
+    side_on = standing(torso_y=-90.0)
+    told = guide(standing())
+    turned = looked(1, side_on, msgspec.structs.replace(told, facing=("facade", "flank")))
+    assert turned.vote == "flank"
+    assert turned.upper_body_px < turned.thresholds_px[0]
+    half = standing(torso_y=-45.0, r_shoulder_z=90.0, l_shoulder_z=270.0)
+    for facing in (("facade", "flank"), ("flank", "facade")):
+        report = looked(1, half, msgspec.structs.replace(guide(half), facing=facing))
+        low, high = report.thresholds_px
+        if low <= report.upper_body_px <= high:
+            assert report.vote == facing[0]
+
+
+@pytest.mark.parametrize("place_m", [(0.0, 0.0), (0.0, 1.5), (0.0, -1.5)], ids=["0", "near", "far"])
+def test_a_squat_is_told_in_metres_not_in_pixels(place_m: tuple[float, float]) -> None:
+    """P33: a navel 10 % of the stature lower squats at every distance, one 3 % lower does not."""
+    for share, squats in ((0.03, False), (0.10, True)):
+        drop_m = share * stature(PERSON)
+        hip_deg = float(np.degrees(np.arccos(1 - drop_m / NAVEL_M)))
+        truth = squatting(hip_deg)
+        truth[POSE_INDEX["x"]], truth[POSE_INDEX["z"]] = place_m
+        assert looked(1, truth, guide(truth)).squatting == squats
+
+
+def test_a_prior_body_never_squats() -> None:
+    """P33: the height in the opening posture is what the navel is compared with."""
+    truth = squatting(60.0)
+    assert not looked(1, truth, guide(truth, measured=False)).squatting
+
+
+def test_the_count_of_matches_is_the_papers_cost() -> None:
+    """P27, P40: position, four arm searches of at most 9, two legs of at most 7."""
+    report = looked(1, standing(), guide(standing()))
+    assert 13 + 4 * 6 + 2 * 5 <= report.matches <= 2 * (1 + 3 * 6) + 4 * 9 + 2 * 7
+
+
+def test_a_viewer_is_a_value() -> None:
+    """The same frame and guide give the same report again."""
+    state, told = viewer(1), guide(standing())
+    masks = silhouettes(standing(r_shoulder_z=150.0))
+    assert (
+        track.step(state, frame(masks[0]), told)[1] == track.step(state, frame(masks[0]), told)[1]
+    )
+
+
+def test_two_viewers_need_no_more_than_what_a_guide_says() -> None:
+    """P2: reports of a walk through both viewers and the integrator use the guide before."""
+    told = Stage().show([opening()] * 3)
+    assert [t.reports[0].guide_frame for t in told if t.reports[0]] == [-1, 0, 1]
+    assert [t.guide.frames for t in told] == [(0, 0), (1, 1), (2, 2)]
