@@ -30,6 +30,9 @@ EDGE: Final = 1e-9
 THINNEST: Final = 1e-3
 """Least height of a section in the picture, as a share of its width: flat ends stay finite."""
 
+NEAREST_M: Final = 0.05
+"""A limb that reaches nearer to the camera, or behind it, is not drawn."""
+
 VIEW: Final = 17
 """A view: R (9), t (3), focal x, y (px), centre x, y (px), depth (m; 0: true perspective)."""
 PRIMITIVE: Final = 8
@@ -45,57 +48,6 @@ def popcount(_context: Any, _word: Any) -> Any:
         return builder.call(counter, arguments)
 
     return types.int64(types.uint64), generate
-
-
-@numba.njit(cache=True)
-def outline(frame: Any, long: float, short: float, height: float, view: Any, out: Any) -> bool:
-    """A limb's outline in a view, as a PRIMITIVE; False where it is not before the camera.
-
-    Args:
-        frame: The limb's frame, (FRAME,).
-        long: Half width along the limb's x axis, metres.
-        short: Half width along its z axis.
-        height: Length along its y axis.
-        view: (VIEW,).
-        out: (PRIMITIVE,), written.
-    """
-    ax, ay, az = view[9], view[10], view[11]
-    ux = uy = uz = sxx = sxy = syy = 0.0
-    for j in range(3):
-        ax += view[j] * frame[j]
-        ay += view[3 + j] * frame[j]
-        az += view[6 + j] * frame[j]
-        axis = frame[4 + 3 * j] * height
-        ux += view[j] * axis
-        uy += view[3 + j] * axis
-        uz += view[6 + j] * axis
-    for column, radius in ((0, long), (2, short)):
-        px = py = 0.0
-        for j in range(3):
-            px += view[j] * frame[3 + 3 * j + column]
-            py += view[3 + j] * frame[3 + 3 * j + column]
-        px, py = px * radius * view[12], py * radius * view[13]
-        sxx += px * px
-        sxy += px * py
-        syy += py * py
-    depth_a = depth_b = view[16]
-    if depth_a == 0.0:
-        depth_a, depth_b = az, az + uz
-        if depth_a < 0.05 or depth_b < 0.05:
-            return False
-    half_height = max(math.sqrt(syy), THINNEST * math.sqrt(sxx))
-    shear = sxy / (half_height * half_height)
-    half_width = math.sqrt(max(sxx - shear * sxy, THINNEST * THINNEST * sxx))
-    stretch = half_width / half_height
-    out[1] = ay / depth_a * view[13] + view[15]
-    out[4] = (ay + uy) / depth_b * view[13] + view[15]
-    out[0] = (ax / depth_a * view[12] + view[14] - shear * out[1]) / stretch
-    out[3] = ((ax + ux) / depth_b * view[12] + view[14] - shear * out[4]) / stretch
-    out[2] = half_height / depth_a
-    out[5] = half_height / depth_b
-    out[6] = shear
-    out[7] = stretch
-    return True
 
 
 def inside(primitive: Vector, x_px: float, y_px: float) -> bool:
@@ -119,8 +71,100 @@ def inside(primitive: Vector, x_px: float, y_px: float) -> bool:
 
 
 @numba.njit(cache=True)
+def _tangent(p: Any, nx: float, ny: float) -> tuple[float, float, float, float]:
+    """The line that touches both discs where their normal is (nx, ny): x = at + slope y.
+
+    Returns:
+        (at, slope, first y, last y); a level one bounds no row: its first y is beyond its last.
+    """
+    if nx == 0.0:
+        return 0.0, 0.0, 1.0, 0.0
+    ra, rb = p[2] + EDGE, p[5] + EDGE
+    one, other = p[1] + ra * ny, p[4] + rb * ny
+    slope = -ny / nx
+    return p[0] + ra * nx - slope * one, slope, min(one, other), max(one, other)
+
+
+@numba.njit(cache=True)
+def _cut_first(x: float, width: int) -> Any:
+    """First pixel of the picture whose centre is not left of x + 0.5; width where there is none."""
+    return np.int32(np.ceil(min(max(x, 0.0), float(width))))
+
+
+@numba.njit(cache=True)
+def _cut_last(x: float, width: int) -> Any:
+    """Last pixel whose centre is not right of x + 0.5; -1 where there is none."""
+    return np.int32(np.floor(max(min(x, width - 1.0), -1.0)))
+
+
+@numba.njit(cache=True)
+def _rows_of_lines(
+    p: Any, left: Any, right: Any, begin: int, end: int, width: int, first: Any, last: Any
+) -> None:
+    """Row intervals where a limb lies between its two tangents."""
+    shear, stretch = p[6], p[7]
+    at_1, slope_1, at_2, slope_2 = left[0], left[1], right[0], right[1]
+    for row in range(begin, end):
+        y = row + 0.5
+        offset = shear * y - 0.5
+        first[row] = _cut_first(stretch * (at_1 + slope_1 * y) + offset, width)
+        last[row] = _cut_last(stretch * (at_2 + slope_2 * y) + offset, width)
+
+
+@numba.njit(cache=True)
+def _rows_of_end(
+    p: Any,
+    disc: int,
+    left: Any,
+    right: Any,
+    begin: int,
+    end: int,
+    width: int,
+    first: Any,
+    last: Any,
+) -> None:
+    """Row intervals at the upper or lower end: the end's disc, or a tangent that is reached."""
+    x, y_disc, r = p[disc], p[disc + 1], p[disc + 2] + EDGE
+    shear, stretch = p[6], p[7]
+    at_1, slope_1, from_1, to_1 = left
+    at_2, slope_2, from_2, to_2 = right
+    for row in range(begin, end):
+        y = row + 0.5
+        reach = math.sqrt(max(r * r - (y - y_disc) * (y - y_disc), 0.0))
+        low = at_1 + slope_1 * y if from_1 <= y <= to_1 else x - reach
+        high = at_2 + slope_2 * y if from_2 <= y <= to_2 else x + reach
+        offset = shear * y - 0.5
+        first[row] = _cut_first(stretch * low + offset, width)
+        last[row] = _cut_last(stretch * high + offset, width)
+
+
+@numba.njit(cache=True)
+def _rows_of_all(
+    p: Any, one: Any, other: Any, begin: int, end: int, width: int, first: Any, last: Any
+) -> None:
+    """Row intervals of a limb of any shape: the outermost of both discs and both tangents."""
+    for row in range(begin, end):
+        y = row + 0.5
+        low, high = math.inf, -math.inf
+        for disc in range(0, 6, 3):
+            r, off = p[disc + 2] + EDGE, y - p[disc + 1]
+            if r * r >= off * off:
+                reach = math.sqrt(r * r - off * off)
+                low, high = min(low, p[disc] - reach), max(high, p[disc] + reach)
+        for at, slope, begins, ends in (one, other):
+            if begins <= y <= ends:
+                low, high = min(low, at + slope * y), max(high, at + slope * y)
+        offset = p[6] * y - 0.5
+        first[row] = _cut_first(p[7] * low + offset, width)
+        last[row] = _cut_last(p[7] * high + offset, width)
+
+
+@numba.njit(cache=True)
 def spans(p: Any, width: int, height: int, first: Any, last: Any) -> tuple[int, int]:
     """Row intervals of a limb: first and last pixel of each row, cut to the picture.
+
+    A limb is mostly so steep that rows lie between its tangents: then one of these is its left
+    side and one its right, and the rows of each end are one disc's.
 
     Args:
         p: (PRIMITIVE,).
@@ -132,117 +176,72 @@ def spans(p: Any, width: int, height: int, first: Any, last: Any) -> tuple[int, 
     Returns:
         (top, bottom): the rows from top to bottom - 1 are written; the limb is in no other.
     """
-    ax, ay, ra, bx, by, rb = p[0], p[1], p[2] + EDGE, p[3], p[4], p[5] + EDGE
-    shear, stretch = p[6], p[7]
+    ay, ra, by, rb = p[1], p[2] + EDGE, p[4], p[5] + EDGE
     top = min(height, max(0, math.ceil(min(ay - ra, by - rb) - 0.5)))
-    bottom = min(height, math.floor(max(ay + ra, by + rb) - 0.5) + 1)
-    dx, dy = bx - ax, by - ay
-    length_2, taper = dx * dx + dy * dy, ra - rb
-    # The two tangent lines, each x = at + slope y on rows from..to: a left or a right bound, or,
-    # where the taper is strong and the limb lies flat, both on the same side.
-    from_1 = from_2 = 1.0
-    to_1 = to_2 = 0.0
-    at_1 = at_2 = slope_1 = slope_2 = 0.0
-    left_1 = left_2 = False
+    bottom = max(top, min(height, math.floor(max(ay + ra, by + rb) - 0.5) + 1))
+    dx, dy, taper = p[3] - p[0], by - ay, ra - rb
+    length_2 = dx * dx + dy * dy
+    nx_1 = ny_1 = nx_2 = ny_2 = 0.0
     if length_2 > taper * taper:
         sin_a = taper / length_2
         cos_a = math.sqrt(length_2 - taper * taper) / length_2
-        nx, ny = dx * sin_a - dy * cos_a, dy * sin_a + dx * cos_a
-        if nx != 0.0:
-            from_1, to_1 = min(ay + ra * ny, by + rb * ny), max(ay + ra * ny, by + rb * ny)
-            slope_1, left_1 = -ny / nx, nx < 0.0
-            at_1 = ax + ra * nx - slope_1 * (ay + ra * ny)
-        nx, ny = dx * sin_a + dy * cos_a, dy * sin_a - dx * cos_a
-        if nx != 0.0:
-            from_2, to_2 = min(ay + ra * ny, by + rb * ny), max(ay + ra * ny, by + rb * ny)
-            slope_2, left_2 = -ny / nx, nx < 0.0
-            at_2 = ax + ra * nx - slope_2 * (ay + ra * ny)
-    ra_2, rb_2 = ra * ra, rb * rb
-    for row in range(top, bottom):
-        y = row + 0.5
-        on_1, on_2 = from_1 <= y <= to_1, from_2 <= y <= to_2
-        low, high = math.inf, -math.inf
-        if not (on_1 and on_2 and left_1 != left_2):
-            square = ra_2 - (y - ay) * (y - ay)
-            if square >= 0.0:
-                reach = math.sqrt(square)
-                low, high = ax - reach, ax + reach
-            square = rb_2 - (y - by) * (y - by)
-            if square >= 0.0:
-                reach = math.sqrt(square)
-                low, high = min(low, bx - reach), max(high, bx + reach)
-        if on_1:
-            x = at_1 + slope_1 * y
-            if left_1:
-                low = x
-            else:
-                high = x
-        if on_2:
-            x = at_2 + slope_2 * y
-            if left_2:
-                low = min(low, x)
-            else:
-                high = max(high, x)
-        if low > high:
-            first[row], last[row] = 1, 0
-            continue
-        offset = shear * y - 0.5
-        from_x, to_x = stretch * low + offset, stretch * high + offset
-        first[row] = math.ceil(min(max(from_x, 0.0), float(width)))
-        last[row] = math.floor(max(min(to_x, width - 1.0), -1.0))
-    return top, max(top, bottom)
-
-
-@numba.njit(cache=True)
-def _word(first: int, last: int, word: int) -> Any:
-    """The bits of the pixels first..last that fall into a word; the interval meets it."""
-    low = max(first - 64 * word, 0)
-    high = min(last - 64 * word, 63)
-    ones = np.uint64(0xFFFFFFFFFFFFFFFF)
-    return (ones << np.uint64(low)) & (ones >> np.uint64(63 - high))
+        nx_1, ny_1 = dx * sin_a - dy * cos_a, dy * sin_a + dx * cos_a
+        nx_2, ny_2 = dx * sin_a + dy * cos_a, dy * sin_a - dx * cos_a
+    left, right = _tangent(p, nx_1, ny_1), _tangent(p, nx_2, ny_2)
+    from_y, to_y = max(left[2], right[2]), min(left[3], right[3])
+    if nx_1 * nx_2 >= 0.0 or from_y > to_y:
+        _rows_of_all(p, left, right, top, bottom, width, first, last)
+        return top, bottom
+    if nx_1 > 0.0:
+        left, right = right, left
+    begin = min(bottom, max(top, math.ceil(from_y - 0.5)))
+    end = min(bottom, max(begin, math.floor(to_y - 0.5) + 1))
+    upper = 0 if dy >= 0.0 else 3
+    _rows_of_end(p, upper, left, right, top, begin, width, first, last)
+    _rows_of_lines(p, left, right, begin, end, width, first, last)
+    _rows_of_end(p, 3 - upper, left, right, end, bottom, width, first, last)
+    return top, bottom
 
 
 @numba.njit(cache=True)
 def draw(first: Any, last: Any, top: int, bottom: int, bits: Any) -> None:
     """OR row intervals into packed rows (H, words)."""
+    ones = np.uint64(0xFFFFFFFFFFFFFFFF)
     for row in range(top, bottom):
         a, b = first[row], last[row]
         if a <= b:
-            for word in range(a >> 6, (b >> 6) + 1):
-                bits[row, word] |= _word(a, b, word)
+            new = ones << np.uint64(a & 63)
+            for word in range(a >> 6, b >> 6):
+                bits[row, word] |= new
+                new = ones
+            bits[row, b >> 6] |= new & ones >> np.uint64(63 - (b & 63))
 
 
 @numba.njit(cache=True)
-def gain(
-    firsts: Any, lasts: Any, top: int, bottom: int, limbs: int, base: Any, seen: Any
-) -> tuple[int, int]:
-    """What limbs add to a drawn rest: (pixels newly drawn, those of them that are seen).
+def gain(first: Any, last: Any, top: int, bottom: int, base: Any, seen: Any) -> tuple[int, int]:
+    """What a limb adds to a drawn rest: (pixels newly drawn, those of them that are seen).
 
     Args:
-        firsts: (limbs, H) first pixels of each limb's rows, `lasts` likewise; rows outside a
-            limb have first > last.
-        top: First row that any of them has.
-        bottom: One past the last.
-        limbs: How many.
+        first: (H,) first pixels of the limb's rows, `last` likewise.
+        top: The limb's first row.
+        bottom: One past its last.
         base: The rest, packed.
         seen: The silhouette, packed.
     """
+    ones = np.uint64(0xFFFFFFFFFFFFFFFF)
     drawn = hit = 0
     for row in range(top, bottom):
-        low, high = 1 << 30, -1
-        for limb in range(limbs):
-            if firsts[limb, row] <= lasts[limb, row]:
-                low = min(low, firsts[limb, row])
-                high = max(high, lasts[limb, row])
-        for word in range(low >> 6, (high >> 6) + 1):
-            new = np.uint64(0)
-            for limb in range(limbs):
-                a, b = firsts[limb, row], lasts[limb, row]
-                if a <= b and a >> 6 <= word <= b >> 6:
-                    new |= _word(a, b, word)
-            new &= ~base[row, word]
+        a, b = first[row], last[row]
+        if a <= b:
+            new = ones << np.uint64(a & 63)
+            for word in range(a >> 6, b >> 6):
+                new &= ~base[row, word]
+                drawn += popcount(new)
+                hit += popcount(new & seen[row, word])
+                new = ones
+            new &= ones >> np.uint64(63 - (b & 63)) & ~base[row, b >> 6]
             drawn += popcount(new)
-            hit += popcount(new & seen[row, word])
+            hit += popcount(new & seen[row, b >> 6])
     return drawn, hit
 
 
@@ -266,39 +265,84 @@ def limb_size(body: Any, limb: int) -> tuple[float, float, float]:
 
 
 @numba.njit(cache=True)
+def _section(
+    frames: Any, limb: int, long: float, short: float, view: Any
+) -> tuple[float, float, float]:
+    """(shear, stretch, half height at depth 1) of a limb's elliptic section in a view."""
+    sxx = sxy = syy = 0.0
+    for column, radius in ((3, long), (5, short)):
+        px = py = 0.0
+        for j in range(3):
+            px += view[j] * frames[limb, 3 * j + column]
+            py += view[3 + j] * frames[limb, 3 * j + column]
+        px, py = px * radius * view[12], py * radius * view[13]
+        sxx += px * px
+        sxy += px * py
+        syy += py * py
+    half_height = max(math.sqrt(syy), THINNEST * math.sqrt(sxx))
+    shear = sxy / (half_height * half_height)
+    half_width = math.sqrt(max(sxx - shear * sxy, THINNEST * THINNEST * sxx))
+    return shear, half_width / half_height, half_height
+
+
+@numba.njit(cache=True)
 def limb_outline(frames: Any, body: Any, limb: int, view: Any, out: Any) -> bool:
-    """Outline of a placed limb: arms are round-ended, the others flat-ended cylinders (P5)."""
+    """Outline of a placed limb: arms are round-ended, the others flat-ended cylinders (P5).
+
+    Args:
+        frames: (10, FRAME).
+        body: Body vector.
+        limb: Which one, as in LIMBS.
+        view: (VIEW,).
+        out: (PRIMITIVE,), written.
+
+    Returns:
+        False where it is not before the camera.
+    """
     long, short, height = limb_size(body, limb)
-    if not outline(frames[limb], long, short, height, view, out):
-        return False
-    if limb >= 6:
-        shear, stretch = out[6], out[7]
-        out[0] = stretch * out[0] + shear * out[1]
-        out[3] = stretch * out[3] + shear * out[4]
+    ax, ay, depth_a = view[9], view[10], view[11]
+    bx = by = depth_b = 0.0
+    for j in range(3):
+        origin, axis = frames[limb, j], frames[limb, 4 + 3 * j] * height
+        ax, bx = ax + view[j] * origin, bx + view[j] * axis
+        ay, by = ay + view[3 + j] * origin, by + view[3 + j] * axis
+        depth_a, depth_b = depth_a + view[6 + j] * origin, depth_b + view[6 + j] * axis
+    bx, by, depth_b = ax + bx, ay + by, depth_a + depth_b
+    if view[16] != 0.0:
         depth_a = depth_b = view[16]
-        if depth_a == 0.0:
-            depth_a = depth_b = view[11]
-            for j in range(3):
-                depth_a += view[6 + j] * frames[limb, j]
-                depth_b += view[6 + j] * (frames[limb, j] + height * frames[limb, 4 + 3 * j])
-        out[2] = long * view[12] / depth_a
-        out[5] = long * view[12] / depth_b
-        out[6], out[7] = 0.0, 1.0
+    elif depth_a < NEAREST_M or depth_b < NEAREST_M:
+        return False
+    shear, stretch, half_height = 0.0, 1.0, long * view[12]
+    if limb < 6:
+        shear, stretch, half_height = _section(frames, limb, long, short, view)
+    share_a, share_b = 1.0 / depth_a, 1.0 / depth_b
+    out[1] = ay * share_a * view[13] + view[15]
+    out[4] = by * share_b * view[13] + view[15]
+    out[0] = (ax * share_a * view[12] + view[14] - shear * out[1]) / stretch
+    out[3] = (bx * share_b * view[12] + view[14] - shear * out[4]) / stretch
+    out[2], out[5] = half_height * share_a, half_height * share_b
+    out[6], out[7] = shear, stretch
     return True
 
 
 @numba.njit(cache=True)
-def draw_limbs(body: Any, pose: Any, view: Any, limbs: int, width: int, bits: Any) -> None:
-    """OR some limbs (as bits of LIMBS) of a posed body into packed rows (H, words)."""
+def draw_placed(frames: Any, body: Any, view: Any, limbs: int, width: int, bits: Any) -> None:
+    """OR some placed limbs (as bits of LIMBS) into packed rows (H, words)."""
     height = bits.shape[0]
-    frames = np.empty((10, FRAME))
-    place_limbs(body, pose, limbs, frames)
     p = np.empty(PRIMITIVE)
     first, last = np.empty(height, np.int32), np.empty(height, np.int32)
     for limb in range(10):
         if limbs >> limb & 1 and limb_outline(frames, body, limb, view, p):
             top, bottom = spans(p, width, height, first, last)
             draw(first, last, top, bottom, bits)
+
+
+@numba.njit(cache=True)
+def draw_limbs(body: Any, pose: Any, view: Any, limbs: int, width: int, bits: Any) -> None:
+    """OR some limbs of a posed body into packed rows (H, words)."""
+    frames = np.empty((10, FRAME))
+    place_limbs(body, pose, limbs, frames)
+    draw_placed(frames, body, view, limbs, width, bits)
 
 
 @numba.njit(cache=True)

@@ -20,65 +20,73 @@ ALL_LIMBS: Final = 0x3FF
 FRAME: Final = 12
 """A limb's frame: origin (3), then its rotation to the world row by row (9); +y is its axis."""
 
+_UPPER: Final = sum(1 << chain[0] for chain in (*ARM_LIMBS, *LEG_LIMBS))
+"""Upper arms and legs, as bits."""
 _LENGTH_AT: Final = np.array([2, 5, 8, 11, 14, 17, 19, 21, 23, 25])
 """Where each limb's height stands in a body vector."""
 
 
-@numba.njit(cache=True, fastmath=False)
-def turned_x(matrix: Any, angle_deg: float, out: Any) -> None:
-    """out = matrix R_x(angle), both row by row (9,); may be the same array."""
+@numba.njit(cache=True)
+def _turn(frames: Any, limb: int, angle_deg: float, one: int, other: int) -> None:
+    """Multiply a limb's rotation by a turn that leads the axis `one` to the axis `other`."""
+    if angle_deg == 0.0:
+        return
     s, c = math.sin(math.radians(angle_deg)), math.cos(math.radians(angle_deg))
-    for row in range(0, 9, 3):
-        y, z = matrix[row + 1], matrix[row + 2]
-        out[row] = matrix[row]
-        out[row + 1] = c * y + s * z
-        out[row + 2] = c * z - s * y
+    for row in range(3, FRAME, 3):
+        u, v = frames[limb, row + one], frames[limb, row + other]
+        frames[limb, row + one] = c * u + s * v
+        frames[limb, row + other] = c * v - s * u
 
 
 @numba.njit(cache=True)
-def turned_y(matrix: Any, angle_deg: float, out: Any) -> None:
-    """out = matrix R_y(angle)."""
-    s, c = math.sin(math.radians(angle_deg)), math.cos(math.radians(angle_deg))
-    for row in range(0, 9, 3):
-        x, z = matrix[row], matrix[row + 2]
-        out[row] = c * x - s * z
-        out[row + 1] = matrix[row + 1]
-        out[row + 2] = s * x + c * z
-
-
-@numba.njit(cache=True)
-def turned_z(matrix: Any, angle_deg: float, out: Any) -> None:
-    """out = matrix R_z(angle)."""
-    s, c = math.sin(math.radians(angle_deg)), math.cos(math.radians(angle_deg))
-    for row in range(0, 9, 3):
-        x, y = matrix[row], matrix[row + 1]
-        out[row] = c * x + s * y
-        out[row + 1] = c * y - s * x
-        out[row + 2] = matrix[row + 2]
-
-
-@numba.njit(cache=True)
-def _shifted(frame: Any, x: float, y: float, z: float, out: Any) -> None:
-    """The origin of `out` = the point (x, y, z) of `frame`."""
+def _start(frames: Any, parent: int, limb: int, x: float, y: float) -> None:
+    """A limb's frame = its parent's, with its origin at the parent's point (x, y, 0)."""
     for i in range(3):
         row = 3 + 3 * i
-        out[i] = frame[i] + frame[row] * x + frame[row + 1] * y + frame[row + 2] * z
+        frames[limb, i] = frames[parent, i] + frames[parent, row] * x + frames[parent, row + 1] * y
+    for i in range(3, FRAME):
+        frames[limb, i] = frames[parent, i]
 
 
 @numba.njit(cache=True)
-def _spherical(navel: Any, x: float, y: float, pose: Any, at: int, out: Any) -> None:
+def _hang_ball(frames: Any, limb: int, x: float, y: float, pose: Any, at: int) -> None:
     """M_N^S = T(x, y, 0) R_z R_x R_y with the angles pose[at : at + 3] = (x, y, z)."""
-    _shifted(navel, x, y, 0.0, out)
-    turned_z(navel[3:], pose[at + 2], out[3:])
-    turned_x(out[3:], pose[at], out[3:])
-    turned_y(out[3:], pose[at + 1], out[3:])
+    _start(frames, TORSO, limb, x, y)
+    _turn(frames, limb, pose[at + 2], 0, 1)
+    _turn(frames, limb, pose[at], 1, 2)
+    _turn(frames, limb, pose[at + 1], 2, 0)
 
 
 @numba.njit(cache=True)
-def _flexion(parent: Any, length: float, angle_deg: float, out: Any) -> None:
+def _hang_hinge(frames: Any, upper: int, length: float, angle_deg: float) -> None:
     """M_S^F = T(0, length, 0) R_x."""
-    _shifted(parent, 0.0, length, 0.0, out)
-    turned_x(parent[3:], angle_deg, out[3:])
+    _start(frames, upper, upper + 2, 0.0, length)
+    _turn(frames, upper + 2, angle_deg, 1, 2)
+
+
+@numba.njit(cache=True)
+def hang_limbs(body: Any, pose: Any, limbs: int, frames: Any) -> None:
+    """Write the frames of some limbs, not the trunk's: what they hang on is placed already.
+
+    Args:
+        body: Body vector.
+        pose: The 25 motion parameters.
+        limbs: Bits of the limbs to be placed.
+        frames: (10, FRAME); those of the other limbs are left alone.
+    """
+    if limbs >> HEAD & 1:
+        _hang_ball(frames, HEAD, 0.0, body[2], pose, 6)
+    for side in range(2):
+        sign = -1.0 if side == 0 else 1.0
+        arm, leg = 6 + side, 2 + side
+        if limbs >> arm & 1:
+            _hang_ball(frames, arm, sign * body[26], body[27], pose, 9 + 3 * side)
+        if limbs >> (arm + 2) & 1:
+            _hang_hinge(frames, arm, body[_LENGTH_AT[arm]], pose[15 + side])
+        if limbs >> leg & 1:
+            _hang_ball(frames, leg, sign * body[28], 0.0, pose, 17 + 3 * side)
+        if limbs >> (leg + 2) & 1:
+            _hang_hinge(frames, leg, body[_LENGTH_AT[leg]], pose[23 + side])
 
 
 @numba.njit(cache=True)
@@ -93,26 +101,14 @@ def place_limbs(body: Any, pose: Any, limbs: int, frames: Any) -> None:
         limbs: Bits of the limbs that are wanted; a lower limb's upper limb is placed too.
         frames: The others of its rows are left alone; row 0 is always written.
     """
-    navel = frames[0]
-    navel[0], navel[1], navel[2] = pose[0], pose[1], pose[2]
+    for i in range(3):
+        frames[TORSO, i] = pose[i]
     for i in range(9):
-        navel[3 + i] = 1.0 if i % 4 == 0 else 0.0
-    turned_y(navel[3:], pose[4], navel[3:])
-    turned_x(navel[3:], pose[3], navel[3:])
-    turned_z(navel[3:], pose[5], navel[3:])
-    if limbs & 2:
-        _spherical(navel, 0.0, body[2], pose, 6, frames[1])
-    for side in range(2):
-        sign = -1.0 if side == 0 else 1.0
-        arm, leg = 6 + side, 2 + side
-        if limbs >> arm & 5:
-            _spherical(navel, sign * body[26], body[27], pose, 9 + 3 * side, frames[arm])
-            if limbs >> (arm + 2) & 1:
-                _flexion(frames[arm], body[_LENGTH_AT[arm]], pose[15 + side], frames[arm + 2])
-        if limbs >> leg & 5:
-            _spherical(navel, sign * body[28], 0.0, pose, 17 + 3 * side, frames[leg])
-            if limbs >> (leg + 2) & 1:
-                _flexion(frames[leg], body[_LENGTH_AT[leg]], pose[23 + side], frames[leg + 2])
+        frames[TORSO, 3 + i] = 1.0 if i % 4 == 0 else 0.0
+    _turn(frames, TORSO, pose[4], 2, 0)
+    _turn(frames, TORSO, pose[3], 1, 2)
+    _turn(frames, TORSO, pose[5], 0, 1)
+    hang_limbs(body, pose, limbs | limbs >> 2 & _UPPER, frames)
 
 
 def limb_frames(body: Vector, pose: Vector) -> Vector:

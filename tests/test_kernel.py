@@ -149,15 +149,16 @@ def test_union_is_or_and_counting_is_popcount(
     width, height = size
     random = np.random.default_rng(seed)
     rest, seen = random.random((2, height, width)) < 0.4
-    first = np.ones((len(several), height), np.int32)
-    last = np.zeros((len(several), height), np.int32)
-    top, bottom = height, 0
-    for i, limb in enumerate(several):
-        begin, end = spans(limb, width, height, first[i], last[i])
-        top, bottom = min(top, begin), max(bottom, end)
-    drawn, hit = gain(first, last, top, bottom, len(several), pack_words(rest), pack_words(seen))
+    first, last = np.empty(height, np.int32), np.empty(height, np.int32)
+    bits, drawn, hit = pack_words(rest), 0, 0
+    for limb in several:
+        rows = spans(limb, width, height, first, last)
+        more_drawn, more_hit = gain(first, last, *rows, bits, pack_words(seen))
+        drawn, hit = drawn + more_drawn, hit + more_hit
+        draw(first, last, *rows, bits)
     new = np.any([rasterised(limb, size) for limb in several], axis=0) & ~rest
     assert (drawn, hit) == (new.sum(), (new & seen).sum())
+    assert (unpack_words(bits, width) == (new | rest)).all()
     assert count(pack_words(seen)) == seen.sum()
     assert count_both(pack_words(rest), pack_words(seen)) == (rest & seen).sum()
 

@@ -10,13 +10,14 @@ from common.kernel import (
     PRIMITIVE,
     count,
     count_both,
-    draw_limbs,
+    draw,
+    draw_placed,
     gain,
     limb_outline,
     score,
     spans,
 )
-from common.kinematics import ALL_LIMBS, FRAME, place_limbs
+from common.kinematics import ALL_LIMBS, FRAME, hang_limbs, place_limbs
 
 MOST_STAGES = 16
 """A window of 2^16 stops would still end: the guard that M14 asks for."""
@@ -104,6 +105,42 @@ def tritree(
 
 
 @numba.njit(cache=True)
+def added(
+    frames: Any,
+    body: Any,
+    view: Any,
+    moving: int,
+    width: int,
+    rest: Any,
+    seen: Any,
+    scratch: Any,
+    first: Any,
+    last: Any,
+    p: Any,
+) -> tuple[int, int]:
+    """What placed limbs add to the drawn rest: (pixels newly drawn, those that are seen).
+
+    Each limb counts over the rest and the limbs before it, so all but the last are drawn, into
+    `scratch`, which is a copy of the rest before and after.
+    """
+    height = seen.shape[0]
+    highest, lowest = height, 0
+    drawn = hit = 0
+    for limb in range(10):
+        if moving >> limb & 1 and limb_outline(frames, body, limb, view, p):
+            top, bottom = spans(p, width, height, first, last)
+            more_drawn, more_hit = gain(first, last, top, bottom, scratch, seen)
+            drawn, hit = drawn + more_drawn, hit + more_hit
+            if moving >> (limb + 1):
+                draw(first, last, top, bottom, scratch)
+                highest, lowest = min(highest, top), max(lowest, bottom)
+    for row in range(highest, lowest):
+        for word in range(rest.shape[1]):
+            scratch[row, word] = rest[row, word]
+    return drawn, hit
+
+
+@numba.njit(cache=True)
 def search(
     seen: Any,
     seen_px: int,
@@ -136,12 +173,13 @@ def search(
         (angle, score of the whole figure there, matches).
     """
     height = seen.shape[0]
-    base = np.zeros_like(seen)
-    draw_limbs(body, pose, view, ALL_LIMBS & ~moving, width, base)
-    base_px, base_hit = count(base), count_both(base, seen)
-    posed = pose.copy()
-    frames, p = np.empty((10, FRAME)), np.empty(PRIMITIVE)
-    first, last = np.empty((4, height), np.int32), np.empty((4, height), np.int32)
+    frames = np.empty((10, FRAME))
+    place_limbs(body, pose, ALL_LIMBS, frames)
+    rest = np.zeros_like(seen)
+    draw_placed(frames, body, view, ALL_LIMBS & ~moving, width, rest)
+    rest_px, rest_hit = count(rest), count_both(rest, seen)
+    scratch, posed = rest.copy(), pose.copy()
+    first, last, p = np.empty(height, np.int32), np.empty(height, np.int32), np.empty(PRIMITIVE)
     probes = np.array([np.nan, np.nan, np.nan])
     best_angle, best_score, matches = 0.5 * (low + high), -1.0, 0
     for _ in range(MOST_STAGES):
@@ -154,16 +192,11 @@ def search(
             for k in range(posed.size):
                 if step[k] != 0.0:
                     posed[k] = angle * step[k]
-            place_limbs(body, posed, moving, frames)
-            limbs, top, bottom = 0, height, 0
-            for limb in range(10):
-                if moving >> limb & 1 and limb_outline(frames, body, limb, view, p):
-                    first[limbs, :], last[limbs, :] = 1, 0
-                    begin, end = spans(p, width, height, first[limbs], last[limbs])
-                    top, bottom = min(top, begin), max(bottom, end)
-                    limbs += 1
-            drawn, hit = gain(first, last, top, bottom, limbs, base, seen)
-            probes[i] = score(base_hit + hit, base_px + drawn, seen_px)
+            hang_limbs(body, posed, moving, frames)
+            drawn, hit = added(
+                frames, body, view, moving, width, rest, seen, scratch, first, last, p
+            )
+            probes[i] = score(rest_hit + hit, rest_px + drawn, seen_px)
             matches += 1
             if probes[i] > best_score:
                 best_angle, best_score = float(angle), probes[i]
