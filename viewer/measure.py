@@ -76,6 +76,8 @@ def projection_width(mask: Mask) -> tuple[float, float]:
     filled = np.flatnonzero(column)
     mean = column[filled[0] : filled[-1] + 1].mean()
     high = np.flatnonzero(column > mean)
+    if not len(high):  # all columns are alike
+        high = filled
     return float(high[0]), float(high[-1])
 
 
