@@ -62,6 +62,13 @@ def test_the_projection_is_the_references(seed: int, width: int, height: int) ->
     assert projection_width(mask) == pytest.approx((x1, x2), abs=1e-9)
 
 
+def test_columns_that_are_all_alike_are_the_trunk() -> None:
+    """P13: where none is above the mean."""
+    mask = np.zeros((20, 30), np.bool_)
+    mask[4:15, 7:12] = True
+    assert projection_width(mask) == (7.0, 11.0)
+
+
 def test_a_box_is_the_boundary_of_what_was_drawn() -> None:
     """P11: extremes, first and last column and row."""
     mask = np.zeros((50, 60), np.bool_)

@@ -1,5 +1,7 @@
 """Two reports in, one body out: held against a person who stands, squats, lifts and leaves."""
 
+from itertools import pairwise
+
 import msgspec
 import numpy as np
 import pytest
@@ -120,7 +122,7 @@ def test_the_guide_carries_the_scale_of_where_the_body_is() -> None:
     stage = after_opening(Stage())
     path = between(standing(), standing((0.3, 0.5)), 20)
     told = stage.show(path)
-    for before, after in zip(told, told[1:], strict=False):
+    for before, after in pairwise(told):
         assert before.guide.scale_px_per_m == pytest.approx(
             scales_at(RIG, np.array(before.body.pose[:3])), rel=1e-6
         )
@@ -265,7 +267,7 @@ def test_a_turn_to_camera_2_exchanges_facade_and_flank(mode: Mode) -> None:
     assert told[0].body.facing == ("facade", "flank")
     assert told[-1].body.facing == ("flank", "facade")
     assert told[-1].guide.pose[POSE_INDEX["torso_y"]] == -90.0
-    changes = sum(a.body.facing != b.body.facing for a, b in zip(told, told[1:], strict=False))
+    changes = sum(a.body.facing != b.body.facing for a, b in pairwise(told))
     assert changes == 1
 
 

@@ -1,8 +1,12 @@
 """One viewer's thinking, held against persons drawn in the paper's rig."""
 
+from collections.abc import Iterator
+
 import msgspec
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from posing import posed
 from staging import (
     NAVEL_M,
@@ -21,15 +25,17 @@ from staging import (
 
 from common.body import ANGLE_NAMES, POSE_INDEX, Vector, stature
 from common.camera import project
-from common.messages import Guide, Report, ViewerNumber, unpack
+from common.messages import Guide, Report, ViewerNumber, decode, encode, unpack
 from common.similarity import Mask
 from viewer import track
 from viewer.capture import Frame
 
 
-@pytest.fixture(autouse=True)
-def exact_silhouettes(monkeypatch: pytest.MonkeyPatch) -> None:
-    exact(monkeypatch)
+@pytest.fixture(autouse=True, scope="module")
+def exact_silhouettes() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        exact(monkeypatch)
+        yield
 
 
 def viewer(number: ViewerNumber) -> track.State:
@@ -45,7 +51,7 @@ def guide(pose: Vector, **said: object) -> Guide:
     place = pose[:3]
     upright = np.array([place[0], NAVEL_M, place[2]])
     first, second = (project(camera, np.stack([place, upright])) for camera in RIG.cameras)
-    scales = (200.0 / (4.0 - place[2]), 200.0 / (4.0 + place[0]))
+    scales = (200.0 / (4.0 - float(place[2])), 200.0 / (4.0 + float(place[0])))
     given = {
         "frame": 0,
         "captured_s": 0.0,
@@ -97,7 +103,7 @@ def test_viewer_1_begins_as_the_facade_and_viewer_2_as_the_flank(
 
 
 def test_a_report_tells_the_angles_that_its_view_can_see() -> None:
-    """P30, P35, P51: theta_X of shoulders from the flank, theta_Y, theta_Z, elbow from the front."""
+    """P30, P35, P51: shoulders' theta_X from the flank; theta_Y, theta_Z, elbow from the front."""
     facade = looked(1, standing(), guide(standing())).angles_deg
     flank = looked(2, standing(), guide(standing())).angles_deg
     arms = {f"{side}_{name}" for side in "rl" for name in ("shoulder_y", "shoulder_z", "elbow_x")}
@@ -163,6 +169,26 @@ def test_the_opening_posture_is_measured_until_it_is_known() -> None:
     assert "arms" in hanging.refusal
     known = looked(1, opening(), guide(opening()))
     assert (known.measure, known.refusal) == (None, "")
+
+
+@settings(max_examples=60)
+@given(
+    st.lists(st.tuples(*[st.integers(0, n) for n in (119, 159, 119, 159)]), min_size=1, max_size=4),
+    st.sampled_from([1, 2]),
+    st.booleans(),
+)
+def test_no_silhouette_however_odd_stops_a_viewer(
+    blocks: list[tuple[int, int, int, int]], number: ViewerNumber, known: bool
+) -> None:
+    """Blocks anywhere, one pixel or the whole picture: a report comes, and it is finite."""
+    mask = NOBODY.copy()
+    for top, left, bottom, right in blocks:
+        mask[min(top, bottom) : max(top, bottom) + 1, min(left, right) : max(left, right) + 1] = (
+            True
+        )
+    told = guide(standing()) if known else None
+    _, report = track.step(viewer(number), frame(mask), told)
+    assert decode(encode(report), Report) == report
 
 
 def test_a_person_partly_outside_is_not_measured() -> None:
