@@ -164,7 +164,7 @@ def load(path: Path) -> Settings:
         raise SettingsError(f"cannot read the settings {path}: {error.strerror}") from error
     try:
         settings = msgspec.toml.decode(text, type=Settings)
-    except msgspec.DecodeError as error:
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
         raise SettingsError(f"{path}: {error}") from error
     return _with_full_paths(settings, path.parent)
 

@@ -179,7 +179,7 @@ def measure_side(mask: Mask, box: Box) -> Measure:
     thesis's proportions have it.
     """
     height = box.bottom + 1 - box.top
-    x1, x2 = projection_width(mask[: box.top + round(CENTRE_SHARE * height)])
+    x1, x2 = projection_width(mask[: box.top + max(1, round(CENTRE_SHARE * height))])
     return Measure(
         height_px=float(height),
         centre_px=((x1 + x2 + 1) / 2, float(box.top)),
