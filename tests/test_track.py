@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import msgspec
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from posing import posed
 from staging import (
@@ -172,6 +172,7 @@ def test_the_opening_posture_is_measured_until_it_is_known() -> None:
 
 
 @settings(max_examples=60)
+@example([(1, 1, 1, 1)], 2, False)
 @given(
     st.lists(st.tuples(*[st.integers(0, n) for n in (119, 159, 119, 159)]), min_size=1, max_size=4),
     st.sampled_from([1, 2]),

@@ -1,0 +1,168 @@
+"""Settings, held against what a person may write in a file."""
+
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from common.config import Settings, SettingsError, load, size_of, working_size
+
+CONFIGS = Path(__file__).parents[1] / "configs"
+RUNS = sorted(path for path in CONFIGS.glob("*.toml") if "tritrack live" in path.read_text())
+sizes = st.tuples(st.integers(32, 4096), st.integers(32, 4096))
+
+
+def written(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "run.toml"
+    path.write_text(text)
+    return path
+
+
+def refused(tmp_path: Path, text: str) -> str:
+    with pytest.raises(SettingsError) as caught:
+        load(written(tmp_path, text))
+    message = str(caught.value)
+    assert "\n" not in message
+    assert "run.toml" in message
+    return message
+
+
+def test_an_empty_file_is_all_defaults(tmp_path: Path) -> None:
+    assert load(written(tmp_path, "")) == Settings()
+
+
+def test_the_defaults_are_the_papers() -> None:
+    """P1, P41: 160x120; windows of 64 and 32 degrees down to 4."""
+    settings = Settings()
+    assert size_of(settings.size) == (160, 120)
+    search = settings.search
+    assert (search.arm_window_deg, search.leg_window_deg, search.stop_deg) == (64, 32, 4)
+    assert settings.body.stature_m == 1.75
+    assert not settings.pictures
+
+
+@pytest.mark.parametrize("path", RUNS, ids=lambda path: path.stem)
+def test_the_settings_that_are_shipped_load(path: Path) -> None:
+    assert load(path) != Settings()
+
+
+def test_some_settings_are_shipped() -> None:
+    assert len(RUNS) >= 2
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("rooom = 'x'", "`rooom`"),
+        ("[search]\nstop = 4", r"`stop`.*\$\.search"),
+        ("[camera_1]\nsorce = 'a'", r"`sorce`.*\$\.camera_1"),
+        ("every = 'two'", r"Expected `int`, got `str`.*\$\.every"),
+        ("[page]\nport = 1.5", r"\$\.page\.port"),
+        ("mode = 'quick'", r"\$\.mode"),
+        ("room = ", "run.toml"),
+    ],
+)
+def test_what_is_misspelt_or_ill_typed_is_refused_with_its_place(
+    tmp_path: Path, text: str, place: str
+) -> None:
+    assert re.search(place, refused(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("text", "number"),
+    [
+        ("every = 0", "got 0"),
+        ("room = 'a/b'", "a/b"),
+        ("room = ''", "plain word"),
+        ("size = '160'", "look like 160x120"),
+        ("size = '16x120'", "width must be from 32"),
+        ("[page]\nport = 70000", "got 70000"),
+        ("[body]\nstature_m = 3.0", "got 3.0"),
+        ("[body]\nopening_frames = 0", "got 0"),
+        ("[silhouette]\nmin_height_share = nan", "nan"),
+        ("[search]\narm_window_deg = 60", "arm_window_deg.*got 60"),
+        ("[search]\nstop_deg = 0", "got 64"),
+        ("[search]\nleg_window_deg = 4", "leg_window_deg"),
+        ("[recognizer]\nwindow_frames = 1", "got 1"),
+        ("[camera_1]\nsource = 'a'\ndevice = 0", "both set"),
+    ],
+)
+def test_what_no_run_could_mean_is_refused_with_what_was_got(
+    tmp_path: Path, text: str, number: str
+) -> None:
+    """P36: a window halves down to its stop on whole degrees, else the grid is not exact."""
+    assert re.search(number, refused(tmp_path, text))
+
+
+def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match="cannot read the settings"):
+        load(tmp_path / "none.toml")
+
+
+def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "run.toml"
+    path.write_bytes(b"room = '\xff\xfe'")
+    with pytest.raises(SettingsError, match=r"run\.toml"):
+        load(path)
+
+
+def test_a_folder_is_a_clip(tmp_path: Path) -> None:
+    assert load(tmp_path) == Settings(clip=str(tmp_path))
+
+
+def test_paths_are_relative_to_the_file_and_variables_are_filled_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CLIPS", "/elsewhere")
+    monkeypatch.setenv("NAME", "kick")
+    text = """
+        clip = "$CLIPS/$NAME"
+        calibration = "here.json"
+        [camera_1]
+        source = "clips/${NAME}.mp4"
+        background = "/plates/empty.png"
+        [recognizer]
+        model = "own.model"
+    """
+    settings = load(written(tmp_path, text))
+    assert settings.clip == "/elsewhere/kick"
+    assert settings.calibration == str(tmp_path / "here.json")
+    assert settings.camera_1 is not None
+    assert settings.camera_1.source == str(tmp_path / "clips" / "kick.mp4")
+    assert settings.camera_1.background == "/plates/empty.png"
+    assert settings.recognizer.model == str(tmp_path / "own.model")
+    assert settings.camera_2 is None
+
+
+@given(sizes)
+def test_a_size_is_read_as_it_is_written(size: tuple[int, int]) -> None:
+    assert size_of(f"{size[0]}x{size[1]}") == size
+
+
+@pytest.mark.parametrize(
+    "text", ["", "x", "160", "160x", "160x120x3", "-160x120", "1e3x100", "²x9"]
+)
+def test_what_is_no_size_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match="size must look like 160x120"):
+        size_of(text)
+
+
+@given(sizes, sizes)
+def test_a_working_size_keeps_the_shape_within_the_bound(
+    source: tuple[int, int], bound: tuple[int, int]
+) -> None:
+    """P1: aspect kept to a pixel's rounding, as large as fits, never larger than the source."""
+    width, height = working_size(source, bound)
+    assert 1 <= width <= min(source[0], bound[0])
+    assert 1 <= height <= min(source[1], bound[1])
+    assert (width, height) == source or width == bound[0] or height == bound[1]
+    shrink = min(1.0, bound[0] / source[0], bound[1] / source[1])
+    assert (width, height) == pytest.approx((source[0] * shrink, source[1] * shrink), abs=1.0)
+
+
+def test_the_bound_is_reached() -> None:
+    assert working_size((640, 480), (160, 120)) == (160, 120)
+    assert working_size((1920, 1080), (160, 120)) == (160, 90)
+    assert working_size((100, 80), (160, 120)) == (100, 80)
