@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from posing import BODY, ROOT_PX, SIZE, laid_over, picture, posed, stretched, view
 
 from common.kernel import pack_words
-from viewer.position import MOST_PASSES, SHIFTS_PX, best_shift, located, shifted_counts
+from viewer.position import MOST_PASSES, SHIFTS_PX, best_shift, extent, located, shifted_counts
 
 shifts = st.integers(-10, 10)
 
@@ -89,7 +89,8 @@ def test_shifted_pixels_are_counted_as_numpy_counts_them(
     for y, x in np.argwhere(model):
         if 0 <= y + down < 20 and 0 <= x + right < width:
             moved[y + down, x + right] = True
-    counts = shifted_counts(pack_words(model), pack_words(seen), width, right, down)
+    bits = pack_words(model)
+    counts = shifted_counts(bits, extent(bits), pack_words(seen), width, right, down)
     assert counts == (moved.sum(), (moved & seen).sum())
 
 

@@ -43,14 +43,17 @@ class Turn(NamedTuple):
     """The pose parameter that holds the angle itself."""
     moving: int
     """Limbs that move, as bits."""
+    parts: tuple[tuple[int, float], ...]
+    """What of `step` is not 0: (pose parameter, factor)."""
 
 
 def turn(limbs: tuple[int, ...], **coupled: float) -> Turn:
     """A search direction: pose parameter names with their factors, the leading one first."""
     step = np.zeros(len(POSE_NAMES))
-    for name, factor in coupled.items():
-        step[POSE_INDEX[name]] = factor
-    return Turn(step, POSE_INDEX[next(iter(coupled))], sum(1 << limb for limb in limbs))
+    parts = tuple((POSE_INDEX[name], factor) for name, factor in coupled.items())
+    for at, factor in parts:
+        step[at] = factor
+    return Turn(step, parts[0][0], sum(1 << limb for limb in limbs), parts)
 
 
 def searched(
@@ -95,7 +98,9 @@ def searched(
             best_angle, best_score = angle, score
     if best_score < figure.score + least_gain:
         return figure._replace(matches=figure.matches + matches)
-    pose = np.where(how.step != 0.0, best_angle * how.step, figure.pose)
+    pose = figure.pose.copy()
+    for at, factor in how.parts:
+        pose[at] = best_angle * factor
     return figure._replace(pose=pose, score=best_score, matches=figure.matches + matches)
 
 

@@ -20,34 +20,50 @@ MOST_PASSES: Final = 3
 
 
 @numba.njit(cache=True)
-def shifted_counts(model: Any, seen: Any, width: int, right: int, down: int) -> tuple[int, int]:
+def extent(bits: Any) -> tuple[int, int, int, int]:
+    """Where packed rows have pixels: first row and one past the last, words likewise."""
+    top, bottom, begin, end = bits.shape[0], 0, bits.shape[1], 0
+    for row in range(bits.shape[0]):
+        for word in range(bits.shape[1]):
+            if bits[row, word]:
+                top, bottom = min(top, row), row + 1
+                begin, end = min(begin, word), max(end, word + 1)
+    return top, bottom, begin, end
+
+
+@numba.njit(cache=True)
+def shifted_counts(
+    model: Any, within: tuple[int, int, int, int], seen: Any, width: int, right: int, down: int
+) -> tuple[int, int]:
     """Pixels of a shifted model inside the picture, and those of them that are seen.
 
     Args:
         model: Packed rows (H, words).
+        within: Its extent.
         seen: The silhouette, packed alike.
         width: Of the picture, pixels.
         right: Shift to the right, pixels, less than 64 either way.
         down: Shift downwards.
     """
     height, words = model.shape
+    top, bottom, begin, end = within
     last_ones = np.uint64(0xFFFFFFFFFFFFFFFF) >> np.uint64(64 * words - width)
     drawn = hit = 0
-    for row in range(max(0, down), min(height, height + down)):
-        for word in range(words):
-            bits = model[row - down, word]
+    for row in range(max(top, -down), min(bottom, height - down)):
+        for word in range(max(0, begin - (right < 0)), min(words, end + (right > 0))):
+            bits = model[row, word]
             if right > 0:
                 bits <<= np.uint64(right)
                 if word > 0:
-                    bits |= model[row - down, word - 1] >> np.uint64(64 - right)
+                    bits |= model[row, word - 1] >> np.uint64(64 - right)
             elif right < 0:
                 bits >>= np.uint64(-right)
                 if word + 1 < words:
-                    bits |= model[row - down, word + 1] << np.uint64(64 + right)
+                    bits |= model[row, word + 1] << np.uint64(64 + right)
             if word == words - 1:
                 bits &= last_ones
             drawn += popcount(bits)
-            hit += popcount(bits & seen[row, word])
+            hit += popcount(bits & seen[row + down, word])
     return drawn, hit
 
 
@@ -58,6 +74,7 @@ def best_shift(
     """(right, down, score, matches) of the best shift of the posed model: x, then y."""
     model = np.zeros_like(seen)
     draw_limbs(body, pose, view, UPRIGHT, width, model)
+    within = extent(model)
     place = np.zeros(2, np.int64)
     best, matches = -1.0, 0
     for axis in range(2):
@@ -68,7 +85,7 @@ def best_shift(
                 if shift == 0 and best >= 0.0:
                     continue
                 place[axis] = start + shift
-                drawn, hit = shifted_counts(model, seen, width, place[0], place[1])
+                drawn, hit = shifted_counts(model, within, seen, width, place[0], place[1])
                 matches += 1
                 value = score(hit, drawn, seen_px)
                 if value > best:
