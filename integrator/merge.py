@@ -34,6 +34,7 @@ from integrator import opening, smoothing
 from integrator.arbiter import Sight, arbitrate
 from integrator.assumed import assumed_rig
 from integrator.fusion import fused
+from integrator.hypotheses import settled
 from integrator.opening import Opening
 from integrator.pairing import Pair
 from integrator.place import pixels_of, place_of, scales_at, scales_since
@@ -99,7 +100,7 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
         state.opening, state.rig, seen, state.settings.body.opening_frames
     )
     state = _faced(state._replace(opening=known), seen)
-    pose = _posed(state, state.rig, seen, settled_at)
+    pose = _settled(state, state.rig, seen, _posed(state, state.rig, seen, settled_at))
     return _told(state._replace(pose=pose), state.rig, pair, newest, dt_s, settled_at is not None)
 
 
@@ -162,6 +163,16 @@ def _posed(state: State, rig: Rig, seen: Seen, settled_at: Vector | None) -> Vec
         pose[:3] = settled_at
     pose[POSE_INDEX["torso_y"]] = YAW_DEG[front]
     return pose
+
+
+def _settled(state: State, rig: Rig, seen: Seen, pose: Vector) -> Vector:
+    """What one view alone cannot tell, by both silhouettes: a departure from the paper (L2, L3)."""
+    first, second = seen
+    if state.settings.mode != "default" or first is None or second is None:
+        return pose
+    assert state.opening.bdp is not None
+    before = rest_pose() if state.pose is None else state.pose
+    return settled(pose, before, body_vector(state.opening.bdp), rig, (first, second))
 
 
 def _told(

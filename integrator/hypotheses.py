@@ -1,0 +1,115 @@
+"""Which of several poses both silhouettes speak for: what one view alone cannot tell."""
+
+from functools import partial
+from typing import Any, Final
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body import POSE_INDEX, REST_DEG, Vector
+from common.camera import Rig
+from common.kernel import count, count_both, draw_limbs, score, view_of, words_of_rows
+from common.kinematics import ALL_LIMBS
+from common.messages import Report
+
+SURELY: Final = 1.01
+"""How many times better S1 S2 must be for a pose to be preferred to the one before it."""
+STEPS_M: Final = (-0.03, -0.012, 0.012, 0.03)
+"""How far the body may be from where its columns and rows have it: a pixel is 22 mm."""
+
+SWINGS: Final = [POSE_INDEX["r_shoulder_x"], POSE_INDEX["l_shoulder_x"]]
+_ARM_NAMES: Final = ("shoulder_x", "shoulder_y", "shoulder_z", "elbow_x")
+ARMS: Final = [[POSE_INDEX[f"{side}_{name}"] for name in _ARM_NAMES] for side in "rl"]
+HANGING: Final = [[REST_DEG.get(f"{side}_{name}", 0.0) for name in _ARM_NAMES] for side in "rl"]
+
+
+@numba.njit(cache=True)
+def products(body: Any, poses: Any, views: Any, seen: Any, seen_px: Any, width: int) -> Any:
+    """The product of S over the views, of each pose, (n,).
+
+    Args:
+        body: Body vector.
+        poses: (n, 25).
+        views: (cameras, VIEW), true perspective.
+        seen: The silhouettes, packed (cameras, H, words).
+        seen_px: Their numbers of pixels, (cameras,).
+        width: Of the pictures, pixels.
+    """
+    found = np.ones(poses.shape[0])
+    for i in range(poses.shape[0]):
+        for n in range(views.shape[0]):
+            drawn = np.zeros_like(seen[n])
+            draw_limbs(body, poses[i], views[n], ALL_LIMBS, width, drawn)
+            found[i] *= score(count_both(drawn, seen[n]), count(drawn), seen_px[n])
+    return found
+
+
+def settled(
+    pose: Vector, before: Vector, body: Vector, rig: Rig, seen: tuple[Report, Report]
+) -> Vector:
+    """The fused pose with its doubts settled by both silhouettes.
+
+    In turn: where the body is; which arm it is that swings, or whether both do (L3); whether an
+    arm was lost, and is where it was or hangs. Each is a few poses, of which the one with the
+    highest S1 S2 is taken, and the first, which is the pose so far, unless another is surely
+    better.
+
+    Args:
+        pose: As the two views' angles were fused, (25,).
+        before: Of the frame before.
+        body: Body vector.
+        rig: Two cameras.
+        seen: Both views' reports, of pictures of one size.
+    """
+    views = np.array([view_of(camera) for camera in rig.cameras])
+    masks = np.array([words_of_rows(r.silhouette, r.width, r.height) for r in seen])
+    areas = np.array([count(mask) for mask in masks])
+    for doubts in (shifted, swung, partial(regained, 0), partial(regained, 1)):
+        poses = doubts(pose, before)
+        likely = products(body, poses, views, masks, areas, seen[0].width)
+        best = int(likely.argmax())
+        pose = poses[best if likely[best] > SURELY * likely[0] else 0]
+    return pose
+
+
+def shifted(pose: Vector, _before: Vector) -> NDArray[np.float64]:
+    """The pose and its like some millimetres to every side, (n, 25)."""
+    moved = [(axis, step) for axis in range(3) for step in STEPS_M]
+    poses = np.tile(pose, (1 + len(moved), 1))
+    for row, (axis, step) in enumerate(moved, 1):
+        poses[row, axis] += step
+    return poses
+
+
+def swung(pose: Vector, before: Vector) -> NDArray[np.float64]:
+    """The pose, and each way in which the swings that were found can belong to the arms, (n, 25).
+
+    The flank view shows both arms as one silhouette; the facade shows which of them left the
+    trunk's side.
+    """
+    right, left = pose[SWINGS]
+    old_right, old_left = before[SWINGS]
+    pairs = [
+        (right, left),
+        (right, old_left),
+        (old_right, left),
+        (old_right, old_left),
+        (left, right),
+        (right, right),
+        (left, left),
+        (right, 0.0),
+        (0.0, left),
+        (0.0, 0.0),
+    ]
+    poses = np.tile(pose, (len(pairs), 1))
+    poses[:, SWINGS] = pairs
+    return poses
+
+
+def regained(i: int, pose: Vector, before: Vector) -> NDArray[np.float64]:
+    """The pose, and the same with arm i (0 right, 1 left) as it was and hanging, (3, 25)."""
+    poses = np.tile(pose, (3, 1))
+    poses[1, ARMS[i]] = before[ARMS[i]]
+    poses[2, ARMS[i]] = HANGING[i]
+    return poses

@@ -1,0 +1,95 @@
+"""Doubts of one view, settled by two: poses whose silhouettes are drawn from known ones."""
+
+import numpy as np
+import pytest
+from posing import posed
+
+from common.body import POSE_INDEX, Vector, body_vector, thesis_bdp
+from common.camera import paper_rig
+from common.kernel import count, draw_body, pack_words, view_of
+from common.messages import Report, ViewerNumber, pack
+from common.similarity import Mask, similarity
+from integrator.hypotheses import products, settled
+
+BODY = body_vector(thesis_bdp(1.75))
+VIEWERS: tuple[ViewerNumber, ...] = (1, 2)
+SIZE = (160, 120)
+RIG = paper_rig(SIZE, (200.0, 200.0), (4.5, 4.5))
+VIEWS = np.array([view_of(camera) for camera in RIG.cameras])
+
+
+def pictures(pose: Vector) -> list[Mask]:
+    return [draw_body(BODY, pose, view, SIZE) for view in VIEWS]
+
+
+def reports(pose: Vector) -> tuple[Report, Report]:
+    first, second = (
+        Report(
+            frame=0,
+            captured_s=0.0,
+            clock_s=0.0,
+            viewer=viewer,
+            width=SIZE[0],
+            height=SIZE[1],
+            silhouette=pack(mask),
+            box=None,
+        )
+        for viewer, mask in zip(VIEWERS, pictures(pose), strict=True)
+    )
+    return first, second
+
+
+def standing(**angles_deg: float) -> Vector:
+    """At the middle of the room."""
+    pose = posed(**angles_deg)
+    pose[:3] = 0.05, 0.95, -0.1
+    return pose
+
+
+def test_a_product_is_that_of_the_similarities_of_whole_pictures() -> None:
+    """P9, of both views, against the plain definition on masks."""
+    truth = pictures(standing(r_shoulder_x=50.0))
+    poses = np.array([standing(), standing(l_shoulder_z=230.0), standing(r_shoulder_x=50.0)])
+    seen = np.array([pack_words(mask) for mask in truth])
+    areas = np.array([count(mask) for mask in seen])
+    found = products(BODY, poses, VIEWS, seen, areas, SIZE[0])
+    for pose, value in zip(poses, found, strict=True):
+        both = [similarity(*pair) for pair in zip(truth, pictures(pose), strict=True)]
+        assert value == pytest.approx(both[0] * both[1], rel=1e-12)
+    assert found[2] == 1.0
+
+
+@pytest.mark.parametrize(("side", "other"), [("r", "l"), ("l", "r")])
+@pytest.mark.parametrize("wrong", ["both", "other"])
+def test_the_arm_that_swings_is_told_from_the_one_that_hangs(
+    side: str, other: str, wrong: str
+) -> None:
+    """L3: the flank took the other arm, or both; the facade shows which one left the trunk."""
+    apart = {"r_shoulder_z": 165.0, "l_shoulder_z": 195.0}
+    truth = standing(**apart, **{f"{side}_shoulder_x": 80.0})
+    said = {f"{other}_shoulder_x": 80.0} | ({f"{side}_shoulder_x": 80.0} if wrong == "both" else {})
+    found = settled(standing(**apart, **said), standing(**apart), BODY, RIG, reports(truth))
+    assert found[POSE_INDEX[f"{side}_shoulder_x"]] == 80.0
+    assert found[POSE_INDEX[f"{other}_shoulder_x"]] == 0.0
+
+
+def test_a_lost_arm_is_found_hanging() -> None:
+    """L1: errors do not go on for ever."""
+    pose = standing(l_shoulder_z=280.0, l_shoulder_x=100.0, l_elbow_x=90.0)
+    found = settled(pose, pose, BODY, RIG, reports(standing()))
+    assert found == pytest.approx(standing())
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_body_is_moved_to_where_both_views_have_it(axis: int) -> None:
+    """P50: columns and rows are whole pixels, 22 mm of the room; both views know better."""
+    truth, pose = standing(), standing()
+    pose[axis] += 0.03
+    assert settled(pose, pose, BODY, RIG, reports(truth)) == pytest.approx(truth)
+
+
+def test_what_fits_is_left_alone() -> None:
+    """A pose that both silhouettes agree with stays, bit for bit."""
+    pose = standing(r_shoulder_z=120.0, l_shoulder_x=40.0, r_hip_x=30.0)
+    found = settled(pose, standing(), BODY, RIG, reports(pose))
+    assert np.array_equal(found, pose)
