@@ -10,7 +10,7 @@ from common.body import Bdp, stature, thesis_bdp
 from common.camera import Rig, paper_rig
 from common.messages import Measure, Report
 from integrator import opening as stage
-from integrator.opening import STATURES_M, Opening, prior
+from integrator.opening import Opening, prior
 from viewer.measure import measure_front, measure_side
 
 Seen = tuple[Report | None, Report | None]
@@ -131,7 +131,7 @@ def test_the_prior_is_as_high_as_the_silhouettes(views: tuple[int, ...], stature
     assert body.torso.height / stature(body) == pytest.approx(52 / 175)
 
 
-@pytest.mark.parametrize(("rows", "stature_m"), [(20, STATURES_M[0]), (118, STATURES_M[1])])
+@pytest.mark.parametrize(("rows", "stature_m"), [(20, 0.8), (118, 2.3)])
 def test_a_prior_is_somebody(rows: int, stature_m: float) -> None:
     """0.8 to 2.3 m: what is beyond is not the whole person."""
     mask = np.zeros((120, 160), np.bool_)
