@@ -1,6 +1,7 @@
 """Body definition parameters from the opening posture: upright, arms stretched (section 2.4)."""
 
 import math
+from collections.abc import Callable
 from typing import Final, NamedTuple
 
 import cv2
@@ -215,6 +216,9 @@ def fine_tuned(
         pose[POSE_INDEX["r_shoulder_z"]], pose[POSE_INDEX["l_shoulder_z"]] = trial[4], trial[5]
         return _match(seen, seen_px, mask.shape[1], body, pose, view)
 
+    def score_along(i: int) -> Callable[[float], float]:
+        return lambda eighths: score_of([*values[:i], eighths / GRID, *values[i + 1 :]])
+
     best = score_of(values)
     for _ in range(MOST_ROUNDS):
         before = best
@@ -222,7 +226,7 @@ def fine_tuned(
             reach = 2 ** round(math.log2(span * GRID))
             middle = round(values[i] * GRID)
             found = tritree(
-                lambda eighths, i=i: score_of([*values[:i], eighths / GRID, *values[i + 1 :]]),
+                score_along(i),
                 (max(1, middle - reach), max(1, middle - reach) + 2 * reach),
                 2,
             )
