@@ -1,6 +1,8 @@
 """Which of several poses both silhouettes speak for: what one view alone cannot tell."""
 
+import math
 from functools import partial
+from itertools import product
 from typing import Any, Final
 
 import numba
@@ -15,9 +17,16 @@ from common.messages import Report
 
 SURELY: Final = 1.01
 """How many times better S1 S2 must be for a pose to be preferred to the one before it."""
+SQUATS: Final = 1.04
+"""The same for a squat with a bowed trunk, which changes more at once."""
+BENDS_DEG: Final = range(0, 71, 10)
+BOWS_DEG: Final = range(0, 41, 10)
+"""theta_X of the hips of a squat, and of the trunk."""
 STEPS_M: Final = (-0.03, -0.012, 0.012, 0.03)
 """How far the body may be from where its columns and rows have it: a pixel is 22 mm."""
 
+HIPS: Final = [POSE_INDEX["r_hip_x"], POSE_INDEX["l_hip_x"]]
+KNEES: Final = [POSE_INDEX["r_knee_x"], POSE_INDEX["l_knee_x"]]
 SWINGS: Final = [POSE_INDEX["r_shoulder_x"], POSE_INDEX["l_shoulder_x"]]
 _ARM_NAMES: Final = ("shoulder_x", "shoulder_y", "shoulder_z", "elbow_x")
 ARMS: Final = [[POSE_INDEX[f"{side}_{name}"] for name in _ARM_NAMES] for side in "rl"]
@@ -46,14 +55,19 @@ def products(body: Any, poses: Any, views: Any, seen: Any, seen_px: Any, width: 
 
 
 def settled(
-    pose: Vector, before: Vector, body: Vector, rig: Rig, seen: tuple[Report, Report]
+    pose: Vector,
+    before: Vector,
+    body: Vector,
+    rig: Rig,
+    seen: tuple[Report, Report],
+    upright_m: float,
 ) -> Vector:
     """The fused pose with its doubts settled by both silhouettes.
 
-    In turn: where the body is; which arm it is that swings, or whether both do (L3); whether an
-    arm was lost, and is where it was or hangs. Each is a few poses, of which the one with the
-    highest S1 S2 is taken, and the first, which is the pose so far, unless another is surely
-    better.
+    In turn: whether the person squats; where the body is; which arm it is that swings, or whether
+    both do (L3); whether an arm was lost, and is where it was or hangs. Each is a few poses, of
+    which the one with the highest S1 S2 is taken, and the first, which is the pose so far, unless
+    another is surely better.
 
     Args:
         pose: As the two views' angles were fused, (25,).
@@ -61,16 +75,39 @@ def settled(
         body: Body vector.
         rig: Two cameras.
         seen: Both views' reports, of pictures of one size.
+        upright_m: Height of the navel of the person standing upright.
     """
     views = np.array([view_of(camera) for camera in rig.cameras])
     masks = np.array([words_of_rows(r.silhouette, r.width, r.height) for r in seen])
     areas = np.array([count(mask) for mask in masks])
-    for doubts in (shifted, swung, partial(regained, 0), partial(regained, 1)):
+    for doubts, surely in (
+        (partial(squatted, upright_m, float(body[8] + body[14])), SQUATS),
+        (shifted, SURELY),
+        (swung, SURELY),
+        (partial(regained, 0), SURELY),
+        (partial(regained, 1), SURELY),
+    ):
         poses = doubts(pose, before)
         likely = products(body, poses, views, masks, areas, seen[0].width)
         best = int(likely.argmax())
-        pose = poses[best if likely[best] > SURELY * likely[0] else 0]
+        pose = poses[best if likely[best] > surely * likely[0] else 0]
     return pose
+
+
+def squatted(upright_m: float, leg_m: float, pose: Vector, _before: Vector) -> NDArray[np.float64]:
+    """The pose, and the same in squats of all depths, the trunk bowed or not, (n, 25).
+
+    The feet stay on the floor, under the hips (P34), so the navel sinks as the knees bend. The
+    shift of a model with straight legs cannot find that: its legs stand on the floor as well.
+    """
+    squats = list(product(BENDS_DEG, BOWS_DEG))
+    poses = np.tile(pose, (1 + len(squats), 1))
+    for row, (bend, bow) in zip(poses[1:], squats, strict=True):
+        row[POSE_INDEX["y"]] = upright_m - leg_m * (1.0 - math.cos(math.radians(bend)))
+        row[POSE_INDEX["torso_x"]] = bow
+        row[HIPS] = bend + bow
+        row[KNEES] = -2 * bend
+    return poses
 
 
 def shifted(pose: Vector, _before: Vector) -> NDArray[np.float64]:

@@ -172,7 +172,10 @@ def _settled(state: State, rig: Rig, seen: Seen, pose: Vector) -> Vector:
         return pose
     assert state.opening.bdp is not None
     before = rest_pose() if state.pose is None else state.pose
-    return settled(pose, before, body_vector(state.opening.bdp), rig, (first, second))
+    known, body = state.opening, body_vector(state.opening.bdp)
+    upright_m = known.measured_at_m[1] if known.measured else float(body[8] + body[14])
+    pose[POSE_INDEX["torso_x"]] = 0.0
+    return settled(pose, before, body, rig, (first, second), upright_m)
 
 
 def _told(
@@ -235,13 +238,17 @@ def _score(body: Vector, pose: Vector, rig: Rig, n: int, report: Report | None) 
 def _guide(
     state: State, rig: Rig, pair: Pair, newest: Report, status: Status, settled_now: bool
 ) -> Guide:
-    """What the viewers need for their next frame: each starts where it had the body itself."""
+    """What the viewers need for their next frame.
+
+    As printed each starts where it had the body itself; in `default` where both together have it.
+    """
     assert state.pose is not None
     place, known = state.pose[:3], state.opening
     measured_at = np.array(known.measured_at_m) if known.measured else place
     roots = list(pixels_of(rig, place))
     for n, report in enumerate(pair):
-        if report is not None and report.root_px is not None and not settled_now:
+        own = state.settings.mode == "paper" and not settled_now
+        if own and report is not None and report.root_px is not None:
             roots[n] = report.root_px
     upright = pixels_of(rig, np.array([place[0], measured_at[1], place[2]]))
     return Guide(

@@ -13,6 +13,7 @@ from integrator.hypotheses import products, settled
 
 BODY = body_vector(thesis_bdp(1.75))
 VIEWERS: tuple[ViewerNumber, ...] = (1, 2)
+UPRIGHT_M = 0.95
 SIZE = (160, 120)
 RIG = paper_rig(SIZE, (200.0, 200.0), (4.5, 4.5))
 VIEWS = np.array([view_of(camera) for camera in RIG.cameras])
@@ -42,7 +43,7 @@ def reports(pose: Vector) -> tuple[Report, Report]:
 def standing(**angles_deg: float) -> Vector:
     """At the middle of the room."""
     pose = posed(**angles_deg)
-    pose[:3] = 0.05, 0.95, -0.1
+    pose[:3] = 0.05, UPRIGHT_M, -0.1
     return pose
 
 
@@ -68,7 +69,9 @@ def test_the_arm_that_swings_is_told_from_the_one_that_hangs(
     apart = {"r_shoulder_z": 165.0, "l_shoulder_z": 195.0}
     truth = standing(**apart, **{f"{side}_shoulder_x": 80.0})
     said = {f"{other}_shoulder_x": 80.0} | ({f"{side}_shoulder_x": 80.0} if wrong == "both" else {})
-    found = settled(standing(**apart, **said), standing(**apart), BODY, RIG, reports(truth))
+    found = settled(
+        standing(**apart, **said), standing(**apart), BODY, RIG, reports(truth), UPRIGHT_M
+    )
     assert found[POSE_INDEX[f"{side}_shoulder_x"]] == 80.0
     assert found[POSE_INDEX[f"{other}_shoulder_x"]] == 0.0
 
@@ -76,7 +79,7 @@ def test_the_arm_that_swings_is_told_from_the_one_that_hangs(
 def test_a_lost_arm_is_found_hanging() -> None:
     """L1: errors do not go on for ever."""
     pose = standing(l_shoulder_z=280.0, l_shoulder_x=100.0, l_elbow_x=90.0)
-    found = settled(pose, pose, BODY, RIG, reports(standing()))
+    found = settled(pose, pose, BODY, RIG, reports(standing()), UPRIGHT_M)
     assert found == pytest.approx(standing())
 
 
@@ -85,11 +88,22 @@ def test_a_body_is_moved_to_where_both_views_have_it(axis: int) -> None:
     """P50: columns and rows are whole pixels, 22 mm of the room; both views know better."""
     truth, pose = standing(), standing()
     pose[axis] += 0.03
-    assert settled(pose, pose, BODY, RIG, reports(truth)) == pytest.approx(truth)
+    assert settled(pose, pose, BODY, RIG, reports(truth), UPRIGHT_M) == pytest.approx(truth)
 
 
 def test_what_fits_is_left_alone() -> None:
     """A pose that both silhouettes agree with stays, bit for bit."""
     pose = standing(r_shoulder_z=120.0, l_shoulder_x=40.0, r_hip_x=30.0)
-    found = settled(pose, standing(), BODY, RIG, reports(pose))
+    found = settled(pose, standing(), BODY, RIG, reports(pose), UPRIGHT_M)
     assert np.array_equal(found, pose)
+
+
+@pytest.mark.parametrize(("bend_deg", "bow_deg"), [(30.0, 10.0), (50.0, 30.0)])
+def test_a_squat_is_found_from_straight_legs(bend_deg: float, bow_deg: float) -> None:
+    """P34: knees bent twice as far as the hips, so the feet stay; L1: from no idea of it."""
+    legs = {f"{side}_hip_x": bend_deg + bow_deg for side in "rl"}
+    legs |= {f"{side}_knee_x": -2 * bend_deg for side in "rl"}
+    truth = standing(torso_x=bow_deg, **legs)
+    truth[1] -= 2 * 0.49 * (1.0 - np.cos(np.radians(bend_deg)))  # thigh and shank: 0.46, 0.52
+    found = settled(standing(), standing(), BODY, RIG, reports(truth), UPRIGHT_M)
+    assert found == pytest.approx(truth, abs=1e-9)
