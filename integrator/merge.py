@@ -31,6 +31,7 @@ from common.messages import (
     pack,
 )
 from integrator import opening, smoothing
+from integrator.adapting import adapted
 from integrator.arbiter import Sight, arbitrate
 from integrator.assumed import assumed_rig
 from integrator.fusion import fused
@@ -101,6 +102,7 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
     )
     state = _faced(state._replace(opening=known), seen)
     pose = _settled(state, state.rig, seen, _posed(state, state.rig, seen, settled_at))
+    state = _adapted(state, state.rig, seen, pose)
     return _told(state._replace(pose=pose), state.rig, pair, newest, dt_s, settled_at is not None)
 
 
@@ -178,6 +180,17 @@ def _settled(state: State, rig: Rig, seen: Seen, pose: Vector) -> Vector:
     return settled(pose, before, body, rig, (first, second), upright_m)
 
 
+def _adapted(state: State, rig: Rig, seen: Seen, pose: Vector) -> State:
+    """The prior body fitted, once, to a person who does not take the opening posture."""
+    known = state.opening
+    whole = all(report is not None and not report.cut for report in seen)
+    waits = known.measured or known.under_way or known.adapted
+    if state.settings.mode != "default" or waits or not whole or known.bdp is None:
+        return state
+    bdp = adapted(known.bdp, pose, rig, seen)
+    return state._replace(opening=known._replace(bdp=bdp, adapted=True))
+
+
 def _told(
     state: State, rig: Rig, pair: Pair, newest: Report, dt_s: float, settled_now: bool
 ) -> tuple[State, Body, Guide]:
@@ -188,7 +201,8 @@ def _told(
     raw = state.pose[list(ANGLES_IN_POSE)]
     scores = [_score(body, state.pose, rig, n, report) for n, report in enumerate(pair)]
     fits = max(scores) >= LOST_SCORE
-    smooth, angles, _ = smoothing.step(state.smooth, raw if fits else None, dt_s)
+    believed = fits or state.smooth.P is None  # there is nothing else to go by yet
+    smooth, angles, _ = smoothing.step(state.smooth, raw if believed else None, dt_s)
     state = state._replace(smooth=smooth, badly=0 if fits else state.badly + 1)
     pose = state.pose.copy()
     pose[list(ANGLES_IN_POSE)] = angles
@@ -196,7 +210,7 @@ def _told(
     places = joints(body, pose)
     confident = max(scores) if fits else 0.0
     told = Body(
-        frame=_frame_of(pair),
+        frame=_frame_of(pair, state.frames),
         captured_s=newest.captured_s,
         clock_s=newest.clock_s,
         status=status,
@@ -252,7 +266,7 @@ def _guide(
             roots[n] = report.root_px
     upright = pixels_of(rig, np.array([place[0], measured_at[1], place[2]]))
     return Guide(
-        frame=_frame_of(pair),
+        frame=_frame_of(pair, state.frames),
         captured_s=newest.captured_s,
         clock_s=newest.clock_s,
         frames=state.frames,
@@ -274,7 +288,7 @@ def _empty(state: State, pair: Pair, newest: Report) -> tuple[State, Body, Guide
     state = state._replace(pose=None, badly=0, smooth=fresh)
     when = {"captured_s": newest.captured_s, "clock_s": newest.clock_s}
     body = Body(
-        frame=_frame_of(pair),
+        frame=_frame_of(pair, state.frames),
         **when,
         status="empty",
         views="none",
@@ -282,7 +296,7 @@ def _empty(state: State, pair: Pair, newest: Report) -> tuple[State, Body, Guide
         bdp=state.opening.bdp,
     )
     guide = Guide(
-        frame=_frame_of(pair),
+        frame=_frame_of(pair, state.frames),
         **when,
         frames=state.frames,
         bdp=state.opening.bdp,
@@ -299,10 +313,15 @@ def _views(seen: Seen) -> Views:
     return names[seen[0] is not None, seen[1] is not None]
 
 
-def _frame_of(pair: Pair) -> int:
-    """Rows are counted by camera 1's frames; -1 for an instant that it missed."""
+def _frame_of(pair: Pair, heard: tuple[int, int]) -> int:
+    """Rows are counted by camera 1's frames, or by camera 2's where it is alone.
+
+    -1 for an instant that camera 1 missed.
+    """
     first, second = pair
-    return first.frame if first is not None else -1 if second is not None else 0
+    if first is None and heard[0] < 0 and second is not None:
+        return second.frame
+    return -1 if first is None else first.frame
 
 
 def _point(place: Vector) -> Point:

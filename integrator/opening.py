@@ -32,6 +32,8 @@ class Opening(NamedTuple):
     places_m: tuple[tuple[float, float, float], ...] = ()
     refused: int = 0
     """Frames since the last accepted one."""
+    adapted: bool = False
+    """The prior was fitted to the person's outline."""
 
     @property
     def under_way(self) -> bool:
