@@ -202,3 +202,29 @@ def test_the_flank_has_one_angle_an_arm() -> None:
     found = flank_arms(laid_over(seen, start, viewer=2), PAPERS, near=0, wide=False)
     changed = {name for name, i in POSE_INDEX.items() if found.pose[i] != start[i]}
     assert changed <= {"r_shoulder_x", "l_shoulder_x"}
+
+
+def test_an_arm_is_followed_round_the_circle() -> None:
+    """P30: theta_X has no end at 180, where an arm points up."""
+    figure = laid_over(picture(posed(), viewer=2), posed(), viewer=2)
+    for swing_deg in range(20, 361, 20):
+        truth = posed(r_shoulder_x=float(swing_deg), l_shoulder_x=float(swing_deg))
+        figure = laid_over(picture(truth, viewer=2), figure.pose, viewer=2)
+        figure = flank_arms(figure, PAPERS, near=0, wide=False)
+        off = math.remainder(angle(figure, "r_shoulder_x") - swing_deg, 360.0)
+        assert abs(off) <= 8.0
+        assert -180.0 < angle(figure, "r_shoulder_x") <= 180.0
+
+
+@pytest.mark.parametrize("side", ["r", "l"])
+def test_an_arm_swung_up_forwards_still_leans_outwards(side: str) -> None:
+    """P30: at theta_X = 180 the arm points up, and outwards is beyond theta_Z = 180."""
+    outward = 25.0 if side == "r" else -25.0
+    name = f"{side}_shoulder_z"
+    truth = posed(**{f"{side}_shoulder_x": 180.0, name: 180.0 + outward})
+    assert (ends(truth, f"{side}_upper_arm")[1][0] < ends(truth, f"{side}_upper_arm")[0][0]) == (
+        side == "r"
+    )
+    start = posed(**{f"{side}_shoulder_x": 180.0, name: 180.0 + outward / 2})
+    found = facade_arms(laid_over(picture(truth), start), PAPERS, wide=False)
+    assert angle(found, name) == pytest.approx(180.0 + outward, abs=4.0)

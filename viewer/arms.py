@@ -84,7 +84,9 @@ def flank_arms(figure: Figure, settings: SearchSettings, near: int, wide: bool) 
     start = figure.pose.copy()
     start[_SHOULDER_X[1 - near].at] = start[_SHOULDER_X[near].at]
     limits = _whole_turn(figure, near)
-    together = searched(figure._replace(pose=start), _BOTH_X, width, stop, limits, wide)
+    together = searched(
+        matched(figure._replace(pose=start)), _BOTH_X, width, stop, limits, wide, HIDDEN
+    )
     matches = apart.matches + together.matches - figure.matches
     better = apart if apart.score > together.score else together
     pose = better.pose.copy()
