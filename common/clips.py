@@ -18,6 +18,8 @@ from common.messages import ViewerNumber
 SAME_RATE: Final = 0.01
 """Frame rates that differ by less drift apart by less than a frame in a clip of 100."""
 
+AVI_HEAD: Final = b"RIFF"
+
 CAMERA_HZ: Final = 15.0
 """Taken for the rate of a camera that names none: the paper's (P1)."""
 
@@ -27,6 +29,8 @@ class Meta(msgspec.Struct, frozen=True):
 
     performer: str = ""
     posture: str = ""
+    posture_id: int | None = None
+    """-1: what is shown is no posture, whatever `posture` calls it."""
     take: int = 0
     fps: float | None = None
     capture_s: dict[str, tuple[float, ...]] = {}
@@ -168,9 +172,19 @@ def _probed(source: Source, decoder: Decoder) -> VideoInfo:
         if Path(source).stat().st_size == 0:
             raise ClipError(f"{source} is empty: copy or record it again")
     try:
-        return decoder.probe(source)
+        info = decoder.probe(source)
     except (Undecodable, DecoderDied) as error:
         raise ClipError(str(error)) from error
+    if isinstance(source, str):
+        _refuse_a_lost_head(Path(source))
+    return info
+
+
+def _refuse_a_lost_head(path: Path) -> None:
+    """OpenCV finds pictures behind a lost head too, but makes up their rate and number."""
+    with path.open("rb") as file:
+        if path.suffix.lower() == ".avi" and file.read(4) != AVI_HEAD:
+            raise ClipError(f"{path} is no AVI from its first byte on: copy or record it again")
 
 
 def _refuse_rates_that_differ(views: tuple[View, ...]) -> None:

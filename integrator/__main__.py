@@ -20,7 +20,7 @@ from common.messages import (
 )
 from common.process import Heart, Place, process
 from common.rate import Pace
-from integrator import merge, pairing
+from integrator import merge, noticing, pairing
 from integrator.pairing import Pair
 
 LEAD_S: Final = 0.5
@@ -66,11 +66,13 @@ def run(
     heart = Heart(bus, "integrator", pace)
     reports, ended = bus.subscribe(Report), bus.subscribe(Ended)
     pairs_of = pairing.init(period_s, viewers)
+    noticed = noticing.State()
+    odd = "\n".join(noticing.assumed(state))
     going = set(viewers)
     told_rig = False
     starter = Starter(frozenset(viewers))
     bus.answer(ClockQuestion, starter.answer)
-    heart.beat("ready")
+    heart.beat("ready", odd)
     while going and not stop.is_set():
         report = reports.take(HEAR_S)
         pairs: list[Pair] = []
@@ -83,6 +85,7 @@ def run(
             alone += last
         for pair in pairs + alone:
             state, body, guide = merge.step(state, pair)
+            noticed = noticing.step(noticed, pair)
             bus.publish(guide)
             bus.publish(body)
             pace.done(body.clock_s, time.monotonic())
@@ -91,11 +94,18 @@ def run(
             told_rig = True
         heart.beat(
             "running",
+            odd,
             dropped=pairs_of.dropped + reports.dropped,
             late=pairs_of.late,
             malformed=reports.malformed,
         )
-    heart.beat("ended", dropped=pairs_of.dropped, late=pairs_of.late, malformed=reports.malformed)
+    heart.beat(
+        "ended",
+        "\n".join(noticing.warnings(noticed, state)),
+        dropped=pairs_of.dropped,
+        late=pairs_of.late,
+        malformed=reports.malformed,
+    )
 
 
 def main(settings: Settings, clip: Clip, place: Place = Place()) -> None:

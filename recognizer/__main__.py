@@ -16,7 +16,7 @@ from common.messages import Body, Posture
 from common.process import READY_S, Heart, Place, process
 from common.rate import Pace
 from recognizer import spotting
-from recognizer.model_file import load
+from recognizer.model_file import ModelError, load
 from recognizer.postures import PostureModel
 
 SHIPPED = Path(__file__).parent / "postures.npz"
@@ -76,6 +76,27 @@ def run(
     heart.beat("ended", dropped=bodies.dropped, malformed=bodies.malformed)
 
 
+def model_of(settings: Settings, meant: str = "") -> PostureModel:
+    """The model that the settings name, or the one in the package.
+
+    Args:
+        settings: Of the run.
+        meant: The posture that the run's clip says it shows; "" where it says none.
+
+    Raises:
+        ModelError: When the model cannot be used, or does not know that posture.
+    """
+    path = Path(settings.recognizer.model) if settings.recognizer.model else SHIPPED
+    model = load(path)
+    if meant and meant not in model.names:
+        raise ModelError(
+            f"{path} was trained on other postures than {meant!r}, which the clip's meta.json "
+            f"names (it knows {', '.join(model.names)}): name a model that `tritrack train` made "
+            "of it as recognizer.model, or take posture out of the meta.json"
+        )
+    return model
+
+
 def main(settings: Settings, period_s: float, place: Place = Place()) -> None:
     """Load the model, name postures until stopped, close.
 
@@ -83,8 +104,7 @@ def main(settings: Settings, period_s: float, place: Place = Place()) -> None:
         ModelError: When the model cannot be used.
         BusError: When the integrator does not answer.
     """
-    path = Path(settings.recognizer.model) if settings.recognizer.model else SHIPPED
-    model = load(path)
+    model = model_of(settings)
     rehearsal = spotting.init(model, settings.recognizer.window_frames)
     for _ in range(spotting.NAMED_FROM_FRAMES + 2):
         rehearsal, _ = spotting.step(rehearsal, rest_pose()[list(ANGLES_IN_POSE)])

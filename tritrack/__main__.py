@@ -1,9 +1,9 @@
 """The front door: every command of tritrack."""
 
-import json
 import logging
 import os
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -11,14 +11,19 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
+import msgspec
 import typer
 from rich.console import Console
 
 from common import config
 from common.config import Settings
 from common.messages import ViewerNumber
+from tritrack.terminal import complain, json_text
 
 OURS = ("animator", "common", "integrator", "recognizer", "synth", "tritrack", "viewer")
+
+STOPPED = 130
+"""Exit code of what Ctrl-C ended before it was done, as shells count it."""
 
 VIEWERS: dict[str, tuple[ViewerNumber, ...]] = {"12": (1, 2), "1": (1,), "2": (2,)}
 
@@ -37,11 +42,19 @@ calibrate_app = typer.Typer(
 app.add_typer(calibrate_app, name="calibrate")
 
 console = Console(stderr=True)
+results = Console()
+
+log = logging.getLogger(__name__)
 
 ConfigPath = Annotated[Path, typer.Argument(help="A settings file (TOML), or a clip folder.")]
 Out = Annotated[Path, typer.Option(help="Folder to write into.")]
 JsonWanted = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
-ModeName = Annotated[Literal["default", "paper"], typer.Option(help="Which method tracks.")]
+ModeName = Annotated[
+    Literal["default", "paper"] | None, typer.Option(help="Instead of the settings' mode.")
+]
+Size = Annotated[
+    str | None, typer.Option(help="Bound of the working picture, instead of the settings'.")
+]
 
 
 @app.callback()
@@ -59,7 +72,7 @@ def every_command(
 @app.command()
 def demo(
     out: Out = Path("runs/demo"),
-    page: Annotated[bool, typer.Option(help="Open the live page.")] = True,
+    page: Annotated[bool, typer.Option(help="Show it on the live page too.")] = True,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Run the whole system on a made-up person: two viewers, integrator, recognizer, page.
@@ -76,19 +89,20 @@ def demo(
 def live(
     settings_file: ConfigPath,
     out: Out = Path("runs/live"),
-    mode: Annotated[
-        Literal["default", "paper"] | None, typer.Option(help="Instead of the settings' mode.")
-    ] = None,
+    mode: ModeName = None,
+    size: Size = None,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Track live: on recorded clips at their own pace, or on cameras. Ctrl-C ends it.
 
     Example: tritrack live configs/live.toml --out runs/monday
     """
+    from tritrack.offline import overridden
     from tritrack.session import live as run_live
 
-    settings = with_mode(config.load(settings_file), mode)
-    facts = run_live(settings, out, console)
+    settings = overridden(config.load(settings_file), mode, size)
+    name = settings_file.stem if settings_file.is_file() else ""
+    facts = run_live(settings, out, console, name)
     tell(facts, json_wanted, f"posture: {facts['posture'] or 'none'}; written to {out}")
 
 
@@ -149,11 +163,11 @@ def animate(settings_file: ConfigPath) -> None:
 def track(
     clips: Annotated[list[Path], typer.Argument(help="Clip folders, or settings files.")],
     out: Out = Path("runs"),
-    mode: ModeName = "default",
+    mode: ModeName = None,
     views: Annotated[
         Literal["12", "1", "2"], typer.Option(help="Both cameras, or only one of them.")
     ] = "12",
-    size: Annotated[str, typer.Option(help="Bound of the working picture.")] = "160x120",
+    size: Size = None,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Track clips offline: the same as live, deterministic, as fast as it goes.
@@ -172,13 +186,14 @@ def synth(
     motion: Annotated[
         Literal["postures", "free"], typer.Option(help="The 15 postures, or free motion.")
     ] = "postures",
-    performers: Annotated[int, typer.Option(min=1, max=1000)] = 1,
-    takes: Annotated[int, typer.Option(min=1, max=100)] = 1,
+    performers: Annotated[int, typer.Option(min=1, max=1000, help="How many people.")] = 1,
+    takes: Annotated[int, typer.Option(min=1, max=100, help="Of each posture by each person.")] = 1,
     seed: Annotated[int, typer.Option(min=0, help="The first performer's.")] = 0,
     size: Annotated[str, typer.Option(help="Of the pictures.")] = "320x240",
     posture: Annotated[
         list[str] | None, typer.Option(help="Only this posture; may be given again.")
     ] = None,
+    json_wanted: JsonWanted = False,
 ) -> None:
     """Make clips of made-up people whose truth is known.
 
@@ -187,16 +202,17 @@ def synth(
     from tritrack.making import make_clips
 
     made = make_clips(out, motion, performers, takes, seed, size, tuple(posture or ()), console)
-    console.print(f"{len(made)} clips written to {out}")
+    facts = {"clips": [str(folder) for folder in made]}
+    tell(facts, json_wanted, f"{len(made)} clips written to {out}")
 
 
 @app.command()
 def train(
     runs: Annotated[
-        list[Path], typer.Argument(help="Run folders (track) of clips that name their posture.")
+        list[Path], typer.Argument(help="Clips that name their posture, or their run folders.")
     ],
     out: Annotated[Path, typer.Option(help="The model file to write.")],
-    mode: ModeName = "default",
+    mode: ModeName = None,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Learn postures from clips or runs: one hidden Markov model each.
@@ -219,9 +235,9 @@ def doctor(json_wanted: JsonWanted = False) -> None:
 
     findings = examine()
     if json_wanted:
-        print(json.dumps([finding._asdict() for finding in findings], indent=1))
+        print(json_text([finding._asdict() for finding in findings]))
     else:
-        console.print(table_of(findings))
+        results.print(table_of(findings))
     if any(not finding.ok and finding.needed for finding in findings):
         raise typer.Exit(1)
 
@@ -243,6 +259,7 @@ def bench(
 @calibrate_app.command()
 def markers(
     measured: Annotated[Path, typer.Argument(help="Points on the line markers (TOML).")],
+    json_wanted: JsonWanted = False,
 ) -> None:
     """Say how far each camera is turned, tilted and rolled away from the marked lines.
 
@@ -250,14 +267,14 @@ def markers(
     """
     from integrator.calibration import run_markers
 
-    for aim in run_markers(measured):
-        console.print(str(aim))
+    tell_rows(run_markers(measured), json_wanted)
 
 
 @calibrate_app.command()
 def poles(
     measured: Annotated[Path, typer.Argument(help="Tops of the poles in both pictures (TOML).")],
     out: Annotated[Path, typer.Option(help="The file to write.")] = Path("calibration.json"),
+    json_wanted: JsonWanted = False,
 ) -> None:
     """Find focal lengths and distances from poles at known places, with error bars.
 
@@ -265,16 +282,12 @@ def poles(
     """
     from integrator.calibration import run_poles
 
-    quality = run_poles(measured, out)
-    for camera in quality.cameras:
-        console.print(str(camera))
-    console.print(f"written to {out}")
+    tell_rows(run_poles(measured, out).cameras, json_wanted)
+    console.print(f"written to {out}", highlight=False, soft_wrap=True)
 
 
 def two_camera_clip(settings: Settings) -> Any:
     """The clip that settings name, with a camera for each viewer where it is calibrated."""
-    import msgspec
-
     from common.clips import open_clip
     from tritrack.offline import both_cameras
 
@@ -282,19 +295,23 @@ def two_camera_clip(settings: Settings) -> Any:
     return msgspec.structs.replace(clip, rig=both_cameras(clip))
 
 
-def with_mode(settings: Settings, mode: Literal["default", "paper"] | None) -> Settings:
-    """The settings, in a mode that the command line names."""
-    import msgspec
-
-    return settings if mode is None else msgspec.structs.replace(settings, mode=mode)
-
-
 def tell(facts: dict[str, Any], json_wanted: bool, line: str) -> None:
     """A command's result: JSON on stdout, or a line for a person."""
     if json_wanted:
-        print(json.dumps(facts, indent=1))
+        print(json_text(facts))
     else:
-        console.print(line)
+        console.print(line, markup=False, highlight=False, soft_wrap=True)
+
+
+def tell_rows(rows: Sequence[msgspec.Struct], json_wanted: bool) -> None:
+    """A command's result for each camera: JSON, or a table."""
+    from tritrack.table import table_of_rows
+
+    facts: list[dict[str, Any]] = [msgspec.to_builtins(row) for row in rows]
+    if json_wanted:
+        print(json_text(facts))
+    else:
+        results.print(table_of_rows(facts))
 
 
 def main() -> None:
@@ -303,12 +320,32 @@ def main() -> None:
     What is raised by a class of ours is meant for the user; all else is a fault of the program.
     """
     try:
-        app()
+        code = app(standalone_mode=False)
+    except typer.TyperException as error:
+        code = refuse_usage(error)
+    except (typer.Abort, KeyboardInterrupt):
+        complain(console, "stopped before it was done")
+        code = STOPPED
     except Exception as error:
-        if type(error).__module__.split(".")[0] not in OURS or logging.root.level <= logging.DEBUG:
+        if type(error).__module__.split(".")[0] not in OURS:
             raise
-        console.print(f"error: {error}", style="red", markup=False, soft_wrap=True)
-        sys.exit(2)
+        log.debug("refused", exc_info=error)
+        complain(console, str(error))
+        code = 2
+    sys.exit(code or 0)
+
+
+def refuse_usage(error: typer.TyperException) -> int:
+    """Say in one line what is wrong with a command line; a command without its words gets help."""
+    text = error.format_message()
+    if text.startswith("Usage:"):
+        print(text, file=sys.stderr)
+        return 2
+    context = getattr(error, "ctx", None)
+    command = context.command_path if context else "tritrack"
+    text = text.replace("Value error, ", "").rstrip(".")
+    complain(console, f"{text}; see: {command} --help")
+    return 2
 
 
 if __name__ == "__main__":

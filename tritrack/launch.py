@@ -3,10 +3,12 @@
 import logging
 import multiprocessing
 import os
+import signal
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any, Final, NamedTuple
@@ -124,7 +126,10 @@ def run(
     """
     with ExitStack() as doors:
         hub = doors.enter_context(_started(parts[0]))
-        listening = _Ears(doors.enter_context(_client(settings, hub)), heard)
+        bus = doors.enter_context(_client(settings, hub, stop))
+        if bus is None:
+            return
+        listening = _Ears(bus, heard)
         running = [hub, *(doors.enter_context(_started(part)) for part in parts[1:])]
         try:
             while not stop.wait(LOOK_S):
@@ -139,7 +144,8 @@ def run(
                 _end(one)
             listening.catch_up()
             show(heard.pulses)
-        _refuse_failures(running)
+        if not stop.is_set():
+            _refuse_failures(running)
 
 
 class _Ears:
@@ -166,13 +172,8 @@ def _started(part: Part) -> Iterator[Running]:
     """A part's process, from its start to its end."""
     ours, theirs = SPAWN.Pipe(duplex=False)
     process = SPAWN.Process(name=part.name, target=_guarded, args=(part, theirs), daemon=True)
-    before = dict(os.environ)
-    os.environ.update(ONE_THREAD)
-    try:
+    with _inherited():
         process.start()
-    finally:
-        os.environ.clear()
-        os.environ.update(before)
     theirs.close()
     running = Running(part, process, ours)
     try:
@@ -182,20 +183,41 @@ def _started(part: Part) -> Iterator[Running]:
 
 
 @contextmanager
-def _client(settings: Settings, hub: Running) -> Iterator[Bus]:
+def _inherited() -> Iterator[None]:
+    """What a process takes over from its supervisor: one thread a library, and deaf to Ctrl-C.
+
+    A terminal sends Ctrl-C to all processes; only the supervisor, who ends the others in order,
+    shall hear it, also while they are still importing.
+    """
+    resource_tracker.ensure_running()  # its own start would lift the block again
+    before = dict(os.environ)
+    os.environ.update(ONE_THREAD)
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        os.environ.clear()
+        os.environ.update(before)
+
+
+@contextmanager
+def _client(settings: Settings, hub: Running, stop: threading.Event) -> Iterator[Bus | None]:
     """The supervisor's own place on the bus, as soon as the hub's process has opened it.
+
+    None when the run was stopped before that.
 
     Raises:
         PartFailed: When the hub failed instead.
         BusError: When it does not open.
     """
     until_s = time.monotonic() + READY_S
+    bus: Bus | None = None
     with ExitStack() as door:
-        while True:
+        while bus is None and not stop.is_set():
             _refuse_failures([hub])
             try:
                 bus = door.enter_context(open_client(settings.bus, settings.room, 1.0))
-                break
             except BusError:
                 if time.monotonic() > until_s:
                     raise

@@ -4,11 +4,11 @@ from pathlib import Path
 from typing import Literal
 
 from rich.console import Console
-from rich.progress import Progress
 
 from common.config import SettingsError, size_of
 from synth.motions import POSTURES
-from synth.write import write_set
+from synth.write import SynthError, write_set
+from tritrack.terminal import bar
 
 
 def make_clips(
@@ -24,25 +24,37 @@ def make_clips(
     """Write clips with truth, showing how far it is; returns their folders.
 
     Raises:
-        SettingsError: When the size or a posture's name is none.
-        SynthError: When a clip cannot be written.
+        SettingsError: When the size or a posture's name is none, or free motion is to be a posture.
+        SynthError: When a clip cannot be written: no space, no right.
     """
-    unknown = [name for name in postures if name not in POSTURES]
-    if unknown:
-        raise SettingsError(f"unknown posture {unknown[0]!r}; known are {', '.join(POSTURES)}")
+    _refuse_postures(motion, postures)
     try:
         width_height = size_of(size)
     except ValueError as error:
         raise SettingsError(str(error)) from error
-    with Progress(console=console, transient=True) as progress:
-        task = progress.add_task("rendering", total=None)
-        return write_set(
-            out,
-            motion,
-            performers,
-            takes,
-            seed,
-            width_height,
-            postures or POSTURES,
-            lambda done, due: progress.update(task, completed=done, total=due),
-        )
+    try:
+        with bar(console) as progress:
+            task = progress.add_task("rendering", total=None)
+            return write_set(
+                out,
+                motion,
+                performers,
+                takes,
+                seed,
+                width_height,
+                postures or POSTURES,
+                lambda done, due: progress.update(task, completed=done, total=due),
+            )
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise SynthError(
+            f"cannot write {out}: {reason}; free some space or name another --out"
+        ) from error
+
+
+def _refuse_postures(motion: str, postures: tuple[str, ...]) -> None:
+    unknown = [name for name in postures if name not in POSTURES]
+    if unknown:
+        raise SettingsError(f"unknown posture {unknown[0]!r}; known are {', '.join(POSTURES)}")
+    if motion == "free" and postures:
+        raise SettingsError("free motion is no posture: leave --posture or --motion free out")

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 import msgspec
 from rich.console import Console
-from rich.progress import Progress
 
 from common import config
 from common.camera import Rig
@@ -17,9 +16,10 @@ from common.config import Mode, Settings, SettingsError
 from common.decoding import Decoder, DecoderDied, Undecodable
 from common.footage import ClipError
 from common.messages import Body, Guide, Report, ViewerNumber
-from integrator import merge
+from integrator import merge, noticing
 from integrator.pairing import Pair
 from tritrack.runs import write_run
+from tritrack.terminal import bar, complain, warn
 from viewer import track
 from viewer.capture import Frame, recorded
 from viewer.empty import empty_room
@@ -76,6 +76,7 @@ def track_clip(
         viewers[view.number] = track.init(view.number, room, camera, settings)
     prepared = time.perf_counter()
     state = merge.init(rig, clip.every / clip.views[0].fps, settings)
+    noticed = noticing.State()
     guide: Guide | None = None
     bodies: list[Body] = []
     spent = {"viewers": 0.0, "integrator": 0.0}
@@ -85,13 +86,16 @@ def track_clip(
         for number, frame in frames.items():
             viewers[number], reports[number] = track.step(viewers[number], frame, guide)
         middle = time.perf_counter()
-        state, body, guide = merge.step(state, Pair(reports.get(1), reports.get(2)))
+        pair = Pair(reports.get(1), reports.get(2))
+        state, body, guide = merge.step(state, pair)
+        noticed = noticing.step(noticed, pair)
         bodies.append(body)
         spent["viewers"] += middle - start
         spent["integrator"] += time.perf_counter() - middle
     warnings += [
         odd for view in clip.views if (odd := shortfall(view, decoders.of[view.number].came))
     ]
+    warnings += noticing.warnings(noticed, state)
     done = time.perf_counter()
     seconds = {"preparation": prepared - began, **spent, "all": done - began}
     facts = {
@@ -104,6 +108,20 @@ def track_clip(
         "warnings": warnings,
     }
     return Tracked(clip, bodies, facts)
+
+
+def overridden(settings: Settings, mode: Mode | None, size: str | None) -> Settings:
+    """The settings with what a command line names instead; None leaves what they say.
+
+    Raises:
+        SettingsError: When the size is none.
+    """
+    try:
+        return msgspec.structs.replace(
+            settings, mode=mode or settings.mode, size=size or settings.size
+        )
+    except ValueError as error:
+        raise SettingsError(str(error)) from error
 
 
 def both_cameras(clip: Clip) -> Rig | None:
@@ -134,36 +152,75 @@ def _instants(clip: Clip, decoders: Decoders) -> Iterator[dict[ViewerNumber, Fra
 
 
 def track_all(
-    clips: Sequence[Path],
+    paths: Sequence[Path],
     out: Path,
-    mode: Mode,
+    mode: Mode | None,
     views: tuple[ViewerNumber, ...],
-    size: str,
+    size: str | None,
     console: Console,
 ) -> dict[str, Any]:
     """Track clip after clip and write a run folder for each.
 
     A clip that cannot be used is said and left out; the others are tracked.
 
+    Args:
+        paths: Clip folders and settings files; other plain files are said and left out.
+        out: Gets a folder for each, named after the clip or the settings file.
+        mode: Instead of what the settings say; None leaves them.
+        views: The cameras to use.
+        size: As `mode`.
+        console: For progress, warnings and errors.
+
     Raises:
-        ClipsFailed: At the end, when any could not be used.
+        ClipsFailed: When there is nothing to track, when two runs would have one folder, and at
+            the end when any clip could not be used.
         RunError: When a run folder cannot be written.
     """
+    runs = _run_names(paths, console)
     done: dict[str, Any] = {}
-    failed = 0
-    with Decoders() as decoders, Progress(console=console, transient=True) as progress:
-        for path in progress.track(clips, description="tracking"):
+    with Decoders() as decoders, bar(console) as progress:
+        for name, path in progress.track(runs.items(), description="tracking"):
             try:
-                settings = msgspec.structs.replace(config.load(path), mode=mode, size=size)
+                settings = overridden(config.load(path), mode, size)
                 tracked = track_clip(settings, decoders, views)
             except (SettingsError, ClipError, DecoderDied, Undecodable) as error:
-                failed += 1
-                progress.console.print(f"error: {error}", style="red", markup=False)
+                complain(console, str(error))
                 continue
             for warning in tracked.facts["warnings"]:
-                progress.console.print(f"warning: {warning}", style="yellow", markup=False)
-            write_run(out / tracked.clip.name, tracked.bodies, settings, tracked.facts)
-            done[tracked.clip.name] = tracked.facts
-    if failed:
-        raise ClipsFailed(f"{failed} of {len(clips)} clips could not be tracked")
+                warn(console, warning)
+            done[name] = {**tracked.facts, "clip": name}
+            write_run(out / name, tracked.bodies, settings, done[name])
+    if len(done) < len(runs):
+        raise ClipsFailed(f"{len(runs) - len(done)} of {len(runs)} clips could not be tracked")
     return {"clips": done}
+
+
+def _run_names(paths: Sequence[Path], console: Console) -> dict[str, Path]:
+    """What to track, by the name of its run folder: the clip folder's, or the settings file's."""
+    runs: dict[str, Path] = {}
+    for path in without_plain_files(paths, console):
+        name = path.stem if path.is_file() else path.resolve().name
+        if name in runs:
+            raise ClipsFailed(
+                f"{runs[name]} and {path} would both be written to {name}: "
+                "track one, then the other with another --out"
+            )
+        runs[name] = path
+    return runs
+
+
+def without_plain_files(paths: Sequence[Path], console: Console) -> list[Path]:
+    """The paths without what a pattern like clips/* catches too, such as calibration.json.
+
+    Raises:
+        ClipsFailed: When nothing is left.
+    """
+    kept = []
+    for path in paths:
+        if path.is_file() and path.suffix != ".toml":
+            warn(console, f"{path} is neither a clip folder nor a settings file: left out")
+        else:
+            kept.append(path)
+    if not kept:
+        raise ClipsFailed("no clip is left: name a folder with cam1.*, cam2.* or a settings file")
+    return kept

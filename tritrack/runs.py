@@ -1,6 +1,5 @@
 """Run folders: the poses, the summary and the postures of a run, as files."""
 
-import json
 import os
 import platform
 import tempfile
@@ -15,6 +14,7 @@ import numpy as np
 from common.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES
 from common.config import Settings
 from common.messages import Body, Posture
+from tritrack.terminal import json_text
 
 VERSIONS_OF: Final = ("tritrack", "numpy", "opencv-python-headless", "numba", "eclipse-zenoh")
 
@@ -30,22 +30,21 @@ def write_run(
 
     Args:
         folder: Made where it is not there.
-        bodies: One a row, in the order of time.
+        bodies: In the order of time; an instant that camera 1 missed (frame -1) gets no row.
         settings: As resolved for the run.
         facts: What else the summary tells: seconds, scale_source, warnings ...
 
     Raises:
         RunError: When the folder or a file cannot be written: no space, no right.
     """
+    bodies = [body for body in bodies if body.frame >= 0]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with _replacing(folder / "poses.npz") as path, path.open("wb") as file:
             np.savez(file, allow_pickle=False, **poses(bodies))
         _write_json(folder / "summary.json", _summary(bodies, settings, facts))
     except OSError as error:
-        raise RunError(
-            f"cannot write {folder}: {error.strerror}; free some space or name another --out"
-        ) from error
+        raise _unwritable(folder, error) from error
 
 
 def write_postures(folder: Path, postures: Iterable[Posture], performed: str) -> None:
@@ -61,12 +60,13 @@ def write_postures(folder: Path, postures: Iterable[Posture], performed: str) ->
             },
         }
         for posture in postures
+        if posture.frame >= 0
     ]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         _write_json(folder / "posture.json", {"posture": performed, "frames": rows})
     except OSError as error:
-        raise RunError(f"cannot write {folder}: {error.strerror}") from error
+        raise _unwritable(folder, error) from error
 
 
 def poses(bodies: Sequence[Body]) -> dict[str, Any]:
@@ -121,9 +121,14 @@ def _summary(bodies: Sequence[Body], settings: Settings, facts: dict[str, Any]) 
     }
 
 
+def _unwritable(folder: Path, error: OSError) -> RunError:
+    reason = error.strerror or str(error)
+    return RunError(f"cannot write {folder}: {reason}; free some space or name another --out")
+
+
 def _write_json(path: Path, value: Any) -> None:
     with _replacing(path) as new:
-        new.write_text(json.dumps(value, indent=1) + "\n")
+        new.write_text(json_text(value) + "\n")
 
 
 class _replacing:

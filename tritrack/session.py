@@ -1,15 +1,14 @@
 """A live run from its settings to its run folder."""
 
-import logging
 import signal
 import socket
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import Any
+from typing import Any, Final
 
 import msgspec
 from rich.console import Console
@@ -19,56 +18,132 @@ from common.clips import Clip, open_clip
 from common.config import BusSettings, PageSettings, Settings
 from common.messages import Posture, Pulse
 from common.process import Place
+from recognizer.__main__ import model_of
 from tritrack.launch import Heard, live_parts, run
 from tritrack.offline import both_cameras
 from tritrack.runs import write_postures, write_run
 from tritrack.table import table_of
+from tritrack.terminal import warn
 
-log = logging.getLogger(__name__)
+NO_POSTURE: Final = -1
+"""posture_id of a clip that shows none of the postures: free motion, a test of the tracker."""
 
 
-def live(settings: Settings, out: Path, console: Console) -> dict[str, Any]:
+class LiveRefused(ValueError):
+    """A live run that cannot begin; the text says why and what to do."""
+
+
+def live(settings: Settings, out: Path, console: Console, name: str = "") -> dict[str, Any]:
     """Run the processes on a clip or on cameras until it ends or Ctrl-C; write the run folder.
+
+    Args:
+        settings: Of the run.
+        out: The run folder; nothing is written elsewhere.
+        console: Shows the live table, each warning once, and the page's address.
+        name: Of the run; the clip's when empty.
 
     Returns:
         What the run's summary tells.
 
     Raises:
-        ClipError, PartFailed, BusError, RunError: When something cannot be worked with; what was
-            tracked until then is written first.
+        ClipError, ModelError, PageError, LiveRefused: When something cannot be worked with; no
+            process was started.
+        PartFailed, BusError, RunError: When something failed; what was tracked until then is
+            written first.
     """
     clip = open_clip(settings)
-    for warning in clip.warnings:
-        console.print(f"[yellow]warning:[/] {warning}")
-    clip = msgspec.structs.replace(clip, rig=both_cameras(clip))
-    place = Place(supervised=True, log=out / "log.txt")
-    parts = live_parts(settings, clip, place)
-    names = [part.name for part in parts]
-    title = f"{clip.name}: {settings.mode} mode, {clip.views[0].fps / clip.every:g} frames a second"
+    clip = msgspec.structs.replace(clip, name=name or clip.name, rig=both_cameras(clip))
+    _refuse_what_would_fail(settings, clip)
     began = time.monotonic()
     heard = Heard([], [], {}, [])
-    announced = False
-
-    with (
-        _stopped_by_signals() as stop,
-        LiveDisplay(table_of(names, {}, title), console=console, refresh_per_second=4) as display,
-    ):
-
-        def show(pulses: dict[str, Pulse]) -> None:
-            nonlocal announced
-            page = pulses.get("animator")
-            if page is not None and page.detail and not announced:
-                display.console.print(f"the page: [link]{page.detail}[/link]")
-                announced = True
-            display.update(table_of(names, pulses, title))
-
+    screen = _Screen(clip, settings, console)
+    with _stopped_by_signals() as stop:
+        parts = live_parts(settings, clip, Place(supervised=True, log=_new_log(out)))
         try:
-            run(parts, settings, stop, show, heard)
+            with screen.shown([part.name for part in parts]) as show:
+                run(parts, settings, stop, show, heard)
         finally:
             facts = _facts(heard, clip, time.monotonic() - began)
             write_run(out, heard.bodies, settings, facts)
             write_postures(out, heard.postures, performed(heard.postures))
     return facts
+
+
+class _Screen:
+    """What a person sees of a run: the table of processes, and each piece of news once."""
+
+    def __init__(self, clip: Clip, settings: Settings, console: Console) -> None:
+        rate_hz = clip.views[0].fps / clip.every
+        self._title = f"{clip.name}: {settings.mode} mode, {rate_hz:g} frames a second"
+        self._console = console
+        self._told: set[str] = set()
+        for warning in clip.warnings:
+            self._warn(warning)
+
+    @contextmanager
+    def shown(self, names: list[str]) -> Iterator[Callable[[dict[str, Pulse]], None]]:
+        """A function that shows the newest pulses; the last ones stay when it is over."""
+        table = table_of(names, {}, self._title)
+        with LiveDisplay(
+            table, console=self._console, refresh_per_second=4, transient=True
+        ) as display:
+
+            def show(pulses: dict[str, Pulse]) -> None:
+                nonlocal table
+                self._news(pulses)
+                table = table_of(names, pulses, self._title)
+                display.update(table)
+
+            yield show
+        self._console.print(table)
+
+    def _news(self, pulses: dict[str, Pulse]) -> None:
+        for warning in warnings_of(pulses):
+            self._warn(warning)
+        page = pulses.get("animator")
+        if page is not None and page.detail not in self._told | {""}:
+            self._told.add(page.detail)
+            self._console.print(f"the page: [link]{page.detail}[/link]", highlight=False)
+
+    def _warn(self, text: str) -> None:
+        if text not in self._told:
+            self._told.add(text)
+            warn(self._console, text)
+
+
+def warnings_of(pulses: Mapping[str, Pulse]) -> list[str]:
+    """What the viewers and the integrator find odd: their pulses tell all of it, a line each."""
+    return [
+        line
+        for name, pulse in sorted(pulses.items())
+        if name.startswith("viewer") or name == "integrator"
+        for line in pulse.detail.splitlines()
+    ]
+
+
+def _refuse_what_would_fail(settings: Settings, clip: Clip) -> None:
+    """Say before any process starts what one of them would fail on."""
+    meant = "" if clip.meta.posture_id == NO_POSTURE else clip.meta.posture
+    model_of(settings, meant)
+    if settings.page.port:
+        try:
+            from animator.page.door import refuse_port
+        except ImportError as error:
+            raise LiveRefused(
+                f"the page needs {error.name}: pip install 'tritrack[page]', or set page.port = 0"
+            ) from error
+        refuse_port(settings.page.port)
+
+
+def _new_log(out: Path) -> Path:
+    """The log of this run alone: a run before it in the same folder is overwritten."""
+    path = out / "log.txt"
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        path.write_text("")
+    except OSError as error:
+        raise LiveRefused(f"cannot write {out}: {error.strerror}; name another --out") from error
+    return path
 
 
 def performed(postures: list[Posture]) -> str:
@@ -88,12 +163,6 @@ def free_settings(settings: Settings) -> Settings:
 
 def _facts(heard: Heard, clip: Clip, seconds: float) -> dict[str, Any]:
     source = heard.cameras[-1].scale_source if heard.cameras else None
-    warnings = [*clip.warnings]
-    warnings += [
-        pulse.detail
-        for name, pulse in sorted(heard.pulses.items())
-        if name.startswith("viewer") and pulse.detail
-    ]
     return {
         "clip": clip.name,
         "performer": clip.meta.performer,
@@ -101,7 +170,7 @@ def _facts(heard: Heard, clip: Clip, seconds: float) -> dict[str, Any]:
         "seconds": {"all": round(seconds, 3)},
         "scale_source": source,
         "posture": performed(heard.postures),
-        "warnings": warnings,
+        "warnings": list(dict.fromkeys([*clip.warnings, *warnings_of(heard.pulses)])),
         "processes": {
             name: {
                 key: round(value, 3) if isinstance(value, float) else value

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Final
 
+from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
 from common.messages import Pulse
@@ -27,9 +28,9 @@ def table_of(names: Sequence[str], pulses: Mapping[str, Pulse], title: str) -> T
     Latency is from a frame's capture to the end of the process's work on it. `missed` counts
     deadlines: work that ended more than a frame later.
     """
-    table = Table(title=title, title_justify="left", expand=False)
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for column, side in COLUMNS:
-        table.add_column(column, justify="left" if side == "left" else "right")
+        table.add_column(column, justify="left" if side == "left" else "right", no_wrap=True)
     for name in names:
         table.add_row(*_cells(name, pulses.get(name)))
     return table
@@ -50,3 +51,13 @@ def _cells(name: str, pulse: Pulse | None) -> list[str]:
         f"{pulse.latency_p99_ms:.1f}",
         f"{pulse.memory_mb:.0f}",
     ]
+
+
+def table_of_rows(rows: Sequence[Mapping[str, object]]) -> Table:
+    """A table with a line for each of several things alike; its columns are their names."""
+    table = Table(box=SIMPLE_HEAD)
+    for column in rows[0] if rows else ():
+        table.add_column(column.replace("_", " "), justify="left" if column == "name" else "right")
+    for row in rows:
+        table.add_row(*(f"{v:.2f}" if isinstance(v, float) else str(v) for v in row.values()))
+    return table

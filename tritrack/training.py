@@ -7,10 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 from rich.console import Console
-from rich.progress import Progress
 
 from common import config
 from common.config import Mode, RecognizerSettings
@@ -19,8 +17,9 @@ from recognizer.evaluation import Recording
 from recognizer.model_file import save
 from recognizer.postures import train
 from recognizer.spotting import motion_of
-from tritrack.offline import Decoders, track_clip
+from tritrack.offline import Decoders, overridden, track_clip, without_plain_files
 from tritrack.runs import poses
+from tritrack.terminal import bar, warn
 
 
 class TrainingError(ValueError):
@@ -28,18 +27,19 @@ class TrainingError(ValueError):
 
 
 def train_postures(
-    paths: Sequence[Path], out: Path, mode: Mode, console: Console
+    paths: Sequence[Path], out: Path, mode: Mode | None, console: Console
 ) -> dict[str, Any]:
     """Learn a model of each posture and write it.
 
     Args:
         paths: Clip folders whose `meta.json` names posture and performer, or their run folders.
         out: The file to write.
-        mode: How clips are tracked.
-        console: For the progress.
+        mode: How clips are tracked; None: as their settings say.
+        console: For progress and warnings.
 
     Raises:
-        TrainingError: When a folder is neither, or names no posture.
+        TrainingError: When a folder is neither, or names no posture, or the file cannot be written.
+        ClipError: When a clip cannot be used.
     """
     learnt: dict[str, list[Any]] = defaultdict(list)
     performers = set()
@@ -51,7 +51,7 @@ def train_postures(
         out.parent.mkdir(parents=True, exist_ok=True)
         save(model, out)
     except (ValueError, OSError) as error:
-        raise TrainingError(str(error)) from error
+        raise TrainingError(f"cannot learn or write {out}: {error}") from error
     return {
         "model": str(out),
         "sequences": {name: len(given) for name, given in sorted(learnt.items())},
@@ -59,18 +59,22 @@ def train_postures(
     }
 
 
-def recordings(paths: Sequence[Path], mode: Mode, console: Console) -> list[Recording]:
+def recordings(paths: Sequence[Path], mode: Mode | None, console: Console) -> list[Recording]:
     """What was performed in each clip or run: the motion after the opening posture."""
-    with Decoders() as decoders, Progress(console=console, transient=True) as progress:
+    folders = without_plain_files(paths, console)
+    with Decoders() as decoders, bar(console) as progress:
         return [
-            _of_run(path) if (path / "poses.npz").is_file() else _of_clip(path, mode, decoders)
-            for path in progress.track(paths, description="reading")
+            _of_run(path)
+            if (path / "poses.npz").is_file()
+            else _of_clip(path, mode, decoders, console)
+            for path in progress.track(folders, description="reading")
         ]
 
 
-def _of_clip(path: Path, mode: Mode, decoders: Decoders) -> Recording:
-    settings = msgspec.structs.replace(config.load(path), mode=mode)
-    tracked = track_clip(settings, decoders)
+def _of_clip(path: Path, mode: Mode | None, decoders: Decoders, console: Console) -> Recording:
+    tracked = track_clip(overridden(config.load(path), mode, None), decoders)
+    for warning in tracked.facts["warnings"]:
+        warn(console, warning)
     return _recording(path, tracked.facts, poses(tracked.bodies))
 
 

@@ -24,8 +24,8 @@ from common.process import READY_S, Heart, Place, process
 from common.rate import Pace
 from viewer import track
 from viewer.capture import Frame, Live, RoomClock
-from viewer.jpeg import jpeg_of
 from viewer.empty import empty_room
+from viewer.jpeg import jpeg_of
 
 WAIT_SHARE: Final = 0.5
 """How long a viewer waits for the guide of its last frame, in frame periods."""
@@ -65,8 +65,25 @@ class Guides:
         return -1 if self.newest is None else self.newest.frames[self._viewer - 1]
 
 
-def run(view: View, state: track.State, live: Live, bus: Bus, stop: threading.Event) -> None:
-    """Look at every frame when it is due and publish what it shows, until the clip's end."""
+def run(
+    view: View,
+    state: track.State,
+    live: Live,
+    bus: Bus,
+    stop: threading.Event,
+    warnings: tuple[str, ...] = (),
+) -> None:
+    """Look at every frame when it is due and publish what it shows, until the clip's end.
+
+    Args:
+        view: Of this viewer's camera.
+        state: The viewer's, before the first frame.
+        live: Gives the frames.
+        bus: Hears the reports.
+        stop: Ends it early.
+        warnings: What is odd about the view, told with every pulse, a line each.
+    """
+    odd = "\n".join(warnings)
     period_s = state.settings.every / view.fps
     pace = Pace(period_s)
     heart = Heart(bus, f"viewer {view.number}", pace)
@@ -82,12 +99,13 @@ def run(view: View, state: track.State, live: Live, bus: Bus, stop: threading.Ev
         pace.done(frame.clock_s - live.offset_s, time.monotonic())
         if state.settings.pictures:
             bus.publish(_picture(view.number, frame))
-        heart.beat("running", dropped=live.dropped, guide_misses=guides.misses)
+        heart.beat("running", odd, dropped=live.dropped, guide_misses=guides.misses)
         before = frame.index
     bus.publish(Ended(viewer=view.number, frames=pace.frames))
-    odd = shortfall(view, live.came) if not stop.is_set() else ""
-    if odd:
-        log.warning(odd)
+    cut_off = shortfall(view, live.came) if live.over else ""
+    if cut_off:
+        log.warning(cut_off)
+    odd = "\n".join(filter(None, (*warnings, cut_off)))
     heart.beat("ended", odd, dropped=live.dropped, guide_misses=guides.misses)
 
 
@@ -108,18 +126,19 @@ def main(settings: Settings, viewer: ViewerNumber, place: Place = Place()) -> No
             clip = open_clip(settings, decoder, (viewer,))
             view = clip.views[0]
             room, odd = empty_room(view, settings.silhouette, decoder)
-        for warning in (*clip.warnings, *([odd] if odd else [])):
+        warnings = (*clip.warnings, *([odd] if odd else []))
+        for warning in warnings:
             log.warning(warning)
         state = track.init(viewer, room, clip.rig.cameras[0] if clip.rig else None, settings)
         track.rehearse(state, view.size)
         gc.collect()
         gc.freeze()
         bus.announce(name)
-        heart.beat("ready", odd)
+        heart.beat("ready", "\n".join(warnings))
         room_clock = met(bus, viewer, stop)
         if room_clock is not None:
             with Live(view, settings.every, room_clock) as live:
-                run(view, state, live, bus, stop)
+                run(view, state, live, bus, stop, warnings)
 
 
 def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | None:

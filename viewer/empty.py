@@ -20,7 +20,7 @@ def empty_room(
     """What the room looks like without the person, and what is odd about how that is known.
 
     Args:
-        view: A recorded file's view.
+        view: A recorded file's, or a camera's: that one's room is taken to be empty now.
         settings: How many opening frames show the empty room.
         decoder: Reads the file; left at its start.
 
@@ -28,6 +28,8 @@ def empty_room(
         Undecodable: When the plate or the file has no picture.
         DecoderDied: When the decoder broke on it.
     """
+    if isinstance(view.source, int) and not view.background:
+        return learn(_now(view, settings.empty_frames, decoder)), ""
     if view.background:
         plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
         return learn(plate), ""
@@ -40,9 +42,13 @@ def empty_room(
     )
 
 
+def _now(view: View, due: int, decoder: Decoder) -> list[Frame]:
+    """The first frames that a camera gives."""
+    return [got.picture for got in islice(decoder.frames(view.source, view.size), due)]
+
+
 def _looked_at(view: View, due: int, decoder: Decoder) -> tuple[list[Frame], list[Frame]]:
     """The opening frames, and frames from everywhere in the clip."""
-    assert isinstance(view.source, str)
     stride = max(1, min(view.frames, LOOKED_AT) // SAMPLE)
     opening: list[Frame] = []
     sample: list[Frame] = []

@@ -26,7 +26,7 @@ def open_server(port: int) -> viser.ViserServer:
     Raises:
         PageError: When the port is 0, taken or not allowed.
     """
-    _refuse_port(port)
+    refuse_port(port)
     with _quiet():
         server = viser.ViserServer(host=HOST, port=port, label="tritrack", verbose=False)
     if server.get_port() != port:
@@ -69,8 +69,12 @@ def _guard(server: viser.ViserServer) -> None:
     sockets.on_client_connect(refuse_strangers)
 
 
-def _refuse_port(port: int) -> None:
-    """Viser would quietly take the next free port, and the address told to the user be wrong."""
+def refuse_port(port: int) -> None:
+    """Viser would quietly take the next free port, and the address told to the user be wrong.
+
+    Raises:
+        PageError: When the port is 0, taken or not allowed.
+    """
     if port == 0:
         raise PageError("page.port is 0, which means no page: set it to a free port, as 8080")
     with socket.socket() as trial:

@@ -1,0 +1,43 @@
+"""What a person reads while a command works: one line a warning or an error, and a bar."""
+
+import json
+import math
+from typing import Any
+
+from rich.console import Console
+from rich.progress import Progress
+
+
+def warn(console: Console, text: str) -> None:
+    """What is odd but does not stop the work."""
+    _line(console, f"warning: {text}", "yellow")
+
+
+def complain(console: Console, text: str) -> None:
+    """What stops it, and the cure."""
+    _line(console, f"error: {text}", "red")
+
+
+def bar(console: Console) -> Progress:
+    """How far long work is; nothing where nobody looks on, as in a file."""
+    return Progress(console=console, transient=True, disable=not console.is_terminal)
+
+
+def json_text(value: Any) -> str:
+    """Strict JSON: a number that is not finite, which JSON cannot say, becomes null."""
+    return json.dumps(_finite(value), indent=1, allow_nan=False)
+
+
+def _line(console: Console, text: str, style: str) -> None:
+    """One line however long: a terminal wraps it by itself, a file keeps it whole."""
+    console.print(
+        " ".join(text.split()), style=style, markup=False, highlight=False, soft_wrap=True
+    )
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
