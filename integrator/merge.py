@@ -216,9 +216,7 @@ def _told(
         status=status,
         views=_views(_with_somebody(pair)),
         joints_m=tuple(_point(place) for place in places),
-        joints_px=tuple(
-            tuple(_pixel(pixel) for pixel in project(camera, places)) for camera in rig.cameras
-        ),
+        joints_px=tuple(_pixels(project(camera, places)) for camera in rig.cameras),
         pose=tuple(pose.tolist()),
         angles_raw_deg=tuple(raw.tolist()),
         confidence=(confident,) * len(places),
@@ -329,9 +327,8 @@ def _point(place: Vector) -> Point:
     return (x, y, z)
 
 
-def _pixel(pixel: Vector) -> Pixel:
-    u, v = (float(value) for value in np.nan_to_num(pixel, nan=-1.0))
-    return (u, v)
+def _pixels(pixels: Vector) -> tuple[Pixel, ...]:
+    return tuple((u, v) for u, v in np.nan_to_num(pixels, nan=-1.0).tolist())
 
 
 def rehearse(settings: Settings, size: tuple[int, int]) -> None:

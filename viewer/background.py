@@ -107,12 +107,15 @@ def is_empty_opening(opening: Sequence[Frame], sample: Sequence[Frame]) -> bool:
         sample: Frames from all over it, of the same size.
     """
     room = np.median(_even(opening), axis=0).astype(np.float32)
+    room_luma = room @ LUMA
+    room_slope = _slope(room_luma)
     in_room, in_frames = 0.0, 0.0
     for frame in sample:
-        even = frame / light_gain(frame, room)
-        differs = _large(np.abs((even - room) @ LUMA) > CHANGES)
+        shares = (LUMA / light_gain(frame, room))[None]
+        luma = cv2.transform(frame.astype(np.float32), shares)
+        differs = _large(np.abs(luma - room_luma) > CHANGES)
         outline = cv2.morphologyEx(differs, cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8)) > 0
-        steeper = _slope((even @ LUMA).astype(np.float32)) - _slope(room @ LUMA)
+        steeper = _slope(luma) - room_slope
         in_frames += float(steeper[outline].clip(min=0).sum())
         in_room -= float(steeper[outline].clip(max=0).sum())
     return in_room <= EDGE_SHARE * in_frames
