@@ -1,5 +1,6 @@
 """The empty room of a view: from a plate, from the clip's opening frames, or from the clip."""
 
+import math
 from itertools import islice
 
 from common.clips import View
@@ -8,7 +9,7 @@ from common.decoding import Decoder
 from viewer.background import Background, Frame, is_empty_opening, learn, learn_from_clip
 
 SAMPLE = 40
-"""How many frames, spread over a clip, tell whether its opening is empty."""
+"""How many frames at most, spread over a clip, tell whether its opening is empty."""
 
 LOOKED_AT = 1500
 """How many frames of a clip are looked at for that: a long recording is judged by its start."""
@@ -49,7 +50,7 @@ def _now(view: View, due: int, decoder: Decoder) -> list[Frame]:
 
 def _looked_at(view: View, due: int, decoder: Decoder) -> tuple[list[Frame], list[Frame]]:
     """The opening frames, and frames from everywhere in the clip."""
-    stride = max(1, min(view.frames, LOOKED_AT) // SAMPLE)
+    stride = max(1, math.ceil(min(view.frames, LOOKED_AT) / SAMPLE))
     opening: list[Frame] = []
     sample: list[Frame] = []
     for count, got in enumerate(decoder.frames(view.source, view.size)):
