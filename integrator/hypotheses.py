@@ -1,6 +1,7 @@
 """Which of several poses both silhouettes speak for: what one view alone cannot tell."""
 
 import math
+from collections.abc import Callable
 from functools import partial
 from itertools import product
 from typing import Any, Final
@@ -15,6 +16,9 @@ from common.kernel import count, count_both, draw_limbs, score, view_of, words_o
 from common.kinematics import ALL_LIMBS
 from common.messages import Report
 
+Doubt = Callable[[Vector, Vector], NDArray[np.float64]]
+"""From the pose so far and that of the frame before: it, and others that may be meant, (n, 25)."""
+
 SURELY: Final = 1.01
 """How many times better S1 S2 must be for a pose to be preferred to the one before it."""
 SQUATS: Final = 1.04
@@ -24,6 +28,20 @@ BOWS_DEG: Final = range(0, 41, 10)
 """theta_X of the hips of a squat, and of the trunk."""
 STEPS_M: Final = (-0.03, -0.012, 0.012, 0.03)
 """How far the body may be from where its columns and rows have it: a pixel is 22 mm."""
+
+TURNS: Final = (
+    (("r_hip_x", 10.0), ("r_knee_x", 16.0)),
+    (("l_hip_x", 10.0), ("l_knee_x", 16.0)),
+    (("r_shoulder_z", 10.0), ("r_shoulder_x", 12.0)),
+    (("l_shoulder_z", 10.0), ("l_shoulder_x", 12.0)),
+    (("r_hip_z", 5.0), ("l_hip_z", 5.0)),
+    (("torso_x", 6.0), ("z", 0.02)),
+    (("x", 0.02), ("y", 0.02)),
+)
+"""What is turned or moved together, and by how much (degrees, metres) a step."""
+TURN_STEPS: Final = (-2, -1, 0, 1, 2)
+TURN_SHARES: Final = (1.0, 0.5)
+"""Of the steps, in the first and the second round."""
 
 HIPS: Final = [POSE_INDEX["r_hip_x"], POSE_INDEX["l_hip_x"]]
 KNEES: Final = [POSE_INDEX["r_knee_x"], POSE_INDEX["l_knee_x"]]
@@ -61,13 +79,16 @@ def settled(
     rig: Rig,
     seen: tuple[Report, Report],
     upright_m: float,
+    fitted: bool,
 ) -> Vector:
     """The fused pose with its doubts settled by both silhouettes.
 
     In turn: whether the person squats; where the body is; which arm it is that swings, or whether
     both do (L3); whether an arm was lost, and is where it was or hangs. Each is a few poses, of
     which the one with the highest S1 S2 is taken, and the first, which is the pose so far, unless
-    another is surely better.
+    another is surely better. A body that was fitted to its outline is then turned joint by joint
+    too; one that was measured in the opening posture is not: its cylinders have no feet, and
+    would bend to cover them.
 
     Args:
         pose: As the two views' angles were fused, (25,).
@@ -76,17 +97,23 @@ def settled(
         rig: Two cameras.
         seen: Both views' reports, of pictures of one size.
         upright_m: Height of the navel of the person standing upright.
+        fitted: The body is a prior that was fitted to the outline.
     """
     views = np.array([view_of(camera) for camera in rig.cameras])
     masks = np.array([words_of_rows(r.silhouette, r.width, r.height) for r in seen])
     areas = np.array([count(mask) for mask in masks])
-    for doubts, surely in (
+    turns: list[tuple[Doubt, float]] = [
+        (partial(turned, pair, share), 1.0) for share in TURN_SHARES for pair in TURNS if fitted
+    ]
+    all_doubts: list[tuple[Doubt, float]] = [
         (partial(squatted, upright_m, float(body[8] + body[14])), SQUATS),
         (shifted, SURELY),
         (swung, SURELY),
         (partial(regained, 0), SURELY),
         (partial(regained, 1), SURELY),
-    ):
+        *turns,
+    ]
+    for doubts, surely in all_doubts:
         poses = doubts(pose, before)
         likely = products(body, poses, views, masks, areas, seen[0].width)
         best = int(likely.argmax())
@@ -149,4 +176,19 @@ def regained(i: int, pose: Vector, before: Vector) -> NDArray[np.float64]:
     poses = np.tile(pose, (3, 1))
     poses[1, ARMS[i]] = before[ARMS[i]]
     poses[2, ARMS[i]] = HANGING[i]
+    return poses
+
+
+def turned(
+    pair: tuple[tuple[str, float], tuple[str, float]],
+    share: float,
+    pose: Vector,
+    _before: Vector,
+) -> NDArray[np.float64]:
+    """The pose, and the same with two of its parameters up to two steps either way, (25, 25)."""
+    steps = [(0, 0), *(each for each in product(TURN_STEPS, TURN_STEPS) if each != (0, 0))]
+    poses = np.tile(pose, (len(steps), 1))
+    for (name, size), turns in zip(pair, np.array(steps).T, strict=True):
+        poses[:, POSE_INDEX[name]] += share * size * turns
+    poses[:, KNEES] = np.minimum(poses[:, KNEES], 0.0)
     return poses

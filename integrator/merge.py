@@ -30,15 +30,14 @@ from common.messages import (
     Views,
     pack,
 )
-from integrator import opening, smoothing
-from integrator.adapting import adapted
+from integrator import adapting, opening, smoothing
 from integrator.arbiter import Sight, arbitrate
 from integrator.assumed import assumed_rig
 from integrator.fusion import fused
 from integrator.hypotheses import settled
 from integrator.opening import Opening
 from integrator.pairing import Pair
-from integrator.place import pixels_of, place_of, scales_at, scales_since
+from integrator.place import pixels_of, place_of, roots_of, scales_at, scales_since
 
 YAW_DEG: Final = (0.0, -90.0)
 """Yaw of the trunk while viewer 1, or viewer 2, sees the facade (P49)."""
@@ -95,15 +94,15 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
     state = state._replace(frames=_heard(state.frames, pair), last_s=newest.captured_s)
     seen = _with_somebody(pair)
     state = _with_rig(state, seen)
-    if seen == (None, None) or state.rig is None:
+    rig = state.rig
+    if seen == (None, None) or rig is None:
         return _empty(state, pair, newest)
-    known, settled_at = opening.step(
-        state.opening, state.rig, seen, state.settings.body.opening_frames
-    )
+    known, settled_at = opening.step(state.opening, rig, seen, state.settings.body.opening_frames)
     state = _faced(state._replace(opening=known), seen)
-    pose = _settled(state, state.rig, seen, _posed(state, state.rig, seen, settled_at))
-    state = _adapted(state, state.rig, seen, pose)
-    return _told(state._replace(pose=pose), state.rig, pair, newest, dt_s, settled_at is not None)
+    pose = _settled(state, rig, seen, _posed(state, rig, seen, settled_at))
+    if state.settings.mode == "default":
+        state = state._replace(opening=adapting.step(state.opening, rig, seen, pose))
+    return _told(state._replace(pose=pose), rig, pair, newest, dt_s, settled_at is not None)
 
 
 def _heard(frames: tuple[int, int], pair: Pair) -> tuple[int, int]:
@@ -158,9 +157,7 @@ def _posed(state: State, rig: Rig, seen: Seen, settled_at: Vector | None) -> Vec
     before = rest_pose() if state.pose is None else state.pose
     pose = fused(before, seen[front], seen[1 - front])
     if settled_at is None:
-        first, second = seen
-        roots = (first and first.root_px, second and second.root_px)
-        pose[:3] = place_of(rig, roots, before[:3], front)
+        pose[:3] = place_of(rig, roots_of(seen), before[:3], front)
     else:
         pose[:3] = settled_at
     pose[POSE_INDEX["torso_y"]] = YAW_DEG[front]
@@ -172,23 +169,14 @@ def _settled(state: State, rig: Rig, seen: Seen, pose: Vector) -> Vector:
     first, second = seen
     if state.settings.mode != "default" or first is None or second is None:
         return pose
+    if (first.width, first.height) != (second.width, second.height):
+        return pose
     assert state.opening.bdp is not None
     before = rest_pose() if state.pose is None else state.pose
     known, body = state.opening, body_vector(state.opening.bdp)
     upright_m = known.measured_at_m[1] if known.measured else float(body[8] + body[14])
     pose[POSE_INDEX["torso_x"]] = 0.0
-    return settled(pose, before, body, rig, (first, second), upright_m)
-
-
-def _adapted(state: State, rig: Rig, seen: Seen, pose: Vector) -> State:
-    """The prior body fitted, once, to a person who does not take the opening posture."""
-    known = state.opening
-    whole = all(report is not None and not report.cut for report in seen)
-    waits = known.measured or known.under_way or known.adapted
-    if state.settings.mode != "default" or waits or not whole or known.bdp is None:
-        return state
-    bdp = adapted(known.bdp, pose, rig, seen)
-    return state._replace(opening=known._replace(bdp=bdp, adapted=True))
+    return settled(pose, before, body, rig, (first, second), upright_m, bool(known.samples))
 
 
 def _told(
@@ -197,14 +185,13 @@ def _told(
     """The body that is published and the guide that the viewers get."""
     assert state.pose is not None
     assert state.opening.bdp is not None
-    body = body_vector(state.opening.bdp)
-    raw = state.pose[list(ANGLES_IN_POSE)]
-    scores = [_score(body, state.pose, rig, n, report) for n, report in enumerate(pair)]
+    body, pose = body_vector(state.opening.bdp), state.pose.copy()
+    raw = pose[list(ANGLES_IN_POSE)]
+    scores = [_score(body, pose, rig, n, report) for n, report in enumerate(pair)]
     fits = max(scores) >= LOST_SCORE
     believed = fits or state.smooth.P is None  # there is nothing else to go by yet
     smooth, angles, _ = smoothing.step(state.smooth, raw if believed else None, dt_s)
     state = state._replace(smooth=smooth, badly=0 if fits else state.badly + 1)
-    pose = state.pose.copy()
     pose[list(ANGLES_IN_POSE)] = angles
     status = _status(state)
     places = joints(body, pose)
@@ -284,10 +271,10 @@ def _empty(state: State, pair: Pair, newest: Report) -> tuple[State, Body, Guide
     """Nobody is in any view: what was learnt of the body is kept, its pose is not."""
     fresh = smoothing.init(len(ANGLE_NAMES), state.smooth.period_s)
     state = state._replace(pose=None, badly=0, smooth=fresh)
-    when = {"captured_s": newest.captured_s, "clock_s": newest.clock_s}
     body = Body(
         frame=_frame_of(pair, state.frames),
-        **when,
+        captured_s=newest.captured_s,
+        clock_s=newest.clock_s,
         status="empty",
         views="none",
         facing=state.facing,
@@ -295,7 +282,8 @@ def _empty(state: State, pair: Pair, newest: Report) -> tuple[State, Body, Guide
     )
     guide = Guide(
         frame=_frame_of(pair, state.frames),
-        **when,
+        captured_s=newest.captured_s,
+        clock_s=newest.clock_s,
         frames=state.frames,
         bdp=state.opening.bdp,
         measured=state.opening.measured,

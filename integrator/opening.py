@@ -9,7 +9,7 @@ from common.body import Bdp, Vector, body_of_lengths, thesis_bdp
 from common.camera import Rig
 from common.messages import Report
 from integrator.perspective import universal_bdp
-from integrator.place import place_of, scales_at
+from integrator.place import place_of, roots_of, scales_at
 
 STATURES_M: Final = (0.8, 2.3)
 """What a silhouette's height may say of a person; beyond, it is not the whole person."""
@@ -17,6 +17,13 @@ STATURES_M: Final = (0.8, 2.3)
 LEG_KEPT: Final = (0.85, 1.05)
 """Share of the measured leg that the height of the navel above the floor may leave; beyond, the
 floor is not where the calibration says."""
+
+
+class Sample(NamedTuple):
+    """A pose as it was found, and what was seen then."""
+
+    pose: Vector
+    seen: tuple[Report | None, Report | None]
 
 
 class Opening(NamedTuple):
@@ -32,8 +39,10 @@ class Opening(NamedTuple):
     places_m: tuple[tuple[float, float, float], ...] = ()
     refused: int = 0
     """Frames since the last accepted one."""
-    adapted: bool = False
-    """The prior was fitted to the person's outline."""
+    samples: tuple[Sample, ...] = ()
+    """The instants whose outlines the prior was fitted to, where it was."""
+    unsampled: int = 0
+    """Frames since the last of them."""
 
     @property
     def under_way(self) -> bool:
@@ -43,9 +52,7 @@ class Opening(NamedTuple):
 
 def prior(rig: Rig, seen: tuple[Report | None, Report | None]) -> Bdp:
     """The thesis's proportions at the height that the silhouettes show (T4)."""
-    first, second = seen
-    roots = (first and first.root_px, second and second.root_px)
-    scales = scales_at(rig, place_of(rig, roots, np.zeros(3), 0))
+    scales = scales_at(rig, place_of(rig, roots_of(seen), np.zeros(3), 0))
     heights = [
         (report.box.bottom + 1 - report.box.top) / scale
         for report, scale in zip(seen, scales, strict=True)

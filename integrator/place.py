@@ -4,10 +4,19 @@ import numpy as np
 
 from common.body import Vector
 from common.camera import Camera, Rig, as_paper_rig, centre, project, ray
-from common.messages import Pixel
+from common.messages import Pixel, Report
 from integrator.perspective import ground_position, px_per_m, scaling_factors, triangulate
 
 Roots = tuple[Pixel | None, Pixel | None]
+
+
+def roots_of(seen: tuple[Report | None, Report | None]) -> Roots:
+    """Where each view has the navel."""
+    first, second = seen
+    return (
+        None if first is None else first.root_px,
+        None if second is None else second.root_px,
+    )
 
 
 def place_of(rig: Rig, roots_px: Roots, before_m: Vector, facade: int) -> Vector:

@@ -9,7 +9,7 @@ from common.camera import paper_rig
 from common.kernel import count, draw_body, pack_words, view_of
 from common.messages import Report, ViewerNumber, pack
 from common.similarity import Mask, similarity
-from integrator.hypotheses import products, settled
+from integrator.hypotheses import products, settled, turned
 
 BODY = body_vector(thesis_bdp(1.75))
 VIEWERS: tuple[ViewerNumber, ...] = (1, 2)
@@ -70,7 +70,7 @@ def test_the_arm_that_swings_is_told_from_the_one_that_hangs(
     truth = standing(**apart, **{f"{side}_shoulder_x": 80.0})
     said = {f"{other}_shoulder_x": 80.0} | ({f"{side}_shoulder_x": 80.0} if wrong == "both" else {})
     found = settled(
-        standing(**apart, **said), standing(**apart), BODY, RIG, reports(truth), UPRIGHT_M
+        standing(**apart, **said), standing(**apart), BODY, RIG, reports(truth), UPRIGHT_M, False
     )
     assert found[POSE_INDEX[f"{side}_shoulder_x"]] == 80.0
     assert found[POSE_INDEX[f"{other}_shoulder_x"]] == 0.0
@@ -79,7 +79,7 @@ def test_the_arm_that_swings_is_told_from_the_one_that_hangs(
 def test_a_lost_arm_is_found_hanging() -> None:
     """L1: errors do not go on for ever."""
     pose = standing(l_shoulder_z=280.0, l_shoulder_x=100.0, l_elbow_x=90.0)
-    found = settled(pose, pose, BODY, RIG, reports(standing()), UPRIGHT_M)
+    found = settled(pose, pose, BODY, RIG, reports(standing()), UPRIGHT_M, fitted=False)
     assert found == pytest.approx(standing())
 
 
@@ -88,13 +88,15 @@ def test_a_body_is_moved_to_where_both_views_have_it(axis: int) -> None:
     """P50: columns and rows are whole pixels, 22 mm of the room; both views know better."""
     truth, pose = standing(), standing()
     pose[axis] += 0.03
-    assert settled(pose, pose, BODY, RIG, reports(truth), UPRIGHT_M) == pytest.approx(truth)
+    assert settled(pose, pose, BODY, RIG, reports(truth), UPRIGHT_M, fitted=False) == pytest.approx(
+        truth
+    )
 
 
 def test_what_fits_is_left_alone() -> None:
     """A pose that both silhouettes agree with stays, bit for bit."""
     pose = standing(r_shoulder_z=120.0, l_shoulder_x=40.0, r_hip_x=30.0)
-    found = settled(pose, standing(), BODY, RIG, reports(pose), UPRIGHT_M)
+    found = settled(pose, standing(), BODY, RIG, reports(pose), UPRIGHT_M, fitted=False)
     assert np.array_equal(found, pose)
 
 
@@ -105,5 +107,25 @@ def test_a_squat_is_found_from_straight_legs(bend_deg: float, bow_deg: float) ->
     legs |= {f"{side}_knee_x": -2 * bend_deg for side in "rl"}
     truth = standing(torso_x=bow_deg, **legs)
     truth[1] -= 2 * 0.49 * (1.0 - np.cos(np.radians(bend_deg)))  # thigh and shank: 0.46, 0.52
-    found = settled(standing(), standing(), BODY, RIG, reports(truth), UPRIGHT_M)
+    found = settled(standing(), standing(), BODY, RIG, reports(truth), UPRIGHT_M, fitted=False)
     assert found == pytest.approx(truth, abs=1e-9)
+
+
+def test_only_a_fitted_body_is_turned_joint_by_joint() -> None:
+    """A measured body has no feet and would bend to cover them; what was fitted may turn."""
+    truth = standing(r_hip_x=24.0, r_knee_x=-30.0)
+    start = standing(r_hip_x=10.0, r_knee_x=-8.0)
+    turned = settled(start, start, BODY, RIG, reports(truth), UPRIGHT_M, fitted=True)
+    kept = settled(start, start, BODY, RIG, reports(truth), UPRIGHT_M, fitted=False)
+    hip, knee = POSE_INDEX["r_hip_x"], POSE_INDEX["r_knee_x"]
+    assert turned[hip] == pytest.approx(24.0, abs=6.0)
+    assert turned[knee] == pytest.approx(-30.0, abs=9.0)
+    assert kept[[hip, knee]] == pytest.approx(start[[hip, knee]])
+
+
+def test_no_knee_is_turned_the_wrong_way() -> None:
+    """P35: knees bend backwards."""
+    poses = turned((("r_hip_x", 10.0), ("r_knee_x", 16.0)), 1.0, standing(), standing())
+    assert len(poses) == 25
+    assert (poses[:, POSE_INDEX["r_knee_x"]] <= 0.0).all()
+    assert poses[0] == pytest.approx(standing())
