@@ -153,13 +153,13 @@ def tracking(settings: Settings, folder: Path, repeats: int) -> Iterator[Measure
             frames = len(tracked.bodies)
             now = {**tracked.facts["seconds"], "all": time.perf_counter() - began}
             seconds = {name: min(value, seconds.get(name, value)) for name, value in now.items()}
-        silhouettes_s = _silhouettes_s(settings, decoders)
+        silhouettes_s = min(_silhouettes_s(settings, decoders) for _ in range(repeats))
     mode = settings.mode
     yield Measured(f"track, video to poses, {mode}", frames / seconds["all"], "frames/s", 300.0)
     for what, value_s in {
         "preparation": seconds["preparation"],
         "silhouettes": silhouettes_s,
-        "viewers' search": seconds["viewers"] - silhouettes_s,
+        "viewers, all but silhouettes": seconds["viewers"] - silhouettes_s,
         "integrator": seconds["integrator"],
     }.items():
         yield Measured(f"- {what}, {mode}", 1e3 * value_s / frames, "ms a frame")
