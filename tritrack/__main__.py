@@ -1,5 +1,6 @@
 """The front door: every command of tritrack."""
 
+import errno
 import logging
 import os
 import sys
@@ -24,6 +25,9 @@ OURS = ("animator", "common", "integrator", "recognizer", "synth", "tritrack", "
 
 STOPPED = 130
 """Exit code of what Ctrl-C ended before it was done, as shells count it."""
+
+FULL = (errno.ENOSPC, errno.EDQUOT)
+"""What a full disk says, wherever it is met."""
 
 VIEWERS: dict[str, tuple[ViewerNumber, ...]] = {"12": (1, 2), "1": (1,), "2": (2,)}
 
@@ -324,14 +328,16 @@ def main() -> None:
     except typer.TyperException as error:
         code = refuse_usage(error)
     except (typer.Abort, KeyboardInterrupt):
-        complain(console, "stopped before it was done")
         code = STOPPED
     except Exception as error:
-        if type(error).__module__.split(".")[0] not in OURS:
+        full = isinstance(error, OSError) and error.errno in FULL
+        if not full and type(error).__module__.split(".")[0] not in OURS:
             raise
         log.debug("refused", exc_info=error)
         complain(console, str(error))
         code = 2
+    if code == STOPPED:
+        complain(console, "stopped before it was done")
     sys.exit(code or 0)
 
 

@@ -1,0 +1,374 @@
+"""The commands under a user's hands: wrong words, wrong files, full disks."""
+
+import importlib
+import json
+import os
+import re
+import resource
+import socket
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+import typer
+from spoiling import REFUSED, WORKED_WITH, copied, edit_json
+
+import tritrack.__main__ as door
+from tritrack import session
+
+
+class Ended(NamedTuple):
+    """How a command ended and what it said."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def errors(self) -> list[str]:
+        return [line for line in self.err.splitlines() if line.startswith("error: ")]
+
+    @property
+    def warnings(self) -> list[str]:
+        return [line for line in self.err.splitlines() if line.startswith("warning: ")]
+
+
+class Commands:
+    """Runs commands in this process as the shell would."""
+
+    def __init__(self, patch: pytest.MonkeyPatch, capture: pytest.CaptureFixture[str]) -> None:
+        self._patch, self._capture = patch, capture
+
+    def __call__(self, *words: str | Path) -> Ended:
+        self._patch.setattr(sys, "argv", ["tritrack", *map(str, words)])
+        self._capture.readouterr()
+        with pytest.raises(SystemExit) as ended:
+            door.main()
+        said = self._capture.readouterr()
+        return Ended(int(ended.value.code or 0), said.out, said.err)
+
+
+@pytest.fixture
+def tritrack(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Commands:
+    return Commands(monkeypatch, capsys)
+
+
+@pytest.fixture
+def no_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Fail if a live run gets so far as to start processes."""
+
+    def started(*_: object) -> None:
+        raise AssertionError("a process was started")
+
+    monkeypatch.setattr(session, "run", started)
+
+
+def every_command() -> list[list[str]]:
+    group = typer.main.get_command(door.app)
+    words: list[list[str]] = []
+    for name, command in group.commands.items():  # type: ignore[attr-defined]
+        inner = getattr(command, "commands", None)
+        words += [[name, each] for each in inner] if inner else [[name]]
+    return words
+
+
+def toml(path: Path, text: str) -> Path:
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize("words", every_command(), ids=" ".join)
+def test_every_command_has_help_with_an_example(tritrack: Commands, words: list[str]) -> None:
+    said = tritrack(*words, "--help")
+    assert said.code == 0
+    assert f"Example: tritrack {' '.join(words)}" in " ".join(said.out.split())
+
+
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        (["nosuch"], "No such command 'nosuch'; see: "),
+        (["trak"], "Did you mean 'track'"),
+        (["track"], "Missing argument 'clips'; see: "),
+        (["track", "--views", "3", "x"], "'3' is not one of '12', '1', '2'; see: "),
+        (["track", "--nosuch", "x"], "No such option"),
+        (["--log-level", "loud", "doctor"], "'loud' is not one of"),
+        (["track", "nosuch"], "nosuch: No such file"),
+        (["live", "nosuch.toml"], "nosuch.toml: No such file"),
+        (["live"], "Missing argument"),
+        (["view", "x", "--viewer", "3"], "--viewer"),
+        (["synth"], "Missing option '--out'"),
+        (["synth", "--out", "o", "--performers", "0"], "--performers"),
+        (["synth", "--out", "o", "--takes", "0"], "--takes"),
+        (["synth", "--out", "o", "--seed", "-1"], "--seed"),
+        (["synth", "--out", "o", "--size", "1x1"], "must be from 32 to 4096, got 1"),
+        (["synth", "--out", "o", "--size", "big"], "size must look like 160x120, got 'big'"),
+        (["synth", "--out", "o", "--posture", "dance"], "unknown posture 'dance'; known are walk"),
+        (
+            ["synth", "--out", "o", "--motion", "free", "--posture", "squat"],
+            "free motion is no posture",
+        ),
+        (["synth", "--out", "/dev/null/o"], "cannot write /dev/null/o: Not a directory"),
+        (["train", "nosuch", "--out", "m.npz"], "nosuch: No such file"),
+        (["calibrate", "markers", "nosuch"], "cannot read the points nosuch"),
+        (["calibrate", "poles", "nosuch"], "cannot read the points nosuch"),
+    ],
+    ids=lambda given: " ".join(given) if isinstance(given, list) else "",
+)
+def test_a_users_mistake_is_one_line_and_exit_code_2(
+    tritrack: Commands,
+    words: list[str],
+    error: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    said = tritrack(*words)
+    assert (said.code, said.out) == (2, "")
+    assert error in said.errors[0]
+    assert "Traceback" not in said.err
+    assert list(tmp_path.iterdir()) in ([], [tmp_path / "runs"])
+
+
+@pytest.mark.parametrize("words", [[], ["calibrate"]], ids=["tritrack", "calibrate"])
+def test_a_command_without_words_shows_its_help(tritrack: Commands, words: list[str]) -> None:
+    said = tritrack(*words)
+    assert said.code == 2
+    assert said.err.startswith("Usage: ")
+
+
+def test_a_fault_of_the_program_keeps_its_traceback(
+    tritrack: Commands, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Only what our own classes say is meant for a user; a bug must be seen."""
+
+    def broken() -> list[object]:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(importlib.import_module("tritrack.doctor"), "examine", broken)
+    with pytest.raises(ZeroDivisionError):
+        door.app(["doctor"], standalone_mode=False)
+
+
+def test_ctrl_c_in_the_middle_is_one_line(
+    tritrack: Commands, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted() -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(importlib.import_module("tritrack.doctor"), "examine", interrupted)
+    said = tritrack("doctor")
+    assert (said.code, said.errors) == (130, ["error: stopped before it was done"])
+
+
+@pytest.mark.parametrize("command", ["track", "live"])
+@pytest.mark.parametrize("how", REFUSED)
+def test_what_contradicts_itself_or_cannot_be_read_is_refused(
+    tritrack: Commands, no_process: None, clip: Path, tmp_path: Path, command: str, how: str
+) -> None:
+    spoil, error = REFUSED[how]
+    spoil(copied(clip, tmp_path / "clip"))
+    said = tritrack(command, tmp_path / "clip", "--out", tmp_path / "out")
+    assert said.code == 2
+    assert re.search(error, said.errors[0])
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("command", ["track", "live"])
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ('clip = "x"\nsizze = "1x1"', "unknown field `sizze`"),
+        ('clip = "x"\nevery = "two"', r"Expected `int`, got `str` - at `\$.every`"),
+        ('clip = "x"\nsize = "huge"', "size must look like 160x120, got 'huge'"),
+        ("clip =", "Invalid value"),
+        ("", "there is nothing to look at: set clip, or camera_1"),
+    ],
+    ids=["unknown", "ill-typed", "meaningless", "no TOML", "none"],
+)
+def test_unknown_and_ill_typed_settings_are_refused(
+    tritrack: Commands, no_process: None, tmp_path: Path, command: str, text: str, error: str
+) -> None:
+    said = tritrack(command, toml(tmp_path / "bad.toml", text), "--out", tmp_path / "out")
+    assert said.code == 2
+    assert re.search(error, said.errors[0])
+
+
+@pytest.mark.parametrize("how", WORKED_WITH)
+def test_what_can_be_worked_with_runs_on_with_one_line(
+    tritrack: Commands, clip: Path, tmp_path: Path, how: str
+) -> None:
+    spoil, warning = WORKED_WITH[how]
+    spoil(copied(clip, tmp_path / "clip"))
+    said = tritrack("track", tmp_path / "clip", "--out", tmp_path / "out")
+    assert (said.code, said.errors) == (0, [])
+    told = [line for line in said.warnings if re.search(warning, line)]
+    assert len(told) == 1
+    summary = json.loads((tmp_path / "out" / "clip" / "summary.json").read_text())
+    assert told[0].removeprefix("warning: ") in [" ".join(w.split()) for w in summary["warnings"]]
+    with np.load(tmp_path / "out" / "clip" / "poses.npz", allow_pickle=False) as found:
+        assert np.isfinite(found["joints_m"]).all(axis=(1, 2)).sum() > 30
+
+
+def test_a_good_clip_gives_no_warning(tritrack: Commands, clip: Path, tmp_path: Path) -> None:
+    said = tritrack("track", clip, "--out", tmp_path)
+    assert (said.code, said.out) == (0, "")
+    assert said.err == f"1 clips tracked, written to {tmp_path}\n"
+
+
+def test_json_stands_alone_on_stdout(tritrack: Commands, clip: Path, tmp_path: Path) -> None:
+    folder = copied(clip, tmp_path / "clip")
+    WORKED_WITH["no calibration"][0](folder)
+    said = tritrack("track", folder, "--out", tmp_path / "out", "--json")
+    told = json.loads(said.out)["clips"]["clip"]
+    assert told["scale_source"] == "assumed"
+    assert len(said.warnings) == len(told["warnings"]) == 1
+
+
+def test_a_pattern_may_catch_calibration_json_too(
+    tritrack: Commands, clip: Path, tmp_path: Path
+) -> None:
+    """`tritrack track clips/*`."""
+    said = tritrack("track", *sorted(clip.parent.iterdir()), "--out", tmp_path)
+    assert said.code == 0
+    assert len(said.warnings) == 1
+    assert "calibration.json is neither a clip folder nor a settings file" in said.warnings[0]
+    alone = tritrack("track", clip.parent / "calibration.json", "--out", tmp_path)
+    assert (alone.code, len(alone.errors)) == (2, 1)
+
+
+def test_two_runs_never_share_a_folder(tritrack: Commands, clip: Path, tmp_path: Path) -> None:
+    again = copied(clip, tmp_path / clip.name)
+    said = tritrack("track", clip, again, "--out", tmp_path / "out")
+    assert said.code == 2
+    assert f"would both be written to {clip.name}" in said.errors[0]
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_bad_clip_does_not_keep_the_others_from_it(
+    tritrack: Commands, clip: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "hollow").mkdir()
+    said = tritrack("track", tmp_path / "hollow", clip, "--out", tmp_path / "out")
+    assert said.code == 2
+    assert "1 of 2 clips could not be tracked" in said.errors[-1]
+    assert (tmp_path / "out" / clip.name / "poses.npz").is_file()
+
+
+def test_settings_hold_unless_the_command_line_says_otherwise(
+    tritrack: Commands, clip: Path, tmp_path: Path
+) -> None:
+    small = toml(tmp_path / "small.toml", f'clip = "{clip}"\nsize = "80x60"\nmode = "paper"\n')
+
+    def resolved(*options: str) -> tuple[str, str]:
+        assert tritrack("track", small, "--out", tmp_path, *options).code == 0
+        told = json.loads((tmp_path / "small" / "summary.json").read_text())
+        assert told["clip"] == "small"
+        return told["settings"]["size"], told["settings"]["mode"]
+
+    assert resolved() == ("80x60", "paper")
+    assert resolved("--size", "96x96", "--mode", "default") == ("96x96", "default")
+    said = tritrack("track", small, "--out", tmp_path, "--size", "banana")
+    assert "size must look like 160x120, got 'banana'" in said.errors[0]
+
+
+@pytest.mark.parametrize("view", [1, 2])
+def test_one_view_is_enough(tritrack: Commands, clip: Path, tmp_path: Path, view: int) -> None:
+    """A run with one viewer; rows are counted by its own frames."""
+    folder = copied(clip, tmp_path / "alone")
+    (folder / f"cam{3 - view}.avi").unlink()
+    for path, options in ((clip, ("--views", str(view))), (folder, ())):
+        assert tritrack("track", path, "--out", tmp_path / "out", *options).code == 0
+        with np.load(tmp_path / "out" / path.name / "poses.npz", allow_pickle=False) as found:
+            assert found["frame"].tolist() == list(range(69))
+            assert set(found["views"]) == {"none", str(view)}
+            assert np.isfinite(found["joints_m"][12:]).all()
+
+
+def test_a_view_that_is_not_there_is_named(tritrack: Commands, clip: Path, tmp_path: Path) -> None:
+    folder = copied(clip, tmp_path / "alone")
+    (folder / "cam2.avi").unlink()
+    said = tritrack("track", folder, "--views", "2", "--out", tmp_path / "out")
+    assert said.code == 2
+    assert "there is nothing to look at" in said.errors[0]
+
+
+def test_live_refuses_a_model_trained_on_other_postures(
+    tritrack: Commands, no_process: None, clip: Path, tmp_path: Path
+) -> None:
+    folder = copied(clip, tmp_path / "clip")
+    edit_json(folder / "meta.json", lambda meta: meta.update(posture="somersault"))
+    said = tritrack("live", folder, "--out", tmp_path / "out")
+    assert said.code == 2
+    assert "postures.npz was trained on other postures than 'somersault'" in said.errors[0]
+    assert "tritrack train" in said.errors[0]
+    assert not (tmp_path / "out").exists()
+
+
+def test_live_refuses_an_unreadable_model(
+    tritrack: Commands, no_process: None, clip: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "model.npz").write_text("no model")
+    text = f'clip = "{clip}"\n[recognizer]\nmodel = "model.npz"\n'
+    said = tritrack("live", toml(tmp_path / "run.toml", text), "--out", tmp_path / "out")
+    assert said.code == 2
+    assert "no usable posture model in" in said.errors[0]
+
+
+def test_live_refuses_a_page_port_in_use(
+    tritrack: Commands, no_process: None, clip: Path, tmp_path: Path
+) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        text = f'clip = "{clip}"\n[page]\nport = {taken.getsockname()[1]}\n'
+        said = tritrack("live", toml(tmp_path / "run.toml", text), "--out", tmp_path / "out")
+    assert said.code == 2
+    assert re.search(r"port \d+: .*in use; .*set page\.port to another one", said.errors[0])
+
+
+def test_calibration_is_a_table_and_json(tritrack: Commands, tmp_path: Path) -> None:
+    """configs/markers.toml says itself: camera 1 looks 1.5 degrees too far right."""
+    configs = Path(__file__).parents[1] / "configs"
+    markers = configs / "markers.toml"
+    aims = json.loads(tritrack("calibrate", "markers", markers, "--json").out)
+    assert [aim["name"] for aim in aims] == ["cam1", "cam2"]
+    assert aims[0]["yaw_deg"] == pytest.approx(1.5, abs=0.05)
+    table = tritrack("calibrate", "markers", markers).out
+    assert re.search(r"cam1 +1\.5\d +-0\.8\d", table)
+    out = tmp_path / "calibration.json"
+    poles = tritrack("calibrate", "poles", configs / "poles.toml", "--out", out, "--json")
+    assert json.loads(poles.out)[1]["focal_px"] == pytest.approx(640, abs=10)
+    assert out.is_file()
+
+
+def test_made_up_clips_are_told_as_json(tritrack: Commands, tmp_path: Path) -> None:
+    words = ("--size", "64x48", "--posture", "squat", "--json")
+    said = tritrack("synth", "--out", tmp_path / "clips", *words)
+    assert said.code == 0
+    (folder,) = json.loads(said.out)["clips"]
+    assert (Path(folder) / "truth.npz").is_file()
+
+
+@pytest.mark.slow
+def test_a_full_disk_leaves_no_broken_file(clip: Path, tmp_path: Path) -> None:
+    """Nothing may grow beyond 20 kB here; the poses of 69 frames need 120."""
+
+    def tracked(out: str, limit: int) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-m", "tritrack", "track", str(clip), "--out", str(tmp_path / out)],
+            capture_output=True,
+            text=True,
+            check=False,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
+        )
+
+    assert tracked("in", resource.RLIM_INFINITY).returncode == 0  # compiles what is not yet
+    ended = tracked("out", 20_000)
+    assert ended.returncode == 2
+    assert f"error: cannot write {tmp_path / 'out' / clip.name}: File too large" in ended.stderr
+    assert "Traceback" not in ended.stderr
+    assert os.listdir(tmp_path / "out" / clip.name) == []

@@ -1,0 +1,206 @@
+"""Run folders, held against the contract that users and tools read them by (design, section 3)."""
+
+import errno
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from common.body import ANGLE_NAMES, JOINT_NAMES
+from common.config import Settings
+from common.messages import Body, Posture
+from tritrack.offline import Decoders, track_clip
+from tritrack.runs import RunError, poses, write_postures, write_run
+
+N = 69
+CONTRACT = {
+    "frame": ("i", (N,)),
+    "time_s": ("f", (N,)),
+    "joints_m": ("f", (N, 15, 3)),
+    "joint_names": ("U", (15,)),
+    "joints_px": ("f", (N, 2, 15, 2)),
+    "angles_deg": ("f", (N, 17)),
+    "angle_names": ("U", (17,)),
+    "angles_raw_deg": ("f", (N, 17)),
+    "confidence": ("f", (N, 15)),
+    "status": ("U", (N,)),
+    "views": ("U", (N,)),
+    "score": ("f", (N, 2)),
+    "facing": ("U", (N, 2)),
+}
+"""Kind of number and shape of each array, as printed there."""
+
+
+@pytest.fixture(scope="module")
+def run(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("runs") / "run"
+    settings = Settings(clip=str(clip))
+    with Decoders() as decoders:
+        tracked = track_clip(settings, decoders)
+    write_run(folder, tracked.bodies, settings, tracked.facts)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def arrays(run: Path) -> dict[str, np.ndarray]:
+    with np.load(run / "poses.npz", allow_pickle=False) as file:
+        return {name: file[name] for name in file.files}
+
+
+def body(frame: int, **more: object) -> Body:
+    told = {"status": "empty", "views": "none", **more}
+    return Body(frame=frame, captured_s=frame / 15, clock_s=0.0, **told)  # type: ignore[arg-type]
+
+
+def test_the_arrays_are_those_of_the_contract(arrays: dict[str, np.ndarray]) -> None:
+    assert {name: (a.dtype.kind, a.shape) for name, a in arrays.items()} == CONTRACT
+
+
+def test_rows_are_camera_1s_frames_and_their_times(arrays: dict[str, np.ndarray]) -> None:
+    assert arrays["frame"].tolist() == list(range(N))
+    np.testing.assert_allclose(arrays["time_s"], np.arange(N) / 15)
+
+
+def test_joints_are_named_as_printed(arrays: dict[str, np.ndarray]) -> None:
+    sides = [f"{side}_{part}" for side in "lr" for part in ("shoulder", "elbow", "wrist")]
+    sides += [f"{side}_{part}" for side in "lr" for part in ("hip", "knee", "ankle")]
+    assert arrays["joint_names"].tolist()[:3] == ["pelvis", "neck", "head_top"]
+    assert set(arrays["joint_names"].tolist()[3:]) == set(sides)
+
+
+def test_words_are_those_of_the_contract(arrays: dict[str, np.ndarray]) -> None:
+    statuses = {"empty", "measuring", "tracking", "predicted", "lost"}
+    assert set(arrays["status"]) <= statuses
+    assert set(arrays["views"]) <= {"both", "1", "2", "none"}
+    assert set(arrays["facing"].ravel()) <= {"facade", "flank"}
+
+
+def test_a_pose_is_there_from_the_persons_first_frame_on_and_nan_before(
+    arrays: dict[str, np.ndarray], clip: Path
+) -> None:
+    """The truth says when the person is there."""
+    with np.load(clip / "truth.npz", allow_pickle=False) as truth:
+        present = truth["present"].astype(bool)
+    for name in ("joints_m", "angles_deg", "angles_raw_deg"):
+        rows = arrays[name].reshape(N, -1)
+        np.testing.assert_array_equal(np.isfinite(rows).all(axis=1), present, err_msg=name)
+        np.testing.assert_array_equal(np.isnan(rows).all(axis=1), ~present, err_msg=name)
+    np.testing.assert_array_equal(arrays["status"] == "empty", ~present)
+    np.testing.assert_array_equal(arrays["confidence"].any(axis=1), present)
+
+
+def test_confidence_and_score_are_shares(arrays: dict[str, np.ndarray]) -> None:
+    for name in ("confidence", "score"):
+        assert arrays[name].min() >= 0.0
+        assert arrays[name].max() <= 1.0
+
+
+def test_every_word_that_a_body_may_hold_fits_its_array() -> None:
+    """A fixed width that cuts words would do so in silence."""
+    longest = poses([body(0, status="predicted", views="both", facing=("facade", "flank"))])
+    assert longest["status"][0] == "predicted"
+    assert poses([body(0, status="measuring", views="none")])["status"][0] == "measuring"
+    assert (longest["views"][0], longest["facing"][0, 0]) == ("both", "facade")
+
+
+def test_a_run_without_frames_has_empty_arrays_of_the_same_shapes() -> None:
+    for name, array in poses([]).items():
+        kind, shape = CONTRACT[name]
+        expected = shape if name in ("joint_names", "angle_names") else (0, *shape[1:])
+        assert (array.dtype.kind, array.shape) == (kind, expected)
+
+
+def test_an_instant_that_camera_1_missed_gets_no_row(tmp_path: Path) -> None:
+    write_run(tmp_path, [body(0), body(-1), body(1)], Settings(), {})
+    with np.load(tmp_path / "poses.npz", allow_pickle=False) as file:
+        assert file["frame"].tolist() == [0, 1]
+    assert json.loads((tmp_path / "summary.json").read_text())["frames"] == 2
+
+
+def test_the_summary_tells_what_the_contract_names(run: Path) -> None:
+    told = strict((run / "summary.json").read_text())
+    assert told["frames"] == N
+    assert told["scale_source"] == "calibrated"
+    assert {"preparation", "viewers", "integrator", "all"} <= set(told["seconds"])
+    assert sum(told["status"].values()) == N
+    assert told["matches_a_frame"] > 10
+    assert told["warnings"] == []
+    assert {"tritrack", "numpy", "opencv-python-headless", "python"} <= set(told["versions"])
+    assert told["settings"]["size"] == "160x120"
+    assert told["settings"]["silhouette"]["empty_frames"] == 8
+
+
+def strict(text: str) -> dict:
+    """JSON as the standard has it: no NaN, no Infinity."""
+
+    def refuse(word: str) -> None:
+        raise ValueError(word)
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def test_json_has_no_nan(tmp_path: Path) -> None:
+    write_run(tmp_path, [body(0)], Settings(), {"odd": [math.nan, {"more": (math.inf, 1.5)}]})
+    assert strict((tmp_path / "summary.json").read_text())["odd"] == [None, {"more": [None, 1.5]}]
+    unlikely = Posture(
+        frame=0, captured_s=0.0, clock_s=0.0, name="", log_likelihoods={"squat": -math.inf}
+    )
+    write_postures(tmp_path, [unlikely], "")
+    told = strict((tmp_path / "posture.json").read_text())
+    assert told["frames"][0]["log_likelihoods"] == {"squat": None}
+
+
+def test_postures_name_frame_time_segment_and_scores(tmp_path: Path) -> None:
+    said = Posture(
+        frame=40,
+        captured_s=2.66666,
+        clock_s=9.0,
+        name="squat",
+        segment=(1, 40),
+        log_likelihoods={"squat": -12.34567},
+    )
+    write_postures(tmp_path, [said], "squat")
+    assert strict((tmp_path / "posture.json").read_text()) == {
+        "posture": "squat",
+        "frames": [
+            {
+                "frame": 40,
+                "time_s": 2.6667,
+                "name": "squat",
+                "segment": [1, 40],
+                "log_likelihoods": {"squat": -12.346},
+            }
+        ],
+    }
+
+
+def test_a_full_disk_keeps_the_run_that_was_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each file whole or not at all: a new one takes the old one's place when it is complete."""
+    write_run(tmp_path, [body(0)], Settings(), {})
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def half(file: object, **_: object) -> None:
+        file.write(b"PK half of it")  # type: ignore[attr-defined]
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(np, "savez", half)
+    with pytest.raises(RunError, match=rf"cannot write {tmp_path}: No space left .*free some"):
+        write_run(tmp_path, [body(0), body(1)], Settings(), {})
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_folder_that_is_a_file_is_named(tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("")
+    with pytest.raises(RunError, match="taken"):
+        write_run(tmp_path / "taken", [], Settings(), {})
+    with pytest.raises(RunError, match="taken"):
+        write_postures(tmp_path / "taken", [], "")
+
+
+def test_the_names_are_the_bodys_own(arrays: dict[str, np.ndarray]) -> None:
+    assert tuple(arrays["joint_names"]) == JOINT_NAMES
+    assert tuple(arrays["angle_names"]) == ANGLE_NAMES
