@@ -32,7 +32,7 @@ class Outcome(NamedTuple):
 def recognise(
     learnt_from: Sequence[Recording],
     tested_on: Sequence[Recording],
-    topology: Topology = "left-right",
+    topology: Topology = "ergodic",
     seed: int = 0,
 ) -> list[Outcome]:
     """Train on some people and name what others do.
@@ -52,7 +52,7 @@ def recognise(
 
 
 def leave_one_performer_out(
-    recordings: Sequence[Recording], topology: Topology = "left-right", seed: int = 0
+    recordings: Sequence[Recording], topology: Topology = "ergodic", seed: int = 0
 ) -> Iterator[Outcome]:
     """Each performer named by a model of all others."""
     for performer in sorted({recording.performer for recording in recordings}):

@@ -57,7 +57,9 @@ ALLOWED: Final[dict[Topology, NDArray[np.bool_]]] = {
     "left-right": np.eye(STATES, dtype=np.bool_) | np.eye(STATES, k=1, dtype=np.bool_),
     "ergodic": np.ones((STATES, STATES), dtype=np.bool_),
 }
-"""Which state may follow which: (from, to)."""
+"""Which state may follow which: (from, to). Postures repeat and windows begin anywhere in them, so
+any state may follow any: chosen on four made-up performers outside training (52 of 60 right against
+47, tracked in `default` mode; 49 against 45 in `paper` mode)."""
 
 START: Final[dict[Topology, Array]] = {
     "left-right": np.eye(STATES)[0],
@@ -92,7 +94,7 @@ class PostureModel:
 
 def train(
     sequences: Mapping[str, Sequence[Angles]],
-    topology: Topology = "left-right",
+    topology: Topology = "ergodic",
     seed: int = 0,
     performers: Sequence[str] = (),
 ) -> PostureModel:
