@@ -1,0 +1,159 @@
+"""Live runs as a user starts and ends them: signals, one camera, what is told and written."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+from rich.console import Console
+from spoiling import copied, cut_off, uncalibrated
+
+from common.config import PageSettings, Settings
+from common.messages import Posture, Pulse
+from tritrack.session import free_settings, live, performed, warnings_of
+
+
+def settings_of(clip: Path) -> Settings:
+    return free_settings(Settings(clip=str(clip), page=PageSettings(port=0)))
+
+
+def pulse(process: str, detail: str) -> Pulse:
+    return Pulse(process=process, state="running", detail=detail)
+
+
+def posture(name: str) -> Posture:
+    return Posture(frame=0, captured_s=0.0, clock_s=0.0, name=name)
+
+
+def test_a_performance_is_named_by_the_last_window_that_had_a_name() -> None:
+    assert performed([posture(""), posture("squat"), posture("kick_left_side"), posture("")]) == (
+        "kick_left_side"
+    )
+    assert performed([]) == ""
+
+
+def test_warnings_come_from_viewers_and_integrator_a_line_each() -> None:
+    pulses = {
+        "viewer 2": pulse("viewer 2", "no empty room\ncut off"),
+        "integrator": pulse("integrator", "no calibration"),
+        "animator": pulse("animator", "http://127.0.0.1:8080"),
+        "viewer 1": pulse("viewer 1", ""),
+    }
+    assert warnings_of(pulses) == ["no calibration", "no empty room", "cut off"]
+
+
+def test_free_settings_open_no_page_where_none_was_wanted() -> None:
+    assert free_settings(Settings(page=PageSettings(port=0))).page.port == 0
+    first, second = free_settings(Settings()), free_settings(Settings())
+    assert first.page.port != 0
+    assert len({first.bus.endpoint, second.bus.endpoint}) == 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("view", [1, 2])
+def test_one_camera_is_a_run_with_one_viewer(clip: Path, tmp_path: Path, view: int) -> None:
+    folder = copied(clip, tmp_path / "alone")
+    (folder / f"cam{3 - view}.avi").unlink()
+    facts = live(settings_of(folder), tmp_path / "out", Console(quiet=True))
+    assert set(facts["processes"]) == {f"viewer {view}", "integrator", "recognizer"}
+    with np.load(tmp_path / "out" / "poses.npz", allow_pickle=False) as found:
+        assert found["frame"].tolist() == list(range(69))
+        assert set(found["views"]) == {"none", str(view)}
+
+
+@pytest.mark.slow
+def test_each_oddity_is_told_once_and_kept_in_the_summary(
+    clip: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = copied(clip, tmp_path / "odd [x]")
+    uncalibrated(folder)
+    cut_off(folder)
+    facts = live(settings_of(folder), tmp_path / "out", Console(stderr=True))
+    said = capsys.readouterr()
+    told = [line for line in said.err.splitlines() if line.startswith("warning: ")]
+    assert told == [f"warning: {text}" for text in facts["warnings"]]
+    assert "no calibration" in told[0]
+    assert re.search(r"odd \[x\]/cam2.avi ends after \d+ of 69 frames", told[1])
+    assert len(told) == 2
+    assert said.out == ""
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert summary["warnings"] == facts["warnings"]
+    assert summary["scale_source"] == "assumed"
+    for process in ("viewer 1", "viewer 2", "integrator", "recognizer"):
+        assert {"frames", "fps", "dropped", "latency_p99_ms", "memory_mb"} <= set(
+            summary["processes"][process]
+        )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("number", "whole_group"),
+    [(signal.SIGINT, True), (signal.SIGTERM, False)],
+    ids=["Ctrl-C", "SIGTERM"],
+)
+@pytest.mark.parametrize("moment", ["starting", "tracking"])
+def test_a_deliberate_end_is_no_failure(
+    clip: Path, tmp_path: Path, number: signal.Signals, whole_group: bool, moment: str
+) -> None:
+    """The processes end in order, the run folder is written, the exit code is 0, nobody is left.
+
+    A terminal sends Ctrl-C to the whole group; a service manager ends the supervisor alone.
+    """
+    settings = settings_of(clip)
+    text = f'clip = "{clip}"\n[page]\nport = 0\n[bus]\nendpoint = "{settings.bus.endpoint}"\n'
+    (tmp_path / "run.toml").write_text(text)
+    out = tmp_path / "out"
+    words = ["live", str(tmp_path / "run.toml"), "--out", str(out)]
+    run = subprocess.Popen(
+        [sys.executable, "-m", "tritrack", *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    wait_for(out / "log.txt", 0 if moment == "starting" else 2)
+    time.sleep(0.5)
+    children = psutil.Process(run.pid).children(recursive=True)
+    (os.killpg if whole_group else os.kill)(run.pid, number)
+    said, errors = run.communicate(timeout=60)
+    assert (run.returncode, said) == (0, "")
+    assert "Traceback" not in errors
+    assert "error" not in errors
+    assert {path.name for path in out.iterdir()} == {
+        "poses.npz",
+        "summary.json",
+        "posture.json",
+        "log.txt",
+    }
+    assert [child for child in children if lives(child)] == []
+    with np.load(out / "poses.npz", allow_pickle=False) as found:
+        assert len(found["frame"]) < 69
+        assert (len(found["frame"]) > 0) == (moment == "tracking")
+
+
+def wait_for(log: Path, viewers: int) -> None:
+    """Until the run's log is there, and so many viewers have begun to look at frames."""
+    until_s = time.monotonic() + 60
+    while time.monotonic() < until_s:
+        if log.is_file() and log.read_text().count("the room's clock is") >= viewers:
+            return
+        time.sleep(0.05)
+    raise AssertionError("the run did not begin")
+
+
+def lives(child: psutil.Process) -> bool:
+    """Whether it still runs a second later; one that waits to be reaped by init does not."""
+    try:
+        child.wait(timeout=1.0)
+    except psutil.TimeoutExpired:
+        return child.status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return False
+    return False

@@ -1,0 +1,86 @@
+"""What a person sees of a run."""
+
+import io
+
+import pytest
+from rich.console import Console
+
+from common.messages import Pulse
+from tritrack.table import table_of, table_of_rows
+from tritrack.terminal import bar, complain, json_text, warn
+
+
+def printed(thing: object, width: int = 80) -> list[str]:
+    paper = io.StringIO()
+    Console(file=paper, width=width).print(thing)
+    return [line.rstrip() for line in paper.getvalue().splitlines()]
+
+
+def running(name: str, **more: object) -> Pulse:
+    return Pulse(process=name, state="running", **more)  # type: ignore[arg-type]
+
+
+def test_every_process_has_a_line_from_the_start() -> None:
+    lines = printed(table_of(["integrator", "viewer 1"], {"viewer 1": running("viewer 1")}, "run"))
+    assert [line.split()[:2] for line in lines if "integrator" in line] == [
+        ["integrator", "starting"]
+    ]
+    assert ["viewer 1" in line and "running" in line for line in lines].count(True) == 1
+
+
+def test_numbers_stand_under_their_names() -> None:
+    pulse = running(
+        "viewer 1",
+        frames=69,
+        fps=14.96,
+        deadline_misses=3,
+        dropped=4,
+        late=5,
+        latency_p50_ms=1.24,
+        latency_p99_ms=12.0,
+        memory_mb=219.6,
+    )
+    lines = printed(table_of(["viewer 1"], {"viewer 1": pulse}, "run"))
+    row = next(line for line in lines if "viewer 1" in line)
+    assert row.split() == ["viewer", "1", "running", "69", "15.0", "3", "9", "1.2", "12.0", "220"]
+
+
+def test_the_table_fits_a_terminal_of_80_columns_uncut() -> None:
+    names = ["integrator", "recognizer", "animator", "viewer 1", "viewer 2"]
+    pulses = {
+        name: running(name, frames=99_999, fps=15.0, latency_p99_ms=999.9, memory_mb=9999.0)
+        for name in names
+    }
+    lines = printed(table_of(names, pulses, "run"))
+    assert not any("…" in line for line in lines)
+
+
+def test_rows_become_columns_by_name() -> None:
+    lines = printed(
+        table_of_rows([{"name": "cam1", "yaw_deg": 1.505}, {"name": "cam2", "yaw_deg": -0.67}])
+    )
+    assert [line.split() for line in lines if "cam" in line] == [
+        ["cam1", "1.50"],
+        ["cam2", "-0.67"],
+    ]
+    assert any("yaw deg" in line for line in lines)
+
+
+@pytest.mark.parametrize(("say", "word"), [(warn, "warning"), (complain, "error")])
+def test_what_is_said_is_one_line_however_long_and_taken_literally(say, word) -> None:
+    paper = io.StringIO()
+    say(Console(file=paper, width=80), "a\n  file [red]x[/] " + "y" * 200)
+    assert paper.getvalue() == f"{word}: a file [red]x[/] {'y' * 200}\n"
+
+
+def test_where_nobody_looks_on_there_is_no_bar() -> None:
+    paper = io.StringIO()
+    with bar(Console(file=paper)) as progress:
+        assert list(progress.track([1, 2, 3])) == [1, 2, 3]
+    assert paper.getvalue() == ""
+
+
+def test_json_is_strict() -> None:
+    assert json_text((float("nan"), {"x": float("-inf")}, 1.5, "NaN")) == (
+        '[\n null,\n {\n  "x": null\n },\n 1.5,\n "NaN"\n]'
+    )
