@@ -1,16 +1,21 @@
 PYTHON ?= python3.11
 VENV := .venv
 BIN := $(VENV)/bin
-STAMP := $(VENV)/.ready
+SOURCES := $(wildcard animator/*.py common/*.py integrator/*.py synth/*.py viewer/*.py)
 
 .PHONY: setup demo test check bench clean
 
-setup: $(STAMP)
+setup: $(VENV)/.compiled
 
-$(STAMP): pyproject.toml constraints.txt
-	@command -v $(PYTHON) >/dev/null || { echo "tritrack needs Python 3.11: install it, or name it with make PYTHON=..."; exit 1; }
+$(VENV)/.installed: pyproject.toml constraints.txt
+	@command -v $(PYTHON) >/dev/null || { echo "tritrack needs Python 3.11: install it, or name it: make PYTHON=/path/to/python3.11"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[page,export,dev]'
+	@touch $@
+
+# numba renews a compiled function when its own file changed, not when one that it calls did.
+$(VENV)/.compiled: $(VENV)/.installed $(SOURCES)
+	@find animator common integrator recognizer synth tritrack viewer -name '*.nb[ic]' -delete
 	$(BIN)/python -m common.kernel
 	@touch $@
 
@@ -26,7 +31,8 @@ check: setup
 	$(BIN)/mypy
 
 bench: setup
-	$(BIN)/tritrack bench
+	$(BIN)/python benchmarks/run.py
 
 clean:
 	rm -rf $(VENV) runs .pytest_cache .mypy_cache .ruff_cache
+	@find . -name '*.nb[ic]' -delete
