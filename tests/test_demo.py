@@ -1,0 +1,51 @@
+"""The main job as `make demo` shows it."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from tritrack import demo
+
+
+def test_a_demo_that_names_another_posture_has_failed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Exit 0 only on success: it runs the whole system, and it checks what comes out."""
+    monkeypatch.setattr(demo, "live", lambda *_: {"posture": "squat"})
+    with pytest.raises(demo.DemoFailed, match="performed raise_right_lateral, named squat"):
+        demo.run_demo(tmp_path, False, Console(quiet=True))
+    monkeypatch.setattr(demo, "live", lambda *_: {"posture": ""})
+    with pytest.raises(demo.DemoFailed, match="named nothing"):
+        demo.run_demo(tmp_path, False, Console(quiet=True))
+
+
+@pytest.mark.slow
+def test_the_demo_runs_ends_by_itself_and_leaves_nothing_but_its_run_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Run twice at once: nothing of it is tied to a port or a folder that another may hold."""
+    (tmp_path / "tmp").mkdir()
+    runs = [
+        subprocess.Popen(
+            [sys.executable, "-m", "tritrack", "demo", "--out", f"run {n}", "--json"],
+            cwd=tmp_path,
+            env={"TMPDIR": str(tmp_path / "tmp"), "PATH": "/usr/bin:/bin", "HOME": str(tmp_path)},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        for n in (1, 2)
+    ]
+    for n, run in enumerate(runs, 1):
+        said, errors = run.communicate(timeout=120)
+        assert run.returncode == 0, errors
+        facts = json.loads(said)
+        assert facts["posture"] == facts["posture_meant"] == demo.POSTURE
+        assert "the page: http://127.0.0.1:" in errors
+        written = {path.name for path in (tmp_path / f"run {n}").iterdir()}
+        assert written == {"poses.npz", "summary.json", "posture.json", "log.txt"}
+    assert list((tmp_path / "tmp").iterdir()) == []

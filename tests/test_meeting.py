@@ -1,0 +1,194 @@
+"""How the processes of a run meet: guides in time, one start for all, news for who comes late."""
+
+import threading
+import time
+from collections.abc import Callable
+
+import pytest
+
+from common.bus import Bus, open_client, open_hub
+from common.camera import paper_rig
+from common.config import BusSettings, PageSettings, Settings
+from common.local_bus import LocalBus
+from common.messages import Cameras, ClockAnswer, ClockQuestion, Guide, Message
+from integrator import __main__ as integrator
+from tritrack.session import free_settings
+from viewer import __main__ as viewer
+
+RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
+
+
+def guide(first: int, second: int) -> Guide:
+    return Guide(frame=first, captured_s=0.0, clock_s=0.0, frames=(first, second))
+
+
+class Clock:
+    """Time that passes only when somebody waits."""
+
+    def __init__(self, patch: pytest.MonkeyPatch, *modules: str) -> None:
+        self.now_s = 1000.0
+        for module in modules:
+            patch.setattr(f"{module}.time.monotonic", lambda: self.now_s)
+
+    def wait(self, seconds: float = 0.0) -> None:
+        self.now_s += seconds
+
+
+class SlowInbox:
+    """Guides that come at given moments of a clock."""
+
+    def __init__(self, clock: Clock, coming: list[tuple[float, Guide]]) -> None:
+        self._clock, self._coming = clock, coming
+
+    def take(self, timeout_s: float) -> Guide | None:
+        until_s = self._clock.now_s + timeout_s
+        if self._coming and self._coming[0][0] <= until_s:
+            moment_s, message = self._coming.pop(0)
+            self._clock.now_s = max(self._clock.now_s, moment_s)
+            return message
+        self._clock.now_s = until_s
+        return None
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    return Clock(monkeypatch, "viewer.__main__")
+
+
+def guides_of(clock: Clock, number: int, *coming: tuple[float, Guide]) -> viewer.Guides:
+    later = [(1000.0 + after_s, message) for after_s, message in coming]
+    return viewer.Guides(SlowInbox(clock, later), number)  # type: ignore[arg-type]
+
+
+def test_report_t_uses_the_guide_that_has_heard_of_t_minus_1(clock: Clock) -> None:
+    """Design, section 2: older guides are passed over while the right one is on its way."""
+    guides = guides_of(clock, 2, (0.0, guide(3, 3)), (0.01, guide(4, 3)), (0.02, guide(4, 4)))
+    assert guides.of_frame(4, wait_s=0.033) == guide(4, 4)
+    assert guides.misses == 0
+    assert clock.now_s == pytest.approx(1000.02)
+
+
+def test_it_waits_no_longer_than_it_may_and_counts_a_miss(clock: Clock) -> None:
+    guides = guides_of(clock, 1, (0.0, guide(3, 3)), (0.05, guide(4, 4)))
+    assert guides.of_frame(4, wait_s=0.033) == guide(3, 3)
+    assert guides.misses == 1
+    assert clock.now_s == pytest.approx(1000.033)
+    assert guides.of_frame(4, wait_s=0.033) == guide(4, 4)
+    assert guides.misses == 1
+
+
+def test_the_first_frame_needs_no_guide(clock: Clock) -> None:
+    guides = guides_of(clock, 1)
+    assert guides.of_frame(-1, wait_s=0.033) is None
+    assert (guides.misses, clock.now_s) == (0, 1000.0)
+
+
+def test_a_guide_that_is_ahead_is_as_good(clock: Clock) -> None:
+    """After frames that this viewer dropped, the room may know of a later one."""
+    guides = guides_of(clock, 1, (0.0, guide(9, 9)))
+    assert guides.of_frame(7, wait_s=0.033) == guide(9, 9)
+    assert guides.of_frame(8, wait_s=0.033) == guide(9, 9)
+    assert guides.misses == 0
+
+
+def question(number: int, ready: bool = True) -> ClockQuestion:
+    return ClockQuestion(viewer=number, ready=ready)  # type: ignore[arg-type]
+
+
+def test_the_start_is_fixed_once_when_every_viewer_is_ready(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    now = Clock(monkeypatch, "integrator.__main__")
+    starter = integrator.Starter(frozenset((1, 2)))
+    assert starter.answer(question(1)) == ClockAnswer(now_s=1000.0, start_s=None)
+    now.wait(1.0)
+    assert starter.answer(question(2, ready=False)).start_s is None
+    now.wait(1.0)
+    fixed_s = starter.answer(question(2)).start_s
+    assert fixed_s == 1002.0 + integrator.LEAD_S
+    now.wait(5.0)
+    for number in (1, 2):
+        assert starter.answer(question(number)) == ClockAnswer(now_s=1007.0, start_s=fixed_s)
+
+
+def test_a_run_with_one_viewer_waits_for_no_other() -> None:
+    assert integrator.Starter(frozenset((2,))).answer(question(2)).start_s is not None
+
+
+def test_viewers_agree_on_a_start_by_a_clock_that_is_not_theirs() -> None:
+    """The room's clock is 50 s ahead; a viewer learns that and the start from the answers."""
+    bus = LocalBus()
+    bus.answer(
+        ClockQuestion, lambda _: ClockAnswer(now_s=time.monotonic() + 50.0, start_s=1_000_000.0)
+    )
+    met = viewer.met(bus, 1, threading.Event())
+    assert met is not None
+    assert met.start_s == 1_000_000.0
+    assert met.offset_s == pytest.approx(50.0, abs=0.01)
+
+
+def test_a_start_that_never_comes_names_the_other_viewer(monkeypatch: pytest.MonkeyPatch) -> None:
+    bus = LocalBus()
+    bus.answer(ClockQuestion, lambda _: ClockAnswer(now_s=0.0, start_s=None))
+    monkeypatch.setattr(viewer, "READY_S", 0.1)
+    with pytest.raises(viewer.StartError, match=r"viewer 1 is ready, .*start the other viewer"):
+        viewer.met(bus, 1, threading.Event())
+
+
+def test_a_viewer_that_is_stopped_while_it_waits_just_ends() -> None:
+    stop = threading.Event()
+    stop.set()
+    assert viewer.met(LocalBus(), 1, stop) is None
+
+
+@pytest.fixture
+def settings() -> BusSettings:
+    return free_settings(Settings(page=PageSettings(port=0))).bus
+
+
+def soon(look: Callable[[], object]) -> object:
+    """What `look` finds within five seconds."""
+    until_s = time.monotonic() + 5.0
+    while time.monotonic() < until_s:
+        found = look()
+        if found is not None:
+            return found
+        time.sleep(0.02)
+    return None
+
+
+@pytest.mark.parametrize(
+    "message",
+    [guide(7, 8), Cameras(rig=RIG, scale_source="assumed")],
+    ids=["Guide", "Cameras"],
+)
+def test_who_comes_late_gets_the_newest(settings: BusSettings, message: Message) -> None:
+    """A recognizer or an animator started in the middle (design, section 2), over real sessions."""
+    with open_hub(settings, "room") as hub:
+        hub.keep(type(message))
+        hub.publish(message)
+        with open_client(settings, "room", 5.0) as late:
+            assert soon(lambda: late.latest(type(message), 1.0)) == message
+
+
+def test_a_page_that_opens_late_learns_the_rig(settings: BusSettings) -> None:
+    from animator.__main__ import known_rig
+
+    with open_hub(settings, "room") as hub:
+        hub.keep(Cameras)
+        hub.publish(Cameras(rig=RIG, scale_source="assumed"))
+        with open_client(settings, "room", 5.0) as late:
+            assert known_rig(late, None, threading.Event()) == RIG
+            assert known_rig(late, RIG, threading.Event()) is RIG
+
+
+def test_a_page_that_opens_early_waits_for_the_rig() -> None:
+    from animator.__main__ import known_rig
+
+    bus: Bus = LocalBus()
+    told = threading.Timer(0.1, bus.publish, (Cameras(rig=RIG, scale_source="assumed"),))
+    told.start()
+    assert known_rig(bus, None, threading.Event()) == RIG
+    stop = threading.Event()
+    stop.set()
+    assert known_rig(LocalBus(), None, stop) is None
