@@ -2,6 +2,7 @@
 
 import gc
 import logging
+import os
 import threading
 import time
 from typing import Final
@@ -16,6 +17,8 @@ from common.process import READY_S, Heart, Place, process
 from common.rate import Pace
 
 HEAR_S: Final = 0.05
+BEHIND: Final = 10
+"""How far the page stands back when cores are scarce: a pose must never wait for its picture."""
 MOST_REPORTS: Final = 16
 """Reports that wait for their body: it comes within a frame or two."""
 
@@ -93,6 +96,7 @@ def main(settings: Settings, rig: Rig | None, period_s: float, place: Place = Pl
         process("animator", place) as stop,
         open_client(settings.bus, settings.room, READY_S) as bus,
     ):
+        os.nice(BEHIND)
         bus.announce("animator")
         ears = Ears(bus)
         known = known_rig(bus, rig, stop)

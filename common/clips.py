@@ -149,7 +149,7 @@ def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> V
     if named.settings.background:
         _probed(named.settings.background, decoder)
     of_a_file = isinstance(named.source, str)
-    fps = (meta.fps or info.fps) if of_a_file else (info.fps or CAMERA_HZ)
+    fps = (settings.fps or meta.fps or info.fps) if of_a_file else (info.fps or CAMERA_HZ)
     if fps <= 0:
         raise ClipError(f"{named.source} has no frame rate: set fps in a meta.json beside it")
     size = (info.width, info.height)

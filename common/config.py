@@ -129,6 +129,8 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Bound of the working picture: aspect kept."""
     every: int = 1
     """Take every n-th frame of a recorded clip."""
+    fps: float = 0.0
+    """Rate at which recorded clips are taken to run, and played; 0: what they say themselves."""
     pictures: bool = False
     """Publish small pictures for the page; otherwise no picture leaves a viewer."""
     camera_1: CameraSettings | None = None
@@ -146,6 +148,7 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             raise ValueError(f"room must be a plain word, got {self.room!r}")
         size_of(self.size)
         _within("every", self.every, 1, 1000)
+        _within("fps", self.fps, 0.0, 1000.0)
 
 
 def load(path: Path) -> Settings:
@@ -166,7 +169,7 @@ def load(path: Path) -> Settings:
         settings = msgspec.toml.decode(text, type=Settings)
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
         raise SettingsError(f"{path}: {error}") from error
-    return _with_full_paths(settings, path.parent)
+    return _with_full_paths(settings, path)
 
 
 def size_of(text: str) -> tuple[int, int]:
@@ -189,9 +192,14 @@ def working_size(source: tuple[int, int], bound: tuple[int, int]) -> tuple[int, 
     return max(1, round(source[0] * shrink)), max(1, round(source[1] * shrink))
 
 
-def _with_full_paths(settings: Settings, folder: Path) -> Settings:
+def _with_full_paths(settings: Settings, path: Path) -> Settings:
+    folder = path.parent
+
     def full(name: str) -> str:
-        return str(folder / os.path.expandvars(name)) if name else ""
+        filled = os.path.expandvars(name)
+        if "$" in filled:
+            raise SettingsError(f"{path}: {name} names a variable that is not set: export it")
+        return str(folder / filled) if name else ""
 
     def camera(given: CameraSettings | None) -> CameraSettings | None:
         if given is None:

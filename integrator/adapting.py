@@ -1,8 +1,9 @@
 """A prior body fitted to somebody who never took the opening posture: widths and arms."""
 
-from typing import Final
+from typing import Any, Final
 
 import msgspec
+import numba
 import numpy as np
 
 from common.body import LIMBS, Bdp, Vector, body_vector
@@ -50,30 +51,76 @@ def step(opening: Opening, rig: Rig, seen: Seen, pose: Vector) -> Opening:
         pose: As found with the body so far, (25,).
     """
     first, second = seen
-    whole = first is not None and second is not None and not (first.cut or second.cut)
     done = opening.measured or opening.under_way or len(opening.samples) == MOST_SAMPLES
-    if done or not whole or opening.bdp is None:
+    if done or first is None or second is None or opening.bdp is None:
+        return opening
+    if first.cut or second.cut or (first.width, first.height) != (second.width, second.height):
         return opening
     if opening.samples and opening.unsampled < APART:
         return opening._replace(unsampled=opening.unsampled + 1)
-    samples = (*opening.samples, Sample(pose, seen))
+    samples = (*opening.samples, Sample(pose, (first, second)))
     body = adapted(opening.bdp, rig, samples)
     return opening._replace(bdp=body, samples=samples, unsampled=0)
 
 
 def adapted(bdp: Bdp, rig: Rig, samples: tuple[Sample, ...]) -> Bdp:
-    """The body whose outline fits the silhouettes of all samples best, group after group."""
-    best, body = _fit(bdp, rig, samples), bdp
+    """The body whose outline fits the silhouettes of all samples best, group after group.
+
+    Args:
+        bdp: The body so far.
+        rig: Two cameras.
+        samples: Both views of each, in pictures of one size.
+    """
+    outlines = _outlines(rig, samples)
+    best, body = float(fit(body_vector(bdp), *outlines)), bdp
     for _ in range(ROUNDS):
         before = best
         for limbs, lengths in GROUPS:
             for trial in [_scaled(body, limbs, lengths, factor) for factor in FACTORS]:
-                fit = _fit(trial, rig, samples)
-                if fit > best:
-                    best, body = fit, trial
+                found = float(fit(body_vector(trial), *outlines))
+                if found > best:
+                    best, body = found, trial
         if best == before:
             break
     return body
+
+
+@numba.njit(cache=True)
+def fit(body: Any, poses: Any, views: Any, seen: Any, seen_px: Any, width: int) -> float:
+    """Sum of S over all samples and views.
+
+    Args:
+        body: Body vector.
+        poses: (n, 25).
+        views: (2, VIEW).
+        seen: Silhouettes, packed, (n, 2, H, words).
+        seen_px: Their numbers of pixels, (n, 2).
+        width: Of the pictures.
+    """
+    total = 0.0
+    for i in range(poses.shape[0]):
+        for n in range(2):
+            drawn = np.zeros_like(seen[i, n])
+            draw_limbs(body, poses[i], views[n], ALL_LIMBS, width, drawn)
+            total += score(count_both(drawn, seen[i, n]), count(drawn), seen_px[i, n])
+    return total
+
+
+def _outlines(rig: Rig, samples: tuple[Sample, ...]) -> tuple[Any, Any, Any, Any, int]:
+    """Poses, views, silhouettes, their areas and their width, as `fit` wants them."""
+    seen = np.array(
+        [
+            [words_of_rows(r.silhouette, r.width, r.height) for r in sample.seen]
+            for sample in samples
+        ]
+    )
+    return (
+        np.array([sample.pose for sample in samples]),
+        np.array([view_of(camera) for camera in rig.cameras]),
+        seen,
+        np.array([[count(words) for words in both] for both in seen]),
+        samples[0].seen[0].width,
+    )
 
 
 def _scaled(bdp: Bdp, limbs: tuple[str, ...], lengths: tuple[str, ...], factor: float) -> Bdp:
@@ -83,16 +130,3 @@ def _scaled(bdp: Bdp, limbs: tuple[str, ...], lengths: tuple[str, ...], factor: 
         longer = {name: getattr(part, name) * factor for name in lengths}
         parts[limb] = msgspec.structs.replace(part, **longer)
     return msgspec.structs.replace(bdp, **parts)
-
-
-def _fit(bdp: Bdp, rig: Rig, samples: tuple[Sample, ...]) -> float:
-    """Sum of S over all samples and views."""
-    body, total = body_vector(bdp), 0.0
-    for sample in samples:
-        for camera, report in zip(rig.cameras, sample.seen, strict=True):
-            if report is not None:
-                words = words_of_rows(report.silhouette, report.width, report.height)
-                drawn = np.zeros_like(words)
-                draw_limbs(body, sample.pose, view_of(camera), ALL_LIMBS, report.width, drawn)
-                total += score(count_both(drawn, words), count(drawn), count(words))
-    return total

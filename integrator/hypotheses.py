@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from common.body import POSE_INDEX, REST_DEG, Vector
 from common.camera import Rig
 from common.kernel import count, count_both, draw_limbs, score, view_of, words_of_rows
-from common.kinematics import ALL_LIMBS
+from common.kinematics import ALL_LIMBS, ARM_LIMBS, LEG_LIMBS
 from common.messages import Report
 
 Doubt = Callable[[Vector, Vector], NDArray[np.float64]]
@@ -51,23 +51,44 @@ ARMS: Final = [[POSE_INDEX[f"{side}_{name}"] for name in _ARM_NAMES] for side in
 HANGING: Final = [[REST_DEG.get(f"{side}_{name}", 0.0) for name in _ARM_NAMES] for side in "rl"]
 
 
+_LIMBS_OF: Final = np.array(
+    [ALL_LIMBS] * 6
+    + [1 << 1] * 3
+    + [sum(1 << limb for limb in arm) for arm in ARM_LIMBS for _ in range(3)]
+    + [1 << arm[1] for arm in ARM_LIMBS]
+    + [sum(1 << limb for limb in leg) for leg in LEG_LIMBS for _ in range(3)]
+    + [1 << leg[1] for leg in LEG_LIMBS]
+)
+"""The limbs, as bits, that each parameter of a pose moves."""
+
+
+def moving(poses: NDArray[np.float64]) -> int:
+    """The limbs, as bits, in which some poses differ from the first."""
+    return int(np.bitwise_or.reduce(_LIMBS_OF[(poses != poses[0]).any(axis=0)], initial=0))
+
+
 @numba.njit(cache=True)
-def products(body: Any, poses: Any, views: Any, seen: Any, seen_px: Any, width: int) -> Any:
+def products(
+    body: Any, poses: Any, limbs: int, views: Any, seen: Any, seen_px: Any, width: int
+) -> Any:
     """The product of S over the views, of each pose, (n,).
 
     Args:
         body: Body vector.
         poses: (n, 25).
+        limbs: Those in which the poses differ, as bits; the rest is drawn once.
         views: (cameras, VIEW), true perspective.
         seen: The silhouettes, packed (cameras, H, words).
         seen_px: Their numbers of pixels, (cameras,).
         width: Of the pictures, pixels.
     """
     found = np.ones(poses.shape[0])
-    for i in range(poses.shape[0]):
-        for n in range(views.shape[0]):
-            drawn = np.zeros_like(seen[n])
-            draw_limbs(body, poses[i], views[n], ALL_LIMBS, width, drawn)
+    for n in range(views.shape[0]):
+        rest = np.zeros_like(seen[n])
+        draw_limbs(body, poses[0], views[n], ALL_LIMBS & ~limbs, width, rest)
+        for i in range(poses.shape[0]):
+            drawn = rest.copy()
+            draw_limbs(body, poses[i], views[n], limbs, width, drawn)
             found[i] *= score(count_both(drawn, seen[n]), count(drawn), seen_px[n])
     return found
 
@@ -115,7 +136,7 @@ def settled(
     ]
     for doubts, surely in all_doubts:
         poses = doubts(pose, before)
-        likely = products(body, poses, views, masks, areas, seen[0].width)
+        likely = products(body, poses, moving(poses), views, masks, areas, seen[0].width)
         best = int(likely.argmax())
         pose = poses[best if likely[best] > surely * likely[0] else 0]
     return pose

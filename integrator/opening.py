@@ -23,7 +23,7 @@ class Sample(NamedTuple):
     """A pose as it was found, and what was seen then."""
 
     pose: Vector
-    seen: tuple[Report | None, Report | None]
+    seen: tuple[Report, Report]
 
 
 class Opening(NamedTuple):

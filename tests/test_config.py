@@ -44,7 +44,8 @@ def test_the_defaults_are_the_papers() -> None:
 
 
 @pytest.mark.parametrize("path", RUNS, ids=lambda path: path.stem)
-def test_the_settings_that_are_shipped_load(path: Path) -> None:
+def test_the_settings_that_are_shipped_load(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TRITRACK_DATA", "/clips")
     assert load(path) != Settings()
 
 
@@ -166,3 +167,12 @@ def test_the_bound_is_reached() -> None:
     assert working_size((640, 480), (160, 120)) == (160, 120)
     assert working_size((1920, 1080), (160, 120)) == (160, 90)
     assert working_size((100, 80), (160, 120)) == (100, 80)
+
+
+def test_a_variable_that_is_not_set_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("NOWHERE", raising=False)
+    (tmp_path / "live.toml").write_text('clip = "$NOWHERE/walk"')
+    with pytest.raises(SettingsError, match=r"\$NOWHERE/walk names a variable that is not set"):
+        load(tmp_path / "live.toml")

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from posing import posed
 
-from common.body import POSE_INDEX, Vector, body_vector, thesis_bdp
+from common.body import POSE_INDEX, POSE_NAMES, Vector, body_vector, thesis_bdp
 from common.camera import paper_rig
 from common.kernel import count, draw_body, pack_words, view_of
+from common.kinematics import limb_frames
 from common.messages import Report, ViewerNumber, pack
 from common.similarity import Mask, similarity
-from integrator.hypotheses import products, settled, turned
+from integrator.hypotheses import moving, products, settled, turned
 
 BODY = body_vector(thesis_bdp(1.75))
 VIEWERS: tuple[ViewerNumber, ...] = (1, 2)
@@ -53,11 +54,21 @@ def test_a_product_is_that_of_the_similarities_of_whole_pictures() -> None:
     poses = np.array([standing(), standing(l_shoulder_z=230.0), standing(r_shoulder_x=50.0)])
     seen = np.array([pack_words(mask) for mask in truth])
     areas = np.array([count(mask) for mask in seen])
-    found = products(BODY, poses, VIEWS, seen, areas, SIZE[0])
+    found = products(BODY, poses, moving(poses), VIEWS, seen, areas, SIZE[0])
     for pose, value in zip(poses, found, strict=True):
         both = [similarity(*pair) for pair in zip(truth, pictures(pose), strict=True)]
         assert value == pytest.approx(both[0] * both[1], rel=1e-12)
     assert found[2] == 1.0
+
+
+@pytest.mark.parametrize("name", POSE_NAMES)
+def test_the_limbs_that_a_parameter_moves_are_those_whose_frames_change(name: str) -> None:
+    """Only they are drawn again for each pose."""
+    start = standing(r_elbow_x=20.0, l_elbow_x=20.0, r_knee_x=-20.0, l_knee_x=-20.0)
+    other = start.copy()
+    other[POSE_INDEX[name]] += 10.0
+    moved = (limb_frames(BODY, start) != limb_frames(BODY, other)).any(axis=1)
+    assert moving(np.array([start, other])) == sum(1 << int(i) for i in np.flatnonzero(moved))
 
 
 @pytest.mark.parametrize(("side", "other"), [("r", "l"), ("l", "r")])
