@@ -58,7 +58,9 @@ class Motion(NamedTuple):
         return self.phase != EMPTY
 
 
-def performance(someone: Person, posture: str, seed: int, fps: float = 15.0) -> Motion:
+def performance(
+    someone: Person, posture: str, seed: int, fps: float = 15.0, motion_s: float = 0.0
+) -> Motion:
     """One take: the empty room, a T-pose, arms down, then the posture.
 
     Args:
@@ -66,6 +68,7 @@ def performance(someone: Person, posture: str, seed: int, fps: float = 15.0) -> 
         posture: One of POSTURES, or "free": turning and moving at random.
         seed: Of the take.
         fps: Frames a second.
+        motion_s: For how long the posture is performed, again and again; 0: once, as in a set.
 
     Raises:
         ValueError: When the posture is not known.
@@ -74,9 +77,11 @@ def performance(someone: Person, posture: str, seed: int, fps: float = 15.0) -> 
         raise ValueError(f"unknown posture {posture!r}; known are free, {', '.join(POSTURES)}")
     rng = np.random.default_rng([someone.seed, seed, *posture.encode()])
     style = take_style(someone.style, rng)
-    lasts = (*OPENING_S, FREE_S if posture == "free" else MOTION_S)
+    lasts = (*OPENING_S, motion_s or (FREE_S if posture == "free" else MOTION_S))
     phase = np.repeat(np.arange(4, dtype=np.uint8), [round(s * fps) for s in lasts])
     time_s = (np.arange(len(phase)) - int((phase < MOTION).sum())) / fps
+    if posture != "free":
+        time_s = np.where(time_s > 0.0, time_s % MOTION_S, time_s)
     stance = _stance(style, time_s)
     leash = None
     if posture == "free":

@@ -8,17 +8,40 @@ import msgspec
 from rich.console import Console
 
 from common.config import PageSettings, Settings
-from synth.write import write_set
+from synth.exposure import default_rig
+from synth.motions import performance
+from synth.people import person
+from synth.write import clip_name, write_clip, write_rig
 from tritrack.session import free_settings, live
 
 PERFORMER_SEED: Final = 90_001
 """Of a person that no model was trained on: the one in the package knows persons 1200 to 1211."""
 POSTURE: Final = "raise_right_lateral"
+TAKE: Final = 1
 SIZE: Final = (320, 240)
+MOTION_S: Final = 12.0
+"""Long enough to open the page and see it move."""
 
 
 class DemoFailed(RuntimeError):
     """The demo ran, and was wrong; the text says what it saw."""
+
+
+def made_clip(folder: Path) -> Path:
+    """The demo's clip with its calibration, written below a folder."""
+    rig, someone = default_rig(*SIZE), person(PERFORMER_SEED)
+    clip = folder / clip_name(someone, POSTURE, TAKE)
+    write_clip(
+        clip,
+        someone,
+        performance(someone, POSTURE, TAKE, motion_s=MOTION_S),
+        rig,
+        room_seed=PERFORMER_SEED,
+        seed=PERFORMER_SEED,
+        take=TAKE,
+    )
+    write_rig(folder / "calibration.json", rig)
+    return clip
 
 
 def run_demo(out: Path, page: bool, console: Console) -> dict[str, Any]:
@@ -29,7 +52,7 @@ def run_demo(out: Path, page: bool, console: Console) -> dict[str, Any]:
     """
     with tempfile.TemporaryDirectory(prefix="tritrack-demo-") as folder:
         console.print(f"making a person who performs {POSTURE} ...")
-        clip = write_set(Path(folder), "postures", 1, 1, PERFORMER_SEED, SIZE, (POSTURE,))[0]
+        clip = made_clip(Path(folder))
         settings = free_settings(Settings(clip=str(clip), pictures=True))
         if not page:
             settings = msgspec.structs.replace(settings, page=PageSettings(port=0))
