@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -21,6 +22,7 @@ from integrator.pairing import Pair
 from tritrack.runs import write_run
 from tritrack.terminal import bar, complain, warn
 from viewer import track
+from viewer.background import Background
 from viewer.capture import Frame, recorded
 from viewer.empty import empty_room
 
@@ -69,8 +71,7 @@ def track_clip(
     warnings = list(clip.warnings)
     viewers: dict[ViewerNumber, track.State] = {}
     rig = both_cameras(clip)
-    for view in clip.views:
-        room, odd = empty_room(view, settings.silhouette, decoders.of[view.number])
+    for view, (room, odd) in zip(clip.views, _rooms(clip, settings, decoders), strict=True):
         warnings += [odd] if odd else []
         camera = None if rig is None else rig.cameras[view.number - 1]
         viewers[view.number] = track.init(view.number, room, camera, settings)
@@ -122,6 +123,17 @@ def overridden(settings: Settings, mode: Mode | None, size: str | None) -> Setti
         )
     except ValueError as error:
         raise SettingsError(str(error)) from error
+
+
+def _rooms(clip: Clip, settings: Settings, decoders: Decoders) -> list[tuple[Background, str]]:
+    """The empty room of every view, learnt side by side: mostly it is waiting for the decoders."""
+    with ThreadPoolExecutor(len(clip.views)) as pool:
+        return list(
+            pool.map(
+                lambda view: empty_room(view, settings.silhouette, decoders.of[view.number]),
+                clip.views,
+            )
+        )
 
 
 def both_cameras(clip: Clip) -> Rig | None:
