@@ -118,7 +118,8 @@ class Guide(Moment, frozen=True, kw_only=True):
     """True once they come from the opening posture, False while they are a prior."""
     facing: tuple[Facing, Facing] = ("facade", "flank")
     scale_px_per_m: tuple[float, float] = (0.0, 0.0)
-    """Size of a metre at the body in each picture: reference scale times r_t,n (section 4.2)."""
+    """Size of a metre at the body in each picture: reference scale times r_t,n (section 4.2); 0
+    where a camera has the body behind it."""
     reference_px_per_m: tuple[float, float] = (0.0, 0.0)
     """The same at the place where the BDPs were taken, where r_t1 = r_t2 = 1."""
     root_px: tuple[Pixel, Pixel] = ((0.0, 0.0), (0.0, 0.0))

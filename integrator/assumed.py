@@ -9,7 +9,7 @@ FOCAL_SHARE: Final = 1.25
 """Focal length over the picture's width: a lens of 44 degrees, common for room cameras."""
 
 
-def assumed_rig(first: Report, second: Report | None, stature_m: float) -> Rig:
+def assumed_rig(first: Report, second: Report, stature_m: float) -> Rig:
     """Cameras at the distance at which a person of a stature is as high as seen now.
 
     Both cameras are level and look at the person, who stands at the origin; the floor is where
@@ -17,11 +17,11 @@ def assumed_rig(first: Report, second: Report | None, stature_m: float) -> Rig:
 
     Args:
         first: Viewer 1's report of somebody who stands upright, wholly in view.
-        second: Viewer 2's; None in a run with one camera.
+        second: Viewer 2's; the same report for both where only one view shows the whole person.
         stature_m: What is assumed of the person.
     """
     focals, distances, heights = [], [], []
-    for report in (first, second or first):
+    for report in (first, second):
         assert report.box is not None
         focal = FOCAL_SHARE * report.width
         distance = focal * stature_m / (report.box.bottom + 1 - report.box.top)

@@ -1,5 +1,6 @@
 """Two reports in, one body out: position, body, facing, pose, in the order of section 4."""
 
+import math
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
@@ -123,12 +124,10 @@ def _with_somebody(pair: Pair) -> Seen:
 
 def _with_rig(state: State, seen: Seen) -> State:
     """The rig, assumed at the first sight of a whole person where none is calibrated."""
-    first, second = seen
-    lead = first or second
-    if state.rig is not None or lead is None or lead.cut:
+    whole = [report for report in seen if report is not None and not report.cut]
+    if state.rig is not None or not whole:
         return state
-    other = second if first is not None else None
-    return state._replace(rig=assumed_rig(lead, other, state.settings.body.stature_m))
+    return state._replace(rig=assumed_rig(whole[0], whole[-1], state.settings.body.stature_m))
 
 
 def _faced(state: State, seen: Seen) -> State:
@@ -259,8 +258,8 @@ def _guide(
         bdp=known.bdp,
         measured=known.measured,
         facing=state.facing,
-        scale_px_per_m=scales_since(rig, place, measured_at),
-        reference_px_per_m=scales_at(rig, measured_at),
+        scale_px_per_m=_or_unseen(scales_since(rig, place, measured_at)),
+        reference_px_per_m=_or_unseen(scales_at(rig, measured_at)),
         root_px=(roots[0], roots[1]),
         rest_row_px=(upright[0][1], upright[1][1]),
         pose=tuple(state.pose.tolist()),
@@ -308,6 +307,12 @@ def _frame_of(pair: Pair, heard: tuple[int, int]) -> int:
     if first is None and heard[0] < 0 and second is not None:
         return second.frame
     return -1 if first is None else first.frame
+
+
+def _or_unseen(scales: tuple[float, float]) -> tuple[float, float]:
+    """Scales with 0 for a camera that has the body behind it."""
+    first, second = (scale if math.isfinite(scale) and scale > 0 else 0.0 for scale in scales)
+    return first, second
 
 
 def _point(place: Vector) -> Point:

@@ -56,7 +56,7 @@ def prior(rig: Rig, seen: tuple[Report | None, Report | None]) -> Bdp:
     heights = [
         (report.box.bottom + 1 - report.box.top) / scale
         for report, scale in zip(seen, scales, strict=True)
-        if report is not None and report.box is not None
+        if report is not None and report.box is not None and scale > 0
     ]
     low, high = STATURES_M
     return thesis_bdp(min(high, max(low, float(np.mean(heights)))))

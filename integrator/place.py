@@ -1,13 +1,21 @@
 """Where the body is, from where each view has its navel; how large a metre is there."""
 
+import math
+from typing import Final
+
 import numpy as np
 
 from common.body import Vector
 from common.camera import Camera, Rig, as_paper_rig, centre, project, ray
+from common.kernel import NEAREST_M
 from common.messages import Pixel, Report
 from integrator.perspective import ground_position, px_per_m, scaling_factors, triangulate
 
 Roots = tuple[Pixel | None, Pixel | None]
+
+AHEAD_M: Final = 4.0
+"""Depth of somebody whom one view alone shows, where the place before is not before its camera: the
+paper's cameras stand about so far away."""
 
 
 def roots_of(seen: tuple[Report | None, Report | None]) -> Roots:
@@ -24,7 +32,8 @@ def place_of(rig: Rig, roots_px: Roots, before_m: Vector, facade: int) -> Vector
 
     In a rig of the paper's kind X and Z come from the two columns (Eq. 3) and Y from the row of
     the facade view (P50); in any other from the point nearest to both rays. One view alone
-    keeps the depth that the body had before.
+    keeps the depth that the body had before, and so does the facade view where both cannot mean
+    the same person: their rays meet in no place before both cameras.
 
     Args:
         rig: Two cameras.
@@ -33,24 +42,31 @@ def place_of(rig: Rig, roots_px: Roots, before_m: Vector, facade: int) -> Vector
         facade: 0 or 1: which view sees the facade.
     """
     first, second = roots_px
-    if first is None or second is None:
-        alone = 0 if second is None else 1
-        pixel = first or second
-        assert pixel is not None
-        return _at_depth(rig.cameras[alone], pixel, before_m)
+    if first is not None and second is not None:
+        place = _where_rays_meet(rig, (first, second), facade)
+        if np.isfinite(scales_at(rig, place)).all():
+            return place
+    believed = facade if roots_px[facade] is not None else 1 - facade
+    pixel = roots_px[believed]
+    assert pixel is not None
+    return _at_depth(rig.cameras[believed], pixel, before_m)
+
+
+def _where_rays_meet(rig: Rig, roots_px: tuple[Pixel, Pixel], facade: int) -> Vector:
+    first, second = roots_px
     paper = as_paper_rig(rig)
     if paper is None:
         return triangulate((rig.cameras[0], rig.cameras[1]), (first, second))
     x_m, z_m = ground_position(
         first[0] - rig.cameras[0].K[0][2], second[0] - rig.cameras[1].K[0][2], paper
     )
-    camera, row = rig.cameras[facade], roots_px[facade][1]  # type: ignore[index]
+    camera, row = rig.cameras[facade], roots_px[facade][1]
     scale = px_per_m(camera, np.array([x_m, 0.0, z_m]))
     return np.array([x_m, centre(camera)[1] - (row - camera.K[1][2]) / scale, z_m])
 
 
 def scales_at(rig: Rig, place_m: Vector) -> tuple[float, float]:
-    """Size of a metre at a place, in each picture, pixels."""
+    """Size of a metre at a place, in each picture, pixels; NaN where it is behind the camera."""
     first, second = (px_per_m(camera, place_m) for camera in rig.cameras)
     return first, second
 
@@ -83,9 +99,11 @@ def pixels_of(rig: Rig, place_m: Vector) -> tuple[Pixel, Pixel]:
 
 
 def _at_depth(camera: Camera, pixel: Pixel, before_m: Vector) -> Vector:
-    """The point that a pixel shows at the depth of another point."""
+    """The point that a pixel shows at the depth of another point, if that is before the camera."""
     forward = np.array(camera.R)[2]
     depth = float(forward @ (before_m - centre(camera)))
+    if depth < NEAREST_M:
+        depth = AHEAD_M
     direction = ray(camera, pixel)
     point: Vector = centre(camera) + direction * (depth / float(forward @ direction))
     return point

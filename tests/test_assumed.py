@@ -38,6 +38,7 @@ def test_it_is_a_rig_of_the_papers_kind_with_a_lens_of_44_degrees() -> None:
 
 
 def test_one_camera_serves_for_both_where_there_is_one() -> None:
-    rig = assumed_rig(standing_person(1, 20, 109), None, 1.75)
+    only = standing_person(1, 20, 109)
+    rig = assumed_rig(only, only, 1.75)
     assert rig.cameras[0].K == rig.cameras[1].K
     assert (rig.width, rig.height) == (160, 120)

@@ -25,7 +25,7 @@ from common.body import JOINT_NAMES, POSE_INDEX, Vector, body_vector, stature
 from common.camera import project
 from common.config import Mode, Settings
 from common.kinematics import joints
-from common.messages import decode, encode
+from common.messages import Guide, decode, encode
 from integrator import merge
 from integrator.merge import LOST_FRAMES
 from integrator.pairing import Pair
@@ -243,6 +243,40 @@ def test_a_person_partly_outside_sets_no_scale() -> None:
     cut[40:120, 70:90] = True
     assert stage.see((cut, cut)).body.status == "empty"
     assert stage.state.rig is None
+
+
+def test_a_view_that_cuts_the_person_off_sets_no_scale() -> None:
+    """View 2 sees the upper half: the scale is the other view's alone, whichever that is."""
+    whole = silhouettes(standing())
+    half = whole[1].copy()
+    half[60:] = False
+    half[0:60, 80] = True
+    both, alone = Stage(rig=None), Stage(rig=None)
+    both.see((whole[0], half))
+    alone.see((whole[0], None))
+    assert both.state.rig == alone.state.rig is not None
+    mirrored = Stage(rig=None)
+    mirrored.see((half, whole[0]))
+    assert mirrored.state.rig == both.state.rig
+
+
+def test_a_person_behind_a_camera_is_followed_by_the_other() -> None:
+    """P50 in a free rig: camera 2 stands beside the person and looks away from them.
+
+    What it cannot say of them is no number in a guide, and a guide without it still reaches both.
+    """
+    away = msgspec.structs.replace(RIG.cameras[1], t=(0.0, 1.0, -1.0))
+    rig = msgspec.structs.replace(RIG, cameras=(RIG.cameras[0], away))
+    stage = Stage(rig=rig)
+    for _ in range(4):
+        told = stage.see((silhouettes(standing())[0], NOBODY))
+    assert told.body.views == "1"
+    assert told.guide.scale_px_per_m[0] == pytest.approx(50.0, rel=0.02)
+    assert told.guide.scale_px_per_m[1] == 0.0
+    assert decode(encode(told.guide), Guide) == told.guide
+    back = stage.see((None, silhouettes(standing())[0]))
+    assert back.reports[1] is not None
+    assert back.reports[1].score > 0.5
 
 
 def test_joints_in_the_pictures_are_the_joints_in_the_world() -> None:

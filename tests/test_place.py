@@ -1,5 +1,6 @@
 """Where the body is, held against points projected into both pictures (sections 4.2 and 4.4)."""
 
+import msgspec
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,7 +10,7 @@ from staging import RIG
 
 from common.body import Vector
 from common.camera import Camera, Rig, as_matrix, as_row, centre, paper_rig, project
-from integrator.place import Roots, pixels_of, place_of, scales_at, scales_since
+from integrator.place import AHEAD_M, Roots, pixels_of, place_of, scales_at, scales_since
 
 metres = st.floats(-1.2, 1.2)
 ORIGIN = np.zeros(3)
@@ -68,6 +69,30 @@ def test_one_view_alone_keeps_the_depth_that_was(rig: Rig, alone: int) -> None:
     pixel = seen(rig, now)[alone]
     roots: Roots = (pixel, None) if alone == 0 else (None, pixel)
     assert place_of(rig, roots, before, 0) == pytest.approx(now, abs=1e-9)
+
+
+@pytest.mark.parametrize("alone", [0, 1])
+def test_one_view_whose_camera_has_the_origin_behind_it_takes_a_rooms_depth(alone: int) -> None:
+    """P50: a calibration may have its origin anywhere; the body is before the camera all the same."""
+    behind = (0.0, 0.0, -1.5)
+    cameras = tuple(msgspec.structs.replace(camera, t=behind) for camera in FREE.cameras)
+    rig = msgspec.structs.replace(FREE, cameras=cameras)
+    roots: Roots = ((60.0, 50.0), None) if alone == 0 else (None, (60.0, 50.0))
+    place = place_of(rig, roots, ORIGIN, 0)
+    assert seen(rig, place)[alone] == pytest.approx((60.0, 50.0))
+    assert scales_at(rig, place)[alone] == pytest.approx(180.0 / AHEAD_M)
+
+
+@pytest.mark.parametrize("facade", [0, 1])
+def test_views_that_cannot_mean_one_person_leave_the_depth_as_it_was(facade: int) -> None:
+    """P44: rays that part before the cameras meet behind them; the facade's view is believed."""
+    places = (np.array([1.0, 1.2, 4.0]), np.array([-1.0, 1.2, 4.0]))
+    parallel = tuple(free(name, place, 0.0) for name, place in zip("ab", places, strict=True))
+    rig, before = Rig(160, 120, parallel), np.array([0.0, 0.9, 0.0])
+    roots: Roots = ((150.0, 60.0), (10.0, 60.0))
+    place = place_of(rig, roots, before, facade)
+    assert seen(rig, place)[facade] == pytest.approx(roots[facade])
+    assert scales_at(rig, place)[facade] == pytest.approx(scales_at(rig, before)[facade])
 
 
 def test_a_metre_is_the_focal_length_over_the_depth() -> None:

@@ -75,7 +75,7 @@ def step(state: State, frame: Frame, guide: Guide | None) -> tuple[State, Report
         frame: The picture.
         guide: What the integrator made of the frame before; None at the start.
     """
-    known = guide if guide is not None and guide.status in FOLLOWED else None
+    known = guide if _expected(guide, state.viewer) else None
     near = known.root_px[state.viewer - 1] if known is not None else None
     remembered, seen = silhouette.step(state.silhouette, frame.picture, near)
     state = state._replace(silhouette=remembered)
@@ -103,6 +103,16 @@ def step(state: State, frame: Frame, guide: Guide | None) -> tuple[State, Report
         matches=figure.matches,
     )
     return state._replace(squatting=squatting), report
+
+
+def _expected(guide: Guide | None, viewer: ViewerNumber) -> bool:
+    """Whether the integrator knows where in this view the body should be."""
+    return (
+        guide is not None
+        and guide.status in FOLLOWED
+        and guide.bdp is not None
+        and guide.scale_px_per_m[viewer - 1] > 0.0
+    )
 
 
 def _outline_report(state: State, frame: Frame, guide: Guide | None, seen: Seen) -> Report:
