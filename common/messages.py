@@ -173,7 +173,7 @@ class Pulse(Message, frozen=True, kw_only=True):
     """How a process is doing, once a second and at its end."""
 
     process: str
-    state: Literal["starting", "ready", "running", "ended", "failed"]
+    state: Literal["starting", "ready", "running", "ended"]
     detail: str = ""
     frames: int = 0
     fps: float = 0.0

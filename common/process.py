@@ -74,7 +74,7 @@ class Heart:
 
     def beat(
         self,
-        state: Literal["starting", "ready", "running", "ended", "failed"],
+        state: Literal["starting", "ready", "running", "ended"],
         detail: str = "",
         **counts: Any,
     ) -> None:

@@ -1,7 +1,6 @@
 """The integrator process: pairs of reports in, bodies and guides out; the room's clock."""
 
 import gc
-import logging
 import threading
 import time
 from typing import Final
@@ -33,8 +32,6 @@ SUPERVISED_S: Final = 60.0
 OVERDUE_PERIODS: Final = 1.0
 """A report whose partner is a frame late goes on alone."""
 
-log = logging.getLogger(__name__)
-
 
 class Starter:
     """Answers what the room's clock says, and fixes the start once every viewer is ready."""
@@ -54,6 +51,41 @@ class Starter:
         return ClockAnswer(now_s=now_s, start_s=self._start_s)
 
 
+class Ears:
+    """What the viewers say, in pairs of one instant."""
+
+    def __init__(self, bus: Bus, viewers: tuple[ViewerNumber, ...], period_s: float) -> None:
+        """Listen from now on."""
+        self.going = set(viewers)
+        """Viewers that have not ended."""
+        self._reports, self._ended = bus.subscribe(Report), bus.subscribe(Ended)
+        self._paired = pairing.init(period_s, viewers)
+        self._wait_s = OVERDUE_PERIODS * period_s
+
+    def pairs(self) -> list[Pair]:
+        """What is complete now, or overdue; waits a moment for a report."""
+        complete: list[Pair] = []
+        report = self._reports.take(HEAR_S)
+        if report is not None:
+            self._paired, complete = pairing.step(self._paired, report)
+        self._paired, alone = pairing.overdue(self._paired, time.monotonic(), self._wait_s)
+        complete += alone
+        # Only when no report waits: what a viewer said before its end comes first.
+        for over in self._ended.drain() if report is None else ():
+            self.going.discard(over.viewer)
+            self._paired, last = pairing.end(self._paired, over.viewer)
+            complete += last
+        return complete
+
+    def counts(self) -> dict[str, int]:
+        """What was lost so far, as a Pulse tells it."""
+        return {
+            "dropped": self._paired.dropped + self._reports.dropped,
+            "late": self._paired.late,
+            "malformed": self._reports.malformed,
+        }
+
+
 def run(
     state: merge.State,
     viewers: tuple[ViewerNumber, ...],
@@ -64,26 +96,13 @@ def run(
     """Pair and merge what the viewers report, until each has ended."""
     pace = Pace(period_s)
     heart = Heart(bus, "integrator", pace)
-    reports, ended = bus.subscribe(Report), bus.subscribe(Ended)
-    pairs_of = pairing.init(period_s, viewers)
-    noticed = noticing.State()
-    odd = "\n".join(noticing.assumed(state))
-    going = set(viewers)
+    ears = Ears(bus, viewers, period_s)
+    bus.answer(ClockQuestion, Starter(frozenset(viewers)).answer)
+    noticed, odd = noticing.State(), "\n".join(noticing.assumed(state))
     told_rig = False
-    starter = Starter(frozenset(viewers))
-    bus.answer(ClockQuestion, starter.answer)
     heart.beat("ready", odd)
-    while going and not stop.is_set():
-        report = reports.take(HEAR_S)
-        pairs: list[Pair] = []
-        if report is not None:
-            pairs_of, pairs = pairing.step(pairs_of, report)
-        pairs_of, alone = pairing.overdue(pairs_of, time.monotonic(), OVERDUE_PERIODS * period_s)
-        for over in ended.drain() if report is None else ():
-            going.discard(over.viewer)
-            pairs_of, last = pairing.end(pairs_of, over.viewer)
-            alone += last
-        for pair in pairs + alone:
+    while ears.going and not stop.is_set():
+        for pair in ears.pairs():
             state, body, guide = merge.step(state, pair)
             noticed = noticing.step(noticed, pair)
             bus.publish(guide)
@@ -92,20 +111,8 @@ def run(
         if not told_rig and state.rig is not None:
             bus.publish(Cameras(rig=state.rig, scale_source=state.scale_source))
             told_rig = True
-        heart.beat(
-            "running",
-            odd,
-            dropped=pairs_of.dropped + reports.dropped,
-            late=pairs_of.late,
-            malformed=reports.malformed,
-        )
-    heart.beat(
-        "ended",
-        "\n".join(noticing.warnings(noticed, state)),
-        dropped=pairs_of.dropped,
-        late=pairs_of.late,
-        malformed=reports.malformed,
-    )
+        heart.beat("running", odd, **ears.counts())
+    heart.beat("ended", "\n".join(noticing.warnings(noticed, state)), **ears.counts())
 
 
 def main(settings: Settings, clip: Clip, place: Place = Place()) -> None:

@@ -1,6 +1,5 @@
 """Where the body is, from where each view has its navel; how large a metre is there."""
 
-import math
 from typing import Final
 
 import numpy as np

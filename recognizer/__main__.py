@@ -1,7 +1,6 @@
 """The recognizer process: bodies in, the posture's name out."""
 
 import gc
-import logging
 import threading
 import time
 from collections import deque
@@ -24,8 +23,6 @@ SHIPPED = Path(__file__).parent / "postures.npz"
 HEAR_S = 0.05
 MOVING = ("tracking", "predicted")
 """States in which a body's angles say what it does; the opening posture is no motion."""
-
-log = logging.getLogger(__name__)
 
 
 def step(state: spotting.State, frames: deque[int], body: Body) -> tuple[spotting.State, Posture]:

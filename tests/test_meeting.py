@@ -4,16 +4,34 @@ import threading
 import time
 from collections.abc import Callable
 
+import numpy as np
 import pytest
+from staging import report
 
 from common.bus import Bus, open_client, open_hub
 from common.camera import paper_rig
+from common.clips import View
 from common.config import BusSettings, PageSettings, Settings
+from common.decoding import DecoderDied
+from common.inbox import BOUND
 from common.local_bus import LocalBus
-from common.messages import Cameras, ClockAnswer, ClockQuestion, Guide, Message
+from common.messages import (
+    Body,
+    Cameras,
+    ClockAnswer,
+    ClockQuestion,
+    Ended,
+    Guide,
+    Message,
+    Pulse,
+)
 from integrator import __main__ as integrator
+from integrator import merge
+from tritrack.launch import Ears, Heard
 from tritrack.session import free_settings
 from viewer import __main__ as viewer
+from viewer import track
+from viewer.background import learn
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
 
@@ -113,6 +131,55 @@ def test_the_start_is_fixed_once_when_every_viewer_is_ready(
 
 def test_a_run_with_one_viewer_waits_for_no_other() -> None:
     assert integrator.Starter(frozenset((2,))).answer(question(2)).start_s is not None
+
+
+class Talkative(LocalBus):
+    """A room in which viewer 1 says everything at once, as soon as the integrator is ready."""
+
+    def publish(self, message: Message) -> None:
+        super().publish(message)
+        if isinstance(message, Pulse) and message.state == "ready":
+            for frame in range(BOUND + 6):
+                super().publish(report(1, frame=frame, captured_s=frame / 15))
+            super().publish(Ended(viewer=1, frames=BOUND + 6))
+
+
+def test_what_was_lost_is_told_to_the_end() -> None:
+    """Six reports too many for the inbox: the last pulse still counts them."""
+    bus = Talkative()
+    pulses, bodies = bus.subscribe(Pulse), bus.subscribe(Body)
+    state = merge.init(RIG, 1 / 15, Settings())
+    integrator.run(state, (1,), 1 / 15, bus, threading.Event())
+    last = pulses.drain()[-1]
+    assert (last.state, last.frames, last.dropped) == ("ended", BOUND, 6)
+    assert bodies.drain()[-1].frame == BOUND + 5
+
+
+class BrokenFilm:
+    """Frames of a view whose decoder breaks on the first."""
+
+    over, offset_s, dropped, came = False, 0.0, 0, 0
+
+    def take(self, _timeout_s: float) -> None:
+        raise DecoderDied("cam1.avi", 0, "killed by SIGABRT")
+
+
+def test_nobody_waits_for_a_viewer_whose_video_broke() -> None:
+    bus = LocalBus()
+    ended = bus.subscribe(Ended)
+    view = View(1, "cam1.avi", (160, 120), (160, 120), fps=15.0, frames=10)
+    state = track.init(1, learn([np.zeros((120, 160, 3), np.uint8)]), None, Settings())
+    with pytest.raises(DecoderDied):
+        viewer.run(view, state, BrokenFilm(), bus, threading.Event())  # type: ignore[arg-type]
+    assert ended.drain() == [Ended(viewer=1, frames=0)]
+
+
+def test_the_supervisor_learns_the_cameras_that_were_told_before_it_listened() -> None:
+    bus, heard = LocalBus(), Heard([], [], {}, [])
+    bus.keep(Cameras)
+    bus.publish(Cameras(rig=RIG, scale_source="calibrated"))
+    Ears(bus, heard).catch_up()
+    assert [told.scale_source for told in heard.cameras] == ["calibrated"]
 
 
 def test_viewers_agree_on_a_start_by_a_clock_that_is_not_theirs() -> None:

@@ -73,7 +73,7 @@ def test_one_view_alone_keeps_the_depth_that_was(rig: Rig, alone: int) -> None:
 
 @pytest.mark.parametrize("alone", [0, 1])
 def test_one_view_whose_camera_has_the_origin_behind_it_takes_a_rooms_depth(alone: int) -> None:
-    """P50: a calibration may have its origin anywhere; the body is before the camera all the same."""
+    """P50: a calibration's origin may be anywhere; the body is before the camera all the same."""
     behind = (0.0, 0.0, -1.5)
     cameras = tuple(msgspec.structs.replace(camera, t=behind) for camera in FREE.cameras)
     rig = msgspec.structs.replace(FREE, cameras=cameras)

@@ -129,7 +129,7 @@ def run(
         bus = doors.enter_context(_client(settings, hub, stop))
         if bus is None:
             return
-        listening = _Ears(bus, heard)
+        listening = Ears(bus, heard)
         running = [hub, *(doors.enter_context(_started(part)) for part in parts[1:])]
         try:
             while not stop.wait(LOOK_S):
@@ -148,15 +148,18 @@ def run(
             _refuse_failures(running)
 
 
-class _Ears:
+class Ears:
     """Gathers what is said into a Heard."""
 
     def __init__(self, bus: Bus, heard: Heard) -> None:
+        """Listen from now on; the cameras may have been told before."""
         self._heard = heard
         self._bodies = bus.subscribe(Body)
         self._postures = bus.subscribe(Posture)
         self._pulses = bus.subscribe(Pulse)
         self._cameras = bus.subscribe(Cameras)
+        told = bus.latest(Cameras, LAST_WORDS_S)
+        heard.cameras.extend([] if told is None else [told])
 
     def catch_up(self) -> None:
         """Take in all that was said since."""

@@ -19,7 +19,7 @@ COLUMNS: Final = (
     ("p99 ms", "right"),
     ("MB", "right"),
 )
-COLOURS: Final = {"running": "green", "failed": "red", "ended": "dim", "ready": "cyan"}
+COLOURS: Final = {"running": "green", "ended": "dim", "ready": "cyan"}
 
 
 def table_of(names: Sequence[str], pulses: Mapping[str, Pulse], title: str) -> Table:

@@ -89,19 +89,21 @@ def run(
     heart = Heart(bus, f"viewer {view.number}", pace)
     guides = Guides(bus.subscribe(Guide), view.number)
     before = -1
-    while not stop.is_set() and not live.over:
-        frame = live.take(period_s)
-        if frame is None:
-            continue
-        guide = guides.of_frame(before, WAIT_SHARE * period_s)
-        state, report = track.step(state, frame, guide)
-        bus.publish(report)
-        pace.done(frame.clock_s - live.offset_s, time.monotonic())
-        if state.settings.pictures:
-            bus.publish(_picture(view.number, frame))
-        heart.beat("running", odd, dropped=live.dropped, guide_misses=guides.misses)
-        before = frame.index
-    bus.publish(Ended(viewer=view.number, frames=pace.frames))
+    try:
+        while not stop.is_set() and not live.over:
+            frame = live.take(period_s)
+            if frame is None:
+                continue
+            guide = guides.of_frame(before, WAIT_SHARE * period_s)
+            state, report = track.step(state, frame, guide)
+            bus.publish(report)
+            pace.done(frame.clock_s - live.offset_s, time.monotonic())
+            if state.settings.pictures:
+                bus.publish(_picture(view.number, frame))
+            heart.beat("running", odd, dropped=live.dropped, guide_misses=guides.misses)
+            before = frame.index
+    finally:  # Also when the decoder broke: nobody shall wait for this view again.
+        bus.publish(Ended(viewer=view.number, frames=pace.frames))
     cut_off = shortfall(view, live.came) if live.over else ""
     if cut_off:
         log.warning(cut_off)
