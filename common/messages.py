@@ -21,7 +21,6 @@ Status = Literal["empty", "measuring", "tracking", "predicted", "lost"]
 Views = Literal["both", "1", "2", "none"]
 Pixel = tuple[float, float]
 Point = tuple[float, float, float]
-Bits = NDArray[np.uint64]
 
 
 class MalformedMessage(ValueError):

@@ -8,10 +8,11 @@ import numpy as np
 
 from common.body import LIMBS, Bdp, Vector, body_vector
 from common.camera import Rig
-from common.kernel import count, count_both, draw_limbs, score, view_of, words_of_rows
+from common.kernel import match
 from common.kinematics import ALL_LIMBS
 from common.messages import Report
 from integrator.opening import Opening, Sample
+from integrator.outlines import outlines_of
 
 Seen = tuple[Report | None, Report | None]
 
@@ -100,26 +101,19 @@ def fit(body: Any, poses: Any, views: Any, seen: Any, seen_px: Any, width: int) 
     total = 0.0
     for i in range(poses.shape[0]):
         for n in range(2):
-            drawn = np.zeros_like(seen[i, n])
-            draw_limbs(body, poses[i], views[n], ALL_LIMBS, width, drawn)
-            total += score(count_both(drawn, seen[i, n]), count(drawn), seen_px[i, n])
+            total += match(body, poses[i], views[n], ALL_LIMBS, width, seen[i, n], seen_px[i, n])
     return total
 
 
 def _outlines(rig: Rig, samples: tuple[Sample, ...]) -> tuple[Any, Any, Any, Any, int]:
     """Poses, views, silhouettes, their areas and their width, as `fit` wants them."""
-    seen = np.array(
-        [
-            [words_of_rows(r.silhouette, r.width, r.height) for r in sample.seen]
-            for sample in samples
-        ]
-    )
+    each = [outlines_of(rig, sample.seen) for sample in samples]
     return (
         np.array([sample.pose for sample in samples]),
-        np.array([view_of(camera) for camera in rig.cameras]),
-        seen,
-        np.array([[count(words) for words in both] for both in seen]),
-        samples[0].seen[0].width,
+        each[0].views,
+        np.array([both.seen for both in each]),
+        np.array([both.seen_px for both in each]),
+        each[0].width,
     )
 
 

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from common.body import POSE_INDEX, REST_DEG, Vector
 from common.camera import Rig
-from common.kernel import count, count_both, draw_limbs, score, view_of, words_of_rows
+from common.kernel import draw_limbs, match_over
 from common.kinematics import ALL_LIMBS, ARM_LIMBS, LEG_LIMBS
 from common.messages import Report
+from integrator.outlines import outlines_of
 
 Doubt = Callable[[Vector, Vector], NDArray[np.float64]]
 """From the pose so far and that of the frame before: it, and others that may be meant, (n, 25)."""
@@ -87,9 +88,9 @@ def products(
         rest = np.zeros_like(seen[n])
         draw_limbs(body, poses[0], views[n], ALL_LIMBS & ~limbs, width, rest)
         for i in range(poses.shape[0]):
-            drawn = rest.copy()
-            draw_limbs(body, poses[i], views[n], limbs, width, drawn)
-            found[i] *= score(count_both(drawn, seen[n]), count(drawn), seen_px[n])
+            found[i] *= match_over(
+                rest, body, poses[i], views[n], limbs, width, seen[n], seen_px[n]
+            )
     return found
 
 
@@ -120,9 +121,7 @@ def settled(
         upright_m: Height of the navel of the person standing upright.
         fitted: The body is a prior that was fitted to the outline.
     """
-    views = np.array([view_of(camera) for camera in rig.cameras])
-    masks = np.array([words_of_rows(r.silhouette, r.width, r.height) for r in seen])
-    areas = np.array([count(mask) for mask in masks])
+    outlines = outlines_of(rig, seen)
     turns: list[tuple[Doubt, float]] = [
         (partial(turned, pair, share), 1.0) for share in TURN_SHARES for pair in TURNS if fitted
     ]
@@ -136,7 +135,7 @@ def settled(
     ]
     for doubts, surely in all_doubts:
         poses = doubts(pose, before)
-        likely = products(body, poses, moving(poses), views, masks, areas, seen[0].width)
+        likely = products(body, poses, moving(poses), *outlines)
         best = int(likely.argmax())
         pose = poses[best if likely[best] > surely * likely[0] else 0]
     return pose

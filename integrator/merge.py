@@ -5,6 +5,7 @@ from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
+from common.bits import count
 from common.body import (
     ANGLE_NAMES,
     ANGLES_IN_POSE,
@@ -16,7 +17,7 @@ from common.body import (
 )
 from common.camera import Rig, paper_rig, project
 from common.config import Settings
-from common.kernel import count, count_both, draw_body, draw_limbs, score, view_of, words_of_rows
+from common.kernel import draw_body, match, view_of
 from common.kinematics import ALL_LIMBS, joints
 from common.messages import (
     Body,
@@ -37,6 +38,7 @@ from integrator.assumed import assumed_rig
 from integrator.fusion import fused
 from integrator.hypotheses import settled
 from integrator.opening import Opening
+from integrator.outlines import packed
 from integrator.pairing import Pair
 from integrator.place import pixels_of, place_of, roots_of, scales_at, scales_since
 
@@ -227,10 +229,8 @@ def _score(body: Vector, pose: Vector, rig: Rig, n: int, report: Report | None) 
     """S of the whole body in one picture, true perspective; 0 where that view has nobody."""
     if report is None or report.root_px is None:
         return 0.0
-    seen = words_of_rows(report.silhouette, report.width, report.height)
-    drawn = np.zeros_like(seen)
-    draw_limbs(body, pose, view_of(rig.cameras[n]), ALL_LIMBS, report.width, drawn)
-    return float(score(count_both(drawn, seen), count(drawn), count(seen)))
+    seen, view = packed(report), view_of(rig.cameras[n])
+    return float(match(body, pose, view, ALL_LIMBS, report.width, seen, count(seen)))
 
 
 def _guide(

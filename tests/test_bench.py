@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from common.kernel import gain, spans, unpack_words
+from common.bits import unpack_words
+from common.spans import gain, spans
 from tritrack.bench import Measured, bench, machine, table_of
 from tritrack.scenes import by_opencv, match_placed, scene
 

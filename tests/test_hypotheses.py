@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from posing import posed
 
+from common.bits import count, pack_words
 from common.body import POSE_INDEX, POSE_NAMES, Vector, body_vector, thesis_bdp
 from common.camera import paper_rig
-from common.kernel import count, draw_body, pack_words, view_of
+from common.kernel import draw_body, view_of
 from common.kinematics import limb_frames
 from common.messages import Report, ViewerNumber, pack
 from common.similarity import Mask, similarity

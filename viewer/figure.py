@@ -5,9 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from common.bits import Bits, count, pack_words
 from common.body import POSE_INDEX, POSE_NAMES, Vector
 from common.camera import PAPER_ROTATIONS, Camera
-from common.kernel import VIEW, Bits, count, count_both, draw_limbs, pack_words, score
+from common.kernel import VIEW, match
 from common.kinematics import ALL_LIMBS
 from common.messages import Facing, ViewerNumber
 from common.similarity import Mask
@@ -106,9 +107,8 @@ def searched(
 
 def matched(figure: Figure) -> Figure:
     """The figure with the score of the whole body as it stands."""
-    drawn = np.zeros_like(figure.seen)
-    draw_limbs(figure.body, figure.pose, figure.view, ALL_LIMBS, figure.width, drawn)
-    value = float(score(count_both(drawn, figure.seen), count(drawn), figure.seen_px))
+    body, pose, view = figure.body, figure.pose, figure.view
+    value = match(body, pose, view, ALL_LIMBS, figure.width, figure.seen, figure.seen_px)
     return figure._replace(score=value, matches=figure.matches + 1)
 
 

@@ -8,18 +8,18 @@ import cv2
 import msgspec
 import numpy as np
 
+from common.bits import count, pack_words
 from common.body import (
     POSE_INDEX,
     THESIS_RATIOS,
     Bdp,
     Elliptic,
     Round,
-    Vector,
     body_vector,
     rest_pose,
 )
 from common.camera import PAPER_ROTATIONS
-from common.kernel import count, count_both, draw_limbs, pack_words, score
+from common.kernel import match
 from common.messages import Box, Measure
 from common.similarity import Mask
 from viewer.figure import view_at
@@ -214,7 +214,7 @@ def fine_tuned(
     def score_of(trial: list[float]) -> float:
         body, pose = body_vector(_tuned(bdp, trial)), rest_pose()
         pose[POSE_INDEX["r_shoulder_z"]], pose[POSE_INDEX["l_shoulder_z"]] = trial[4], trial[5]
-        return _match(seen, seen_px, mask.shape[1], body, pose, view)
+        return float(match(body, pose, view, ABOVE_CENTRE, mask.shape[1], seen, seen_px))
 
     def score_along(i: int) -> Callable[[float], float]:
         return lambda eighths: score_of([*values[:i], eighths / GRID, *values[i + 1 :]])
@@ -235,14 +235,6 @@ def fine_tuned(
         if best - before < ENOUGH:
             break
     return _tuned(bdp, values), (values[4], values[5])
-
-
-def _match(
-    seen: object, seen_px: int, width: int, body: Vector, pose: Vector, view: Vector
-) -> float:
-    drawn = np.zeros_like(seen)
-    draw_limbs(body, pose, view, ABOVE_CENTRE, width, drawn)
-    return float(score(count_both(drawn, seen), count(drawn), seen_px))
 
 
 def _tuned(bdp: Bdp, values: list[float]) -> Bdp:

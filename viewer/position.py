@@ -5,7 +5,8 @@ from typing import Any, Final
 import numba
 import numpy as np
 
-from common.kernel import draw_limbs, popcount, score
+from common.bits import ONES, popcount
+from common.kernel import draw_limbs, score
 from viewer.figure import Figure
 
 SHIFTS_PX: Final = (0, -1, 1, -2, 2, -5, 5)
@@ -47,7 +48,7 @@ def shifted_counts(
     """
     height, words = model.shape
     top, bottom, begin, end = within
-    last_ones = np.uint64(0xFFFFFFFFFFFFFFFF) >> np.uint64(64 * words - width)
+    last_ones = ONES >> np.uint64(64 * words - width)
     drawn = hit = 0
     for row in range(max(top, -down), min(bottom, height - down)):
         for word in range(max(0, begin - (right < 0)), min(words, end + (right > 0))):

@@ -6,18 +6,10 @@ from typing import Any, NamedTuple
 import numba
 import numpy as np
 
-from common.kernel import (
-    PRIMITIVE,
-    count,
-    count_both,
-    draw,
-    draw_placed,
-    gain,
-    limb_outline,
-    score,
-    spans,
-)
+from common.bits import count, count_both
+from common.kernel import draw_placed, limb_outline, score
 from common.kinematics import ALL_LIMBS, FRAME, hang_limbs, place_limbs
+from common.spans import PRIMITIVE, draw, gain, spans
 
 MOST_STAGES = 16
 """A window of 2^16 stops would still end: the guard that M14 asks for."""

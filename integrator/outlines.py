@@ -1,0 +1,41 @@
+"""Both views' silhouettes of one instant, as the kernel takes them."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.bits import Bits, count, words_of_rows
+from common.body import Vector
+from common.camera import Rig
+from common.kernel import view_of
+from common.messages import Report
+
+
+class Outlines(NamedTuple):
+    """What both views show of a person, in pictures of one size."""
+
+    views: Vector
+    """(2, VIEW), true perspective."""
+    seen: Bits
+    """The silhouettes, packed (2, H, words)."""
+    seen_px: NDArray[np.int64]
+    """Their numbers of pixels, (2,)."""
+    width: int
+    """Of the pictures, pixels."""
+
+
+def outlines_of(rig: Rig, seen: tuple[Report, Report]) -> Outlines:
+    """The silhouettes of two reports, and the views of a rig."""
+    masks = np.array([packed(report) for report in seen])
+    return Outlines(
+        np.array([view_of(camera) for camera in rig.cameras]),
+        masks,
+        np.array([count(mask) for mask in masks]),
+        seen[0].width,
+    )
+
+
+def packed(report: Report) -> Bits:
+    """The silhouette of a report, (H, words)."""
+    return words_of_rows(report.silhouette, report.width, report.height)
