@@ -201,6 +201,11 @@ TORSO_DEPTH_SHARE: Final = 0.6
 """Depth of a trunk over its width: an assumption, the documents give none (M10)."""
 
 
+YAW_DEG: Final = (0.0, -90.0)
+"""Yaw of the trunk while viewer 1, or viewer 2, sees the facade (P49): the person faces that
+camera. Silhouettes cannot tell this from its opposite (limitation L4)."""
+
+
 def rest_pose() -> Vector:
     """A pose of a body that stands at the origin and faces +z, arms hanging, shape (25,)."""
     pose = np.zeros(len(POSE_NAMES))

@@ -20,6 +20,8 @@ from common.messages import (
 from common.process import Heart, Place, process
 from common.rate import Pace
 from integrator import merge, noticing, pairing
+from integrator.memory import State
+from integrator.merge_rehearsal import rehearse
 from integrator.pairing import Pair
 
 LEAD_S: Final = 0.5
@@ -87,7 +89,7 @@ class Ears:
 
 
 def run(
-    state: merge.State,
+    state: State,
     viewers: tuple[ViewerNumber, ...],
     period_s: float,
     bus: Bus,
@@ -133,7 +135,7 @@ def main(settings: Settings, clip: Clip, place: Place = Place()) -> None:
         bus.keep(Cameras)
         bus.announce("integrator")
         state = merge.init(clip.rig, period_s, settings)
-        merge.rehearse(settings, clip.views[0].size)
+        rehearse(settings, clip.views[0].size)
         gc.collect()
         gc.freeze()
         run(state, viewers, period_s, bus, stop)

@@ -10,11 +10,9 @@ from common.body import LIMBS, Bdp, Vector, body_vector
 from common.camera import Rig
 from common.kernel import match
 from common.kinematics import ALL_LIMBS
-from common.messages import Report
 from integrator.opening import Opening, Sample
 from integrator.outlines import outlines_of
-
-Seen = tuple[Report | None, Report | None]
+from integrator.pairing import Seen
 
 GROUPS: Final[tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]] = (
     (("torso",), ("long_radius",)),

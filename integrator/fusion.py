@@ -2,8 +2,6 @@
 
 from typing import Final
 
-import numpy as np
-
 from common.body import POSE_INDEX, Vector, wrapped_deg
 from common.messages import Report
 
@@ -65,9 +63,3 @@ def _take(pose: Vector, report: Report, names: tuple[str, ...]) -> None:
     for name in names:
         if name in report.angles_deg:
             pose[POSE_INDEX[name]] = report.angles_deg[name]
-
-
-def torso_yaw_deg(widths_px: tuple[float, float], full_px: float) -> float:
-    """Yaw of the trunk, degrees in [0, 90], from the width that one view shows (P49, an extra)."""
-    share = min(1.0, max(widths_px) / full_px) if full_px > 0 else 1.0
-    return float(np.degrees(np.arccos(share)))

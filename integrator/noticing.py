@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from integrator import merge
+from integrator import memory
 from integrator.pairing import Pair
 
 
@@ -23,7 +23,7 @@ def step(state: State, pair: Pair) -> State:
     )
 
 
-def assumed(merged: merge.State) -> list[str]:
+def assumed(merged: memory.State) -> list[str]:
     """What is known to be odd from the start: no calibration."""
     if merged.scale_source == "calibrated":
         return []
@@ -33,7 +33,7 @@ def assumed(merged: merge.State) -> list[str]:
     ]
 
 
-def warnings(state: State, merged: merge.State) -> list[str]:
+def warnings(state: State, merged: memory.State) -> list[str]:
     """All that was odd, once the performance is over."""
     told = assumed(merged)
     if any(state.seen) and not merged.opening.measured:

@@ -8,6 +8,7 @@ import numpy as np
 from common.body import Bdp, Vector, body_of_lengths, thesis_bdp
 from common.camera import Rig
 from common.messages import Report
+from integrator.pairing import Seen
 from integrator.perspective import universal_bdp
 from integrator.place import place_of, roots_of, scales_at
 
@@ -50,7 +51,7 @@ class Opening(NamedTuple):
         return bool(self.bodies) and not self.measured
 
 
-def prior(rig: Rig, seen: tuple[Report | None, Report | None]) -> Bdp:
+def prior(rig: Rig, seen: Seen) -> Bdp:
     """The thesis's proportions at the height that the silhouettes show (T4)."""
     scales = scales_at(rig, place_of(rig, roots_of(seen), np.zeros(3), 0))
     heights = [
@@ -62,9 +63,7 @@ def prior(rig: Rig, seen: tuple[Report | None, Report | None]) -> Bdp:
     return thesis_bdp(min(high, max(low, float(np.mean(heights)))))
 
 
-def step(
-    opening: Opening, rig: Rig, seen: tuple[Report | None, Report | None], due: int
-) -> tuple[Opening, Vector | None]:
+def step(opening: Opening, rig: Rig, seen: Seen, due: int) -> tuple[Opening, Vector | None]:
     """One pair of reports more; the navel's place where it is now settled, else None.
 
     A posture that is broken off for as many frames as it is due begins afresh.

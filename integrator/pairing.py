@@ -10,6 +10,8 @@ QUEUE: Final = 32
 NEVER_S: Final = float("-inf")
 
 Item = TypeVar("Item")
+Seen = tuple[Report | None, Report | None]
+"""Reports of viewer 1 and viewer 2 in which there is somebody."""
 
 
 class Pair(NamedTuple):
@@ -17,6 +19,17 @@ class Pair(NamedTuple):
 
     first: Report | None
     second: Report | None
+
+    @property
+    def newest(self) -> Report:
+        """The report whose frame was taken last; of a pair one at least is there."""
+        return max((r for r in self if r is not None), key=lambda report: report.clock_s)
+
+    @property
+    def with_somebody(self) -> Seen:
+        """The reports that have found a body."""
+        first, second = (None if r is None or r.root_px is None else r for r in self)
+        return first, second
 
 
 class State(NamedTuple):
@@ -67,11 +80,6 @@ def step(state: State, report: Report) -> tuple[State, list[Pair]]:
 def end(state: State, viewer: ViewerNumber) -> tuple[State, list[Pair]]:
     """A viewer has said its last: what waits for it goes out, and nothing waits for it again."""
     return _settled(state._replace(over=_with(state.over, viewer - 1, True)))
-
-
-def flush(state: State) -> tuple[State, list[Pair]]:
-    """Everything is over: what waits goes out."""
-    return _settled(state._replace(over=(True, True)))
 
 
 def overdue(state: State, now_s: float, wait_s: float) -> tuple[State, list[Pair]]:

@@ -7,7 +7,8 @@ import numpy as np
 from common.body import Vector
 from common.camera import Camera, Rig, as_paper_rig, centre, project, ray
 from common.kernel import NEAREST_M
-from common.messages import Pixel, Report
+from common.messages import Pixel
+from integrator.pairing import Seen
 from integrator.perspective import ground_position, px_per_m, scaling_factors, triangulate
 
 Roots = tuple[Pixel | None, Pixel | None]
@@ -17,7 +18,7 @@ AHEAD_M: Final = 4.0
 paper's cameras stand about so far away."""
 
 
-def roots_of(seen: tuple[Report | None, Report | None]) -> Roots:
+def roots_of(seen: Seen) -> Roots:
     """Where each view has the navel."""
     first, second = seen
     return (

@@ -9,7 +9,7 @@ from staging import report
 
 from common.body import POSE_INDEX, POSE_NAMES, Vector
 from common.messages import Report
-from integrator.fusion import fused, lifted, torso_yaw_deg
+from integrator.fusion import fused, lifted
 
 FACADE = {
     "r_shoulder_y": -90.0,
@@ -129,11 +129,3 @@ def test_resting_legs_are_not_squatting_ones() -> None:
     """P33: not squatting, theta_X of a leg that is not lifted is 0."""
     pose = fused(posed(r_hip_x=40.0, r_knee_x=-80.0), facade(), flank())
     assert of(pose, "r_hip_x", "r_knee_x") == [0.0, 0.0]
-
-
-@pytest.mark.parametrize("yaw_deg", [0.0, 30.0, 60.0, 90.0])
-def test_yaw_is_the_arc_cosine_of_the_width(yaw_deg: float) -> None:
-    """P49, T22."""
-    width = 40.0 * np.cos(np.radians(yaw_deg))
-    assert torso_yaw_deg((width, 0.0), 40.0) == pytest.approx(yaw_deg, abs=1e-6)
-    assert torso_yaw_deg((50.0, 0.0), 40.0) == 0.0

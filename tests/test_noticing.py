@@ -3,7 +3,7 @@
 from common.camera import paper_rig
 from common.config import BodySettings, Settings
 from common.messages import Box, Report
-from integrator import merge, noticing
+from integrator import memory, merge, noticing
 from integrator.pairing import Pair
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
@@ -30,7 +30,7 @@ def noticed(*pairs: Pair) -> noticing.State:
     return state
 
 
-def merged(calibrated: bool = True, measured: bool = True) -> merge.State:
+def merged(calibrated: bool = True, measured: bool = True) -> memory.State:
     state = merge.init(
         RIG if calibrated else None, 1 / 15, Settings(body=BodySettings(stature_m=1.62))
     )

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from common import clock
 from common.clock import Exchange
 from common.messages import Report, ViewerNumber
-from integrator.pairing import Pair, State, end, flush, init, overdue, step
+from integrator.pairing import Pair, State, end, init, overdue, step
 
 PERIOD_S = 1 / 15
 
@@ -63,6 +63,13 @@ def test_a_report_goes_out_alone_once_its_partner_cannot_come() -> None:
 def test_half_a_period_apart_is_together_and_more_is_not() -> None:
     assert times(heard(init(1.0), [report(1, 0.0), report(2, 0.5)])[1]) == [(0.0, 0.5)]
     assert times(heard(init(1.0), [report(1, 0.0), report(2, 0.5001)])[1]) == [(0.0, None)]
+
+
+def flush(state: State) -> tuple[State, list[Pair]]:
+    """Both viewers have said their last."""
+    state, first = end(state, 1)
+    state, second = end(state, 2)
+    return state, first + second
 
 
 def test_what_waits_goes_out_at_the_end() -> None:

@@ -20,13 +20,13 @@ from rich.table import Table
 
 from common.clips import open_clip
 from common.config import PageSettings, SearchSettings, Settings
-from integrator import merge
+from integrator import merge_rehearsal
 from synth.write import write_set
 from tritrack.offline import Decoders, track_clip
 from tritrack.runs import VERSIONS_OF, write_run
 from tritrack.scenes import by_opencv, figure_pairs, match_all, match_placed, scene
 from tritrack.session import free_settings, live
-from viewer import silhouette, track
+from viewer import silhouette, track, view_rehearsal
 from viewer.arms import facade_arms, flank_arms
 from viewer.background import learn
 from viewer.capture import recorded
@@ -134,9 +134,9 @@ def loaded_s() -> float:
     began = time.perf_counter()
     settings = Settings()
     room = learn([np.full((SMALL[1], SMALL[0], 3), 128, np.uint8)])
-    for viewer in merge.VIEWERS:
-        track.rehearse(track.init(viewer, room, None, settings), SMALL)
-    merge.rehearse(settings, SMALL)
+    for viewer in merge_rehearsal.VIEWERS:
+        view_rehearsal.rehearse(track.init(viewer, room, None, settings), SMALL)
+    merge_rehearsal.rehearse(settings, SMALL)
     return time.perf_counter() - began
 
 

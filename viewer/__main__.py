@@ -26,6 +26,7 @@ from viewer import track
 from viewer.capture import Frame, Live, RoomClock
 from viewer.empty import empty_room
 from viewer.jpeg import jpeg_of
+from viewer.view_rehearsal import rehearse
 
 WAIT_SHARE: Final = 0.5
 """How long a viewer waits for the guide of its last frame, in frame periods."""
@@ -132,7 +133,7 @@ def main(settings: Settings, viewer: ViewerNumber, place: Place = Place()) -> No
         for warning in warnings:
             log.warning(warning)
         state = track.init(viewer, room, clip.rig.cameras[0] if clip.rig else None, settings)
-        track.rehearse(state, view.size)
+        rehearse(state, view.size)
         gc.collect()
         gc.freeze()
         bus.announce(name)

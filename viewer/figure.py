@@ -6,17 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bits import Bits, count, pack_words
-from common.body import POSE_INDEX, POSE_NAMES, Vector
+from common.body import POSE_INDEX, POSE_NAMES, YAW_DEG, Vector
 from common.camera import PAPER_ROTATIONS, Camera
 from common.kernel import VIEW, match
 from common.kinematics import ALL_LIMBS
 from common.messages import Facing, ViewerNumber
 from common.similarity import Mask
 from viewer.tritree import search, window
-
-FLANK_YAW_DEG = -90.0
-"""Yaw of the trunk while viewer 1 sees the flank: the person has turned to camera 2. Silhouettes
-cannot tell this from its opposite (limitation L4)."""
 
 
 class Figure(NamedTuple):
@@ -129,7 +125,7 @@ def rotation_of(camera: Camera | None, viewer: ViewerNumber) -> NDArray[np.float
 
 def yaw_of(facing: Facing, viewer: ViewerNumber) -> float:
     """Yaw of the trunk, degrees, that a facing of this viewer stands for (P49)."""
-    return 0.0 if (facing == "facade") == (viewer == 1) else FLANK_YAW_DEG
+    return YAW_DEG[0 if (facing == "facade") == (viewer == 1) else 1]
 
 
 def figure_of(mask: Mask, body: Vector, pose: Vector, view: Vector) -> Figure:

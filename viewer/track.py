@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from common.body import POSE_INDEX, body_vector, rest_pose, stature, thesis_bdp
 from common.camera import Camera
 from common.config import Settings
-from common.kernel import draw_body
 from common.messages import Facing, Guide, Measure, Report, ViewerNumber, pack
 from viewer import silhouette
 from viewer.arms import facade_arms, flank_arms
@@ -204,33 +203,3 @@ def _limbs(
         return facade_legs(figure, settings, squatting), squatting
     near = 0 if state.rotation[0] @ [0.0, 0.0, 1.0] > 0.0 else 1
     return flank_legs(flank_arms(figure, settings, near, wide), settings, near), False
-
-
-def rehearse(state: State, size: tuple[int, int]) -> None:
-    """Step through made-up frames, so that all is compiled and loaded before the first real one.
-
-    Args:
-        state: As it begins; not changed.
-        size: (width, height) of the working picture.
-    """
-    width, height = size
-    view = view_at(state.rotation, 0.7 * height, (width / 2, 0.55 * height))
-    pose = rest_pose()
-    pose[POSE_INDEX["r_shoulder_z"]], pose[POSE_INDEX["l_shoulder_z"]] = 90.0, 270.0
-    person = draw_body(body_vector(thesis_bdp(1.0)), pose, view, size)
-    room = np.clip(state.silhouette.room, 0, 255).astype(np.uint8)
-    picture = np.where(person[:, :, None], 255 - room, room).astype(np.uint8)
-    guide = Guide(
-        frame=0,
-        captured_s=0.0,
-        clock_s=0.0,
-        frames=(0, 0),
-        status="tracking",
-        bdp=thesis_bdp(1.0),
-        scale_px_per_m=(0.7 * height,) * 2,
-        reference_px_per_m=(0.7 * height,) * 2,
-        root_px=((width / 2, 0.55 * height),) * 2,
-        pose=tuple(pose.tolist()),
-    )
-    for index, told in enumerate((None, guide, msgspec.structs.replace(guide, measured=True))):
-        state, _ = step(state, Frame(index, 0.0, 0.0, picture), told)

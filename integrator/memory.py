@@ -1,0 +1,29 @@
+"""What the integrator remembers from one pair of reports to the next."""
+
+from typing import Literal, NamedTuple
+
+from common.body import Vector
+from common.camera import Rig
+from common.config import Settings
+from common.messages import Facing
+from integrator import smoothing
+from integrator.opening import Opening
+
+
+class State(NamedTuple):
+    """Everything, as one value."""
+
+    settings: Settings
+    rig: Rig | None
+    """None until somebody is seen, where no calibration is given."""
+    scale_source: Literal["calibrated", "assumed"]
+    smooth: smoothing.State
+    opening: Opening = Opening()
+    pose: Vector | None = None
+    """Last fused pose; None while nobody is there."""
+    facing: tuple[Facing, Facing] = ("facade", "flank")
+    frames: tuple[int, int] = (-1, -1)
+    """The last frame that was heard of each viewer."""
+    last_s: float | None = None
+    badly: int = 0
+    """For how many frames the model has fitted badly."""

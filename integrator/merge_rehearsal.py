@@ -1,0 +1,49 @@
+"""Made-up reports, merged once, so that all is compiled and loaded before the first real ones."""
+
+from typing import Final
+
+import numpy as np
+
+from common.body import POSE_INDEX, body_vector, rest_pose, thesis_bdp
+from common.camera import paper_rig
+from common.config import Settings
+from common.kernel import draw_body, view_of
+from common.messages import Box, Report, ViewerNumber, pack
+from integrator import merge
+from integrator.pairing import Pair
+
+VIEWERS: Final[tuple[ViewerNumber, ...]] = (1, 2)
+
+
+def rehearse(settings: Settings, size: tuple[int, int]) -> None:
+    """Merge three pairs of reports of somebody who stands.
+
+    Args:
+        settings: Of the run.
+        size: (width, height) of the working picture.
+    """
+    state = merge.init(None, 1.0, settings)
+    for index in range(3):
+        first, second = (_report(viewer, index, size) for viewer in VIEWERS)
+        state, _, _ = merge.step(state, Pair(first, second))
+
+
+def _report(viewer: ViewerNumber, index: int, size: tuple[int, int]) -> Report:
+    width, height = size
+    rig = paper_rig(size, (1.25 * width,) * 2, (4.5, 4.5))
+    pose = rest_pose()
+    pose[POSE_INDEX["y"]] = 1.0
+    view = view_of(rig.cameras[viewer - 1])
+    mask = draw_body(body_vector(thesis_bdp(1.75)), pose, view, size)
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    return Report(
+        frame=index,
+        captured_s=float(index),
+        clock_s=float(index),
+        viewer=viewer,
+        width=width,
+        height=height,
+        silhouette=pack(mask),
+        box=Box(int(columns[0]), int(columns[-1]), int(rows[0]), int(rows[-1])),
+        root_px=(width / 2, height / 2),
+    )
