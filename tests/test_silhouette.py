@@ -7,12 +7,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from common.config import SilhouetteSettings
+from common.config import Settings, SilhouetteSettings
+from common.similarity import Mask
+from viewer import track
 from viewer.appearance import counted, familiar
 from viewer.background import Frame, learn, learn_from_clip, light_gain
 from viewer.difference import followed, label, seeds
 from viewer.outline import redraw
-from viewer.silhouette import Mask, Seen, State, init, step, warm
+from viewer.silhouette import Seen, State, init, step
+from viewer.view_rehearsal import rehearse
 
 HEIGHT, WIDTH = 240, 320
 SETTINGS = SilhouetteSettings()
@@ -166,9 +169,9 @@ def test_step_leaves_the_state_that_it_was_given() -> None:
     assert np.array_equal(first[0].room, again[0].room)
 
 
-def test_after_warming_no_frame_waits_for_the_compiler() -> None:
+def test_after_the_rehearsal_no_frame_waits_for_the_compiler() -> None:
     kernels = [light_gain, seeds, label, redraw, familiar, counted, followed]
-    warm()
+    rehearse(track.init(1, learn([shot(room(), 2.0, 9)]), None, Settings()), (WIDTH, HEIGHT))
     compiled = [list(kernel.signatures) for kernel in kernels]
     assert all(compiled)
     still = [shot(dressed(room(), body()), 2.0, seed) for seed in range(5)]

@@ -62,6 +62,11 @@ class Guides:
                 break
         return self.newest
 
+    @property
+    def malformed(self) -> int:
+        """How many messages in a guide's place were none."""
+        return self._inbox.malformed
+
     def _heard(self) -> int:
         return -1 if self.newest is None else self.newest.frames[self._viewer - 1]
 
@@ -90,6 +95,14 @@ def run(
     heart = Heart(bus, f"viewer {view.number}", pace)
     guides = Guides(bus.subscribe(Guide), view.number)
     before = -1
+
+    def counts() -> dict[str, int]:
+        return {
+            "dropped": live.dropped,
+            "guide_misses": guides.misses,
+            "malformed": guides.malformed,
+        }
+
     try:
         while not stop.is_set() and not live.over:
             frame = live.take(period_s)
@@ -101,7 +114,7 @@ def run(
             pace.done(frame.clock_s - live.offset_s, time.monotonic())
             if state.settings.pictures:
                 bus.publish(_picture(view.number, frame))
-            heart.beat("running", odd, dropped=live.dropped, guide_misses=guides.misses)
+            heart.beat("running", odd, **counts())
             before = frame.index
     finally:  # Also when the decoder broke: nobody shall wait for this view again.
         bus.publish(Ended(viewer=view.number, frames=pace.frames))
@@ -109,7 +122,7 @@ def run(
     if cut_off:
         log.warning(cut_off)
     odd = "\n".join(filter(None, (*warnings, cut_off)))
-    heart.beat("ended", odd, dropped=live.dropped, guide_misses=guides.misses)
+    heart.beat("ended", odd, **counts())
 
 
 def main(settings: Settings, viewer: ViewerNumber, place: Place = Place()) -> None:

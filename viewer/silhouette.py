@@ -8,14 +8,11 @@ from numpy.typing import NDArray
 
 from common.config import SilhouetteSettings
 from common.messages import Box
+from common.similarity import Mask
 from viewer.appearance import counted, familiar, fresh
 from viewer.background import Background, Floats, Frame, learn, light_gain
 from viewer.difference import Bytes, followed, label, seeds
 from viewer.outline import redraw
-
-Mask = NDArray[np.bool_]
-"""A silhouette: (height, width), True inside the person."""
-
 
 ROUNDS: Final = 2
 """How often the outline is drawn again, a pixel further each time; once where pixels are large."""

@@ -6,7 +6,7 @@ import numpy as np
 from common.body import POSE_INDEX, body_vector, rest_pose, thesis_bdp
 from common.kernel import draw_body
 from common.messages import Guide
-from viewer import track
+from viewer import silhouette, track
 from viewer.capture import Frame
 from viewer.figure import view_at
 
@@ -18,6 +18,7 @@ def rehearse(state: track.State, size: tuple[int, int]) -> None:
         state: As it begins; not changed.
         size: (width, height) of the working picture.
     """
+    silhouette.warm()
     width, height = size
     view = view_at(state.rotation, 0.7 * height, (width / 2, 0.55 * height))
     pose = rest_pose()
