@@ -4,7 +4,6 @@ import errno
 import logging
 import os
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -14,11 +13,12 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
 import msgspec
 import typer
-from rich.console import Console
 
 from common import config
 from common.config import Settings
 from common.messages import ViewerNumber
+from tritrack.answers import JsonWanted, console, results, tell
+from tritrack.calibrate import calibrate_app
 from tritrack.terminal import complain, json_text
 
 OURS = ("animator", "common", "integrator", "recognizer", "synth", "tritrack", "viewer")
@@ -39,20 +39,12 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-calibrate_app = typer.Typer(
-    help="Find out where the cameras are: from line markers, then from poles (section 4.1).",
-    no_args_is_help=True,
-)
 app.add_typer(calibrate_app, name="calibrate")
-
-console = Console(stderr=True)
-results = Console()
 
 log = logging.getLogger(__name__)
 
 ConfigPath = Annotated[Path, typer.Argument(help="A settings file (TOML), or a clip folder.")]
 Out = Annotated[Path, typer.Option(help="Folder to write into.")]
-JsonWanted = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 ModeName = Annotated[
     Literal["default", "paper"] | None, typer.Option(help="Instead of the settings' mode.")
 ]
@@ -260,36 +252,6 @@ def bench(
     bench_main(json_wanted, quick)
 
 
-@calibrate_app.command()
-def markers(
-    measured: Annotated[Path, typer.Argument(help="Points on the line markers (TOML).")],
-    json_wanted: JsonWanted = False,
-) -> None:
-    """Say how far each camera is turned, tilted and rolled away from the marked lines.
-
-    Example: tritrack calibrate markers configs/markers.toml
-    """
-    from integrator.calibration import run_markers
-
-    tell_rows(run_markers(measured), json_wanted)
-
-
-@calibrate_app.command()
-def poles(
-    measured: Annotated[Path, typer.Argument(help="Tops of the poles in both pictures (TOML).")],
-    out: Annotated[Path, typer.Option(help="The file to write.")] = Path("calibration.json"),
-    json_wanted: JsonWanted = False,
-) -> None:
-    """Find focal lengths and distances from poles at known places, with error bars.
-
-    Example: tritrack calibrate poles configs/poles.toml --out clips/calibration.json
-    """
-    from integrator.calibration import run_poles
-
-    tell_rows(run_poles(measured, out).cameras, json_wanted)
-    console.print(f"written to {out}", highlight=False, soft_wrap=True)
-
-
 def two_camera_clip(settings: Settings) -> Any:
     """The clip that settings name, with a camera for each viewer where it is calibrated."""
     from common.clips import open_clip
@@ -297,25 +259,6 @@ def two_camera_clip(settings: Settings) -> Any:
 
     clip = open_clip(settings)
     return msgspec.structs.replace(clip, rig=both_cameras(clip))
-
-
-def tell(facts: dict[str, Any], json_wanted: bool, line: str) -> None:
-    """A command's result: JSON on stdout, or a line for a person."""
-    if json_wanted:
-        print(json_text(facts))
-    else:
-        console.print(line, markup=False, highlight=False, soft_wrap=True)
-
-
-def tell_rows(rows: Sequence[msgspec.Struct], json_wanted: bool) -> None:
-    """A command's result for each camera: JSON, or a table."""
-    from tritrack.table import table_of_rows
-
-    facts: list[dict[str, Any]] = [msgspec.to_builtins(row) for row in rows]
-    if json_wanted:
-        print(json_text(facts))
-    else:
-        results.print(table_of_rows(facts))
 
 
 def main() -> None:
