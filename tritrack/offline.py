@@ -68,13 +68,8 @@ def track_clip(
     """
     began = time.perf_counter()
     clip = open_clip(settings, decoders.of[1], views)
-    warnings = list(clip.warnings)
-    viewers: dict[ViewerNumber, track.State] = {}
     rig = both_cameras(clip)
-    for view, (room, odd) in zip(clip.views, _rooms(clip, settings, decoders), strict=True):
-        warnings += [odd] if odd else []
-        camera = None if rig is None else rig.cameras[view.number - 1]
-        viewers[view.number] = track.init(view.number, room, camera, settings)
+    viewers, odd_rooms = _viewers(clip, rig, settings, decoders)
     prepared = time.perf_counter()
     state = merge.init(rig, clip.every / clip.views[0].fps, settings)
     noticed = noticing.State()
@@ -93,10 +88,8 @@ def track_clip(
         bodies.append(body)
         spent["viewers"] += middle - start
         spent["integrator"] += time.perf_counter() - middle
-    warnings += [
-        odd for view in clip.views if (odd := shortfall(view, decoders.of[view.number].came))
-    ]
-    warnings += noticing.warnings(noticed, state)
+    cut_off = [shortfall(view, decoders.of[view.number].came) for view in clip.views]
+    noticed_odd = noticing.warnings(noticed, state)
     done = time.perf_counter()
     seconds = {"preparation": prepared - began, **spent, "all": done - began}
     facts = {
@@ -106,7 +99,7 @@ def track_clip(
         "seconds": {name: round(value, 4) for name, value in seconds.items()},
         "frames_a_second": round(len(bodies) / (done - prepared), 1),
         "scale_source": state.scale_source,
-        "warnings": warnings,
+        "warnings": [*clip.warnings, *odd_rooms, *filter(None, cut_off), *noticed_odd],
     }
     return Tracked(clip, bodies, facts)
 
@@ -123,6 +116,19 @@ def overridden(settings: Settings, mode: Mode | None, size: str | None) -> Setti
         )
     except ValueError as error:
         raise SettingsError(str(error)) from error
+
+
+def _viewers(
+    clip: Clip, rig: Rig | None, settings: Settings, decoders: Decoders
+) -> tuple[dict[ViewerNumber, track.State], list[str]]:
+    """Viewers that know their rooms, and what is odd about these."""
+    viewers: dict[ViewerNumber, track.State] = {}
+    odd_rooms = []
+    for view, (room, odd) in zip(clip.views, _rooms(clip, settings, decoders), strict=True):
+        odd_rooms += [odd] if odd else []
+        camera = None if rig is None else rig.cameras[view.number - 1]
+        viewers[view.number] = track.init(view.number, room, camera, settings)
+    return viewers, odd_rooms
 
 
 def _rooms(clip: Clip, settings: Settings, decoders: Decoders) -> list[tuple[Background, str]]:
