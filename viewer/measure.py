@@ -11,7 +11,9 @@ import numpy as np
 from common.bits import count, pack_words
 from common.body import (
     POSE_INDEX,
+    SHOULDER_DROP,
     THESIS_RATIOS,
+    TORSO_DEPTH_SHARE,
     Bdp,
     Elliptic,
     Round,
@@ -27,14 +29,10 @@ from viewer.tritree import tritree
 
 TORSO_SHARE: Final = 0.4
 """Torso to leg is 4 : 6 (P16)."""
-SHOULDER_DROP: Final = 0.45
-"""Shoulder below the top of the trunk, in long radii of the trunk (P18)."""
 HEAD_LONG, HEAD_SHORT, LEG_LONG, LEG_SHORT = 0.20, 0.16, 0.20, 0.18
 """Radii over the width of the trunk (P17); the leg's depth as M10 reads it."""
 CENTRE_SHARE: Final = 1 - (1 - TORSO_SHARE) * (1 - THESIS_RATIOS["head"] / THESIS_RATIOS["stature"])
 """Centre of the body below the crown over the stature, by the thesis's head (T4) and P16."""
-FLAT_TORSO: Final = 0.6
-"""Depth of the trunk over its width until the side view has said it."""
 
 SPAN_LEAST: Final = 0.7
 """Arms are stretched out when they span this share of the height at least."""
@@ -150,7 +148,7 @@ def measure_front(mask: Mask, box: Box) -> Measure:
     leg = Elliptic(LEG_LONG * width, LEG_SHORT * width, found.leg)
     arms = [Round(thickness / 2, max(length / 2, 1.0)) for length in lengths]
     bdp = Bdp(
-        torso=Elliptic(radius, FLAT_TORSO * radius, found.torso),
+        torso=Elliptic(radius, TORSO_DEPTH_SHARE * radius, found.torso),
         head=head,
         r_upper_leg=leg,
         l_upper_leg=leg,
