@@ -16,7 +16,6 @@ from common.messages import Box
 from common.similarity import Mask, similarity
 from viewer.measure import (
     arm_angle_deg,
-    fine_tuned,
     measure_front,
     measure_side,
     outline_of,
@@ -24,6 +23,7 @@ from viewer.measure import (
     refusal_of,
     without_head,
 )
+from viewer.tuning import fine_tuned
 
 BDP = thesis_bdp(100.0)
 TRUNK_PX = 2 * BDP.torso.long_radius

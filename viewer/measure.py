@@ -1,31 +1,22 @@
 """Body definition parameters from the opening posture: upright, arms stretched (section 2.4)."""
 
 import math
-from collections.abc import Callable
 from typing import Final, NamedTuple
 
 import cv2
-import msgspec
 import numpy as np
 
-from common.bits import count, pack_words
 from common.body import (
-    POSE_INDEX,
     SHOULDER_DROP,
     THESIS_RATIOS,
     TORSO_DEPTH_SHARE,
     Bdp,
     Elliptic,
     Round,
-    body_vector,
-    rest_pose,
 )
-from common.camera import PAPER_ROTATIONS
-from common.kernel import match
 from common.messages import Box, Measure
 from common.similarity import Mask
-from viewer.figure import view_at
-from viewer.tritree import tritree
+from viewer.tuning import fine_tuned
 
 TORSO_SHARE: Final = 0.4
 """Torso to leg is 4 : 6 (P16)."""
@@ -40,16 +31,6 @@ ARM_LIMITS_DEG: Final = (70.0, 115.0)
 """Arms at the horizontal or a little below: above it P14 finds the shoulder in the arms (P10)."""
 TORSO_LIMITS: Final = (0.12, 0.36)
 """Widths of a trunk over the height that a person standing with closed feet can have."""
-GRID: Final = 8
-"""Fine tuning counts lengths in eighths of a pixel."""
-ENOUGH: Final = 1e-3
-"""Fine tuning stops when a round adds less than this to S (P20)."""
-MOST_ROUNDS: Final = 4
-ABOVE_CENTRE: Final = 0b1111000011
-"""Limbs that fine tuning matches: trunk, head and arms."""
-TIP_PX: Final = 1.0
-"""How far fine tuning may move an arm's tip from where it was seen: hands are thinner than the
-cylinders, so S alone would cut them off (P20: within 1 px)."""
 
 
 class Outline(NamedTuple):
@@ -183,69 +164,6 @@ def measure_side(mask: Mask, box: Box) -> Measure:
         height_px=float(height),
         centre_px=((x1 + x2 + 1) / 2, float(box.top)),
         depth_px=(x2 + 1 - x1) / 2,
-    )
-
-
-def fine_tuned(
-    mask: Mask, bdp: Bdp, centre_px: tuple[float, float], arms_z_deg: tuple[float, float]
-) -> tuple[Bdp, tuple[float, float]]:
-    """Trunk radius, arm radius, arm angles and arm length, each set in turn to what scores best.
-
-    Coordinate descent on S by the tritree itself, until a round gains less than ENOUGH (P20).
-    Only what lies above y_c is matched: legs that stand apart would widen the trunk (P13).
-    """
-    upper = mask.copy()
-    upper[round(centre_px[1]) :] = False
-    seen = pack_words(upper)
-    seen_px = count(seen)
-    view = view_at(np.array(PAPER_ROTATIONS[0]), 1.0, centre_px)
-    # trunk radius, arm radius, arm lengths right and left (px), angles right and left (deg)
-    values = [
-        bdp.torso.long_radius,
-        bdp.r_upper_arm.radius,
-        2 * bdp.r_upper_arm.height,
-        2 * bdp.l_upper_arm.height,
-        *arms_z_deg,
-    ]
-    spans = [max(1.0, values[0] / 4), max(1.0, values[1]), TIP_PX, TIP_PX, 8.0, 8.0]
-
-    def score_of(trial: list[float]) -> float:
-        body, pose = body_vector(_tuned(bdp, trial)), rest_pose()
-        pose[POSE_INDEX["r_shoulder_z"]], pose[POSE_INDEX["l_shoulder_z"]] = trial[4], trial[5]
-        return float(match(body, pose, view, ABOVE_CENTRE, mask.shape[1], seen, seen_px))
-
-    def score_along(i: int) -> Callable[[float], float]:
-        return lambda eighths: score_of([*values[:i], eighths / GRID, *values[i + 1 :]])
-
-    best = score_of(values)
-    for _ in range(MOST_ROUNDS):
-        before = best
-        for i, span in enumerate(spans):
-            reach = 2 ** round(math.log2(span * GRID))
-            middle = round(values[i] * GRID)
-            found = tritree(
-                score_along(i),
-                (max(1, middle - reach), max(1, middle - reach) + 2 * reach),
-                2,
-            )
-            if found.score > best:
-                best, values[i] = found.score, found.angle_deg / GRID
-        if best - before < ENOUGH:
-            break
-    return _tuned(bdp, values), (values[4], values[5])
-
-
-def _tuned(bdp: Bdp, values: list[float]) -> Bdp:
-    radius, arm_radius, right, left = values[:4]
-    torso = msgspec.structs.replace(bdp.torso, long_radius=radius)
-    r_arm, l_arm = Round(arm_radius, right / 2), Round(arm_radius, left / 2)
-    return msgspec.structs.replace(
-        bdp,
-        torso=torso,
-        r_upper_arm=r_arm,
-        r_lower_arm=r_arm,
-        l_upper_arm=l_arm,
-        l_lower_arm=l_arm,
     )
 
 
