@@ -22,6 +22,8 @@ OVERHEAD_M: Final = 2.3
 """What is higher gets no shadow: the ceiling is not behind anybody."""
 BESIDE_M: Final = 1.0
 """What is not that far ahead of a lamp gets no shadow: it is beside or behind it."""
+SELF_SHADE: Final = 0.01
+"""Share of the way to the lamp within which a box hides no lamp from a point: it may lie on it."""
 LAMP_SPREAD_M: Final = 0.25
 """Half the size of the lamp: what stands in the room throws soft shadows, too."""
 SAMPLES: Final = 2
@@ -186,13 +188,20 @@ def _leaving(origin: Vector, rays: NDArray[np.float64], box: Box) -> Vector:
     return found
 
 
-def _entering(origin: Vector, rays: NDArray[np.float64], box: Box) -> Vector:
-    """How far along each ray a box begins; infinite where it is missed."""
+def _entering(origins: Vector, rays: NDArray[np.float64], box: Box, least: float = 0.0) -> Vector:
+    """How far along each ray a box begins; infinite where it is missed.
+
+    Args:
+        origins: Where the rays start: one place (3,), or one for each (n, 3).
+        rays: (n, 3).
+        box: What they may meet.
+        least: A box that begins nearer than this is no hit: a point on it does not shade itself.
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
-        first, second = (box.low - origin) / rays, (box.high - origin) / rays
+        first, second = (box.low - origins) / rays, (box.high - origins) / rays
     near = np.minimum(first, second).max(axis=1)
     far = np.maximum(first, second).min(axis=1)
-    found: Vector = np.where((near < far) & (near > 0), near, np.inf)
+    found: Vector = np.where((near < far) & (near > least), near, np.inf)
     return found
 
 
@@ -208,22 +217,11 @@ def _light(
         towards = place - points
         hit = np.zeros(len(points), bool)
         for box in boxes[1:]:
-            entry = _entering_many(points, towards, box)
-            hit |= entry < 1.0
+            hit |= _entering(points, towards, box, SELF_SHADE) < 1.0
         shaded += 0.5 * hit
     walls = np.minimum(points - boxes[0].low, boxes[0].high - points)
     corner = np.prod(1.0 - 0.22 * np.exp(-np.sort(walls, axis=1)[:, 1:2] / 0.18), axis=1)
     found: Vector = (0.45 + 0.75 * lamp * (1.0 - 0.45 * shaded)) * corner
-    return found
-
-
-def _entering_many(origins: NDArray[np.float64], rays: NDArray[np.float64], box: Box) -> Vector:
-    """As `_entering`, each ray from its own point; a start within 1 cm of the box is no hit."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        first, second = (box.low - origins) / rays, (box.high - origins) / rays
-    near = np.minimum(first, second).max(axis=1)
-    far = np.maximum(first, second).min(axis=1)
-    found: Vector = np.where((near < far) & (near > 0.01), near, np.inf)
     return found
 
 
