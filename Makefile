@@ -1,7 +1,7 @@
 PYTHON ?= python3.11
 VENV := .venv
 BIN := $(VENV)/bin
-SOURCES := $(wildcard animator/*.py common/*.py integrator/*.py synth/*.py viewer/*.py)
+SOURCES := $(wildcard animator/*.py common/*.py integrator/*.py synth/*.py tritrack/*.py viewer/*.py)
 
 .PHONY: setup demo test check bench clean
 
