@@ -25,5 +25,8 @@ class State(NamedTuple):
     frames: tuple[int, int] = (-1, -1)
     """The last frame that was heard of each viewer."""
     last_s: float | None = None
+    beside_m: Vector | None = None
+    """How far the joints lie beside the cylinders' landmarks, (15, 3) in the trunk's axes; None:
+    where they are."""
     badly: int = 0
     """For how many frames the model has fitted badly."""

@@ -17,7 +17,7 @@ from common.config import Settings
 from common.kernel import match, view_of
 from common.kinematics import ALL_LIMBS
 from common.messages import Body, Facing, Guide, Report
-from integrator import adapting, opening, smoothing, telling
+from integrator import adapting, insight, opening, smoothing, telling
 from integrator.arbiter import Sight, arbitrate
 from integrator.assumed import assumed_rig
 from integrator.fusion import fused
@@ -62,7 +62,13 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
         return (state, *telling.nobody(state, pair))
     known, settled_at = opening.step(state.opening, rig, seen, state.settings.body.opening_frames)
     state = _faced(state._replace(opening=known), seen)
-    pose = _settled(state, rig, seen, _posed(state, rig, seen, settled_at))
+    pose = _posed(state, rig, seen, settled_at)
+    found = _insight(state, rig, seen)
+    if found is None:
+        pose, state = _settled(state, rig, seen, pose), state._replace(beside_m=None)
+    else:
+        pose, beside_m = found
+        state = state._replace(beside_m=beside_m)
     if state.settings.mode == "default":
         state = state._replace(opening=adapting.step(state.opening, rig, seen, pose))
     state, angles, scores = _smoothed(state._replace(pose=pose), rig, pair, dt_s)
@@ -117,6 +123,22 @@ def _posed(state: State, rig: Rig, seen: Seen, settled_at: Vector | None) -> Vec
         pose[:3] = settled_at
     pose[POSE_INDEX["torso_y"]] = YAW_DEG[front]
     return pose
+
+
+def _insight(state: State, rig: Rig, seen: Seen) -> tuple[Vector, Vector] | None:
+    """What both silhouettes propose together: a departure from the paper, as `_settled` is."""
+    first, second = seen
+    if state.settings.mode != "default" or first is None or second is None:
+        return None
+    if first.cut or second.cut:
+        return None
+    assert state.opening.bdp is not None
+    front = 0 if state.facing[0] == "facade" else 1
+    found = insight.seen_joints(state.opening.bdp, rig, (first, second), front)
+    if found is None:
+        return None
+    before = rest_pose() if state.pose is None else state.pose
+    return insight.pose_and_rest(body_vector(state.opening.bdp), before, found)
 
 
 def _settled(state: State, rig: Rig, seen: Seen, pose: Vector) -> Vector:

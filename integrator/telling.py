@@ -9,6 +9,7 @@ from common.body import ANGLES_IN_POSE, Vector, body_vector, rest_pose
 from common.camera import Rig, project
 from common.kinematics import joints
 from common.messages import Body, Guide, Pixel, Point, Status, Views
+from integrator import insight
 from integrator.memory import State
 from integrator.pairing import Pair
 from integrator.place import pixels_of, scales_at, scales_since
@@ -33,7 +34,10 @@ def body_of(
     assert state.opening.bdp is not None
     pose, in_pose = state.pose.copy(), list(ANGLES_IN_POSE)
     pose[in_pose] = angles_deg
-    places = joints(body_vector(state.opening.bdp), pose)
+    body = body_vector(state.opening.bdp)
+    places = joints(body, pose)
+    if state.beside_m is not None:
+        places += state.beside_m @ insight.trunk_axes(body, pose).T
     return Body(
         **_moment(state, pair),
         status=_status(state),
