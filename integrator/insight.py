@@ -1,4 +1,4 @@
-"""The pose that both silhouettes of one instant propose, and where joints lie beside the cylinders."""
+"""The pose that both silhouettes propose, and where joints lie beside the cylinders."""
 
 from typing import Final
 

@@ -1,9 +1,9 @@
-"""Joints proposed from both silhouettes of one instant alone, by a network learnt from made-up people."""
+"""Joints proposed from both silhouettes of one instant, by a network taught on made-up people."""
 
 import math
 from functools import lru_cache
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import cv2
 import numpy as np
@@ -105,8 +105,8 @@ def look(masks: tuple[Mask, Mask], rig: Rig, stature_m: float, facade: int) -> L
     if facade:
         parts.reverse()
         places.reverse()
-    cells = np.concatenate([*(p.ravel() for p in parts), *places]).astype(np.float32)
-    return Look(cells, middle_m, turn, bool(facade))
+    cells = np.concatenate([*(part.ravel() for part in parts), *places])
+    return Look(cells.astype(np.float32), middle_m, turn, bool(facade))
 
 
 def _middle(mask: Mask) -> tuple[float, float]:
@@ -165,14 +165,16 @@ def save(network: Network, path: Path) -> None:
     parts = {"mean": network.mean, "components": network.components}
     for i, (weights, biases) in enumerate(zip(network.weights, network.biases, strict=True)):
         parts |= {f"weights{i}": weights, f"biases{i}": biases}
-    np.savez_compressed(path, **{name: part.astype(np.float16) for name, part in parts.items()})
+    halves: dict[str, Any] = {name: part.astype(np.float16) for name, part in parts.items()}
+    with path.open("wb") as file:
+        np.savez(file, **halves)
 
 
 def run(network: Network, cells: NDArray[np.float32]) -> NDArray[np.float32]:
     """Outputs (n, 3 * joints) for inputs (n, INPUTS)."""
     values = (cells - network.mean) @ network.components
     for weights, bias in zip(network.weights[:-1], network.biases[:-1], strict=True):
-        values = np.maximum(values @ weights + bias, 0.0)
+        values = np.asarray((values @ weights + bias).clip(min=0.0), np.float32)
     out: NDArray[np.float32] = values @ network.weights[-1] + network.biases[-1]
     return out
 

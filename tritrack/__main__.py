@@ -204,17 +204,30 @@ def synth(
 
 @app.command()
 def train(
-    runs: Annotated[
-        list[Path], typer.Argument(help="Clips that name their posture, or their run folders.")
-    ],
     out: Annotated[Path, typer.Option(help="The model file to write.")],
+    runs: Annotated[
+        list[Path] | None,
+        typer.Argument(help="Clips that name their posture, or their run folders."),
+    ] = None,
+    what: Annotated[
+        Literal["postures", "proposals"],
+        typer.Option(help="What is learnt; proposals of poses need no clips."),
+    ] = "postures",
     mode: ModeName = None,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Learn postures from clips or runs: one hidden Markov model each.
+    """Learn postures from clips or runs, or how outlines show poses from made-up people.
 
     Example: tritrack train clips/*/ --out postures.npz
     """
+    if what == "proposals":
+        from tritrack.proposals import train_proposals
+
+        facts = train_proposals(out, 0, console)
+        tell(facts, json_wanted, f"{facts['instants']} instants learnt, written to {out}")
+        return
+    if not runs:
+        raise typer.BadParameter("name clips or run folders to learn postures from")
     from tritrack.training import train_postures
 
     facts = train_postures(runs, out, mode, console)
