@@ -172,9 +172,9 @@ def save(network: Network, path: Path) -> None:
 
 def run(network: Network, cells: NDArray[np.float32]) -> NDArray[np.float32]:
     """Outputs (n, 3 * joints) for inputs (n, INPUTS)."""
-    values = (cells - network.mean) @ network.components
+    values: Any = (cells - network.mean) @ network.components
     for weights, bias in zip(network.weights[:-1], network.biases[:-1], strict=True):
-        values = np.asarray((values @ weights + bias).clip(min=0.0), np.float32)
+        values = (values @ weights + bias).clip(min=0.0)
     out: NDArray[np.float32] = values @ network.weights[-1] + network.biases[-1]
     return out
 
