@@ -95,14 +95,6 @@ def run(
     heart = Heart(bus, f"viewer {view.number}", pace)
     guides = Guides(bus.subscribe(Guide), view.number)
     before = -1
-
-    def counts() -> dict[str, int]:
-        return {
-            "dropped": live.dropped,
-            "guide_misses": guides.misses,
-            "malformed": guides.malformed,
-        }
-
     try:
         while not stop.is_set() and not live.over:
             frame = live.take(period_s)
@@ -114,7 +106,7 @@ def run(
             pace.done(frame.clock_s - live.offset_s, time.monotonic())
             if state.settings.pictures:
                 bus.publish(_picture(view.number, frame))
-            heart.beat("running", odd, **counts())
+            heart.beat("running", odd, **_lost(live, guides))
             before = frame.index
     finally:  # Also when the decoder broke: nobody shall wait for this view again.
         bus.publish(Ended(viewer=view.number, frames=pace.frames))
@@ -122,7 +114,7 @@ def run(
     if cut_off:
         log.warning(cut_off)
     odd = "\n".join(filter(None, (*warnings, cut_off)))
-    heart.beat("ended", odd, **counts())
+    heart.beat("ended", odd, **_lost(live, guides))
 
 
 def main(settings: Settings, viewer: ViewerNumber, place: Place = Place()) -> None:
@@ -183,6 +175,15 @@ def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | No
         stop.wait(0.02)
     log.info("the room's clock is %.6f s from ours (within %.6f)", offset.offset_s, offset.error_s)
     return RoomClock(start_s, offset.offset_s)
+
+
+def _lost(live: Live, guides: Guides) -> dict[str, int]:
+    """What was lost so far, as a Pulse tells it."""
+    return {
+        "dropped": live.dropped,
+        "guide_misses": guides.misses,
+        "malformed": guides.malformed,
+    }
 
 
 def _picture(viewer: ViewerNumber, frame: Frame) -> Picture:
