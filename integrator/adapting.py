@@ -11,8 +11,8 @@ from common.camera import Rig
 from common.kernel import match
 from common.kinematics import ALL_LIMBS
 from integrator.opening import Opening, Sample
-from integrator.outlines import outlines_of
 from integrator.pairing import Seen
+from integrator.two_outlines import outlines_of
 
 GROUPS: Final[tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]] = (
     (("torso",), ("long_radius",)),

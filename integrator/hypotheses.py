@@ -15,7 +15,7 @@ from common.camera import Rig
 from common.kernel import draw_limbs, match_over
 from common.kinematics import ALL_LIMBS, ARM_LIMBS, LEG_LIMBS
 from common.messages import Report
-from integrator.outlines import outlines_of
+from integrator.two_outlines import outlines_of
 
 Doubt = Callable[[Vector, Vector], NDArray[np.float64]]
 """From the pose so far and that of the frame before: it, and others that may be meant, (n, 25)."""

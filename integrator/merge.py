@@ -23,9 +23,9 @@ from integrator.assumed import assumed_rig
 from integrator.fusion import fused
 from integrator.hypotheses import settled
 from integrator.memory import State
-from integrator.outlines import packed
 from integrator.pairing import Pair, Seen
 from integrator.place import place_of, roots_of, scales_at
+from integrator.two_outlines import packed
 
 LOST_SCORE: Final = 0.35
 """A model that fits worse than this in every view is not believed."""
@@ -126,11 +126,14 @@ def _posed(state: State, rig: Rig, seen: Seen, settled_at: Vector | None) -> Vec
 
 
 def _insight(state: State, rig: Rig, seen: Seen) -> tuple[Vector, Vector] | None:
-    """What both silhouettes propose together: a departure from the paper, as `_settled` is."""
+    """What both silhouettes propose together: a departure from the paper, as `_settled` is.
+
+    An assumed rig is left to `_settled`: the network was taught places in calibrated rooms.
+    """
     first, second = seen
     if state.settings.mode != "default" or first is None or second is None:
         return None
-    if first.cut or second.cut:
+    if first.cut or second.cut or state.scale_source == "assumed":
         return None
     assert state.opening.bdp is not None
     front = 0 if state.facing[0] == "facade" else 1
