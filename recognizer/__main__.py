@@ -7,19 +7,23 @@ from collections import deque
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
-from common.body import ANGLES_IN_POSE, rest_pose
+from common.body import ANGLES_IN_POSE
 from common.bus import Bus, open_client
 from common.config import Settings
 from common.messages import Body, Posture
 from common.process import READY_S, Heart, Place, process
 from common.rate import Pace
 from recognizer import spotting
+from recognizer.features import ROW_NAMES, rows
 from recognizer.model_file import ModelError, load
 from recognizer.postures import PostureModel
 
 SHIPPED = Path(__file__).parent / "postures.npz"
 """The model that is used when the settings name none."""
+SHIPPED_PAPER = SHIPPED.with_name("postures_paper.npz")
+"""The same in `paper` mode: the paper's recogniser, learnt from what that mode tracks."""
 HEAR_S = 0.05
 MOVING = ("tracking", "predicted")
 """States in which a body's angles say what it does; the opening posture is no motion."""
@@ -33,9 +37,7 @@ def step(state: spotting.State, frames: deque[int], body: Body) -> tuple[spottin
         frames: Frame numbers of all steps so far that a window can reach; this one is added.
         body: As the integrator published it.
     """
-    in_motion = body.status in MOVING and body.pose
-    angles = np.array([body.pose[i] for i in ANGLES_IN_POSE]) if in_motion else None
-    state, judged = spotting.step(state, angles)
+    state, judged = spotting.step(state, row_of(body))
     frames.append(body.frame)
     newest = state.next_frame - 1
     return state, Posture(
@@ -46,6 +48,14 @@ def step(state: spotting.State, frames: deque[int], body: Body) -> tuple[spottin
         log_likelihoods=judged.log_likelihoods,
         segment=(frames[judged.first - newest - 1], frames[judged.last - newest - 1]),
     )
+
+
+def row_of(body: Body) -> NDArray[np.float64] | None:
+    """What a body shows to the recogniser, (20,); None where it is not followed in a motion."""
+    if body.status not in MOVING or not body.pose:
+        return None
+    angles_deg = np.array([[body.pose[i] for i in ANGLES_IN_POSE]])
+    return rows(angles_deg, np.array([body.joints_m]))[0]
 
 
 def reach(window_frames: int) -> deque[int]:
@@ -83,7 +93,8 @@ def model_of(settings: Settings, meant: str = "") -> PostureModel:
     Raises:
         ModelError: When the model cannot be used, or does not know that posture.
     """
-    path = Path(settings.recognizer.model) if settings.recognizer.model else SHIPPED
+    shipped = SHIPPED_PAPER if settings.mode == "paper" else SHIPPED
+    path = Path(settings.recognizer.model) if settings.recognizer.model else shipped
     model = load(path)
     if meant and meant not in model.names:
         raise ModelError(
@@ -103,8 +114,8 @@ def main(settings: Settings, period_s: float, place: Place = Place()) -> None:
     """
     model = model_of(settings)
     rehearsal = spotting.init(model, settings.recognizer.window_frames)
-    for _ in range(spotting.NAMED_FROM_FRAMES + 2):
-        rehearsal, _ = spotting.step(rehearsal, rest_pose()[list(ANGLES_IN_POSE)])
+    for turn_deg in range(spotting.NAMED_FROM_FRAMES + 2):
+        rehearsal, _ = spotting.step(rehearsal, np.full(len(ROW_NAMES), 9.0 * turn_deg))
     with (
         process("recognizer", place) as stop,
         open_client(settings.bus, settings.room, READY_S) as bus,

@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from recognizer.features import Angles
-from recognizer.postures import POSTURES, Topology, name, train
+from recognizer.features import Rows
+from recognizer.learning import train
+from recognizer.postures import POSTURES, Recognizer, Topology, name
 
 Z_95 = 1.959964
 """Standard normal quantile of a two-sided interval of 95 %."""
@@ -19,7 +20,7 @@ class Recording(NamedTuple):
 
     performer: str
     posture: str
-    angles_deg: Angles
+    rows: Rows
 
 
 class Outcome(NamedTuple):
@@ -32,6 +33,7 @@ class Outcome(NamedTuple):
 def recognise(
     learnt_from: Sequence[Recording],
     tested_on: Sequence[Recording],
+    recognizer: Recognizer = "default",
     topology: Topology = "ergodic",
     seed: int = 0,
 ) -> list[Outcome]:
@@ -44,21 +46,25 @@ def recognise(
     both = sorted({recording.performer for recording in tested_on} & set(performers))
     if both:
         raise ValueError(f"{', '.join(both)}: in training and in test; split by performer")
-    sequences: dict[str, list[Angles]] = {}
+    sequences: dict[str, list[Rows]] = {}
     for recording in learnt_from:
-        sequences.setdefault(recording.posture, []).append(recording.angles_deg)
-    model = train(sequences, topology, seed, performers)
-    return [Outcome(one.posture, name(model, one.angles_deg)) for one in tested_on]
+        sequences.setdefault(recording.posture, []).append(recording.rows)
+    model = train(sequences, recognizer, topology, seed, performers)
+    return [Outcome(one.posture, name(model, one.rows)) for one in tested_on]
 
 
 def leave_one_performer_out(
-    recordings: Sequence[Recording], topology: Topology = "ergodic", seed: int = 0
+    recordings: Sequence[Recording],
+    recognizer: Recognizer = "default",
+    topology: Topology = "ergodic",
+    seed: int = 0,
 ) -> Iterator[Outcome]:
     """Each performer named by a model of all others."""
     for performer in sorted({recording.performer for recording in recordings}):
         yield from recognise(
             [one for one in recordings if one.performer != performer],
             [one for one in recordings if one.performer == performer],
+            recognizer,
             topology,
             seed,
         )

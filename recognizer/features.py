@@ -5,10 +5,16 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import ANGLE_INDEX
+from common.body import ANGLE_INDEX, ANGLE_NAMES, JOINT_NAMES
 
-Angles = NDArray[np.float64]
-"""Angles of a stretch of frames: (n, 17) degrees, ANGLE_NAMES order, NaN where there is no pose."""
+Rows = NDArray[np.float64]
+"""What was tracked in a stretch of frames: (n, 20), ROW_NAMES order, NaN where there is no pose."""
+
+ROW_NAMES: Final = (*ANGLE_NAMES, "root_x", "root_y", "root_z")
+"""The 17 angles (degrees) and where the pelvis is in the world (leg lengths of that body)."""
+
+LEG: Final = tuple(JOINT_NAMES.index(f"r_{joint}") for joint in ("hip", "knee", "ankle"))
+PELVIS: Final = JOINT_NAMES.index("pelvis")
 
 Features = NDArray[np.float64]
 """Feature vectors: (n, 16), each entry in [-1, 1]."""
@@ -37,17 +43,31 @@ FEATURE_NAMES: Final = tuple(
 """The order of a feature vector; a model says for which order it was trained."""
 
 
-def with_pose(angles_deg: Angles) -> Angles:
-    """The rows (m, 17) in which all ten angles are known: frames without a pose are dropped.
+def rows(angles_deg: NDArray[np.float64], joints_m: NDArray[np.float64]) -> Rows:
+    """What a recogniser is told of a stretch of frames, (n, 20).
+
+    Places count in leg lengths: a tall and a small person who squat alike shall look alike, and a
+    world of assumed scale like a measured one.
+
+    Args:
+        angles_deg: (n, 17), ANGLE_NAMES order; NaN where there is no pose.
+        joints_m: (n, 15, 3), JOINT_NAMES order; NaN where there is no pose.
+    """
+    hip, knee, ankle = (joints_m[:, joint] for joint in LEG)
+    leg_m = np.linalg.norm(knee - hip, axis=1) + np.linalg.norm(ankle - knee, axis=1)
+    return np.concatenate([angles_deg, joints_m[:, PELVIS] / leg_m[:, np.newaxis]], axis=1)
+
+
+def with_pose(given: Rows) -> Rows:
+    """The rows (m, 20) in which all is known: frames without a pose are dropped.
 
     An observation that was not made is no symbol: a hidden Markov model takes the next one, and
     carrying the old pose on would tell it of a standstill that nobody saw.
     """
-    wanted = [ANGLE_INDEX[name] for name in ANGLES]
-    return angles_deg[np.isfinite(angles_deg[:, wanted]).all(axis=1)]
+    return given[np.isfinite(given).all(axis=1)]
 
 
-def features(angles_deg: Angles) -> Features:
+def features(given: Rows) -> Features:
     """The ten angles of each frame as a point of a space without seams, shape (n, 16).
 
     The observation stays the paper's, the space in which symbols are neighbours is ours. As
@@ -58,7 +78,7 @@ def features(angles_deg: Angles) -> Features:
 
     Source: Huang & Chung 2004, section 5.1 (P57); section 2.2, M_N^S (C3, C4).
     """
-    radians = {name: np.radians(angles_deg[:, ANGLE_INDEX[name]]) for name in ANGLES}
+    radians = {name: np.radians(given[:, ANGLE_INDEX[name]]) for name in ANGLES}
     columns = []
     for limb in LIMBS:
         x, z = radians[f"{limb}_x"], radians[f"{limb}_z"]

@@ -5,19 +5,34 @@ import zipfile
 import zlib
 from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from recognizer.codebook import SYMBOLS
-from recognizer.features import FEATURE_NAMES
-from recognizer.postures import STATES, Card, PostureModel
+from recognizer.postures import (
+    STATES,
+    Card,
+    DensityModel,
+    PostureModel,
+    Recognizer,
+    SymbolModel,
+)
 
-VERSION: Final = 1
+VERSION: Final = 2
 MAX_BYTES: Final = 10_000_000
 """No model is larger unpacked: fifteen postures take 50 kB."""
+
+KINDS: Final[dict[Recognizer, type[SymbolModel | DensityModel]]] = {
+    "default": DensityModel,
+    "paper": SymbolModel,
+}
+"""What class of model each recogniser has."""
+
+PROBABILITIES: Final = ("start", "transition", "emission")
+"""Arrays whose rows sum to 1."""
 
 CURE: Final = "make one with `tritrack train --what postures`"
 
@@ -53,16 +68,15 @@ def save(model: PostureModel, path: Path) -> None:
     Raises:
         ModelError: When the file cannot be written.
     """
-    header = Header("tritrack postures", VERSION, model.names, FEATURE_NAMES, model.card)
+    kind = KINDS[model.card.recognizer]
+    header = Header("tritrack postures", VERSION, model.names, kind.FEATURES, model.card)
+    arrays = {name: getattr(model, name) for name in _shapes(header)}
     try:
         with path.open("wb") as file:
             np.savez(
                 file,
                 header=np.frombuffer(msgspec.json.encode(header), np.uint8),
-                codebook=model.codebook,
-                start=model.start,
-                transition=model.transition,
-                emission=model.emission,
+                **arrays,
             )
     except OSError as error:
         raise ModelError(f"cannot write the model {path}: {error.strerror}") from error
@@ -99,7 +113,9 @@ def _read(path: Path) -> PostureModel:
         header = _header(file["header"].tobytes())
         arrays = {name: file[name] for name in _shapes(header)}
     _refuse_false_arrays(arrays, _shapes(header))
-    return PostureModel(names=header.postures, card=header.card, **arrays)
+    kind: Any = KINDS[header.card.recognizer]
+    model: PostureModel = kind(names=header.postures, card=header.card, **arrays)
+    return model
 
 
 def _header(text: bytes) -> Header:
@@ -107,19 +123,17 @@ def _header(text: bytes) -> Header:
     if version != VERSION:
         raise ValueError(f"it has version {version}, this tritrack reads {VERSION}")
     header = msgspec.json.decode(text, type=Header)
-    if header.features != FEATURE_NAMES:
+    if header.features != KINDS[header.card.recognizer].FEATURES:
         raise ValueError("it was made for other features than this tritrack computes")
     return header
 
 
 def _shapes(header: Header) -> dict[str, tuple[int, ...]]:
-    p = len(header.postures)
-    return {
-        "codebook": (SYMBOLS, len(FEATURE_NAMES)),
-        "start": (p, STATES),
-        "transition": (p, STATES, STATES),
-        "emission": (p, STATES, SYMBOLS),
-    }
+    p, entries = len(header.postures), len(header.features)
+    chain = {"start": (p, STATES), "transition": (p, STATES, STATES)}
+    if header.card.recognizer == "paper":
+        return chain | {"codebook": (SYMBOLS, entries), "emission": (p, STATES, SYMBOLS)}
+    return chain | {"mean": (p, STATES, entries), "variance": (p, STATES, entries)}
 
 
 def _refuse_false_arrays(
@@ -130,12 +144,14 @@ def _refuse_false_arrays(
             raise ValueError(f"{name} is {array.dtype} {array.shape}, not float64 {shapes[name]}")
         if not np.isfinite(array).all():
             raise ValueError(f"{name} holds a number that is not finite")
-        if name == "codebook":
+        if name not in PROBABILITIES:
             continue
         if (array < 0).any() or not np.allclose(array.sum(axis=-1), 1.0, rtol=0, atol=1e-9):
             raise ValueError(f"the rows of {name} are no probabilities")
-    if (arrays["emission"] == 0).any():
+    if "emission" in arrays and (arrays["emission"] == 0).any():
         raise ValueError("emission calls a symbol impossible")
+    if "variance" in arrays and (arrays["variance"] <= 0).any():
+        raise ValueError("variance holds a number that is not positive")
 
 
 def _refuse_unless(model: PostureModel, postures: Collection[str] | None) -> None:

@@ -6,10 +6,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import ANGLE_NAMES
-from recognizer.codebook import symbols
-from recognizer.features import FEATURE_NAMES, Features, features, with_pose
-from recognizer.postures import PostureModel, forward, likeliest
+from recognizer.features import FEATURE_NAMES, ROW_NAMES, Features, Rows, features, with_pose
+from recognizer.postures import PostureModel, likeliest, scored
 
 NAMED_FROM_FRAMES: Final = 15
 """A second of motion: less of it fits too many postures."""
@@ -33,7 +31,8 @@ class State:
     model: PostureModel | None
     """None: motions are followed, but not named."""
     window_frames: int
-    seen: Features  # (n, 16), n <= window_frames
+    rows: Rows  # (n, 20), n <= window_frames
+    seen: Features  # (n, 16), of the same frames
     frames: tuple[int, ...] = ()
     """Which calls of `step`, counted from 0, had these poses."""
     next_frame: int = 0
@@ -60,10 +59,11 @@ class Judgement(NamedTuple):
 
 def init(model: PostureModel | None, window_frames: int) -> State:
     """Nothing seen yet."""
-    return State(model, window_frames, seen=np.empty((0, len(FEATURE_NAMES))))
+    nothing = np.empty((0, len(ROW_NAMES)))
+    return State(model, window_frames, rows=nothing, seen=np.empty((0, len(FEATURE_NAMES))))
 
 
-def step(state: State, angles_deg: NDArray[np.float64] | None) -> tuple[State, Judgement]:
+def step(state: State, row: NDArray[np.float64] | None) -> tuple[State, Judgement]:
     """Take one frame and judge the window that ends with it.
 
     The models know motions and no standing. So a standstill (the opening posture, say) has no
@@ -72,9 +72,9 @@ def step(state: State, angles_deg: NDArray[np.float64] | None) -> tuple[State, J
     frame without a pose adds nothing.
 
     Args:
-        angles_deg: (17,) ANGLE_NAMES order; None or NaN where there is no pose.
+        row: (20,) ROW_NAMES order; None or NaN where there is no pose.
     """
-    state = _cut(_remember(state, angles_deg))
+    state = _cut(_remember(state, row))
     scores = _scores(state)
     name = likeliest(scores) if scores else ""
     now = state.next_frame - 1
@@ -82,29 +82,35 @@ def step(state: State, angles_deg: NDArray[np.float64] | None) -> tuple[State, J
     return replace(state, named=bool(scores)), Judgement(name, scores, first, last)
 
 
-def motion_of(angles_deg: NDArray[np.float64], window_frames: int) -> NDArray[np.float64]:
+def motion_of(given: Rows, window_frames: int) -> Rows:
     """The rows that a window at the end of a recording would be judged by: what models learn from.
 
     Args:
-        angles_deg: (n, 17), NaN in rows without a pose or from before the motion.
+        given: (n, 20), NaN in rows without a pose or from before the motion.
         window_frames: Length of the window.
     """
     state = init(None, window_frames)
-    for row in angles_deg:
+    for row in given:
         state, _ = step(state, row)
-    return angles_deg[list(state.frames)]
+    return given[list(state.frames)]
 
 
-def _remember(state: State, angles_deg: NDArray[np.float64] | None) -> State:
-    row = np.empty((0, len(ANGLE_NAMES))) if angles_deg is None else angles_deg[np.newaxis]
-    row = with_pose(row)
+def _remember(state: State, row: NDArray[np.float64] | None) -> State:
+    new = with_pose(state.rows[:0] if row is None else row[np.newaxis])
     now, keep = state.next_frame, state.window_frames
-    if len(row):
-        seen = np.concatenate([state.seen, features(row)])[-keep:]
+    if len(new):
+        rows = np.concatenate([state.rows, new])[-keep:]
+        seen = np.concatenate([state.seen, features(new)])[-keep:]
         moving = 0 if _stands(seen) else state.moving_frames + 1
         frames = (*state.frames, now)[-keep:]
         return replace(
-            state, seen=seen, frames=frames, next_frame=now + 1, moving_frames=moving, missed=0
+            state,
+            rows=rows,
+            seen=seen,
+            frames=frames,
+            next_frame=now + 1,
+            moving_frames=moving,
+            missed=0,
         )
     missed = state.missed + 1
     if missed >= MISSED_FRAMES:
@@ -117,7 +123,9 @@ def _cut(state: State) -> State:
     if state.moving_frames < _needed(state):
         return state
     keep = state.moving_frames
-    return replace(state, seen=state.seen[-keep:], frames=state.frames[-keep:])
+    return replace(
+        state, rows=state.rows[-keep:], seen=state.seen[-keep:], frames=state.frames[-keep:]
+    )
 
 
 def _scores(state: State) -> dict[str, float]:
@@ -129,8 +137,7 @@ def _scores(state: State) -> dict[str, float]:
         or _spread(state.seen) < STILL
     ):
         return {}
-    totals = forward(state.model, symbols(state.model.codebook, state.seen))
-    return dict(zip(state.model.names, totals.tolist(), strict=True))
+    return scored(state.model, state.rows)
 
 
 def _needed(state: State) -> int:

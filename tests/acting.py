@@ -52,22 +52,37 @@ MOTIONS: dict[str, Callable[[Array, Array], Moves]] = {
 }
 
 
+PATHS: dict[str, Callable[[Array, Array], Array]] = {
+    "walk_sideways": lambda s, u: np.stack([0.5 * s, 0 * s, 0 * s], axis=1),
+    "walk_toward": lambda s, u: np.stack([0 * s, 0.02 * u, 1.0 * s], axis=1),
+    "walk_slow_bigswing": lambda s, u: np.stack([0 * s, 0.02 * u, 0.5 * s], axis=1),
+    "squat": lambda s, u: np.stack([0 * s, -0.4 * u, 0 * s], axis=1),
+    "squat_arms_forward": lambda s, u: np.stack([0 * s, -0.4 * u, 0 * s], axis=1),
+}
+"""Where the root goes meanwhile, leg lengths from where it stood; the others stay."""
+
+
 def standing(frames: int) -> Array:
-    """Arms and legs hanging, shape (frames, 17)."""
+    """Arms and legs hanging, shape (frames, 20)."""
     rest = [REST_DEG.get(name, 15.0 if "elbow" in name else 0.0) for name in ANGLE_NAMES]
-    return np.tile(rest, (frames, 1))
+    return np.tile([*rest, 0.0, 1.05, 0.0], (frames, 1))
 
 
 def perform(posture: str, performer: int, take: int = 1, frames: int = 40) -> Array:
-    """One performance, (frames, 17) degrees: a performer's own reach, pace and delay, and noise."""
+    """One performance, (frames, 20): a performer's own reach, pace and delay, and noise."""
     style = np.random.default_rng([performer, list(POSTURES).index(posture)])
     reach, pace, delay = [*style.uniform(0.85, 1.15, 2).tolist(), style.uniform(-0.5, 0.5)]
     phase = 2 * np.pi * pace * np.arange(frames) / 20 + delay
-    angles_deg = standing(frames)
-    for name, change in MOTIONS[posture](np.sin(phase), (1 - np.cos(phase)) / 2).items():
-        angles_deg[:, ANGLE_INDEX[name]] += reach * change
+    swing = np.sin(phase), (1 - np.cos(phase)) / 2
+    rows = standing(frames)
+    for name, change in MOTIONS[posture](*swing).items():
+        rows[:, ANGLE_INDEX[name]] += reach * change
+    if posture in PATHS:
+        rows[:, len(ANGLE_NAMES) :] += reach * PATHS[posture](*swing)
     noise = np.random.default_rng([performer, list(POSTURES).index(posture), take])
-    return angles_deg + noise.normal(0.0, 3.0, angles_deg.shape)
+    rows[:, : len(ANGLE_NAMES)] += noise.normal(0.0, 3.0, (frames, len(ANGLE_NAMES)))
+    rows[:, len(ANGLE_NAMES) :] += noise.normal(0.0, 0.005, (frames, 3))
+    return rows
 
 
 def performances(performers: range, takes: int = 1) -> dict[str, list[Array]]:

@@ -6,8 +6,8 @@ from acting import standing
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.body import ANGLE_INDEX
-from recognizer.features import ANGLES, FEATURE_NAMES, features, with_pose
+from common.body import ANGLE_INDEX, JOINT_NAMES
+from recognizer.features import ANGLES, FEATURE_NAMES, features, rows, with_pose
 
 degrees = st.floats(-360.0, 360.0)
 
@@ -105,6 +105,20 @@ def test_frames_without_a_pose_are_dropped() -> None:
     angles_deg = standing(5)
     angles_deg[1] = np.nan
     angles_deg[3, ANGLE_INDEX["l_elbow_x"]] = np.nan
-    angles_deg[4, ANGLE_INDEX["torso_y"]] = np.nan  # not among the ten: the pose counts
-    assert len(with_pose(angles_deg)) == 3
-    assert with_pose(np.full((4, 17), np.nan)).shape == (0, 17)
+    angles_deg[4, ANGLE_INDEX["torso_y"]] = np.nan
+    assert len(with_pose(angles_deg)) == 2
+    assert with_pose(np.full((4, 20), np.nan)).shape == (0, 20)
+
+
+@given(st.floats(0.1, 10.0))
+def test_places_count_in_leg_lengths(scale: float) -> None:
+    """A pelvis at 1.2 m over legs of 0.5 m and 0.3 m is 1.5 legs up, at any scale of the world."""
+    joints_m = np.zeros((2, len(JOINT_NAMES), 3))
+    place = {"pelvis": (0.8, 1.2, 0.4), "r_hip": (0, 1.2, 0), "r_knee": (0, 0.7, 0)}
+    place["r_ankle"] = (0, 0.7, 0.3)
+    for name, at in place.items():
+        joints_m[0, JOINT_NAMES.index(name)] = at
+    joints_m[1] = np.nan
+    given = rows(np.zeros((2, 17)), scale * joints_m)
+    assert given[0, 17:] == pytest.approx([1.0, 1.5, 0.5])
+    assert len(with_pose(given)) == 1

@@ -4,15 +4,22 @@ import numpy as np
 import pytest
 from acting import perform, performances, standing
 
-from recognizer.postures import POSTURES, PostureModel, log_likelihoods, train
+from recognizer.features import ROW_NAMES
+from recognizer.learning import train
+from recognizer.postures import POSTURES, PostureModel, Recognizer, log_likelihoods
 from recognizer.spotting import Judgement, State, init, step
 
 WINDOW = 40
+JITTER = np.repeat([1.0, 0.003], [17, 3])
+"""Of a person who stands: degrees, then leg lengths."""
 
 
-@pytest.fixture(scope="module")
-def model() -> PostureModel:
-    return train(performances(range(3)))
+RECOGNIZERS: list[Recognizer] = ["default", "paper"]
+
+
+@pytest.fixture(scope="module", params=RECOGNIZERS)
+def model(request: pytest.FixtureRequest) -> PostureModel:
+    return train(performances(range(6)), request.param)
 
 
 def watch(model: PostureModel, rows: list[np.ndarray | None]) -> list[Judgement]:
@@ -43,7 +50,7 @@ def test_a_name_needs_a_second_of_motion(model: PostureModel) -> None:
 
 
 def test_standing_has_no_name(model: PostureModel) -> None:
-    shaking = standing(100) + np.random.default_rng(0).normal(0.0, 1.0, (100, 17))
+    shaking = standing(100) + np.random.default_rng(0).normal(0.0, 1.0, (100, 20)) * JITTER
     assert {one.name for one in watch(model, list(shaking))} == {""}
 
 
@@ -74,7 +81,7 @@ def test_a_motion_that_ends_in_standing_keeps_its_name_while_it_is_in_the_window
 
 def test_frames_without_a_pose_add_nothing(model: PostureModel) -> None:
     rows: list[np.ndarray | None] = list(perform("squat", performer=9))
-    nowhere = np.full(17, np.nan)
+    nowhere = np.full(len(ROW_NAMES), np.nan)
     said = watch(model, [*rows[:20], None, nowhere, *rows[20:]])
     plain = watch(model, rows)
     assert said[21].log_likelihoods == plain[19].log_likelihoods

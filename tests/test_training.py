@@ -50,7 +50,7 @@ def test_the_opening_posture_is_no_part_of_the_motion(runs: list[Path]) -> None:
     (recording,) = recordings(runs[:1], None, QUIET)
     with np.load(runs[0] / "poses.npz", allow_pickle=False) as found:
         moving = np.isin(found["status"], ("tracking", "predicted"))
-    assert 0 < np.isfinite(recording.angles_deg).all(axis=1).sum() <= moving.sum()
+    assert 0 < np.isfinite(recording.rows).all(axis=1).sum() <= moving.sum()
     assert (recording.posture, recording.performer) == ("raise_right_lateral", "s02")
 
 

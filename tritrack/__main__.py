@@ -48,6 +48,9 @@ Out = Annotated[Path, typer.Option(help="Folder to write into.")]
 ModeName = Annotated[
     Literal["default", "paper"] | None, typer.Option(help="Instead of the settings' mode.")
 ]
+RecognizerName = Annotated[
+    Literal["default", "paper"], typer.Option(help="The better models, or the paper's.")
+]
 Size = Annotated[
     str | None, typer.Option(help="Bound of the working picture, instead of the settings'.")
 ]
@@ -213,6 +216,7 @@ def train(
         Literal["postures", "proposals"],
         typer.Option(help="What is learnt; proposals of poses need no clips."),
     ] = "postures",
+    recognizer: RecognizerName = "default",
     mode: ModeName = None,
     json_wanted: JsonWanted = False,
 ) -> None:
@@ -230,8 +234,40 @@ def train(
         raise typer.BadParameter("name clips or run folders to learn postures from")
     from tritrack.training import train_postures
 
-    facts = train_postures(runs, out, mode, console)
+    facts = train_postures(runs, out, mode, console, recognizer)
     tell(facts, json_wanted, f"{len(facts['sequences'])} postures learnt, written to {out}")
+
+
+evaluate_app = typer.Typer(help="Measure how well people never learnt from are recognised.")
+app.add_typer(evaluate_app, name="evaluate")
+
+
+@evaluate_app.callback()
+def every_evaluation() -> None:
+    """Keep `postures` a command of its own."""
+
+
+@evaluate_app.command("postures")
+def evaluate_postures(
+    runs: Annotated[
+        list[Path], typer.Argument(help="Clips that name their posture, or their run folders.")
+    ],
+    out: Out,
+    split: Annotated[
+        str, typer.Option(help="Or whom to learn from and test on: r01,r04:r07, s1*:s2*")
+    ] = "leave-one-performer-out",
+    recognizer: RecognizerName = "default",
+    mode: ModeName = None,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Name the postures of people whom the models never saw: the paper's table 2.
+
+    Example: tritrack evaluate postures runs/* --split 's1*:s2*' --out report
+    """
+    from tritrack import evaluating
+
+    report = evaluating.evaluate_postures(runs, out, split, recognizer, mode, console)
+    tell(report, json_wanted, report["table"])
 
 
 @app.command()

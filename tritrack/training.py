@@ -14,8 +14,10 @@ from common import config
 from common.config import Mode, RecognizerSettings
 from recognizer.__main__ import MOVING
 from recognizer.evaluation import Recording
+from recognizer.features import rows
+from recognizer.learning import train
 from recognizer.model_file import save
-from recognizer.postures import train
+from recognizer.postures import Recognizer
 from recognizer.spotting import motion_of
 from tritrack.offline import Decoders, overridden, track_clip, without_plain_files
 from tritrack.runs import poses
@@ -27,7 +29,11 @@ class TrainingError(ValueError):
 
 
 def train_postures(
-    paths: Sequence[Path], out: Path, mode: Mode | None, console: Console
+    paths: Sequence[Path],
+    out: Path,
+    mode: Mode | None,
+    console: Console,
+    recognizer: Recognizer = "default",
 ) -> dict[str, Any]:
     """Learn a model of each posture and write it.
 
@@ -36,6 +42,7 @@ def train_postures(
         out: The file to write.
         mode: How clips are tracked; None: as their settings say.
         console: For progress and warnings.
+        recognizer: Which kind of model.
 
     Raises:
         TrainingError: When a folder is neither, or names no posture, or the file cannot be written.
@@ -44,10 +51,10 @@ def train_postures(
     learnt: dict[str, list[Any]] = defaultdict(list)
     performers = set()
     for recording in recordings(paths, mode, console):
-        learnt[recording.posture].append(recording.angles_deg)
+        learnt[recording.posture].append(recording.rows)
         performers.add(recording.performer)
     try:
-        model = train(dict(learnt), performers=sorted(performers))
+        model = train(dict(learnt), recognizer, performers=sorted(performers))
         out.parent.mkdir(parents=True, exist_ok=True)
         save(model, out)
     except (ValueError, OSError) as error:
@@ -91,6 +98,7 @@ def _recording(path: Path, facts: dict[str, Any], arrays: dict[str, Any]) -> Rec
     posture = facts.get("posture_meant", "")
     if not posture:
         raise TrainingError(f"{path} names no posture: write it into the clip's meta.json")
-    angles = np.where(np.isin(arrays["status"], MOVING)[:, None], arrays["angles_deg"], np.nan)
+    tracked = rows(arrays["angles_deg"], arrays["joints_m"])
+    moving = np.where(np.isin(arrays["status"], MOVING)[:, None], tracked, np.nan)
     window = RecognizerSettings().window_frames
-    return Recording(facts.get("performer", ""), posture, motion_of(angles, window))
+    return Recording(facts.get("performer", ""), posture, motion_of(moving, window))

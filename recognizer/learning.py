@@ -1,0 +1,105 @@
+"""Learning the models of both recognisers from sequences of rows."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from recognizer.baumwelch import START, nearness, train_densities, train_symbols
+from recognizer.bearing import bearings
+from recognizer.codebook import fit, symbols
+from recognizer.features import Rows, features, with_pose
+from recognizer.postures import (
+    STATES,
+    Card,
+    DensityModel,
+    PostureModel,
+    Recognizer,
+    SymbolModel,
+    Topology,
+)
+
+
+def train(
+    sequences: Mapping[str, Sequence[Rows]],
+    recognizer: Recognizer = "default",
+    topology: Topology = "ergodic",
+    seed: int = 0,
+    performers: Sequence[str] = (),
+) -> PostureModel:
+    """A model of each posture, from sequences (n, 20) of people who perform it.
+
+    Frames without a pose are left out, and so is a sequence with fewer than five others. The same
+    sequences and seed give the same model, bit for bit.
+
+    Args:
+        sequences: What was seen of each posture; the model keeps the order of the names.
+        recognizer: Which kind of model.
+        topology: Left-right with self loops as usual for motions with a beginning; ergodic for
+            such that may begin anywhere.
+        seed: Of the first guess of clusters.
+        performers: Whose sequences these are, for the card.
+
+    Raises:
+        ValueError: When a posture has no usable sequence, or all poses together are too few.
+
+    Source: Huang & Chung 2004, section 5.1 (P57).
+    """
+    seen = {name: _usable(name, given) for name, given in sequences.items()}
+    card = Card(
+        recognizer=recognizer,
+        topology=topology,
+        seed=seed,
+        sequences={name: len(given) for name, given in seen.items()},
+        frames=sum(len(one) for given in seen.values() for one in given),
+        performers=tuple(performers),
+    )
+    learn = _symbol_model if recognizer == "paper" else _density_model
+    return learn(list(seen.values()), card)
+
+
+def _usable(posture: str, given: Sequence[Rows]) -> list[Rows]:
+    seen = [with_pose(one) for one in given]
+    usable = [one for one in seen if len(one) >= STATES]
+    if not usable:
+        raise ValueError(
+            f"{posture}: none of {len(given)} sequences has {STATES} frames with a pose;"
+            " give clips in which the person was tracked"
+        )
+    return usable
+
+
+def _symbol_model(seen: list[list[Rows]], card: Card) -> SymbolModel:
+    """Of sequences posture by posture, in the order of the card."""
+    shown = [[features(one) for one in given] for given in seen]
+    codebook = fit(np.concatenate([one for given in shown for one in given]), card.seed)
+    near = nearness(codebook)
+    models = [
+        train_symbols([symbols(codebook, one) for one in given], near, card.topology)
+        for given in shown
+    ]
+    transition, emission = (np.stack(part) for part in zip(*models, strict=True))
+    return SymbolModel(
+        names=tuple(card.sequences),
+        start=np.tile(START[card.topology], (len(seen), 1)),
+        transition=transition,
+        card=card,
+        codebook=codebook,
+        emission=emission,
+    )
+
+
+def _density_model(seen: list[list[Rows]], card: Card) -> DensityModel:
+    """Of sequences posture by posture, in the order of the card."""
+    models = [
+        train_densities([bearings(one) for one in given], card.topology, card.seed)
+        for given in seen
+    ]
+    transition, mean, variance = (np.stack(part) for part in zip(*models, strict=True))
+    return DensityModel(
+        names=tuple(card.sequences),
+        start=np.tile(START[card.topology], (len(seen), 1)),
+        transition=transition,
+        card=card,
+        mean=mean,
+        variance=variance,
+    )
