@@ -1,7 +1,9 @@
 """The richer feature vector: how all limbs point, and how the body as a whole moves."""
 
-from typing import Final
+import math
+from typing import Any, Final
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,12 +32,15 @@ TRAVEL_POSES: Final = 5
 TRAVEL_WEIGHT: Final = 2.0
 """Travel varies less than directions do: so weighted, a floor of variance fits both."""
 
-_UPPER_X, _UPPER_Y, _UPPER_Z = (
-    [ANGLE_INDEX[f"{upper}_{axis}"] for upper, _ in CHAINS] for axis in "xyz"
+_TURNS: Final = np.array(
+    [
+        [ANGLE_INDEX[f"{upper}_{axis}"] for axis in "xyz"] + [ANGLE_INDEX[f"{hinge}_x"]]
+        for upper, hinge in CHAINS
+    ]
 )
-_HINGE: Final = [ANGLE_INDEX[f"{hinge}_x"] for _, hinge in CHAINS]
+"""Columns of each chain's four angles."""
 _YAW: Final = ANGLE_INDEX["torso_y"]
-_ROOT: Final = slice(ROW_NAMES.index("root_x"), ROW_NAMES.index("root_z") + 1)
+_ROOT: Final = ROW_NAMES.index("root_x")
 
 
 def bearings(given: Rows) -> Bearings:
@@ -47,31 +52,36 @@ def bearings(given: Rows) -> Bearings:
 
     Source: section 2.2 (M_N^S, M_S^F: C3, C4) for the directions.
     """
-    directions = np.stack(_directions(given), axis=2).reshape(len(given), len(CHAINS) * 6)
-    return np.concatenate([directions, TRAVEL_WEIGHT * _travel(given)], axis=1)
+    shown = np.empty((len(given), len(BEARING_NAMES)))
+    for chain, turns in enumerate(_TURNS):
+        _point(given[:, turns], shown[:, 6 * chain : 6 * chain + 6])
+    _move(given[:, _ROOT:], given[:, _YAW], shown[:, -3:])
+    return shown
 
 
-def _directions(given: Rows) -> list[NDArray[np.float64]]:
-    """x, y and z, each (n, 8), of R_z R_x (0, 1, 0) and R_z R_x R_y R_hinge (0, 1, 0), chain by
-    chain."""
-    turns = np.radians(given[:, [*_UPPER_X, *_UPPER_Y, *_UPPER_Z, *_HINGE]])
-    sines, cosines = (part.reshape(-1, 4, 4) for part in (np.sin(turns), np.cos(turns)))
-    (sx, sy, sz, sh), (cx, cy, cz, ch) = sines.transpose(1, 0, 2), cosines.transpose(1, 0, 2)
-    ahead = sh * cy
-    side, up = sh * sy, ch * cx - ahead * sx
-    upper = (-sz * cx, cz * cx, sx)
-    lower = (side * cz - up * sz, side * sz + up * cz, ch * sx + ahead * cx)
-    return [
-        np.stack(pair, axis=2).reshape(len(given), 8) for pair in zip(upper, lower, strict=True)
-    ]
+@numba.njit(cache=True)
+def _point(turns_deg: Any, shown: Any) -> None:
+    """Write R_z R_x (0, 1, 0) and R_z R_x R_y R_hinge (0, 1, 0), side by side."""
+    for row in range(len(turns_deg)):
+        x, y, z, hinge = np.radians(turns_deg[row])
+        ahead = math.sin(hinge) * math.cos(y)
+        side, along = math.sin(hinge) * math.sin(y), math.cos(hinge)
+        up = along * math.cos(x) - ahead * math.sin(x)
+        shown[row, 0] = -math.sin(z) * math.cos(x)
+        shown[row, 1] = math.cos(z) * math.cos(x)
+        shown[row, 2] = math.sin(x)
+        shown[row, 3] = side * math.cos(z) - up * math.sin(z)
+        shown[row, 4] = side * math.sin(z) + up * math.cos(z)
+        shown[row, 5] = along * math.sin(x) + ahead * math.cos(x)
 
 
-def _travel(given: Rows) -> NDArray[np.float64]:
-    """The way of the root since TRAVEL_POSES poses before, or since the first, in the body's frame,
-    (n, 3) leg lengths."""
-    root, yaw = given[:, _ROOT], np.radians(given[:, _YAW])
-    way = root - root[np.maximum(np.arange(len(given)) - TRAVEL_POSES, 0)]
-    s, c = np.sin(yaw), np.cos(yaw)
-    return np.stack(
-        [c * way[:, 0] - s * way[:, 2], way[:, 1], s * way[:, 0] + c * way[:, 2]], axis=1
-    )
+@numba.njit(cache=True)
+def _move(root: Any, yaw_deg: Any, shown: Any) -> None:
+    """Write the weighted way of the root since TRAVEL_POSES poses before, or since the first, in
+    the body's frame."""
+    for row in range(len(root)):
+        way = TRAVEL_WEIGHT * (root[row] - root[max(row - TRAVEL_POSES, 0)])
+        s, c = math.sin(math.radians(yaw_deg[row])), math.cos(math.radians(yaw_deg[row]))
+        shown[row, 0] = c * way[0] - s * way[2]
+        shown[row, 1] = way[1]
+        shown[row, 2] = s * way[0] + c * way[2]
