@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 
 from common.body import POSE_INDEX, body_vector, rest_pose, thesis_bdp
-from common.camera import paper_rig
+from common.camera import Rig, paper_rig
 from common.config import Settings
 from common.kernel import draw_body, view_of
 from common.messages import Box, Report, ViewerNumber, pack
@@ -16,21 +16,26 @@ VIEWERS: Final[tuple[ViewerNumber, ...]] = (1, 2)
 
 
 def rehearse(settings: Settings, size: tuple[int, int]) -> None:
-    """Merge three pairs of reports of somebody who stands.
+    """Merge three pairs of reports of somebody who stands, in a calibrated room and in another.
 
     Args:
         settings: Of the run.
         size: (width, height) of the working picture.
     """
-    state = merge.init(None, 1.0, settings)
-    for index in range(3):
-        first, second = (_report(viewer, index, size) for viewer in VIEWERS)
-        state, _, _ = merge.step(state, Pair(first, second))
+    known = _rig(size)
+    for rig in (known, None):
+        state = merge.init(rig, 1.0, settings)
+        for index in range(3):
+            first, second = (_report(viewer, index, size, known) for viewer in VIEWERS)
+            state, _, _ = merge.step(state, Pair(first, second))
 
 
-def _report(viewer: ViewerNumber, index: int, size: tuple[int, int]) -> Report:
+def _rig(size: tuple[int, int]) -> Rig:
+    return paper_rig(size, (1.25 * size[0],) * 2, (4.5, 4.5))
+
+
+def _report(viewer: ViewerNumber, index: int, size: tuple[int, int], rig: Rig) -> Report:
     width, height = size
-    rig = paper_rig(size, (1.25 * width,) * 2, (4.5, 4.5))
     pose = rest_pose()
     pose[POSE_INDEX["y"]] = 1.0
     view = view_of(rig.cameras[viewer - 1])
