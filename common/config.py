@@ -74,7 +74,7 @@ class BodySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     stature_m: float = 1.75
     """Assumed where no calibration gives the scale, and of a body before it is measured."""
-    opening_frames: int = 5
+    opening_frames: int = 3
     """How many accepted frames of the opening posture make the BDPs (their median)."""
 
     def __post_init__(self) -> None:

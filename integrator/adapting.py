@@ -1,4 +1,4 @@
-"""A prior body fitted to somebody who never took the opening posture: widths and arms."""
+"""A body fitted to the person's outlines as they move: widths and arms."""
 
 from typing import Any, Final
 
@@ -37,20 +37,20 @@ APART: Final = 12
 
 
 def step(opening: Opening, rig: Rig, seen: Seen, pose: Vector) -> Opening:
-    """One instant more of somebody who does not take the opening posture.
+    """One instant more of a person in view.
 
     The body is fitted to the first instant that shows the whole person in both views, and again
-    to that and a few later ones together. An extra of `default` mode: the paper knows only people
-    who take the opening posture.
+    to that and a few later ones together: a prior, or, once it is over, what the opening posture
+    told. An extra of `default` mode: the paper measures once.
 
     Args:
-        opening: What is known of the body; returned as it is once it was measured.
+        opening: What is known of the body; returned as it is while it is being measured.
         rig: Two cameras.
         seen: Both views' reports.
         pose: As found with the body so far, (25,).
     """
     first, second = seen
-    done = opening.measured or opening.under_way or len(opening.samples) == MOST_SAMPLES
+    done = opening.under_way or len(opening.samples) == MOST_SAMPLES
     if done or first is None or second is None or opening.bdp is None:
         return opening
     if first.cut or second.cut or (first.width, first.height) != (second.width, second.height):

@@ -156,7 +156,8 @@ def _settled(state: State, rig: Rig, seen: Seen, pose: Vector) -> Vector:
     known, body = state.opening, body_vector(state.opening.bdp)
     upright_m = known.measured_at_m[1] if known.measured else float(body[8] + body[14])
     pose[POSE_INDEX["torso_x"]] = 0.0
-    return settled(pose, before, body, rig, (first, second), upright_m, bool(known.samples))
+    fitted = bool(known.samples) and not known.measured
+    return settled(pose, before, body, rig, (first, second), upright_m, fitted)
 
 
 def _smoothed(

@@ -72,8 +72,8 @@ def test_a_body_that_fits_is_left_alone() -> None:
     assert adapting.adapted(PRIOR, RIG, (Sample(pose, seen_as(PRIOR, pose)),)) == PRIOR
 
 
-@pytest.mark.parametrize("known", [Opening(bdp=PRIOR, measured=True), Opening(bdp=None)])
-def test_a_measured_or_unknown_body_is_not_fitted(known: Opening) -> None:
+@pytest.mark.parametrize("known", [Opening(bdp=PRIOR, bodies=(PRIOR,)), Opening(bdp=None)])
+def test_a_body_that_is_being_measured_or_is_unknown_is_not_fitted(known: Opening) -> None:
     pose = standing()
     assert adapting.step(known, RIG, seen_as(slim(), pose), pose) is known
 

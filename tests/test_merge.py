@@ -159,15 +159,15 @@ def test_an_empty_room_has_nobody_though_it_scores(mode: Mode) -> None:
 
 @MODES
 def test_a_pose_is_told_from_the_first_frame_on(mode: Mode) -> None:
-    """Measuring, by prior proportions; tracking once five frames have made the body (P46)."""
+    """Measuring, by prior proportions; tracking once three frames have made the body (P46)."""
     told = Stage(settings=Settings(mode=mode)).show([opening()] * 8)
-    assert [t.body.status for t in told] == ["measuring"] * 4 + ["tracking"] * 4
+    assert [t.body.status for t in told] == ["measuring"] * 2 + ["tracking"] * 6
     for t in told:
         assert len(t.body.joints_m) == len(t.body.confidence) == 15
         assert errors_m(t, opening()).mean() < 0.15
         assert decode(encode(t.body), type(t.body)) == t.body
         assert decode(encode(t.guide), type(t.guide)) == t.guide
-    assert [t.guide.measured for t in told] == [False] * 4 + [True] * 4
+    assert [t.guide.measured for t in told] == [False] * 2 + [True] * 6
     assert told[-1].guide.bdp is not None
     assert stature(told[-1].guide.bdp) == pytest.approx(1.75, abs=0.08)
 
