@@ -39,7 +39,7 @@ def step(
     seen: tuple[Report | None, Report | None],
     since_s: float,
 ) -> Insight | None:
-    """The joints that whole silhouettes propose; None where there is none.
+    """The joints that silhouettes propose, whole ones where there are any; None without a place.
 
     Args:
         memory: Of the instant before; None at the first.
@@ -48,12 +48,12 @@ def step(
         seen: What each view reports; None where it has nobody.
         since_s: Time since the instant before.
     """
-    whole = [report if report is not None and not report.cut else None for report in seen]
-    masks = tuple(None if report is None else unpack(report) for report in whole)
-    if masks[0] is None and masks[1] is None:
-        return None
+    any_whole = any(report is not None and not report.cut for report in seen)
+    first, second = (
+        None if report is None or (any_whole and report.cut) else unpack(report) for report in seen
+    )
     height_m = stature(bdp)
-    shown = look((masks[0], masks[1]), rig, height_m, since_s)
+    shown = look((first, second), rig, height_m, since_s)
     if shown is None:
         return None
     memory, found = propose.step(propose.shipped(), memory, shown, height_m)

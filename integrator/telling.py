@@ -36,8 +36,9 @@ def body_of(
     pose[in_pose] = angles_deg
     body = body_vector(state.opening.bdp)
     places = joints(body, pose)
-    if state.beside_m is not None:
-        places += state.beside_m @ insight.trunk_axes(body, pose).T
+    if state.beside_m is not None:  # a memory has smoothed them: angles would only be late
+        places = joints(body, state.pose)
+        places += state.beside_m @ insight.trunk_axes(body, state.pose).T
     return Body(
         **_moment(state, pair),
         status=_status(state),

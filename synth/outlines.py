@@ -35,8 +35,11 @@ YAW_DEG: Final = (4.0, 4.0, 15.0)
 """The same for the whole body about the vertical."""
 TURNING_DEG: Final = 180.0
 """How far somebody who turns goes round, to either side."""
+THICKER, LONGER, LOOSER = 0.06, 0.02, (0.5, 2.0)
+"""How bodies differ beyond those of `person`: standard deviations of what a thickness and a length
+are multiplied by, and the range of what the room in their clothes is."""
 WIDTHS_PX: Final = (160, 320)
-DISTANCES_M, HEIGHTS_M, FOCALS = (3.4, 5.6), (0.8, 1.4), (1.1, 1.35)
+DISTANCES_M, HEIGHTS_M, FOCALS = (3.4, 5.6), (0.8, 1.4), (1.0, 1.4)
 """Ranges of cameras; focal lengths in widths of the picture at 4.5 m."""
 SLANTED_SHARE: Final = 0.25
 """Of the rigs: how many stand anywhere, look down, are rolled."""
@@ -92,7 +95,7 @@ class Flaw(NamedTuple):
 def outlines(seed: int) -> Iterator[Outline]:
     """The instants of one performance by one person before two cameras; a seed is a performance."""
     rng = np.random.default_rng([seed, 77])
-    someone = person(int(rng.integers(*PEOPLE)))
+    someone = _differing(person(int(rng.integers(*PEOPLE))), rng)
     angles = _angles(someone, rng)
     leash = rng.uniform(-ROOM_M, ROOM_M, 2)
     body = posed(someone.measures, angles, leash, np.tile(leash, (len(angles), 1)))
@@ -111,6 +114,21 @@ def outlines(seed: int) -> Iterator[Outline]:
             (first, second), body.joints_m[i], rig, someone.measures["stature_m"], since_s
         )
         since_s = 1.0 / FPS
+
+
+def _differing(someone: Person, rng: np.random.Generator) -> Person:
+    """The same person with other proportions; the stature stays about the same."""
+    measures = {
+        name: value
+        * (1.0 + rng.normal() * (THICKER if "half" in name or "radius" in name else LONGER))
+        for name, value in someone.measures.items()
+    }
+    measures["stature_m"] = someone.measures["stature_m"]
+    look, room = someone.look, rng.uniform(*LOOSER, 2)
+    look = look._replace(
+        loose_top_m=look.loose_top_m * room[0], loose_legs_m=look.loose_legs_m * room[1]
+    )
+    return someone._replace(measures=measures, look=look)
 
 
 def _angles(someone: Person, rng: np.random.Generator) -> NDArray[np.float64]:
