@@ -31,6 +31,8 @@ FAST_SHARE: Final = 0.2
 SPEEDS, FAST = (0.7, 1.3), (1.3, 2.3)
 ARM_DEG, REST_DEG = (0.0, 3.0, 8.0, 20.0), (0.0, 2.0, 4.0, 6.0)
 """Standard deviations that arms, and all else, are turned by; one of them for a performance."""
+LEANING_SHARE, LEAN_DEG = 0.15, 14.0
+"""Of the performances: how many lean over with the whole body; the standard deviation of that."""
 YAW_DEG: Final = (4.0, 4.0, 15.0)
 """The same for the whole body about the vertical."""
 TURNING_DEG: Final = 180.0
@@ -61,6 +63,9 @@ ARMS: Final = np.array(["_sh_" in name or "elbow" in name for name in ANGLES])
 BENT: Final = [i for i, name in enumerate(ANGLES) if "elbow" in name or "knee" in name]
 FEET: Final = [i for i, name in enumerate(ANGLES) if "foot" in name]
 ROOT: Final = np.array([name.startswith("root") for name in ANGLES])
+LEANS: Final = [
+    ANGLES.index(f"{part}_{way}") for part in ("root", "torso") for way in ("pitch", "roll")
+]
 YAW: Final = ANGLES.index("root_yaw")
 
 Mask = NDArray[np.bool_]
@@ -165,6 +170,8 @@ def _swaying(t: Vector, rng: np.random.Generator) -> NDArray[np.float64]:
     """(n, 27) to add: each joint is held otherwise, and wanders."""
     spread = np.where(ARMS, rng.choice(ARM_DEG), rng.choice(REST_DEG))
     spread[ROOT], spread[FEET], spread[YAW] = np.minimum(spread[ROOT], REST_DEG[2]), 0.0, 0.0
+    if rng.random() < LEANING_SHARE:
+        spread[LEANS] = LEAN_DEG
     held, size = rng.normal(0.0, 0.7, (2, len(ANGLES)))
     waves = np.sin(2 * np.pi * (np.outer(t, rng.uniform(0.2, 1.5, len(ANGLES))) + rng.random()))
     return np.asarray(spread * (held + size * waves))
