@@ -271,6 +271,25 @@ def evaluate_postures(
 
 
 @app.command()
+def export(
+    run: Annotated[Path, typer.Argument(help="A run folder.")],
+    to: Annotated[Literal["bvh", "csv"], typer.Option(help="For Blender, or for spreadsheets.")],
+    out: Annotated[
+        Path | None, typer.Option(help="The file to write; poses.* in the run folder by default.")
+    ] = None,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Write a run as a file for other programs.
+
+    Example: tritrack export runs/walk --to bvh
+    """
+    from tritrack.exporting import export_run
+
+    facts = export_run(run, to, out)
+    tell(facts, json_wanted, f"{facts['frames']} frames written to {facts['file']}")
+
+
+@app.command()
 def doctor(json_wanted: JsonWanted = False) -> None:
     """Check the installation and name what is missing.
 
