@@ -21,6 +21,7 @@ Place = tuple[float, float]
 """Column and row in the video's own pixels; the centre of the top-left one is (0.5, 0.5)."""
 
 ORIENTATIONS: Final[tuple[Orientation, ...]] = get_args(Orientation)
+WAYS: Final[tuple[Depth, ...]] = get_args(Depth)
 
 MOST_PX: Final = 1e5
 """No picture is larger."""
@@ -102,6 +103,13 @@ def noted(notes: Notes, new: Note) -> Notes:
         {**old.joints_px, **new.joints_px},
     )
     return _tidied(Notes(notes.video, (*others, joined)))
+
+
+def placed_once(notes: Notes, frame: int, joint: str, place: Place) -> Notes:
+    """The notes with a joint placed in one frame alone: at the next holds what held before."""
+    before: Place | Auto = held(notes, frame + 1).joints_px.get(joint, "auto")
+    first = noted(notes, Note(frame, joints_px={joint: place}))
+    return noted(first, Note(frame + 1, joints_px={joint: before}))
 
 
 def _tidied(notes: Notes) -> Notes:

@@ -3,16 +3,14 @@
 import numpy as np
 import pytest
 
-from common.body import JOINT_NAMES, LIMBS, body_vector, rest_pose, thesis_bdp
+from animator.take import Take, depth_of, take_of
+from common.body import JOINT_NAMES, LIMBS, POSE_INDEX, body_vector, rest_pose, thesis_bdp
 from common.kinematics import joints
 from common.notes import Note, Notes
 from tritrack.ledger import (
     PRINTED,
     Count,
-    Doubts,
     Ledger,
-    depth_of,
-    doubts_of,
     given_inputs,
     inputs,
     ledger,
@@ -20,14 +18,17 @@ from tritrack.ledger import (
 )
 
 
-def sure(n: int, orientation: str = "forward_left") -> Doubts:
-    return Doubts(
-        [orientation] * n,
-        np.ones(n),
-        np.zeros((n, len(LIMBS))),
-        np.ones((n, len(LIMBS))),
-        np.ones((n, len(JOINT_NAMES))),
-    )
+def sure(n: int, **changed: np.ndarray) -> Take:
+    """A run that is sure of all: somebody stands there, arms hanging."""
+    standing = joints(body_vector(thesis_bdp(1.7)), rest_pose())
+    poses = {
+        "frame": np.arange(n),
+        "joints_px": np.zeros((n, 2, 15, 2)),
+        "joints_m": np.tile(standing, (n, 1, 1)),
+        "confidence": np.ones((n, 15)),
+        "orientation": np.full(n, "forward_left"),
+    }
+    return take_of({**poses, **changed})
 
 
 @pytest.mark.parametrize(("video", "by_hand", "total"), [(0, 290, 60), (1, 506, 59)])
@@ -93,18 +94,23 @@ def test_a_run_that_is_sure_of_all_has_nothing_open() -> None:
 
 
 def test_doubts_are_open_inputs() -> None:
-    doubts = sure(20)
-    doubts.orientation_confidence[5:8] = 0.5
-    doubts.depth[3:9, LIMBS.index("l_upper_arm")] = 1.0
-    doubts.depth_confidence[4:6, LIMBS.index("l_upper_arm")] = 0.6
-    doubts.joint_confidence[10:12, JOINT_NAMES.index("r_wrist")] = 0.1
-    doubts.joint_confidence[15, JOINT_NAMES.index("r_wrist")] = 0.1
-    assert open_inputs(doubts) == Count(orientation=1, depth=1, joints=2)
+    """An arm lifted forwards, unsure in two of its frames; a wrist hidden twice; one doubt of the
+    orientation."""
+    lifted = rest_pose()
+    lifted[POSE_INDEX["l_shoulder_x"]] = 60.0
+    take = sure(20)
+    take.joints_m[3:9] = joints(body_vector(thesis_bdp(1.7)), lifted)
+    take.orientation_confidence[5:8] = 0.5
+    take.depth_confidence[4:6, LIMBS.index("l_upper_arm")] = 0.6
+    take.depth_confidence[12:, LIMBS.index("l_upper_arm")] = 0.6
+    take.confidence[10:12, JOINT_NAMES.index("r_wrist")] = 0.1
+    take.confidence[15, JOINT_NAMES.index("r_wrist")] = 0.1
+    assert open_inputs(take) == Count(orientation=1, depth=1, joints=2)
 
 
 def test_a_lifted_arm_leans_toward_the_camera_and_a_hanging_one_nowhere() -> None:
     pose = rest_pose()
-    pose[9] = 60.0
+    pose[POSE_INDEX["r_shoulder_x"]] = 60.0
     leans = depth_of(joints(body_vector(thesis_bdp(1.7)), pose)[None])[0]
     leaning = {name for name, lean in zip(LIMBS, leans, strict=True) if lean}
     assert leaning == {"r_upper_arm", "r_lower_arm"}
@@ -112,6 +118,6 @@ def test_a_lifted_arm_leans_toward_the_camera_and_a_hanging_one_nowhere() -> Non
 
 
 def test_a_run_without_written_doubts_was_sure_and_one_without_poses_needs_nothing() -> None:
-    poses = {"joints_m": np.full((4, 15, 3), np.nan), "confidence": np.zeros((4, 15))}
-    made = ledger(doubts_of(poses), Notes())
+    take = sure(4, joints_m=np.full((4, 15, 3), np.nan), confidence=np.zeros((4, 15)))
+    made = ledger(take, Notes())
     assert (made.frames, made.key_frames, made.open.total, made.thesis.total) == (4, 0, 0, 0)

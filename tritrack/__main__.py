@@ -290,6 +290,27 @@ def export(
 
 
 @app.command()
+def retouch(
+    run: Annotated[Path, typer.Argument(help="A run folder.")],
+    video: Annotated[Path | None, typer.Option(help="The run's video, where it has moved.")] = None,
+    notes: Annotated[
+        Path | None, typer.Option(help="Instead of notes.toml beside the video.")
+    ] = None,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="Of the page.")] = 8080,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Look at a run frame by frame, and say what its video does not show. Ctrl-C ends it.
+
+    Example: tritrack retouch runs/dance
+    """
+    from tritrack.ledger import line_of
+    from tritrack.retouching import retouch as run_page
+
+    facts = run_page(run, video, notes, port, console)
+    tell(facts, json_wanted, line_of(facts))
+
+
+@app.command()
 def doctor(json_wanted: JsonWanted = False) -> None:
     """Check the installation and name what is missing.
 

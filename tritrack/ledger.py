@@ -8,17 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animator.inbetween import key_frames
-from common.body import JOINT_NAMES, LIMB_ENDS, LIMBS
+from animator.take import SEEN, SURE, Take, depth_of
+from common.body import JOINT_NAMES, LIMBS
 from common.notes import Notes
 
 JOINTS_BY_HAND: Final = 14
 """Places that earlier methods had the user point at in every key frame (4.3)."""
-SURE: Final = 0.7
-"""A decision with less confidence than this is worth a look."""
-SEEN: Final = 0.3
-"""A joint with less confidence than this is hidden: the thesis's "highly occluded"."""
-FLAT_DEG: Final = 15.0
-"""A segment that leans less out of the picture's plane has no direction that anybody would see."""
 
 
 class Count(msgspec.Struct, frozen=True):
@@ -70,63 +65,15 @@ class Ledger(msgspec.Struct, frozen=True):
         return self.key_frames * JOINTS_BY_HAND + self.thesis.depth
 
 
-class Doubts(NamedTuple):
-    """What a run decided by itself, and how sure it was; n frames."""
-
-    orientation: Sequence[str]
-    """(n,) names of ORIENTATIONS; "": none was needed."""
-    orientation_confidence: NDArray[np.float64]
-    """(n,)"""
-    depth: NDArray[np.float64]
-    """(n, 10), LIMBS order: 1 toward the camera, -1 away, 0 in the picture's plane or no pose."""
-    depth_confidence: NDArray[np.float64]
-    """(n, 10)"""
-    joint_confidence: NDArray[np.float64]
-    """(n, 15), JOINT_NAMES order; NaN where there is no pose."""
-
-
-def doubts_of(poses: dict[str, Any]) -> Doubts:
-    """The doubts that a run wrote down.
-
-    Args:
-        poses: The arrays of `poses.npz`. Beside those of every run, one of a single view has
-            `orientation` (n,), `orientation_confidence` (n,) and `depth_confidence` (n, 10) in
-            the order of LIMBS; a run without them was sure.
-    """
-    joints_m = poses["joints_m"]
-    n = len(joints_m)
-    posed = np.isfinite(joints_m).all(axis=(1, 2))
-    return Doubts(
-        orientation=[str(name) for name in poses.get("orientation", [""] * n)],
-        orientation_confidence=np.where(posed, poses.get("orientation_confidence", 1.0), 1.0),
-        depth=depth_of(joints_m),
-        depth_confidence=np.broadcast_to(poses.get("depth_confidence", 1.0), (n, len(LIMBS))),
-        joint_confidence=np.where(posed[:, None], poses["confidence"], np.nan),
-    )
-
-
-def depth_of(joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Which way each segment leans, (n, 10): 1, -1, or 0 below FLAT_DEG; +z is to the camera."""
-    along = joints_m[:, LIMB_ENDS[:, 1]] - joints_m[:, LIMB_ENDS[:, 0]]
-    lean = along[..., 2] / np.maximum(np.linalg.norm(along, axis=2), 1e-9)
-    enough = np.abs(lean) >= np.sin(np.radians(FLAT_DEG))
-    signs: NDArray[np.float64] = np.where(enough, np.sign(lean), 0.0)
-    return signs
-
-
-def ledger(doubts: Doubts, notes: Notes) -> Ledger:
+def ledger(take: Take, notes: Notes) -> Ledger:
     """Count what was given, what could be, and what the thesis's way would take."""
-    n = len(doubts.orientation)
-    clarity = np.nanmean(
-        np.where(np.isfinite(doubts.joint_confidence), doubts.joint_confidence, 0), axis=1
-    )
-    posed = np.isfinite(doubts.joint_confidence).all(axis=1)
+    clarity = np.where(take.posed, take.confidence.mean(axis=1), np.nan)
     return Ledger(
-        frames=n,
-        key_frames=len(key_frames(np.where(posed, clarity, np.nan))),
+        frames=len(take.frame),
+        key_frames=len(key_frames(clarity)),
         given=given_inputs(notes),
-        open=open_inputs(doubts),
-        thesis=_by_the_thesis(doubts),
+        open=open_inputs(take),
+        thesis=_by_the_thesis(take),
     )
 
 
@@ -144,13 +91,15 @@ def given_inputs(notes: Notes) -> Count:
     return Count(**count)
 
 
-def open_inputs(doubts: Doubts) -> Count:
+def open_inputs(take: Take) -> Count:
     """The inputs that would settle every doubt, each held as long as it agrees (T21)."""
-    unsure = doubts.depth_confidence < SURE
-    hidden = doubts.joint_confidence < SEEN
+    asked = take.posed & (take.orientation_confidence < SURE)
+    unsure = take.posed[:, None] & (take.depth_confidence < SURE)
+    hidden = take.posed[:, None] & (take.confidence < SEEN)
+    depth = depth_of(take.joints_m)
     return Count(
-        orientation=inputs(doubts.orientation, doubts.orientation_confidence < SURE),
-        depth=sum(inputs(doubts.depth[:, i], unsure[:, i]) for i in range(len(LIMBS))),
+        orientation=inputs(take.orientation, asked),
+        depth=sum(inputs(depth[:, i], unsure[:, i]) for i in range(len(LIMBS))),
         joints=sum(_stretches(hidden[:, i]) for i in range(len(JOINT_NAMES))),
     )
 
@@ -175,10 +124,36 @@ def _stretches(hidden: NDArray[np.bool_]) -> int:
     return int(np.count_nonzero(np.diff(hidden.astype(int), prepend=0) == 1))
 
 
-def _by_the_thesis(doubts: Doubts) -> Count:
-    everywhere = np.ones(len(doubts.orientation), np.bool_)
+def _by_the_thesis(take: Take) -> Count:
+    depth = depth_of(take.joints_m)
     return Count(
-        orientation=inputs(doubts.orientation, everywhere),
-        depth=sum(inputs(doubts.depth[:, i], everywhere) for i in range(len(LIMBS))),
-        joints=open_inputs(doubts).joints,
+        orientation=inputs(np.where(take.posed, take.orientation, ""), take.posed),
+        depth=sum(inputs(depth[:, i], take.posed) for i in range(len(LIMBS))),
+        joints=open_inputs(take).joints,
+    )
+
+
+def facts_of(made: Ledger) -> dict[str, Any]:
+    """A ledger for a summary: the video's own counts, and the thesis's beside them."""
+    return {
+        "inputs": msgspec.to_builtins(made.given) | {"all": made.given.total},
+        "inputs_that_could_help": msgspec.to_builtins(made.open) | {"all": made.open.total},
+        "this_video_by_hand": made.by_hand,
+        "this_video_the_thesis_way": made.thesis.total,
+        "thesis": {
+            each.video: {"frames": each.frames, "by_hand": each.by_hand, "all": each.inputs.total}
+            for each in PRINTED
+        },
+    }
+
+
+def line_of(facts: dict[str, Any]) -> str:
+    """The ledger's facts in one line."""
+    thesis = ", ".join(
+        f"{name} {each['by_hand']} -> {each['all']}" for name, each in facts["thesis"].items()
+    )
+    return (
+        f"inputs: {facts['inputs']['all']} given, {facts['inputs_that_could_help']['all']} could "
+        f"help; by hand {facts['this_video_by_hand']}, the thesis's way "
+        f"{facts['this_video_the_thesis_way']} (its own videos: {thesis})"
     )
