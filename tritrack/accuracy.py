@@ -29,6 +29,9 @@ INNER: Final = {
 LOST_MM: Final = 200.0
 """A frame with a joint further off than this is lost."""
 
+TINY_M2: Final = 1e-12
+"""Keeps limbs without length from being divided by, as the yardstick does it."""
+
 
 class Compared(NamedTuple):
     """One clip: the frames that have a true and a tracked person, and how many had a true one."""
@@ -161,7 +164,7 @@ def inner_deg(joints_m: Floats) -> Floats:
             u = joints_m[:, INDEX[f"{side}_{one}"]] - at
             v = joints_m[:, INDEX[f"{side}_{other}"]] - at
             lengths = np.linalg.norm(u, axis=1) * np.linalg.norm(v, axis=1)
-            cosine = (u * v).sum(axis=1) / np.maximum(lengths, 1e-12)
+            cosine = (u * v).sum(axis=1) / (lengths + TINY_M2)
             found.append(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
     return np.stack(found, axis=1)
 
@@ -183,7 +186,7 @@ def aligned(joints_m: Floats, onto_m: Floats) -> Floats:
     upright = np.ones_like(s)
     upright[:, 2] = np.sign(np.linalg.det(u @ vt))
     turn = (u * upright[:, None]) @ vt
-    size = np.maximum((p * p).sum(axis=(1, 2)), 1e-12)
+    size = np.maximum((p * p).sum(axis=(1, 2)), TINY_M2)
     scale = (s * upright).sum(axis=1) / size
     moved: Floats = scale[:, None, None] * (p @ turn) + middle
     return moved

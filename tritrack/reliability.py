@@ -5,7 +5,6 @@ from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import rankdata
 
 from tritrack.accuracy import JOINTS, Compared, Floats
 
@@ -69,7 +68,8 @@ def auc(sure: Floats, near: NDArray[np.bool_]) -> float:
     hits, all_of_them = int(near.sum()), near.size
     if hits in (0, all_of_them):
         return np.nan
-    ranks = rankdata(sure.ravel())[near.ravel()]
+    _, place, ties = np.unique(sure.ravel(), return_inverse=True, return_counts=True)
+    ranks = (np.cumsum(ties) - (ties - 1) / 2)[place][near.ravel()]
     return float((ranks.sum() - hits * (hits + 1) / 2) / (hits * (all_of_them - hits)))
 
 
