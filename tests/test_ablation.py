@@ -1,6 +1,7 @@
 """The table of departures: that it knows them all, and switches nothing else."""
 
 import importlib.util
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 
@@ -54,6 +55,6 @@ def test_what_was_off_is_on_again(ablation: ModuleType) -> None:
 def test_a_row_adds_to_the_one_above_and_each_is_left_out_once(ablation: ModuleType) -> None:
     rows, n = ablation.rows(), len(ablation.STEPS)
     assert [len(row.off) for row in rows] == [*range(n, -1, -1), *[1] * n]
-    for above, row in zip(rows[:n], rows[1:], strict=False):
+    for above, row in pairwise(rows[: n + 1]):
         assert above.off[1:] == row.off
     assert [row.off[0] for row in rows[n + 1 :]] == list(ablation.STEPS)

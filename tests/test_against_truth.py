@@ -18,6 +18,7 @@ import tritrack.__main__ as door
 from tritrack.accuracy import compare, summary
 from tritrack.against_truth import EvaluationError, evaluate_tracking
 from tritrack.offline import ClipsFailed, track_all
+from tritrack.worst import TRACKED, TRUE
 
 QUIET = Console(quiet=True)
 
@@ -93,7 +94,7 @@ def test_the_worst_frames_show_both_cameras_and_both_sticks(written: Path) -> No
     assert picture is not None
     assert picture.shape == (480, 1280, 3)
     for half in (picture[:, :640].astype(int), picture[:, 640:].astype(int)):
-        for colour in ((80, 220, 80), (255, 140, 60), (60, 90, 255)):
+        for colour in (*TRUE, *TRACKED):
             assert (np.abs(half - colour).max(axis=2) < 8).sum() > 50
 
 

@@ -149,8 +149,8 @@ def _worst(told: Sequence[Mapping[str, Any]]) -> str:
         for one in told
     ]
     return (
-        "<h2>Worst frames</h2><p>True stick green; tracked: left side blue, right side red."
-        f"</p>{''.join(figures)}"
+        "<h2>Worst frames</h2><p>True stick: left side light green, right side dark green; "
+        f"tracked: left blue, right red.</p>{''.join(figures)}"
     )
 
 

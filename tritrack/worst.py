@@ -34,8 +34,9 @@ STICKS: Final = (
     *((f"{side}_hip", f"{side}_knee") for side in "lr"),
     *((f"{side}_knee", f"{side}_ankle") for side in "lr"),
 )
-TRUE, LEFT, RIGHT = (80, 220, 80), (255, 140, 60), (60, 90, 255)
-"""Blue, green, red: of the true stick, and of the tracked one's left and right."""
+TRUE: Final = ((130, 255, 170), (40, 150, 40))
+TRACKED: Final = ((255, 140, 60), (60, 90, 255))
+"""Blue, green, red of the left and the right side: who is taken for the other must be seen."""
 FINE: Final = 4
 """Binary digits of a pixel's fraction, as OpenCV draws them."""
 
@@ -120,8 +121,8 @@ def _shown(
                 enlarged * project(camera, joints[one.place])
                 for joints in (compared.true_m, compared.tracked_m)
             )
-            stick(picture, true, (TRUE, TRUE))
-            stick(picture, tracked, (LEFT, RIGHT))
+            stick(picture, true, TRUE)
+            stick(picture, tracked, TRACKED)
         parts.append(picture)
     return np.concatenate(parts, axis=1)
 
