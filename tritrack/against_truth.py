@@ -69,15 +69,12 @@ def evaluate_tracking(
         EvaluationError: When nothing can be scored, or the report cannot be written.
         ClipError, ClipsFailed: When a clip cannot be used.
     """
-    cases: dict[str, Case] = {}
+    folders = _runs_of(paths, out, runs, mode, size, console)
     with bar(console) as progress:
-        folders = _runs_of(paths, out, runs, mode, size, console)
-        for name, (folder, clip) in progress.track(folders.items(), description="reading"):
-            case = _case(folder, clip, mode, size)
-            if case is None:
-                warn(console, f"{clip or folder} has no truth.npz: left out")
-            else:
-                cases[name] = case
+        cases = {
+            name: _case(folder, clip, mode, size)
+            for name, (folder, clip) in progress.track(folders.items(), description="reading")
+        }
     if not any(len(case.compared.rows) for case in cases.values()):
         raise EvaluationError("no clip has both a truth.npz and a pose: there is nothing to score")
     try:
@@ -98,10 +95,17 @@ def _runs_of(
     size: str | None,
     console: Console,
 ) -> dict[str, tuple[Path, Path | None]]:
-    """The run folder of every name, tracked now where none stands, and its clip where given."""
+    """The run folder of every name, tracked now where none stands, and its clip where given.
+
+    A clip that has no truth is said and left out.
+    """
     given = without_plain_files(paths, console)
     stand = run_names([path for path in given if _is_run(path)])
     clips = run_names([path for path in given if not _is_run(path)])
+    for name in [
+        name for name, path in clips.items() if not _truth_of(config.load(path)).is_file()
+    ]:
+        warn(console, f"{clips.pop(name)} has no truth.npz: left out")
     into = runs or out / "runs"
     if runs is not None:
         stand = {name: runs / name for name in clips if _is_run(runs / name)} | stand
@@ -117,8 +121,12 @@ def _is_run(path: Path) -> bool:
     return (path / "poses.npz").is_file()
 
 
-def _case(run: Path, clip: Path | None, mode: Mode | None, size: str | None) -> Case | None:
-    """A run with its truth; None where its clip has none."""
+def _truth_of(settings: Settings) -> Path:
+    return Path(settings.clip) / "truth.npz"
+
+
+def _case(run: Path, clip: Path | None, mode: Mode | None, size: str | None) -> Case:
+    """A run with its truth."""
     try:
         facts = json.loads((run / "summary.json").read_text())
         settings = msgspec.convert(facts["settings"], Settings)
@@ -132,11 +140,9 @@ def _case(run: Path, clip: Path | None, mode: Mode | None, size: str | None) -> 
             )
     if clip is not None:
         settings = msgspec.structs.replace(settings, clip=config.load(clip).clip)
-    elif not Path(settings.clip).is_dir():
-        raise EvaluationError(f"{run} is of the clip {settings.clip}, which is not there: name it")
-    path = Path(settings.clip) / "truth.npz"
+    path = _truth_of(settings)
     if not path.is_file():
-        return None
+        raise EvaluationError(f"{run} needs {path}, which is not there: name its clip beside it")
     poses, truth = _arrays(run / "poses.npz", IN_POSES), _arrays(path, IN_TRUTH)
     try:
         compared = compare(poses, truth)

@@ -35,7 +35,8 @@ def overlaps(settings: Settings, truth: Arrays, decoders: Decoders) -> dict[str,
 
     Args:
         settings: Of the run; they name the clip.
-        truth: Its truth: mask_cam1, mask_cam2 packed along their rows, mask_shape.
+        truth: Its truth: mask_cam1, mask_cam2 packed along their rows, mask_shape;
+            a view without them is left out.
         decoders: For the videos.
 
     Raises:
@@ -45,7 +46,7 @@ def overlaps(settings: Settings, truth: Arrays, decoders: Decoders) -> dict[str,
     return {
         f"cam{view.number}": _of_view(view, clip.every, settings, truth, decoders)
         for view in clip.views
-        if f"mask_cam{view.number}" in truth
+        if {f"mask_cam{view.number}", "mask_shape"} <= set(truth)
     }
 
 
