@@ -94,7 +94,7 @@ def _joints(report: Mapping[str, Any]) -> str:
 
 
 def _silhouettes(told: Mapping[str, Any]) -> str:
-    means = {"all": told["mean"], "worst clip": told["worst"], **told["per_performer"]}
+    means = {"all": told["mean"], "worst view of a clip": told["worst"], **told["per_performer"]}
     rows = [(name or "unnamed", _number(value, 3)) for name, value in means.items()]
     each = [
         (name, *(_number(views.get(kind, math.nan), 3) for kind in ("cam1", "cam2", "both")))

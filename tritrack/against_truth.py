@@ -204,10 +204,13 @@ def _grouped(cases: Mapping[str, Case], key: Callable[[Case], str]) -> dict[str,
 def _silhouettes(
     cases: Mapping[str, Case], found: Mapping[str, Mapping[str, Overlap]]
 ) -> dict[str, Any]:
-    """Mean IoU of every clip and view, of performers, of all; the worst of all clips' means."""
+    """Mean IoU of every clip and view, of performers, of all; `worst` is the least of any view.
+
+    Clips whose truth has no masks are left out.
+    """
     per_clip: dict[str, dict[str, float]] = {}
     per_performer: dict[str, list[float]] = {}
-    for name, views in found.items():
+    for name, views in [(name, views) for name, views in found.items() if views]:
         means = {view: _mean(overlap.iou) for view, overlap in views.items()}
         per_clip[name] = {**means, "both": _mean(list(means.values()))}
         per_performer.setdefault(cases[name].performer, []).append(per_clip[name]["both"])
@@ -216,7 +219,7 @@ def _silhouettes(
     empty = sum(overlap.empty for overlap in every)
     return {
         "mean": _mean(both),
-        "worst": min(both, default=np.nan),
+        "worst": min((min(one.values()) for one in per_clip.values()), default=np.nan),
         "ghost": sum(overlap.ghosts for overlap in every) / empty if empty else np.nan,
         "per_performer": {name: _mean(some) for name, some in sorted(per_performer.items())},
         "per_clip": per_clip,
