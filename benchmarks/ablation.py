@@ -113,7 +113,7 @@ POSES = (
         tuple((hypotheses, n, only) for n in ("swung", "regained")),
     ),
     Step("S1 S2: joint by joint, unmeasured bodies", ((hypotheses, "turned", only),)),
-    Step("joints proposed by the network", ((merge, "_insight", lambda *_: None),)),
+    Step("joints proposed by the network", ((insight, "step", lambda *_: None),)),
     Step(
         "joints beside the cylinders",
         ((insight, "pose_and_rest", partial(on_the_cylinders, insight.pose_and_rest)),),
