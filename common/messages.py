@@ -19,6 +19,7 @@ ViewerNumber = Literal[1, 2]
 Facing = Literal["facade", "flank"]
 Status = Literal["empty", "measuring", "tracking", "predicted", "lost"]
 Views = Literal["both", "1", "2", "none"]
+CameraFault = Literal["", "frozen", "black", "saturated", "covered"]
 Pixel = tuple[float, float]
 Point = tuple[float, float, float]
 
@@ -123,6 +124,10 @@ class Report(Moment, frozen=True, kw_only=True):
     """This viewer's frame that the guide in use had heard of; -1: none."""
     fit: Fit | None = None
     """The stick body, where this view is alone."""
+    next_s: float | None = None
+    """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
+    fault: CameraFault = ""
+    """What is wrong with the picture; nobody is seen in it then."""
 
 
 class Guide(Moment, frozen=True, kw_only=True):
@@ -192,7 +197,7 @@ class Pulse(Message, frozen=True, kw_only=True):
     """How a process is doing, once a second and at its end."""
 
     process: str
-    state: Literal["starting", "ready", "running", "ended"]
+    state: Literal["starting", "ready", "running", "ended", "restarting", "given up"]
     detail: str = ""
     frames: int = 0
     fps: float = 0.0
@@ -214,10 +219,12 @@ class Cameras(Message, frozen=True, kw_only=True):
 
 
 class Ended(Message, frozen=True, kw_only=True):
-    """A viewer's clip is over."""
+    """A viewer's clip is over, or broke."""
 
     viewer: ViewerNumber
     frames: int
+    why: str = ""
+    """What broke; "" where it came to its end or was stopped."""
 
 
 class ClockQuestion(Message, frozen=True, kw_only=True):

@@ -9,6 +9,9 @@ QUEUE: Final = 32
 
 NEVER_S: Final = float("-inf")
 
+AWAY_AFTER: Final = 2
+"""Frames that a viewer may miss in a row before nobody waits for its next."""
+
 Item = TypeVar("Item")
 Seen = tuple[Report | None, Report | None]
 """Reports of viewer 1 and viewer 2 in which there is somebody."""
@@ -40,6 +43,11 @@ class State(NamedTuple):
     """Reports of viewer 1 and viewer 2, oldest first."""
     over: tuple[bool, bool]
     """Viewers that say nothing more: nobody waits for them."""
+    missed: tuple[int, int] = (0, 0)
+    """How many frames in a row each viewer was waited for in vain; from AWAY_AFTER on nobody waits
+    for it, until it reports again."""
+    next_s: tuple[float, float] = (NEVER_S, NEVER_S)
+    """Before this no further frame of viewer n is taken, as it said itself."""
     passed_s: tuple[float, float] = (NEVER_S, NEVER_S)
     """A report of viewer n must be younger than this: its instant has gone out already."""
     dropped: int = 0
@@ -62,9 +70,9 @@ def step(state: State, report: Report) -> tuple[State, list[Pair]]:
     """Take a report in; give out what is complete now, in the order of time.
 
     A report goes out with the other viewer's of the same instant (half a period apart at most),
-    or alone as soon as the other viewer has said something later. So what goes out follows from
-    what each viewer said, not from how the two were heard interleaved, as long as no queue
-    overflows and nothing was called overdue.
+    or alone as soon as the other viewer has said something later, or that it takes no picture
+    before. So what goes out follows from what each viewer said, not from how the two were heard
+    interleaved, as long as no queue overflows and nothing was called overdue.
     """
     own = report.viewer - 1
     if state.over[own]:
@@ -74,7 +82,26 @@ def step(state: State, report: Report) -> tuple[State, list[Pair]]:
         waiting=_with(state.waiting, own, queue[-QUEUE:]),
         dropped=state.dropped + max(0, len(queue) - QUEUE),
     )
+    if report.captured_s > state.passed_s[own] - state.period_s:
+        state = state._replace(missed=_with(state.missed, own, 0))
+    if report.next_s is not None:
+        state = state._replace(next_s=_with(state.next_s, own, report.next_s))
     return _settled(state)
+
+
+def begin(state: State, viewer: ViewerNumber) -> State:
+    """A viewer that had ended, or was away, is there again: it is waited for."""
+    own = viewer - 1
+    return state._replace(
+        over=_with(state.over, own, False),
+        missed=_with(state.missed, own, 0),
+        next_s=_with(state.next_s, own, NEVER_S),
+    )
+
+
+def away(state: State, viewer: ViewerNumber) -> tuple[State, list[Pair]]:
+    """A viewer is known to be gone: nothing waits for it until it reports again."""
+    return _settled(state._replace(missed=_with(state.missed, viewer - 1, AWAY_AFTER)))
 
 
 def end(state: State, viewer: ViewerNumber) -> tuple[State, list[Pair]]:
@@ -93,9 +120,11 @@ def overdue(state: State, now_s: float, wait_s: float) -> tuple[State, list[Pair
     pairs: list[Pair] = []
     for own in (0, 1):
         while state.waiting[own] and state.waiting[own][0].clock_s + wait_s < now_s:
-            state, pair = _alone(state, own)
+            missed = state.missed[1 - own] + 1
+            state, pair = _alone(state._replace(missed=_with(state.missed, 1 - own, missed)), own)
             pairs.append(pair)
-    return state, pairs
+    state, more = _settled(state)
+    return state, pairs + more
 
 
 def _settled(state: State) -> tuple[State, list[Pair]]:
@@ -110,11 +139,19 @@ def _settled(state: State) -> tuple[State, list[Pair]]:
                 state, pair = _together(state)
             else:
                 state, pair = _alone(state, 0 if apart_s > 0 else 1)
-        elif (first and state.over[1]) or (second and state.over[0]):
+        elif (first or second) and not _awaited(state, 1 if first else 0):
             state, pair = _alone(state, 0 if first else 1)
         else:
             return state, pairs
         pairs.append(pair)
+
+
+def _awaited(state: State, other: int) -> bool:
+    """Whether a viewer that has said nothing may still have a partner for the oldest report."""
+    if state.over[other] or state.missed[other] >= AWAY_AFTER:
+        return False
+    oldest = state.waiting[1 - other][0]
+    return state.next_s[other] - oldest.captured_s <= state.period_s / 2
 
 
 def _without_late(state: State) -> State:

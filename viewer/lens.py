@@ -1,0 +1,65 @@
+"""What is wrong with a camera's picture as a whole: it stands still, is black, white or covered."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.messages import CameraFault
+
+Frame = NDArray[np.uint8]
+
+FROZEN_AFTER: Final = 2
+"""Repeats that may be no fault: files made for a faster rate hold each picture two or three times,
+and no filmed clip that was looked at held one more than twice."""
+STRIDE: Final = 4
+"""Every so many rows and columns are looked at for brightness."""
+PLAIN: Final = 16.0
+"""Grey levels between the darkest and the brightest tenth of what shows no room at all."""
+UNLIKE: Final = 25.0
+"""Grey levels by which such a picture differs from the empty room: a plain wall does not."""
+DARK, BRIGHT: Final = 60.0, 195.0
+"""Grey levels: below, a plain picture is called black; above, saturated."""
+
+
+class State(NamedTuple):
+    """The picture before, and for how many frames it has been the same."""
+
+    room: NDArray[np.float32]
+    """Grey levels of the empty room, every STRIDE pixels."""
+    last: Frame | None = None
+    repeats: int = 0
+
+
+def init(room: NDArray[np.float32]) -> State:
+    """Nothing seen yet but the empty room, (H, W, 3)."""
+    return State(_grey(room))
+
+
+def step(state: State, picture: Frame) -> tuple[State, CameraFault]:
+    """One picture (H, W, 3); the fault that makes it useless, or "".
+
+    A sensor's noise makes every picture of its own, so one that is the same, bit for bit, for
+    more than FROZEN_AFTER frames is the camera's memory and not the room.
+    """
+    same = state.last is not None and np.array_equal(picture, state.last)
+    state = State(state.room, picture, state.repeats + 1 if same else 0)
+    if state.repeats > FROZEN_AFTER:
+        return state, "frozen"
+    return state, _blank(state.room, picture)
+
+
+def _blank(room: NDArray[np.float32], picture: Frame) -> CameraFault:
+    grey = _grey(picture)
+    ranked = np.sort(grey, axis=None)
+    tenth = len(ranked) // 10
+    if ranked[-1 - tenth] - ranked[tenth] > PLAIN or np.abs(grey - room).mean() < UNLIKE:
+        return ""
+    middle = float(ranked[len(ranked) // 2])
+    if middle < DARK:
+        return "black"
+    return "saturated" if middle > BRIGHT else "covered"
+
+
+def _grey(picture: NDArray[np.float32] | Frame) -> NDArray[np.float32]:
+    return picture[::STRIDE, ::STRIDE].mean(axis=2, dtype=np.float32)
