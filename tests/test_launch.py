@@ -17,11 +17,13 @@ import zenoh
 from rich.console import Console
 
 from common.config import BusSettings, PageSettings, Settings
-from common.messages import Body, Pulse
-from tritrack.launch import Heard, Part, PartFailed, run
+from common.messages import Body
+from tritrack.launch import Heard, run
 from tritrack.offline import Decoders, track_clip
+from tritrack.parts import Part
 from tritrack.runs import poses
 from tritrack.session import free_settings, live
+from tritrack.supervise import PartFailed
 
 QUIET = Console(quiet=True)
 
@@ -158,7 +160,7 @@ def babble(bus: BusSettings, room: str, over: threading.Event) -> None:
 def test_a_part_that_fails_is_named_with_its_reason(tmp_path: Path) -> None:
     parts = [Part("integrator", fails, ("the roof leaks",))]
     with pytest.raises(PartFailed, match="integrator: the roof leaks"):
-        run(parts, settings_of(tmp_path), threading.Event(), ignore, Heard([], [], {}, []))
+        run(parts, settings_of(tmp_path), threading.Event(), ignore, Heard([], [], {}, [], []))
 
 
 def test_an_endpoint_in_use_is_refused_in_one_line(clip: Path, tmp_path: Path) -> None:
@@ -173,7 +175,7 @@ def test_an_endpoint_in_use_is_refused_in_one_line(clip: Path, tmp_path: Path) -
             live(settings, tmp_path, QUIET)
 
 
-def ignore(_pulses: dict[str, Pulse]) -> None:
+def ignore(_heard: Heard) -> None:
     """Show nothing."""
 
 

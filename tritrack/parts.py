@@ -30,6 +30,8 @@ class Part(NamedTuple):
     arguments: tuple[Any, ...]
     leads: bool = False
     """The run is over when all that lead have ended."""
+    beats: bool = False
+    """While it runs it says so once a second, whatever the others do: if it does not, it hangs."""
 
 
 class Running(NamedTuple):
@@ -45,14 +47,15 @@ def live_parts(settings: Settings, clip: Clip, place: Place) -> list[Part]:
     """The table of a live run: who listens comes before who speaks (P2)."""
     period_s = clip.every / clip.views[0].fps
     parts = [
-        Part("integrator", integrator_main, (settings, clip, place)),
+        Part("integrator", integrator_main, (settings, clip, place), beats=True),
         Part("recognizer", recognizer_main, (settings, period_s, place)),
     ]
     if settings.page.port:
         parts.append(Part("animator", animator_main, (settings, clip.rig, period_s, place)))
     for view in clip.views:
         arguments = (settings, view.number, place)
-        parts.append(Part(f"viewer {view.number}", viewer_main, arguments, leads=True))
+        name = f"viewer {view.number}"
+        parts.append(Part(name, viewer_main, arguments, leads=True, beats=True))
     return parts
 
 

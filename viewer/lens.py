@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.messages import CameraFault
-
-Frame = NDArray[np.uint8]
+from viewer.background import Background, Frame
 
 FROZEN_AFTER: Final = 2
 """Repeats that may be no fault: files made for a faster rate hold each picture two or three times,
@@ -18,7 +17,8 @@ PLAIN: Final = 16.0
 """Grey levels between the darkest and the brightest tenth of what shows no room at all."""
 UNLIKE: Final = 25.0
 """Grey levels by which such a picture differs from the empty room: a plain wall does not."""
-DARK, BRIGHT: Final = 60.0, 195.0
+DARK: Final = 60.0
+BRIGHT: Final = 195.0
 """Grey levels: below, a plain picture is called black; above, saturated."""
 
 
@@ -31,9 +31,9 @@ class State(NamedTuple):
     repeats: int = 0
 
 
-def init(room: NDArray[np.float32]) -> State:
-    """Nothing seen yet but the empty room, (H, W, 3)."""
-    return State(_grey(room))
+def init(room: Background) -> State:
+    """Nothing seen yet but the empty room."""
+    return State(_grey(room.centre))
 
 
 def step(state: State, picture: Frame) -> tuple[State, CameraFault]:

@@ -62,7 +62,7 @@ def init(
         viewer,
         rotation_of(camera, viewer),
         settings,
-        lens.init(background.centre),
+        lens.init(background),
         silhouette.init(background, settings.silhouette),
         "facade" if viewer == 1 else "flank",
     )
@@ -142,9 +142,7 @@ def _outline_report(state: State, frame: Frame, guide: Guide | None, seen: Seen)
     )
 
 
-def _blind_report(
-    state: State, frame: Frame, guide: Guide | None, fault: CameraFault
-) -> Report:
+def _blind_report(state: State, frame: Frame, guide: Guide | None, fault: CameraFault) -> Report:
     """Nobody is seen, and why."""
     nobody = np.zeros(frame.picture.shape[:2], np.bool_)
     seen = Seen(nobody, box=None, area_px=0, blobs=0, cut=False)
