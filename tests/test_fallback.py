@@ -3,6 +3,7 @@
 import json
 import multiprocessing
 import os
+import shutil
 import signal
 import socket
 import threading
@@ -26,12 +27,15 @@ from tritrack.offline import Decoders, track_clip
 from tritrack.parts import Part, live_parts
 from tritrack.runs import poses
 from tritrack.session import free_settings, live
+from tritrack.supervise import PartFailed
+from viewer.lens import FROZEN_AFTER
 
 pytestmark = pytest.mark.slow
 
 RATE_HZ = 5.0
 """A third of the cameras' rate: what a busy machine keeps up with."""
 PATIENCE_S = 90.0
+FRAMES = 148
 MOTION = 29
 """First frame after the opening posture."""
 LOST = slice(45, 61)
@@ -134,10 +138,6 @@ def pid_of(name: str) -> int:
     return pid
 
 
-def bodies_of(found: dict[str, Any], views: str) -> int:
-    return int(np.count_nonzero(found["views"] == views))
-
-
 def rows(out: Path) -> dict[str, Any]:
     with np.load(out / "poses.npz", allow_pickle=False) as found:
         return dict(found)
@@ -176,3 +176,198 @@ def test_a_killed_viewer_is_started_again_and_the_body_goes_on(
     log = (tmp_path / "log.txt").read_text()
     assert "supervisor  WARNING viewer 2: killed by signal 9" in log
     assert "view 2 is lost" in log
+
+
+def test_a_frozen_viewer_is_silent_and_resumes(long_clip: Path, tmp_path: Path) -> None:
+    """SIGSTOP: it keeps its place on the bus for a while and says nothing."""
+
+    def harm(witness: Witness) -> None:
+        witness.until_tracked()
+        frozen = pid_of("viewer 2")
+        os.kill(frozen, signal.SIGSTOP)
+        try:
+            witness.until_views("1")
+            witness.until_said("view 2 is lost (it ")
+        finally:
+            os.kill(frozen, signal.SIGCONT)
+        witness.until_views("both")
+
+    settings = settings_of(long_clip)
+    with Witness(settings.bus, harm) as witness:
+        live(settings, tmp_path, Console(quiet=True))
+    goes_on_with_view_1_and_comes_back(tmp_path, witness)
+
+
+def test_a_viewer_that_stays_frozen_is_killed_and_started_again(
+    long_clip: Path, tmp_path: Path
+) -> None:
+    def harm(witness: Witness) -> None:
+        witness.until_tracked()
+        os.kill(pid_of("viewer 2"), signal.SIGSTOP)
+        witness.until_views("1")
+        witness.until_views("both")
+
+    settings = settings_of(long_clip)
+    with Witness(settings.bus, harm) as witness:
+        facts = live(settings, tmp_path, Console(quiet=True))
+    goes_on_with_view_1_and_comes_back(tmp_path, witness)
+    assert any("viewer 2: it has said nothing for" in told for told in facts["warnings"])
+
+
+class Cable:
+    """A TCP link between a viewer and the hub that can be cut and mended."""
+
+    def __init__(self, hub: BusSettings) -> None:
+        self._hub = int(hub.endpoint.rsplit(":", 1)[1])
+        self._door = socket.create_server(("127.0.0.1", 0))
+        self.bus = BusSettings(endpoint=f"tcp/127.0.0.1:{self._door.getsockname()[1]}")
+        self._ends: list[socket.socket] = []
+        self._whole = True
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def _accept(self) -> None:
+        while True:
+            try:
+                near, _ = self._door.accept()
+                far = socket.create_connection(("127.0.0.1", self._hub))
+            except OSError:
+                continue
+            if not self._whole:
+                near.close()
+                far.close()
+                continue
+            self._ends += [near, far]
+            for one, other in ((near, far), (far, near)):
+                threading.Thread(target=self._pump, args=(one, other), daemon=True).start()
+
+    @staticmethod
+    def _pump(one: socket.socket, other: socket.socket) -> None:
+        try:
+            while heard := one.recv(1 << 16):
+                other.sendall(heard)
+        except OSError:
+            pass
+
+    def cut(self) -> None:
+        self._whole = False
+        for end in self._ends:
+            end.close()
+        self._ends.clear()
+
+    def mend(self) -> None:
+        self._whole = True
+
+
+def test_a_cut_link_is_noticed_and_mended(
+    long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    settings = settings_of(long_clip)
+    cable = Cable(settings.bus)
+    afar = msgspec.structs.replace(settings, bus=cable.bus)
+
+    def parts(*given: Any) -> list[Part]:
+        *others, last = live_parts(*given)
+        assert last.name == "viewer 2"
+        return [*others, last._replace(arguments=(afar, *last.arguments[1:]))]
+
+    def harm(witness: Witness) -> None:
+        witness.until_tracked()
+        cable.cut()
+        witness.until_views("1")
+        witness.until_said("view 2 is lost (it was killed, or its link is cut)")
+        cable.mend()
+        witness.until_views("both")
+        witness.until_said("view 2 is back")
+
+    monkeypatch.setattr(session, "live_parts", parts)
+    with Witness(settings.bus, harm) as witness:
+        facts = live(settings, tmp_path, Console(quiet=True))
+    goes_on_with_view_1_and_comes_back(tmp_path, witness)
+    assert facts["processes"]["viewer 2"]["frames"] == facts["processes"]["viewer 1"]["frames"]
+
+
+def covered(picture_of: Callable[[np.ndarray], np.ndarray]) -> Callable[[Film], Film]:
+    """A film that shows something else for as long as LOST lasts."""
+
+    def change(film: Film) -> Film:
+        other = [picture_of(film[LOST.start])] * (LOST.stop - LOST.start)
+        return [*film[: LOST.start], *other, *film[LOST.stop :]]
+
+    return change
+
+
+def test_a_covered_camera_is_told_and_left_out(long_clip: Path, tmp_path: Path) -> None:
+    """And the same offline, number by number."""
+    folder = shutil.copytree(long_clip, tmp_path / "covered")
+    refilmed(folder, covered(np.zeros_like), cameras=(2,))
+    settings = settings_of(folder)
+    facts = live(settings, tmp_path / "out", Console(quiet=True))
+    assert any("view 2 is lost (its camera's picture is black)" in w for w in facts["warnings"])
+    assert any("view 2 is back" in told for told in facts["warnings"])
+    found = rows(tmp_path / "out")
+    assert set(found["views"][LOST]) == {"1"}
+    assert set(found["views"][LOST.stop :]) == {"both"}
+    if not any(facts["processes"][f"viewer {n}"]["guide_misses"] for n in (1, 2)):
+        with Decoders() as decoders:
+            offline = poses(track_clip(settings, decoders).bodies)
+        for name, values in offline.items():
+            np.testing.assert_array_equal(found[name], values, err_msg=name)
+
+
+@pytest.mark.parametrize(
+    ("picture_of", "seen_until"),
+    [
+        (lambda picture: picture, LOST.start + 1 + FROZEN_AFTER),
+        (lambda picture: np.full_like(picture, 255), LOST.start),
+        (lambda picture: np.full_like(picture, 110), LOST.start),
+    ],
+    ids=["frozen", "saturated", "covered"],
+)
+def test_what_is_no_picture_of_the_room_is_not_looked_at(
+    long_clip: Path,
+    tmp_path: Path,
+    picture_of: Callable[[np.ndarray], np.ndarray],
+    seen_until: int,
+) -> None:
+    folder = shutil.copytree(long_clip, tmp_path / "covered")
+    refilmed(folder, covered(picture_of), cameras=(2,))
+    with Decoders() as decoders:
+        found = poses(track_clip(settings_of(folder), decoders).bodies)
+    assert set(found["views"][MOTION:seen_until]) == {"both"}
+    assert set(found["views"][seen_until : LOST.stop]) == {"1"}
+    assert set(found["views"][LOST.stop :]) == {"both"}
+    assert np.isfinite(found["joints_m"][MOTION:]).all()
+
+
+def test_a_clip_that_ends_early_leaves_the_other_view(long_clip: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(long_clip, tmp_path / "short")
+    refilmed(folder, lambda film: film[: LOST.start], cameras=(2,))
+    facts = live(settings_of(folder), tmp_path / "out", Console(quiet=True))
+    told = "view 2 is lost (its clip is over); view 1 goes on alone"
+    assert any(told in warning for warning in facts["warnings"])
+    found = rows(tmp_path / "out")
+    assert found["frame"].tolist() == list(range(FRAMES))
+    assert set(found["views"][LOST.start :]) == {"1"}
+
+
+def test_what_dies_again_and_again_is_given_up_and_the_other_view_tracked_to_its_end(
+    long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tritrack.supervise.TRIES", 1)
+
+    def harm(witness: Witness) -> None:
+        for _ in range(2):
+            witness.until_views("both")
+            os.kill(pid_of("viewer 2"), signal.SIGKILL)
+            witness.until_views("1")
+
+    settings = settings_of(long_clip)
+    given_up = "viewer 2: killed by signal 9; it was started again 1 times and is given up"
+    with (
+        Witness(settings.bus, harm),
+        pytest.raises(PartFailed, match=given_up),
+    ):
+        live(settings, tmp_path, Console(quiet=True))
+    assert rows(tmp_path)["frame"].tolist() == list(range(FRAMES))
+    told = json.loads((tmp_path / "summary.json").read_text())["processes"]["viewer 2"]["state"]
+    assert told == "given up"
