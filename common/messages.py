@@ -299,14 +299,23 @@ def decode(payload: bytes, kind: type[Said]) -> Said:
         MalformedMessage: When they are too long, no MessagePack, of another protocol, of the
             wrong shape, or hold a number that is not finite.
     """
-    if len(payload) > MAX_BYTES:
-        raise MalformedMessage(f"{len(payload)} bytes, at most {MAX_BYTES} are taken")
+    refuse_size(len(payload))
     try:
         message = msgspec.msgpack.decode(payload, type=kind)
     except (msgspec.DecodeError, RecursionError, ValueError) as error:
         raise MalformedMessage(f"no {kind.__name__}: {error}") from error
     _refuse_what_no_process_would_say(message)
     return message
+
+
+def refuse_size(size_bytes: int) -> None:
+    """Say that a payload is too large to be looked at.
+
+    Raises:
+        MalformedMessage: When it is.
+    """
+    if size_bytes > MAX_BYTES:
+        raise MalformedMessage(f"{size_bytes} bytes, at most {MAX_BYTES} are taken")
 
 
 def pack(mask: NDArray[np.bool_]) -> bytes:

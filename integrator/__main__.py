@@ -32,8 +32,8 @@ LAST_WORDS_S: Final = 1.0
 """All others meet here: how long the room stays open after the last body."""
 SUPERVISED_S: Final = 60.0
 """The same where a supervisor ends the processes in order."""
-OVERDUE_PERIODS: Final = 1.0
-"""A report whose partner is a frame late goes on alone."""
+OVERDUE_PERIODS: Final = 2.0
+"""A report whose partner is two frames late goes on alone, and so do those after it."""
 
 log = logging.getLogger(__name__)
 

@@ -9,8 +9,6 @@ QUEUE: Final = 32
 
 NEVER_S: Final = float("-inf")
 
-AWAY_AFTER: Final = 2
-"""Frames that a viewer may miss in a row before nobody waits for its next."""
 
 Item = TypeVar("Item")
 Seen = tuple[Report | None, Report | None]
@@ -43,9 +41,9 @@ class State(NamedTuple):
     """Reports of viewer 1 and viewer 2, oldest first."""
     over: tuple[bool, bool]
     """Viewers that say nothing more: nobody waits for them."""
-    missed: tuple[int, int] = (0, 0)
-    """How many frames in a row each viewer was waited for in vain; from AWAY_AFTER on nobody waits
-    for it, until it reports again."""
+    away: tuple[bool, bool] = (False, False)
+    """Viewers that were waited for in vain, or are known to be gone: nobody waits for them, until
+    they report again."""
     next_s: tuple[float, float] = (NEVER_S, NEVER_S)
     """Before this no further frame of viewer n is taken, as it said itself."""
     passed_s: tuple[float, float] = (NEVER_S, NEVER_S)
@@ -83,7 +81,7 @@ def step(state: State, report: Report) -> tuple[State, list[Pair]]:
         dropped=state.dropped + max(0, len(queue) - QUEUE),
     )
     if report.captured_s > state.passed_s[own] - state.period_s:
-        state = state._replace(missed=_with(state.missed, own, 0))
+        state = state._replace(away=_with(state.away, own, False))
     if report.next_s is not None:
         state = state._replace(next_s=_with(state.next_s, own, report.next_s))
     return _settled(state)
@@ -94,14 +92,14 @@ def begin(state: State, viewer: ViewerNumber) -> State:
     own = viewer - 1
     return state._replace(
         over=_with(state.over, own, False),
-        missed=_with(state.missed, own, 0),
+        away=_with(state.away, own, False),
         next_s=_with(state.next_s, own, NEVER_S),
     )
 
 
 def away(state: State, viewer: ViewerNumber) -> tuple[State, list[Pair]]:
     """A viewer is known to be gone: nothing waits for it until it reports again."""
-    return _settled(state._replace(missed=_with(state.missed, viewer - 1, AWAY_AFTER)))
+    return _settled(state._replace(away=_with(state.away, viewer - 1, True)))
 
 
 def end(state: State, viewer: ViewerNumber) -> tuple[State, list[Pair]]:
@@ -112,19 +110,17 @@ def end(state: State, viewer: ViewerNumber) -> tuple[State, list[Pair]]:
 def overdue(state: State, now_s: float, wait_s: float) -> tuple[State, list[Pair]]:
     """Let reports out alone that have waited for their partner long enough (live runs only).
 
+    Its viewer is away then, and what waits for it goes out, too.
+
     Args:
         state: What waits.
         now_s: The room's clock.
         wait_s: How old a report may grow by that clock.
     """
-    pairs: list[Pair] = []
     for own in (0, 1):
-        while state.waiting[own] and state.waiting[own][0].clock_s + wait_s < now_s:
-            missed = state.missed[1 - own] + 1
-            state, pair = _alone(state._replace(missed=_with(state.missed, 1 - own, missed)), own)
-            pairs.append(pair)
-    state, more = _settled(state)
-    return state, pairs + more
+        if state.waiting[own] and state.waiting[own][0].clock_s + wait_s < now_s:
+            return away(state, 2 - own)
+    return state, []
 
 
 def _settled(state: State) -> tuple[State, list[Pair]]:
@@ -148,7 +144,7 @@ def _settled(state: State) -> tuple[State, list[Pair]]:
 
 def _awaited(state: State, other: int) -> bool:
     """Whether a viewer that has said nothing may still have a partner for the oldest report."""
-    if state.over[other] or state.missed[other] >= AWAY_AFTER:
+    if state.over[other] or state.away[other]:
         return False
     oldest = state.waiting[1 - other][0]
     return state.next_s[other] - oldest.captured_s <= state.period_s / 2

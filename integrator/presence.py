@@ -9,6 +9,8 @@ Item = TypeVar("Item")
 
 OVER_S: Final = 0.5
 """A clip that ends so much before the other's is worth a word; both never end at once."""
+CLOSING_S: Final = 0.25
+"""A viewer that ends says so and leaves the bus, and the two may be heard in either order."""
 GONE_S: Final = 60.0
 """How long a viewer that was killed is waited for when no other is left: it may be started again,
 which takes some seconds, half a minute on a busy machine."""
@@ -114,7 +116,8 @@ def _cause(state: State, own: int, now_s: float) -> str:
         last = now_s - state.over_s[own] <= OVER_S or not going(state, now_s)
         return state.lost_for[own] if last else state.why_over[own] or "its clip is over"
     if state.gone_s[own] != NEVER_S:
-        return "it was killed, or its link is cut"
+        closing = now_s - state.gone_s[own] <= CLOSING_S
+        return state.lost_for[own] if closing else "it was killed, or its link is cut"
     if silent(1.0 / state.period_s, state.heard_s[own], now_s):
         return "it says nothing: it hangs, or its camera gives no picture"
     return f"its camera's picture is {state.fault[own]}" if state.fault[own] else ""

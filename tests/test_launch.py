@@ -133,9 +133,11 @@ def test_what_foreign_sessions_say_is_counted_and_dropped(slow_clip: Path, tmp_p
     finally:
         over.set()
         babbler.join()
-    assert facts["processes"]["integrator"]["malformed"] > 0
+    told = facts["processes"]
+    assert told["integrator"]["malformed"] > 0
     with np.load(tmp_path / "poses.npz") as found:
-        assert len(found["frame"]) == 69
+        late = told["viewer 1"]["dropped"] + told["integrator"]["late"]
+        assert 69 - late <= len(found["frame"]) <= 69
 
 
 def babble(bus: BusSettings, room: str, over: threading.Event) -> None:

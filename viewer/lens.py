@@ -15,8 +15,10 @@ STRIDE: Final = 4
 """Every so many rows and columns are looked at for brightness."""
 PLAIN: Final = 16.0
 """Grey levels between the darkest and the brightest tenth of what shows no room at all."""
+VARIED: Final = 2 * PLAIN
+"""The same in a room that is not plain itself."""
 UNLIKE: Final = 25.0
-"""Grey levels by which such a picture differs from the empty room: a plain wall does not."""
+"""Grey levels by which a picture without a room differs from a room that is plain, too."""
 DARK: Final = 60.0
 BRIGHT: Final = 195.0
 """Grey levels: below, a plain picture is called black; above, saturated."""
@@ -51,14 +53,21 @@ def step(state: State, picture: Frame) -> tuple[State, CameraFault]:
 
 def _blank(room: NDArray[np.float32], picture: Frame) -> CameraFault:
     grey = _grey(picture)
-    ranked = np.sort(grey, axis=None)
-    tenth = len(ranked) // 10
-    if ranked[-1 - tenth] - ranked[tenth] > PLAIN or np.abs(grey - room).mean() < UNLIKE:
+    if _contrast(grey) > PLAIN:
         return ""
-    middle = float(ranked[len(ranked) // 2])
+    if _contrast(room) < VARIED and np.abs(grey - room).mean() < UNLIKE:
+        return ""
+    middle = float(np.median(grey))
     if middle < DARK:
         return "black"
     return "saturated" if middle > BRIGHT else "covered"
+
+
+def _contrast(grey: NDArray[np.float32]) -> float:
+    """Grey levels between the darkest and the brightest tenth."""
+    ranked = np.sort(grey, axis=None)
+    tenth = len(ranked) // 10
+    return float(ranked[-1 - tenth] - ranked[tenth])
 
 
 def _grey(picture: NDArray[np.float32] | Frame) -> NDArray[np.float32]:
