@@ -26,11 +26,11 @@ ENVELOPE_BYTES: Final = 1 << 16
 piece as it comes: putting together a flood of it would cost a core."""
 
 QUEUED: Final = 16
-"""Messages that may wait for Zenoh's sending thread, its most; its own 2 overflow on a busy host."""
+"""Messages that may wait for Zenoh's sending thread, its most; its own 2 are soon full."""
 
 PATIENCE_US: Final = 10_000
 """How long a message may wait for room in a full queue before it is dropped. Zenoh's own 1 ms is
-less than a busy host lets its sending thread sleep; a link that is stuck is waited for once only."""
+less than a busy host lets its sending thread sleep; a link that is stuck is waited for once."""
 
 RETRY_S: Final = 0.1
 """Pause between two tries to reach the hub."""
@@ -49,7 +49,7 @@ class Bus(Protocol):
     """
 
     def publish(self, message: Message) -> None:
-        """Say a message to all who listen now; under congestion it is dropped, soon and uncounted."""
+        """Say a message to all who listen now; under congestion it waits a moment, then drops."""
 
     def subscribe(self, kind: type[Said]) -> Inbox[Said]:
         """Hear every message of a kind that is said from now on."""

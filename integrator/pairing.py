@@ -119,7 +119,7 @@ def overdue(state: State, now_s: float, wait_s: float) -> tuple[State, list[Pair
     """
     for own in (0, 1):
         if state.waiting[own] and state.waiting[own][0].clock_s + wait_s < now_s:
-            return away(state, 2 - own)
+            return away(state, 2 if own == 0 else 1)
     return state, []
 
 

@@ -9,7 +9,7 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +34,7 @@ pytestmark = pytest.mark.slow
 
 RATE_HZ = 5.0
 """A third of the cameras' rate: what a busy machine keeps up with."""
-PATIENCE_S = 120.0
+PATIENCE_S = 180.0
 FRAMES = 148
 MOTION = 29
 """First frame after the opening posture."""
@@ -42,13 +42,24 @@ LOST = slice(45, 61)
 """Frames in which camera 2 is covered."""
 
 
-@pytest.fixture(scope="module")
-def long_clip(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The made-up clip, its motion there and back, slow: a viewer has time to come back."""
-    folder = copied(clip, tmp_path_factory.mktemp("long") / "clip")
-    refilmed(folder, lambda film: film + film[:MOTION:-1] + film[MOTION:])
+def slow(clip: Path, folder: Path, rounds: int) -> Path:
+    """The made-up clip at a slow pace, its motion repeated there and back."""
+    copied(clip, folder)
+    refilmed(folder, lambda film: film + rounds * (film[:MOTION:-1] + film[MOTION:]))
     edit_json(folder / "meta.json", lambda meta: meta.update(fps=RATE_HZ))
     return folder
+
+
+@pytest.fixture(scope="module")
+def short_clip(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """FRAMES frames, half a minute."""
+    return slow(clip, tmp_path_factory.mktemp("short") / "clip", 1)
+
+
+@pytest.fixture(scope="module")
+def long_clip(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Minutes: on a busy machine a viewer takes as long to start; the witness ends the run."""
+    return slow(clip, tmp_path_factory.mktemp("long") / "clip", 14)
 
 
 def settings_of(clip: Path) -> Settings:
@@ -62,6 +73,10 @@ class Witness:
         self.bodies: list[Body] = []
         self.said: list[str] = []
         self.states: list[tuple[str, str]] = []
+        self.lost_at = 0
+        """Frame of the last body before the harm."""
+        self.over = threading.Event()
+        """Ends the run."""
         self._settings, self._harm = bus, harm
         self._thread = threading.Thread(target=self._run)
         self.failure: BaseException | None = None
@@ -82,6 +97,8 @@ class Witness:
                 self._harm(self)
         except BaseException as error:
             self.failure = error
+        finally:
+            self.over.set()
 
     @contextmanager
     def _door(self) -> Iterator[Any]:
@@ -126,6 +143,7 @@ class Witness:
             ),
         )
         self.until_views("both")
+        self.lost_at = self.bodies[-1].frame
 
     def until_said(self, words: str) -> None:
         self.until(words, lambda: any(words in line for line in self.said))
@@ -143,22 +161,39 @@ def rows(out: Path) -> dict[str, Any]:
         return dict(found)
 
 
-def goes_on_with_view_1_and_comes_back(out: Path, witness: Witness) -> None:
+@pytest.fixture
+def watched_run(
+    long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Callable[[Callable[[Witness], None]], tuple[dict[str, Any], Witness]]:
+    """A live run that somebody harms; what its summary tells, and what was heard of it."""
+
+    def run(harm: Callable[[Witness], None]) -> tuple[dict[str, Any], Witness]:
+        settings = settings_of(long_clip)
+        with Witness(settings.bus, harm) as witness:
+            monkeypatch.setattr(session, "_stopped_by_signals", lambda: nullcontext(witness.over))
+            facts = live(settings, tmp_path, Console(quiet=True))
+        goes_on_and_comes_back(tmp_path, witness)
+        return facts, witness
+
+    return run
+
+
+def goes_on_and_comes_back(out: Path, witness: Witness) -> None:
     """What every loss of view 2 has in common (issue 5, Shows 5)."""
     found = rows(out)
-    assert np.diff(found["frame"]).max() <= 3, "a gap in the stream"
-    lone = np.flatnonzero(found["views"] == "1")
-    assert np.isfinite(found["joints_m"][lone]).all()
-    assert set(found["views"][lone[-1] + 1 :]) <= {"both", "1", "none"}
-    assert "both" in found["views"][lone[0] :], "two views never resumed"
-    measured = [body.bdp for body in witness.bodies if body.status == "tracking"]
-    assert all(status != "measuring" for status in found["status"][lone[0] :])
-    assert measured[-1] is not None
-    assert np.allclose(measured[-1].lengths(), measured[0].lengths(), rtol=0.4)
+    since = found["frame"] >= witness.lost_at
+    views, joints_m, status = (found[name][since] for name in ("views", "joints_m", "status"))
+    assert {"1", "both"} <= set(views)
+    assert np.isfinite(joints_m).all(), "a pose is missing"
+    assert np.diff(found["frame"][since]).max() <= 3, "a gap in the stream"
+    assert "measuring" not in status, "measured again"
+
+
+Run = Callable[[Callable[[Witness], None]], tuple[dict[str, Any], Witness]]
 
 
 def test_a_killed_viewer_is_started_again_and_the_body_goes_on(
-    long_clip: Path, tmp_path: Path
+    watched_run: Run, tmp_path: Path
 ) -> None:
     def harm(witness: Witness) -> None:
         witness.until_tracked()
@@ -168,17 +203,14 @@ def test_a_killed_viewer_is_started_again_and_the_body_goes_on(
         witness.until_views("both")
         witness.until_said("view 2 is back")
 
-    settings = settings_of(long_clip)
-    with Witness(settings.bus, harm) as witness:
-        facts = live(settings, tmp_path, Console(quiet=True))
-    goes_on_with_view_1_and_comes_back(tmp_path, witness)
+    facts, _ = watched_run(harm)
     assert any("viewer 2: killed by signal 9; it is started again" in w for w in facts["warnings"])
     log = (tmp_path / "log.txt").read_text()
     assert "supervisor  WARNING viewer 2: killed by signal 9" in log
     assert "view 2 is lost" in log
 
 
-def test_a_frozen_viewer_is_silent_and_resumes(long_clip: Path, tmp_path: Path) -> None:
+def test_a_frozen_viewer_is_silent_and_resumes(watched_run: Run) -> None:
     """SIGSTOP: it keeps its place on the bus for a while and says nothing."""
 
     def harm(witness: Witness) -> None:
@@ -192,25 +224,17 @@ def test_a_frozen_viewer_is_silent_and_resumes(long_clip: Path, tmp_path: Path) 
             os.kill(frozen, signal.SIGCONT)
         witness.until_views("both")
 
-    settings = settings_of(long_clip)
-    with Witness(settings.bus, harm) as witness:
-        live(settings, tmp_path, Console(quiet=True))
-    goes_on_with_view_1_and_comes_back(tmp_path, witness)
+    watched_run(harm)
 
 
-def test_a_viewer_that_stays_frozen_is_killed_and_started_again(
-    long_clip: Path, tmp_path: Path
-) -> None:
+def test_a_viewer_that_stays_frozen_is_killed_and_started_again(watched_run: Run) -> None:
     def harm(witness: Witness) -> None:
         witness.until_tracked()
         os.kill(pid_of("viewer 2"), signal.SIGSTOP)
         witness.until_views("1")
         witness.until_views("both")
 
-    settings = settings_of(long_clip)
-    with Witness(settings.bus, harm) as witness:
-        facts = live(settings, tmp_path, Console(quiet=True))
-    goes_on_with_view_1_and_comes_back(tmp_path, witness)
+    facts, _ = watched_run(harm)
     assert any("viewer 2: it has said nothing for" in told for told in facts["warnings"])
 
 
@@ -259,31 +283,29 @@ class Cable:
 
 
 def test_a_cut_link_is_noticed_and_mended(
-    long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    watched_run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    settings = settings_of(long_clip)
-    cable = Cable(settings.bus)
-    afar = msgspec.structs.replace(settings, bus=cable.bus)
+    cables: list[Cable] = []
 
-    def parts(*given: Any) -> list[Part]:
-        *others, last = live_parts(*given)
+    def parts(settings: Settings, *given: Any) -> list[Part]:
+        cables.append(Cable(settings.bus))
+        afar = msgspec.structs.replace(settings, bus=cables[0].bus)
+        *others, last = live_parts(settings, *given)
         assert last.name == "viewer 2"
         return [*others, last._replace(arguments=(afar, *last.arguments[1:]))]
 
     def harm(witness: Witness) -> None:
         witness.until_tracked()
-        cable.cut()
+        cables[0].cut()
         witness.until_views("1")
         witness.until_said("view 2 is lost (it was killed, or its link is cut)")
-        cable.mend()
+        cables[0].mend()
         witness.until_views("both")
         witness.until_said("view 2 is back")
 
     monkeypatch.setattr(session, "live_parts", parts)
-    with Witness(settings.bus, harm) as witness:
-        facts = live(settings, tmp_path, Console(quiet=True))
-    goes_on_with_view_1_and_comes_back(tmp_path, witness)
-    assert facts["processes"]["viewer 2"]["frames"] == facts["processes"]["viewer 1"]["frames"]
+    facts, _ = watched_run(harm)
+    assert not any("viewer 2: " in told for told in facts["warnings"]), "it was started again"
 
 
 def covered(picture_of: Callable[[np.ndarray], np.ndarray]) -> Callable[[Film], Film]:
@@ -296,9 +318,9 @@ def covered(picture_of: Callable[[np.ndarray], np.ndarray]) -> Callable[[Film], 
     return change
 
 
-def test_a_covered_camera_is_told_and_left_out(long_clip: Path, tmp_path: Path) -> None:
+def test_a_covered_camera_is_told_and_left_out(short_clip: Path, tmp_path: Path) -> None:
     """And the same offline, number by number."""
-    folder = shutil.copytree(long_clip, tmp_path / "covered")
+    folder = shutil.copytree(short_clip, tmp_path / "covered")
     refilmed(folder, covered(np.zeros_like), cameras=(2,))
     settings = settings_of(folder)
     facts = live(settings, tmp_path / "out", Console(quiet=True))
@@ -325,12 +347,12 @@ def test_a_covered_camera_is_told_and_left_out(long_clip: Path, tmp_path: Path) 
     ids=["frozen", "saturated", "covered"],
 )
 def test_what_is_no_picture_of_the_room_is_not_looked_at(
-    long_clip: Path,
+    short_clip: Path,
     tmp_path: Path,
     picture_of: Callable[[np.ndarray], np.ndarray],
     seen_until: int,
 ) -> None:
-    folder = shutil.copytree(long_clip, tmp_path / "covered")
+    folder = shutil.copytree(short_clip, tmp_path / "covered")
     refilmed(folder, covered(picture_of), cameras=(2,))
     with Decoders() as decoders:
         found = poses(track_clip(settings_of(folder), decoders).bodies)
@@ -340,8 +362,8 @@ def test_what_is_no_picture_of_the_room_is_not_looked_at(
     assert np.isfinite(found["joints_m"][MOTION:]).all()
 
 
-def test_a_clip_that_ends_early_leaves_the_other_view(long_clip: Path, tmp_path: Path) -> None:
-    folder = shutil.copytree(long_clip, tmp_path / "short")
+def test_a_clip_that_ends_early_leaves_the_other_view(short_clip: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(short_clip, tmp_path / "short")
     refilmed(folder, lambda film: film[: LOST.start], cameras=(2,))
     facts = live(settings_of(folder), tmp_path / "out", Console(quiet=True))
     told = "view 2 is lost (its clip is over); view 1 goes on alone"
@@ -351,19 +373,17 @@ def test_a_clip_that_ends_early_leaves_the_other_view(long_clip: Path, tmp_path:
     assert set(found["views"][found["frame"] > LOST.start]) == {"1"}
 
 
-def test_what_dies_again_and_again_is_given_up_and_the_other_view_tracked_to_its_end(
-    long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_what_is_given_up_fails_the_run_after_the_other_view_was_tracked_to_its_end(
+    short_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tritrack.supervise.TRIES", 1)
+    monkeypatch.setattr("tritrack.supervise.TRIES", 0)
 
     def harm(witness: Witness) -> None:
-        for _ in range(2):
-            witness.until_views("both", frames=1)
-            os.kill(pid_of("viewer 2"), signal.SIGKILL)
-            witness.until_views("1")
+        witness.until_tracked()
+        os.kill(pid_of("viewer 2"), signal.SIGKILL)
 
-    settings = settings_of(long_clip)
-    given_up = "viewer 2: killed by signal 9; it was started again 1 times and is given up"
+    settings = settings_of(short_clip)
+    given_up = "viewer 2: killed by signal 9; after 0 new starts it is given up"
     with (
         Witness(settings.bus, harm),
         pytest.raises(PartFailed, match=given_up),

@@ -81,9 +81,9 @@ def test_each_further_start_waits_twice_as_long_and_then_it_is_given_up(
     assert waits == [BACK_OFF_S * 2**n for n in range(TRIES)]
     killed(sleeper)
     told = sleeper.look(now_s, pulses)
-    assert told == "viewer 2: killed by signal 9; it was started again 5 times and is given up"
+    assert told == "viewer 2: killed by signal 9; after 5 new starts it is given up"
     assert pulses["viewer 2"].state == "given up"
-    with pytest.raises(PartFailed, match="viewer 2: killed by signal 9; it was started again 5"):
+    with pytest.raises(PartFailed, match="viewer 2: killed by signal 9; after 5 new starts"):
         sleeper.refuse_failure()
 
 

@@ -98,7 +98,7 @@ class Watched:
         if not self._came_up:
             raise PartFailed(f"{self.part.name}: {why}")
         if self._tries == TRIES:
-            self.given_up = f"{why}; it was started again {TRIES} times and is given up"
+            self.given_up = f"{why}; after {TRIES} new starts it is given up"
             self._show("given up", pulses)
             return f"{self.part.name}: {self.given_up}"
         wait_s = BACK_OFF_S * 2**self._tries
