@@ -392,3 +392,19 @@ def test_what_is_given_up_fails_the_run_after_the_other_view_was_tracked_to_its_
     assert rows(tmp_path)["frame"][-1] == FRAMES - 1
     told = json.loads((tmp_path / "summary.json").read_text())["processes"]["viewer 2"]["state"]
     assert told == "given up"
+
+
+def test_a_hole_in_one_film_is_bridged_by_the_other(clip: Path, tmp_path: Path) -> None:
+    """Offline too (Shows 4): frames of 1.5 s missing, as the clip's capture times tell."""
+    folder = copied(clip, tmp_path / "hole")
+    kept = [i for i in range(69) if not 37 <= i < 59]
+    refilmed(folder, lambda film: [film[i] for i in kept], cameras=(2,))
+    moments = [i / 15 for i in kept]
+    edit_json(folder / "meta.json", lambda meta: meta.update(capture_s={"cam2": moments}))
+    with Decoders() as decoders:
+        found = poses(track_clip(settings_of(folder), decoders).bodies)
+    assert found["frame"].tolist() == list(range(69))
+    assert set(found["views"][37:59]) == {"1"}
+    assert set(found["views"][59:]) == {"both"}
+    assert np.isfinite(found["joints_m"][MOTION:]).all()
+    assert "measuring" not in found["status"][37:]
