@@ -7,9 +7,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from recognizer.features import Rows
+from recognizer.features import Rows, with_pose
 from recognizer.learning import train
-from recognizer.postures import POSTURES, Recognizer, Topology, name
+from recognizer.postures import (
+    POSTURES,
+    PostureModel,
+    Recognizer,
+    Topology,
+    likeliest,
+    scored,
+)
 
 Z_95 = 1.959964
 """Standard normal quantile of a two-sided interval of 95 %."""
@@ -21,6 +28,8 @@ class Recording(NamedTuple):
     performer: str
     posture: str
     rows: Rows
+    clip: str = ""
+    """Where it comes from."""
 
 
 class Outcome(NamedTuple):
@@ -28,6 +37,15 @@ class Outcome(NamedTuple):
 
     truth: str
     named: str
+    performer: str = ""
+    clip: str = ""
+    margin: float = math.nan
+    """By how much a frame's log-likelihood of the truth is above that of the best other posture,
+    on average; negative where it was mistaken, NaN where the truth has no model."""
+
+
+Fold = tuple[list[Recording], list[Recording]]
+"""Whom to learn from, and whom to name."""
 
 
 def recognise(
@@ -43,30 +61,47 @@ def recognise(
         ValueError: When somebody is in both sets: that would measure memory.
     """
     performers = sorted({recording.performer for recording in learnt_from})
-    both = sorted({recording.performer for recording in tested_on} & set(performers))
-    if both:
-        raise ValueError(f"{', '.join(both)}: in training and in test; split by performer")
     sequences: dict[str, list[Rows]] = {}
     for recording in learnt_from:
         sequences.setdefault(recording.posture, []).append(recording.rows)
+    refuse_who_was_learnt_from(performers, tested_on)
     model = train(sequences, recognizer, topology, seed, performers)
-    return [Outcome(one.posture, name(model, one.rows)) for one in tested_on]
+    return named_by(model, tested_on)
 
 
-def leave_one_performer_out(
-    recordings: Sequence[Recording],
-    recognizer: Recognizer = "default",
-    topology: Topology = "ergodic",
-    seed: int = 0,
-) -> Iterator[Outcome]:
-    """Each performer named by a model of all others."""
+def refuse_who_was_learnt_from(performers: Sequence[str], tested_on: Sequence[Recording]) -> None:
+    """Nobody is tested who was seen in training.
+
+    Raises:
+        ValueError: When somebody is.
+    """
+    both = sorted({recording.performer for recording in tested_on} & set(performers))
+    if both:
+        raise ValueError(f"{', '.join(both)}: in training and in test; split by performer")
+
+
+def named_by(model: PostureModel, tested_on: Sequence[Recording]) -> list[Outcome]:
+    """What a model takes each recording for (P58)."""
+    return [_outcome(model, one) for one in tested_on]
+
+
+def _outcome(model: PostureModel, one: Recording) -> Outcome:
+    seen = with_pose(one.rows)
+    scores = scored(model, seen)
+    named = likeliest(scores) if len(seen) else ""
+    margin = math.nan
+    if named and one.posture in scores and len(scores) > 1:
+        own = scores.pop(one.posture)
+        margin = (own - max(scores.values())) / len(seen)
+    return Outcome(one.posture, named, one.performer, one.clip, margin)
+
+
+def folds(recordings: Sequence[Recording]) -> Iterator[Fold]:
+    """Each performer to be named by a model of all others."""
     for performer in sorted({recording.performer for recording in recordings}):
-        yield from recognise(
+        yield (
             [one for one in recordings if one.performer != performer],
             [one for one in recordings if one.performer == performer],
-            recognizer,
-            topology,
-            seed,
         )
 
 

@@ -1,6 +1,7 @@
 """The report on unseen people, held against outcomes that are known beforehand."""
 
 import json
+from contextlib import nullcontext
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from rich.console import Console
 
 from recognizer.evaluation import Recording
 from tritrack import evaluating
-from tritrack.evaluating import EACH_IN_TURN, evaluate_postures
+from tritrack.evaluating import EACH_IN_TURN, Plan, evaluate_postures
 from tritrack.training import TrainingError
 
 QUIET = Console(quiet=True)
@@ -37,11 +38,15 @@ def people(monkeypatch: pytest.MonkeyPatch) -> list[Recording]:
     ]
     everybody = [*of("ann", 1), *of("bob", 2), *cas]
     monkeypatch.setattr(evaluating, "recordings", lambda *_: everybody)
+    monkeypatch.setattr(evaluating, "spread", nullcontext)
     return everybody
 
 
 def evaluate(out: Path, split: str) -> dict[str, Any]:
-    return evaluate_postures([], out, split, "default", None, QUIET)
+    """The default recogniser's part of the report."""
+    report = evaluate_postures([], out, Plan(split, ("default",)), QUIET)
+    result: dict[str, Any] = report["recognizers"]["default"]
+    return result
 
 
 def test_who_is_tested_is_named_by_a_model_of_the_others(
@@ -57,7 +62,8 @@ def test_who_is_tested_is_named_by_a_model_of_the_others(
 
 def test_the_files_hold_what_the_report_says(people: list[Recording], tmp_path: Path) -> None:
     report = evaluate(tmp_path / "new" / "deep", EACH_IN_TURN)
-    written = json.loads((tmp_path / "new" / "deep" / "report.json").read_text())
+    whole = json.loads((tmp_path / "new" / "deep" / "report.json").read_text())
+    written = whole["recognizers"]["default"]
     assert written == json.loads(json.dumps(report))
     assert written["all"]["tested"] == 9
     low, high = written["all"]["interval_95"]

@@ -1,68 +1,100 @@
-"""How well postures of people never learnt from are named: the paper's table 2, as a report."""
+"""How well postures of people never learnt from are named: the paper's experiment (P56-P60)."""
 
-import html
-from collections.abc import Sequence
+import time
+from collections.abc import Iterable, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
 from rich.console import Console
 
 from common.config import Mode
 from recognizer.evaluation import (
+    Fold,
     Outcome,
     Recording,
-    confusion,
-    leave_one_performer_out,
+    folds,
+    named_by,
     recognise,
-    table,
-    wilson,
+    refuse_who_was_learnt_from,
 )
-from recognizer.postures import POSTURES, Recognizer
-from tritrack.terminal import json_text
-from tritrack.training import TrainingError, recordings
+from recognizer.model_file import load
+from recognizer.postures import PostureModel, Recognizer
+from tritrack.cores import made, spread
+from tritrack.performances import recordings
+from tritrack.posture_page import page_of
+from tritrack.posture_report import result_of
+from tritrack.terminal import bar, json_text
+from tritrack.training import TrainingError
 
 EACH_IN_TURN: Final = "leave-one-performer-out"
 """The split in which everybody is named by a model of all others."""
 
-STYLE: Final = (
-    "body{font:14px sans-serif;margin:2em}table{border-collapse:collapse}"
-    "td,th{border:1px solid #ccc;padding:3px 8px;text-align:right}"
-    "th:first-child{text-align:left}thead th{writing-mode:vertical-rl;text-align:left}"
-)
+KINDS: Final[dict[str, tuple[Recognizer, ...]]] = {
+    "both": ("default", "paper"),
+    "default": ("default",),
+    "paper": ("paper",),
+}
+"""Which recognisers stand side by side, by what a command line calls them."""
+
+
+class Plan(NamedTuple):
+    """What is evaluated, and how."""
+
+    split: str = EACH_IN_TURN
+    """EACH_IN_TURN, or performers to learn from and to test on: "r01,r04:r07", "s1*:s2*"."""
+    recognizers: tuple[Recognizer, ...] = KINDS["both"]
+    mode: Mode | None = None
+    """How clips are tracked; None: in each recogniser's own mode."""
+    model: Path | None = None
+    """Names all clips instead of what would be learnt from some of them."""
+    cache: Path = Path("runs/tracked")
+    dask: str = ""
+    """A cluster's address; "" for the cores of this machine."""
+
+
+class Job(NamedTuple):
+    """One model to be made and asked."""
+
+    fold: Fold
+    recognizer: Recognizer
+    beside: bool
+    """Part of what stands beside the headline."""
 
 
 def evaluate_postures(
-    paths: Sequence[Path],
-    out: Path,
-    split: str,
-    recognizer: Recognizer,
-    mode: Mode | None,
-    console: Console,
+    paths: Sequence[Path], out: Path, plan: Plan, console: Console
 ) -> dict[str, Any]:
     """Train and test by a split, and write `report.json` and `report.html`.
 
     Args:
         paths: Clip folders whose `meta.json` names posture and performer, or their run folders.
         out: Folder of the report; made where it is not there.
-        split: EACH_IN_TURN, or performers to learn from and to test on: "r01,r04:r07", "s1*:s2*".
-        recognizer: Which kind of model.
-        mode: How clips are tracked; None: as their settings say.
+        plan: What is evaluated.
         console: For progress and warnings.
 
     Returns:
-        What `report.json` holds, and the table as text.
+        What `report.json` holds.
 
     Raises:
         TrainingError: When nothing can be learnt or tested, or the report cannot be written.
-        ClipError: When a clip cannot be used.
+        RecordingError: When a folder is neither clip nor run, or names no posture.
+        ClipsFailed: When clips cannot be used.
+        ModelError: When the plan's model cannot.
+        ClusterError: When the plan's cluster cannot.
     """
-    given = recordings(paths, mode, console)
+    model = load(plan.model) if plan.model else None
+    kinds = (model.card.recognizer,) if model else plan.recognizers
+    results = {}
     try:
-        outcomes = _outcomes(given, split, recognizer)
-        report = _report(outcomes, split, recognizer)
+        with spread(plan.dask):
+            for kind in kinds:
+                results[kind] = _result(paths, kind, model, plan, console)
+        report = {
+            "split": plan.split if model is None else f"named by {plan.model}",
+            "clips": len(paths),
+            "recognizers": results,
+        }
         out.mkdir(parents=True, exist_ok=True)
         (out / "report.json").write_text(json_text(report) + "\n")
         (out / "report.html").write_text(page_of(report))
@@ -71,19 +103,50 @@ def evaluate_postures(
     return report
 
 
-def _outcomes(given: list[Recording], split: str, recognizer: Recognizer) -> list[Outcome]:
+def _result(
+    paths: Sequence[Path],
+    kind: Recognizer,
+    model: PostureModel | None,
+    plan: Plan,
+    console: Console,
+) -> dict[str, Any]:
+    """All that is said of one recogniser."""
+    began = time.perf_counter()
+    given = recordings(paths, plan.mode or kind, plan.cache, console)
+    read = time.perf_counter()
+    if model is None:
+        outcomes, beside = _judged(_jobs(given, plan.split, kind), console)
+    else:
+        refuse_who_was_learnt_from(model.card.performers, given)
+        outcomes, beside = named_by(model, given), []
+    done = time.perf_counter()
+    return {
+        "mode": plan.mode or kind,
+        **result_of(outcomes),
+        "within_test": result_of(beside) if beside else None,
+        "seconds": {
+            "tracking": round(read - began, 2),
+            "learning and naming": round(done - read, 2),
+        },
+    }
+
+
+def _jobs(given: list[Recording], split: str, kind: Recognizer) -> list[Job]:
+    """The headline's, and leave-one-performer-out within the test set beside it."""
     if split == EACH_IN_TURN:
         if len({one.performer for one in given}) < 2:
             raise ValueError("one performer alone: nobody is left to learn from")
-        return list(leave_one_performer_out(given, recognizer))
+        return [Job(fold, kind, False) for fold in folds(given)]
     learnt, colon, tested = split.partition(":")
-    parts = [_of(given, people) for people in (learnt, tested)]
+    parts = _of(given, learnt), _of(given, tested)
     if not colon or not all(parts):
         raise ValueError(
             f"the split {split!r} must be {EACH_IN_TURN} or name performers that are there, "
             f"to learn from and to test on, as in r01,r04:r07"
         )
-    return recognise(parts[0], parts[1], recognizer)
+    alone = len({one.performer for one in parts[1]}) < 2
+    beside = [] if alone else [Job(fold, kind, True) for fold in folds(parts[1])]
+    return [Job(parts, kind, False), *beside]
 
 
 def _of(given: list[Recording], people: str) -> list[Recording]:
@@ -91,70 +154,22 @@ def _of(given: list[Recording], people: str) -> list[Recording]:
     return [one for one in given if any(fnmatchcase(one.performer, name) for name in wanted)]
 
 
-def _report(outcomes: list[Outcome], split: str, recognizer: Recognizer) -> dict[str, Any]:
-    seen = {one.truth for one in outcomes}
-    names = [*(posture for posture in POSTURES if posture in seen), *sorted(seen - set(POSTURES))]
-    counts = confusion(outcomes, names)
-    correct = np.diagonal(counts)
-    return {
-        "recognizer": recognizer,
-        "split": split,
-        "all": _share(int(correct.sum()), int(counts.sum())),
-        "postures": {
-            posture: _share(int(right), int(row.sum()))
-            for posture, right, row in zip(names, correct, counts, strict=True)
-        },
-        "confusion": {"named": [*names, ""], "counts": counts.tolist()},
-        "table": table(counts, names),
-    }
+def _judged(jobs: Sequence[Job], console: Console) -> tuple[list[Outcome], list[Outcome]]:
+    """The headline's outcomes and those beside it, whoever was done first."""
+    headline: list[Outcome] = []
+    beside: list[Outcome] = []
+    with bar(console) as progress:
+        answers: Iterable[tuple[bool, list[Outcome]]] = progress.track(
+            made(_answered, jobs), total=len(jobs), description="learning"
+        )
+        for is_beside, outcomes in answers:
+            (beside if is_beside else headline).extend(outcomes)
+    return sorted(headline, key=_place), sorted(beside, key=_place)
 
 
-def _share(correct: int, tested: int) -> dict[str, Any]:
-    """Correct of tested with Wilson's 95 % interval (P59)."""
-    share = correct / tested if tested else 0.0
-    return {
-        "correct": correct,
-        "tested": tested,
-        "share": share,
-        "interval_95": wilson(correct, tested),
-    }
+def _answered(job: Job) -> tuple[bool, list[Outcome]]:
+    return job.beside, recognise(*job.fold, job.recognizer)
 
 
-def page_of(report: dict[str, Any]) -> str:
-    """The report as a page that needs nothing but itself."""
-    title = f"{report['recognizer']} recogniser, {report['split']}"
-    lines = [
-        _line(name, result)
-        for name, result in [*report["postures"].items(), ("all", report["all"])]
-    ]
-    named = [name or "no name" for name in report["confusion"]["named"]]
-    matrix = np.array(report["confusion"]["counts"])
-    head = "".join(f"<th>{html.escape(name)}</th>" for name in named)
-    cells = "".join(
-        f"<tr><th>{html.escape(name)}</th>{_cells(row)}</tr>"
-        for name, row in zip(report["postures"], matrix, strict=True)
-    )
-    return (
-        f"<!doctype html><html lang=en><meta charset=utf-8><title>{html.escape(title)}</title>"
-        f"<style>{STYLE}</style><h1>Postures: {html.escape(title)}</h1>"
-        "<table><tr><th>posture<th>correct<th>share<th>95 % interval"
-        f"{''.join(lines)}</table><h2>Shown (row), named (column)</h2>"
-        f"<table><thead><tr><th></th>{head}</tr></thead>{cells}</table></html>\n"
-    )
-
-
-def _line(name: str, result: dict[str, Any]) -> str:
-    low, high = result["interval_95"]
-    return (
-        f"<tr><th>{html.escape(name)}<td>{result['correct']}/{result['tested']}"
-        f"<td>{result['share']:.1%}<td>{low:.1%} to {high:.1%}"
-    )
-
-
-def _cells(row: NDArray[np.int64]) -> str:
-    """Cells the darker the larger their share of the row."""
-    shares = row / max(int(row.sum()), 1)
-    return "".join(
-        f'<td style="background:rgba(40,90,200,{0.7 * share:.2f})">{count or ""}</td>'
-        for count, share in zip(row.tolist(), shares.tolist(), strict=True)
-    )
+def _place(one: Outcome) -> tuple[str, str, str]:
+    return one.performer, one.truth, one.clip

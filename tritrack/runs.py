@@ -40,7 +40,7 @@ def write_run(
     bodies = [body for body in bodies if body.frame >= 0]
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with _replacing(folder / "poses.npz") as path, path.open("wb") as file:
+        with replacing(folder / "poses.npz") as path, path.open("wb") as file:
             np.savez(file, allow_pickle=False, **poses(bodies))
         _write_json(folder / "summary.json", _summary(bodies, settings, facts))
     except OSError as error:
@@ -127,11 +127,11 @@ def _unwritable(folder: Path, error: OSError) -> RunError:
 
 
 def _write_json(path: Path, value: Any) -> None:
-    with _replacing(path) as new:
+    with replacing(path) as new:
         new.write_text(json_text(value) + "\n")
 
 
-class _replacing:
+class replacing:
     """A file beside another that takes its place when all of it was written."""
 
     def __init__(self, path: Path) -> None:
