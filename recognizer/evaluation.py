@@ -7,10 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from recognizer.codebook import SYMBOLS
 from recognizer.features import Rows, with_pose
 from recognizer.learning import train
 from recognizer.postures import (
     POSTURES,
+    STATES,
     PostureModel,
     Recognizer,
     Topology,
@@ -54,6 +56,8 @@ def recognise(
     recognizer: Recognizer = "default",
     topology: Topology = "ergodic",
     seed: int = 0,
+    states: int = STATES,
+    symbols: int = SYMBOLS,
 ) -> list[Outcome]:
     """Train on some people and name what others do.
 
@@ -65,7 +69,7 @@ def recognise(
     for recording in learnt_from:
         sequences.setdefault(recording.posture, []).append(recording.rows)
     refuse_who_was_learnt_from(performers, tested_on)
-    model = train(sequences, recognizer, topology, seed, performers)
+    model = train(sequences, recognizer, topology, seed, performers, states, symbols)
     return named_by(model, tested_on)
 
 

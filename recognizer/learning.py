@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from recognizer.baumwelch import START, nearness, train_densities, train_symbols
+from recognizer.baumwelch import nearness, start, train_densities, train_symbols
 from recognizer.bearing import bearings
-from recognizer.codebook import fit, symbols
+from recognizer.codebook import SYMBOLS, fit, symbols
 from recognizer.features import Rows, features, with_pose
 from recognizer.postures import (
     STATES,
@@ -25,6 +25,8 @@ def train(
     topology: Topology = "ergodic",
     seed: int = 0,
     performers: Sequence[str] = (),
+    states: int = STATES,
+    symbols_count: int = SYMBOLS,
 ) -> PostureModel:
     """A model of each posture, from sequences (n, 20) of people who perform it.
 
@@ -38,6 +40,8 @@ def train(
             such that may begin anywhere.
         seed: Of the first guess of clusters.
         performers: Whose sequences these are, for the card.
+        states: Of each model; a file keeps models of the paper's five only.
+        symbols_count: Of the codebook; a file keeps the paper's 64 only.
 
     Raises:
         ValueError: When a posture has no usable sequence, or all poses together are too few.
@@ -53,8 +57,10 @@ def train(
         frames=sum(len(one) for given in seen.values() for one in given),
         performers=tuple(performers),
     )
-    learn = _symbol_model if recognizer == "paper" else _density_model
-    return learn(list(seen.values()), card)
+    shown = list(seen.values())
+    if recognizer == "paper":
+        return _symbol_model(shown, card, states, symbols_count)
+    return _density_model(shown, card, states)
 
 
 def _usable(posture: str, given: Sequence[Rows]) -> list[Rows]:
@@ -68,19 +74,19 @@ def _usable(posture: str, given: Sequence[Rows]) -> list[Rows]:
     return usable
 
 
-def _symbol_model(seen: list[list[Rows]], card: Card) -> SymbolModel:
+def _symbol_model(seen: list[list[Rows]], card: Card, states: int, count: int) -> SymbolModel:
     """Of sequences posture by posture, in the order of the card."""
     shown = [[features(one) for one in given] for given in seen]
-    codebook = fit(np.concatenate([one for given in shown for one in given]), card.seed)
+    codebook = fit(np.concatenate([one for given in shown for one in given]), card.seed, count)
     near = nearness(codebook)
     models = [
-        train_symbols([symbols(codebook, one) for one in given], near, card.topology)
+        train_symbols([symbols(codebook, one) for one in given], near, card.topology, states)
         for given in shown
     ]
     transition, emission = (np.stack(part) for part in zip(*models, strict=True))
     return SymbolModel(
         names=tuple(card.sequences),
-        start=np.tile(START[card.topology], (len(seen), 1)),
+        start=np.tile(start(card.topology, states), (len(seen), 1)),
         transition=transition,
         card=card,
         codebook=codebook,
@@ -88,16 +94,16 @@ def _symbol_model(seen: list[list[Rows]], card: Card) -> SymbolModel:
     )
 
 
-def _density_model(seen: list[list[Rows]], card: Card) -> DensityModel:
+def _density_model(seen: list[list[Rows]], card: Card, states: int) -> DensityModel:
     """Of sequences posture by posture, in the order of the card."""
     models = [
-        train_densities([bearings(one) for one in given], card.topology, card.seed)
+        train_densities([bearings(one) for one in given], card.topology, card.seed, states)
         for given in seen
     ]
     transition, mean, variance = (np.stack(part) for part in zip(*models, strict=True))
     return DensityModel(
         names=tuple(card.sequences),
-        start=np.tile(START[card.topology], (len(seen), 1)),
+        start=np.tile(start(card.topology, states), (len(seen), 1)),
         transition=transition,
         card=card,
         mean=mean,

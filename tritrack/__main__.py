@@ -272,6 +272,9 @@ def evaluate_postures(
     model: Annotated[
         Path | None, typer.Option(help="A model that names all clips; nothing is learnt.")
     ] = None,
+    sweep: Annotated[
+        bool, typer.Option(help="The paper's with 16 to 256 symbols and 3 to 8 states too.")
+    ] = False,
     cache: Cache = CACHE,
     dask: Annotated[
         str, typer.Option(help="Address of a Dask scheduler to work on instead, tcp://host:8786.")
@@ -287,7 +290,7 @@ def evaluate_postures(
     """
     from tritrack import evaluating
 
-    plan = evaluating.Plan(split, evaluating.KINDS[recognizer], mode, model, cache, dask)
+    plan = evaluating.Plan(split, evaluating.KINDS[recognizer], mode, model, sweep, cache, dask)
     report = evaluating.evaluate_postures(clips, out, plan, console)
     tables = [
         f"{name} recogniser:\n{result['table']}" for name, result in report["recognizers"].items()

@@ -1,34 +1,34 @@
 """How well postures of people never learnt from are named: the paper's experiment (P56-P60)."""
 
 import time
-from collections.abc import Iterable, Sequence
-from fnmatch import fnmatchcase
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from rich.console import Console
 
 from common.config import Mode
-from recognizer.evaluation import (
-    Fold,
-    Outcome,
-    Recording,
-    folds,
-    named_by,
-    recognise,
-    refuse_who_was_learnt_from,
-)
+from recognizer.evaluation import Outcome, Recording, named_by, refuse_who_was_learnt_from
 from recognizer.model_file import load
 from recognizer.postures import PostureModel, Recognizer
-from tritrack.cores import made, spread
+from tritrack.cores import spread
+from tritrack.experiment import (
+    EACH_IN_TURN,
+    SWEPT_STATES,
+    SWEPT_SYMBOLS,
+    jobs_of,
+    judged,
+    parts_of,
+    sweep_of,
+    swept,
+)
 from tritrack.performances import recordings
 from tritrack.posture_page import page_of
-from tritrack.posture_report import result_of
-from tritrack.terminal import bar, json_text
+from tritrack.posture_pictures import draw_confusion, draw_worst
+from tritrack.posture_report import result_of, share
+from tritrack.styles import spread_of
+from tritrack.terminal import json_text
 from tritrack.training import TrainingError
-
-EACH_IN_TURN: Final = "leave-one-performer-out"
-"""The split in which everybody is named by a model of all others."""
 
 KINDS: Final[dict[str, tuple[Recognizer, ...]]] = {
     "both": ("default", "paper"),
@@ -42,30 +42,23 @@ class Plan(NamedTuple):
     """What is evaluated, and how."""
 
     split: str = EACH_IN_TURN
-    """EACH_IN_TURN, or performers to learn from and to test on: "r01,r04:r07", "s1*:s2*"."""
+    """As `experiment.jobs_of` takes it."""
     recognizers: tuple[Recognizer, ...] = KINDS["both"]
     mode: Mode | None = None
     """How clips are tracked; None: in each recogniser's own mode."""
     model: Path | None = None
     """Names all clips instead of what would be learnt from some of them."""
+    sweep: bool = False
+    """The paper's recogniser in other sizes too."""
     cache: Path = Path("runs/tracked")
     dask: str = ""
     """A cluster's address; "" for the cores of this machine."""
 
 
-class Job(NamedTuple):
-    """One model to be made and asked."""
-
-    fold: Fold
-    recognizer: Recognizer
-    beside: bool
-    """Part of what stands beside the headline."""
-
-
 def evaluate_postures(
     paths: Sequence[Path], out: Path, plan: Plan, console: Console
 ) -> dict[str, Any]:
-    """Train and test by a split, and write `report.json` and `report.html`.
+    """Train and test by a split, and write `report.json`, `report.html` and its pictures.
 
     Args:
         paths: Clip folders whose `meta.json` names posture and performer, or their run folders.
@@ -85,26 +78,27 @@ def evaluate_postures(
     """
     model = load(plan.model) if plan.model else None
     kinds = (model.card.recognizer,) if model else plan.recognizers
-    results = {}
+    report: dict[str, Any] = {"split": f"named by {plan.model}" if model else plan.split}
     try:
+        out.mkdir(parents=True, exist_ok=True)
         with spread(plan.dask):
             for kind in kinds:
-                results[kind] = _result(paths, kind, model, plan, console)
-        report = {
-            "split": plan.split if model is None else f"named by {plan.model}",
-            "clips": len(paths),
-            "recognizers": results,
-        }
-        out.mkdir(parents=True, exist_ok=True)
-        (out / "report.json").write_text(json_text(report) + "\n")
-        (out / "report.html").write_text(page_of(report))
+                mode = plan.mode or kind
+                given = recordings(paths, mode, plan.cache, console)
+                report |= {"clips": len(given), "people": _people(given, plan)}
+                result = _result(given, kind, model, plan, console)
+                report.setdefault("recognizers", {})[kind] = {"mode": mode, **result}
+            if plan.sweep and model is None:
+                given = recordings(paths, plan.mode or "paper", plan.cache, console)
+                report["sweep"] = _swept(given, plan, console)
+        _write(report, out)
     except (ValueError, OSError) as error:
         raise TrainingError(f"cannot evaluate into {out}: {error}") from error
     return report
 
 
 def _result(
-    paths: Sequence[Path],
+    given: list[Recording],
     kind: Recognizer,
     model: PostureModel | None,
     plan: Plan,
@@ -112,64 +106,48 @@ def _result(
 ) -> dict[str, Any]:
     """All that is said of one recogniser."""
     began = time.perf_counter()
-    given = recordings(paths, plan.mode or kind, plan.cache, console)
-    read = time.perf_counter()
+    groups: dict[str, list[Outcome]]
     if model is None:
-        outcomes, beside = _judged(_jobs(given, plan.split, kind), console)
+        groups = judged(list(jobs_of(given, plan.split, kind)), console)
     else:
         refuse_who_was_learnt_from(model.card.performers, given)
-        outcomes, beside = named_by(model, given), []
-    done = time.perf_counter()
+        groups = {"headline": named_by(model, given)}
+    within = groups.get("within test")
     return {
-        "mode": plan.mode or kind,
-        **result_of(outcomes),
-        "within_test": result_of(beside) if beside else None,
-        "seconds": {
-            "tracking": round(read - began, 2),
-            "learning and naming": round(done - read, 2),
-        },
+        **result_of(groups["headline"]),
+        "within_test": result_of(within) if within else None,
+        "learning_s": round(time.perf_counter() - began, 2),
     }
 
 
-def _jobs(given: list[Recording], split: str, kind: Recognizer) -> list[Job]:
-    """The headline's, and leave-one-performer-out within the test set beside it."""
-    if split == EACH_IN_TURN:
-        if len({one.performer for one in given}) < 2:
-            raise ValueError("one performer alone: nobody is left to learn from")
-        return [Job(fold, kind, False) for fold in folds(given)]
-    learnt, colon, tested = split.partition(":")
-    parts = _of(given, learnt), _of(given, tested)
-    if not colon or not all(parts):
-        raise ValueError(
-            f"the split {split!r} must be {EACH_IN_TURN} or name performers that are there, "
-            f"to learn from and to test on, as in r01,r04:r07"
-        )
-    alone = len({one.performer for one in parts[1]}) < 2
-    beside = [] if alone else [Job(fold, kind, True) for fold in folds(parts[1])]
-    return [Job(parts, kind, False), *beside]
+def _swept(given: list[Recording], plan: Plan, console: Console) -> dict[str, Any]:
+    """Right names of each size: a row for each number of symbols, a column for states."""
+    groups = judged(list(sweep_of(given, plan.split)), console)
+    shares = [
+        [share(groups[swept(symbols, states)]) for states in SWEPT_STATES]
+        for symbols in SWEPT_SYMBOLS
+    ]
+    return {"symbols": SWEPT_SYMBOLS, "states": SWEPT_STATES, "shares": shares}
 
 
-def _of(given: list[Recording], people: str) -> list[Recording]:
-    wanted = [pattern.strip() for pattern in people.split(",")]
-    return [one for one in given if any(fnmatchcase(one.performer, name) for name in wanted)]
+def _people(given: Sequence[Recording], plan: Plan) -> dict[str, Any]:
+    """Who was learnt from, who was tested, and how widely each group's styles are spread."""
+    parts = None if plan.model else parts_of(given, plan.split)
+    groups = {"tested": given} if parts is None else {"learnt from": parts[0], "tested": parts[1]}
+    return {
+        name: {
+            "performers": sorted({one.performer for one in group}),
+            "clips": len(group),
+            "styles": spread_of(group),
+        }
+        for name, group in groups.items()
+    }
 
 
-def _judged(jobs: Sequence[Job], console: Console) -> tuple[list[Outcome], list[Outcome]]:
-    """The headline's outcomes and those beside it, whoever was done first."""
-    headline: list[Outcome] = []
-    beside: list[Outcome] = []
-    with bar(console) as progress:
-        answers: Iterable[tuple[bool, list[Outcome]]] = progress.track(
-            made(_answered, jobs), total=len(jobs), description="learning"
-        )
-        for is_beside, outcomes in answers:
-            (beside if is_beside else headline).extend(outcomes)
-    return sorted(headline, key=_place), sorted(beside, key=_place)
-
-
-def _answered(job: Job) -> tuple[bool, list[Outcome]]:
-    return job.beside, recognise(*job.fold, job.recognizer)
-
-
-def _place(one: Outcome) -> tuple[str, str, str]:
-    return one.performer, one.truth, one.clip
+def _write(report: dict[str, Any], out: Path) -> None:
+    for kind, result in report["recognizers"].items():
+        result["picture"] = f"confusion_{kind}.png"
+        draw_confusion(result, f"{kind} recogniser", out / result["picture"])
+        draw_worst(result, result["mode"], out, f"worst_{kind}")
+    (out / "report.json").write_text(json_text(report) + "\n")
+    (out / "report.html").write_text(page_of(report, out))
