@@ -6,7 +6,7 @@ import numpy as np
 
 from recognizer.baumwelch import nearness, start, train_densities, train_symbols
 from recognizer.bearing import bearings
-from recognizer.codebook import SYMBOLS, fit, symbols
+from recognizer.codebook import SYMBOLS, Codebook, fit, symbols
 from recognizer.features import Rows, features, with_pose
 from recognizer.postures import (
     STATES,
@@ -16,6 +16,7 @@ from recognizer.postures import (
     Recognizer,
     SymbolModel,
     Topology,
+    joined,
 )
 
 
@@ -48,8 +49,49 @@ def train(
 
     Source: Huang & Chung 2004, section 5.1 (P57).
     """
-    seen = {name: _usable(name, given) for name, given in sequences.items()}
-    card = Card(
+    seen = _seen(sequences)
+    card = _card(seen, recognizer, topology, seed, performers)
+    shown = list(seen.values())
+    if recognizer == "default":
+        return _density_model(shown, card, states)
+    poses = [features(one) for given in shown for one in given]
+    return _symbol_model(shown, card, states, fit(np.concatenate(poses), seed, symbols_count))
+
+
+def taught(
+    known: PostureModel, sequences: Mapping[str, Sequence[Rows]], performers: Sequence[str] = ()
+) -> PostureModel:
+    """A model that knows more postures, or some of its own anew; its others stay as they are.
+
+    Args:
+        known: What it is added to; its codebook, topology and seed are used again.
+        sequences: What was seen of each posture: three performances are enough.
+        performers: Whose sequences these are, for the card.
+
+    Raises:
+        ValueError: When a posture has no usable sequence, or too few different poses.
+    """
+    seen = _seen(sequences)
+    old = known.card
+    card = _card(seen, old.recognizer, old.topology, old.seed, performers)
+    shown = list(seen.values())
+    if isinstance(known, SymbolModel):
+        return joined(known, _symbol_model(shown, card, STATES, known.codebook))
+    return joined(known, _density_model(shown, card, STATES))
+
+
+def _seen(sequences: Mapping[str, Sequence[Rows]]) -> dict[str, list[Rows]]:
+    return {name: _usable(name, given) for name, given in sequences.items()}
+
+
+def _card(
+    seen: Mapping[str, Sequence[Rows]],
+    recognizer: Recognizer,
+    topology: Topology,
+    seed: int,
+    performers: Sequence[str],
+) -> Card:
+    return Card(
         recognizer=recognizer,
         topology=topology,
         seed=seed,
@@ -57,10 +99,6 @@ def train(
         frames=sum(len(one) for given in seen.values() for one in given),
         performers=tuple(performers),
     )
-    shown = list(seen.values())
-    if recognizer == "paper":
-        return _symbol_model(shown, card, states, symbols_count)
-    return _density_model(shown, card, states)
 
 
 def _usable(posture: str, given: Sequence[Rows]) -> list[Rows]:
@@ -74,10 +112,11 @@ def _usable(posture: str, given: Sequence[Rows]) -> list[Rows]:
     return usable
 
 
-def _symbol_model(seen: list[list[Rows]], card: Card, states: int, count: int) -> SymbolModel:
+def _symbol_model(
+    seen: list[list[Rows]], card: Card, states: int, codebook: Codebook
+) -> SymbolModel:
     """Of sequences posture by posture, in the order of the card."""
     shown = [[features(one) for one in given] for given in seen]
-    codebook = fit(np.concatenate([one for given in shown for one in given]), card.seed, count)
     near = nearness(codebook)
     models = [
         train_symbols([symbols(codebook, one) for one in given], near, card.topology, states)

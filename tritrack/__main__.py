@@ -226,12 +226,18 @@ def train(
     ] = "postures",
     recognizer: RecognizerName = "default",
     mode: OwnMode = None,
+    add_to: Annotated[
+        Path | None,
+        typer.Option(help="A file, or shipped: it learns the postures too, or learns them anew."),
+    ] = None,
     cache: Cache = CACHE,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Learn postures from clips or runs, or how outlines show poses from made-up people.
 
-    Example: tritrack train clips/*/ --out postures.npz
+    A new posture needs three takes; with --add-to, the shipped model or another learns it too.
+
+    Example: tritrack train clips/*/ --out postures.npz --add-to shipped
     """
     if what == "proposals":
         from tritrack.proposals import train_proposals
@@ -243,8 +249,11 @@ def train(
         raise typer.BadParameter("name clips or run folders to learn postures from")
     from tritrack.training import train_postures
 
-    facts = train_postures(runs, out, mode, console, recognizer, cache)
-    tell(facts, json_wanted, f"{len(facts['sequences'])} postures learnt, written to {out}")
+    facts = train_postures(runs, out, mode, console, recognizer, cache, add_to)
+    line = (
+        f"{len(facts['sequences'])} postures learnt, {len(facts['knows'])} known; written to {out}"
+    )
+    tell(facts, json_wanted, line)
 
 
 evaluate_app = typer.Typer(help="Measure how well people never learnt from are recognised.")
@@ -270,7 +279,7 @@ def evaluate_postures(
     ] = "both",
     mode: OwnMode = None,
     model: Annotated[
-        Path | None, typer.Option(help="A model that names all clips; nothing is learnt.")
+        Path | None, typer.Option(help="A file, or shipped: it names all clips, nothing is learnt.")
     ] = None,
     sweep: Annotated[
         bool, typer.Option(help="The paper's with 16 to 256 symbols and 3 to 8 states too.")

@@ -9,7 +9,6 @@ from rich.console import Console
 
 from common.config import Mode
 from recognizer.evaluation import Outcome, Recording, named_by, refuse_who_was_learnt_from
-from recognizer.model_file import load
 from recognizer.postures import PostureModel, Recognizer
 from tritrack.cores import spread
 from tritrack.experiment import (
@@ -28,7 +27,7 @@ from tritrack.posture_pictures import draw_confusion, draw_worst
 from tritrack.posture_report import result_of, share
 from tritrack.styles import spread_of
 from tritrack.terminal import json_text
-from tritrack.training import TrainingError
+from tritrack.training import TrainingError, model_named
 
 KINDS: Final[dict[str, tuple[Recognizer, ...]]] = {
     "both": ("default", "paper"),
@@ -47,7 +46,8 @@ class Plan(NamedTuple):
     mode: Mode | None = None
     """How clips are tracked; None: in each recogniser's own mode."""
     model: Path | None = None
-    """Names all clips instead of what would be learnt from some of them."""
+    """Names all clips instead of what would be learnt from some of them; "shipped": those in the
+    package."""
     sweep: bool = False
     """The paper's recogniser in other sizes too."""
     cache: Path = Path("runs/tracked")
@@ -76,25 +76,32 @@ def evaluate_postures(
         ModelError: When the plan's model cannot.
         ClusterError: When the plan's cluster cannot.
     """
-    model = load(plan.model) if plan.model else None
-    kinds = (model.card.recognizer,) if model else plan.recognizers
-    report: dict[str, Any] = {"split": f"named by {plan.model}" if model else plan.split}
+    models = _models(plan)
+    report: dict[str, Any] = {"split": f"{plan.model} models" if plan.model else plan.split}
     try:
         out.mkdir(parents=True, exist_ok=True)
         with spread(plan.dask):
-            for kind in kinds:
+            for kind, model in models.items():
                 mode = plan.mode or kind
                 given = recordings(paths, mode, plan.cache, console)
                 report |= {"clips": len(given), "people": _people(given, plan)}
                 result = _result(given, kind, model, plan, console)
                 report.setdefault("recognizers", {})[kind] = {"mode": mode, **result}
-            if plan.sweep and model is None:
+            if plan.sweep and plan.model is None:
                 given = recordings(paths, plan.mode or "paper", plan.cache, console)
                 report["sweep"] = _swept(given, plan, console)
         _write(report, out)
     except (ValueError, OSError) as error:
         raise TrainingError(f"cannot evaluate into {out}: {error}") from error
     return report
+
+
+def _models(plan: Plan) -> dict[Recognizer, PostureModel | None]:
+    """What names the clips, of each kind; None where it is yet to be learnt."""
+    if plan.model is None:
+        return dict.fromkeys(plan.recognizers)
+    given = [model_named(plan.model, kind) for kind in plan.recognizers]
+    return {model.card.recognizer: model for model in given}
 
 
 def _result(

@@ -3,16 +3,21 @@
 from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from rich.console import Console
 
 from common.config import Mode
-from recognizer.learning import train
-from recognizer.model_file import save
-from recognizer.postures import Recognizer
+from recognizer.__main__ import SHIPPED, SHIPPED_PAPER
+from recognizer.learning import taught, train
+from recognizer.model_file import load, save
+from recognizer.postures import PostureModel, Recognizer
 from tritrack.cores import spread
 from tritrack.performances import recordings
+
+
+SHIPPED_MODELS: Final[dict[Recognizer, Path]] = {"default": SHIPPED, "paper": SHIPPED_PAPER}
+"""What a command line calls `shipped`."""
 
 
 class TrainingError(ValueError):
@@ -26,6 +31,7 @@ def train_postures(
     console: Console,
     recognizer: Recognizer,
     cache: Path,
+    add_to: Path | None = None,
 ) -> dict[str, Any]:
     """Learn a model of each posture and write it.
 
@@ -36,21 +42,29 @@ def train_postures(
         console: For progress and warnings.
         recognizer: Which kind of model.
         cache: Folder that keeps what tracking made of clips.
+        add_to: A model whose other postures are kept, and whose kind the new ones get; None: the
+            model knows what was learnt here alone.
 
     Raises:
         RecordingError: When a folder is neither, or names no posture.
         ClipsFailed: When clips cannot be used.
         TrainingError: When nothing can be learnt, or the file cannot be written.
+        ModelError: When the model to add to cannot be read.
     """
+    known = model_named(add_to, recognizer) if add_to else None
+    kind = known.card.recognizer if known else recognizer
     learnt: dict[str, list[Any]] = defaultdict(list)
     performers = set()
     with spread(""):
-        given = recordings(paths, mode or recognizer, cache, console)
+        given = recordings(paths, mode or kind, cache, console)
     for recording in given:
         learnt[recording.posture].append(recording.rows)
         performers.add(recording.performer)
     try:
-        model = train(dict(learnt), recognizer, performers=sorted(performers))
+        if known is None:
+            model = train(dict(learnt), kind, performers=sorted(performers))
+        else:
+            model = taught(known, learnt, sorted(performers))
         out.parent.mkdir(parents=True, exist_ok=True)
         save(model, out)
     except (ValueError, OSError) as error:
@@ -59,4 +73,14 @@ def train_postures(
         "model": str(out),
         "sequences": {name: len(given) for name, given in sorted(learnt.items())},
         "performers": sorted(performers),
+        "knows": list(model.names),
     }
+
+
+def model_named(path: Path, recognizer: Recognizer) -> PostureModel:
+    """The model in a file, or the one in the package where the path is `shipped`.
+
+    Raises:
+        ModelError: When it cannot be read.
+    """
+    return load(SHIPPED_MODELS[recognizer] if path == Path("shipped") else path)
