@@ -15,7 +15,6 @@ from recognizer.postures import PostureModel, Recognizer
 from tritrack.cores import spread
 from tritrack.performances import recordings
 
-
 SHIPPED_MODELS: Final[dict[Recognizer, Path]] = {"default": SHIPPED, "paper": SHIPPED_PAPER}
 """What a command line calls `shipped`."""
 
