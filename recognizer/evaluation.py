@@ -44,6 +44,12 @@ class Outcome(NamedTuple):
     margin: float = math.nan
     """By how much a frame's log-likelihood of the truth is above that of the best other posture,
     on average; negative where it was mistaken, NaN where the truth has no model."""
+    fit: float = math.nan
+    """Log-likelihood of a frame of what was named, on average."""
+    fit_of_others: float = math.nan
+    """The same of the best posture but the truth: what would be named had nobody taught it."""
+    taught: bool = True
+    """The truth has a model."""
 
 
 Fold = tuple[list[Recording], list[Recording]]
@@ -91,13 +97,13 @@ def named_by(model: PostureModel, tested_on: Sequence[Recording]) -> list[Outcom
 
 def _outcome(model: PostureModel, one: Recording) -> Outcome:
     seen = with_pose(one.rows)
-    scores = scored(model, seen)
-    named = likeliest(scores) if len(seen) else ""
-    margin = math.nan
-    if named and one.posture in scores and len(scores) > 1:
-        own = scores.pop(one.posture)
-        margin = (own - max(scores.values())) / len(seen)
-    return Outcome(one.posture, named, one.performer, one.clip, margin)
+    if not len(seen):
+        return Outcome(one.posture, "", one.performer, one.clip)
+    fits = {name: score / len(seen) for name, score in scored(model, seen).items()}
+    named = likeliest(fits)
+    fit, own = fits[named], fits.pop(one.posture, math.nan)
+    best_other = max(fits.values(), default=math.nan)
+    return Outcome(one.posture, named, one.performer, one.clip, own - best_other, fit, best_other)
 
 
 def folds(recordings: Sequence[Recording]) -> Iterator[Fold]:

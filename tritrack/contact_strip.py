@@ -21,6 +21,8 @@ SHOWN: Final = 8
 """Frames of a strip: a motion of two or three seconds is told by so many."""
 WIDTH_PX: Final = 160
 """Of each frame of the strip."""
+LEVELS: Final = 0xF0
+"""Bits of a colour that are kept: a page of strips with their noise would weigh 12 MB."""
 
 Instant = tuple[dict[ViewerNumber, Frame], dict[int, Report], Body]
 """What went through the tracker at one time."""
@@ -41,6 +43,7 @@ def contact_strip(path: Path, mode: Mode | None, decoders: Decoders) -> bytes:
     settings = overridden(config.load(path), mode, None)
     tracked = track_clip(settings, decoders, watch=lambda *now: instants.append(now))
     moving = [now for now in instants if now[2].status in MOVING] or instants
+    moving = moving[-settings.recognizer.window_frames :]
     chosen = [moving[i] for i in np.linspace(0, len(moving) - 1, SHOWN).round().astype(int)]
     rig, numbers = both_cameras(tracked.clip), [view.number for view in tracked.clip.views]
     rows = [np.hstack([_shown(now, number, rig) for now in chosen]) for number in numbers]
@@ -68,4 +71,4 @@ def _shown(now: Instant, number: ViewerNumber, rig: Rig | None) -> Image:
 def _fitted(image: Any) -> Image:
     height = round(image.shape[0] * WIDTH_PX / image.shape[1])
     fitted: Image = cv2.resize(image, (WIDTH_PX, height), interpolation=cv2.INTER_AREA)
-    return fitted
+    return fitted & np.uint8(LEVELS)

@@ -9,7 +9,7 @@ from rich.console import Console
 
 from common.config import Mode
 from recognizer.evaluation import Outcome, Recording, named_by, refuse_who_was_learnt_from
-from recognizer.postures import PostureModel, Recognizer
+from recognizer.postures import LEAST_FIT, PostureModel, Recognizer
 from tritrack.cores import spread
 from tritrack.experiment import (
     EACH_IN_TURN,
@@ -121,8 +121,8 @@ def _result(
         groups = {"headline": named_by(model, given)}
     within = groups.get("within test")
     return {
-        **result_of(groups["headline"]),
-        "within_test": result_of(within) if within else None,
+        **result_of(groups["headline"], LEAST_FIT[kind]),
+        "within_test": result_of(within, LEAST_FIT[kind]) if within else None,
         "learning_s": round(time.perf_counter() - began, 2),
     }
 

@@ -30,7 +30,7 @@ BATCH: Final = 8
 lost at most on each core when the work is stopped."""
 
 
-class RecordingError(ValueError):
+class RecordingError(RuntimeError):
     """A clip or run of which nothing can be told; the text names the folder and the cure."""
 
 

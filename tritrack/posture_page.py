@@ -115,8 +115,23 @@ def _details(name: str, result: Result, folder: Path) -> str:
         f"<h2>{told} recogniser: shown and named</h2>"
         f"{_picture(result['picture'], folder, f'confusion matrix of the {name} recogniser')}"
         "<h3>Margins: log-likelihood of a frame above the next posture's</h3>"
-        f"<table>{margins}</table><h3>Worst clips</h3>"
+        f"<table>{margins}</table>{_rejection(result)}<h3>Worst clips</h3>"
         f"{''.join(_worst(one, folder) for one in result['worst'])}"
+    )
+
+
+def _rejection(result: Result) -> str:
+    """What gets no name, taught or not."""
+    told = result["rejection"]
+    lines = "".join(
+        f"<tr><th>{html.escape(name)}<td>{count['no_name']}/{count['tested']}"
+        for name, count in told["unknown"].items()
+    )
+    return (
+        "<h3>Rejection</h3><p>A motion whose frames have a log-likelihood below "
+        f"{told['least_fit']} on average is none that was taught. Rejected so: "
+        f"{told['known']['no_name']} of {told['known']['tested']} that were taught; and of a "
+        f"posture that nobody taught:<table><tr><th>posture<th>no name{lines}</table>"
     )
 
 

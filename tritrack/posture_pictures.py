@@ -47,7 +47,7 @@ def draw_worst(result: dict[str, Any], mode: Mode | None, folder: Path, prefix: 
     with Decoders() as decoders:
         for number, one in enumerate(result["worst"], 1):
             clip = Path(one["clip"])
-            if (clip / "poses.npz").is_file() or not clip.exists():
+            if not one["clip"] or (clip / "poses.npz").is_file():
                 continue
             one["picture"] = f"{prefix}_{number:02d}.png"
             (folder / one["picture"]).write_bytes(contact_strip(clip, mode, decoders))

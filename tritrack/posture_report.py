@@ -9,22 +9,29 @@ import numpy as np
 from recognizer.evaluation import Outcome, confusion, table, wilson
 from recognizer.postures import POSTURES
 
-WORST: Final = 10
+WORST: Final = 6
 """Clips that a report shows pictures of, at most."""
 
 
-def result_of(outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    """What `report.json` holds of the outcomes of one recogniser."""
-    names = postures_of(outcomes)
-    counts = confusion(outcomes, names)
+def result_of(outcomes: Sequence[Outcome], least_fit: float) -> dict[str, Any]:
+    """What `report.json` holds of the outcomes of one recogniser.
+
+    Args:
+        outcomes: Of everybody who was tested.
+        least_fit: Below it, a frame's log-likelihood means that the posture is not known.
+    """
+    known = [one for one in outcomes if one.taught]
+    names = postures_of(known)
+    counts = confusion(known, names)
     return {
-        "all": share(outcomes),
-        "postures": _shares(outcomes, lambda one: one.truth, names),
-        "movements": _shares(outcomes, lambda one: POSTURES.get(one.truth, "other")),
-        "performers": _shares(outcomes, lambda one: one.performer),
+        "all": share(known),
+        "postures": _shares(known, lambda one: one.truth, names),
+        "movements": _shares(known, lambda one: POSTURES.get(one.truth, "other")),
+        "performers": _shares(known, lambda one: one.performer),
         "confusion": {"named": [*names, ""], "counts": counts.tolist()},
-        "margins": _margins(outcomes),
-        "worst": [_told(one) for one in worst_of(outcomes)],
+        "margins": _margins(known),
+        "rejection": _rejection(outcomes, least_fit),
+        "worst": [_told(one) for one in worst_of(known)],
         "table": table(counts, names),
     }
 
@@ -68,5 +75,27 @@ def _margins(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     return {"p5": low, "median": median, "p95": high, "lowest": float(margins.min())}
 
 
+def _rejection(outcomes: Sequence[Outcome], least_fit: float) -> dict[str, Any]:
+    """How often what was taught gets no name, and how often each posture would get none, had
+    nobody taught it."""
+    known = [one for one in outcomes if one.taught]
+    unknown = {}
+    for name in postures_of(outcomes):
+        fits = [one.fit_of_others for one in outcomes if one.truth == name]
+        unknown[name] = {"tested": len(fits), "no_name": sum(fit < least_fit for fit in fits)}
+    return {
+        "least_fit": least_fit,
+        "known": {"tested": len(known), "no_name": sum(one.fit < least_fit for one in known)},
+        "unknown": unknown,
+    }
+
+
 def _told(one: Outcome) -> dict[str, Any]:
-    return {**one._asdict(), "margin": round(one.margin, 3)}
+    return {
+        "clip": one.clip,
+        "performer": one.performer,
+        "truth": one.truth,
+        "named": one.named,
+        "margin": round(one.margin, 3),
+        "fit": round(one.fit, 3),
+    }
