@@ -63,6 +63,9 @@ def taught(
 ) -> PostureModel:
     """A model that knows more postures, or some of its own anew; its others stay as they are.
 
+    The paper's keeps its codebook: poses unlike all that it was made from share a symbol with
+    others, so it is taught less well than the default one.
+
     Args:
         known: What it is added to; its codebook, topology and seed are used again.
         sequences: What was seen of each posture: three performances are enough.
