@@ -1,5 +1,6 @@
 """Strips of a clip: both views, and limbs drawn where the person is."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import cv2
@@ -26,7 +27,7 @@ def test_a_strip_has_a_row_a_view(strip: np.ndarray) -> None:
 def test_frames_differ_and_limbs_are_drawn_in_each(strip: np.ndarray) -> None:
     """The left limbs' colour is in every frame; somebody who moves looks different in the next."""
     frames = np.split(strip[: WIDTH_PX * 3 // 4], SHOWN, axis=1)
-    for frame, following in zip(frames, frames[1:], strict=False):
+    for frame, following in pairwise(frames):
         assert np.abs(frame.astype(int) - following).mean() > 0.1
     for frame in frames:
         red, _, blue = (frame[..., i].astype(int) for i in range(3))
