@@ -292,7 +292,7 @@ def evaluate_postures(
 ) -> None:
     """Name the postures of people whom the models never saw: the paper's table 2.
 
-    Clips are tracked by all cores, about 300 MB each; what was tracked is kept, so that a run
+    Clips are tracked by all cores, about 450 MB each; what was tracked is kept, so that a run
     that was stopped goes on where it was.
 
     Example: tritrack evaluate postures clips/*/ --split 's1*:s2*' --out report
