@@ -256,13 +256,8 @@ def train(
     tell(facts, json_wanted, line)
 
 
-evaluate_app = typer.Typer(help="Measure how well people never learnt from are recognised.")
+evaluate_app = typer.Typer(help="Measure how well people are tracked, and recognised.")
 app.add_typer(evaluate_app, name="evaluate")
-
-
-@evaluate_app.callback()
-def every_evaluation() -> None:
-    """Keep `postures` a command of its own."""
 
 
 @evaluate_app.command("postures")
@@ -305,6 +300,69 @@ def evaluate_postures(
         f"{name} recogniser:\n{result['table']}" for name, result in report["recognizers"].items()
     ]
     tell(report, json_wanted, "\n\n".join(tables))
+
+
+@evaluate_app.command("tracking")
+def evaluate_tracking(
+    clips: Annotated[list[Path], typer.Argument(help="Clips with a truth, or their run folders.")],
+    out: Out,
+    runs: Annotated[
+        Path | None, typer.Option(help="Where runs stand; clips without one are tracked into it.")
+    ] = None,
+    mode: ModeName = None,
+    size: Size = None,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Track clips and hold joints, silhouettes, lengths and confidence against their truth.
+
+    Example: tritrack evaluate tracking clips/*/ --out report
+    """
+    from tritrack import accuracy_report, against_truth
+
+    report = against_truth.evaluate_tracking(clips, out, runs, mode, size, console)
+    facts = accuracy_report.headline(report)
+    tell(facts, json_wanted, f"{accuracy_report.line(report)}; written to {out}")
+
+
+@app.command()
+def export(
+    run: Annotated[Path, typer.Argument(help="A run folder.")],
+    to: Annotated[Literal["bvh", "csv"], typer.Option(help="For Blender, or for spreadsheets.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(help="The file to write; body.bvh or poses.csv in RUN by default."),
+    ] = None,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Write a run as a file for other programs.
+
+    Example: tritrack export runs/walk --to bvh
+    """
+    from tritrack.exporting import export_run
+
+    facts = export_run(run, to, out)
+    tell(facts, json_wanted, f"{facts['frames']} frames written to {facts['file']}")
+
+
+@app.command()
+def retouch(
+    run: Annotated[Path, typer.Argument(help="A run folder.")],
+    video: Annotated[Path | None, typer.Option(help="The run's video, where it has moved.")] = None,
+    notes: Annotated[
+        Path | None, typer.Option(help="Instead of notes.toml beside the video.")
+    ] = None,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="Of the page.")] = 8080,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Look at a run frame by frame, and say what its video does not show. Ctrl-C ends it.
+
+    Example: tritrack retouch runs/dance
+    """
+    from tritrack.ledger import line_of
+    from tritrack.retouching import retouch as run_page
+
+    facts = run_page(run, video, notes, port, console)
+    tell(facts, json_wanted, line_of(facts))
 
 
 @app.command()

@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from common.clips import find_calibration
 from common.config import Settings
 from common.footage import ClipError, companions_folder, footage_of
+from common.replacing import replacing
 from tritrack.offline import Tracked
-from tritrack.runs import poses, replacing
+from tritrack.runs import poses
 
 KEPT: Final = ("frame", "angles_deg", "joints_m", "joints_px", "confidence", "status")
 """Arrays of `poses.npz` that recognisers and pictures are made of."""
