@@ -96,14 +96,15 @@ def named_by(model: PostureModel, tested_on: Sequence[Recording]) -> list[Outcom
 
 
 def _outcome(model: PostureModel, one: Recording) -> Outcome:
-    seen = with_pose(one.rows)
-    if not len(seen):
-        return Outcome(one.posture, "", one.performer, one.clip)
-    fits = {name: score / len(seen) for name, score in scored(model, seen).items()}
-    named = likeliest(fits)
-    fit, own = fits[named], fits.pop(one.posture, math.nan)
-    best_other = max(fits.values(), default=math.nan)
-    return Outcome(one.posture, named, one.performer, one.clip, own - best_other, fit, best_other)
+    seen, taught = with_pose(one.rows), one.posture in model.names
+    named, margin, fit, other = "", math.nan, math.nan, math.nan
+    if len(seen):
+        fits = {name: score / len(seen) for name, score in scored(model, seen).items()}
+        named = likeliest(fits)
+        fit, own = fits[named], fits.pop(one.posture, math.nan)
+        other = max(fits.values(), default=math.nan)
+        margin = own - other
+    return Outcome(one.posture, named, one.performer, one.clip, margin, fit, other, taught)
 
 
 def folds(recordings: Sequence[Recording]) -> Iterator[Fold]:
