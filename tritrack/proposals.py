@@ -27,7 +27,7 @@ LIFTED: Final = 0.02
 """What is added to a component's spread before dividing by it, in those of the first."""
 LAYERS: Final = (384, 384, 256)
 """Units that think, remember and join."""
-EPOCHS, BATCH, RATE, WARM_STEPS = 14, 32, 1.5e-3, 200
+EPOCHS, BATCH, RATE, WARM_STEPS = 24, 32, 1.5e-3, 200
 DECAY: Final = 1e-4
 STEEPEST: Final = 1.0
 """Size that a slope is cut to."""
