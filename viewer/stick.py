@@ -33,6 +33,9 @@ NORMAL_SIZE: Final = (128, 160)
 """Width and height of the normalised silhouette: arms stretched aside or up fit in."""
 
 
+COSTS = np.array([0.03, 0.01, 0.05, 0.05, 5.0, 0.02])
+
+
 class Stick(NamedTuple):
     """A fitted stick body."""
 
@@ -180,6 +183,7 @@ def fit(
         trust = 0.3
     else:
         expected, trust = _moved(before.pose, normal.scale, normal.corner), 1.0
+        expected[STATURE] = STATURE_PX
     pose, matches = _fitted(seen, expected, trust)
     value = match_stick(
         ADULT.lengths, ADULT.parts, ADULT.depth, pose, ALL_SEGMENTS, NORMAL_SIZE[0], seen
@@ -202,6 +206,7 @@ def _fitted(seen, expected: Vector, trust: float) -> tuple[Vector, int]:
             pose,
             expected,
             trust,
+            COSTS,
             seen,
             width,
             _MOVES[:7],
@@ -215,11 +220,11 @@ def _fitted(seen, expected: Vector, trust: float) -> tuple[Vector, int]:
         matches += n
     for upper, _ in CHAINS[2:]:
         matches += beamed(
-            *body, pose, expected, trust, seen, width, upper, 180.0, 360.0, 100.0, upright
+            *body, pose, expected, trust, COSTS, seen, width, upper, 180.0, 360.0, 100.0, upright
         )
     for upper, _ in CHAINS[:2]:
         matches += beamed(
-            *body, pose, expected, trust, seen, width, upper, 0.0, 345.0, 140.0, ALL_SEGMENTS
+            *body, pose, expected, trust, COSTS, seen, width, upper, 0.0, 345.0, 140.0, ALL_SEGMENTS
         )
     for half, stop in ((16, 4), (8, 2), (4, 2)):
         _, n = refined(
@@ -227,6 +232,7 @@ def _fitted(seen, expected: Vector, trust: float) -> tuple[Vector, int]:
             pose,
             expected,
             trust,
+            COSTS,
             seen,
             width,
             _MOVES,

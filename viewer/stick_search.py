@@ -18,13 +18,14 @@ UPPER_STEP_DEG, LOWER_STEP_DEG = 15.0, 20.0
 SHORTENINGS: Final = np.array([1.0, 0.8, 0.5, 0.2])
 """Ratios that the beam tries: 0, 37, 60 and 78 degrees out of the picture's plane."""
 
-TIME_COST, SHORT_COST, FORM_COST = 0.03, 0.01, 1.0
-"""What S must gain for a limb to swing by 60 degrees (a vector's change of 1), for a limb to point
-straight at the camera, and for breadth or stature to change by 1."""
+TIME, TILT, TRUNK_TILT, BREADTH_CHANGE, STATURE_CHANGE, LEAN = range(6)
+"""Places in a vector of costs, in S: for a limb to swing by 60 degrees (its vector's change of 1)
+since it was expected, for a limb and for the trunk to point straight at the camera, for breadth
+and for stature to change by all they are, for the trunk to lean by 60 degrees."""
 
 
 @numba.njit(cache=True)
-def limb_cost(pose: Any, expected: Any, limb: int, trust: float) -> float:
+def limb_cost(pose: Any, expected: Any, limb: int, trust: float, costs: Any) -> float:
     """What a limb's place costs: how far it turned in space since it was expected, and depth.
 
     Both signs of its depth are alike here, so that is how far it is from the nearer one.
@@ -33,16 +34,19 @@ def limb_cost(pose: Any, expected: Any, limb: int, trust: float) -> float:
     r, e = min(pose[RATIO + limb], 1.0), min(expected[RATIO + limb], 1.0)
     dx, dy = r * np.cos(a) - e * np.cos(b), r * np.sin(a) - e * np.sin(b)
     dz = np.sqrt(1.0 - r * r) - np.sqrt(1.0 - e * e)
-    return trust * TIME_COST * (dx * dx + dy * dy + 0.25 * dz * dz) + SHORT_COST * (1.0 - r)
+    tilt = costs[TRUNK_TILT] if limb < 2 else costs[TILT]
+    return trust * costs[TIME] * (dx * dx + dy * dy + 0.25 * dz * dz) + tilt * (1.0 - r * r)
 
 
 @numba.njit(cache=True)
-def pose_cost(pose: Any, expected: Any, trust: float) -> float:
+def pose_cost(pose: Any, expected: Any, trust: float, costs: Any) -> float:
     """What a whole pose costs."""
     wider, taller = pose[BREADTH] - expected[BREADTH], pose[STATURE] / expected[STATURE] - 1.0
-    total = FORM_COST * (0.05 * wider * wider + taller * taller)
+    total = costs[BREADTH_CHANGE] * wider * wider + costs[STATURE_CHANGE] * taller * taller
+    lean = np.cos(np.radians(pose[ANGLE]))
+    total += costs[LEAN] * lean * lean
     for limb in range(10):
-        total += limb_cost(pose, expected, limb, trust)
+        total += limb_cost(pose, expected, limb, trust, costs)
     return total
 
 
@@ -54,6 +58,7 @@ def worth(
     pose: Any,
     expected: Any,
     trust: float,
+    costs: Any,
     seen: Any,
     seen_px: int,
     width: int,
@@ -66,7 +71,7 @@ def worth(
     bits[:] = np.uint64(0)
     draw_segments(ends, pose, parts, depth, which, width, bits)
     s = score(count_both(bits, seen), count(bits), seen_px)
-    return s - pose_cost(pose, expected, trust)
+    return s - pose_cost(pose, expected, trust, costs)
 
 
 @numba.njit(cache=True)
@@ -77,6 +82,7 @@ def refined(
     pose: Any,
     expected: Any,
     trust: float,
+    costs: Any,
     seen: Any,
     width: int,
     moves: Any,
@@ -102,7 +108,7 @@ def refined(
     ends, bits = np.empty((12, 4)), np.zeros_like(seen)
     seen_px = count(seen)
     best = worth(
-        lengths, parts, depth, pose, expected, trust, seen, seen_px, width, ends, bits, which
+        lengths, parts, depth, pose, expected, trust, costs, seen, seen_px, width, ends, bits, which
     )
     matches = 1
     trial, start = pose.copy(), pose.copy()
@@ -126,6 +132,7 @@ def refined(
                         trial,
                         expected,
                         trust,
+                        costs,
                         seen,
                         seen_px,
                         width,
@@ -151,6 +158,7 @@ def beamed(
     pose: Any,
     expected: Any,
     trust: float,
+    costs: Any,
     seen: Any,
     width: int,
     upper: int,
@@ -188,7 +196,7 @@ def beamed(
         )
         matches += 1
         s = score(rest_hit + hit, rest_px + drawn, seen_px)
-        s -= limb_cost(pose, expected, upper, trust)
+        s -= limb_cost(pose, expected, upper, trust, costs)
         worst = np.argmin(kept[:, 0])
         if s > kept[worst, 0]:
             kept[worst, 0], kept[worst, 1], kept[worst, 2] = (
@@ -206,7 +214,7 @@ def beamed(
             continue
         else:
             pose[ANGLE + upper], pose[RATIO + upper] = kept[k, 1], kept[k, 2]
-        upper_cost = limb_cost(pose, expected, upper, trust)
+        upper_cost = limb_cost(pose, expected, upper, trust, costs)
         for n in range(bends * SHORTENINGS.size + 1):
             if n == bends * SHORTENINGS.size:
                 pose[ANGLE + lower], pose[RATIO + lower] = was[2], was[3]
@@ -220,7 +228,7 @@ def beamed(
             )
             matches += 1
             s = score(rest_hit + hit, rest_px + drawn, seen_px)
-            s -= upper_cost + limb_cost(pose, expected, lower, trust)
+            s -= upper_cost + limb_cost(pose, expected, lower, trust, costs)
             if s > best:
                 best = s
                 found[0], found[1] = pose[ANGLE + upper], pose[RATIO + upper]
