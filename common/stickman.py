@@ -138,6 +138,15 @@ def _set(ends: Any, row: int, ax: float, ay: float, bx: float, by: float) -> Non
     ends[row, 0], ends[row, 1], ends[row, 2], ends[row, 3] = ax, ay, bx, by
 
 
+def standing(x_px: float, pelvis_y_px: float, stature_px: float) -> Vector:
+    """A stick pose that stands with hanging arms."""
+    pose = np.ones(POSE_SIZE)
+    pose[[X, Y, STATURE]] = x_px, pelvis_y_px, stature_px
+    pose[ANGLE : ANGLE + 2] = 90.0
+    pose[ANGLE + 2 : ANGLE + 10] = 270.0
+    return pose
+
+
 def segments_px(man: Stickman, pose: Vector) -> NDArray[np.float64]:
     """Both ends of every segment, (12, 2, 2) px."""
     ends = np.empty((12, 4))

@@ -121,5 +121,12 @@ def _cost(
     if chain[0] == 0:  # people bow forwards
         return cost + max(0.0, -ahead) + 0.2 * max(0.0, -float(forward @ lower))
     if chain[0] in (2, 3):  # hips bend forwards, knees backwards
-        return cost + 2.0 * max(0.0, -ahead - 0.3) + 0.3 * max(0.0, -ahead) + 2.0 * max(0.0, bend - 0.1)
-    return cost + 1.0 * max(0.0, -ahead - 0.6) + 0.2 * max(0.0, -ahead) + 1.0 * max(0.0, -bend - 0.1)
+        return (
+            cost
+            + 2.0 * max(0.0, -ahead - 0.3)
+            + 0.3 * max(0.0, -ahead)
+            + 2.0 * max(0.0, bend - 0.1)
+        )
+    return (
+        cost + 1.0 * max(0.0, -ahead - 0.6) + 0.2 * max(0.0, -ahead) + 1.0 * max(0.0, -bend - 0.1)
+    )

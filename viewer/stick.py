@@ -11,6 +11,7 @@ from common.body import LIMBS, Vector
 from common.similarity import Mask
 from common.stickman import (
     ADULT,
+    THESIS,
     ANGLE,
     BREADTH,
     CHAINS,
@@ -21,7 +22,9 @@ from common.stickman import (
     Y,
     Stickman,
     joints_px,
+    standing,
 )
+from viewer.printed import fit_printed
 from viewer.stick_search import beamed, refined
 from viewer.strokes import ALL_SEGMENTS, UPRIGHT_SEGMENTS, match_stick
 
@@ -33,7 +36,7 @@ NORMAL_SIZE: Final = (128, 160)
 """Width and height of the normalised silhouette: arms stretched aside or up fit in."""
 
 
-COSTS = np.array([0.03, 0.01, 0.05, 0.05, 5.0, 0.02])
+COSTS = np.array([0.006, 0.04, 0.05, 0.05, 10.0, 0.01])
 
 
 class Stick(NamedTuple):
@@ -110,15 +113,6 @@ def _moved_back(pose: Vector, scale: float, corner: Vector) -> Vector:
     return pose
 
 
-def standing(x_px: float, pelvis_y_px: float, stature_px: float) -> Vector:
-    """A stick pose that stands with hanging arms."""
-    pose = np.ones(POSE_SIZE)
-    pose[[X, Y, STATURE]] = x_px, pelvis_y_px, stature_px
-    pose[ANGLE : ANGLE + 2] = 90.0
-    pose[ANGLE + 2 : ANGLE + 10] = 270.0
-    return pose
-
-
 def _moves() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """What the refinement turns, in order, and its units."""
     rows: list[dict[int, float]] = []
@@ -172,6 +166,19 @@ def fit(
     """
     normal = normalised(mask, stature_px)
     seen = pack_words(normal.mask)
+    if mode == "thesis":
+        found = fit_printed(normal.mask, float(STATURE_PX))
+        value = match_stick(
+            THESIS.lengths,
+            THESIS.parts,
+            THESIS.depth,
+            found.pose,
+            ALL_SEGMENTS,
+            NORMAL_SIZE[0],
+            seen,
+        )
+        pose = _moved_back(found.pose, normal.scale, normal.corner)
+        return Stick(pose, joints_px(THESIS, pose), found.hidden, float(value), found.evaluations)
     if before is None:
         rows, columns = (
             np.flatnonzero(normal.mask.any(axis=1)),
