@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from animator.turns import quaternions
 from common.body import JOINT_NAMES, LIMBS, Bdp, Elliptic, Round, Vector, body_vector
 from common.camera import Camera, Rig, centre
 from common.kinematics import HEAD, TORSO, limb_frames
@@ -101,22 +102,9 @@ class Viewpoint(NamedTuple):
 
 
 def quaternion(rotation: Vector) -> Vector:
-    """A rotation matrix (3, 3) as a unit quaternion q = (w, x, y, z).
-
-    The matrix tells 4 q q^T; its row with the largest diagonal entry is a multiple of q that no
-    rounding can spoil.
-    """
-    (a, b, c), (d, e, f), (g, h, i) = rotation
-    products = np.array(
-        [
-            [1 + a + e + i, h - f, c - g, d - b],
-            [h - f, 1 + a - e - i, d + b, c + g],
-            [c - g, d + b, 1 - a + e - i, h + f],
-            [d - b, c + g, h + f, 1 - a - e + i],
-        ]
-    )
-    row: Vector = products[products.diagonal().argmax()]
-    return row / float(np.linalg.norm(row))
+    """A rotation matrix (3, 3) as a unit quaternion (w, x, y, z)."""
+    found: Vector = quaternions(rotation[None])[0]
+    return found
 
 
 def figure(body: Body | None) -> Figure | None:
@@ -129,7 +117,7 @@ def figure(body: Body | None) -> Figure | None:
 def limb_shapes(figure: Figure) -> Shapes:
     """The ten limbs as copies of the unit cylinder, in the order of LIMBS (P55)."""
     frames = limb_frames(body_vector(figure.bdp), figure.pose)
-    wxyzs = np.array([quaternion(frame[3:].reshape(3, 3)) for frame in frames])
+    wxyzs = quaternions(frames[:, 3:].reshape(-1, 3, 3))
     scales = np.array([half_sizes(getattr(figure.bdp, limb)) for limb in LIMBS])
     return Shapes(frames[:, :3], wxyzs, scales, limb_colours(figure.confidence))
 

@@ -146,6 +146,24 @@ JOINT_NAMES: Final = (
 )
 """The 15 landmarks that are published, in the order of `joints_m`."""
 
+_BETWEEN: Final = {
+    "upper_leg": ("hip", "knee"),
+    "lower_leg": ("knee", "ankle"),
+    "upper_arm": ("shoulder", "elbow"),
+    "lower_arm": ("elbow", "wrist"),
+}
+LIMB_ENDS: Final = np.array(
+    [
+        [JOINT_NAMES.index("pelvis"), JOINT_NAMES.index("neck")],
+        [JOINT_NAMES.index("neck"), JOINT_NAMES.index("head_top")],
+        *(
+            [JOINT_NAMES.index(f"{limb[0]}_{end}") for end in _BETWEEN[limb[2:]]]
+            for limb in LIMBS[2:]
+        ),
+    ]
+)
+"""(10, 2): the landmarks at the near and the far end of each of LIMBS."""
+
 LIMITS_DEG: Final[dict[str, tuple[float, float]]] = {
     "neck_z": (-45.0, 45.0),
     "torso_z": (-45.0, 45.0),

@@ -271,6 +271,46 @@ def evaluate_postures(
 
 
 @app.command()
+def export(
+    run: Annotated[Path, typer.Argument(help="A run folder.")],
+    to: Annotated[Literal["bvh", "csv"], typer.Option(help="For Blender, or for spreadsheets.")],
+    out: Annotated[
+        Path | None, typer.Option(help="The file to write; poses.* in the run folder by default.")
+    ] = None,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Write a run as a file for other programs.
+
+    Example: tritrack export runs/walk --to bvh
+    """
+    from tritrack.exporting import export_run
+
+    facts = export_run(run, to, out)
+    tell(facts, json_wanted, f"{facts['frames']} frames written to {facts['file']}")
+
+
+@app.command()
+def retouch(
+    run: Annotated[Path, typer.Argument(help="A run folder.")],
+    video: Annotated[Path | None, typer.Option(help="The run's video, where it has moved.")] = None,
+    notes: Annotated[
+        Path | None, typer.Option(help="Instead of notes.toml beside the video.")
+    ] = None,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="Of the page.")] = 8080,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Look at a run frame by frame, and say what its video does not show. Ctrl-C ends it.
+
+    Example: tritrack retouch runs/dance
+    """
+    from tritrack.ledger import line_of
+    from tritrack.retouching import retouch as run_page
+
+    facts = run_page(run, video, notes, port, console)
+    tell(facts, json_wanted, line_of(facts))
+
+
+@app.command()
 def doctor(json_wanted: JsonWanted = False) -> None:
     """Check the installation and name what is missing.
 

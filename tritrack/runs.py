@@ -1,8 +1,6 @@
 """Run folders: the poses, the summary and the postures of a run, as files."""
 
-import os
 import platform
-import tempfile
 from collections.abc import Iterable, Sequence
 from importlib.metadata import version
 from pathlib import Path
@@ -14,6 +12,7 @@ import numpy as np
 from common.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES
 from common.config import Settings
 from common.messages import Body, Posture
+from common.replacing import replacing
 from tritrack.terminal import json_text
 
 VERSIONS_OF: Final = ("tritrack", "numpy", "opencv-python-headless", "numba", "eclipse-zenoh")
@@ -40,7 +39,7 @@ def write_run(
     bodies = [body for body in bodies if body.frame >= 0]
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with _replacing(folder / "poses.npz") as path, path.open("wb") as file:
+        with replacing(folder / "poses.npz") as path, path.open("wb") as file:
             np.savez(file, allow_pickle=False, **poses(bodies))
         _write_json(folder / "summary.json", _summary(bodies, settings, facts))
     except OSError as error:
@@ -127,24 +126,5 @@ def _unwritable(folder: Path, error: OSError) -> RunError:
 
 
 def _write_json(path: Path, value: Any) -> None:
-    with _replacing(path) as new:
+    with replacing(path) as new:
         new.write_text(json_text(value) + "\n")
-
-
-class _replacing:
-    """A file beside another that takes its place when all of it was written."""
-
-    def __init__(self, path: Path) -> None:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        os.close(handle)
-        self._new, self._path = Path(name), path
-
-    def __enter__(self) -> Path:
-        return self._new
-
-    def __exit__(self, kind: object, *_: object) -> None:
-        if kind is None:
-            self._new.chmod(0o644)
-            self._new.replace(self._path)
-        else:
-            self._new.unlink(missing_ok=True)

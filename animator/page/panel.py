@@ -26,7 +26,7 @@ def posture_headline(posture: Posture | None) -> str:
     colour = _rgb(ACCENT) if name else "inherit"
     shown = escape(name) or '<span style="opacity:.4">no posture yet</span>'
     style = f"font-size:1.65em;line-height:1.2;font-weight:650;color:{colour}"
-    return _block(f'<div style="{style}">{shown}</div>')
+    return block(f'<div style="{style}">{shown}</div>')
 
 
 def likelihood_bars(posture: Posture | None) -> str:
@@ -35,7 +35,7 @@ def likelihood_bars(posture: Posture | None) -> str:
     The likeliest fills its bar, the middle one half of it: so the scale needs no tuning.
     """
     if posture is None or not posture.log_likelihoods:
-        return _block(f'<div style="{QUIET}">no log-likelihoods yet</div>')
+        return block(f'<div style="{QUIET}">no log-likelihoods yet</div>')
     ranked = sorted(posture.log_likelihoods.items(), key=lambda item: -item[1])
     shares = bar_shares([value for _, value in ranked])
     rows = [
@@ -44,7 +44,7 @@ def likelihood_bars(posture: Posture | None) -> str:
     ]
     first, last = posture.segment
     title = f'<div style="{QUIET}">log-likelihood of frames {first} to {last}</div>'
-    return _block(title + "".join(rows))
+    return block(title + "".join(rows))
 
 
 def bar_shares(ranked: list[float]) -> list[float]:
@@ -67,7 +67,7 @@ def views_table(body: Body | None, reports: Mapping[int, Report], cameras: int) 
         if hint:
             rows.append(f'<div style="{QUIET}">{escape(hint)}</div>')
     title = f'<div style="{QUIET}">what each camera sees, and its score</div>'
-    return _block(title + "".join(rows))
+    return block(title + "".join(rows))
 
 
 def status_line(body: Body | None, pulses: Iterable[Pulse]) -> str:
@@ -78,7 +78,7 @@ def status_line(body: Body | None, pulses: Iterable[Pulse]) -> str:
     if running:
         facts.append(f"{min(pulse.fps for pulse in running):.1f} fps")
         facts.append(f"{max(pulse.latency_p50_ms for pulse in running):.0f} ms latency")
-    return _block(
+    return block(
         f'<div><span style="color:{_rgb(colour)}">●</span> <b>{words}</b></div>'
         f'<div style="{QUIET}">{" · ".join(facts)}</div>'
     )
@@ -97,7 +97,7 @@ def pulse_table(pulses: Iterable[Pulse]) -> str:
         )
     )
     rows = "".join(_pulse_row(pulse) for pulse in sorted(pulses, key=lambda each: each.process))
-    return _block(f'<table style="width:100%;font-size:.85em"><tr>{head}</tr>{rows}</table>')
+    return block(f'<table style="width:100%;font-size:.85em"><tr>{head}</tr>{rows}</table>')
 
 
 def legend() -> str:
@@ -106,7 +106,7 @@ def legend() -> str:
     marks = "  ".join(
         f'<span style="color:{_rgb(colour)}">■</span> {name}' for colour, name in named
     )
-    return _block(f'<div style="{QUIET}">{marks} · pale: not sure</div>')
+    return block(f'<div style="{QUIET}">{marks} · pale: not sure</div>')
 
 
 def spoken(name: str) -> str:
@@ -154,7 +154,8 @@ def _bar(name: str, share: float, number: str, strong: bool = False) -> str:
     )
 
 
-def _block(inside: str) -> str:
+def block(inside: str) -> str:
+    """A piece of the panel, with its margins."""
     return f'<div style="padding:.15em .9em">{inside}</div>'
 
 

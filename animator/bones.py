@@ -1,0 +1,169 @@
+"""The skeleton of animation files: bones of fixed length that turn, laid through a run's joints."""
+
+from typing import Final, NamedTuple
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from animator.turns import arc, frame_of, times, turned
+from common.body import JOINT_NAMES, Vector
+
+Joints = NDArray[np.float64]
+"""(n, 15, 3), metres, JOINT_NAMES order; NaN where there is no pose."""
+
+
+class Bone(NamedTuple):
+    """One joint of the skeleton and what hangs between it and its parent."""
+
+    name: str
+    """As most animation programs call it."""
+    parent: int
+    """Place in BONES; -1: the root."""
+    starts: str
+    """The landmark where it turns."""
+    ends: str
+    """The landmark that it is aimed at."""
+
+
+BONES: Final = (
+    Bone("Hips", -1, "pelvis", "l_hip"),
+    Bone("Spine", 0, "pelvis", "neck"),
+    Bone("Head", 1, "neck", "head_top"),
+    Bone("LeftShoulder", 1, "neck", "l_shoulder"),
+    Bone("LeftArm", 3, "l_shoulder", "l_elbow"),
+    Bone("LeftForeArm", 4, "l_elbow", "l_wrist"),
+    Bone("RightShoulder", 1, "neck", "r_shoulder"),
+    Bone("RightArm", 6, "r_shoulder", "r_elbow"),
+    Bone("RightForeArm", 7, "r_elbow", "r_wrist"),
+    Bone("LeftUpLeg", 0, "l_hip", "l_knee"),
+    Bone("LeftLeg", 9, "l_knee", "l_ankle"),
+    Bone("RightUpLeg", 0, "r_hip", "r_knee"),
+    Bone("RightLeg", 11, "r_knee", "r_ankle"),
+)
+"""Parents before their children. A pelvis and a trunk turn apart; so do the shoulders, which rise
+with the arms."""
+
+_AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
+_UP, _LEFT = np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])
+_REST: Final = {"Spine": _UP, "Head": _UP, "Hips": _LEFT} | {
+    f"{side}{bone}": sign * _LEFT if "Arm" in bone else -_UP
+    for side, sign in (("Left", 1.0), ("Right", -1.0))
+    for bone in ("Arm", "ForeArm", "UpLeg", "Leg")
+}
+"""Where a bone points at rest: the opening posture, farthest from every pose in which a limb
+points the other way and its twist would jump. Shoulders rest where they mostly are."""
+
+
+class Skeleton(msgspec.Struct, frozen=True):
+    """A body of rigid bones, facing +z, arms stretched out."""
+
+    tips_m: Vector
+    """(13, 3) from each bone's joint to what it is aimed at, at rest, BONES order."""
+
+
+class Motion(NamedTuple):
+    """A skeleton over time."""
+
+    root_m: Vector
+    """(n, 3) where the hips are."""
+    turns: NDArray[np.float64]
+    """(n, 13, 4) unit quaternions (w, x, y, z), each bone in its parent's axes."""
+
+
+def skeleton_of(joints_m: Joints) -> Skeleton:
+    """The bones of a run: the median length of each over the frames that have a pose.
+
+    Where the body is rigid, as the paper's is, that is the length its BDPs give.
+
+    Args:
+        joints_m: At least one row without NaN.
+    """
+    posed = joints_m[np.isfinite(joints_m).all(axis=(1, 2))]
+    spine = frame_of(_between(posed, "pelvis", "neck"), _between(posed, "r_shoulder", "l_shoulder"))
+    tips = []
+    for bone in BONES:
+        along = _between(posed, bone.starts, bone.ends)
+        length_m = float(np.median(np.linalg.norm(along, axis=1)))
+        rest = _REST.get(bone.name)
+        if rest is None:
+            rest = np.median(turned(_undone(spine), along), axis=0)
+            rest = rest / max(float(np.linalg.norm(rest)), 1e-9)
+        tips.append(length_m * rest)
+    return Skeleton(np.array(tips))
+
+
+def motion_of(skeleton: Skeleton, joints_m: Joints) -> Motion:
+    """The turns that lead a skeleton through joints; a frame without a pose has NaN.
+
+    Every bone is aimed at its landmark from where the bones before it have come to, so that a
+    length that differs shifts one landmark and not the rest of the limb.
+    """
+    n = len(joints_m)
+    world = np.empty((n, len(BONES), 4))
+    local = np.empty((n, len(BONES), 4))
+    origins = np.empty((n, len(BONES), 3))
+    for i, bone in enumerate(BONES):
+        origins[:, i] = (
+            joints_m[:, _AT["pelvis"]] if i == 0 else _origin(skeleton, i, origins, world)
+        )
+        above = np.tile((1.0, 0.0, 0.0, 0.0), (n, 1)) if i == 0 else world[:, bone.parent]
+        if bone.name == "Hips":
+            across = _between(joints_m, "r_hip", "l_hip")
+            local[:, i] = frame_of(_between(joints_m, "pelvis", "neck"), across, keep="across")
+        elif bone.name == "Spine":
+            across = _between(joints_m, "r_shoulder", "l_shoulder")
+            spine = frame_of(_between(joints_m, "pelvis", "neck"), across)
+            local[:, i] = times(_undone(above), spine)
+        else:
+            aim = joints_m[:, _AT[bone.ends]] - origins[:, i]
+            local[:, i] = arc(skeleton.tips_m[i], turned(_undone(above), aim))
+        world[:, i] = times(above, local[:, i])
+    return Motion(joints_m[:, _AT["pelvis"]], local)
+
+
+def joints_of(skeleton: Skeleton, motion: Motion) -> Joints:
+    """Where a moving skeleton has the 15 landmarks."""
+    n = len(motion.root_m)
+    found = np.empty((n, len(JOINT_NAMES), 3))
+    world = np.empty((n, len(BONES), 4))
+    origins = np.empty((n, len(BONES), 3))
+    for i, bone in enumerate(BONES):
+        first = i == 0
+        origins[:, i] = motion.root_m if first else _origin(skeleton, i, origins, world)
+        own = motion.turns[:, i]
+        world[:, i] = own if first else times(world[:, bone.parent], own)
+        found[:, _AT[bone.starts]] = origins[:, i]
+        found[:, _AT[bone.ends]] = origins[:, i] + turned(world[:, i], skeleton.tips_m[i])
+    return found
+
+
+def offset_m(skeleton: Skeleton, bone: int) -> Vector:
+    """From a bone's parent's joint to its own, at rest, (3,)."""
+    own, parent = BONES[bone], BONES[BONES[bone].parent]
+    if own.parent < 0 or own.starts == parent.starts:
+        return np.zeros(3)
+    mirrored = own.starts == "r_hip"
+    tip: Vector = skeleton.tips_m[own.parent]
+    return -tip if mirrored else tip
+
+
+def _origin(
+    skeleton: Skeleton, bone: int, origins: NDArray[np.float64], world: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    parent = BONES[bone].parent
+    there: NDArray[np.float64] = origins[:, parent] + turned(
+        world[:, parent], offset_m(skeleton, bone)
+    )
+    return there
+
+
+def _between(joints_m: Joints, start: str, end: str) -> NDArray[np.float64]:
+    along: NDArray[np.float64] = joints_m[:, _AT[end]] - joints_m[:, _AT[start]]
+    return along
+
+
+def _undone(turns: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The opposite turns."""
+    back: NDArray[np.float64] = turns * (1.0, -1.0, -1.0, -1.0)
+    return back

@@ -1,0 +1,96 @@
+"""BVH: a run's motion for Blender and other animation programs (T28)."""
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from animator.bones import BONES, Joints, Motion, Skeleton, motion_of, offset_m, skeleton_of
+from animator.inbetween import between
+from animator.turns import euler_zxy_deg
+from common.body import Vector
+
+ROOT_CHANNELS: Final = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
+CHANNELS: Final = "CHANNELS 3 Zrotation Xrotation Yrotation"
+MOST_FRAMES: Final = 1_000_000
+"""Longer files are a mistake in the times: a gap that is filled has no end."""
+
+
+class NoMotion(ValueError):
+    """There is nothing to animate: the text says why."""
+
+
+def steady(joints_m: Joints, time_s: Vector) -> tuple[Skeleton, Motion, float]:
+    """A run as a skeleton that moves in even steps, from its first pose to its last.
+
+    Frames that are missing or have no pose lie between their neighbours. Lengths are fixed
+    (`skeleton_of`); where the joints of a run keep theirs, the skeleton's joints are the run's.
+
+    Args:
+        joints_m: (n, 15, 3), NaN where there is no pose.
+        time_s: (n,) of the rows.
+
+    Returns:
+        Skeleton, motion, and seconds a frame.
+
+    Raises:
+        NoMotion: When there are no two poses, or the times make no even steps.
+    """
+    posed = np.flatnonzero(np.isfinite(joints_m).all(axis=(1, 2)))
+    if len(posed) < 2:
+        raise NoMotion(f"{len(posed)} frames have a pose, an animation needs two")
+    step_s = float(np.median(np.diff(time_s)))
+    if not (np.isfinite(time_s).all() and (np.diff(time_s) > 0).all()):
+        raise NoMotion("the times of the frames do not increase")
+    skeleton = skeleton_of(joints_m)
+    motion = motion_of(skeleton, joints_m[posed])
+    places = np.rint((time_s[posed] - time_s[posed[0]]) / step_s).astype(np.int64)
+    if places[-1] >= MOST_FRAMES:
+        raise NoMotion(f"it would have {places[-1] + 1} frames, at most {MOST_FRAMES} are written")
+    keys, first = np.unique(places, return_index=True)
+    known = Motion(motion.root_m[first], motion.turns[first])
+    return skeleton, between(keys, known, np.arange(places[-1] + 1)), step_s
+
+
+def bvh_text(skeleton: Skeleton, motion: Motion, step_s: float) -> str:
+    """A BVH file: metres, degrees, +y up, the body faces +z.
+
+    Rotations are applied in the order in which their channels stand, R = R_z R_x R_y.
+    """
+    angles = euler_zxy_deg(motion.turns)
+    rows = np.concatenate([motion.root_m, angles.reshape(len(angles), -1)], axis=1)
+    order = _file_order(0)
+    columns = [0, 1, 2, *(3 + 3 * bone + axis for bone in order for axis in range(3))]
+    body = "\n".join(" ".join(f"{value:.6f}" for value in row) for row in rows[:, columns])
+    head = "\n".join(_hierarchy(skeleton, 0, ""))
+    return f"HIERARCHY\n{head}\nMOTION\nFrames: {len(rows)}\nFrame Time: {step_s:.8f}\n{body}\n"
+
+
+def _hierarchy(skeleton: Skeleton, bone: int, indent: str) -> Iterator[str]:
+    own, inner = BONES[bone], indent + "  "
+    yield f"{indent}{'JOINT' if bone else 'ROOT'} {own.name}"
+    yield f"{indent}{{"
+    yield f"{inner}OFFSET {_numbers(offset_m(skeleton, bone))}"
+    yield f"{inner}{CHANNELS if bone else ROOT_CHANNELS}"
+    children = _children(bone)
+    for child in children:
+        yield from _hierarchy(skeleton, child, inner)
+    if not children:
+        yield f"{inner}End Site"
+        yield f"{inner}{{"
+        yield f"{inner}  OFFSET {_numbers(skeleton.tips_m[bone])}"
+        yield f"{inner}}}"
+    yield f"{indent}}}"
+
+
+def _children(bone: int) -> list[int]:
+    return [i for i, other in enumerate(BONES) if other.parent == bone]
+
+
+def _file_order(bone: int) -> list[int]:
+    """Bones in the order in which the hierarchy names them."""
+    return [bone, *(each for child in _children(bone) for each in _file_order(child))]
+
+
+def _numbers(vector: Vector) -> str:
+    return " ".join(f"{value:.6f}" for value in vector)

@@ -1,0 +1,158 @@
+"""The overlay: picture, silhouette and stick, and beside them the lifted body from the side."""
+
+import math
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from animator.scene import LEFT, RIGHT, TRUNK, UNSURE, Colour
+from common.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
+
+Image = NDArray[np.uint8]
+"""(H, W, 3), blue, green, red, as OpenCV's films want it."""
+
+LEAST_HEIGHT_PX: Final = 480
+"""Smaller pictures are enlarged by a whole number: a stick would hide an arm at 160x120."""
+SIDE_SHARE: Final = 0.7
+"""Width of the view from the side over its height: arms reach 0.8 m to the front and back."""
+TALL_M: Final = 2.3
+"""Height of the room that the view from the side shows: a raised hand fits."""
+BELOW_M: Final = 0.12
+"""How much of it lies below the floor."""
+SEEN: Final = (124, 200, 90)
+TINT: Final = 0.30
+"""Share of SEEN over the silhouette."""
+PAPER: Final = (248, 247, 246)
+INK: Final = (120, 110, 100)
+
+_AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
+
+
+class Stroke(NamedTuple):
+    """A line of the stick."""
+
+    near: int
+    far: int
+    colour: Colour
+    thick: float
+    """Half width over the body's height."""
+
+
+def _colour(name: str) -> Colour:
+    return {"l": LEFT, "r": RIGHT}[name[0]] if name[1] == "_" else TRUNK
+
+
+_THICK: Final = {"torso": 0.05, "head": 0.045, "arm": 0.018, "leg": 0.026}
+STROKES: Final = (
+    *(
+        Stroke(int(near), int(far), _colour(limb), _THICK[limb.rpartition("_")[2]])
+        for limb, (near, far) in zip(LIMBS, LIMB_ENDS, strict=True)
+    ),
+    Stroke(_AT["l_shoulder"], _AT["r_shoulder"], TRUNK, 0.02),
+    Stroke(_AT["l_hip"], _AT["r_hip"], TRUNK, 0.03),
+)
+"""The limbs, in the order of LIMBS, then the lines across shoulders and hips."""
+
+
+def overlay(
+    picture: Image,
+    silhouette: NDArray[np.bool_] | None,
+    joints_px: Vector,
+    joints_m: Vector,
+    confidence: Vector,
+    caption: str = "",
+) -> Image:
+    """One frame of the overlay film; two of one picture size have one size.
+
+    Args:
+        picture: The video's frame.
+        silhouette: Of any size, stretched over the picture; None: not shown.
+        joints_px: (15, 2) in the picture's own pixels, NaN where there is no pose.
+        joints_m: (15, 3): x to the right of the picture, y up from the floor, z to the camera.
+        confidence: (15,): what is not sure is pale.
+        caption: Beside the picture.
+    """
+    times = math.ceil(LEAST_HEIGHT_PX / picture.shape[0])
+    size = (picture.shape[1] * times, picture.shape[0] * times)
+    left = cv2.resize(picture, size, interpolation=cv2.INTER_CUBIC)
+    if silhouette is not None:
+        _tint(left, silhouette)
+    draw_stick(left, joints_px * times, confidence)
+    both: Image = np.hstack([left, side_view(joints_m, confidence, size[1], caption)])
+    return both
+
+
+def draw_stick(image: Image, joints_px: Vector, confidence: Vector) -> None:
+    """Draw the stick body into an image, (15, 2) in its pixels; nothing where there is no pose."""
+    if not np.isfinite(joints_px).all():
+        return
+    unit = max(1, round(image.shape[0] / 240))
+    for stroke in STROKES:
+        near, far = _corner(joints_px[stroke.near]), _corner(joints_px[stroke.far])
+        cv2.line(image, near, far, (255, 255, 255), 3 * unit, cv2.LINE_AA)
+        cv2.line(image, near, far, _paint(stroke, confidence), 2 * unit, cv2.LINE_AA)
+    for i, name in enumerate(JOINT_NAMES):
+        colour = LEFT if name[0] == "l" else RIGHT if name[0] == "r" else TRUNK
+        cv2.circle(image, _corner(joints_px[i]), 2 * unit, (255, 255, 255), -1, cv2.LINE_AA)
+        cv2.circle(image, _corner(joints_px[i]), 2 * unit, colour[::-1], unit, cv2.LINE_AA)
+
+
+def side_view(joints_m: Vector, confidence: Vector, height_px: int, caption: str = "") -> Image:
+    """The body seen from the right of the camera, which stands at the left of this view."""
+    width_px = 2 * round(SIDE_SHARE * height_px / 2)
+    view: Image = np.full((height_px, width_px, 3), PAPER, np.uint8)
+    px = height_px / TALL_M
+    floor_px = round(height_px - BELOW_M * px)
+    cv2.line(view, (0, floor_px), (width_px, floor_px), (205, 200, 195), 1, cv2.LINE_AA)
+    _camera(view, floor_px)
+    for i, line in enumerate(("from the side", caption)):
+        where = (8, 18 + 18 * i)
+        cv2.putText(view, line, where, cv2.FONT_HERSHEY_SIMPLEX, 0.45, INK, 1, cv2.LINE_AA)
+    if np.isfinite(joints_m).all():
+        middle = joints_m[_AT["pelvis"], 2]
+        flat = np.stack(
+            [width_px / 2 - px * (joints_m[:, 2] - middle), floor_px - px * joints_m[:, 1]], axis=1
+        )
+        tall_px = px * max(0.5, float(np.ptp(joints_m[:, 1])))
+        nearest_last = sorted(STROKES, key=lambda s: joints_m[[s.near, s.far], 0].sum())
+        for stroke in nearest_last:
+            near, far = _corner(flat[stroke.near]), _corner(flat[stroke.far])
+            thick = max(2, round(2 * stroke.thick * tall_px))
+            cv2.line(view, near, far, PAPER, thick + 3, cv2.LINE_AA)
+            cv2.line(view, near, far, _paint(stroke, confidence), thick, cv2.LINE_AA)
+    return view
+
+
+def _camera(view: Image, floor_px: int) -> None:
+    """Where the camera stands: at the left, at the height of a chest."""
+    at = floor_px - round(1.2 * view.shape[0] / TALL_M)
+    cv2.rectangle(view, (4, at - 7), (18, at + 7), INK, -1)
+    lens = np.array([[18, at], [27, at - 7], [27, at + 7]], np.int32)
+    cv2.fillPoly(view, [lens], INK, cv2.LINE_AA)
+
+
+def _tint(image: Image, silhouette: NDArray[np.bool_]) -> None:
+    """Colour the silhouette and draw its outline, in place."""
+    size = (image.shape[1], image.shape[0])
+    mask = cv2.resize(silhouette.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST)
+    inside = mask.astype(np.bool_)
+    image[inside] = ((1 - TINT) * image[inside] + TINT * np.array(SEEN)).astype(np.uint8)
+    outlines, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    cv2.drawContours(image, outlines, -1, SEEN, 1, cv2.LINE_AA)
+
+
+def _paint(stroke: Stroke, confidence: Vector) -> tuple[int, ...]:
+    """A stroke's colour in OpenCV's order, paler the less sure its far end is."""
+    sure = float(np.clip(np.nan_to_num(confidence[stroke.far]), 0.0, 1.0))
+    return tuple(
+        round(pale + sure * (full - pale))
+        for full, pale in zip(stroke.colour[::-1], UNSURE[::-1], strict=True)
+    )
+
+
+def _corner(place: Vector) -> tuple[int, int]:
+    """A place whose pixels' centres are at halves, as OpenCV draws; far outside stays outside."""
+    x, y = np.clip(np.rint(place - 0.5), -10_000, 10_000)
+    return int(x), int(y)

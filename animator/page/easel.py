@@ -1,0 +1,176 @@
+"""The easel of the retouching page: a picture with its stick, and the body from the side."""
+
+import math
+from collections.abc import Callable
+from typing import Any, Final
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from animator.overlay import STROKES
+from animator.scene import LEFT, RIGHT, TRUNK, UNSURE, Colour
+from animator.solids import Mesh, unit_ball, unit_cylinder
+from animator.turns import arc
+from common.body import JOINT_NAMES, LIMBS, Vector
+
+TALL_M: Final = 2.0
+"""Height of the picture in the room: about that of the body beside it."""
+GAP_M: Final = 0.9
+"""From the picture to the middle of the body."""
+FOV_RAD: Final = math.radians(30.0)
+ASPECT: Final = 1.25
+"""Width over height of what a browser leaves beside the panel."""
+BALL_M: Final = 0.022
+"""Radius of a joint: large enough to be taken hold of."""
+FRONT_M: Final = 0.02
+"""How far the stick stands before the picture, so that nothing of it drowns there."""
+UP: Final = np.array([0.0, 1.0, 0.0])
+PLACED: Final[Colour] = (62, 142, 126)
+"""A joint that the user placed."""
+
+Picture = NDArray[np.uint8]
+"""(H, W, 3), red, green, blue."""
+
+
+class Easel:
+    """What stands in the room of the page.
+
+    Args:
+        server: Of the page.
+        size: Width and height of the video.
+        picture: The first one.
+        placed: Told which joint was dragged where, in the video's pixels.
+        clicked: Told which of LIMBS was clicked on.
+    """
+
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        size: tuple[int, int],
+        picture: Picture,
+        placed: Callable[[int, tuple[float, float]], None],
+        clicked: Callable[[int], None],
+    ) -> None:
+        self._scene = server.scene
+        self._placed, self._clicked = placed, clicked
+        self._m_per_px = TALL_M / size[1]
+        self._wide_m = size[0] * self._m_per_px
+        self._build_light(server)
+        self._image = self._scene.add_image(
+            "/picture",
+            picture,
+            self._wide_m,
+            TALL_M,
+            format="jpeg",
+            wxyz=(0.0, 1.0, 0.0, 0.0),
+            position=(self._wide_m / 2, TALL_M / 2, 0.0),
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+        self._lines = self._scene.add_line_segments(
+            "/stick", np.zeros((len(STROKES), 2, 3)), _line_colours(), thickness=0.018
+        )
+        self._balls = self._add_shapes("/joints", unit_ball(), len(JOINT_NAMES))
+        self._body = self._add_shapes("/body", unit_cylinder(), len(STROKES))
+        self._balls.on_drag("left")(self._dragged)
+        self._body.on_click(self._hit)
+        self._scene.add_label(
+            "/side", "from the side", position=(self._wide_m + GAP_M, TALL_M + 0.05, 0.0)
+        )
+
+    def show(self, picture: Picture, posed: bool) -> None:
+        """Bring the picture up to date, and take stick and body away where there is no pose."""
+        self._image.image = picture
+        for handle in (self._balls, self._lines, self._body):
+            handle.visible = posed
+
+    def show_stick(self, joints_px: Vector, placed: set[str]) -> None:
+        """The stick over the picture, (15, 2) in the video's pixels."""
+        x, y = self._m_per_px * joints_px.T
+        places = np.stack([x, TALL_M - y, np.full(len(x), FRONT_M)], axis=1)
+        self._lines.points = places[[[stroke.near, stroke.far] for stroke in STROKES]]
+        self._balls.batched_positions = places
+        self._balls.batched_scales = np.full((len(x), 3), BALL_M)
+        self._balls.batched_colors = np.array(
+            [PLACED if name in placed else _side_colour(name) for name in JOINT_NAMES], np.uint8
+        )
+
+    def show_body(self, joints_m: Vector, unsure: set[str]) -> None:
+        """The body turned by a quarter, the camera at its left; segments in doubt are pale."""
+        at = joints_m - joints_m[0] * (1.0, 0.0, 1.0)
+        places = np.stack([self._wide_m + GAP_M - at[:, 2], at[:, 1], at[:, 0]], axis=1)
+        ends = places[[[stroke.near, stroke.far] for stroke in STROKES]]
+        along = ends[:, 1] - ends[:, 0]
+        tall_m = max(0.5, float(np.ptp(at[:, 1])))
+        radii = np.array([stroke.thick for stroke in STROKES]) * tall_m
+        colours = _line_colours()[:, 0]
+        colours[[LIMBS.index(limb) for limb in unsure]] = UNSURE
+        self._body.batched_positions = ends[:, 0]
+        self._body.batched_wxyzs = arc(UP, along)
+        self._body.batched_scales = np.stack([radii, np.linalg.norm(along, axis=1), radii], axis=1)
+        self._body.batched_colors = colours
+
+    def _build_light(self, server: viser.ViserServer) -> None:
+        scene = self._scene
+        scene.set_up_direction("+y")
+        scene.world_axes.visible = False
+        across_m = self._wide_m + 2 * GAP_M
+        away_m = max(1.2 * TALL_M, 1.1 * across_m / ASPECT) / (2 * math.tan(FOV_RAD / 2))
+        server.initial_camera.look_at = np.array([across_m / 2, TALL_M / 2, 0.0])
+        server.initial_camera.position = np.array([across_m / 2, TALL_M / 2, away_m])
+        server.initial_camera.fov = FOV_RAD
+        scene.configure_default_lights(enabled=False)
+        scene.configure_environment_map(None)
+        scene.add_light_ambient("/light", intensity=2.2)
+        scene.add_light_directional("/sun", intensity=1.0, position=(1.0, 4.0, 5.0))
+
+    def _add_shapes(self, name: str, mesh: Mesh, count: int) -> viser.BatchedMeshHandle:
+        return self._scene.add_batched_meshes_simple(
+            name,
+            mesh.vertices,
+            mesh.faces,
+            batched_wxyzs=np.tile((1.0, 0.0, 0.0, 0.0), (count, 1)),
+            batched_positions=np.zeros((count, 3)),
+            batched_scales=np.ones((count, 3)),
+            batched_colors=np.zeros((count, 3), np.uint8),
+            lod="off",
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+    def _hit(self, event: Any) -> None:
+        if event.instance_index is not None and event.instance_index < len(LIMBS):
+            self._clicked(event.instance_index)
+
+    async def _dragged(self, event: Any) -> None:
+        """Follow the pointer over the picture; the joint is placed where it is let go."""
+        joint = event.instance_index
+        met = _on_picture(np.array(event.client.camera.position), np.array(event.end_position))
+        if joint is None or met is None:
+            return
+        if event.phase == "end":
+            column, row = met[0] / self._m_per_px, (TALL_M - met[1]) / self._m_per_px
+            self._placed(joint, (round(float(column), 1), round(float(row), 1)))
+            return
+        places = np.array(self._balls.batched_positions)
+        places[joint, :2] = met[:2]
+        self._balls.batched_positions = places
+
+
+def _on_picture(eye: Vector, pointer: Vector) -> Vector | None:
+    """Where the ray from the spectator through the pointer meets the stick's plane, if it does."""
+    ray = pointer - eye
+    if abs(ray[2]) < 1e-9:
+        return None
+    met: Vector = eye + ray * ((FRONT_M - eye[2]) / ray[2])
+    return met
+
+
+def _line_colours() -> NDArray[np.uint8]:
+    """Colours of both ends of every stroke, (n, 2, 3)."""
+    return np.array([[stroke.colour] * 2 for stroke in STROKES], np.uint8)
+
+
+def _side_colour(name: str) -> Colour:
+    return LEFT if name.startswith("l_") else RIGHT if name.startswith("r_") else TRUNK
