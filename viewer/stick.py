@@ -36,7 +36,7 @@ NORMAL_SIZE: Final = (128, 160)
 """Width and height of the normalised silhouette: arms stretched aside or up fit in."""
 
 
-COSTS = np.array([0.006, 0.04, 0.05, 0.05, 10.0, 0.01])
+COSTS = np.array([0.006, 0.2, 0.02, 0.02, 0.05, 10.0, 0.01, 0.012, 1.0])
 
 
 class Stick(NamedTuple):
@@ -125,6 +125,8 @@ def _moves() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
     put(0.25, X)
     put(0.25, Y)
+    rows.append({Y: 1.0, RATIO: 0.031, RATIO + 2: -0.04, RATIO + 3: -0.04})
+    units.append(0.25)
     put(1.0, ANGLE)
     put(0.02, RATIO)
     put(0.02, BREADTH)
@@ -216,8 +218,8 @@ def _fitted(seen, expected: Vector, trust: float) -> tuple[Vector, int]:
             COSTS,
             seen,
             width,
-            _MOVES[:7],
-            _UNITS[:7],
+            _MOVES[:8],
+            _UNITS[:8],
             half,
             stop,
             _LOWS,
