@@ -271,6 +271,33 @@ def evaluate_postures(
 
 
 @app.command()
+def single(
+    videos: Annotated[
+        list[Path],
+        typer.Argument(help="Videos of one camera that stands still, or FILE.npz#MASKS."),
+    ],
+    out: Out = Path("runs"),
+    notes: Annotated[
+        Path | None, typer.Option(help="Your inputs, instead of notes.toml beside the video.")
+    ] = None,
+    mode: Annotated[
+        Literal["default", "thesis"], typer.Option(help="The best known, or as printed.")
+    ] = "default",
+    size: Annotated[str, typer.Option(help="Bound of the working picture.")] = "320x240",
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Animate a body from any video of one camera: no calibration, no empty room is needed.
+
+    Example: tritrack single dance.mp4 --out runs
+    """
+    from tritrack.offline import overridden
+    from tritrack.single import single_all
+
+    facts = single_all(videos, out, notes, overridden(Settings(), mode, size), console)
+    tell(facts, json_wanted, f"{len(facts['clips'])} videos followed, written to {out}")
+
+
+@app.command()
 def export(
     run: Annotated[Path, typer.Argument(help="A run folder.")],
     to: Annotated[Literal["bvh", "csv"], typer.Option(help="For Blender, or for spreadsheets.")],

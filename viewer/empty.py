@@ -6,7 +6,8 @@ from itertools import islice
 from common.clips import View
 from common.config import SilhouetteSettings
 from common.decoding import Decoder
-from viewer.background import Background, Frame, is_empty_opening, learn, learn_from_clip
+from viewer.background import Background, Frame, is_empty_opening, learn
+from viewer.uncovered import learn_uncovered
 
 SAMPLE = 40
 """How many frames at most, spread over a clip, tell whether its opening is empty."""
@@ -37,7 +38,7 @@ def empty_room(
     opening, sample = _looked_at(view, settings.empty_frames, decoder)
     if is_empty_opening(opening, sample):
         return learn(opening), ""
-    return learn_from_clip(sample), (
+    return learn_uncovered(sample), (
         f"{view.source} does not open with an empty room: the background is estimated from the "
         f"clip (name an empty picture with camera_{view.number}.background)"
     )

@@ -1,4 +1,4 @@
-"""The empty room of a busy clip: what no region hides, and what is never uncovered (thesis 3.1.2)."""
+"""The empty room of a busy clip: what nobody hides, and what is never uncovered (3.1.2)."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -8,8 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.similarity import Mask
-from viewer.background import CHANGES, EDGE_SHARE, GUESSED, LUMA, Background, Floats, Frame
-from viewer.background import _even, _large, _slope, _spread
+from viewer.background import (
+    CHANGES,
+    EDGE_SHARE,
+    GUESSED,
+    LUMA,
+    Background,
+    Floats,
+    Frame,
+    _even,
+    _large,
+    _slope,
+    _spread,
+)
 
 SEGMENT_SCALE: Final = 300.0
 SEGMENT_SIGMA: Final = 0.8
