@@ -11,12 +11,11 @@ from common.body import Vector
 from common.kernel import THINNEST, score
 from common.similarity import Mask
 from common.spans import PRIMITIVE, draw, gain, spans
-from common.stickman import BREADTH, POSE_SIZE, STATURE, Stickman, place_segments
+from common.stickman import BREADTH, STATURE, Stickman, place_segments
 
 ALL_SEGMENTS: Final = 0xFFF
 """Segments as bits: LIMBS, then the lines of the shoulders and of the hips."""
-TRUNK_SEGMENTS: Final = 0b110000000001
-UPRIGHT_SEGMENTS: Final = TRUNK_SEGMENTS | 0b10
+WITHOUT_ARMS: Final = 0b110000111111
 
 
 @numba.njit(cache=True)
@@ -116,7 +115,7 @@ def draw_stick(
     man: Stickman, pose: Vector, size: tuple[int, int], which: int = ALL_SEGMENTS
 ) -> Mask:
     """The picture of the stick body: a mask (H, W)."""
-    width, height = size
+    width = size[0]
     ends, bits = np.empty((12, 4)), blank(size)
     place_segments(man.lengths, pose, ends)
     draw_segments(ends, pose, man.parts, man.depth, which, width, bits)
