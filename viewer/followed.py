@@ -13,6 +13,7 @@ from common.stickman import (
     ANGLE,
     BREADTH,
     CHAINS,
+    GIRTH,
     HEAD,
     POSE_SIZE,
     RATIO,
@@ -68,6 +69,7 @@ def _moves() -> Moves:
         moves.append((1.0, {ANGLE + upper: 1.0, ANGLE + lower: 1.0}))
         moves += [(1.0, {ANGLE + limb: 1.0}) for limb in (upper, lower)]
         moves += [(0.03, {RATIO + limb: 1.0}) for limb in (upper, lower)]
+    moves.append((0.02, {GIRTH: 1.0}))
     rows = np.zeros((len(moves), POSE_SIZE))
     for row, (_, factors) in zip(rows, moves, strict=True):
         row[list(factors)] = list(factors.values())
@@ -76,8 +78,9 @@ def _moves() -> Moves:
 
 def _bounds() -> tuple[Vector, Vector]:
     lows, highs = np.full(POSE_SIZE, -1e9), np.full(POSE_SIZE, 1e9)
-    lows[RATIO:], highs[RATIO:] = 0.05, 1.0
+    lows[RATIO:GIRTH], highs[RATIO:GIRTH] = 0.05, 1.0
     lows[RATIO + TORSO], lows[RATIO + HEAD] = 0.5, 1.0
+    lows[GIRTH], highs[GIRTH] = 0.7, 1.5
     lows[BREADTH], highs[BREADTH] = 0.0, 1.0
     for segment in (TORSO, HEAD):
         lows[ANGLE + segment], highs[ANGLE + segment] = 45.0, 135.0  # T6

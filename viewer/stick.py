@@ -9,7 +9,7 @@ from common.bits import pack_words
 from common.body import Vector
 from common.messages import Fit
 from common.similarity import Mask
-from common.stickman import ADULT, BREADTH, RATIO, STATURE, THESIS, joints_px
+from common.stickman import ADULT, BREADTH, GIRTH, RATIO, STATURE, THESIS, joints_px
 from viewer.followed import followed
 from viewer.normal import STATURE_PX, normalised
 from viewer.printed import fit_printed
@@ -38,7 +38,7 @@ class Stick(NamedTuple):
     @property
     def ratios(self) -> Vector:
         """Foreshortening of LIMBS, (10,), in [0, 1]."""
-        return self.pose[RATIO:]
+        return self.pose[RATIO:GIRTH]
 
     @property
     def breadth(self) -> float:

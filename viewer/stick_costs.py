@@ -5,11 +5,22 @@ from typing import Any, Final
 import numba
 import numpy as np
 
-from common.stickman import ANGLE, BREADTH, RATIO, STATURE
+from common.stickman import ANGLE, BREADTH, GIRTH, RATIO, STATURE
 
-TIME, TRUNK_TILT, LEG_TILT, ARM_TILT, BREADTH_CHANGE, STATURE_CHANGE, LEAN, BEND, CROSS = range(9)
+(
+    TIME,
+    TRUNK_TILT,
+    LEG_TILT,
+    ARM_TILT,
+    BREADTH_CHANGE,
+    STATURE_CHANGE,
+    LEAN,
+    BEND,
+    CROSS,
+    GIRTH_CHANGE,
+) = range(10)
 
-COSTS: Final = np.array([0.006, 0.2, 0.02, 0.02, 0.05, 10.0, 0.01, 0.012, 1.0])
+COSTS: Final = np.array([0.006, 0.2, 0.02, 0.02, 0.05, 10.0, 0.01, 0.012, 1.0, 0.5])
 """In S: for a limb to swing by 60 degrees (its vector's change of 1) since it was expected; for
 trunk, legs and arms to leave the plane of the picture; for breadth and for stature to change by all
 they are; for the trunk to lean by 90 degrees; for an elbow to bend in the plane by 90, or a knee
@@ -60,6 +71,8 @@ def pose_cost(pose: Any, ends: Any, expected: Any, trust: float, costs: Any) -> 
     """What a whole pose costs; `ends` are its segments."""
     wider, taller = pose[BREADTH] - expected[BREADTH], pose[STATURE] / expected[STATURE] - 1.0
     total = costs[BREADTH_CHANGE] * wider * wider + costs[STATURE_CHANGE] * taller * taller
+    thicker = pose[GIRTH] - expected[GIRTH]
+    total += costs[GIRTH_CHANGE] * trust * thicker * thicker
     lean = np.cos(np.radians(pose[ANGLE]))
     total += costs[LEAN] * lean * lean + cross_cost(ends, pose, costs)
     for limb in range(10):
