@@ -8,10 +8,10 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import ANGLE_NAMES, JOINT_NAMES, POSE_NAMES, Bdp, Elliptic, Round
+from common.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES, Bdp, Elliptic, Round
 from common.camera import Camera, Rig
 
-PROTOCOL: Final = 1
+PROTOCOL: Final = 2
 MAX_BYTES: Final = 1_000_000
 """No message of ours is larger (a 1920x1080 silhouette has 259 kB)."""
 
@@ -67,6 +67,24 @@ class Measure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """theta_Z of the right and the left shoulder in the opening posture (P19)."""
 
 
+class Fit(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The stick body that one viewer fitted to its silhouette (Demir 2006, 3.1.4)."""
+
+    joints_px: tuple[Pixel, ...]
+    """JOINT_NAMES order; r is on the left of the picture (T10)."""
+    ratios: tuple[float, ...]
+    """LIMBS order: how much of its length each segment shows, in [0, 1]."""
+    breadth: float
+    """How much of its breadth the trunk shows, in [0, 1]."""
+    stature_px: float
+    """Height that the body would have standing upright."""
+    hidden: tuple[bool, ...]
+    """LIMBS order: what the silhouette does not show."""
+    score: float
+    """Similarity of silhouette and stick body, in [0, 1]."""
+    matches: int
+
+
 class Report(Moment, frozen=True, kw_only=True):
     """What one viewer made of one frame."""
 
@@ -103,6 +121,8 @@ class Report(Moment, frozen=True, kw_only=True):
     """How many times a model was matched for this frame."""
     guide_frame: int = -1
     """This viewer's frame that the guide in use had heard of; -1: none."""
+    fit: Fit | None = None
+    """The stick body, where this view is alone."""
 
 
 class Guide(Moment, frozen=True, kw_only=True):
@@ -318,6 +338,17 @@ def _refuse_a_false_report(report: Report) -> None:
     unknown = [name for name in report.angles_deg if name not in ANGLE_NAMES]
     if unknown:
         raise MalformedMessage(f"unknown angle {unknown[0]!r}")
+    if report.fit is not None:
+        _refuse_a_false_fit(report.fit)
+
+
+def _refuse_a_false_fit(fit: Fit) -> None:
+    for name, due in (("joints_px", JOINT_NAMES), ("ratios", LIMBS), ("hidden", LIMBS)):
+        if len(getattr(fit, name)) != len(due):
+            raise MalformedMessage(f"{name} has {len(getattr(fit, name))} entries, not {len(due)}")
+    shares = (*fit.ratios, fit.breadth, fit.score)
+    if not all(0.0 <= share <= 1.0 for share in shares) or fit.stature_px <= 0.0:
+        raise MalformedMessage("a stick body of shares beyond 0 to 1, or of no stature")
 
 
 def _numbers(value: object) -> Iterator[float]:
@@ -329,6 +360,6 @@ def _numbers(value: object) -> Iterator[float]:
     elif isinstance(value, dict):
         for item in value.values():
             yield from _numbers(item)
-    elif isinstance(value, Measure | Bdp | Elliptic | Round | Rig | Camera):
+    elif isinstance(value, Measure | Fit | Bdp | Elliptic | Round | Rig | Camera):
         for item in msgspec.structs.astuple(value):
             yield from _numbers(item)

@@ -11,11 +11,11 @@ from common.body import LIMBS, THESIS_DIAMETERS, THESIS_RATIOS, Vector
 SIDES: Final = ("r", "l")
 """r is on the left of the picture: where the right is of somebody who faces the camera (T10)."""
 
-X, Y, STATURE, BREADTH, ANGLE, RATIO = 0, 1, 2, 3, 4, 14
+X, Y, STATURE, BREADTH, ANGLE, RATIO, GIRTH = 0, 1, 2, 3, 4, 14, 24
 """A stick pose: pelvis (px, rows down), stature (px), breadth of the trunk seen over its breadth
 from the front, then an angle (degrees, 0 to the right, 90 up, as in table 3.3) and a foreshortening
-ratio for each of LIMBS."""
-POSE_SIZE: Final = 24
+ratio for each of LIMBS, and how thick limbs are, clothes included, over those of the proportions."""
+POSE_SIZE: Final = 25
 
 TORSO, HEAD, SHOULDER_LINE, HIP_LINE = 0, 1, 10, 11
 """Segments that things hang on; the two lines follow the ten limbs."""

@@ -1,15 +1,17 @@
 """The search of a stick pose for its best match: limbs by beam, then every number by tritree."""
 
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numba
 import numpy as np
 
-from common.bits import count, count_both
+from common.bits import Bits, count, count_both
+from common.body import Vector
 from common.kernel import score
 from common.spans import PRIMITIVE
-from common.stickman import ANGLE, BREADTH, POSE_SIZE, RATIO, STATURE, place_chain, place_segments
-from viewer.strokes import ALL_SEGMENTS, added, draw_segments
+from common.stickman import ANGLE, POSE_SIZE, RATIO, place_chain, place_segments
+from viewer.stick_costs import bend_cost, cross_cost, limb_cost, pose_cost
+from viewer.strokes import added, draw_segments
 from viewer.tritree import MOST_STAGES, narrowed
 
 BEAM: Final = 10
@@ -17,133 +19,72 @@ BEAM: Final = 10
 UPPER_STEP_DEG, LOWER_STEP_DEG = 15.0, 20.0
 SHORTENINGS: Final = np.array([1.0, 0.8, 0.5, 0.2])
 """Ratios that the beam tries: 0, 37, 60 and 78 degrees out of the picture's plane."""
-
-TIME, TRUNK_TILT, LEG_TILT, ARM_TILT, BREADTH_CHANGE, STATURE_CHANGE, LEAN, BEND, CROSS = range(
-    9
-)
-"""Places in a vector of costs, in S: for a limb to swing by 60 degrees (its vector's change of 1)
-since it was expected; for trunk, legs and arms to leave the plane of the picture; for breadth and
-for stature to change by all they are; for the trunk to lean by 90 degrees; for an elbow
-to bend in the plane by 90, or a knee where the trunk shows its breadth; for a knee or foot seen from
-the front to cross to the other side by a stature."""
-TILTED: Final = 0.15
-"""1 - ratio^2 at which a limb's leaving the plane has half its full cost (23 degrees): what cannot
-be seen stays in the plane, what can be seen is free to turn further."""
+NOTHING: Final = -9.0
+"""Below every worth."""
 
 
-@numba.njit(cache=True)
-def limb_cost(pose: Any, expected: Any, limb: int, trust: float, costs: Any) -> float:
-    """What a limb's place costs: how far it turned in space since it was expected, and depth.
+class Task(NamedTuple):
+    """What is fitted to what; its members are also what the compiled functions read."""
 
-    Both signs of its depth are alike here, so that is how far it is from the nearer one.
-    """
-    a, b = np.radians(pose[ANGLE + limb]), np.radians(expected[ANGLE + limb])
-    r, e = min(pose[RATIO + limb], 1.0), min(expected[RATIO + limb], 1.0)
-    dx, dy = r * np.cos(a) - e * np.cos(b), r * np.sin(a) - e * np.sin(b)
-    dz = np.sqrt(1.0 - r * r) - np.sqrt(1.0 - e * e)
-    moved = trust * costs[TIME] * (dx * dx + dy * dy + 0.25 * dz * dz)
-    off = 1.0 - r * r
-    if limb < 2:
-        return moved + costs[TRUNK_TILT] * off
-    return moved + costs[LEG_TILT if limb < 6 else ARM_TILT] * off / (off + TILTED)
+    lengths: Vector
+    parts: Vector
+    depth: float
+    """The Stickman's."""
+    seen: Bits
+    seen_px: int
+    width: int
+    """The silhouette, its pixels, and the width of the picture."""
+    expected: Vector
+    """(POSE_SIZE,): the pose before."""
+    trust: float
+    """How much of the cost of turning counts: less where nothing is known."""
+    costs: Vector
 
 
-@numba.njit(cache=True)
-def bend_cost(pose: Any, upper: int, costs: Any) -> float:
-    """What the bend of an elbow or a knee costs, as far as it lies in the plane."""
-    bend = np.radians(pose[ANGLE + upper + 2] - pose[ANGLE + upper])
-    share = costs[BEND] * pose[RATIO + upper] * pose[RATIO + upper + 2] * (1.0 - np.cos(bend))
-    return share if upper >= 6 else share * pose[BREADTH]
+class Moves(NamedTuple):
+    """Directions in which a pose is searched, one after the other."""
+
+    rows: Any
+    """(k, POSE_SIZE): what a move adds to the pose, times a whole number of its unit."""
+    units: Vector
+    lows: Vector
+    highs: Vector
+    """(POSE_SIZE,): bounds."""
 
 
 @numba.njit(cache=True)
-def cross_cost(ends: Any, pose: Any, costs: Any) -> float:
-    """What knees and feet on the wrong sides cost."""
-    wrong = 0.0
-    for limb in (2, 4):
-        wrong += max(0.0, ends[limb, 2] - ends[limb + 1, 2])
-    return costs[CROSS] * pose[BREADTH] * wrong / pose[STATURE]
-
-
-@numba.njit(cache=True)
-def pose_cost(pose: Any, ends: Any, expected: Any, trust: float, costs: Any) -> float:
-    """What a whole pose costs."""
-    wider, taller = pose[BREADTH] - expected[BREADTH], pose[STATURE] / expected[STATURE] - 1.0
-    total = costs[BREADTH_CHANGE] * wider * wider + costs[STATURE_CHANGE] * taller * taller
-    lean = np.cos(np.radians(pose[ANGLE]))
-    total += costs[LEAN] * lean * lean + cross_cost(ends, pose, costs)
-    for limb in range(10):
-        total += limb_cost(pose, expected, limb, trust, costs)
-    for upper in (2, 3, 6, 7):
-        total += bend_cost(pose, upper, costs)
-    return total
-
-
-@numba.njit(cache=True)
-def worth(
-    lengths: Any,
-    parts: Any,
-    depth: float,
-    pose: Any,
-    expected: Any,
-    trust: float,
-    costs: Any,
-    seen: Any,
-    seen_px: int,
-    width: int,
-    ends: Any,
-    bits: Any,
-    which: int,
-) -> float:
-    """S of some segments less what the pose costs."""
-    place_segments(lengths, pose, ends)
+def worth(task: Any, pose: Any, which: int, ends: Any, bits: Any) -> float:
+    """S of some segments less what the pose costs; `ends` and `bits` are overwritten."""
+    place_segments(task.lengths, pose, ends)
     bits[:] = np.uint64(0)
-    draw_segments(ends, pose, parts, depth, which, width, bits)
-    s = score(count_both(bits, seen), count(bits), seen_px)
-    return s - pose_cost(pose, ends, expected, trust, costs)
+    draw_segments(ends, pose, task.parts, task.depth, which, task.width, bits)
+    s = score(count_both(bits, task.seen), count(bits), task.seen_px)
+    return s - pose_cost(pose, ends, task.expected, task.trust, task.costs)
 
 
 @numba.njit(cache=True)
 def refined(
-    lengths: Any,
-    parts: Any,
-    depth: float,
-    pose: Any,
-    expected: Any,
-    trust: float,
-    costs: Any,
-    seen: Any,
-    width: int,
-    moves: Any,
-    units: Any,
-    half: int,
-    stop: int,
-    lows: Any,
-    highs: Any,
-    which: int,
+    task: Any, pose: Any, moves: Any, how_many: int, half: int, stop: int, which: int
 ) -> tuple[float, int]:
-    """Each move in turn to its best by the overlapped tritree, around where it is.
+    """The first moves, each in turn to its best by the overlapped tritree around where it is.
 
     Args:
+        task: A Task.
         pose: (POSE_SIZE,), improved in place.
-        moves: (k, POSE_SIZE): what a move adds to the pose, times a whole number of its unit.
-        units: (k,).
-        half: Half the window, units; `stop` its width at the end.
-        lows: (POSE_SIZE,) and `highs`: bounds.
+        moves: Moves.
+        how_many: How many of them.
+        half: Half the window, units.
+        stop: Its width at the end.
+        which: Segments that are drawn, as bits.
 
     Returns:
         (worth, matches).
     """
-    ends, bits = np.empty((12, 4)), np.zeros_like(seen)
-    seen_px = count(seen)
-    best = worth(
-        lengths, parts, depth, pose, expected, trust, costs, seen, seen_px, width, ends, bits, which
-    )
-    matches = 1
-    trial, start = pose.copy(), pose.copy()
+    ends, bits, trial = np.empty((12, 4)), np.zeros_like(task.seen), pose.copy()
+    best, matches = worth(task, pose, which, ends, bits), 1
     probes = np.empty(3)
-    for k in range(moves.shape[0]):
-        start[:] = pose
+    for k in range(how_many):
+        start = pose.copy()
         low, high = -half, half
         probes[0], probes[1], probes[2] = np.nan, best, np.nan
         for _ in range(MOST_STAGES):
@@ -151,24 +92,11 @@ def refined(
                 break
             for i in range(3):
                 if np.isnan(probes[i]):
-                    offset = (low + i * ((high - low) // 2)) * units[k]
+                    by = (low + i * ((high - low) // 2)) * moves.units[k]
                     for n in range(POSE_SIZE):
-                        trial[n] = min(max(start[n] + offset * moves[k, n], lows[n]), highs[n])
-                    probes[i] = worth(
-                        lengths,
-                        parts,
-                        depth,
-                        trial,
-                        expected,
-                        trust,
-                        costs,
-                        seen,
-                        seen_px,
-                        width,
-                        ends,
-                        bits,
-                        which,
-                    )
+                        at = start[n] + by * moves.rows[k, n]
+                        trial[n] = min(max(at, moves.lows[n]), moves.highs[n])
+                    probes[i] = worth(task, trial, which, ends, bits)
                     matches += 1
                     if probes[i] > best:
                         best = probes[i]
@@ -180,91 +108,98 @@ def refined(
 
 
 @numba.njit(cache=True)
-def beamed(
-    lengths: Any,
-    parts: Any,
-    depth: float,
-    pose: Any,
-    expected: Any,
-    trust: float,
-    costs: Any,
-    seen: Any,
-    width: int,
-    upper: int,
-    low_deg: float,
-    high_deg: float,
-    bend_deg: float,
-    which: int,
-) -> int:
-    """An upper and its lower limb found together: pose is changed in place; returns the matches."""
-    lower = upper + 2
-    height = seen.shape[0]
-    ends, p = np.empty((12, 4)), np.empty(PRIMITIVE)
-    first, last = np.empty(height, np.int32), np.empty(height, np.int32)
-    place_segments(lengths, pose, ends)
-    rest = np.zeros_like(seen)
-    both = 1 << upper | 1 << lower
-    draw_segments(ends, pose, parts, depth, which & ~both, width, rest)
-    scratch, seen_px = rest.copy(), count(seen)
-    rest_px, rest_hit = count(rest), count_both(rest, seen)
-    matches = 0
-    kept = np.full((BEAM, 3), -9.0)
-    was = np.array(
-        (pose[ANGLE + upper], pose[RATIO + upper], pose[ANGLE + lower], pose[RATIO + lower])
-    )
-    angles = int((high_deg - low_deg) / UPPER_STEP_DEG) + 1
-    for n in range(angles * SHORTENINGS.size + 1):
-        if n == angles * SHORTENINGS.size:
-            pose[ANGLE + upper], pose[RATIO + upper] = was[0], was[1]
-        else:
-            pose[ANGLE + upper] = low_deg + UPPER_STEP_DEG * (n // SHORTENINGS.size)
-            pose[RATIO + upper] = SHORTENINGS[n % SHORTENINGS.size]
-        place_chain(upper, lengths, pose, ends)
+def _limb_of(pose: Any, limb: int, was: Any, n: int, first_deg: float, step_deg: float) -> None:
+    """Set a limb to the n-th of the beam's angles and shortenings; n = -1: to what it was."""
+    if n < 0:
+        pose[ANGLE + limb], pose[RATIO + limb] = was[ANGLE + limb], was[RATIO + limb]
+    else:
+        pose[ANGLE + limb] = first_deg + step_deg * (n // SHORTENINGS.size)
+        pose[RATIO + limb] = SHORTENINGS[n % SHORTENINGS.size]
+
+
+@numba.njit(cache=True)
+def _uppers(
+    task: Any, pose: Any, was: Any, upper: int, over: Any, low_deg: float, high_deg: float
+) -> tuple[Any, int]:
+    """The best places of an upper limb alone: ((BEAM, 2): worth, number), matches."""
+    rest, scratch, ends, first, last, p = over
+    rest_px, rest_hit = count(rest), count_both(rest, task.seen)
+    kept = np.full((BEAM, 2), NOTHING)
+    tries = (int((high_deg - low_deg) / UPPER_STEP_DEG) + 1) * SHORTENINGS.size
+    for n in range(-1, tries):
+        _limb_of(pose, upper, was, n, low_deg, UPPER_STEP_DEG)
+        place_chain(upper, task.lengths, pose, ends)
         drawn, hit = added(
-            ends, pose, parts, depth, 1 << upper, width, rest, seen, scratch, first, last, p
-        )
-        matches += 1
-        s = score(rest_hit + hit, rest_px + drawn, seen_px)
-        s -= limb_cost(pose, expected, upper, trust, costs)
+            ends, pose, task.parts, task.depth, 1 << upper, task.width, rest, task.seen, scratch,
+            first, last, p,
+        )  # fmt: skip
+        s = score(rest_hit + hit, rest_px + drawn, task.seen_px)
+        s -= limb_cost(pose, task.expected, upper, task.trust, task.costs)
         worst = np.argmin(kept[:, 0])
         if s > kept[worst, 0]:
-            kept[worst, 0], kept[worst, 1], kept[worst, 2] = (
-                s,
-                pose[ANGLE + upper],
-                pose[RATIO + upper],
-            )
-    best = -9.0
-    found = was.copy()
-    bends = int(2.0 * bend_deg / LOWER_STEP_DEG) + 1
-    for k in range(BEAM + 1):
-        if k == BEAM:
-            pose[ANGLE + upper], pose[RATIO + upper] = was[0], was[1]
-        elif kept[k, 0] < -8.0:
-            continue
-        else:
-            pose[ANGLE + upper], pose[RATIO + upper] = kept[k, 1], kept[k, 2]
-        upper_cost = limb_cost(pose, expected, upper, trust, costs)
-        for n in range(bends * SHORTENINGS.size + 1):
-            if n == bends * SHORTENINGS.size:
-                pose[ANGLE + lower], pose[RATIO + lower] = was[2], was[3]
-            else:
-                bend = -bend_deg + LOWER_STEP_DEG * (n // SHORTENINGS.size)
-                pose[ANGLE + lower] = pose[ANGLE + upper] + bend
-                pose[RATIO + lower] = SHORTENINGS[n % SHORTENINGS.size]
-            place_chain(upper, lengths, pose, ends)
+            kept[worst, 0], kept[worst, 1] = s, n
+    return kept, tries + 1
+
+
+@numba.njit(cache=True)
+def beamed(
+    task: Any, pose: Any, upper: int, low_deg: float, high_deg: float, bend_deg: float, which: int
+) -> int:
+    """An upper and its lower limb found together, anywhere in their ranges.
+
+    Args:
+        task: A Task.
+        pose: (POSE_SIZE,), changed in place.
+        upper: The upper limb.
+        low_deg: Where it can point in the picture, to `high_deg`.
+        high_deg: See there.
+        bend_deg: How far the lower limb bends from it, either way.
+        which: Segments that are drawn, as bits.
+
+    Returns:
+        The matches.
+    """
+    lower, height, was = upper + 2, task.seen.shape[0], pose.copy()
+    ends, both = np.empty((12, 4)), 1 << upper | 1 << lower
+    first, last, p = np.empty(height, np.int32), np.empty(height, np.int32), np.empty(PRIMITIVE)
+    place_segments(task.lengths, pose, ends)
+    rest = np.zeros_like(task.seen)
+    draw_segments(ends, pose, task.parts, task.depth, which & ~both, task.width, rest)
+    scratch = rest.copy()
+    rest_px, rest_hit = count(rest), count_both(rest, task.seen)
+    over = (rest, scratch, ends, first, last, p)
+    kept, matches = _uppers(task, pose, was, upper, over, low_deg, high_deg)
+    best, found = NOTHING, was.copy()
+    tries = (int(2.0 * bend_deg / LOWER_STEP_DEG) + 1) * SHORTENINGS.size
+    for k in range(BEAM):
+        _limb_of(pose, upper, was, int(kept[k, 1]), low_deg, UPPER_STEP_DEG)
+        upper_cost = limb_cost(pose, task.expected, upper, task.trust, task.costs)
+        for n in range(-1, tries):
+            _limb_of(pose, lower, was, n, pose[ANGLE + upper] - bend_deg, LOWER_STEP_DEG)
+            place_chain(upper, task.lengths, pose, ends)
             drawn, hit = added(
-                ends, pose, parts, depth, both, width, rest, seen, scratch, first, last, p
-            )
-            matches += 1
-            s = score(rest_hit + hit, rest_px + drawn, seen_px)
-            s -= upper_cost + limb_cost(pose, expected, lower, trust, costs)
-            s -= bend_cost(pose, upper, costs)
+                ends, pose, task.parts, task.depth, both, task.width, rest, task.seen, scratch,
+                first, last, p,
+            )  # fmt: skip
+            s = score(rest_hit + hit, rest_px + drawn, task.seen_px) - upper_cost
+            s -= limb_cost(pose, task.expected, lower, task.trust, task.costs)
+            s -= bend_cost(pose, upper, task.costs)
             if upper < 6:
-                s -= cross_cost(ends, pose, costs)
+                s -= cross_cost(ends, pose, task.costs)
             if s > best:
                 best = s
-                found[0], found[1] = pose[ANGLE + upper], pose[RATIO + upper]
-                found[2], found[3] = pose[ANGLE + lower], pose[RATIO + lower]
-    pose[ANGLE + upper], pose[RATIO + upper] = found[0], found[1]
-    pose[ANGLE + lower], pose[RATIO + lower] = found[2], found[3]
-    return matches
+                found[:] = pose
+    pose[:] = found
+    return matches + BEAM * (tries + 1)
+
+
+@numba.njit(cache=True)
+def covered(task: Any, pose: Any, shares: Any) -> None:
+    """How much of each limb the rest of the body covers, or is covered by: (10,), written."""
+    ends, own, rest = np.empty((12, 4)), np.zeros_like(task.seen), np.zeros_like(task.seen)
+    place_segments(task.lengths, pose, ends)
+    for limb in range(10):
+        own[:], rest[:] = np.uint64(0), np.uint64(0)
+        draw_segments(ends, pose, task.parts, task.depth, 1 << limb, task.width, own)
+        draw_segments(ends, pose, task.parts, task.depth, 0xFFF & ~(1 << limb), task.width, rest)
+        shares[limb] = count_both(own, rest) / max(1, count(own))

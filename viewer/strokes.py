@@ -11,21 +11,22 @@ from common.body import Vector
 from common.kernel import THINNEST, score
 from common.similarity import Mask
 from common.spans import PRIMITIVE, draw, gain, spans
-from common.stickman import BREADTH, POSE_SIZE, STATURE, Stickman, place_segments
+from common.stickman import BREADTH, GIRTH, STATURE, Stickman, place_segments
 
 ALL_SEGMENTS: Final = 0xFFF
 """Segments as bits: LIMBS, then the lines of the shoulders and of the hips."""
-TRUNK_SEGMENTS: Final = 0b110000000001
-UPRIGHT_SEGMENTS: Final = TRUNK_SEGMENTS | 0b10
+WITHOUT_ARMS: Final = 0b110000111111
 
 
 @numba.njit(cache=True)
-def _primitive(ends: Any, part: Any, size: float, wide: float, out: Any) -> None:
+def _primitive(ends: Any, part: Any, pose: Any, wide: float, out: Any) -> None:
     """A part of the placed body as the kernel draws limbs (`spans`)."""
     row = int(part[0])
     ax, ay = ends[row, 0], ends[row, 1]
     dx, dy = ends[row, 2] - ax, ends[row, 3] - ay
-    factor = size * wide if part[5] >= 2.0 else size
+    factor = pose[STATURE] * (wide if part[5] >= 2.0 else 1.0)
+    if 2 <= row < 10:
+        factor *= pose[GIRTH]
     out[0], out[1], out[2] = ax + part[1] * dx, ay + part[1] * dy, part[3] * factor
     out[3], out[4], out[5] = ax + part[2] * dx, ay + part[2] * dy, part[4] * factor
     out[6], out[7] = 0.0, 1.0
@@ -58,7 +59,7 @@ def draw_segments(
     wide = widening(pose[BREADTH], depth)
     for i in range(parts.shape[0]):
         if which >> int(parts[i, 0]) & 1:
-            _primitive(ends, parts[i], pose[STATURE], wide, p)
+            _primitive(ends, parts[i], pose, wide, p)
             top, bottom = spans(p, width, height, first, last)
             draw(first, last, top, bottom, bits)
 
@@ -88,7 +89,7 @@ def added(
     wide = widening(pose[BREADTH], depth)
     for i in range(parts.shape[0]):
         if which >> int(parts[i, 0]) & 1:
-            _primitive(ends, parts[i], pose[STATURE], wide, p)
+            _primitive(ends, parts[i], pose, wide, p)
             top, bottom = spans(p, width, height, first, last)
             more_drawn, more_hit = gain(first, last, top, bottom, scratch, seen)
             drawn, hit = drawn + more_drawn, hit + more_hit
@@ -116,7 +117,7 @@ def draw_stick(
     man: Stickman, pose: Vector, size: tuple[int, int], which: int = ALL_SEGMENTS
 ) -> Mask:
     """The picture of the stick body: a mask (H, W)."""
-    width, height = size
+    width = size[0]
     ends, bits = np.empty((12, 4)), blank(size)
     place_segments(man.lengths, pose, ends)
     draw_segments(ends, pose, man.parts, man.depth, which, width, bits)

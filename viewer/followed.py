@@ -1,0 +1,147 @@
+"""The stick body fitted by search: from the frame before, limbs found afresh, all refined."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.bits import count, pack_words
+from common.body import LIMBS, Vector
+from common.similarity import Mask
+from common.stickman import (
+    ADULT,
+    ANGLE,
+    BREADTH,
+    CHAINS,
+    GIRTH,
+    HEAD,
+    POSE_SIZE,
+    RATIO,
+    STATURE,
+    TORSO,
+    X,
+    Y,
+    standing,
+)
+from viewer.normal import STATURE_PX
+from viewer.stick_costs import COSTS
+from viewer.stick_search import Moves, Task, beamed, covered, refined
+from viewer.strokes import ALL_SEGMENTS, WITHOUT_ARMS
+
+STARTS: Final = (1.0, 0.5, 0.1)
+"""Breadths of the trunk with which somebody is met of whom nothing is known."""
+FIRST_TRUST: Final = 0.3
+"""How much a standing body is expected then."""
+LOST_SCORE: Final = 0.6
+"""A worth below which the body is also looked for afresh."""
+HIDDEN_SHARE: Final = 0.6
+"""A limb of which more lies over or behind the rest of the body is hidden."""
+PELVIS_SHARE: Final = float(ADULT.lengths[HEAD] + ADULT.lengths[TORSO])
+"""How far the pelvis lies below the crown."""
+
+UPRIGHT_MOVES: Final = 8
+"""How many of the moves are those of trunk and head."""
+COARSE, MIDDLE, FINE = (16, 4), (8, 2), (4, 2)
+"""Half a window and its width at the end, in units of each move."""
+
+ARM_RANGE_DEG, LEG_RANGE_DEG = (0.0, 345.0, 140.0), (180.0, 360.0, 100.0)
+"""Where upper limbs can point in the picture, and how far lower ones bend from them."""
+
+
+class Followed(NamedTuple):
+    """What the search finds."""
+
+    pose: Vector
+    hidden: NDArray[np.bool_]
+    """(10,) of LIMBS."""
+    evaluations: int
+
+
+def _moves() -> Moves:
+    """Trunk and head first: a body is placed before its limbs are."""
+    moves: list[tuple[float, dict[int, float]]] = [(0.25, {X: 1.0}), (0.25, {Y: 1.0})]
+    sunk = {RATIO + limb: -1.0 / (ADULT.lengths[limb] * STATURE_PX) for limb in (2, 3)}
+    longer = {RATIO + TORSO: 1.0 / (ADULT.lengths[TORSO] * STATURE_PX)}
+    moves.append((0.25, {Y: 1.0, **longer, **sunk}))  # neck and knees stay where they are
+    moves += [(1.0, {ANGLE + TORSO: 1.0}), (0.02, {RATIO + TORSO: 1.0}), (0.02, {BREADTH: 1.0})]
+    moves += [(0.2, {STATURE: 1.0}), (1.0, {ANGLE + HEAD: 1.0})]
+    for upper, lower in (*CHAINS[2:], *CHAINS[:2]):
+        moves.append((1.0, {ANGLE + upper: 1.0, ANGLE + lower: 1.0}))
+        moves += [(1.0, {ANGLE + limb: 1.0}) for limb in (upper, lower)]
+        moves += [(0.03, {RATIO + limb: 1.0}) for limb in (upper, lower)]
+    moves.append((0.02, {GIRTH: 1.0}))
+    rows = np.zeros((len(moves), POSE_SIZE))
+    for row, (_, factors) in zip(rows, moves, strict=True):
+        row[list(factors)] = list(factors.values())
+    return Moves(rows, np.array([unit for unit, _ in moves]), *_bounds())
+
+
+def _bounds() -> tuple[Vector, Vector]:
+    lows, highs = np.full(POSE_SIZE, -1e9), np.full(POSE_SIZE, 1e9)
+    lows[RATIO:GIRTH], highs[RATIO:GIRTH] = 0.05, 1.0
+    lows[RATIO + TORSO], lows[RATIO + HEAD] = 0.5, 1.0
+    lows[GIRTH], highs[GIRTH] = 0.7, 1.5
+    lows[BREADTH], highs[BREADTH] = 0.0, 1.0
+    for segment in (TORSO, HEAD):
+        lows[ANGLE + segment], highs[ANGLE + segment] = 45.0, 135.0  # T6
+    return lows, highs
+
+
+_MOVES: Final = _moves()
+
+
+def followed(mask: Mask, before: Vector | None) -> Followed:
+    """The pose that is worth most: S less what it costs.
+
+    Args:
+        mask: (H, W), normalised.
+        before: The pose of the frame before, in this picture; None at the start.
+    """
+    seen = pack_words(mask)
+    tasks = [] if before is None else [_task(seen, mask, before, 1.0)]
+    found = [_searched(task) for task in tasks]
+    if not found or found[0][1] < LOST_SCORE:
+        afresh = [_task(seen, mask, start, FIRST_TRUST) for start in _starts(mask)]
+        tasks += afresh
+        found += [_searched(task) for task in afresh]
+    best = max(range(len(found)), key=lambda i: found[i][1])
+    pose, shares = found[best][0], np.empty(len(LIMBS))
+    covered(tasks[best], pose, shares)
+    return Followed(pose, shares > HIDDEN_SHARE, sum(matches for _, _, matches in found))
+
+
+def _starts(mask: Mask) -> list[Vector]:
+    rows = np.flatnonzero(mask.any(axis=1))
+    middle = float(np.median(np.nonzero(mask)[1])) + 0.5
+    starts = []
+    for breadth in STARTS:
+        pose = standing(middle, rows[0] + PELVIS_SHARE * STATURE_PX, STATURE_PX)
+        pose[BREADTH] = breadth
+        starts.append(pose)
+    return starts
+
+
+def _task(seen: NDArray[np.uint64], mask: Mask, expected: Vector, trust: float) -> Task:
+    expected = expected.copy()
+    expected[STATURE] = STATURE_PX
+    man = ADULT
+    return Task(
+        man.lengths, man.parts, man.depth, seen, count(seen), mask.shape[1], expected, trust, COSTS
+    )
+
+
+def _searched(task: Task) -> tuple[Vector, float, int]:
+    """(pose, its worth, matches): trunk and head, both legs, both arms, then everything."""
+    pose = task.expected.copy()
+    matches = 0
+    for half, stop in (COARSE, FINE):
+        matches += refined(task, pose, _MOVES, UPRIGHT_MOVES, half, stop, WITHOUT_ARMS)[1]
+    for upper, _ in CHAINS[2:]:
+        matches += beamed(task, pose, upper, *LEG_RANGE_DEG, WITHOUT_ARMS)
+    for upper, _ in CHAINS[:2]:
+        matches += beamed(task, pose, upper, *ARM_RANGE_DEG, ALL_SEGMENTS)
+    worth = 0.0
+    for half, stop in (COARSE, MIDDLE, FINE):
+        worth, more = refined(task, pose, _MOVES, len(_MOVES.rows), half, stop, ALL_SEGMENTS)
+        matches += more
+    return pose, float(worth), matches
