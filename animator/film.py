@@ -55,7 +55,7 @@ class Film:
             FilmError: When it does not hold every picture: OpenCV says nothing of a full disk.
         """
         if self._writer is None:
-            return
+            raise FilmError("it got no picture")
         self._writer.release()
         written = cv2.VideoCapture(str(self._path), cv2.CAP_OPENCV_MJPEG)
         kept = int(written.get(cv2.CAP_PROP_FRAME_COUNT)) if written.isOpened() else 0
@@ -75,10 +75,10 @@ def filming(path: Path, fps: float) -> Iterator[Film]:
         path.parent.mkdir(parents=True, exist_ok=True)
         with replacing(path) as new:
             film = Film(new, fps)
-            try:
-                yield film
-            finally:
-                film.close()
+            yield film
+            film.close()
     except (OSError, FilmError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise FilmError(f"cannot write {path}: {reason}; free some space") from error
+        raise FilmError(
+            f"cannot write {path}: {reason}; free some space or name another folder"
+        ) from error

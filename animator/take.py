@@ -12,7 +12,8 @@ from common.notes import Depth, Held, Notes, held
 SURE: Final = 0.7
 """A decision with less confidence than this is worth a look."""
 SEEN: Final = 0.3
-"""A joint with less confidence than this is hidden: the thesis's "highly occluded"."""
+"""A joint that keeps less than this of the confidence of the joint before it is hidden, the
+thesis's "highly occluded"; a direction that is not sure costs it a half at most."""
 FLAT_DEG: Final = 15.0
 """A segment that leans less out of the picture's plane has no direction that anybody would see."""
 
@@ -94,6 +95,13 @@ def depth_of(joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
     return signs
 
 
+def hidden_of(confidence: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether the joint at each segment's far end is hidden: (..., 15) to (..., 10)."""
+    near, far = confidence[..., LIMB_ENDS[:, 0]], confidence[..., LIMB_ENDS[:, 1]]
+    hidden: NDArray[np.bool_] = far < SEEN * near
+    return hidden
+
+
 def doubts_at(take: Take, row: int, notes: Notes) -> list[Doubt]:
     """What a frame leaves open, the least sure first; what the user settled is not."""
     if not take.posed[row]:
@@ -104,12 +112,13 @@ def doubts_at(take: Take, row: int, notes: Notes) -> list[Doubt]:
     if sure < SURE and told.orientation is None:
         found.append(Doubt("orientation", str(take.orientation[row]), sure))
     leans = depth_of(take.joints_m[row : row + 1])[0]
+    hidden = hidden_of(take.confidence[row])
     for name, lean, sure in zip(LIMBS, leans, take.depth_confidence[row], strict=True):
         if lean and sure < SURE and name not in told.depth:
             found.append(Doubt("depth", name, float(sure)))
-    for name, sure in zip(JOINT_NAMES, take.confidence[row], strict=True):
-        if sure < SEEN and name not in told.joints_px:
-            found.append(Doubt("joint", name, float(sure)))
+    for joint in LIMB_ENDS[hidden, 1]:
+        if (name := JOINT_NAMES[joint]) not in told.joints_px:
+            found.append(Doubt("joint", name, float(take.confidence[row, joint])))
     return sorted(found, key=lambda doubt: doubt.confidence)
 
 

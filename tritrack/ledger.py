@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animator.inbetween import key_frames
-from animator.take import SEEN, SURE, Take, depth_of
-from common.body import JOINT_NAMES, LIMBS
+from animator.take import SURE, Take, depth_of, hidden_of
+from common.body import LIMBS
 from common.notes import Notes
 
 JOINTS_BY_HAND: Final = 14
@@ -95,12 +95,12 @@ def open_inputs(take: Take) -> Count:
     """The inputs that would settle every doubt, each held as long as it agrees (T21)."""
     asked = take.posed & (take.orientation_confidence < SURE)
     unsure = take.posed[:, None] & (take.depth_confidence < SURE)
-    hidden = take.posed[:, None] & (take.confidence < SEEN)
+    hidden = take.posed[:, None] & hidden_of(take.confidence)
     depth = depth_of(take.joints_m)
     return Count(
         orientation=inputs(take.orientation, asked),
         depth=sum(inputs(depth[:, i], unsure[:, i]) for i in range(len(LIMBS))),
-        joints=sum(_stretches(hidden[:, i]) for i in range(len(JOINT_NAMES))),
+        joints=sum(_stretches(hidden[:, i]) for i in range(len(LIMBS))),
     )
 
 

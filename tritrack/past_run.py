@@ -8,23 +8,29 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from common.body import ANGLE_NAMES, JOINT_NAMES
+from common.body import ANGLE_NAMES, JOINT_NAMES, LIMBS
 
 MAX_BYTES: Final = 1 << 28
 """No poses of a run are larger: an hour at 30 frames a second."""
 
-SHAPES: Final[dict[str, tuple[int, ...]]] = {
-    "frame": (),
-    "time_s": (),
-    "joints_m": (len(JOINT_NAMES), 3),
-    "joints_px": (2, len(JOINT_NAMES), 2),
-    "angles_deg": (len(ANGLE_NAMES),),
-    "confidence": (len(JOINT_NAMES),),
-    "status": (),
-    "views": (),
-    "score": (2,),
+ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
+    "frame": ("iu", ()),
+    "time_s": ("f", ()),
+    "joints_m": ("f", (len(JOINT_NAMES), 3)),
+    "joints_px": ("f", (2, len(JOINT_NAMES), 2)),
+    "angles_deg": ("f", (len(ANGLE_NAMES),)),
+    "confidence": ("f", (len(JOINT_NAMES),)),
+    "status": ("U", ()),
+    "views": ("U", ()),
+    "score": ("f", (2,)),
 }
-"""The arrays of `poses.npz` that are read, and the shape of a row of each."""
+"""The arrays of `poses.npz` that are read: kind of entries and shape of a row."""
+SINGLE_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
+    "orientation": ("U", ()),
+    "orientation_confidence": ("f", ()),
+    "depth_confidence": ("f", (len(LIMBS),)),
+}
+"""What a run of a single view has beside them."""
 
 
 class PastRunError(ValueError):
@@ -36,7 +42,7 @@ class PastRun(NamedTuple):
 
     folder: Path
     poses: dict[str, Any]
-    """Arrays by name: those of SHAPES, and what else the file holds."""
+    """Arrays by name: those of ROWS, and what else the file holds."""
     summary: dict[str, Any]
 
 
@@ -66,9 +72,11 @@ def open_run(folder: Path) -> PastRun:
 
 def _refuse_other_arrays(path: Path, poses: dict[str, Any]) -> None:
     rows = len(poses["frame"]) if np.ndim(poses.get("frame", 0)) == 1 else 0
-    for name, shape in SHAPES.items():
-        found = np.shape(poses[name]) if name in poses else None
-        if found != (rows, *shape):
+    known = ROWS | {name: row for name, row in SINGLE_ROWS.items() if name in poses}
+    for name, (kinds, shape) in known.items():
+        array = np.asarray(poses.get(name))
+        if array.shape != (rows, *shape) or array.dtype.kind not in kinds:
+            found = f"{array.dtype} {array.shape}" if name in poses else "missing"
             raise PastRunError(f"{path}: {name} is {found}, not {(rows, *shape)}: track it again")
     names = tuple(str(name) for name in np.ravel(poses.get("joint_names", ())))
     if names != JOINT_NAMES:

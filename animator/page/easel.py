@@ -25,6 +25,8 @@ BALL_M: Final = 0.022
 """Radius of a joint: large enough to be taken hold of."""
 FRONT_M: Final = 0.02
 """How far the stick stands before the picture, so that nothing of it drowns there."""
+SKY_LIGHT, SUN_LIGHT = 1.0, 0.9
+"""Together they show a body's colours about as they are, seen from the front."""
 UP: Final = np.array([0.0, 1.0, 0.0])
 PLACED: Final[Colour] = (62, 142, 126)
 """A joint that the user placed."""
@@ -122,8 +124,8 @@ class Easel:
         server.initial_camera.fov = FOV_RAD
         scene.configure_default_lights(enabled=False)
         scene.configure_environment_map(None)
-        scene.add_light_ambient("/light", intensity=2.2)
-        scene.add_light_directional("/sun", intensity=1.0, position=(1.0, 4.0, 5.0))
+        scene.add_light_hemisphere("/sky", ground_color=(170, 178, 188), intensity=SKY_LIGHT)
+        scene.add_light_directional("/sun", intensity=SUN_LIGHT, position=(1.0, 4.0, 5.0))
 
     def _add_shapes(self, name: str, mesh: Mesh, count: int) -> viser.BatchedMeshHandle:
         return self._scene.add_batched_meshes_simple(

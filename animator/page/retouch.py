@@ -18,6 +18,10 @@ from common.notes import ORIENTATIONS, WAYS, Depth, Note, Notes, held, noted, pl
 PANEL_PX: Final = 340
 AUTO: Final = "auto"
 WRONG: Final = "rgb(192,80,70)"
+HELP: Final = (
+    "Click on a limb of the body: it leans the other way. Drag a joint on the picture: it is "
+    "placed in this frame. What you say holds from its frame on, until you say otherwise."
+)
 QUESTIONS: Final = {
     "orientation": "does the person face {}?",
     "depth": "does the {} lean this way?",
@@ -115,18 +119,18 @@ class RetouchPage:
         gui.configure_theme(show_logo=False, show_share_button=False, brand_color=ACCENT)
         gui.main_panel.dock_right()
         gui.main_panel.set_width(PANEL_PX)
-        last = max(1, len(self._take.frame) - 1)
-        self._slider = gui.add_slider("row", min=0, max=last, step=1, initial_value=self._row)
+        first, last = int(self._take.frame[0]), int(self._take.frame[-1])
+        self._slider = gui.add_slider(
+            "frame", min=first, max=max(first + 1, last), step=1, initial_value=self._frame
+        )
         gui.add_button("Next uncertain frame").on_click(lambda _: self._look(1))
         gui.add_button("Previous uncertain frame").on_click(lambda _: self._look(-1))
         self._open = gui.add_html("")
         self._orientation = gui.add_dropdown("faces", (AUTO, *ORIENTATIONS))
-        with gui.add_folder("Depth: far end of", expand_by_default=False):
-            self._depth = {
-                limb: gui.add_dropdown(limb.replace("_", " "), (AUTO, *WAYS)) for limb in LIMBS
-            }
+        with gui.add_folder("Where each far end leans", expand_by_default=False):
+            self._depth = {limb: gui.add_dropdown(_spoken(limb), (AUTO, *WAYS)) for limb in LIMBS}
+        gui.add_html(block(f'<div style="{QUIET}">{HELP}</div>'))
         with gui.add_folder("Hidden joints"):
-            gui.add_html(block(f'<div style="{QUIET}">drag a joint on the picture</div>'))
             self._hold = gui.add_checkbox("hold until changed", initial_value=False)
             gui.add_button("Let go of placed joints").on_click(lambda _: self._let_go())
         self._kept = gui.add_html("")
@@ -144,7 +148,8 @@ class RetouchPage:
         self.go_to(next_unsure(self._take, self._row, self.notes, step))
 
     def _slid(self) -> None:
-        self.go_to(int(self._slider.value))
+        row = int(np.searchsorted(self._take.frame, self._slider.value))
+        self.go_to(min(row, len(self._take.frame) - 1))
 
     def _turned(self) -> None:
         with self._lock:
@@ -162,7 +167,7 @@ class RetouchPage:
     def _show(self) -> None:
         told = held(self.notes, self._frame)
         with self._server.atomic():
-            self._slider.value = self._row
+            self._slider.value = self._frame
             self._orientation.value = told.orientation or AUTO
             for limb, chosen in self._depth.items():
                 chosen.value = told.depth.get(limb, AUTO)
@@ -177,14 +182,25 @@ class RetouchPage:
                 self._easel.show_body(joints_m, unsure)
 
     def _questions(self) -> str:
-        """The frame, and what it leaves open."""
-        frame = f"<b>frame {self._frame}</b>"
+        """The frame, what was decided in it, and what it leaves open."""
+        head = f"<b>frame {self._frame}</b>"
         if not self._take.posed[self._row]:
-            return block(f"{frame}: nobody is seen")
+            return block(f"{head}: nobody is seen")
+        facing = _spoken(str(self._take.orientation[self._row]))
+        sure = float(self._take.orientation_confidence[self._row])
+        if facing:
+            head += f' <span style="{QUIET}">taken to face {facing}, {sure:.0%} sure</span>'
         doubts = doubts_at(self._take, self._row, self.notes)
         rows = "".join(
-            f"<div>{escape(QUESTIONS[doubt.kind].format(doubt.name.replace('_', ' ')))} "
+            f"<div>{QUESTIONS[doubt.kind].format(_spoken(doubt.name))} "
             f'<span style="{QUIET}">{doubt.confidence:.0%} sure</span></div>'
             for doubt in doubts
         )
-        return block(f"{frame}{rows or ': nothing is uncertain'}")
+        return block(head + (rows or "<div>nothing is uncertain</div>"))
+
+
+def _spoken(name: str) -> str:
+    """A name of the files as one says it: forward_left, l_upper_arm."""
+    sides = {"l": "left", "r": "right"}
+    first, *others = name.split("_")
+    return escape(" ".join([sides.get(first, first), *others]))

@@ -1,0 +1,125 @@
+"""Runs for other programs: what is written is the run, and a bad run is named with its cure."""
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from common.body import JOINT_NAMES, body_vector, rest_pose, thesis_bdp
+from common.kinematics import joints
+from common.messages import Body
+from tritrack.exporting import ExportError, export_run
+from tritrack.past_run import PastRunError, open_run
+from tritrack.runs import poses
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Path:
+    """A run of six frames: nobody at first, then somebody who stands."""
+    bodies = [Body(frame=0, captured_s=0.0, clock_s=0.0, status="empty", views="none")]
+    pose = rest_pose()
+    standing = joints(body_vector(thesis_bdp(1.7)), pose)
+    for frame in range(1, 6):
+        bodies.append(
+            Body(
+                frame=frame,
+                captured_s=frame / 15,
+                clock_s=0.0,
+                status="tracking",
+                views="1",
+                joints_m=tuple(map(tuple, standing)),
+                joints_px=(((1.0, 2.0),) * 15,) * 2,
+                pose=tuple(pose),
+                angles_raw_deg=(0.0,) * 17,
+                confidence=(0.5,) * 15,
+                score=(0.8, 0.7),
+            )
+        )
+    write(tmp_path / "run", poses(bodies))
+    return tmp_path / "run"
+
+
+def write(folder: Path, arrays: dict[str, Any], summary: str = "{}") -> None:
+    folder.mkdir(exist_ok=True)
+    np.savez(folder / "poses.npz", **arrays)
+    (folder / "summary.json").write_text(summary)
+
+
+def test_a_table_has_a_row_a_frame_and_empty_cells_where_nobody_is(run: Path) -> None:
+    facts = export_run(run, "csv", None)
+    rows = list(csv.DictReader(Path(facts["file"]).read_text().splitlines()))
+    wrist = joints(body_vector(thesis_bdp(1.7)), rest_pose())[JOINT_NAMES.index("l_wrist")]
+    assert [row["frame"] for row in rows] == ["0", "1", "2", "3", "4", "5"]
+    assert rows[0]["l_wrist_y_m"] == ""
+    assert float(rows[3]["l_wrist_y_m"]) == pytest.approx(wrist[1], abs=1e-4)
+    assert (rows[3]["status"], rows[3]["views"], rows[3]["score_1"]) == ("tracking", "1", "0.8000")
+    assert len(rows[0]) == 6 + 45 + 17 + 15
+
+
+def test_an_animation_is_written_where_it_is_asked_for(run: Path, tmp_path: Path) -> None:
+    facts = export_run(run, "bvh", tmp_path / "new" / "dance.bvh")
+    assert facts["frames"] == 5
+    assert facts["first_frame"] == 1
+    assert facts["off_mm"]["p95"] < 1.0
+    assert (tmp_path / "new" / "dance.bvh").read_text().startswith("HIERARCHY\nROOT Hips\n")
+    assert open_run(run).poses["frame"].tolist() == [0, 1, 2, 3, 4, 5]
+
+
+def test_a_folder_that_cannot_be_written_is_named(run: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ExportError, match=r"cannot write .*file/a\.csv.*--out"):
+        export_run(run, "csv", tmp_path / "file" / "a.csv")
+
+
+def test_a_run_without_poses_cannot_be_animated(run: Path) -> None:
+    arrays = dict(open_run(run).poses)
+    arrays["joints_m"] = np.full((6, 15, 3), np.nan)
+    write(run, arrays)
+    with pytest.raises(ExportError, match=r"0 frames have a pose.*another run"):
+        export_run(run, "bvh", None)
+    assert export_run(run, "csv", None)["frames"] == 6
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda a: a.pop("joints_m"), r"joints_m is missing, not \(6, 15, 3\)"),
+        (lambda a: a.update(joints_m=np.zeros((6, 20, 3))), r"\(6, 20, 3\), not \(6, 15, 3\)"),
+        (lambda a: a.update(frame=np.zeros((6, 2))), "frame is"),
+        (lambda a: a.update(joint_names=np.array(["nose"] * 15)), "joint_names"),
+        (lambda a: a.update(time_s=np.zeros(5)), "time_s"),
+        (lambda a: a.update(joints_m=np.full((6, 15, 3), "x")), "joints_m"),
+        (lambda a: a.update(depth_confidence=np.ones((6, 3))), "depth_confidence"),
+        (lambda a: a.update(status=np.array([{}] * 6, object)), "damaged"),
+    ],
+)
+def test_arrays_that_are_no_runs_are_named(run: Path, change: Any, said: str) -> None:
+    arrays = dict(open_run(run).poses)
+    change(arrays)
+    write(run, arrays)
+    with pytest.raises(PastRunError, match=said):
+        open_run(run)
+
+
+@pytest.mark.parametrize("kept", [0, 3, 200])
+def test_a_damaged_run_is_named(run: Path, kept: int) -> None:
+    whole = (run / "poses.npz").read_bytes()
+    (run / "poses.npz").write_bytes(whole[:kept])
+    with pytest.raises(PastRunError, match="damaged"):
+        open_run(run)
+
+
+def test_what_is_no_run_is_named(run: Path, tmp_path: Path) -> None:
+    with pytest.raises(PastRunError, match=r"no run folder .*absent"):
+        open_run(tmp_path / "absent")
+    with pytest.raises(PastRunError, match=r"no poses\.npz"):
+        open_run(tmp_path)
+    (run / "summary.json").write_text(json.dumps({})[:-1])
+    with pytest.raises(PastRunError, match="damaged"):
+        open_run(run)
+    (run / "summary.json").unlink()
+    with pytest.raises(PastRunError, match=r"no summary\.json"):
+        open_run(run)

@@ -1,0 +1,88 @@
+"""The overlay: what is drawn where, read back from the pixels (thesis, figures 4.1 and 4.2)."""
+
+import numpy as np
+import pytest
+
+from animator.overlay import LEAST_HEIGHT_PX, draw_stick, overlay, side_view
+from animator.scene import LEFT, RIGHT
+from common.body import JOINT_NAMES, POSE_INDEX, body_vector, rest_pose, thesis_bdp
+from common.kinematics import joints
+
+SURE = np.ones(15)
+NOBODY_PX, NOBODY_M = np.full((15, 2), np.nan), np.full((15, 3), np.nan)
+GREY = np.full((120, 160, 3), 90, np.uint8)
+
+
+def body(**angles_deg: float) -> np.ndarray:
+    pose = rest_pose()
+    for name, angle in {"y": 1.0, **angles_deg}.items():
+        pose[POSE_INDEX[name]] = angle
+    return joints(body_vector(thesis_bdp(1.75)), pose)
+
+
+def where(image: np.ndarray, colour: tuple[int, int, int]) -> np.ndarray:
+    """Columns and rows of the pixels of about a colour, (n, 2)."""
+    near = np.abs(image.astype(int) - colour[::-1]).max(axis=2) < 12
+    rows, columns = np.nonzero(near)
+    return np.stack([columns, rows], axis=1)
+
+
+def in_picture(joints_m: np.ndarray) -> np.ndarray:
+    """As a camera that looks along -z has them, 60 px a metre, in 160x120."""
+    return np.stack([80.0 + 60.0 * joints_m[:, 0], 115.0 - 60.0 * joints_m[:, 1]], axis=1)
+
+
+def test_small_pictures_are_enlarged_and_the_body_stands_beside_them() -> None:
+    image = overlay(GREY, None, NOBODY_PX, NOBODY_M, SURE)
+    assert image.shape == (LEAST_HEIGHT_PX, 640 + 336, 3)
+    assert (image[:, :640] == 90).all()
+
+
+@pytest.mark.parametrize("size", [(144, 180), (480, 720), (1080, 1920)])
+def test_every_frame_of_a_film_has_one_even_size(size: tuple[int, int]) -> None:
+    picture = np.zeros((*size, 3), np.uint8)
+    with_body = overlay(picture, None, in_picture(body()), body(), SURE, "frame 3")
+    without = overlay(picture, None, NOBODY_PX, NOBODY_M, SURE)
+    assert with_body.shape == without.shape
+    assert with_body.shape[0] >= LEAST_HEIGHT_PX
+
+
+def test_the_stick_lies_on_its_joints() -> None:
+    image = np.repeat(np.repeat(GREY, 4, axis=0), 4, axis=1)
+    joints_px = 4 * in_picture(body(l_shoulder_z=270.0))
+    draw_stick(image, joints_px, SURE)
+    elbow, wrist = joints_px[[JOINT_NAMES.index("l_elbow"), JOINT_NAMES.index("l_wrist")]]
+    middle = (elbow + wrist) / 2
+    assert np.linalg.norm(where(image, LEFT) - middle, axis=1).min() < 3.0
+    assert where(image, LEFT)[:, 0].min() > where(image, RIGHT)[:, 0].max()
+
+
+def test_what_is_not_sure_is_pale() -> None:
+    sure, unsure = (np.zeros((480, 640, 3), np.uint8) for _ in range(2))
+    draw_stick(sure, 4 * in_picture(body()), SURE)
+    draw_stick(unsure, 4 * in_picture(body()), 0.0 * SURE)
+    assert len(where(unsure, LEFT)) < 0.5 * len(where(sure, LEFT))
+
+
+def test_the_silhouette_is_tinted_whatever_its_size() -> None:
+    mask = np.zeros((60, 80), bool)
+    mask[20:40, 30:50] = True
+    image = overlay(GREY, mask, NOBODY_PX, NOBODY_M, SURE)
+    assert (image[240, 320] != 90).any()
+    assert (image[100, 100] == 90).all()
+
+
+def test_from_the_side_the_camera_is_at_the_left() -> None:
+    """An arm that is lifted to the camera points to the left; the person's left is nearer."""
+    hanging = where(side_view(body(), SURE, 480), LEFT)[:, 0].min()
+    lifted = where(side_view(body(l_shoulder_x=90.0), SURE, 480), LEFT)[:, 0].min()
+    assert lifted < hanging - 60
+    assert len(where(side_view(body(), SURE, 480), LEFT)) > 20 * len(
+        where(side_view(body(), SURE, 480), RIGHT)
+    )
+
+
+def test_a_joint_far_outside_the_picture_is_no_fault() -> None:
+    joints_px = in_picture(body())
+    joints_px[3] = (1e12, -1e12)
+    assert overlay(GREY, None, joints_px, body(), SURE).shape[0] == LEAST_HEIGHT_PX

@@ -1,0 +1,94 @@
+"""The retouching command over a real page: its run, its video and its notes, found or refused."""
+
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import urllib.request
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from rich.console import Console
+from test_exporting import write
+
+from common.body import JOINT_NAMES
+from common.notes import Note, Notes
+from common.notes_file import save_notes
+from tritrack.retouching import RetouchError, retouch
+
+QUIET = Console(quiet=True)
+
+
+def film(path: Path, count: int = 4) -> None:
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 15.0, (320, 240))
+    for i in range(count):
+        writer.write(np.full((240, 320, 3), 60 * i, np.uint8))
+    writer.release()
+
+
+def run_of(folder: Path, video: Path, n: int = 4) -> Path:
+    """A run of n frames in which nobody was found."""
+    arrays = {
+        "frame": np.arange(n),
+        "time_s": np.arange(n) / 15,
+        "joints_m": np.full((n, 15, 3), np.nan),
+        "joints_px": np.full((n, 2, 15, 2), np.nan),
+        "angles_deg": np.full((n, 17), np.nan),
+        "confidence": np.zeros((n, 15)),
+        "status": np.full(n, "empty"),
+        "views": np.full(n, "none"),
+        "score": np.zeros((n, 2)),
+        "joint_names": np.array(JOINT_NAMES),
+    }
+    write(folder, arrays, json.dumps({"settings": {"camera_1": {"source": str(video)}}}))
+    return folder
+
+
+def test_the_page_opens_and_ctrl_c_ends_it_with_the_ledger(tmp_path: Path) -> None:
+    """A whole process: the page answers, SIGINT is the way out and no failure (exit 0)."""
+    pytest.importorskip("viser", reason="the page is an extra: install tritrack[page]")
+    film(tmp_path / "dance.avi")
+    save_notes(tmp_path / "notes.toml", Notes("dance.avi", (Note(1, "left"),)))
+    run = run_of(tmp_path / "run", tmp_path / "dance.avi")
+    with socket.socket() as trial:
+        trial.bind(("127.0.0.1", 0))
+        port = trial.getsockname()[1]
+    command = [sys.executable, "-m", "tritrack", "retouch", str(run), "--port", str(port), "--json"]
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1", "COLUMNS": "200"}
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment
+    ) as process:
+        told = next(line for line in process.stderr if "the page is at" in line)
+        with urllib.request.urlopen(re.search(r"http://\S+\d", told)[0]) as answer:
+            assert answer.status == 200
+        process.send_signal(signal.SIGINT)
+        facts = json.loads(process.stdout.read())
+        assert process.wait(20) == 0
+    assert facts["notes"] == str(tmp_path / "notes.toml")
+    assert facts["inputs"] == {"orientation": 1, "depth": 0, "joints": 0, "all": 1}
+    assert facts["thesis"]["dancing"] == {"frames": 200, "by_hand": 506, "all": 59}
+
+
+def test_a_video_that_has_moved_is_named_with_the_cure(tmp_path: Path) -> None:
+    run = run_of(tmp_path / "run", tmp_path / "gone.avi")
+    with pytest.raises(RetouchError, match=r"gone\.avi.*--video"):
+        retouch(run, None, None, 8080, QUIET)
+
+
+def test_settings_that_no_run_has_are_named(tmp_path: Path) -> None:
+    run = run_of(tmp_path / "run", tmp_path / "gone.avi")
+    (run / "summary.json").write_text('{"settings": {"mode": "sideways"}}')
+    with pytest.raises(RetouchError, match=r"summary\.json.*sideways.*track the clip again"):
+        retouch(run, None, None, 8080, QUIET)
+
+
+def test_a_run_without_frames_is_refused(tmp_path: Path) -> None:
+    film(tmp_path / "dance.avi")
+    run = run_of(tmp_path / "run", tmp_path / "dance.avi", 0)
+    with pytest.raises(RetouchError, match="no frame"):
+        retouch(run, None, None, 8080, QUIET)
