@@ -18,7 +18,7 @@ from common.body import (
     thesis_bdp,
 )
 from common.camera import Camera, centre
-from common.messages import Body, Facing, Pixel, Point, Status
+from common.messages import Body, Facing, Pixel, Point, Status, ViewerNumber
 from common.stickman import Stickman
 from integrator import signs, smoothing
 from integrator.lifting import ENDS, Lifted, Orientation, lift
@@ -64,6 +64,7 @@ class Inputs(NamedTuple):
 class State(NamedTuple):
     """What one frame hands to the next."""
 
+    number: ViewerNumber
     camera: Camera
     man: Stickman
     stature_m: float
@@ -85,11 +86,16 @@ class Settled(NamedTuple):
 
 
 def init(
-    camera: Camera, man: Stickman, stature_m: float, perspective: bool, period_s: float
+    number: ViewerNumber,
+    camera: Camera,
+    man: Stickman,
+    stature_m: float,
+    perspective: bool,
+    period_s: float,
 ) -> State:
     """A view that has seen nobody."""
     smooth = smoothing.init(len(ANGLE_NAMES), period_s)
-    return State(camera, man, stature_m, perspective, smooth, signs.init())
+    return State(number, camera, man, stature_m, perspective, smooth, signs.init())
 
 
 def step(state: State, sight: Sight, told: Inputs) -> tuple[State, Body, Settled]:
@@ -134,14 +140,14 @@ def step(state: State, sight: Sight, told: Inputs) -> tuple[State, Body, Settled
         captured_s=sight.captured_s,
         clock_s=sight.captured_s,
         status=_status(state),
-        views="1",
+        views="1" if state.number == 1 else "2",
         joints_m=tuple(_point(place) for place in joints_m),
         joints_px=(_pixels(pixels), _pixels(pixels)),
         pose=tuple(told_pose.tolist()),
         angles_raw_deg=tuple(raw.tolist()),
         confidence=_confidence(sight, lifted, choice),
-        score=(sight.score, 0.0),
-        facing=(facing, "facade" if facing == "flank" else "flank"),
+        score=(sight.score, 0.0) if state.number == 1 else (0.0, sight.score),
+        facing=(facing, facing),
         bdp=thesis_bdp(state.stature_m),
         matches=sight.matches,
     )

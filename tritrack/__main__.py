@@ -162,7 +162,10 @@ def animate(settings_file: ConfigPath) -> None:
 def track(
     clips: Annotated[list[Path], typer.Argument(help="Clip folders, or settings files.")],
     out: Out = Path("runs"),
-    mode: ModeName = None,
+    mode: Annotated[
+        Literal["default", "paper", "thesis"] | None,
+        typer.Option(help="Instead of the settings' mode; the thesis's is for one view."),
+    ] = None,
     views: Annotated[
         Literal["12", "1", "2"], typer.Option(help="Both cameras, or only one of them.")
     ] = "12",

@@ -13,7 +13,7 @@ from common.clips import Clip, shortfall
 from common.config import Settings
 from common.decoding import Decoder
 from common.footage import ClipError
-from common.messages import Body
+from common.messages import Body, ViewerNumber
 from common.notes import Notes, held
 from common.similarity import Mask
 from common.stickman import ADULT, THESIS
@@ -92,7 +92,7 @@ def follow_clip(clip: Clip, settings: Settings, decoder: Decoder, notes: Notes) 
     scale = view.size[0] / view.source_size[0]
     seen = time.perf_counter()
     bodies, settled, stature_m = poses_of(
-        outlines, view.size, camera, settings, period_s, notes, scale
+        outlines, view.size, camera, settings, period_s, notes, scale, view.number
     )
     done = time.perf_counter()
     facts = {
@@ -143,6 +143,7 @@ def poses_of(
     period_s: float,
     notes: Notes,
     scale: float = 1.0,
+    number: ViewerNumber = 1,
 ) -> tuple[list[Body], list[Settled], float]:
     """Outlines to bodies: the standing height, the stick body of each frame, its place in space.
 
@@ -154,6 +155,7 @@ def poses_of(
         period_s: Between two frames.
         notes: The user's inputs.
         scale: Pixels of the working picture in one of the video.
+        number: Which camera of a rig it is.
 
     Returns:
         A body and what was settled by itself for each outline; the stature, metres.
@@ -169,7 +171,7 @@ def poses_of(
         camera = assumed_camera(size, np.nanmedian(rows[:, 1]), np.nanmedian(tall_px), stature_m)
     printed = settings.mode == "thesis"
     man = THESIS if printed else ADULT
-    state = one_view.init(camera, man, stature_m, not printed, period_s)
+    state = one_view.init(number, camera, man, stature_m, not printed, period_s)
     mode: Literal["default", "thesis"] = "thesis" if printed else "default"
     before: stick.Stick | None = None
     bodies, settled = [], []

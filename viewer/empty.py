@@ -7,7 +7,7 @@ from common.clips import View
 from common.config import SilhouetteSettings
 from common.decoding import Decoder
 from viewer.background import Background, Frame, is_empty_opening, learn
-from viewer.uncovered import learn_uncovered
+from viewer.uncovered import is_still, learn_uncovered
 
 SAMPLE = 40
 """How many frames at most, spread over a clip, tell whether its opening is empty."""
@@ -36,7 +36,7 @@ def empty_room(
         plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
         return learn(plate), ""
     opening, sample = _looked_at(view, settings.empty_frames, decoder)
-    if is_empty_opening(opening, sample):
+    if is_still(opening) and is_empty_opening(opening, sample):
         return learn(opening), ""
     return learn_uncovered(sample), (
         f"{view.source} does not open with an empty room: the background is estimated from the "

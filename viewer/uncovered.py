@@ -30,9 +30,9 @@ NOISES: Final = 4.0
 """Spreads of a pixel's own flicker that a change must pass on top of CHANGES."""
 QUIET: Final = 0.25
 """A pixel flickers by what it stays within for this share of the frames."""
-ROAMS: Final = 0.7
+ROAMS: Final = 0.55
 """Somebody whose middle moves sideways by this share of the height of where they are leaves every
-pixel for most of the clip: 1.1 to 2.0 for who crosses a picture, up to 0.5 on the spot."""
+pixel for most of the clip: 0.5 to 2.0 for who crosses a picture, up to 0.5 on the spot."""
 LEAST_BLOB: Final = 0.2
 """Less than this share of the largest change at a place does not tell where the middle is."""
 AROUND: Final = 0.25
@@ -96,6 +96,13 @@ def _filled(even: Floats, centre: Floats, held: Mask) -> tuple[Floats, Mask]:
     uncertain = held & (shown == 0)
     room = np.where(held[..., None], np.where(uncertain[..., None], guess, mean), centre)
     return room.astype(np.float32), uncertain
+
+
+def is_still(opening: Sequence[Frame]) -> bool:
+    """Whether nobody moves in the opening frames: who runs through them leaves no outline."""
+    even = _even(opening)
+    away = np.abs((even - np.median(even, axis=0)) @ LUMA)
+    return not any(_large(off > CHANGES).any() for off in away)
 
 
 def segments(picture: Floats) -> NDArray[np.int64]:
