@@ -7,6 +7,7 @@ from common.camera import Rig
 from common.config import Settings
 from common.messages import Facing
 from integrator import smoothing
+from integrator.insight import Insight
 from integrator.opening import Opening
 
 
@@ -28,5 +29,7 @@ class State(NamedTuple):
     beside_m: Vector | None = None
     """How far the joints lie beside the cylinders' landmarks, (15, 3) in the trunk's axes; None:
     where they are."""
+    insight: Insight | None = None
+    """What the silhouettes last proposed, and the memory behind it."""
     badly: int = 0
     """For how many frames the model has fitted badly."""

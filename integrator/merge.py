@@ -60,15 +60,10 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
     if seen == (None, None) or rig is None:
         state = _without_pose(state)
         return (state, *telling.nobody(state, pair))
-    known, settled_at = opening.step(state.opening, rig, seen, state.settings.body.opening_frames)
-    state = _faced(state._replace(opening=known), seen)
+    opened, settled_at = opening.step(state.opening, rig, seen, state.settings.body.opening_frames)
+    state = _faced(state._replace(opening=opened), seen)
     pose = _posed(state, rig, seen, settled_at)
-    found = _insight(state, rig, seen)
-    if found is None:
-        pose, state = _settled(state, rig, seen, pose), state._replace(beside_m=None)
-    else:
-        pose, beside_m = found
-        state = state._replace(beside_m=beside_m)
+    state, pose = _believed(state, rig, seen, pose, dt_s)
     if state.settings.mode == "default":
         state = state._replace(opening=adapting.step(state.opening, rig, seen, pose))
     state, angles, scores = _smoothed(state._replace(pose=pose), rig, pair, dt_s)
@@ -125,29 +120,32 @@ def _posed(state: State, rig: Rig, seen: Seen, settled_at: Vector | None) -> Vec
     return pose
 
 
-def _insight(state: State, rig: Rig, seen: Seen) -> tuple[Vector, Vector] | None:
-    """What both silhouettes propose together: a departure from the paper, as `_settled` is.
+def _believed(
+    state: State, rig: Rig, seen: Seen, pose: Vector, dt_s: float
+) -> tuple[State, Vector]:
+    """The pose that the silhouettes propose, else the fused one with its doubts settled.
 
-    An assumed rig is left to `_settled`: the network was taught places in calibrated rooms.
+    Both are departures from the paper.
     """
-    first, second = seen
-    if state.settings.mode != "default" or first is None or second is None:
-        return None
-    if first.cut or second.cut or state.scale_source == "assumed":
-        return None
-    assert state.opening.bdp is not None
-    front = 0 if state.facing[0] == "facade" else 1
-    found = insight.seen_joints(state.opening.bdp, rig, (first, second), front)
-    if found is None:
-        return None
+    if state.settings.mode != "default":
+        return state, pose
+    bdp = state.opening.bdp
+    assert bdp is not None
+    memory = None if state.insight is None else state.insight.memory
+    known = insight.step(memory, bdp, rig, seen, dt_s)
+    if known is None:
+        state = state._replace(insight=None, beside_m=None)
+        return state, _settled(state, rig, seen, pose)
     before = rest_pose() if state.pose is None else state.pose
-    return insight.pose_and_rest(body_vector(state.opening.bdp), before, found)
+    body = body_vector(bdp)
+    pose, beside_m = insight.pose_and_rest(body, before, known.joints_m)
+    return state._replace(insight=known, beside_m=beside_m), pose
 
 
 def _settled(state: State, rig: Rig, seen: Seen, pose: Vector) -> Vector:
     """What one view alone cannot tell, by both silhouettes: a departure from the paper (L2, L3)."""
     first, second = seen
-    if state.settings.mode != "default" or first is None or second is None:
+    if first is None or second is None:
         return pose
     if (first.width, first.height) != (second.width, second.height):
         return pose
@@ -187,4 +185,4 @@ def _score(body: Vector, pose: Vector, rig: Rig, n: int, report: Report | None) 
 def _without_pose(state: State) -> State:
     """Nobody is in any view: what was learnt of the body is kept, its pose is not."""
     fresh = smoothing.init(len(ANGLE_NAMES), state.smooth.period_s)
-    return state._replace(pose=None, badly=0, smooth=fresh)
+    return state._replace(pose=None, badly=0, smooth=fresh, insight=None)

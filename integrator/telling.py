@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from common.body import ANGLES_IN_POSE, Vector, body_vector, rest_pose
+from common.body import ANGLES_IN_POSE, JOINT_NAMES, Vector, body_vector, rest_pose
 from common.camera import Rig, project
 from common.kinematics import joints
 from common.messages import Body, Guide, Pixel, Point, Status, Views
@@ -36,8 +36,9 @@ def body_of(
     pose[in_pose] = angles_deg
     body = body_vector(state.opening.bdp)
     places = joints(body, pose)
-    if state.beside_m is not None:
-        places += state.beside_m @ insight.trunk_axes(body, pose).T
+    if state.beside_m is not None:  # a memory has smoothed them: angles would only be late
+        places = joints(body, state.pose)
+        places += state.beside_m @ insight.trunk_axes(body, state.pose).T
     return Body(
         **_moment(state, pair),
         status=_status(state),
@@ -46,12 +47,21 @@ def body_of(
         joints_px=tuple(_pixels(project(camera, places)) for camera in rig.cameras),
         pose=tuple(pose.tolist()),
         angles_raw_deg=tuple(state.pose[in_pose].tolist()),
-        confidence=(0.0 if state.badly else max(scores),) * len(places),
+        confidence=_confidence(state, scores),
         score=scores,
         facing=state.facing,
         bdp=state.opening.bdp,
         matches=sum(report.matches for report in pair if report is not None),
     )
+
+
+def _confidence(state: State, scores: tuple[float, float]) -> tuple[float, ...]:
+    """Of each landmark: what the proposal says of itself, or how well the whole body fits."""
+    if state.badly:
+        return (0.0,) * len(JOINT_NAMES)
+    if state.insight is not None:
+        return tuple(state.insight.sure.tolist())
+    return (max(scores),) * len(JOINT_NAMES)
 
 
 def guide_of(state: State, rig: Rig, pair: Pair, settled_now: bool) -> Guide:

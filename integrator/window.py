@@ -1,0 +1,143 @@
+"""What each view shows of somebody, in a window as large as the person."""
+
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body import Vector
+from common.camera import Camera, Rig, centre, project, ray
+from integrator.perspective import triangulate
+
+Mask = NDArray[np.bool_]
+Floats = NDArray[np.float32]
+
+ROWS, COLUMNS = 48, 40
+"""Cells of the window that is looked at in each view."""
+UP, DOWN, ASIDE = 0.75, 0.63, 0.56
+"""How far the window reaches from the middle of the silhouette, in statures: raised arms above,
+feet below, stretched arms aside."""
+FINER: Final = 2
+"""Samples of the silhouette across a cell."""
+
+CELLS: Final = ROWS * COLUMNS
+BESIDE: Final = 11
+"""What is said beside the windows: of each view whether it sees, where its camera is and its
+scale; how long it has been since the look before."""
+LONGEST_S, USUAL_S = 0.4, 1 / 15
+"""A longer gap says no more; how time is measured."""
+UPWARDS_M: Final = np.array([0.0, 0.1, 0.0])
+"""Which way is up in a picture is seen over this length."""
+NEARNESS: Final = 4.0
+"""Brings stature over distance to about one."""
+NEAR_M, FAR_M = 1.0, 12.0
+"""Where one camera alone looks for somebody."""
+
+
+class Look(NamedTuple):
+    """What the views show, and where that is."""
+
+    windows: Floats
+    """(2, CELLS) how much of each cell is covered; 0 where a view does not see."""
+    beside: Floats
+    """(BESIDE,)"""
+    middle_m: Vector
+    """(3,) of the body, world."""
+    turn: Vector
+    """(3, 3) rows: the axes of the frame of the proposal in the world."""
+
+
+def axes_of(rig: Rig) -> Vector:
+    """Axes of the proposals' frame, rows (3, 3): x right in camera 1, y up, z towards it."""
+    right = np.array(rig.cameras[0].R)[0] * [1.0, 0.0, 1.0]
+    right /= np.linalg.norm(right)
+    return np.stack([right, [0.0, 1.0, 0.0], np.cross(right, [0.0, 1.0, 0.0])])
+
+
+def look(
+    masks: tuple[Mask | None, Mask | None], rig: Rig, stature_m: float, since_s: float
+) -> Look | None:
+    """The silhouettes as the network wants them; None where their rays do not meet in the room.
+
+    Args:
+        masks: Of the views that see somebody, (H, W), not empty; None for the others.
+        rig: The cameras; their world has y up and its floor at 0.
+        stature_m: Of the person.
+        since_s: Time since the look before.
+    """
+    turn = axes_of(rig)
+    middle_m = _middle_m(masks, rig)
+    if middle_m is None:
+        return None
+    windows, beside = np.zeros((2, CELLS), np.float32), np.zeros(BESIDE, np.float32)
+    beside[-1] = min(since_s, LONGEST_S) / USUAL_S - 1.0
+    for n, mask in enumerate(masks):
+        if mask is None:
+            continue
+        camera = rig.cameras[n]
+        away = turn @ (centre(camera) - middle_m)
+        far = float(np.linalg.norm(away))
+        beside[5 * n : 5 * n + 5] = [1.0, *(away / far), NEARNESS * stature_m / far]
+        windows[n] = _cells(mask, camera, middle_m, stature_m).ravel()
+    return Look(windows, beside, middle_m, turn)
+
+
+def _middle_m(masks: tuple[Mask | None, Mask | None], rig: Rig) -> Vector | None:
+    """Where the middles of the silhouettes meet; of one alone, where its feet stand."""
+    first, second = masks
+    if first is not None and second is not None:
+        found = triangulate(
+            (rig.cameras[0], rig.cameras[1]), (_middle_px(first), _middle_px(second))
+        )
+    else:
+        n = 0 if first is not None else 1
+        mask = first if first is not None else second
+        assert mask is not None
+        found = _standing_m(mask, rig.cameras[n])
+    return found if np.isfinite(found).all() else None
+
+
+def _standing_m(mask: Mask, camera: Camera) -> Vector:
+    """The middle of a silhouette whose lowest row is on the floor."""
+    column, row = _middle_px(mask)
+    lowest = float(np.flatnonzero(mask.any(axis=1))[-1] + 1)
+    eye = centre(camera)
+    down, middle = ray(camera, (column, lowest)), ray(camera, (column, row))
+    flat = float(np.hypot(down[0], down[2]))
+    steep = -down[1] / max(flat, 1e-9)
+    far_m = eye[1] / steep if steep > eye[1] / FAR_M else FAR_M
+    found: Vector = eye + middle * (
+        max(far_m, NEAR_M) / max(float(np.hypot(middle[0], middle[2])), 1e-9)
+    )
+    return found
+
+
+def _middle_px(mask: Mask) -> tuple[float, float]:
+    columns, rows = mask.sum(axis=0), mask.sum(axis=1)
+    area = columns.sum()
+    return (
+        float(columns @ np.arange(0.5, len(columns)) / area),
+        float(rows @ np.arange(0.5, len(rows)) / area),
+    )
+
+
+def _cells(mask: Mask, camera: Camera, middle_m: Vector, stature_m: float) -> Floats:
+    """How much of each cell is covered, (ROWS, COLUMNS): upright, as large as the person."""
+    at, above = project(camera, np.stack([middle_m, middle_m + UPWARDS_M]))
+    up = above - at
+    up /= max(float(np.linalg.norm(up)), 1e-9)
+    depth_m = float(np.array(camera.R)[2] @ middle_m + camera.t[2])
+    size_px = camera.K[0][0] * stature_m / depth_m
+    right = np.array([-up[1], up[0]]) * size_px * 2 * ASIDE / (FINER * COLUMNS)
+    down = -up * size_px * (UP + DOWN) / (FINER * ROWS)
+    corner = at + up * size_px * UP - right * FINER * COLUMNS / 2
+    start = corner + (right + down) / 2 - 0.5
+    warp = np.stack([right, down, start], axis=1)
+    fine = cv2.warpAffine(
+        mask.astype(np.uint8) * 255,
+        warp,
+        (FINER * COLUMNS, FINER * ROWS),
+        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+    )
+    return cv2.resize(fine, (COLUMNS, ROWS), interpolation=cv2.INTER_AREA).astype(np.float32) / 255
