@@ -1,54 +1,63 @@
-"""One view alone: a fitted stick body becomes a body in the room (thesis 3.1.5; T19 to T22)."""
+"""One view alone: its stick body lifted into the room, and what its outline proposes (3.1.5)."""
 
 from collections.abc import Mapping
-from typing import Final, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from common.bits import count
 from common.body import (
     ANGLE_NAMES,
     ANGLES_IN_POSE,
     JOINT_NAMES,
+    LIMB_ENDS,
     LIMBS,
+    Bdp,
     Vector,
     body_vector,
     rest_pose,
     thesis_bdp,
 )
-from common.camera import Camera, centre
-from common.messages import Body, Facing, Pixel, Point, Status, ViewerNumber
+from common.camera import Camera, Rig, centre, project, ray
+from common.kernel import match, view_of
+from common.kinematics import ALL_LIMBS
+from common.messages import (
+    Body,
+    Facing,
+    Fit,
+    Pixel,
+    Point,
+    Report,
+    Status,
+    ViewerNumber,
+)
 from common.stickman import Stickman
-from integrator import signs, smoothing
-from integrator.lifting import ENDS, Lifted, Orientation, lift
+from integrator import insight, signs, smoothing
+from integrator.lifting import ORIENTATIONS, Lifted, Orientation, lift
 from integrator.limbs import PLACES, pose_of
+from integrator.two_outlines import packed
 
 LOST_SCORE: Final = 0.35
-"""A stick that fits worse than this is not believed."""
+"""A body that fits worse than this is not believed."""
 LOST_FRAMES: Final = 5
 """After so many frames of it the body is lost."""
 UNSEEN: Final = 0.25
 """Share of its confidence that the end of a hidden segment keeps."""
 TILTED_DEG: Final = 15.0
 """A segment that leans less hardly moves with its sign."""
+SURELY: Final = 1.15
+"""The lifted body goes before the proposed one where its S is higher by this factor."""
+SIDEWAYS_DEG: Final = 20.0
+"""Somebody who is turned so near to a right angle is seen from the side."""
 TWELVE: Final = [JOINT_NAMES.index(name) for name in PLACES]
-
-
-class Sight(NamedTuple):
-    """The fitted stick body of a frame."""
-
-    frame: int
-    captured_s: float
-    joints_px: NDArray[np.float64]
-    """(15, 2), JOINT_NAMES, r on the left of the picture."""
-    breadth: float
-    hidden: NDArray[np.bool_]
-    """(10,) of LIMBS."""
-    score: float
-    matches: int
-    stature_px: float
-    """Height of the person standing upright there."""
+SWAPPED: Final = [
+    JOINT_NAMES.index({"l_": "r_", "r_": "l_"}.get(name[:2], name[:2]) + name[2:])
+    for name in JOINT_NAMES
+]
+"""Where a list by JOINT_NAMES has the other side's."""
+PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
 
 
 class Inputs(NamedTuple):
@@ -67,11 +76,14 @@ class State(NamedTuple):
     number: ViewerNumber
     camera: Camera
     man: Stickman
+    bdp: Bdp
     stature_m: float
-    perspective: bool
-    """Joints nearer to the camera look larger; False: scaled orthography, as printed (T19)."""
+    printed: bool
+    """As the thesis prints it: scaled orthography (T19), and nothing is proposed."""
     smooth: smoothing.State
     memory: signs.Memory
+    recall: insight.Floats | None = None
+    """What the proposals remember."""
     pose: Vector | None = None
     last_s: float | None = None
     badly: int = 0
@@ -85,84 +97,148 @@ class Settled(NamedTuple):
     depth_confidence: tuple[float, ...] = (1.0,) * len(LIMBS)
 
 
+class Hypothesis(NamedTuple):
+    """A body that one silhouette may show."""
+
+    joints_m: NDArray[np.float64]
+    """(15, 3) world."""
+    pose: Vector
+    score: float
+    """S of its cylinders in the picture."""
+    confidence: Vector
+    """(15,)"""
+    settled: Settled
+
+
 def init(
     number: ViewerNumber,
     camera: Camera,
     man: Stickman,
     stature_m: float,
-    perspective: bool,
+    printed: bool,
     period_s: float,
 ) -> State:
     """A view that has seen nobody."""
     smooth = smoothing.init(len(ANGLE_NAMES), period_s)
-    return State(number, camera, man, stature_m, perspective, smooth, signs.init())
+    bdp = thesis_bdp(stature_m)
+    return State(number, camera, man, bdp, stature_m, printed, smooth, signs.init())
 
 
-def step(state: State, sight: Sight, told: Inputs) -> tuple[State, Body, Settled]:
-    """One frame with somebody: signs and orientation, joints in the room, angles.
+def step(state: State, report: Report, told: Inputs) -> tuple[State, Body, Settled]:
+    """One frame with somebody: the lifted body competes with the proposed one, by S.
 
     Args:
         state: What is remembered.
-        sight: The stick body of this frame.
+        report: With a fit.
         told: The user's inputs, which go before all else.
     """
-    lengths_m = state.man.lengths * state.stature_m
-    px_per_m = sight.stature_px / state.stature_m
-    picture = (sight.joints_px, sight.breadth, lengths_m, px_per_m)
-    choice = signs.choose(state.memory, *picture, told.depth, told.orientation)
-    lifted = lift(*picture, choice.signs, choice.orientation)
-    memory = signs.remembered(state.memory, lifted.joints_m, choice)
-    pixels = _pixels_of(sight, choice)
-    for name, place in told.joints_px.items():
-        pixels[JOINT_NAMES.index(name)] = place
-    joints_m = in_room(state, pixels, lifted, px_per_m)
-    body = body_vector(thesis_bdp(state.stature_m))
-    before = rest_pose() if state.pose is None else state.pose
-    pose = pose_of(joints_m[TWELVE], body, before)
-    dt_s = 0.0 if state.last_s is None else max(0.0, sight.captured_s - state.last_s)
-    fits = sight.score >= LOST_SCORE
-    raw = pose[list(ANGLES_IN_POSE)]
-    smooth, angles, _ = smoothing.step(
-        state.smooth, raw if fits or state.smooth.P is None else None, dt_s
-    )
-    state = state._replace(
-        smooth=smooth,
-        memory=memory,
-        pose=pose,
-        last_s=sight.captured_s,
-        badly=0 if fits else state.badly + 1,
-    )
-    told_pose = pose.copy()
-    told_pose[list(ANGLES_IN_POSE)] = angles
-    facing: Facing = "flank" if choice.orientation in ("left", "right") else "facade"
-    found = Body(
-        frame=sight.frame,
-        captured_s=sight.captured_s,
-        clock_s=sight.captured_s,
-        status=_status(state),
-        views="1" if state.number == 1 else "2",
-        joints_m=tuple(_point(place) for place in joints_m),
-        joints_px=(_pixels(pixels), _pixels(pixels)),
-        pose=tuple(told_pose.tolist()),
-        angles_raw_deg=tuple(raw.tolist()),
-        confidence=_confidence(sight, lifted, choice),
-        score=(sight.score, 0.0) if state.number == 1 else (0.0, sight.score),
-        facing=(facing, facing),
-        bdp=thesis_bdp(state.stature_m),
-        matches=sight.matches,
-    )
-    depth = tuple(float(sure) for sure in choice.confidence)
-    return state, found, Settled(choice.orientation, choice.orientation_confidence, depth)
+    state, found = _lifted(state, report, told)
+    dt_s = 0.0 if state.last_s is None else max(0.0, report.captured_s - state.last_s)
+    if not state.printed:
+        state, other = _proposed(state, report, told, dt_s)
+        if other is not None and found.score < SURELY * other.score:
+            found = other
+    fits = found.score >= LOST_SCORE
+    raw = found.pose[list(ANGLES_IN_POSE)]
+    believed = raw if fits or state.smooth.P is None else None
+    smooth, angles, _ = smoothing.step(state.smooth, believed, dt_s)
+    badly = 0 if fits else state.badly + 1
+    state = state._replace(smooth=smooth, pose=found.pose, last_s=report.captured_s, badly=badly)
+    return state, _body(state, report, found, angles), found.settled
 
 
 def nobody(state: State, frame: int, captured_s: float) -> tuple[State, Body, Settled]:
     """A frame without anybody: what was learnt of the body is kept, its pose is not."""
     fresh = smoothing.init(len(ANGLE_NAMES), state.smooth.period_s)
-    state = state._replace(smooth=fresh, memory=signs.init(), pose=None, badly=0)
+    state = state._replace(smooth=fresh, memory=signs.init(), recall=None, pose=None, badly=0)
     body = Body(
         frame=frame, captured_s=captured_s, clock_s=captured_s, status="empty", views="none"
     )
     return state, body, Settled()
+
+
+def _lifted(state: State, report: Report, told: Inputs) -> tuple[State, Hypothesis]:
+    """The stick body in the room, its signs and orientation chosen or told."""
+    fit = report.fit
+    assert fit is not None
+    lengths_m = state.man.lengths * state.stature_m
+    px_per_m = fit.stature_px / state.stature_m
+    picture = (np.array(fit.joints_px), fit.breadth, lengths_m, px_per_m)
+    choice = signs.choose(state.memory, *picture, told.depth, told.orientation)
+    lifted = lift(*picture, choice.signs, choice.orientation)
+    state = state._replace(memory=signs.remembered(state.memory, lifted.joints_m, choice))
+    pixels = _own_sides(picture[0], choice)
+    for name, place in told.joints_px.items():
+        pixels[JOINT_NAMES.index(name)] = place
+    joints_m = in_room(state, pixels, lifted, px_per_m)
+    pose = _pose(state, joints_m)
+    score = fit.score if state.printed else _score(state, pose, report)
+    depth = tuple(float(sure) for sure in choice.confidence)
+    settled = Settled(choice.orientation, choice.orientation_confidence, depth)
+    return state, Hypothesis(joints_m, pose, score, _sure(fit, lifted, choice), settled)
+
+
+def _proposed(
+    state: State, report: Report, told: Inputs, dt_s: float
+) -> tuple[State, Hypothesis | None]:
+    """What the outline proposes, the crown where the stick body has it."""
+    seen = (report, None) if state.number == 1 else (None, report)
+    rig = Rig(report.width, report.height, (state.camera, state.camera))
+    known = insight.step(state.recall, state.bdp, rig, seen, dt_s)
+    if known is None or told.orientation or told.depth:
+        return state._replace(recall=None if known is None else known.memory), None
+    joints_m = np.empty((len(JOINT_NAMES), 3))
+    joints_m[insight.AT] = known.joints_m
+    joints_m[PELVIS] = known.joints_m[insight.propose.HIPS].mean(axis=0)
+    joints_m[NECK] = known.joints_m[insight.propose.SHOULDERS].mean(axis=0)
+    up = joints_m[NECK] - joints_m[PELVIS]
+    joints_m[HEAD] = joints_m[NECK] + up * state.man.lengths[1] / state.man.lengths[0]
+    for name, place in told.joints_px.items():
+        at = JOINT_NAMES.index(name)
+        joints_m[at] = _at_depth(state.camera, place, joints_m[at])
+    pose = _pose(state, joints_m)
+    depth = tuple(float(sure) for sure in known.sure[LIMB_ENDS[:, 1]])
+    settled = Settled(_faces(state, joints_m), float(known.sure[PELVIS]), depth)
+    score = _score(state, pose, report)
+    return state._replace(recall=known.memory), Hypothesis(
+        joints_m, pose, score, known.sure, settled
+    )
+
+
+def _body(state: State, report: Report, found: Hypothesis, angles_deg: Vector) -> Body:
+    pose = found.pose.copy()
+    pose[list(ANGLES_IN_POSE)] = angles_deg
+    facing: Facing = "flank" if found.settled.orientation in ("left", "right") else "facade"
+    pixels = _pixels(project(state.camera, found.joints_m))
+    fit = report.fit
+    return Body(
+        frame=report.frame,
+        captured_s=report.captured_s,
+        clock_s=report.clock_s,
+        status=_status(state),
+        views="1" if state.number == 1 else "2",
+        joints_m=tuple(_point(place) for place in found.joints_m),
+        joints_px=(pixels, pixels),
+        pose=tuple(pose.tolist()),
+        angles_raw_deg=tuple(found.pose[list(ANGLES_IN_POSE)].tolist()),
+        confidence=tuple(float(sure) for sure in found.confidence),
+        score=(found.score, 0.0) if state.number == 1 else (0.0, found.score),
+        facing=(facing, facing),
+        bdp=state.bdp,
+        matches=2 + (0 if fit is None else fit.matches),
+    )
+
+
+def _pose(state: State, joints_m: NDArray[np.float64]) -> Vector:
+    before = rest_pose() if state.pose is None else state.pose
+    return pose_of(joints_m[TWELVE], body_vector(state.bdp), before)
+
+
+def _score(state: State, pose: Vector, report: Report) -> float:
+    """S of the body in the picture, true perspective."""
+    seen, view = packed(report), view_of(state.camera)
+    body = body_vector(state.bdp)
+    return float(match(body, pose, view, ALL_LIMBS, report.width, seen, count(seen)))
 
 
 def in_room(
@@ -176,32 +252,47 @@ def in_room(
     if any(camera.distortion):
         plane = cv2.undistortPoints(pixels[:, None], K, np.array(camera.distortion))[:, 0]
     towards_m = lifted.joints_m[:, 2]
-    depths_m = depth_m - towards_m if state.perspective else np.full(len(pixels), depth_m)
+    depths_m = depth_m - towards_m if not state.printed else np.full(len(pixels), depth_m)
     seen = np.concatenate([plane * depths_m[:, None], (depth_m - towards_m)[:, None]], axis=1)
     room: NDArray[np.float64] = centre(camera) + seen @ np.array(camera.R)
     return room
 
 
-def _pixels_of(sight: Sight, choice: signs.Choice) -> NDArray[np.float64]:
+def _at_depth(camera: Camera, pixel: tuple[float, float], place_m: Vector) -> NDArray[np.float64]:
+    """What a pixel shows at the depth of a place."""
+    forward = np.array(camera.R)[2]
+    depth_m = float(forward @ (place_m - centre(camera)))
+    along = ray(camera, pixel)
+    found: NDArray[np.float64] = centre(camera) + along * depth_m / float(forward @ along)
+    return found
+
+
+def _own_sides(joints_px: NDArray[np.float64], choice: signs.Choice) -> NDArray[np.float64]:
     """The stick's joints under the person's own sides."""
-    if not choice.orientation.startswith("backward"):
-        return sight.joints_px.copy()
-    swapped = [
-        JOINT_NAMES.index({"l_": "r_", "r_": "l_"}.get(name[:2], name[:2]) + name[2:])
-        for name in JOINT_NAMES
-    ]
-    return sight.joints_px[swapped]
+    return joints_px[SWAPPED] if choice.orientation.startswith("backward") else joints_px.copy()
 
 
-def _confidence(sight: Sight, lifted: Lifted, choice: signs.Choice) -> tuple[float, ...]:
+def _sure(fit: Fit, lifted: Lifted, choice: signs.Choice) -> Vector:
     """How sure each joint is: of the fit, of what is hidden, and of the sign where it matters."""
-    sure = np.full(len(JOINT_NAMES), min(1.0, max(0.0, sight.score)))
-    for limb, (near, far) in enumerate(ENDS):
-        own = UNSEEN if sight.hidden[limb] else 1.0
+    sure = np.full(len(JOINT_NAMES), fit.score)
+    for limb, (near, far) in enumerate(LIMB_ENDS):
+        own = UNSEEN if fit.hidden[limb] else 1.0
         if abs(lifted.tilt_deg[limb]) > TILTED_DEG:
             own *= float(choice.confidence[limb])
         sure[far] = (sure[near] if limb > 1 else sure[far]) * own
-    return tuple(float(value) for value in sure)
+    return sure
+
+
+def _faces(state: State, joints_m: NDArray[np.float64]) -> Orientation:
+    """Which of the six ways the body faces, from the line across its shoulders and hips."""
+    at = {name: joints_m[i] for i, name in enumerate(JOINT_NAMES)}
+    across = at["l_shoulder"] - at["r_shoulder"] + at["l_hip"] - at["r_hip"]
+    right, _, away = np.array(state.camera.R) @ across
+    forward = np.degrees(np.arctan2(away, right))
+    side: Literal["left", "right"] = "right" if forward >= 0 else "left"
+    if abs(abs(forward) - 90.0) <= SIDEWAYS_DEG:
+        return side
+    return ORIENTATIONS[ORIENTATIONS.index(side) + (4 if abs(forward) < 90.0 else 2)]
 
 
 def _status(state: State) -> Status:

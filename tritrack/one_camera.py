@@ -13,13 +13,13 @@ from common.clips import Clip, shortfall
 from common.config import Settings
 from common.decoding import Decoder
 from common.footage import ClipError
-from common.messages import Body, ViewerNumber
+from common.messages import Body, Box, Fit, Report, ViewerNumber, pack
 from common.notes import Notes, held
 from common.similarity import Mask
 from common.stickman import ADULT, THESIS
 from integrator import one_view
 from integrator.assumed import assumed_camera
-from integrator.one_view import Inputs, Settled, Sight
+from integrator.one_view import Inputs, Settled
 from viewer import silhouette, stick
 from viewer.background import Background
 from viewer.capture import recorded
@@ -171,16 +171,16 @@ def poses_of(
         camera = assumed_camera(size, np.nanmedian(rows[:, 1]), np.nanmedian(tall_px), stature_m)
     printed = settings.mode == "thesis"
     man = THESIS if printed else ADULT
-    state = one_view.init(number, camera, man, stature_m, not printed, period_s)
+    state = one_view.init(number, camera, man, stature_m, printed, period_s)
     mode: Literal["default", "thesis"] = "thesis" if printed else "default"
     before: stick.Stick | None = None
     bodies, settled = [], []
     for outline, stature_px in zip(outlines, tall_px, strict=True):
         if outline.somebody:
-            before = stick.fit(outline.mask(width), before, mode, float(stature_px))
-            sight = _sight(outline, before, float(stature_px))
-            told = _inputs(notes, outline.frame, scale)
-            state, body, own = one_view.step(state, sight, told)
+            mask = outline.mask(width)
+            before = stick.fit(mask, before, mode, float(stature_px))
+            report = _report(outline, mask, number, stick.told(before))
+            state, body, own = one_view.step(state, report, _inputs(notes, outline.frame, scale))
         else:
             before = None
             state, body, own = one_view.nobody(state, outline.frame, outline.captured_s)
@@ -200,16 +200,24 @@ def extras_of(settled: Sequence[Settled]) -> dict[str, Any]:
     }
 
 
-def _sight(outline: Outline, found: stick.Stick, stature_px: float) -> Sight:
-    return Sight(
+def _report(outline: Outline, mask: Mask, number: ViewerNumber, fit: Fit) -> Report:
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    left, right, top, bottom = (int(x) for x in (*columns[[0, -1]], *rows[[0, -1]]))
+    return Report(
         frame=outline.frame,
         captured_s=outline.captured_s,
-        joints_px=found.joints_px,
-        breadth=float(found.pose[stick.BREADTH]),
-        hidden=found.hidden,
-        score=found.score,
-        matches=found.evaluations,
-        stature_px=stature_px,
+        clock_s=outline.captured_s,
+        viewer=number,
+        width=mask.shape[1],
+        height=mask.shape[0],
+        silhouette=pack(mask),
+        box=Box(left=left, right=right, top=top, bottom=bottom),
+        area_px=int(mask.sum()),
+        blobs=1,
+        cut=outline.cut,
+        root_px=((left + right + 1) / 2, (top + bottom + 1) / 2),
+        fit=fit,
+        score=fit.score,
     )
 
 
