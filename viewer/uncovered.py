@@ -11,23 +11,25 @@ from common.similarity import Mask
 from viewer.background import (
     CHANGES,
     EDGE_SHARE,
-    GUESSED,
     LUMA,
     Background,
     Floats,
     Frame,
-    _even,
-    _large,
-    _slope,
-    _spread,
+    even_light,
+    large_regions,
+    slopes,
+    spread_of,
 )
 
+GUESSED: Final = 4.0
+"""Spread of a pixel whose room was guessed, grey levels."""
 SEGMENT_SCALE: Final = 300.0
 SEGMENT_SIGMA: Final = 0.8
 LEAST_SEGMENT_PX: Final = 20
 """Felzenszwalb and Huttenlocher's own values for pictures of this size (T7)."""
 NOISES: Final = 4.0
 """Spreads of a pixel's own flicker that a change must pass on top of CHANGES."""
+MOST_FLICKER: Final = 2 * CHANGES
 QUIET: Final = 0.25
 """A pixel flickers by what it stays within for this share of the frames."""
 ROAMS: Final = 0.55
@@ -49,6 +51,10 @@ ALIKE: Final = 2.5
 """Spreads of a segment's colour within which a pixel of it is believed to be room too."""
 
 
+class NoSegments(RuntimeError):
+    """The library that segments pictures is missing: the text tells the cure."""
+
+
 def learn_uncovered(frames: Sequence[Frame]) -> Background:
     """The room from pictures in which somebody may be always in view.
 
@@ -64,13 +70,14 @@ def learn_uncovered(frames: Sequence[Frame]) -> Background:
 
     Raises:
         ValueError: When there is no frame.
+        NoSegments: When scikit-image is not installed.
 
     Source: Demir 2006, section 3.1.2 (T7). The print takes what never changes for room, and with
     it whoever never moves; hidden places are our addition.
     """
     if not frames:
         raise ValueError("a background needs at least 1 frame, got 0")
-    even = _even(frames)
+    even = even_light(frames)
     centre = np.median(even, axis=0).astype(np.float32)
     away = np.abs(even - centre).max(axis=3)
     labels = segments(centre)
@@ -80,7 +87,7 @@ def learn_uncovered(frames: Sequence[Frame]) -> Background:
         if uncertain.mean() <= MOST_HIDDEN:
             break
     calm = np.where((away < CHANGES)[..., None], even - centre, 0.0).astype(np.float32)
-    spread = _spread(calm)
+    spread = spread_of(calm)
     if held.any() and not held.all():
         spread[held] = np.median(spread[~held], axis=0)
     spread[uncertain] = np.maximum(spread[uncertain], GUESSED)
@@ -100,15 +107,24 @@ def _filled(even: Floats, centre: Floats, held: Mask) -> tuple[Floats, Mask]:
 
 def is_still(opening: Sequence[Frame]) -> bool:
     """Whether nobody moves in the opening frames: who runs through them leaves no outline."""
-    even = _even(opening)
+    even = even_light(opening)
     away = np.abs((even - np.median(even, axis=0)) @ LUMA)
-    return not any(_large(off > CHANGES).any() for off in away)
+    return not any(large_regions(off > CHANGES).any() for off in away)
 
 
 def segments(picture: Floats) -> NDArray[np.int64]:
-    """Segments of one colour, (H, W) numbers from 0 on, by Felzenszwalb and Huttenlocher."""
-    from skimage.segmentation import felzenszwalb
+    """Segments of one colour, (H, W) numbers from 0 on, by Felzenszwalb and Huttenlocher.
 
+    Raises:
+        NoSegments: When scikit-image is not installed.
+    """
+    try:
+        from skimage.segmentation import felzenszwalb
+    except ImportError as error:
+        raise NoSegments(
+            "the background of a busy clip needs scikit-image: pip install 'tritrack[single]', or "
+            "name an empty picture with camera_1.background"
+        ) from error
     return np.asarray(
         felzenszwalb(
             picture.clip(0, 255) / 255,
@@ -153,8 +169,8 @@ def _occupied(even: Floats, centre: Floats, away: Floats, stays: bool) -> Mask:
         away: (n, H, W), how far they are from it.
         stays: What stays put counts; otherwise only what its outlines tell.
     """
-    limit = CHANGES + NOISES * np.quantile(away, QUIET, axis=0)
-    changed = np.stack([_large(off > limit) for off in away])
+    flicker = np.minimum(NOISES * np.quantile(away, QUIET, axis=0), MOST_FLICKER)
+    changed = np.stack([large_regions(off > CHANGES + flicker) for off in away])
     hidden = _in_median(even, centre, changed)
     gap = 2 * (centre.shape[0] // 60) + 1
     joined = cv2.dilate(changed.max(axis=0), np.ones((gap, gap), np.uint8))
@@ -169,11 +185,11 @@ def _occupied(even: Floats, centre: Floats, away: Floats, stays: bool) -> Mask:
 
 def _in_median(even: Floats, centre: Floats, changed: NDArray[np.uint8]) -> Mask:
     """(H, W) True where outlines of what changes are in the median picture, not in the frames."""
-    slope = _slope(np.asarray(centre @ LUMA, np.float32))
+    slope = slopes(np.asarray(centre @ LUMA, np.float32))
     in_median, in_frames = np.zeros_like(slope), np.zeros_like(slope)
     for frame, own in zip(even, changed, strict=True):
         outline = cv2.morphologyEx(own, cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8)) > 0
-        steeper = np.where(outline, _slope(np.asarray(frame @ LUMA, np.float32)) - slope, 0)
+        steeper = np.where(outline, slopes(np.asarray(frame @ LUMA, np.float32)) - slope, 0)
         in_frames += steeper.clip(min=0)
         in_median -= steeper.clip(max=0)
     reach = 2 * round(AROUND * len(slope) / 2) + 1
