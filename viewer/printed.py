@@ -17,8 +17,6 @@ from common.stickman import (
     STATURE,
     THESIS,
     TORSO,
-    X,
-    Y,
     place_segments,
     segments_px,
     standing,
