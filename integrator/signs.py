@@ -20,7 +20,7 @@ SOFTNESS: Final = 0.25
 """Costs that differ by this leave odds of e to 1."""
 MOTION: Final = 2.0
 """What a segment costs whose direction is 1 (60 degrees) off where its motion leads."""
-MOMENTUM: Final = 0.5
+MOMENTUM: Final = 0.8
 """How much of its last turn a segment is expected to make again."""
 FORWARDS: Final = np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0])
 """Where segments mostly lean, of LIMBS: to the front, but lower legs to the back."""

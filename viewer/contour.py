@@ -44,7 +44,7 @@ def _line(curve: Curve) -> tuple[float, float]:
 
 
 def line_angle_deg(curve: Curve) -> float:
-    """FindAngle: where a curve leads, in [0, 360), by total least squares: the thesis leaves it open (T14)."""
+    """FindAngle: where a curve leads, in [0, 360), by the least squared distances (T14)."""
     return _line(curve)[0]
 
 
