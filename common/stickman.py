@@ -13,8 +13,9 @@ SIDES: Final = ("r", "l")
 
 X, Y, STATURE, BREADTH, ANGLE, RATIO, GIRTH = 0, 1, 2, 3, 4, 14, 24
 """A stick pose: pelvis (px, rows down), stature (px), breadth of the trunk seen over its breadth
-from the front, then an angle (degrees, 0 to the right, 90 up, as in table 3.3) and a foreshortening
-ratio for each of LIMBS, and how thick limbs are, clothes included, over those of the proportions."""
+from the front, then an angle (degrees, 0 to the right, 90 up, as in table 3.3) and a
+foreshortening ratio for each of LIMBS, and how thick limbs are, clothes included, over those of
+the proportions."""
 POSE_SIZE: Final = 25
 
 TORSO, HEAD, SHOULDER_LINE, HIP_LINE = 0, 1, 10, 11
@@ -31,7 +32,7 @@ class Stickman(NamedTuple):
     lengths: Vector
     """(13,): of LIMBS; then half the shoulders, how far they lie below the neck, half the hips."""
     parts: Vector
-    """(n, 6): segment, share of it where the part begins and ends, both radii, kind (see PART_*)."""
+    """(n, 6): segment, share of it where the part begins and ends, both radii, kind (FLAT ..)."""
     depth: float
     """Depth of the trunk over its breadth."""
 
@@ -70,7 +71,7 @@ def _adult() -> Stickman:
     for upper, lower in CHAINS[2:]:
         parts.append([upper, 0.0, 0.85, 0.062, 0.043, ROUND])
         parts.append([lower, 0.0, 1.15, 0.039, 0.035, ROUND])
-    return Stickman(np.array(lengths + [0.098, 0.031, 0.060]), np.array(parts), 0.65)
+    return Stickman(np.array([*lengths, 0.098, 0.031, 0.060]), np.array(parts), 0.65)
 
 
 THESIS: Final = _thesis()

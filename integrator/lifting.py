@@ -32,13 +32,10 @@ def _ends_of(limb: str) -> tuple[int, int]:
 ENDS: Final = np.array([_ends_of(limb) for limb in LIMBS])
 """(10, 2): the joints, of JOINT_NAMES, between which each of LIMBS lies."""
 
-_SWAPPED: Final = np.array(
+SWAPPED: Final = np.array(
     [_AT[{"l_": "r_", "r_": "l_"}.get(name[:2], name[:2]) + name[2:]] for name in JOINT_NAMES]
 )
-SWAPPED_LIMBS: Final = np.array(
-    [LIMBS.index({"l_": "r_", "r_": "l_"}.get(n[:2], n[:2]) + n[2:]) for n in LIMBS]
-)
-"""Where a list by LIMBS has the other side's."""
+"""Where a list by JOINT_NAMES has the other side's."""
 
 
 class Lifted(NamedTuple):
@@ -115,7 +112,7 @@ def lift(
         orientation: Which way the person faces.
     """
     backward = orientation.startswith("backward")
-    pixels = joints_px[_SWAPPED] if backward else joints_px
+    pixels = joints_px[SWAPPED] if backward else joints_px
     flat_m = pixels / px_per_m * np.array([1.0, -1.0])
     lengths_px = np.linalg.norm(pixels[ENDS[:, 1]] - pixels[ENDS[:, 0]], axis=1)
     depth_m = np.where(np.asarray(signs) < 0, -1.0, 1.0) * depths_m(

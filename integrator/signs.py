@@ -1,6 +1,5 @@
-"""Which way every segment leans and the body faces: what a single view cannot measure (T21, T22)."""
+"""Which way segments lean and the body faces: what one view cannot measure (T21, T22)."""
 
-import itertools
 import math
 from collections.abc import Mapping
 from typing import Final, NamedTuple
@@ -9,11 +8,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body import LIMBS, Vector
-from integrator.lifting import ENDS, ORIENTATIONS, SWAPPED_LIMBS, Lifted, Orientation, lift, yaw_of
+from integrator.lifting import ENDS, SWAPPED, Orientation, depths_m, yaw_of
+from integrator.orientation import Bearing, faced
 
-CHAINS: Final = ((6, 8), (7, 9), (2, 4), (3, 5))
+CHAINS: Final = np.array([[0, 1], [6, 8], [7, 9], [2, 4], [3, 5]])
+"""Torso and head, arms, legs: of LIMBS, what hangs on what. Signs are chosen for two together."""
+WAYS: Final = np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
+"""Signs of a chain's two segments."""
+
 SOFTNESS: Final = 0.25
 """Costs that differ by this leave odds of e to 1."""
+MOTION: Final = 2.0
+"""What a segment costs whose direction is 1 (60 degrees) off where its motion leads."""
+MOMENTUM: Final = 0.8
+"""How much of its last turn a segment is expected to make again."""
+FORWARDS: Final = np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0])
+"""Where segments mostly lean, of LIMBS: to the front, but lower legs to the back."""
+LEANING: Final = 0.05
+"""What it costs to lean the other way: it decides where nothing else does."""
 
 
 class Memory(NamedTuple):
@@ -21,41 +33,32 @@ class Memory(NamedTuple):
 
     directions: NDArray[np.float64] | None
     """(10, 3) of LIMBS, unit: where each segment pointed; None: nothing is known."""
-    turning: NDArray[np.float64] | None
-    """(10, 3): how that changed by the frame before it."""
-    orientation: Orientation
-    sure: float
-    """How sure the orientation is, in [0, 1]."""
+    turning: NDArray[np.float64]
+    """(10, 3): how that had changed since the frame before."""
+    bearing: Bearing
 
 
 class Choice(NamedTuple):
     """Signs and orientation, with how sure they are."""
 
     signs: Vector
-    """(10,) of LIMBS, the person's own sides: 1 towards the camera, -1 away."""
+    """(10,) of LIMBS, the person's own sides: 1 far end towards the camera, -1 away."""
     confidence: Vector
-    """(10,) in [0, 1]."""
+    """(10,) in [0, 1]; 1 where the user said so."""
     orientation: Orientation
     orientation_confidence: float
 
 
 def init() -> Memory:
-    """Nothing is known: people are filmed from the front more often than not."""
-    return Memory(None, None, "forward_right", 0.5)
+    """Nothing is known."""
+    return Memory(None, np.zeros((len(LIMBS), 3)), Bearing())
 
 
 def directions_of(joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where each of LIMBS points, (10, 3), unit vectors."""
+    """Where each of LIMBS points, (10, 3), unit vectors, from joints (15, 3)."""
     along = joints_m[ENDS[:, 1]] - joints_m[ENDS[:, 0]]
     unit: NDArray[np.float64] = along / np.maximum(np.linalg.norm(along, axis=1), 1e-9)[:, None]
     return unit
-
-
-def remembered(memory: Memory, joints_m: NDArray[np.float64], choice: Choice) -> Memory:
-    """The memory after a pose that was settled, from one view or from two."""
-    now = directions_of(joints_m)
-    turning = None if memory.directions is None else now - memory.directions
-    return Memory(now, turning, choice.orientation, choice.orientation_confidence)
 
 
 def choose(
@@ -72,61 +75,104 @@ def choose(
     Args:
         memory: Of the frame before, or of the last pose that two views settled.
         joints_px: As for `lift`, likewise `breadth`, `lengths_m`, `px_per_m`.
-        depth: The user's: LIMBS name to toward or away.
+        depth: The user's: names of LIMBS to `toward` or `away`.
         orientation: The user's.
     """
-    facing = orientation or memory.orientation
-    sure = 1.0 if orientation else memory.sure
-    towards = lift(joints_px, breadth, lengths_m, px_per_m, np.ones(10), facing)
-    away = lift(joints_px, breadth, lengths_m, px_per_m, -np.ones(10), facing)
-    tilt = np.radians(np.abs(towards.tilt_deg))
-    flat = directions_of(towards.joints_m) * np.array([1.0, 1.0, 0.0])
-    flat /= np.maximum(np.linalg.norm(flat, axis=1), 1e-9)[:, None]
-    both = np.stack([flat * np.cos(tilt)[:, None], flat * np.cos(tilt)[:, None]])
-    both[0, :, 2], both[1, :, 2] = -np.sin(tilt), np.sin(tilt)
+    bearing = faced(memory.bearing, joints_px, breadth)
+    facing = orientation or bearing.orientation
+    pixels = joints_px[SWAPPED] if facing.startswith("backward") else joints_px
+    flat_m = (pixels[ENDS[:, 1]] - pixels[ENDS[:, 0]]) / px_per_m * np.array([1.0, -1.0])
+    lengths_px = np.linalg.norm(flat_m, axis=1) * px_per_m
+    deep_m = depths_m(lengths_m[: len(LIMBS)], lengths_px, px_per_m)
     yaw = math.radians(yaw_of(facing, breadth))
-    forward = np.array([math.sin(yaw), 0.0, math.cos(yaw)])
-    signs, confidence = np.ones(10), np.ones(10)
-    held = {LIMBS.index(name): 1 if way == "toward" else 0 for name, way in (depth or {}).items()}
-    for chain in ((0, 1), *CHAINS):
-        costs = {}
-        for picked in itertools.product((0, 1), repeat=2):
-            if any(held.get(limb, way) != way for limb, way in zip(chain, picked, strict=True)):
-                continue
-            pair = [both[way, limb] for limb, way in zip(chain, picked, strict=True)]
-            costs[picked] = _cost(memory, chain, pair, forward)
-        least = min(costs.values())
-        odds = {picked: math.exp((least - cost) / SOFTNESS) for picked, cost in costs.items()}
-        best = min(costs, key=costs.__getitem__)
-        for place, limb in enumerate(chain):
-            signs[limb] = 1.0 if best[place] else -1.0
-            same = sum(o for picked, o in odds.items() if picked[place] == best[place])
-            confidence[limb] = same / sum(odds.values())
-    return Choice(signs, confidence, facing, sure)
+    costs = _costs(memory, flat_m, deep_m, np.array([math.sin(yaw), 0.0, math.cos(yaw)]))
+    costs += _forbidden(depth or {})
+    odds = np.exp((costs.min(axis=0) - costs) / SOFTNESS)
+    best = costs.argmin(axis=0)
+    signs, confidence = np.ones(len(LIMBS)), np.ones(len(LIMBS))
+    for n, chain in enumerate(CHAINS):
+        signs[chain] = WAYS[best[n]]
+        same = WAYS[best[n]] == WAYS
+        confidence[chain] = (odds[:, n, None] * same).sum(axis=0) / odds[:, n].sum()
+    return Choice(signs, confidence, facing, 1.0 if orientation else bearing.sure)
 
 
-def _cost(
-    memory: Memory, chain: tuple[int, int], pair: list[NDArray[np.float64]], forward: Vector
-) -> float:
-    cost = 0.0
-    if memory.directions is not None:
-        for limb, direction in zip(chain, pair, strict=True):
-            expected = memory.directions[limb]
-            if memory.turning is not None:
-                expected = expected + 0.5 * memory.turning[limb]
-            cost += 2.0 * float(np.sum((direction - expected) ** 2))
-    upper, lower = pair
-    bend = float(forward @ (lower - (lower @ upper) * upper))
-    ahead = float(forward @ upper)
-    if chain[0] == 0:  # people bow forwards
-        return cost + max(0.0, -ahead) + 0.2 * max(0.0, -float(forward @ lower))
-    if chain[0] in (2, 3):  # hips bend forwards, knees backwards
-        return (
-            cost
-            + 2.0 * max(0.0, -ahead - 0.3)
-            + 0.3 * max(0.0, -ahead)
-            + 2.0 * max(0.0, bend - 0.1)
-        )
-    return (
-        cost + 1.0 * max(0.0, -ahead - 0.6) + 0.2 * max(0.0, -ahead) + 1.0 * max(0.0, -bend - 0.1)
+def remembered(
+    memory: Memory,
+    joints_m: NDArray[np.float64],
+    choice: Choice,
+    joints_px: NDArray[np.float64],
+    breadth: float,
+) -> Memory:
+    """The memory after a frame that one view settled.
+
+    Args:
+        memory: Before it.
+        joints_m: (15, 3), as lifted.
+        choice: What was chosen for it.
+        joints_px: (15, 2), as for `choose`; likewise `breadth`.
+    """
+    bearing = faced(memory.bearing, joints_px, breadth)._replace(
+        orientation=choice.orientation, sure=choice.orientation_confidence
     )
+    return _after(memory, joints_m, bearing)
+
+
+def recalled(memory: Memory, joints_m: NDArray[np.float64]) -> Memory:
+    """The memory after a frame that two views settled: depth and facing are known.
+
+    Args:
+        memory: Before it.
+        joints_m: (15, 3): x to the right of the picture, y up, z to the camera.
+    """
+    across = joints_m[3] - joints_m[9] + joints_m[6] - joints_m[12]  # left less right
+    yaw_deg = math.degrees(math.atan2(-across[2], across[0]))
+    return _after(memory, joints_m, Bearing.known(yaw_deg))
+
+
+def _after(memory: Memory, joints_m: NDArray[np.float64], bearing: Bearing) -> Memory:
+    now = directions_of(joints_m)
+    before = now if memory.directions is None else memory.directions
+    return Memory(now, now - before, bearing)
+
+
+def _costs(memory: Memory, flat_m: Vector, deep_m: Vector, forward: Vector) -> Vector:
+    """What each of WAYS costs each of CHAINS, (4, 5)."""
+    size = np.maximum(np.sqrt((flat_m**2).sum(axis=1) + deep_m**2), 1e-9)[:, None]
+    toward = np.concatenate([flat_m, deep_m[:, None]], axis=1) / size
+    way = np.stack([toward, toward * np.array([1.0, 1.0, -1.0])])
+    leaning = -LEANING * np.outer([1.0, -1.0], FORWARDS) * forward[2]
+    if memory.directions is not None:
+        expected = memory.directions + MOMENTUM * memory.turning
+        leaning += MOTION * ((way - expected) ** 2).sum(axis=2)
+    picked = (WAYS < 0).astype(int)
+    upper, lower = (way[picked[:, [i]], CHAINS[:, i]] for i in (0, 1))
+    costs = sum(leaning[picked[:, [i]], CHAINS[:, i]] for i in (0, 1))
+    ahead, below = upper @ forward, lower @ forward
+    bend = below - (lower * upper).sum(axis=2) * ahead
+    return np.asarray(costs + _strain(ahead, bend))
+
+
+def _strain(ahead: Vector, bend: Vector) -> Vector:
+    """What joints cost that bend as they do not, (4, 5): how far each upper segment points to the
+    front, and how far its lower one bends to the front from it.
+
+    People bow forwards, arms reach back by 40 degrees and elbows bend forwards, hips reach back by
+    20 and knees bend backwards.
+    """
+    back = np.maximum(0.0, -ahead)
+    strain = 0.2 * back
+    strain[:, 0] += 0.8 * back[:, 0]
+    strain[:, 1:3] += np.maximum(0.0, back[:, 1:3] - 0.6) + np.maximum(0.0, -bend[:, 1:3] - 0.1)
+    strain[:, 3:] += 2.0 * np.maximum(0.0, back[:, 3:] - 0.3)
+    strain[:, 3:] += 2.0 * np.maximum(0.0, bend[:, 3:] - 0.1)
+    return strain
+
+
+def _forbidden(depth: Mapping[str, str]) -> Vector:
+    """Infinite costs for what the user ruled out, (4, 5)."""
+    costs = np.zeros((len(WAYS), len(CHAINS)))
+    for name, said in depth.items():
+        n, i = (int(at[0]) for at in np.nonzero(np.equal(CHAINS, LIMBS.index(name))))
+        costs[WAYS[:, i] != (1.0 if said == "toward" else -1.0), n] = np.inf
+    return costs

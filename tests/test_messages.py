@@ -22,6 +22,7 @@ from common.messages import (
     ClockAnswer,
     ClockQuestion,
     Ended,
+    Fit,
     Guide,
     MalformedMessage,
     Measure,
@@ -44,6 +45,15 @@ BDP = thesis_bdp(1.75)
 MEASURE = Measure(
     height_px=66.0, centre_px=(80.0, 55.5), depth_px=7.5, bdp_px=BDP, arms_z_deg=(91.0, 269.0)
 )
+FIT = Fit(
+    joints_px=((1.5, 2.5),) * len(JOINT_NAMES),
+    ratios=(1.0,) * 9 + (0.5,),
+    breadth=0.9,
+    stature_px=66.0,
+    hidden=(False,) * 9 + (True,),
+    score=0.8,
+    matches=3000,
+)
 REPORT = Report(
     frame=7,
     captured_s=0.5,
@@ -59,6 +69,7 @@ REPORT = Report(
     root_px=(6.5, 1.5),
     angles_deg={"r_shoulder_x": 17.0},
     score=0.8,
+    fit=FIT,
 )
 GUIDE = Guide(
     frame=7,
@@ -224,6 +235,26 @@ def test_a_wrong_length_is_refused_and_named(
 ) -> None:
     with pytest.raises(MalformedMessage, match=says):
         decode(encode(msgspec.structs.replace(message, **{field: value})), type(message))
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "says"),
+    [
+        ("joints_px", ((0.0, 0.0),) * 14, "joints_px has 14 entries, not 15"),
+        ("ratios", (1.0,) * 11, "ratios has 11 entries, not 10"),
+        ("hidden", (), "hidden has 0 entries, not 10"),
+        ("ratios", (1.0,) * 9 + (1.1,), "shares beyond 0 to 1"),
+        ("breadth", -0.1, "shares beyond 0 to 1"),
+        ("score", 1.5, "shares beyond 0 to 1"),
+        ("stature_px", 0.0, "of no stature"),
+    ],
+)
+def test_a_stick_body_that_no_viewer_would_fit_is_refused(
+    field: str, value: object, says: str
+) -> None:
+    report = msgspec.structs.replace(REPORT, fit=msgspec.structs.replace(FIT, **{field: value}))
+    with pytest.raises(MalformedMessage, match=says):
+        decode(encode(report), Report)
 
 
 @pytest.mark.parametrize(

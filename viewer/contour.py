@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 from common.similarity import Mask
 
 CORNER_DISTANCE: Final = 4
-"""Points on either side of an elbow at least: minimumCornerDistance (M21: at both ends)."""
-CORNER_DEG: Final = 10.0
-"""minimumCornerAngleDifference."""
+"""Points on either side of an elbow at least: minimumCornerDistance."""
+CORNER_SHARE: Final = 0.25
+"""The same as a share of the curve: as printed noise at an end makes an elbow there (M21)."""
+CORNER_DEG: Final = 15.0
+"""minimumCornerAngleDifference is printed as 10, which noise of half a pixel reaches (T16)."""
 
 Curve = NDArray[np.float64]
 """(n, 2): x and y, px, from the trunk outwards."""
@@ -33,17 +35,17 @@ def runs(row: NDArray[np.bool_]) -> NDArray[np.int64]:
     return pairs
 
 
-def line_angle_deg(curve: Curve) -> float:
-    """FindAngle: where a curve leads, by the line of least squared distances, in [0, 360).
-
-    The thesis leaves it undefined (T14).
-    """
+def _line(curve: Curve) -> tuple[float, float]:
+    """The line of least squared distances through a curve: (angle, sum of these squares)."""
     centred = curve - curve.mean(axis=0)
-    _, _, axes = np.linalg.svd(centred, full_matrices=False)
-    dx, dy = axes[0]
-    if (curve[-1] - curve[0]) @ axes[0] < 0:
-        dx, dy = -dx, -dy
-    return math.degrees(math.atan2(-dy, dx)) % 360.0
+    _, sizes, axes = np.linalg.svd(centred, full_matrices=False)
+    dx, dy = axes[0] if (curve[-1] - curve[0]) @ axes[0] >= 0 else -axes[0]
+    return math.degrees(math.atan2(-dy, dx)) % 360.0, float(sizes[1] ** 2)
+
+
+def line_angle_deg(curve: Curve) -> float:
+    """FindAngle: where a curve leads, in [0, 360), by the least squared distances (T14)."""
+    return _line(curve)[0]
 
 
 def arm_curve(mask: Mask, trunk: tuple[int, int, int], reach_px: int, side: int) -> Curve:
@@ -100,15 +102,17 @@ def turn_deg(one_deg: float, other_deg: float) -> float:
 
 
 def elbow_corner(curve: Curve) -> int:
-    """Algorithm 4: the point that parts a curve into the most different directions; -1: none.
+    """Algorithm 4: the point that parts a curve into two lines of different directions; -1: none.
 
-    Both ends are guarded and the difference of angles is that of directions (M21, T16).
+    Of the points that do, it is the one at which two lines fit best, away from both ends; printed
+    is the largest difference, which noise at an end decides (M21, T16).
     """
-    best, largest = -1, CORNER_DEG
-    for i in range(CORNER_DISTANCE, len(curve) - CORNER_DISTANCE):
-        between = turn_deg(line_angle_deg(curve[: i + 1]), line_angle_deg(curve[i:]))
-        if between > largest:
-            best, largest = i, between
+    guard = max(CORNER_DISTANCE, math.ceil(CORNER_SHARE * len(curve)))
+    best, least = -1, math.inf
+    for i in range(guard, len(curve) - guard):
+        (upper, one), (lower, other) = _line(curve[: i + 1]), _line(curve[i:])
+        if turn_deg(upper, lower) >= CORNER_DEG and one + other < least:
+            best, least = i, one + other
     return best
 
 

@@ -55,5 +55,5 @@ def angle_found(score_at: Callable[[float], float], limits_deg: tuple[float, flo
 
 
 def ratio_found(score_at: Callable[[float], float], length_px: float) -> Found:
-    """Algorithm 6: how much of a segment's length is seen, in [0, 1], to a pixel (T18, M19, M20)."""
+    """Algorithm 6: how much of a segment's length is seen, 0 to 1, to a pixel (T18, M19, M20)."""
     return divided(score_at, (0.0, 1.0), RATIO_DIVISIONS, 1.0 / length_px)

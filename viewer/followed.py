@@ -28,7 +28,7 @@ from viewer.stick_costs import COSTS
 from viewer.stick_search import Moves, Task, beamed, covered, refined
 from viewer.strokes import ALL_SEGMENTS, WITHOUT_ARMS
 
-STARTS: Final = (1.0, 0.5, 0.1)
+STARTS: Final = (1.0, 0.3)
 """Breadths of the trunk with which somebody is met of whom nothing is known."""
 FIRST_TRUST: Final = 0.3
 """How much a standing body is expected then."""
@@ -37,7 +37,8 @@ LOST_SCORE: Final = 0.6
 HIDDEN_SHARE: Final = 0.6
 """A limb of which more lies over or behind the rest of the body is hidden."""
 PELVIS_SHARE: Final = float(ADULT.lengths[HEAD] + ADULT.lengths[TORSO])
-"""How far the pelvis lies below the crown."""
+"""How far the pelvis lies below the crown, which is the top unless hands are above it, and, from
+the soles up, what is left of the stature, unless the legs are bent or lifted."""
 
 UPRIGHT_MOVES: Final = 8
 """How many of the moves are those of trunk and head."""
@@ -111,13 +112,17 @@ def followed(mask: Mask, before: Vector | None) -> Followed:
 
 
 def _starts(mask: Mask) -> list[Vector]:
+    """Standing bodies whose crown, or whose soles, are where the silhouette ends."""
     rows = np.flatnonzero(mask.any(axis=1))
     middle = float(np.median(np.nonzero(mask)[1])) + 0.5
+    from_crown = rows[0] + PELVIS_SHARE * STATURE_PX
+    from_soles = rows[-1] + 1 - (1.0 - PELVIS_SHARE) * STATURE_PX
     starts = []
-    for breadth in STARTS:
-        pose = standing(middle, rows[0] + PELVIS_SHARE * STATURE_PX, STATURE_PX)
-        pose[BREADTH] = breadth
-        starts.append(pose)
+    for row in (from_crown, from_soles):
+        for breadth in STARTS:
+            pose = standing(middle, row, STATURE_PX)
+            pose[BREADTH] = breadth
+            starts.append(pose)
     return starts
 
 

@@ -2,8 +2,8 @@
 
 from typing import Final, NamedTuple
 
-import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from common.body import Vector
 from common.similarity import Mask
@@ -14,7 +14,7 @@ STATURE_PX: Final = 100
 NORMAL_SIZE: Final = (128, 160)
 """Its width and height: arms stretched out or up fit in, and a row is two words."""
 INSIDE: Final = 0.5
-"""A pixel belongs to the person of whom it is covered by half."""
+"""A pixel belongs to the person who covers half of it."""
 
 
 class Normal(NamedTuple):
@@ -50,28 +50,29 @@ def normalised(mask: Mask, stature_px: float) -> Normal:
     """
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     scale = STATURE_PX / stature_px
-    middle = np.array([columns[0] + columns[-1] + 1, rows[0] + rows[-1] + 1]) / 2
-    corner = middle - np.array(NORMAL_SIZE) / 2 / scale
-    first = np.floor(corner).astype(int)
-    span = np.ceil(np.array(NORMAL_SIZE) / scale).astype(int) + 2
-    piece = _piece(mask, first, span)
-    if scale < 1.0:  # the mean of what falls into a pixel, not what is at its centre
-        size = [max(1, round(side * scale)) for side in span.tolist()]
-        piece = cv2.resize(piece, size, interpolation=cv2.INTER_AREA)
-    per = np.array([piece.shape[1], piece.shape[0]]) / span
-    shift = (corner - first) * per + 0.5 * per / scale - 0.5
-    turn = np.column_stack([np.diag(per / scale), shift])
-    flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
-    small = cv2.warpAffine(piece, turn, NORMAL_SIZE, flags=flags)
-    return Normal(np.asarray(small > INSIDE), scale, corner)
+    box = mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    ends = np.array([[columns[0], columns[-1] + 1], [rows[0], rows[-1] + 1]], float)
+    corner = ends.mean(axis=1) - np.array(NORMAL_SIZE) / 2 / scale
+    across, down = (
+        _shares(corner[i] - ends[i, 0], 1.0 / scale, NORMAL_SIZE[i], box.shape[1 - i])
+        for i in (0, 1)
+    )
+    return Normal(down @ box.astype(np.float32) @ across.T > INSIDE, scale, corner)
 
 
-def _piece(mask: Mask, first: Vector, span: Vector) -> cv2.typing.MatLike:
-    """A rectangle of the picture, from a pixel on; what lies beyond the picture is empty."""
-    last = np.minimum(first + span, [mask.shape[1], mask.shape[0]])
-    begin = np.maximum(first, 0)
-    piece = np.zeros((int(span[1]), int(span[0])), np.float32)
-    (x, y), (ax, ay), (bx, by) = first, begin, last
-    if bx > ax and by > ay:
-        piece[ay - y : by - y, ax - x : bx - x] = mask[ay:by, ax:bx]
-    return piece
+def _shares(first: float, step: float, cells: int, pixels: int) -> NDArray[np.float32]:
+    """How much of each cell of a row each pixel covers, (cells, pixels).
+
+    A pixel that is cut into several changes nothing, so the same shape in smaller pixels gives the
+    same cells.
+
+    Args:
+        first: Where the first cell begins, from the edge of the first pixel on.
+        step: Pixels a cell.
+        cells: How many.
+        pixels: How many.
+    """
+    begin = first + step * np.arange(cells)[:, None]
+    pixel = np.arange(pixels)
+    shared = np.minimum(begin + step, pixel + 1.0) - np.maximum(begin, pixel)
+    return np.asarray(np.maximum(shared, 0.0) / step, np.float32)

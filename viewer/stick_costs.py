@@ -1,4 +1,4 @@
-"""What a stick pose costs before it is matched: haste, depth that is not seen, joints bent wrongly."""
+"""What a stick pose costs before it is matched: haste, unseen depth, joints bent wrongly."""
 
 from typing import Any, Final
 
@@ -20,7 +20,7 @@ from common.stickman import ANGLE, BREADTH, GIRTH, RATIO, STATURE
     GIRTH_CHANGE,
 ) = range(10)
 
-COSTS: Final = np.array([0.006, 0.2, 0.02, 0.02, 0.05, 10.0, 0.01, 0.012, 1.0, 0.5])
+COSTS: Final = np.array([0.006, 0.2, 0.02, 0.02, 0.2, 10.0, 0.01, 0.012, 1.0, 0.5])
 """In S: for a limb to swing by 60 degrees (its vector's change of 1) since it was expected; for
 trunk, legs and arms to leave the plane of the picture; for breadth and for stature to change by all
 they are; for the trunk to lean by 90 degrees; for an elbow to bend in the plane by 90, or a knee

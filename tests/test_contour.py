@@ -1,0 +1,111 @@
+"""The contour method, held against curves and legs whose truth is drawn (T14-T17)."""
+
+import numpy as np
+import pytest
+
+from common.stickman import ANGLE, THESIS, standing
+from viewer.contour import (
+    Curve,
+    arm_angles,
+    arm_curve,
+    elbow_corner,
+    knees_crossed,
+    line_angle_deg,
+    lower_leg_curves,
+    runs,
+    turn_deg,
+)
+from viewer.strokes import draw_stick
+
+
+def bent(bend_deg: float, seed: int, noise_px: float = 0.5, points: int = 28) -> Curve:
+    """An arm that hangs and bends in its middle, with noise across it."""
+    half = points // 2
+    upper = np.stack([np.zeros(half), np.arange(half)], axis=1)
+    along = np.array([np.sin(np.radians(bend_deg)), np.cos(np.radians(bend_deg))])
+    lower = upper[-1] + np.arange(1, points - half + 1)[:, None] * along
+    noise = np.random.default_rng(seed).normal(0.0, noise_px, (points, 2))
+    return np.concatenate([upper, lower]) + noise
+
+
+def test_a_straight_arm_has_no_elbow() -> None:
+    """M21: as printed 99 of 100 have one."""
+    assert [elbow_corner(bent(0.0, seed)) for seed in range(100)].count(-1) >= 99
+
+
+@pytest.mark.parametrize("bend_deg", [30.0, 60.0, 90.0])
+def test_a_bent_arm_has_its_elbow_where_it_bends(bend_deg: float) -> None:
+    """T16: point 14 of 28, where the printed rule gives 17 to 20, 9 off."""
+    found = np.array([elbow_corner(bent(bend_deg, seed)) for seed in range(60)])
+    assert np.all(found > 0)
+    assert abs(found.mean() - 13.5) < 1.0
+    assert found.std() < 2.0
+
+
+def test_a_straight_arm_has_one_angle_and_a_bent_one_two() -> None:
+    """T15, algorithm 3."""
+    straight = arm_angles(bent(0.0, 1, noise_px=0.0))
+    assert straight.corner == -1
+    assert straight.upper == straight.lower == pytest.approx(270.0)
+    both = arm_angles(bent(60.0, 1, noise_px=0.0))
+    assert both.upper == pytest.approx(270.0, abs=2.0)
+    assert both.lower == pytest.approx(330.0, abs=2.0)
+
+
+@pytest.mark.parametrize("angle_deg", [0.0, 45.0, 90.0, 200.0, 270.0, 359.0])
+def test_a_line_leads_from_its_first_point_to_its_last(angle_deg: float) -> None:
+    along = np.array([np.cos(np.radians(angle_deg)), -np.sin(np.radians(angle_deg))])
+    curve = np.arange(9.0)[:, None] * along
+    assert turn_deg(line_angle_deg(curve), angle_deg) < 1e-6
+
+
+def test_directions_differ_by_no_more_than_half_a_turn() -> None:
+    """M21: 359 and 1 degrees are 2 apart."""
+    assert turn_deg(359.0, 1.0) == pytest.approx(2.0)
+    assert turn_deg(90.0, 270.0) == pytest.approx(180.0)
+
+
+def test_a_scan_line_has_a_run_for_each_piece() -> None:
+    row = np.array([1, 1, 0, 0, 1, 0, 1], np.bool_)
+    assert runs(row).tolist() == [[0, 2], [4, 5], [6, 7]]
+
+
+@pytest.mark.parametrize(
+    ("merged", "crossed"),
+    [
+        ([True, True, False, False], True),
+        ([False, False, False], False),
+        ([True, True, True], False),
+        ([False, True, False], False),
+        ([True, False, True, False], False),
+        ([], False),
+    ],
+    ids=["one then two", "two", "one", "two, one, two", "bridged", "nothing"],
+)
+def test_legs_cross_where_one_run_becomes_two(merged: list[bool], crossed: bool) -> None:
+    """T17, algorithm 5 as printed, with what it misses."""
+    assert knees_crossed(merged) is crossed
+
+
+def test_curves_of_drawn_limbs_have_the_angles_that_were_drawn() -> None:
+    """T14: the middles of arms, cut where the trunk begins, and of lower legs."""
+    pose = standing(100.0, 120.0, 180.0)
+    pose[ANGLE + 6], pose[ANGLE + 8] = 235.0, 235.0
+    pose[ANGLE + 4], pose[ANGLE + 5] = 262.0, 281.0
+    mask = draw_stick(THESIS, pose, (220, 240))
+    curve = arm_curve(mask, (79, 121, 72), 62, 0)
+    found = arm_angles(curve)
+    assert found.corner == -1
+    assert found.upper == pytest.approx(235.0, abs=6.0)
+    left, right, merged = lower_leg_curves(mask, 175, 215)
+    assert line_angle_deg(left) == pytest.approx(262.0, abs=2.0)
+    assert line_angle_deg(right) == pytest.approx(281.0, abs=2.0)
+    assert not any(merged[3:])
+
+
+def test_a_raised_arm_is_read_from_the_shoulder_on() -> None:
+    """T14: curves run from the trunk outwards."""
+    pose = standing(100.0, 120.0, 180.0)
+    pose[ANGLE + 7] = pose[ANGLE + 9] = 60.0
+    mask = draw_stick(THESIS, pose, (220, 240))
+    assert arm_angles(arm_curve(mask, (79, 121, 72), 62, 1)).lower == pytest.approx(60.0, abs=6.0)

@@ -1,0 +1,103 @@
+"""Signs of depth and the way that a body faces, held against how bodies bend (T21, T22)."""
+
+import numpy as np
+import pytest
+
+from common.body import JOINT_NAMES, LIMBS
+from common.stickman import ADULT, BREADTH, joints_px
+from integrator import signs
+from integrator.lifting import Orientation, lift
+from tests.stick_posing import STATURE_PX, stick_pose
+
+LENGTHS_M = ADULT.lengths * 1.75
+PX_PER_M = STATURE_PX / 1.75
+AT = {name: i for i, name in enumerate(LIMBS)}
+SQUAT = stick_pose({}, {n: 0.5 for n in LIMBS if n.endswith("leg")})
+
+
+def chosen(
+    pose: np.ndarray,
+    memory: signs.Memory | None = None,
+    depth: dict[str, str] | None = None,
+    orientation: Orientation | None = None,
+) -> signs.Choice:
+    seen, breadth = joints_px(ADULT, pose), float(pose[BREADTH])
+    memory = signs.init() if memory is None else memory
+    return signs.choose(memory, seen, breadth, LENGTHS_M, PX_PER_M, depth, orientation)
+
+
+def lifted(pose: np.ndarray, way: float) -> np.ndarray:
+    seen = joints_px(ADULT, pose)
+    return lift(seen, 1.0, LENGTHS_M, PX_PER_M, np.full(10, way), "forward_right").joints_m
+
+
+def test_thighs_bend_forwards_and_knees_backwards() -> None:
+    """T22: a squat seen from the front."""
+    found = chosen(SQUAT)
+    for side in "lr":
+        assert found.signs[AT[f"{side}_upper_leg"]] == 1.0
+        assert found.signs[AT[f"{side}_lower_leg"]] == -1.0
+        assert found.confidence[AT[f"{side}_upper_leg"]] > 0.9
+
+
+def test_seen_from_behind_they_bend_the_other_way() -> None:
+    found = chosen(SQUAT, orientation="backward_left")
+    assert found.signs[AT["l_upper_leg"]] == -1.0
+    assert found.signs[AT["l_lower_leg"]] == 1.0
+    assert found.orientation_confidence == 1.0
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_limb_goes_on_where_it_was(way: float) -> None:
+    """T21: signs rarely change: an arm that points out of the plane keeps its side."""
+    arm = {"l_upper_arm": 0.7, "l_lower_arm": 0.7}
+    pose = stick_pose({"l_upper_arm": 300.0, "l_lower_arm": 300.0}, arm)
+    memory = signs.recalled(signs.init(), lifted(pose, way))
+    assert chosen(pose, memory).signs[AT["l_upper_arm"]] == way
+
+
+def test_a_limb_that_swung_through_the_plane_goes_on_through() -> None:
+    """T21: motion goes on; the arm's tilt was 40, then 10 degrees towards the camera."""
+    memory = signs.init()
+    for tilt_deg in (40.0, 10.0):
+        ratio = float(np.cos(np.radians(tilt_deg)))
+        arm = {"l_upper_arm": ratio, "l_lower_arm": ratio}
+        memory = signs.recalled(memory, lifted(stick_pose({}, arm), 1.0))
+    ratio = float(np.cos(np.radians(20.0)))
+    after = stick_pose({}, {"l_upper_arm": ratio, "l_lower_arm": ratio})
+    assert chosen(after, memory).signs[AT["l_upper_arm"]] == -1.0
+
+
+def test_the_user_is_right() -> None:
+    """T21, T26: what is said holds, and is sure; the rest follows it."""
+    found = chosen(SQUAT, depth={"l_upper_leg": "away", "head": "away"})
+    assert found.signs[AT["l_upper_leg"]] == found.signs[AT["head"]] == -1.0
+    assert found.confidence[AT["l_upper_leg"]] == 1.0
+    assert found.signs[AT["r_upper_leg"]] == 1.0
+
+
+def test_confidences_are_shares() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(30):
+        pose = stick_pose({})
+        pose[4:14] += rng.uniform(-90, 90, 10)
+        pose[14:24] = rng.uniform(0.1, 1.0, 10)
+        found = chosen(pose)
+        assert np.all((found.confidence >= 0.25) & (found.confidence <= 1.0))
+        assert 0.0 <= found.orientation_confidence <= 1.0
+        assert set(found.signs) <= {-1.0, 1.0}
+
+
+def test_what_does_not_lean_is_not_sure() -> None:
+    """A limb in the plane has no sign: its confidence says so."""
+    assert chosen(stick_pose({})).confidence.max() < 0.75
+
+
+def test_two_views_settle_the_facing() -> None:
+    """T22: memory of the last two-view pose."""
+    joints = lifted(stick_pose({}), 1.0)
+    turned = joints * [-1.0, 1.0, -1.0]
+    found = chosen(stick_pose({}), signs.recalled(signs.init(), turned))
+    assert found.orientation.startswith("backward")
+    assert found.orientation_confidence == 1.0
+    assert JOINT_NAMES[3] == "l_shoulder"
