@@ -23,7 +23,7 @@ Y_UP = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 
 
 def calibration(given: dict[str, Any]) -> dict[str, Any]:
-    """Their `cameras.json` as our `calibration.json`: y up; their pixel centres are whole numbers."""
+    """Their `cameras.json` as ours: y up; their pixels have their centres at whole numbers."""
     cameras = []
     for camera in given["cameras"]:
         K = np.array(camera["K_video"])

@@ -17,7 +17,7 @@ AT: Final = [JOINT_NAMES.index(name) for name in propose.JOINTS]
 """Where the proposed joints stand among the landmarks."""
 PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
 
-HIPS_OFF: Final = (0.0, 0.009, 0.020)
+HIPS_OFF: Final = (0.0, 0.012, 0.012)
 """How far left, up and before the true hips of r01 and r04 the network finds them, in statures:
 made-up people have their hips nearer to the front of their outline."""
 

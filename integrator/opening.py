@@ -6,14 +6,18 @@ import msgspec
 import numpy as np
 
 from common.body import Bdp, Vector, body_of_lengths, thesis_bdp
-from common.camera import Rig
-from common.messages import Report
+from common.camera import Camera, Rig, project
+from common.messages import Report, unpack
 from integrator.pairing import Seen
-from integrator.perspective import universal_bdp
+from integrator.perspective import px_per_m, universal_bdp
 from integrator.place import place_of, roots_of, scales_at
+from integrator.window import UPWARDS_M
 
 STATURES_M: Final = (0.8, 2.3)
 """What a silhouette's height may say of a person; beyond, it is not the whole person."""
+
+USUAL_M: Final = 1.75
+"""Stature of somebody whose outline tells none."""
 
 LEG_KEPT: Final = (0.85, 1.05)
 """Share of the measured leg that the height of the navel above the floor may leave; beyond, the
@@ -52,15 +56,28 @@ class Opening(NamedTuple):
 
 
 def prior(rig: Rig, seen: Seen) -> Bdp:
-    """The thesis's proportions at the height that the silhouettes show (T4)."""
-    scales = scales_at(rig, place_of(rig, roots_of(seen), np.zeros(3), 0))
+    """The thesis's proportions at the height that the silhouettes show (T4).
+
+    The smaller of two: what is no part of the person makes an outline larger.
+    """
+    place = place_of(rig, roots_of(seen), np.zeros(3), 0)
     heights = [
-        (report.box.bottom + 1 - report.box.top) / scale
-        for report, scale in zip(seen, scales, strict=True)
-        if report is not None and report.box is not None and scale > 0
+        height
+        for report, camera in zip(seen, rig.cameras, strict=True)
+        if report is not None
+        and not report.cut
+        and np.isfinite(height := _height_m(report, camera, place))
     ]
     low, high = STATURES_M
-    return thesis_bdp(min(high, max(low, float(np.mean(heights)))))
+    return thesis_bdp(min(high, max(low, min(heights))) if heights else USUAL_M)
+
+
+def _height_m(report: Report, camera: Camera, place: Vector) -> float:
+    """How far an outline reaches along what is upright in its picture, metres."""
+    at, above = project(camera, np.stack([place, place + UPWARDS_M]))
+    rows, columns = np.nonzero(unpack(report))
+    along = np.stack([columns, rows], axis=1) @ (above - at) / np.linalg.norm(above - at)
+    return float((along.max() + 1.0 - along.min()) / px_per_m(camera, place))
 
 
 def step(opening: Opening, rig: Rig, seen: Seen, due: int) -> tuple[Opening, Vector | None]:

@@ -19,8 +19,9 @@ the thesis's six words each differs from the one before, which makes its 7 chang
 TURN_S: Final = 0.5
 """How long a turn takes."""
 BEAT_HZ: Final = 0.9
-SWAY_M: Final = 0.25
-"""How far the dancer steps to either side."""
+SWAY_M, SWAY_S = 0.9, 6.0
+"""How far the dancer goes to either side, and how long to and fro takes: no part of the room is
+hidden for long, as a background that is learnt from the video itself wants it (T7)."""
 
 SWINGS_DEG: Final = {
     "sh_abd": (35.0, 30.0, 1.0),
@@ -52,7 +53,7 @@ def dance(someone: Person, seed: int, fps: float = 15.0) -> Motion:
     track["root_yaw"] = _facing(time_s)
     track["torso_pitch"] = 6.0 + 6.0 * np.sin(2 * np.pi * BEAT_HZ * time_s)
     angles_deg = np.stack([track[name] for name in ANGLES], axis=1)
-    path = np.stack([SWAY_M * np.sin(np.pi * BEAT_HZ * time_s), np.zeros(FRAMES)], axis=1)
+    path = np.stack([SWAY_M * np.sin(2 * np.pi * time_s / SWAY_S), np.zeros(FRAMES)], axis=1)
     body = posed(someone.measures, angles_deg, path[0], path)
     return Motion(
         posture="free",

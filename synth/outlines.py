@@ -261,15 +261,36 @@ def _seen(
     flaws: tuple[Flaw, Flaw],
     rng: np.random.Generator,
 ) -> list[Mask]:
-    """Both silhouettes of an instant."""
-    places = np.empty_like(mesh.vertices_m)
-    skin(mesh.vertices_m, mesh.origins_m, mesh.bones, mesh.shares, body.bones[i], places)
+    """Both silhouettes of an instant, as they are cut out of a film."""
     masks = []
     for camera, flaw in zip(rig.cameras, flaws, strict=True):
-        mask = np.zeros((rig.height, rig.width), np.uint8)
-        cover(project(camera, places) + rng.normal(0.0, JITTER_PX, 2), mesh.faces, mask)
+        jitter_px = rng.normal(0.0, JITTER_PX, 2)
+        mask = cast(mesh, body.bones[i], camera, (rig.width, rig.height), jitter_px)
         masks.append(_spoilt(mask, flaw, i).astype(bool))
     return masks
+
+
+def cast(
+    mesh: Mesh,
+    bones: NDArray[np.float64],
+    camera: Camera,
+    size: tuple[int, int],
+    jitter_px: Vector | float = 0.0,
+) -> NDArray[np.uint8]:
+    """The exact silhouette of a body, (H, W), 1 inside.
+
+    Args:
+        mesh: At rest.
+        bones: Where they are, (bones, 3, 4).
+        camera: Who looks.
+        size: (width, height) of the picture.
+        jitter_px: How far beside its place it is seen, (2,).
+    """
+    places = np.empty_like(mesh.vertices_m)
+    skin(mesh.vertices_m, mesh.origins_m, mesh.bones, mesh.shares, bones, places)
+    mask = np.zeros((size[1], size[0]), np.uint8)
+    cover(project(camera, places) + jitter_px, mesh.faces, mask)
+    return mask
 
 
 def _spoilt(mask: NDArray[np.uint8], flaw: Flaw, i: int) -> NDArray[np.uint8]:

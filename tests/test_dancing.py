@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from animator.take import Take, depth_of, take_of
-from common.body import JOINT_NAMES
+from common.body import JOINT_NAMES, LIMBS
 from common.notes import Notes
 from synth.dancing import FRAMES, dance
 from synth.motions import Motion
 from synth.people import person
 from synth.skeleton import JOINTS
-from tritrack.ledger import PRINTED, ledger
+from tritrack.ledger import PRINTED, Count, ledger, mending_inputs
 
 DANCING = PRINTED[1]
 
@@ -89,3 +89,25 @@ def test_the_dance_takes_about_what_the_thesis_dance_took(danced: Motion) -> Non
     assert made.thesis.orientation == DANCING.inputs.orientation + 1
     assert 20 <= made.thesis.depth <= 60
     assert (made.given.total, made.open.total) == (0, 0)
+
+
+def test_what_is_wrong_is_mended_by_as_many_inputs_as_it_has_runs(danced: Motion) -> None:
+    """A run that took one orientation for all frames lacks the seven changes; a wrist that was
+    twice lost is placed twice; a forearm that leans as it should needs nothing."""
+    truth = true_take(danced)
+    wrist, forearm = JOINT_NAMES.index("l_wrist"), LIMBS.index("l_lower_arm")
+    assert mending_inputs(truth, truth, 5.0) == Count()
+    stubborn = truth._replace(orientation=np.full(FRAMES, truth.orientation[0]))
+    lost = truth.joints_px.copy()
+    lost[[20, 21, 60], wrist] += 9.0
+    lost[100, wrist] += 3.0
+    found = mending_inputs(stubborn._replace(joints_px=lost), truth, 5.0)
+    assert found == Count(orientation=6, joints=2)
+    flat = truth._replace(joints_m=truth.joints_m * (1.0, 1.0, 0.0))
+    changes = depth_of(truth.joints_m)[:, forearm]
+    runs = np.count_nonzero(np.diff(changes[changes != 0])) + 1
+    alone = flat.joints_m.copy()
+    others = [i for i, name in enumerate(JOINT_NAMES) if name != "l_wrist"]
+    alone[:, others] = truth.joints_m[:, others]
+    alone[:, wrist, 2] = truth.joints_m[:, JOINT_NAMES.index("l_elbow"), 2]
+    assert mending_inputs(flat._replace(joints_m=alone), truth, 5.0) == Count(depth=runs)

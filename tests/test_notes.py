@@ -1,6 +1,6 @@
 """The user's inputs: what is said once holds until something else is said (T21, T26)."""
 
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from common.body import JOINT_NAMES, LIMBS
@@ -42,6 +42,7 @@ def test_auto_gives_every_kind_of_decision_back() -> None:
     assert held(notes, 9) == Held()
 
 
+@settings(max_examples=40)
 @given(st.lists(inputs, max_size=6), inputs)
 def test_an_input_changes_what_it_names_from_its_frame_on_and_nothing_else(
     earlier: list[Note], new: Note

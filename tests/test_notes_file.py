@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from test_notes import inputs
 
@@ -21,6 +21,7 @@ from common.notes_file import (
 )
 
 
+@settings(max_examples=30)
 @given(st.lists(inputs, max_size=6), st.text(max_size=8))
 def test_what_is_written_is_read_again(
     tmp_path_factory: pytest.TempPathFactory, given_notes: list[Note], video: str

@@ -42,6 +42,7 @@ def filmed() -> Take:
     column, row = 160 + 100 * seen.joints_m[0, :, 0], 230 - 100 * seen.joints_m[0, :, 1]
     seen.joints_px[:] = np.stack([column, row], axis=1)
     seen.depth_confidence[3:, ARM] = 0.5
+    seen.orientation_confidence[8] = 0.5
     return seen
 
 
@@ -112,7 +113,9 @@ def test_the_next_uncertain_frame_is_shown_and_a_settled_one_is_not_asked(
     page.flip(ARM)
     assert "nothing is uncertain" in page._open.content
     page._look(1)
-    assert page._row == 3
+    assert page._row == 8
+    page._look(1)
+    assert page._row == 8
     assert "no other uncertain frame" in page._kept.content
 
 
@@ -196,6 +199,15 @@ def test_a_pointer_drags_a_joint_and_a_click_turns_a_limb(
         waited(tab, lambda *_: bool(held(page.notes, 0).depth), 20.0)
         turned = held(page.notes, 0).depth
         assert turned == {"l_upper_arm": "away"}, f"look at {saved(tab.screenshot(), where)}"
+        tab.call("Runtime.evaluate", expression=PRESS_NEXT)
+        waited(tab, lambda _, text: "frame 16" in text, 30.0)
+        assert "does the person face forward left?" in tab.text()
+        assert "upper arm lean" not in tab.text(), "what was said is asked again"
+
+
+PRESS_NEXT = """
+[...document.querySelectorAll("button")].find(b => b.innerText.includes("Next uncertain")).click()
+"""
 
 
 def seen_from_the_side(joints_m: np.ndarray, joints: list[int]) -> np.ndarray:

@@ -49,6 +49,7 @@ def run_of(folder: Path, video: Path, n: int = 4) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_the_page_opens_and_ctrl_c_ends_it_with_the_ledger(tmp_path: Path) -> None:
     """A whole process: the page answers, SIGINT is the way out and no failure (exit 0)."""
     pytest.importorskip("viser", reason="the page is an extra: install tritrack[page]")

@@ -305,7 +305,8 @@ def export(
     run: Annotated[Path, typer.Argument(help="A run folder.")],
     to: Annotated[Literal["bvh", "csv"], typer.Option(help="For Blender, or for spreadsheets.")],
     out: Annotated[
-        Path | None, typer.Option(help="The file to write; poses.* in the run folder by default.")
+        Path | None,
+        typer.Option(help="The file to write; body.bvh or poses.csv in RUN by default."),
     ] = None,
     json_wanted: JsonWanted = False,
 ) -> None:

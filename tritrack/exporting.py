@@ -4,7 +4,7 @@ import csv
 import io
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from common.replacing import replacing
 from tritrack.past_run import PastRun, open_run
 
 Format = Literal["bvh", "csv"]
+OWN_NAMES: Final[dict[Format, str]] = {"bvh": "body.bvh", "csv": "poses.csv"}
 
 
 class ExportError(RuntimeError):
@@ -27,7 +28,7 @@ def export_run(folder: Path, to: Format, out: Path | None) -> dict[str, Any]:
     Args:
         folder: That of the run.
         to: Which format.
-        out: The file to write; None: `poses.bvh` or `poses.csv` in the run folder.
+        out: The file to write; None: that of OWN_NAMES in the run folder.
 
     Returns:
         The file, its frames, and for BVH how far its joints are from the run's.
@@ -37,7 +38,7 @@ def export_run(folder: Path, to: Format, out: Path | None) -> dict[str, Any]:
         ExportError: When it has no poses, or the file cannot be written.
     """
     run = open_run(folder)
-    path = out or folder / f"poses.{to}"
+    path = out or folder / OWN_NAMES[to]
     text, facts = _bvh(run) if to == "bvh" else _csv(run)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -52,7 +52,12 @@ def retouch(
         PastRunError, RetouchError, ClipError, DecoderDied, NotesError, PageError: When something
             cannot be worked with.
     """
-    from animator.page.retouch import RetouchPage
+    try:
+        from animator.page.retouch import RetouchPage
+    except ModuleNotFoundError as error:
+        raise RetouchError(
+            f"there is no page without {error.name}: pip install 'tritrack[page]'"
+        ) from error
 
     run = open_run(folder)
     clip = _clip_of(run, video)

@@ -88,7 +88,7 @@ def refuse_port(port: int) -> None:
 def _unusable(port: int, why: str) -> str:
     return (
         f"cannot open the page on port {port}: {why}; "
-        "close what uses it, or set page.port to another one"
+        "close what uses it, or set page.port to another one (or --port)"
     )
 
 

@@ -1,0 +1,144 @@
+"""Default mode, held against made-up people whom its network was never taught on.
+
+They have feet and faces of their own: cylinders look the same from behind.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from staging import HEIGHT, RIG, WIDTH, Stage, Told, exact
+
+from common.body import JOINT_NAMES, Vector
+from common.config import Settings
+from common.similarity import Mask
+from integrator.insight import AT
+from synth.footing import posed
+from synth.mesh import body_mesh
+from synth.motions import MOTION, TPOSE, performance
+from synth.outlines import cast
+from synth.people import person
+from synth.skeleton import ANGLES, JOINTS
+
+SOMEBODY = 31
+"""Below all who are taught on."""
+PICK = [JOINTS.index(JOINT_NAMES[i]) for i in AT]
+YAW = ANGLES.index("root_yaw")
+
+
+@pytest.fixture(autouse=True)
+def exact_silhouettes(monkeypatch: pytest.MonkeyPatch) -> None:
+    exact(monkeypatch)
+
+
+class Shown(NamedTuple):
+    """What somebody did."""
+
+    masks: list[tuple[Mask, Mask]]
+    joints_m: Vector
+    """(n, 12, 3)"""
+    phase: Vector
+
+
+def shown(posture: str, yaw_deg: Vector | None = None) -> Shown:
+    """A take, perhaps turned about the vertical, frame by frame."""
+    someone = person(SOMEBODY)
+    motion = performance(someone, posture, 5)
+    angles, phase = motion.angles_deg[motion.present], motion.phase[motion.present]
+    if yaw_deg is not None:
+        angles = angles.copy()
+        angles[:, YAW] = np.interp(np.linspace(0, 1, len(angles)), *np.asarray(yaw_deg))
+    body = posed(someone.measures, angles, np.zeros(2), np.zeros((len(angles), 2)))
+    mesh = body_mesh(someone)
+    masks = []
+    for bones in body.bones:
+        first, second = (cast(mesh, bones, c, (WIDTH, HEIGHT)).astype(bool) for c in RIG.cameras)
+        masks.append((first, second))
+    return Shown(masks, body.joints_m[:, PICK], phase)
+
+
+def joints(told: Told) -> Vector:
+    return np.array(told.body.joints_m)[AT]
+
+
+def missed_mm(told: list[Told], truth: Vector) -> Vector:
+    """(n, 12)"""
+    off = [joints(t) - each for t, each in zip(told, truth, strict=True)]
+    return 1e3 * np.linalg.norm(off, axis=-1)
+
+
+def default() -> Stage:
+    return Stage(settings=Settings(mode="default"))
+
+
+@pytest.mark.parametrize("posture", ["squat", "kick_right_forward", "swing_both_backforth"])
+def test_somebody_new_is_followed(posture: str) -> None:
+    did = shown(posture)
+    stage = default()
+    missed = missed_mm([stage.see(pair) for pair in did.masks], did.joints_m)
+    assert missed[did.phase == MOTION].mean() < 60
+    assert np.median(missed) < 40
+
+
+def test_without_an_opening_posture_front_and_back_are_told_by_the_feet() -> None:
+    """P10, L4: nothing is measured, and nothing is waited for."""
+    did = shown("walk_in_place")
+    stage, walking = default(), did.phase == MOTION
+    told = [stage.see(pair) for pair, use in zip(did.masks, walking, strict=True) if use]
+    assert {t.body.status for t in told} == {"tracking"}
+    assert not told[-1].guide.measured
+    assert missed_mm(told, did.joints_m[walking])[15:].mean() < 100
+
+
+@pytest.mark.parametrize("silent", [0, 1])
+def test_one_viewer_alone_carries_on(silent: int) -> None:
+    """Depth is proposed from one silhouette; the other view may come back."""
+    did = shown("raise_both_lateral")
+    stage, told = default(), []
+    for i, pair in enumerate(did.masks):
+        lone = (None, pair[1]) if silent == 0 else (pair[0], None)
+        told.append(stage.see(lone if 25 <= i < 45 else pair))
+    assert {t.body.views for t in told[25:45]} == {"2" if silent == 0 else "1"}
+    assert {t.body.status for t in told[25:45]} == {"tracking"}
+    missed = missed_mm(told, did.joints_m)
+    assert missed[25:45].mean() < 150
+    assert missed[48:].mean() < 60
+    assert told[-1].body.views == "both"
+
+
+def test_a_body_that_turns_about_is_followed_by_all_its_joints() -> None:
+    """L4: from facing camera 1 through camera 2 to facing away, 180 degrees in two seconds."""
+    turn = np.array([[0.0, 0.3, 0.9, 1.0], [0.0, 0.0, -180.0, -180.0]])
+    did = shown("raise_right_lateral", turn)
+    stage = default()
+    told = [stage.see(pair) for pair in did.masks]
+    across = np.array([joints(t)[0] - joints(t)[1] for t in told])
+    yaw_deg = np.degrees(np.arctan2(-across[:, 2], across[:, 0]))
+    true = np.interp(np.linspace(0, 1, len(told)), *turn)
+    off = (yaw_deg - true + 180.0) % 360.0 - 180.0
+    assert np.mean(np.abs(off) < 45.0) > 0.95
+
+
+def test_what_is_sure_is_near_and_what_is_not_is_less_often() -> None:
+    sure, near = [], []
+    for posture in ("swing_right_circles", "walk_slow_bigswing"):
+        did, stage = shown(posture), default()
+        told = [stage.see(pair) for pair in did.masks]
+        near.append(missed_mm(told, did.joints_m) < 50)
+        sure.append([np.array(t.body.confidence)[AT] for t in told])
+    said, true = np.concatenate(sure).ravel(), np.concatenate(near).ravel()
+    assert 0.0 <= said.min() <= said.max() <= 1.0
+    assert true[said > 0.8].mean() > true[said < 0.5].mean() + 0.2
+
+
+def test_the_memory_goes_with_the_person() -> None:
+    """An empty room forgets the pose; the body that was measured stays."""
+    did = shown("squat")
+    stage = default()
+    for pair in did.masks[: (did.phase == TPOSE).sum() + 10]:
+        stage.see(pair)
+    assert stage.state.insight is not None
+    empty = np.zeros((HEIGHT, WIDTH), np.bool_)
+    stage.see((empty, empty))
+    assert stage.state.insight is None
+    assert stage.state.opening.measured
