@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bits import count
+from common.bits import count, count_both
 from common.body import (
     ANGLE_NAMES,
     ANGLES_IN_POSE,
@@ -21,8 +21,7 @@ from common.body import (
     thesis_bdp,
 )
 from common.camera import Camera, Rig, centre, project, ray
-from common.kernel import match, view_of
-from common.kinematics import ALL_LIMBS
+from common.kernel import score as similarity_of
 from common.messages import (
     Body,
     Facing,
@@ -33,9 +32,10 @@ from common.messages import (
     Status,
     ViewerNumber,
 )
-from common.stickman import Stickman
+from common.stickman import BREADTH, GIRTH, POSE_SIZE, STATURE, Stickman
+from common.strokes import ALL_SEGMENTS, draw_segments
 from integrator import insight, signs, smoothing
-from integrator.lifting import ORIENTATIONS, Lifted, Orientation, lift
+from integrator.lifting import ORIENTATIONS, SWAPPED, Lifted, Orientation, lift
 from integrator.limbs import PLACES, pose_of
 from integrator.two_outlines import packed
 
@@ -47,16 +47,17 @@ UNSEEN: Final = 0.25
 """Share of its confidence that the end of a hidden segment keeps."""
 TILTED_DEG: Final = 15.0
 """A segment that leans less hardly moves with its sign."""
-SURELY: Final = 1.15
+SURELY: Final = 1.25
 """The lifted body goes before the proposed one where its S is higher by this factor."""
 SIDEWAYS_DEG: Final = 20.0
 """Somebody who is turned so near to a right angle is seen from the side."""
 TWELVE: Final = [JOINT_NAMES.index(name) for name in PLACES]
-SWAPPED: Final = [
-    JOINT_NAMES.index({"l_": "r_", "r_": "l_"}.get(name[:2], name[:2]) + name[2:])
-    for name in JOINT_NAMES
+ACROSS: Final = [
+    [JOINT_NAMES.index(f"{side}_{name}") for side in "rl"] for name in ("shoulder", "hip")
 ]
-"""Where a list by JOINT_NAMES has the other side's."""
+"""The lines of the shoulders and of the hips."""
+GIRTHS: Final = (1.0, 1.15, 1.3)
+"""How thick clothed limbs may be over those of the proportions."""
 PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
 
 
@@ -104,7 +105,7 @@ class Hypothesis(NamedTuple):
     """(15, 3) world."""
     pose: Vector
     score: float
-    """S of its cylinders in the picture."""
+    """S of its parts in the picture."""
     confidence: Vector
     """(15,)"""
     settled: Settled
@@ -166,13 +167,14 @@ def _lifted(state: State, report: Report, told: Inputs) -> tuple[State, Hypothes
     picture = (np.array(fit.joints_px), fit.breadth, lengths_m, px_per_m)
     choice = signs.choose(state.memory, *picture, told.depth, told.orientation)
     lifted = lift(*picture, choice.signs, choice.orientation)
-    state = state._replace(memory=signs.remembered(state.memory, lifted.joints_m, choice))
+    memory = signs.remembered(state.memory, lifted.joints_m, choice, picture[0], fit.breadth)
+    state = state._replace(memory=memory)
     pixels = _own_sides(picture[0], choice)
     for name, place in told.joints_px.items():
         pixels[JOINT_NAMES.index(name)] = place
     joints_m = in_room(state, pixels, lifted, px_per_m)
     pose = _pose(state, joints_m)
-    score = fit.score if state.printed else _score(state, pose, report)
+    score = fit.score if state.printed else _score(state, pixels, report)
     depth = tuple(float(sure) for sure in choice.confidence)
     settled = Settled(choice.orientation, choice.orientation_confidence, depth)
     return state, Hypothesis(joints_m, pose, score, _sure(fit, lifted, choice), settled)
@@ -182,6 +184,7 @@ def _proposed(
     state: State, report: Report, told: Inputs, dt_s: float
 ) -> tuple[State, Hypothesis | None]:
     """What the outline proposes, the crown where the stick body has it."""
+    assert report.fit is not None
     seen = (report, None) if state.number == 1 else (None, report)
     rig = Rig(report.width, report.height, (state.camera, state.camera))
     known = insight.step(state.recall, state.bdp, rig, seen, dt_s)
@@ -190,16 +193,17 @@ def _proposed(
     joints_m = np.empty((len(JOINT_NAMES), 3))
     joints_m[insight.AT] = known.joints_m
     joints_m[PELVIS] = known.joints_m[insight.propose.HIPS].mean(axis=0)
-    joints_m[NECK] = known.joints_m[insight.propose.SHOULDERS].mean(axis=0)
-    up = joints_m[NECK] - joints_m[PELVIS]
-    joints_m[HEAD] = joints_m[NECK] + up * state.man.lengths[1] / state.man.lengths[0]
+    middle = known.joints_m[insight.propose.SHOULDERS].mean(axis=0)
+    up = (middle - joints_m[PELVIS]) / max(float(np.linalg.norm(middle - joints_m[PELVIS])), 1e-9)
+    joints_m[NECK] = middle + up * state.man.lengths[11] * state.stature_m
+    joints_m[HEAD] = _at_depth(state.camera, report.fit.joints_px[HEAD], joints_m[NECK])
     for name, place in told.joints_px.items():
         at = JOINT_NAMES.index(name)
         joints_m[at] = _at_depth(state.camera, place, joints_m[at])
     pose = _pose(state, joints_m)
     depth = tuple(float(sure) for sure in known.sure[LIMB_ENDS[:, 1]])
     settled = Settled(_faces(state, joints_m), float(known.sure[PELVIS]), depth)
-    score = _score(state, pose, report)
+    score = _score(state, project(state.camera, joints_m), report)
     return state._replace(recall=known.memory), Hypothesis(
         joints_m, pose, score, known.sure, settled
     )
@@ -234,11 +238,27 @@ def _pose(state: State, joints_m: NDArray[np.float64]) -> Vector:
     return pose_of(joints_m[TWELVE], body_vector(state.bdp), before)
 
 
-def _score(state: State, pose: Vector, report: Report) -> float:
-    """S of the body in the picture, true perspective."""
-    seen, view = packed(report), view_of(state.camera)
-    body = body_vector(state.bdp)
-    return float(match(body, pose, view, ALL_LIMBS, report.width, seen, count(seen)))
+def _score(state: State, joints_px: NDArray[np.float64], report: Report) -> float:
+    """S of a body with these joints, drawn as the stick body is, as thick as fits best."""
+    fit = report.fit
+    assert fit is not None
+    ends = np.empty((12, 4))
+    ends[: len(LIMBS)] = joints_px[LIMB_ENDS].reshape(-1, 4)
+    lines = joints_px[ACROSS]
+    ends[len(LIMBS) :] = lines.reshape(-1, 4)
+    stick = np.ones(POSE_SIZE)
+    stick[STATURE] = fit.stature_px
+    broad = 2 * state.man.lengths[10] * fit.stature_px
+    stick[BREADTH] = min(1.0, float(np.linalg.norm(lines[0, 1] - lines[0, 0])) / broad)
+    seen, found = packed(report), 0.0
+    for girth in GIRTHS:
+        stick[GIRTH] = girth
+        bits = np.zeros_like(seen)
+        draw_segments(
+            ends, stick, state.man.parts, state.man.depth, ALL_SEGMENTS, report.width, bits
+        )
+        found = max(found, float(similarity_of(count_both(bits, seen), count(bits), count(seen))))
+    return found
 
 
 def in_room(
