@@ -9,7 +9,7 @@ from common.camera import paper_rig, project
 from common.messages import Body, Box, Fit, Report, pack
 from common.stickman import ADULT, ANGLE, THESIS, Stickman, joints_px, standing
 from integrator import one_view
-from integrator.one_view import Inputs, State
+from integrator.one_outline import Inputs, State
 
 WIDTH, HEIGHT, TALL_PX = 160, 120, 80.0
 CAMERA = paper_rig((WIDTH, HEIGHT), (200.0, 200.0), (4.375, 4.375)).cameras[0]

@@ -19,7 +19,7 @@ from common.similarity import Mask
 from common.stickman import ADULT, THESIS
 from integrator import one_view
 from integrator.assumed import assumed_camera
-from integrator.one_view import Inputs, Settled
+from integrator.one_outline import Inputs, Settled
 from viewer import silhouette, stick
 from viewer.background import Background
 from viewer.capture import recorded

@@ -139,7 +139,7 @@ def follow(job: Job, folder: Path, decoder: Decoder, console: Console) -> dict[s
         _write_picture(folder / "background.png", marked(found.room))
     odd = _animate(folder, arrays)
     with filming(folder / "overlay.avi", found.rate_hz) as film:
-        for picture in overlaid(found, job, decoder):
+        for picture in overlaid(found, decoder):
             film.write(picture)
     for warning in (*facts["warnings"], *odd):
         warn(console, warning)
@@ -154,7 +154,7 @@ def marked(room: Background) -> NDArray[np.uint8]:
     return picture
 
 
-def overlaid(found: Followed, job: Job, decoder: Decoder) -> Iterator[NDArray[np.uint8]]:
+def overlaid(found: Followed, decoder: Decoder) -> Iterator[NDArray[np.uint8]]:
     """Every frame with its outline and stick, the lifted body beside it."""
     for outline, body, picture in zip(
         found.outlines, found.bodies, _pictures(found, decoder), strict=False

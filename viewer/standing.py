@@ -3,6 +3,7 @@
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import theilslopes
 
 from common.body import Vector
@@ -27,7 +28,7 @@ def standing_rows(mask: Mask) -> tuple[float, float]:
     return float(rows[middle].min()), float(bottom)
 
 
-def statures_px(crowns: Vector, soles: Vector, whole: Vector) -> Vector:
+def statures_px(crowns: Vector, soles: Vector, whole: NDArray[np.bool_]) -> Vector:
     """Height of the person standing upright, at the place of each frame, (n,) pixels.
 
     One height of the clip holds for all frames, not each frame's own: a squat would shrink it.
@@ -40,7 +41,7 @@ def statures_px(crowns: Vector, soles: Vector, whole: Vector) -> Vector:
     """
     heights = soles - crowns
     seen = np.isfinite(heights)
-    told = seen & (np.asarray(whole, bool) if (seen & whole).any() else seen)
+    told = seen & (whole if (seen & whole).any() else seen)
     if not told.any():
         return np.full(len(heights), np.nan)
     slope = 0.0
