@@ -1,6 +1,7 @@
 """The teaching of proposals, held against outlines and against the mean pose."""
 
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,7 +10,8 @@ from rich.console import Console
 from integrator import propose
 from integrator.window import Look
 from synth.outlines import outlines
-from tritrack.proposals import Example, example, example_of, learnt
+from tritrack.proposals import Example, example, example_of, learnt, train_proposals
+from tritrack.training import TrainingError
 
 QUIET = Console(quiet=True)
 
@@ -38,10 +40,12 @@ def test_a_seed_is_one_lesson() -> None:
     assert all(np.array_equal(a, b) for a, b in zip(one, again, strict=True))
 
 
-def test_learning_without_pytorch_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_learning_without_pytorch_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.setitem(sys.modules, "torch", None)
-    with pytest.raises(RuntimeError, match=r"tritrack\[train\]"):
-        learnt([], 0, QUIET)
+    with pytest.raises(TrainingError, match=r"tritrack\[train\]"):
+        train_proposals(tmp_path / "n.npz", 0, QUIET)
 
 
 @pytest.mark.slow

@@ -241,13 +241,8 @@ def train(
     tell(facts, json_wanted, f"{len(facts['sequences'])} postures learnt, written to {out}")
 
 
-evaluate_app = typer.Typer(help="Measure how well people never learnt from are recognised.")
+evaluate_app = typer.Typer(help="Measure how well people are tracked, and recognised.")
 app.add_typer(evaluate_app, name="evaluate")
-
-
-@evaluate_app.callback()
-def every_evaluation() -> None:
-    """Keep `postures` a command of its own."""
 
 
 @evaluate_app.command("postures")
@@ -271,6 +266,28 @@ def evaluate_postures(
 
     report = evaluating.evaluate_postures(runs, out, split, recognizer, mode, console)
     tell(report, json_wanted, report["table"])
+
+
+@evaluate_app.command("tracking")
+def evaluate_tracking(
+    clips: Annotated[list[Path], typer.Argument(help="Clips with a truth, or their run folders.")],
+    out: Out,
+    runs: Annotated[
+        Path | None, typer.Option(help="Where runs stand; clips without one are tracked into it.")
+    ] = None,
+    mode: ModeName = None,
+    size: Size = None,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Track clips and hold joints, silhouettes, lengths and confidence against their truth.
+
+    Example: tritrack evaluate tracking clips/*/ --out report
+    """
+    from tritrack import accuracy_report, against_truth
+
+    report = against_truth.evaluate_tracking(clips, out, runs, mode, size, console)
+    facts = accuracy_report.headline(report)
+    tell(facts, json_wanted, f"{accuracy_report.line(report)}; written to {out}")
 
 
 @app.command()

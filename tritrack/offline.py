@@ -205,7 +205,7 @@ def track_all(
             the end when any clip could not be used.
         RunError: When a run folder cannot be written.
     """
-    runs = _run_names(paths, console)
+    runs = run_names(without_plain_files(paths, console))
     done: dict[str, Any] = {}
     with Decoders() as decoders, bar(console) as progress:
         for name, path in progress.track(runs.items(), description="tracking"):
@@ -224,10 +224,14 @@ def track_all(
     return {"clips": done}
 
 
-def _run_names(paths: Sequence[Path], console: Console) -> dict[str, Path]:
-    """What to track, by the name of its run folder: the clip folder's, or the settings file's."""
+def run_names(paths: Sequence[Path]) -> dict[str, Path]:
+    """What to track, by the name of its run folder: the clip folder's, or the settings file's.
+
+    Raises:
+        ClipsFailed: When two would have one name.
+    """
     runs: dict[str, Path] = {}
-    for path in without_plain_files(paths, console):
+    for path in paths:
         name = path.stem if path.is_file() else path.resolve().name
         if name in runs:
             raise ClipsFailed(

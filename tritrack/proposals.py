@@ -15,6 +15,7 @@ from integrator.window import BESIDE, CELLS, look
 from synth.outlines import Outline, outlines
 from synth.skeleton import JOINTS as ALL_JOINTS
 from tritrack.terminal import bar
+from tritrack.training import TrainingError
 
 PERFORMANCES: Final = 12_000
 """How many are learnt from: some sixty instants each."""
@@ -26,7 +27,7 @@ LIFTED: Final = 0.02
 """What is added to a component's spread before dividing by it, in those of the first."""
 LAYERS: Final = (384, 384, 256)
 """Units that think, remember and join."""
-EPOCHS, BATCH, RATE, WARM_STEPS = 20, 32, 1.5e-3, 200
+EPOCHS, BATCH, RATE, WARM_STEPS = 14, 32, 1.5e-3, 200
 DECAY: Final = 1e-4
 STEEPEST: Final = 1.0
 """Size that a slope is cut to."""
@@ -67,14 +68,24 @@ def train_proposals(out: Path, seed: int, console: Console) -> dict[str, Any]:
         out: The file to write.
         seed: The first performance's; also of the network's start.
         console: For progress.
+
+    Raises:
+        TrainingError: When PyTorch is not installed, or the file cannot be written.
     """
+    _torch()
+    if not out.parent.is_dir():
+        raise TrainingError(f"cannot write {out}: there is no folder {out.parent}")
     with multiprocessing.get_context("spawn").Pool() as pool, bar(console) as progress:
         seeds = range(seed, seed + PERFORMANCES)
         drawn = progress.track(
             pool.imap(example_of, seeds, chunksize=8), total=len(seeds), description="drawing"
         )
         shown = [each for each in drawn if len(each.due) >= SHORTEST]
-    save(learnt(shown, seed, console), out)
+    network = learnt(shown, seed, console)
+    try:
+        save(network, out)
+    except OSError as error:
+        raise TrainingError(f"cannot write {out}: {error.strerror}") from error
     return {"model": str(out), "instants": sum(len(each.due) for each in shown)}
 
 
@@ -120,7 +131,7 @@ def learnt(
         batch: How many are shown at once.
 
     Raises:
-        RuntimeError: When PyTorch is not installed.
+        TrainingError: When PyTorch is not installed.
     """
     torch = _torch()
     torch.manual_seed(seed)
@@ -175,7 +186,7 @@ def _torch() -> Any:
     try:
         import torch
     except ImportError as error:
-        raise RuntimeError(
+        raise TrainingError(
             "learning proposals needs PyTorch: pip install 'tritrack[train]'"
         ) from error
     return torch

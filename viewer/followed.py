@@ -23,10 +23,10 @@ from common.stickman import (
     Y,
     standing,
 )
-from common.strokes import ALL_SEGMENTS, WITHOUT_ARMS
 from viewer.normal import STATURE_PX
 from viewer.stick_costs import COSTS
 from viewer.stick_search import Moves, Task, beamed, covered, refined
+from common.strokes import ALL_SEGMENTS, WITHOUT_ARMS
 
 STARTS: Final = (1.0, 0.3)
 """Breadths of the trunk with which somebody is met of whom nothing is known."""
@@ -40,7 +40,7 @@ PELVIS_SHARE: Final = float(ADULT.lengths[HEAD] + ADULT.lengths[TORSO])
 """How far the pelvis lies below the crown, which is the top unless hands are above it, and, from
 the soles up, what is left of the stature, unless the legs are bent or lifted."""
 
-UPRIGHT_MOVES: Final = 8
+UPRIGHT_MOVES: Final = 9
 """How many of the moves are those of trunk and head."""
 COARSE, MIDDLE, FINE = (16, 4), (8, 2), (4, 2)
 """Half a window and its width at the end, in units of each move."""
@@ -65,6 +65,7 @@ def _moves() -> Moves:
     longer = {RATIO + TORSO: 1.0 / (ADULT.lengths[TORSO] * STATURE_PX)}
     moves.append((0.25, {Y: 1.0, **longer, **sunk}))  # neck and knees stay where they are
     moves += [(1.0, {ANGLE + TORSO: 1.0}), (0.02, {RATIO + TORSO: 1.0}), (0.02, {BREADTH: 1.0})]
+    moves.append((0.02, {RATIO + TORSO: 1.0, RATIO + HEAD: 1.0}))  # a bow
     moves += [(0.2, {STATURE: 1.0}), (1.0, {ANGLE + HEAD: 1.0})]
     for upper, lower in (*CHAINS[2:], *CHAINS[:2]):
         moves.append((1.0, {ANGLE + upper: 1.0, ANGLE + lower: 1.0}))
@@ -80,7 +81,7 @@ def _moves() -> Moves:
 def _bounds() -> tuple[Vector, Vector]:
     lows, highs = np.full(POSE_SIZE, -1e9), np.full(POSE_SIZE, 1e9)
     lows[RATIO:GIRTH], highs[RATIO:GIRTH] = 0.05, 1.0
-    lows[RATIO + TORSO], lows[RATIO + HEAD] = 0.5, 1.0
+    lows[RATIO + TORSO], lows[RATIO + HEAD] = 0.5, 0.5
     lows[GIRTH], highs[GIRTH] = 0.7, 1.5
     lows[BREADTH], highs[BREADTH] = 0.0, 1.0
     for segment in (TORSO, HEAD):

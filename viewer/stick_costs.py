@@ -5,7 +5,7 @@ from typing import Any, Final
 import numba
 import numpy as np
 
-from common.stickman import ANGLE, BREADTH, GIRTH, RATIO, STATURE
+from common.stickman import ANGLE, BREADTH, GIRTH, HEAD, RATIO, STATURE, TORSO
 
 (
     TIME,
@@ -20,7 +20,7 @@ from common.stickman import ANGLE, BREADTH, GIRTH, RATIO, STATURE
     GIRTH_CHANGE,
 ) = range(10)
 
-COSTS: Final = np.array([0.006, 0.2, 0.02, 0.02, 0.2, 10.0, 0.01, 0.012, 1.0, 0.5])
+COSTS: Final = np.array([0.006, 0.06, 0.02, 0.02, 0.2, 10.0, 0.01, 0.012, 1.0, 0.5])
 """In S: for a limb to swing by 60 degrees (its vector's change of 1) since it was expected; for
 trunk, legs and arms to leave the plane of the picture; for breadth and for stature to change by all
 they are; for the trunk to lean by 90 degrees; for an elbow to bend in the plane by 90, or a knee
@@ -30,6 +30,9 @@ by a stature. Chosen on r01 and r04, each halved and doubled."""
 TILTED: Final = 0.15
 """1 - ratio^2 at which a limb's leaving the plane has half its full cost (23 degrees): what cannot
 be seen stays in the plane, what can be seen is free to turn further."""
+
+STIFF_NECK: Final = 3.0
+"""How much more it costs a neck to bend in the plane than an elbow."""
 
 
 @numba.njit(cache=True)
@@ -44,9 +47,8 @@ def limb_cost(pose: Any, expected: Any, limb: int, trust: float, costs: Any) -> 
     dz = np.sqrt(1.0 - r * r) - np.sqrt(1.0 - e * e)
     moved = trust * costs[TIME] * (dx * dx + dy * dy + 0.25 * dz * dz)
     off = 1.0 - r * r
-    if limb < 2:
-        return moved + costs[TRUNK_TILT] * off
-    return moved + costs[LEG_TILT if limb < 6 else ARM_TILT] * off / (off + TILTED)
+    which = TRUNK_TILT if limb == TORSO else LEG_TILT if limb < 6 else ARM_TILT
+    return moved + costs[which] * off / (off + TILTED)
 
 
 @numba.njit(cache=True)
@@ -77,6 +79,8 @@ def pose_cost(pose: Any, ends: Any, expected: Any, trust: float, costs: Any) -> 
     total += costs[LEAN] * lean * lean + cross_cost(ends, pose, costs)
     for limb in range(10):
         total += limb_cost(pose, expected, limb, trust, costs)
+    nod = np.radians(pose[ANGLE + HEAD] - pose[ANGLE])
+    total += STIFF_NECK * costs[BEND] * (1.0 - np.cos(nod))
     for upper in (2, 3, 6, 7):
         total += bend_cost(pose, upper, costs)
     return total
