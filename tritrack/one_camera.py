@@ -23,7 +23,7 @@ from integrator.one_outline import Inputs, Settled
 from viewer import silhouette, stick
 from viewer.background import Background
 from viewer.capture import recorded
-from viewer.empty import empty_room
+from viewer.empty import room_of_clip
 from viewer.standing import standing_rows, statures_px
 
 MOST_FRAMES: Final = 50_000
@@ -82,7 +82,7 @@ def follow_clip(clip: Clip, settings: Settings, decoder: Decoder, notes: Notes) 
     """
     began = time.perf_counter()
     view = clip.views[0]
-    room, odd = empty_room(view, settings.silhouette, decoder)
+    room, odd = room_of_clip(view, settings.silhouette, decoder)
     ready = time.perf_counter()
     outlines = _outlines(clip, room, settings, decoder)
     _refuse_a_moving_camera(outlines, view.size, str(view.source))

@@ -44,6 +44,22 @@ def empty_room(
     )
 
 
+def room_of_clip(
+    view: View, settings: SilhouetteSettings, decoder: Decoder
+) -> tuple[Background, str]:
+    """The same, but from all over a clip where that shows every pixel of the room.
+
+    Light changes through a clip, and with it more than a gain can follow; an empty opening knows
+    nothing of that. It is kept where somebody stays on the spot.
+    """
+    room, odd = empty_room(view, settings, decoder)
+    if odd or view.background or isinstance(view.source, int):
+        return room, odd
+    _, sample = _looked_at(view, settings.empty_frames, decoder)
+    learnt = learn_uncovered(sample)
+    return (room if learnt.uncertain.any() else learnt), ""
+
+
 def _now(view: View, due: int, decoder: Decoder) -> list[Frame]:
     """The first frames that a camera gives."""
     return [got.picture for got in islice(decoder.frames(view.source, view.size), due)]
