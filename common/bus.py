@@ -13,13 +13,24 @@ from common.config import BusSettings
 from common.inbox import Alive, Inbox
 from common.live_bus import LiveBus
 from common.mailbox import Mailbox
-from common.messages import Message, Said
+from common.messages import MAX_BYTES, Message, Said
 
 LEASE_MS: Final = 1000
 """A process that hangs counts as gone after this; Zenoh's own 10 s would be 150 frames."""
 
 HANDSHAKE_MS: Final = 1000
 """How long a peer that accepts a connection may take to prove that it is one of ours."""
+
+ENVELOPE_BYTES: Final = 1 << 16
+"""What Zenoh's own words around a message may take. What is larger than both is dropped piece by
+piece as it comes: putting together a flood of it would cost a core."""
+
+QUEUED: Final = 16
+"""Messages that may wait for Zenoh's sending thread, its most; its own 2 are soon full."""
+
+PATIENCE_US: Final = 10_000
+"""How long a message may wait for room in a full queue before it is dropped. Zenoh's own 1 ms is
+less than a busy host lets its sending thread sleep; a link that is stuck is waited for once."""
 
 RETRY_S: Final = 0.1
 """Pause between two tries to reach the hub."""
@@ -38,7 +49,7 @@ class Bus(Protocol):
     """
 
     def publish(self, message: Message) -> None:
-        """Say a message to all who listen now; never blocks, and is dropped under congestion."""
+        """Say a message to all who listen now; under congestion it waits a moment, then drops."""
 
     def subscribe(self, kind: type[Said]) -> Inbox[Said]:
         """Hear every message of a kind that is said from now on."""
@@ -140,6 +151,9 @@ def _config(mode: str, endpoint: str) -> zenoh.Config:
         "scouting/delay": 0,
         "transport/shared_memory/enabled": False,
         "transport/link/tx/lease": LEASE_MS,
+        "transport/link/tx/queue/size/interactive_high": QUEUED,
+        "transport/link/tx/queue/congestion_control/drop/wait_before_drop": PATIENCE_US,
+        "transport/link/rx/max_message_size": MAX_BYTES + ENVELOPE_BYTES,
         "transport/unicast/open_timeout": HANDSHAKE_MS,
     }
     config = zenoh.Config()

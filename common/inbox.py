@@ -67,12 +67,16 @@ class Inbox(Generic[Said]):
             if key_of(message, self._room) != key:
                 raise MalformedMessage(f"it belongs on {key_of(message, self._room)}")
         except MalformedMessage as error:
-            self.malformed += 1
-            if self.malformed == 1:
-                pattern = pattern_of(self._kind, self._room)
-                log.warning("%s: dropped a message from %s: %s", pattern, key, error)
+            self.refuse(key, error)
             return
         self._mailbox.put(message, slot=key if TOPICS[self._kind].newest_only else None)
+
+    def refuse(self, key: str, why: MalformedMessage) -> None:
+        """Count what came on a key and is no such message; the first is logged."""
+        self.malformed += 1
+        if self.malformed == 1:
+            pattern = pattern_of(self._kind, self._room)
+            log.warning("%s: dropped a message from %s: %s", pattern, key, why)
 
 
 def checked(payload: bytes, kind: type[Said], where: str) -> Said | None:

@@ -9,7 +9,17 @@ import zenoh
 
 from common.inbox import BOUND, QUESTIONS, Alive, Inbox, answered, checked
 from common.mailbox import Mailbox
-from common.messages import TOPICS, Message, Picture, Said, encode, key_of, pattern_of
+from common.messages import (
+    TOPICS,
+    MalformedMessage,
+    Message,
+    Picture,
+    Said,
+    encode,
+    key_of,
+    pattern_of,
+    refuse_size,
+)
 
 AT_ONCE: Final = 4
 """Newest-only samples that may wait for our own thread: two viewers speak at the same moment.
@@ -53,7 +63,13 @@ class LiveBus:
         subscriber = self._session.declare_subscriber(pattern_of(kind, self._room), channel)
 
         def hear(sample: Any) -> None:
-            inbox.offer(str(sample.key_expr), sample.payload.to_bytes())
+            key = str(sample.key_expr)
+            try:
+                refuse_size(len(sample.payload))  # before it is copied: a flood costs least so
+            except MalformedMessage as error:
+                inbox.refuse(key, error)
+            else:
+                inbox.offer(key, sample.payload.to_bytes())
 
         self._listen(subscriber, hear, inbox)
         return inbox

@@ -19,6 +19,7 @@ ViewerNumber = Literal[1, 2]
 Facing = Literal["facade", "flank"]
 Status = Literal["empty", "measuring", "tracking", "predicted", "lost"]
 Views = Literal["both", "1", "2", "none"]
+CameraFault = Literal["", "frozen", "black", "saturated", "covered"]
 Pixel = tuple[float, float]
 Point = tuple[float, float, float]
 
@@ -123,6 +124,10 @@ class Report(Moment, frozen=True, kw_only=True):
     """This viewer's frame that the guide in use had heard of; -1: none."""
     fit: Fit | None = None
     """The stick body, where this view is alone."""
+    next_s: float | None = None
+    """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
+    fault: CameraFault = ""
+    """What is wrong with the picture; nobody is seen in it then."""
 
 
 class Guide(Moment, frozen=True, kw_only=True):
@@ -192,7 +197,7 @@ class Pulse(Message, frozen=True, kw_only=True):
     """How a process is doing, once a second and at its end."""
 
     process: str
-    state: Literal["starting", "ready", "running", "ended"]
+    state: Literal["starting", "ready", "running", "ended", "restarting", "given up"]
     detail: str = ""
     frames: int = 0
     fps: float = 0.0
@@ -214,10 +219,12 @@ class Cameras(Message, frozen=True, kw_only=True):
 
 
 class Ended(Message, frozen=True, kw_only=True):
-    """A viewer's clip is over."""
+    """A viewer's clip is over, or broke."""
 
     viewer: ViewerNumber
     frames: int
+    why: str = ""
+    """What broke; "" where it came to its end or was stopped."""
 
 
 class ClockQuestion(Message, frozen=True, kw_only=True):
@@ -292,14 +299,23 @@ def decode(payload: bytes, kind: type[Said]) -> Said:
         MalformedMessage: When they are too long, no MessagePack, of another protocol, of the
             wrong shape, or hold a number that is not finite.
     """
-    if len(payload) > MAX_BYTES:
-        raise MalformedMessage(f"{len(payload)} bytes, at most {MAX_BYTES} are taken")
+    refuse_size(len(payload))
     try:
         message = msgspec.msgpack.decode(payload, type=kind)
     except (msgspec.DecodeError, RecursionError, ValueError) as error:
         raise MalformedMessage(f"no {kind.__name__}: {error}") from error
     _refuse_what_no_process_would_say(message)
     return message
+
+
+def refuse_size(size_bytes: int) -> None:
+    """Say that a payload is too large to be looked at.
+
+    Raises:
+        MalformedMessage: When it is.
+    """
+    if size_bytes > MAX_BYTES:
+        raise MalformedMessage(f"{size_bytes} bytes, at most {MAX_BYTES} are taken")
 
 
 def pack(mask: NDArray[np.bool_]) -> bytes:

@@ -58,9 +58,28 @@ def start_log(name: str, path: Path | None, level: int | str | None = None) -> N
     logging.basicConfig(
         filename=path,
         level=level or os.environ.get("TRITRACK_LOG", "INFO").upper(),
-        format=f"%(asctime)s {name:<11} %(levelname)-7s %(message)s",
+        format=_format(name),
         force=True,
     )
+
+
+@contextmanager
+def logged(name: str, path: Path) -> Iterator[None]:
+    """Write what the supervisor logs to the run's log alone: its terminal shows it in words."""
+    handler, own = logging.FileHandler(path), logging.getLogger("tritrack")
+    handler.setFormatter(logging.Formatter(_format(name)))
+    own.addHandler(handler)
+    own.propagate = False
+    try:
+        yield
+    finally:
+        own.propagate = True
+        own.removeHandler(handler)
+        handler.close()
+
+
+def _format(name: str) -> str:
+    return f"%(asctime)s {name:<11} %(levelname)-7s %(message)s"
 
 
 class Heart:
@@ -71,6 +90,10 @@ class Heart:
         self._bus, self._name, self._pace = bus, name, pace
         self._next_s = 0.0
         self._self = psutil.Process()
+
+    def hurry(self) -> None:
+        """Let the next beat be published, however young the last one is: there is news."""
+        self._next_s = 0.0
 
     def beat(
         self,

@@ -1,6 +1,7 @@
 """The integrator process: pairs of reports in, bodies and guides out; the room's clock."""
 
 import gc
+import logging
 import threading
 import time
 from typing import Final
@@ -19,7 +20,7 @@ from common.messages import (
 )
 from common.process import Heart, Place, process
 from common.rate import Pace
-from integrator import merge, noticing, pairing
+from integrator import merge, noticing, pairing, presence
 from integrator.memory import State
 from integrator.merge_rehearsal import rehearse
 from integrator.pairing import Pair
@@ -31,8 +32,10 @@ LAST_WORDS_S: Final = 1.0
 """All others meet here: how long the room stays open after the last body."""
 SUPERVISED_S: Final = 60.0
 """The same where a supervisor ends the processes in order."""
-OVERDUE_PERIODS: Final = 1.0
-"""A report whose partner is a frame late goes on alone."""
+OVERDUE_PERIODS: Final = 2.0
+"""A report whose partner is two frames late goes on alone, and so do those after it."""
+
+log = logging.getLogger(__name__)
 
 
 class Starter:
@@ -52,32 +55,52 @@ class Starter:
             self._start_s = now_s + LEAD_S
         return ClockAnswer(now_s=now_s, start_s=self._start_s)
 
+    def begun(self, report: Report) -> None:
+        """The run has begun: this process was started again, and its viewers were not."""
+        if self._start_s is None:
+            self._start_s = report.clock_s - report.captured_s
+
 
 class Ears:
-    """What the viewers say, in pairs of one instant."""
+    """What the viewers say, in pairs of one instant, and who of them is there."""
 
     def __init__(self, bus: Bus, viewers: tuple[ViewerNumber, ...], period_s: float) -> None:
         """Listen from now on."""
-        self.going = set(viewers)
-        """Viewers that have not ended."""
+        self.starter = Starter(frozenset(viewers))
+        self._numbers = {f"viewer {number}": number for number in viewers}
         self._reports, self._ended = bus.subscribe(Report), bus.subscribe(Ended)
+        self._alive = bus.watch_alive()
         self._paired = pairing.init(period_s, viewers)
+        self._present = presence.init(period_s, viewers)
         self._wait_s = OVERDUE_PERIODS * period_s
+        bus.answer(ClockQuestion, self.starter.answer)
+
+    @property
+    def going(self) -> bool:
+        """Whether any viewer may still say something."""
+        return presence.going(self._present, time.monotonic())
+
+    @property
+    def news(self) -> tuple[str, ...]:
+        """Which views were lost and found, and why."""
+        return self._present.news
 
     def pairs(self) -> list[Pair]:
         """What is complete now, or overdue; waits a moment for a report."""
         complete: list[Pair] = []
         report = self._reports.take(HEAR_S)
+        now_s = time.monotonic()
         if report is not None:
+            self.starter.begun(report)
+            self._present = presence.heard(self._present, report, now_s)
             self._paired, complete = pairing.step(self._paired, report)
-        self._paired, alone = pairing.overdue(self._paired, time.monotonic(), self._wait_s)
-        complete += alone
-        # Only when no report waits: what a viewer said before its end comes first.
-        for over in self._ended.drain() if report is None else ():
-            self.going.discard(over.viewer)
-            self._paired, last = pairing.end(self._paired, over.viewer)
-            complete += last
-        return complete
+        else:  # What a viewer said before it went comes first.
+            complete = self._who_came_and_went(now_s)
+        self._paired, alone = pairing.overdue(self._paired, now_s, self._wait_s)
+        self._present, told = presence.step(self._present, now_s)
+        for line in told:
+            log.warning(line)
+        return complete + alone
 
     def counts(self) -> dict[str, int]:
         """What was lost so far, as a Pulse tells it."""
@@ -86,6 +109,23 @@ class Ears:
             "late": self._paired.late,
             "malformed": self._reports.malformed,
         }
+
+    def _who_came_and_went(self, now_s: float) -> list[Pair]:
+        released: list[Pair] = []
+        for alive in self._alive.drain():
+            number = self._numbers.get(alive.name)
+            if number is not None and alive.alive:
+                self._present = presence.came(self._present, number, now_s)
+                self._paired = pairing.begin(self._paired, number)
+            elif number is not None:
+                self._present = presence.went(self._present, number, now_s)
+                self._paired, more = pairing.away(self._paired, number)
+                released += more
+        for over in self._ended.drain():
+            self._present = presence.ended(self._present, over, now_s)
+            self._paired, more = pairing.end(self._paired, over.viewer)
+            released += more
+        return released
 
 
 def run(
@@ -99,10 +139,9 @@ def run(
     pace = Pace(period_s)
     heart = Heart(bus, "integrator", pace)
     ears = Ears(bus, viewers, period_s)
-    bus.answer(ClockQuestion, Starter(frozenset(viewers)).answer)
-    noticed, odd = noticing.State(), "\n".join(noticing.assumed(state))
-    told_rig = False
-    heart.beat("ready", odd)
+    noticed, odd = noticing.State(), noticing.assumed(state)
+    told_rig, news = False, ears.news
+    heart.beat("ready", "\n".join(odd))
     while ears.going and not stop.is_set():
         for pair in ears.pairs():
             state, body, guide = merge.step(state, pair)
@@ -113,8 +152,12 @@ def run(
         if not told_rig and state.rig is not None:
             bus.publish(Cameras(rig=state.rig, scale_source=state.scale_source))
             told_rig = True
-        heart.beat("running", odd, **ears.counts())
-    heart.beat("ended", "\n".join(noticing.warnings(noticed, state)), **ears.counts())
+        if ears.news != news:
+            news = ears.news
+            heart.hurry()
+        heart.beat("running", "\n".join([*odd, *news]), **ears.counts())
+    odd = [*noticing.warnings(noticed, state), *ears.news]
+    heart.beat("ended", "\n".join(odd), **ears.counts())
 
 
 def main(settings: Settings, clip: Clip, place: Place = Place()) -> None:

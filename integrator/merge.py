@@ -88,14 +88,19 @@ def _with_rig(state: State, seen: Seen) -> State:
 
 
 def _faced(state: State, seen: Seen) -> State:
-    """Facade and flank, settled between the views' votes (P48); one view alone decides itself."""
+    """Facade and flank, settled between the views' votes (P48); one view alone decides itself.
+
+    Of a body that both views have measured, the one that is left decides nothing in `default`:
+    arms that are raised narrow the upper body as a turn would, and nobody is left to say no.
+    """
     first, second = seen
     if first is None or second is None:
         own = first or second
         assert own is not None
         other: Facing = "flank" if own.vote == "facade" else "facade"
         facing = (own.vote, other) if second is None else (other, own.vote)
-        return state._replace(facing=facing)
+        held = state.settings.mode == "default" and state.opening.measured
+        return state if held else state._replace(facing=facing)
     sights = [
         Sight(before, report.vote, report.upper_body_px, *report.thresholds_px)
         for before, report in zip(state.facing, (first, second), strict=True)

@@ -9,6 +9,7 @@ QUEUE: Final = 32
 
 NEVER_S: Final = float("-inf")
 
+
 Item = TypeVar("Item")
 Seen = tuple[Report | None, Report | None]
 """Reports of viewer 1 and viewer 2 in which there is somebody."""
@@ -40,6 +41,11 @@ class State(NamedTuple):
     """Reports of viewer 1 and viewer 2, oldest first."""
     over: tuple[bool, bool]
     """Viewers that say nothing more: nobody waits for them."""
+    away: tuple[bool, bool] = (False, False)
+    """Viewers that were waited for in vain, or are known to be gone: nobody waits for them, until
+    they report again."""
+    next_s: tuple[float, float] = (NEVER_S, NEVER_S)
+    """Before this no further frame of viewer n is taken, as it said itself."""
     passed_s: tuple[float, float] = (NEVER_S, NEVER_S)
     """A report of viewer n must be younger than this: its instant has gone out already."""
     dropped: int = 0
@@ -62,9 +68,9 @@ def step(state: State, report: Report) -> tuple[State, list[Pair]]:
     """Take a report in; give out what is complete now, in the order of time.
 
     A report goes out with the other viewer's of the same instant (half a period apart at most),
-    or alone as soon as the other viewer has said something later. So what goes out follows from
-    what each viewer said, not from how the two were heard interleaved, as long as no queue
-    overflows and nothing was called overdue.
+    or alone as soon as the other viewer has said something later, or that it takes no picture
+    before. So what goes out follows from what each viewer said, not from how the two were heard
+    interleaved, as long as no queue overflows and nothing was called overdue.
     """
     own = report.viewer - 1
     if state.over[own]:
@@ -74,7 +80,26 @@ def step(state: State, report: Report) -> tuple[State, list[Pair]]:
         waiting=_with(state.waiting, own, queue[-QUEUE:]),
         dropped=state.dropped + max(0, len(queue) - QUEUE),
     )
+    if report.captured_s > state.passed_s[own] - state.period_s:
+        state = state._replace(away=_with(state.away, own, False))
+    if report.next_s is not None:
+        state = state._replace(next_s=_with(state.next_s, own, report.next_s))
     return _settled(state)
+
+
+def begin(state: State, viewer: ViewerNumber) -> State:
+    """A viewer that had ended, or was away, is there again: it is waited for."""
+    own = viewer - 1
+    return state._replace(
+        over=_with(state.over, own, False),
+        away=_with(state.away, own, False),
+        next_s=_with(state.next_s, own, NEVER_S),
+    )
+
+
+def away(state: State, viewer: ViewerNumber) -> tuple[State, list[Pair]]:
+    """A viewer is known to be gone: nothing waits for it until it reports again."""
+    return _settled(state._replace(away=_with(state.away, viewer - 1, True)))
 
 
 def end(state: State, viewer: ViewerNumber) -> tuple[State, list[Pair]]:
@@ -85,17 +110,17 @@ def end(state: State, viewer: ViewerNumber) -> tuple[State, list[Pair]]:
 def overdue(state: State, now_s: float, wait_s: float) -> tuple[State, list[Pair]]:
     """Let reports out alone that have waited for their partner long enough (live runs only).
 
+    Its viewer is away then, and what waits for it goes out, too.
+
     Args:
         state: What waits.
         now_s: The room's clock.
         wait_s: How old a report may grow by that clock.
     """
-    pairs: list[Pair] = []
     for own in (0, 1):
-        while state.waiting[own] and state.waiting[own][0].clock_s + wait_s < now_s:
-            state, pair = _alone(state, own)
-            pairs.append(pair)
-    return state, pairs
+        if state.waiting[own] and state.waiting[own][0].clock_s + wait_s < now_s:
+            return away(state, 2 if own == 0 else 1)
+    return state, []
 
 
 def _settled(state: State) -> tuple[State, list[Pair]]:
@@ -110,11 +135,19 @@ def _settled(state: State) -> tuple[State, list[Pair]]:
                 state, pair = _together(state)
             else:
                 state, pair = _alone(state, 0 if apart_s > 0 else 1)
-        elif (first and state.over[1]) or (second and state.over[0]):
+        elif (first or second) and not _awaited(state, 1 if first else 0):
             state, pair = _alone(state, 0 if first else 1)
         else:
             return state, pairs
         pairs.append(pair)
+
+
+def _awaited(state: State, other: int) -> bool:
+    """Whether a viewer that has said nothing may still have a partner for the oldest report."""
+    if state.over[other] or state.away[other]:
+        return False
+    oldest = state.waiting[1 - other][0]
+    return state.next_s[other] - oldest.captured_s <= state.period_s / 2
 
 
 def _without_late(state: State) -> State:

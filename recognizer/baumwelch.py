@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from recognizer.codebook import SYMBOLS, Codebook, Symbols
+from recognizer.codebook import Codebook, Symbols
 from recognizer.postures import STATES, Array, Topology
 
 NEIGHBOUR_WIDTH: Final = 0.25
@@ -35,40 +35,43 @@ VARIANCE_FLOOR: Final = 0.01
 """Of a direction: 6 degrees, what the tracker errs by; no state shall know a person better. 0.005
 and 0.01 named 415 and 417 of 420 held-out made-up performances, 0.05 only 411."""
 
-ALLOWED: Final[dict[Topology, NDArray[np.bool_]]] = {
-    "left-right": np.eye(STATES, dtype=np.bool_) | np.eye(STATES, k=1, dtype=np.bool_),
-    "ergodic": np.ones((STATES, STATES), dtype=np.bool_),
-}
-"""Which state may follow which: (from, to). Postures repeat and windows begin anywhere in them, so
-any state may follow any: chosen on four made-up performers outside training (52 of 60 right against
-47, tracked in `default` mode; 49 against 45 in `paper` mode)."""
 
-START: Final[dict[Topology, Array]] = {
-    "left-right": np.eye(STATES)[0],
-    "ergodic": np.full(STATES, 1 / STATES),
-}
-"""Where a sequence begins; not trained, few sequences would only make it narrow."""
+def allowed(topology: Topology, states: int) -> NDArray[np.bool_]:
+    """Which state may follow which: (from, to).
+
+    Postures repeat and windows begin anywhere in them, so any state may follow any: chosen on four
+    made-up performers outside training (52 of 60 right against 47, tracked in `default` mode; 49
+    against 45 in `paper` mode).
+    """
+    if topology == "ergodic":
+        return np.ones((states, states), np.bool_)
+    return np.eye(states, dtype=np.bool_) | np.eye(states, k=1, dtype=np.bool_)
+
+
+def start(topology: Topology, states: int) -> Array:
+    """Where a sequence begins, (states,); not trained, few sequences would only make it narrow."""
+    return np.full(states, 1 / states) if topology == "ergodic" else np.eye(states)[0]
 
 
 def train_densities(
-    given: list[Array], topology: Topology, seed: int
+    given: list[Array], topology: Topology, seed: int, states: int = STATES
 ) -> tuple[Array, Array, Array]:
-    """Transition (STATES, STATES), mean and variance (STATES, 27) of one posture.
+    """Transition (states, states), mean and variance (states, 27) of one posture.
 
-    Baum-Welch starts from five clusters of frames or, where states follow each other, from each
-    sequence cut into five.
+    Baum-Welch starts from a cluster of frames for each state or, where states follow each other,
+    from each sequence cut into as many stretches.
 
     Raises:
         ValueError: When there are fewer different vectors than states.
     """
     from hmmlearn.hmm import GaussianHMM
 
-    shown = np.concatenate(given)
-    if len(np.unique(shown, axis=0)) < STATES:
-        raise ValueError(f"fewer than {STATES} different poses in a posture: give more clips")
-    state = _clusters(shown, seed) if topology == "ergodic" else _fifths(given)
+    shown, may = np.concatenate(given), allowed(topology, states)
+    if len(np.unique(shown, axis=0)) < states:
+        raise ValueError(f"fewer than {states} different poses in a posture: give more clips")
+    state = _clusters(shown, seed, states) if topology == "ergodic" else _stretch(given, states)
     hmm: Any = GaussianHMM(
-        STATES,
+        states,
         "diag",
         init_params="",
         params="mct",
@@ -77,29 +80,29 @@ def train_densities(
         means_prior=shown.mean(axis=0),
         means_weight=MEAN_WEIGHT,
     )
-    hmm.startprob_ = START[topology]
-    hmm.transmat_ = _rows(np.where(ALLOWED[topology], 0.05, 0.0) + 0.75 * np.eye(STATES))
-    hmm.means_ = np.stack([shown[state == i].mean(axis=0) for i in range(STATES)])
-    hmm.covars_ = np.stack([shown[state == i].var(axis=0) for i in range(STATES)]) + VARIANCE_FLOOR
+    hmm.startprob_ = start(topology, states)
+    hmm.transmat_ = _rows(np.where(may, 0.05, 0.0) + 0.75 * np.eye(states))
+    hmm.means_ = np.stack([shown[state == i].mean(axis=0) for i in range(states)])
+    hmm.covars_ = np.stack([shown[state == i].var(axis=0) for i in range(states)]) + VARIANCE_FLOOR
     with _silent("hmmlearn.base"):
         hmm.fit(shown, [len(one) for one in given])
     variance = np.maximum(np.diagonal(hmm.covars_, axis1=1, axis2=2), VARIANCE_FLOOR)
-    return _open(hmm.transmat_, topology), hmm.means_, variance
+    return _open(hmm.transmat_, may), hmm.means_, variance
 
 
-def _clusters(shown: Array, seed: int) -> NDArray[np.int64]:
-    """Which of five clusters each vector belongs to."""
+def _clusters(shown: Array, seed: int, states: int) -> NDArray[np.int64]:
+    """Which of the clusters each vector belongs to."""
     from sklearn.cluster import KMeans
     from threadpoolctl import threadpool_limits
 
     with threadpool_limits(1):
-        found = KMeans(STATES, n_init=1, random_state=seed).fit(shown)
+        found = KMeans(states, n_init=1, random_state=seed).fit(shown)
     return np.asarray(found.labels_, np.int64)
 
 
-def _fifths(given: Sequence[NDArray[Any]]) -> NDArray[np.int64]:
-    """Which fifth of its sequence each entry of all sequences stands in."""
-    return np.concatenate([np.arange(len(one)) * STATES // len(one) for one in given])
+def _stretch(given: Sequence[NDArray[Any]], states: int) -> NDArray[np.int64]:
+    """Which of equal stretches of its sequence each entry of all sequences stands in."""
+    return np.concatenate([np.arange(len(one)) * states // len(one) for one in given])
 
 
 def nearness(codebook: Codebook) -> Array:
@@ -109,33 +112,40 @@ def nearness(codebook: Codebook) -> Array:
     return near / near.sum(axis=1, keepdims=True)
 
 
-def train_symbols(given: list[Symbols], near: Array, topology: Topology) -> tuple[Array, Array]:
-    """Transition (STATES, STATES) and emission (STATES, SYMBOLS) of one posture.
+def train_symbols(
+    given: list[Symbols], near: Array, topology: Topology, states: int = STATES
+) -> tuple[Array, Array]:
+    """Transition (states, states) and emission (states, symbols) of one posture.
 
-    Baum-Welch starts from each sequence cut into five equal stretches, one a state.
+    Baum-Welch starts from each sequence cut into equal stretches, one a state.
+
+    Args:
+        near: What `nearness` gave, (symbols, symbols).
     """
     from hmmlearn.hmm import CategoricalHMM
 
+    may = allowed(topology, states)
     hmm: Any = CategoricalHMM(
-        STATES, n_features=SYMBOLS, init_params="", params="te", n_iter=ROUNDS
+        states, n_features=len(near), init_params="", params="te", n_iter=ROUNDS
     )
-    hmm.startprob_ = START[topology]
-    hmm.transmat_ = _rows(ALLOWED[topology].astype(np.float64))
-    hmm.emissionprob_ = _smooth(_stretches(given), near)
+    hmm.startprob_ = start(topology, states)
+    hmm.transmat_ = _rows(may.astype(np.float64))
+    hmm.emissionprob_ = _smooth(_shown_by(given, states, len(near)), near)
     with _silent("hmmlearn.base"):
         hmm.fit(np.concatenate(given)[:, np.newaxis], [len(sequence) for sequence in given])
-    return _open(hmm.transmat_, topology), _smooth(hmm.emissionprob_, near)
+    return _open(hmm.transmat_, may), _smooth(hmm.emissionprob_, near)
 
 
-def _open(transition: Array, topology: Topology) -> Array:
+def _open(transition: Array, may: NDArray[np.bool_]) -> Array:
     """Transitions of which every allowed one is possible."""
-    return _rows(np.where(ALLOWED[topology], np.maximum(transition, TRANSITION_FLOOR), 0.0))
+    return _rows(np.where(may, np.maximum(transition, TRANSITION_FLOOR), 0.0))
 
 
-def _stretches(given: list[Symbols]) -> Array:
-    """How often each fifth of the sequences shows each symbol, (STATES, SYMBOLS), rows sum to 1."""
-    counts = np.zeros((STATES, SYMBOLS))
-    np.add.at(counts, (_fifths(given), np.concatenate(given)), 1.0)
+def _shown_by(given: list[Symbols], states: int, count: int) -> Array:
+    """How often each stretch of the sequences shows each symbol, (states, symbols), rows sum to
+    1."""
+    counts = np.zeros((states, count))
+    np.add.at(counts, (_stretch(given, states), np.concatenate(given)), 1.0)
     return _rows(counts)
 
 

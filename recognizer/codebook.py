@@ -25,25 +25,25 @@ STARTS: Final = 4
 """Runs of k-means from different codewords; the tightest is kept."""
 
 
-def fit(seen: Features, seed: int = 0) -> Codebook:
+def fit(seen: Features, seed: int = 0, count: int = SYMBOLS) -> Codebook:
     """Codewords for the feature vectors (n, 16) of the people to learn from, and of nobody else.
 
     k-means with a seed, in one thread: the same vectors give the same codewords, bit for bit. The
     paper does not say how its symbols were found (P57).
 
     Raises:
-        ValueError: When fewer than 64 different vectors are given.
+        ValueError: When fewer different vectors than symbols are given.
     """
     from sklearn.cluster import KMeans
     from threadpoolctl import threadpool_limits
 
     different = len(np.unique(seen, axis=0))
-    if different < SYMBOLS:
+    if different < count:
         raise ValueError(
-            f"{different} different poses are too few for {SYMBOLS} symbols: give more clips"
+            f"{different} different poses are too few for {count} symbols: give more clips"
         )
     with threadpool_limits(1):
-        found = KMeans(SYMBOLS, n_init=STARTS, random_state=seed).fit(seen * WEIGHTS)
+        found = KMeans(count, n_init=STARTS, random_state=seed).fit(seen * WEIGHTS)
     return np.asarray(found.cluster_centers_, np.float64)
 
 

@@ -7,9 +7,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from recognizer.features import Rows
+from recognizer.codebook import SYMBOLS
+from recognizer.features import Rows, with_pose
 from recognizer.learning import train
-from recognizer.postures import POSTURES, Recognizer, Topology, name
+from recognizer.postures import (
+    POSTURES,
+    STATES,
+    PostureModel,
+    Recognizer,
+    Topology,
+    likeliest,
+    scored,
+)
 
 Z_95 = 1.959964
 """Standard normal quantile of a two-sided interval of 95 %."""
@@ -21,6 +30,8 @@ class Recording(NamedTuple):
     performer: str
     posture: str
     rows: Rows
+    clip: str = ""
+    """Where it comes from."""
 
 
 class Outcome(NamedTuple):
@@ -28,6 +39,21 @@ class Outcome(NamedTuple):
 
     truth: str
     named: str
+    performer: str = ""
+    clip: str = ""
+    margin: float = math.nan
+    """By how much a frame's log-likelihood of the truth is above that of the best other posture,
+    on average; negative where it was mistaken, NaN where the truth has no model."""
+    fit: float = math.nan
+    """Log-likelihood of a frame of what was named, on average."""
+    fit_of_others: float = math.nan
+    """The same of the best posture but the truth: what would be named had nobody taught it."""
+    taught: bool = True
+    """The truth has a model."""
+
+
+Fold = tuple[list[Recording], list[Recording]]
+"""Whom to learn from, and whom to name."""
 
 
 def recognise(
@@ -36,6 +62,8 @@ def recognise(
     recognizer: Recognizer = "default",
     topology: Topology = "ergodic",
     seed: int = 0,
+    states: int = STATES,
+    symbols: int = SYMBOLS,
 ) -> list[Outcome]:
     """Train on some people and name what others do.
 
@@ -43,30 +71,48 @@ def recognise(
         ValueError: When somebody is in both sets: that would measure memory.
     """
     performers = sorted({recording.performer for recording in learnt_from})
-    both = sorted({recording.performer for recording in tested_on} & set(performers))
-    if both:
-        raise ValueError(f"{', '.join(both)}: in training and in test; split by performer")
     sequences: dict[str, list[Rows]] = {}
     for recording in learnt_from:
         sequences.setdefault(recording.posture, []).append(recording.rows)
-    model = train(sequences, recognizer, topology, seed, performers)
-    return [Outcome(one.posture, name(model, one.rows)) for one in tested_on]
+    refuse_who_was_learnt_from(performers, tested_on)
+    model = train(sequences, recognizer, topology, seed, performers, states, symbols)
+    return named_by(model, tested_on)
 
 
-def leave_one_performer_out(
-    recordings: Sequence[Recording],
-    recognizer: Recognizer = "default",
-    topology: Topology = "ergodic",
-    seed: int = 0,
-) -> Iterator[Outcome]:
-    """Each performer named by a model of all others."""
+def refuse_who_was_learnt_from(performers: Sequence[str], tested_on: Sequence[Recording]) -> None:
+    """Nobody is tested who was seen in training.
+
+    Raises:
+        ValueError: When somebody is.
+    """
+    both = sorted({recording.performer for recording in tested_on} & set(performers))
+    if both:
+        raise ValueError(f"{', '.join(both)}: in training and in test; split by performer")
+
+
+def named_by(model: PostureModel, tested_on: Sequence[Recording]) -> list[Outcome]:
+    """What a model takes each recording for (P58)."""
+    return [_outcome(model, one) for one in tested_on]
+
+
+def _outcome(model: PostureModel, one: Recording) -> Outcome:
+    seen, taught = with_pose(one.rows), one.posture in model.names
+    named, margin, fit, other = "", math.nan, math.nan, math.nan
+    if len(seen):
+        fits = {name: score / len(seen) for name, score in scored(model, seen).items()}
+        named = likeliest(fits)
+        fit, own = fits[named], fits.pop(one.posture, math.nan)
+        other = max(fits.values(), default=math.nan)
+        margin = own - other
+    return Outcome(one.posture, named, one.performer, one.clip, margin, fit, other, taught)
+
+
+def folds(recordings: Sequence[Recording]) -> Iterator[Fold]:
+    """Each performer to be named by a model of all others."""
     for performer in sorted({recording.performer for recording in recordings}):
-        yield from recognise(
+        yield (
             [one for one in recordings if one.performer != performer],
             [one for one in recordings if one.performer == performer],
-            recognizer,
-            topology,
-            seed,
         )
 
 

@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from recognizer.baumwelch import START, nearness, train_densities, train_symbols
+from recognizer.baumwelch import nearness, start, train_densities, train_symbols
 from recognizer.bearing import bearings
-from recognizer.codebook import fit, symbols
+from recognizer.codebook import SYMBOLS, Codebook, fit, symbols
 from recognizer.features import Rows, features, with_pose
 from recognizer.postures import (
     STATES,
@@ -16,6 +16,7 @@ from recognizer.postures import (
     Recognizer,
     SymbolModel,
     Topology,
+    joined,
 )
 
 
@@ -25,6 +26,8 @@ def train(
     topology: Topology = "ergodic",
     seed: int = 0,
     performers: Sequence[str] = (),
+    states: int = STATES,
+    symbols_count: int = SYMBOLS,
 ) -> PostureModel:
     """A model of each posture, from sequences (n, 20) of people who perform it.
 
@@ -38,14 +41,60 @@ def train(
             such that may begin anywhere.
         seed: Of the first guess of clusters.
         performers: Whose sequences these are, for the card.
+        states: Of each model; a file keeps models of the paper's five only.
+        symbols_count: Of the codebook; a file keeps the paper's 64 only.
 
     Raises:
         ValueError: When a posture has no usable sequence, or all poses together are too few.
 
     Source: Huang & Chung 2004, section 5.1 (P57).
     """
-    seen = {name: _usable(name, given) for name, given in sequences.items()}
-    card = Card(
+    seen = _seen(sequences)
+    card = _card(seen, recognizer, topology, seed, performers)
+    shown = list(seen.values())
+    if recognizer == "default":
+        return _density_model(shown, card, states)
+    poses = [features(one) for given in shown for one in given]
+    return _symbol_model(shown, card, states, fit(np.concatenate(poses), seed, symbols_count))
+
+
+def taught(
+    known: PostureModel, sequences: Mapping[str, Sequence[Rows]], performers: Sequence[str] = ()
+) -> PostureModel:
+    """A model that knows more postures, or some of its own anew; its others stay as they are.
+
+    The paper's keeps its codebook: poses unlike all that it was made from share a symbol with
+    others, so it is taught less well than the default one.
+
+    Args:
+        known: What it is added to; its codebook, topology and seed are used again.
+        sequences: What was seen of each posture: three performances are enough.
+        performers: Whose sequences these are, for the card.
+
+    Raises:
+        ValueError: When a posture has no usable sequence, or too few different poses.
+    """
+    seen = _seen(sequences)
+    old = known.card
+    card = _card(seen, old.recognizer, old.topology, old.seed, performers)
+    shown = list(seen.values())
+    if isinstance(known, SymbolModel):
+        return joined(known, _symbol_model(shown, card, STATES, known.codebook))
+    return joined(known, _density_model(shown, card, STATES))
+
+
+def _seen(sequences: Mapping[str, Sequence[Rows]]) -> dict[str, list[Rows]]:
+    return {name: _usable(name, given) for name, given in sequences.items()}
+
+
+def _card(
+    seen: Mapping[str, Sequence[Rows]],
+    recognizer: Recognizer,
+    topology: Topology,
+    seed: int,
+    performers: Sequence[str],
+) -> Card:
+    return Card(
         recognizer=recognizer,
         topology=topology,
         seed=seed,
@@ -53,8 +102,6 @@ def train(
         frames=sum(len(one) for given in seen.values() for one in given),
         performers=tuple(performers),
     )
-    learn = _symbol_model if recognizer == "paper" else _density_model
-    return learn(list(seen.values()), card)
 
 
 def _usable(posture: str, given: Sequence[Rows]) -> list[Rows]:
@@ -68,19 +115,20 @@ def _usable(posture: str, given: Sequence[Rows]) -> list[Rows]:
     return usable
 
 
-def _symbol_model(seen: list[list[Rows]], card: Card) -> SymbolModel:
+def _symbol_model(
+    seen: list[list[Rows]], card: Card, states: int, codebook: Codebook
+) -> SymbolModel:
     """Of sequences posture by posture, in the order of the card."""
     shown = [[features(one) for one in given] for given in seen]
-    codebook = fit(np.concatenate([one for given in shown for one in given]), card.seed)
     near = nearness(codebook)
     models = [
-        train_symbols([symbols(codebook, one) for one in given], near, card.topology)
+        train_symbols([symbols(codebook, one) for one in given], near, card.topology, states)
         for given in shown
     ]
     transition, emission = (np.stack(part) for part in zip(*models, strict=True))
     return SymbolModel(
         names=tuple(card.sequences),
-        start=np.tile(START[card.topology], (len(seen), 1)),
+        start=np.tile(start(card.topology, states), (len(seen), 1)),
         transition=transition,
         card=card,
         codebook=codebook,
@@ -88,16 +136,16 @@ def _symbol_model(seen: list[list[Rows]], card: Card) -> SymbolModel:
     )
 
 
-def _density_model(seen: list[list[Rows]], card: Card) -> DensityModel:
+def _density_model(seen: list[list[Rows]], card: Card, states: int) -> DensityModel:
     """Of sequences posture by posture, in the order of the card."""
     models = [
-        train_densities([bearings(one) for one in given], card.topology, card.seed)
+        train_densities([bearings(one) for one in given], card.topology, card.seed, states)
         for given in seen
     ]
     transition, mean, variance = (np.stack(part) for part in zip(*models, strict=True))
     return DensityModel(
         names=tuple(card.sequences),
-        start=np.tile(START[card.topology], (len(seen), 1)),
+        start=np.tile(start(card.topology, states), (len(seen), 1)),
         transition=transition,
         card=card,
         mean=mean,

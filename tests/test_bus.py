@@ -168,6 +168,7 @@ def test_a_reader_that_sleeps_keeps_the_latest_and_counts_the_rest(place: Place)
         once_heard(pulses, speaker)
         for frame in range(spoken):
             speaker.publish(a_report(1, frame))
+            time.sleep(0.005)  # all at once would overflow the speaker's own queue first
         speaker.publish(Pulse(process="probe", state="ended"))
         assert pulses.take(SOON_S) is not None
         deadline = time.monotonic() + SOON_S

@@ -1,18 +1,18 @@
 """The report on unseen people, held against outcomes that are known beforehand."""
 
 import json
+from contextlib import nullcontext
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from acting import perform
 from rich.console import Console
 
 from recognizer.evaluation import Recording
 from tritrack import evaluating
-from tritrack.evaluating import EACH_IN_TURN, evaluate_postures
+from tritrack.evaluating import EACH_IN_TURN, Plan, evaluate_postures
 from tritrack.training import TrainingError
 
 QUIET = Console(quiet=True)
@@ -37,11 +37,15 @@ def people(monkeypatch: pytest.MonkeyPatch) -> list[Recording]:
     ]
     everybody = [*of("ann", 1), *of("bob", 2), *cas]
     monkeypatch.setattr(evaluating, "recordings", lambda *_: everybody)
+    monkeypatch.setattr(evaluating, "spread", nullcontext)
     return everybody
 
 
 def evaluate(out: Path, split: str) -> dict[str, Any]:
-    return evaluate_postures([], out, split, "default", None, QUIET)
+    """The default recogniser's part of the report."""
+    report = evaluate_postures([], out, Plan(split, ("default",)), QUIET)
+    result: dict[str, Any] = report["recognizers"]["default"]
+    return result
 
 
 def test_who_is_tested_is_named_by_a_model_of_the_others(
@@ -57,11 +61,24 @@ def test_who_is_tested_is_named_by_a_model_of_the_others(
 
 def test_the_files_hold_what_the_report_says(people: list[Recording], tmp_path: Path) -> None:
     report = evaluate(tmp_path / "new" / "deep", EACH_IN_TURN)
-    written = json.loads((tmp_path / "new" / "deep" / "report.json").read_text())
+    whole = json.loads((tmp_path / "new" / "deep" / "report.json").read_text())
+    written = whole["recognizers"]["default"]
     assert written == json.loads(json.dumps(report))
     assert written["all"]["tested"] == 9
     low, high = written["all"]["interval_95"]
     assert low < written["all"]["share"] < high
+
+
+def test_a_posture_unseen_in_training_is_rejected_not_named(
+    people: list[Recording], tmp_path: Path
+) -> None:
+    """A model of arm raising alone knows bob's, and neither his squat nor his bow."""
+    people[:] = [*[one for one in of("ann", 1) if "raise" in one.posture], *of("bob", 2)]
+    result = evaluate(tmp_path, "ann:bob")
+    assert (result["all"]["correct"], result["all"]["tested"]) == (1, 1)
+    assert result["rejection"]["known"] == {"tested": 1, "no_name": 0}
+    assert result["rejection"]["unknown"]["squat"] == {"tested": 1, "no_name": 1}
+    assert result["rejection"]["unknown"]["bow"] == {"tested": 1, "no_name": 1}
 
 
 class Cells(HTMLParser):
@@ -71,27 +88,30 @@ class Cells(HTMLParser):
         super().__init__()
         self.cells: list[str] = []
         self.fetched: list[str] = []
+        self.pictures: list[str] = []
         self.inside = False
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.inside = tag == "td"
-        self.fetched += [value or "" for name, value in attrs if name in ("src", "href")]
+        self.pictures += [value or "" for name, value in attrs if name == "alt"]
+        given = [value or "" for name, value in attrs if name in ("src", "href")]
+        self.fetched += [value for value in given if not value.startswith("data:")]
 
     def handle_data(self, data: str) -> None:
         if self.inside:
             self.cells.append(data.strip())
 
 
-def test_the_page_shows_each_count_and_fetches_nothing(
+def test_the_page_shows_shares_and_pictures_and_fetches_nothing(
     people: list[Recording], tmp_path: Path
 ) -> None:
-    report = evaluate(tmp_path, "ann:bob,cas")
+    evaluate(tmp_path, "ann:bob,cas")
     page = Cells()
     page.feed((tmp_path / "report.html").read_text())
     assert "4/6" in page.cells
     assert not page.fetched
-    counts = [int(cell) for cell in page.cells if cell.isdigit()]
-    assert counts == [n for n in np.ravel(report["confusion"]["counts"]).tolist() if n]
+    assert page.pictures == ["confusion matrix of the default recogniser"]
+    assert (tmp_path / "confusion_default.png").read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(

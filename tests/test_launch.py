@@ -2,9 +2,7 @@
 
 import json
 import multiprocessing
-import os
 import shutil
-import signal
 import socket
 import threading
 import time
@@ -17,11 +15,13 @@ import zenoh
 from rich.console import Console
 
 from common.config import BusSettings, PageSettings, Settings
-from common.messages import Body, Pulse
-from tritrack.launch import Heard, Part, PartFailed, run
+from common.messages import Body
+from tritrack.launch import Heard, run
 from tritrack.offline import Decoders, track_clip
+from tritrack.parts import Part
 from tritrack.runs import poses
 from tritrack.session import free_settings, live
+from tritrack.supervise import PartFailed
 
 QUIET = Console(quiet=True)
 
@@ -88,41 +88,19 @@ def test_a_run_folder_holds_all_that_it_should(lived: tuple[Path, dict]) -> None
 
 
 @pytest.mark.slow
-def test_a_killed_viewer_is_named_and_what_was_tracked_is_kept(
-    slow_clip: Path, tmp_path: Path
-) -> None:
-    killer = threading.Thread(target=kill_viewer, args=(2, tmp_path / "log.txt"))
-    killer.start()
-    with pytest.raises(PartFailed, match="viewer 2: killed by signal 9"):
-        live(settings_of(slow_clip), tmp_path, QUIET)
-    killer.join()
-    with np.load(tmp_path / "poses.npz", allow_pickle=False) as found:
-        assert 0 < len(found["frame"]) < 69
-
-
-def kill_viewer(number: int, log: Path) -> None:
-    """SIGKILL this test's own viewer, once both are looking at frames, as the run's log says."""
-    until_s = time.monotonic() + 60
-    while not (log.is_file() and log.read_text().count("the room's clock is") == 2):
-        if time.monotonic() > until_s:
-            return
-        time.sleep(0.05)
-    time.sleep(2.0)
-    for child in multiprocessing.active_children():
-        if child.name == f"viewer {number}" and child.pid is not None:
-            os.kill(child.pid, signal.SIGKILL)
-
-
-@pytest.mark.slow
 def test_no_process_is_left_behind(lived: tuple[Path, dict]) -> None:
     assert [p for p in psutil.Process().children(recursive=True) if "decoder" in p.name()] == []
     assert multiprocessing.active_children() == []
 
 
 @pytest.mark.slow
-def test_what_foreign_sessions_say_is_counted_and_dropped(slow_clip: Path, tmp_path: Path) -> None:
-    """A malformed, truncated, oversized, NaN or foreign message does no harm."""
-    settings = settings_of(slow_clip)
+def test_what_foreign_sessions_say_is_counted_and_dropped(clip: Path, tmp_path: Path) -> None:
+    """A malformed, truncated, oversized, NaN or foreign message does no harm, 40 MB/s of them.
+
+    No report is lost on the way: what has no pose was dropped by a viewer or came late, as a busy
+    machine makes them, and is counted there.
+    """
+    settings = settings_of(clip)
     over = threading.Event()
     babbler = threading.Thread(target=babble, args=(settings.bus, settings.room, over))
     babbler.start()
@@ -131,9 +109,11 @@ def test_what_foreign_sessions_say_is_counted_and_dropped(slow_clip: Path, tmp_p
     finally:
         over.set()
         babbler.join()
-    assert facts["processes"]["integrator"]["malformed"] > 0
+    told = facts["processes"]
+    assert told["integrator"]["malformed"] > 0
     with np.load(tmp_path / "poses.npz") as found:
-        assert len(found["frame"]) == 69
+        late = told["viewer 1"]["dropped"] + told["integrator"]["late"]
+        assert 69 - late <= len(found["frame"]) <= 69
 
 
 def babble(bus: BusSettings, room: str, over: threading.Event) -> None:
@@ -150,7 +130,7 @@ def babble(bus: BusSettings, room: str, over: threading.Event) -> None:
         except zenoh.ZError:
             time.sleep(0.1)
     with session:
-        while not over.wait(0.25):
+        while not over.wait(0.05):
             for nonsense in (b"", b"\xc1", b"\x81\xa5frame\xcb\x7f\xf8", b"x" * 2_000_000):
                 session.put(f"tritrack/{room}/viewer/1/report", nonsense)
 
@@ -158,7 +138,7 @@ def babble(bus: BusSettings, room: str, over: threading.Event) -> None:
 def test_a_part_that_fails_is_named_with_its_reason(tmp_path: Path) -> None:
     parts = [Part("integrator", fails, ("the roof leaks",))]
     with pytest.raises(PartFailed, match="integrator: the roof leaks"):
-        run(parts, settings_of(tmp_path), threading.Event(), ignore, Heard([], [], {}, []))
+        run(parts, settings_of(tmp_path), threading.Event(), ignore, Heard([], [], {}, [], []))
 
 
 def test_an_endpoint_in_use_is_refused_in_one_line(clip: Path, tmp_path: Path) -> None:
@@ -173,7 +153,7 @@ def test_an_endpoint_in_use_is_refused_in_one_line(clip: Path, tmp_path: Path) -
             live(settings, tmp_path, QUIET)
 
 
-def ignore(_pulses: dict[str, Pulse]) -> None:
+def ignore(_heard: Heard) -> None:
     """Show nothing."""
 
 

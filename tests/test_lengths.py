@@ -54,3 +54,13 @@ def test_too_long_and_too_short_do_not_make_right() -> None:
     told = length_errors([compared(np.array([narrow, wide]), np.array([PERSON] * 2))], [None])
     assert told["joints"]["hip width"]["off_mm"] == pytest.approx(30.0)
     assert told["joints"]["hip width"]["bias_mm"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_length_that_wavers_about_the_true_one_has_it_as_its_median() -> None:
+    narrow, wide = PERSON.copy(), PERSON.copy()
+    narrow[INDEX["l_hip"], 0] -= 0.03
+    wide[INDEX["l_hip"], 0] += 0.03
+    tracked = np.array([narrow, PERSON, wide])
+    told = length_errors([compared(tracked, np.array([PERSON] * 3))], [None])
+    assert told["joints"]["hip width"]["off_mm"] == pytest.approx(20.0)
+    assert told["medians"]["hip width"]["off_mm"] == pytest.approx(0.0, abs=1e-9)

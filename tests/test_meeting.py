@@ -171,11 +171,13 @@ def test_nobody_waits_for_a_viewer_whose_video_broke() -> None:
     state = track.init(1, learn([np.zeros((120, 160, 3), np.uint8)]), None, Settings())
     with pytest.raises(DecoderDied):
         viewer.run(view, state, BrokenFilm(), bus, threading.Event())  # type: ignore[arg-type]
-    assert ended.drain() == [Ended(viewer=1, frames=0)]
+    (said,) = ended.drain()
+    assert (said.viewer, said.frames) == (1, 0)
+    assert "cam1.avi broke the decoder" in said.why
 
 
 def test_the_supervisor_learns_the_cameras_that_were_told_before_it_listened() -> None:
-    bus, heard = LocalBus(), Heard([], [], {}, [])
+    bus, heard = LocalBus(), Heard([], [], {}, [], [])
     bus.keep(Cameras)
     bus.publish(Cameras(rig=RIG, scale_source="calibrated"))
     Ears(bus, heard).catch_up()

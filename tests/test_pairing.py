@@ -11,12 +11,15 @@ from hypothesis import strategies as st
 from common import clock
 from common.clock import Exchange
 from common.messages import Report, ViewerNumber
-from integrator.pairing import Pair, State, end, init, overdue, step
+from integrator.__main__ import OVERDUE_PERIODS
+from integrator.pairing import Pair, State, away, begin, end, init, overdue, step
 
 PERIOD_S = 1 / 15
 
 
-def report(viewer: ViewerNumber, captured_s: float, frame: int = 0) -> Report:
+def report(
+    viewer: ViewerNumber, captured_s: float, frame: int = 0, next_s: float | None = None
+) -> Report:
     return Report(
         viewer=viewer,
         frame=frame,
@@ -26,6 +29,7 @@ def report(viewer: ViewerNumber, captured_s: float, frame: int = 0) -> Report:
         height=1,
         silhouette=b"\0",
         box=None,
+        next_s=next_s,
     )
 
 
@@ -122,11 +126,11 @@ def test_a_report_that_overtook_an_older_one_makes_that_one_late() -> None:
     assert state.late == 1
 
 
-def test_only_what_waited_long_enough_is_overdue() -> None:
+def test_what_waited_long_enough_is_overdue_and_what_waits_behind_it_too() -> None:
     state, _ = heard(init(1.0), [report(1, 0.0), report(1, 1.0)])
     assert overdue(state, now_s=0.2, wait_s=0.2) == (state, [])
     state, pairs = overdue(state, now_s=0.3, wait_s=0.2)
-    assert times(pairs) == [(0.0, None)]
+    assert times(pairs) == [(0.0, None), (1.0, None)]
     assert state.late == 0
 
 
@@ -139,17 +143,70 @@ def test_a_full_queue_drops_its_oldest_and_counts() -> None:
     assert len(pairs) == 32
 
 
+def test_nobody_is_waited_for_after_two_missed_frames() -> None:
+    """Issue 5, step 7: single-view poses begin after two missed frames, and then at once."""
+    state, _ = heard(init(1.0), [report(1, 0.0), report(2, 0.0), report(1, 1.0), report(1, 2.0)])
+    wait_s = OVERDUE_PERIODS * 1.0
+    assert overdue(state, now_s=2.9, wait_s=wait_s) == (state, [])
+    state, pairs = overdue(state, now_s=3.1, wait_s=wait_s)
+    assert times(pairs) == [(1.0, None), (2.0, None)]
+    assert times(step(state, report(1, 3.0))[1]) == [(3.0, None)]
+
+
+def test_who_is_back_is_waited_for_again() -> None:
+    """Its first report comes too late for its instant, and shows that it is there."""
+    state, _ = away(heard(init(1.0), [report(1, 0.0), report(2, 0.0)])[0], 2)
+    assert times(step(state, report(1, 1.0))[1]) == [(1.0, None)]
+    state, pairs = heard(state, [report(1, 1.0), report(2, 1.0), report(1, 2.0)])
+    assert (times(pairs), state.late) == ([(1.0, None)], 1)
+    assert times(step(state, report(2, 2.0))[1]) == [(2.0, 2.0)]
+
+
+def test_frames_of_long_ago_do_not_bring_a_viewer_back() -> None:
+    """One that hung finds old frames in its camera's queue first."""
+    state, _ = away(heard(init(1.0), [report(1, 0.0), report(2, 0.0)])[0], 2)
+    state, pairs = heard(state, [report(1, 5.0), report(2, 1.0), report(1, 6.0)])
+    assert times(pairs) == [(5.0, None), (6.0, None)]
+
+
+def test_a_viewer_that_is_known_to_be_gone_keeps_nobody_waiting() -> None:
+    state, _ = step(init(1.0), report(1, 0.0))
+    state, pairs = away(state, 2)
+    assert times(pairs) == [(0.0, None)]
+
+
+def test_a_viewer_that_ended_may_begin_again() -> None:
+    state, _ = end(init(1.0), 2)
+    state, pairs = heard(begin(state, 2), [report(1, 0.0), report(2, 0.0)])
+    assert times(pairs) == [(0.0, 0.0)]
+
+
+def test_a_frame_that_is_known_to_be_missing_is_not_waited_for() -> None:
+    """A clip with frames missing in one camera, its viewer tells when the next one comes."""
+    state, _ = heard(init(1.0), [report(1, 0.0, next_s=1.0), report(2, 0.0, next_s=3.0)])
+    state, pairs = heard(state, [report(1, 1.0), report(1, 2.0)])
+    assert times(pairs) == [(1.0, None), (2.0, None)]
+    state, pairs = step(state, report(1, 3.0))
+    assert pairs == []
+    assert times(step(state, report(2, 3.0))[1]) == [(3.0, 3.0)]
+
+
 @st.composite
 def talks(draw: st.DrawFn) -> tuple[list[Report], list[Report]]:
-    """Two viewers with jitter of 45 % of a period, lost frames and a shift between them."""
+    """Two viewers with jitter of 45 % of a period, lost frames and a shift between them.
+
+    Some know when their next frame is taken.
+    """
     both: list[list[Report]] = []
     for viewer in (1, 2):
         shift = draw(st.floats(-0.5, 0.5))
-        frames = draw(st.sets(st.integers(0, 20)))
+        frames = sorted(draw(st.sets(st.integers(0, 20))))
+        taken = [n + shift + draw(st.floats(-0.45, 0.45)) for n in frames]
+        known = draw(st.booleans())
         both.append(
             [
-                report(viewer, n + shift + draw(st.floats(-0.45, 0.45)), n)  # type: ignore[arg-type]
-                for n in sorted(frames)
+                report(viewer, moment, n, next_s if known else None)  # type: ignore[arg-type]
+                for n, moment, next_s in zip(frames, taken, [*taken, 99.0][1:], strict=True)
             ]
         )
     return both[0], both[1]

@@ -48,6 +48,14 @@ Out = Annotated[Path, typer.Option(help="Folder to write into.")]
 ModeName = Annotated[
     Literal["default", "paper"] | None, typer.Option(help="Instead of the settings' mode.")
 ]
+OwnMode = Annotated[
+    Literal["default", "paper"] | None,
+    typer.Option(help="How clips are tracked, if not in the recogniser's own mode."),
+]
+CACHE = Path("runs/tracked")
+Cache = Annotated[
+    Path, typer.Option(help="Keeps what tracking made of clips, 40 kB each; may be deleted.")
+]
 RecognizerName = Annotated[
     Literal["default", "paper"], typer.Option(help="The better models, or the paper's.")
 ]
@@ -220,12 +228,19 @@ def train(
         typer.Option(help="What is learnt; proposals of poses need no clips."),
     ] = "postures",
     recognizer: RecognizerName = "default",
-    mode: ModeName = None,
+    mode: OwnMode = None,
+    add_to: Annotated[
+        Path | None,
+        typer.Option(help="A file, or shipped: it learns the postures too, or learns them anew."),
+    ] = None,
+    cache: Cache = CACHE,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Learn postures from clips or runs, or how outlines show poses from made-up people.
 
-    Example: tritrack train clips/*/ --out postures.npz
+    A new posture needs three takes; with --add-to, the shipped model or another learns it too.
+
+    Example: tritrack train clips/*/ --out postures.npz --add-to shipped
     """
     if what == "proposals":
         from tritrack.proposals import train_proposals
@@ -237,8 +252,11 @@ def train(
         raise typer.BadParameter("name clips or run folders to learn postures from")
     from tritrack.training import train_postures
 
-    facts = train_postures(runs, out, mode, console, recognizer)
-    tell(facts, json_wanted, f"{len(facts['sequences'])} postures learnt, written to {out}")
+    facts = train_postures(runs, out, mode, console, recognizer, cache, add_to)
+    line = (
+        f"{len(facts['sequences'])} postures learnt, {len(facts['knows'])} known; written to {out}"
+    )
+    tell(facts, json_wanted, line)
 
 
 evaluate_app = typer.Typer(help="Measure how well people are tracked, and recognised.")
@@ -247,25 +265,44 @@ app.add_typer(evaluate_app, name="evaluate")
 
 @evaluate_app.command("postures")
 def evaluate_postures(
-    runs: Annotated[
+    clips: Annotated[
         list[Path], typer.Argument(help="Clips that name their posture, or their run folders.")
     ],
     out: Out,
     split: Annotated[
         str, typer.Option(help="Or whom to learn from and test on: r01,r04:r07, s1*:s2*")
     ] = "leave-one-performer-out",
-    recognizer: RecognizerName = "default",
-    mode: ModeName = None,
+    recognizer: Annotated[
+        Literal["both", "default", "paper"], typer.Option(help="Which models, side by side.")
+    ] = "both",
+    mode: OwnMode = None,
+    model: Annotated[
+        Path | None, typer.Option(help="A file, or shipped: it names all clips, nothing is learnt.")
+    ] = None,
+    sweep: Annotated[
+        bool, typer.Option(help="The paper's with 16 to 256 symbols and 3 to 8 states too.")
+    ] = False,
+    cache: Cache = CACHE,
+    dask: Annotated[
+        str, typer.Option(help="Address of a Dask scheduler to work on instead, tcp://host:8786.")
+    ] = "",
     json_wanted: JsonWanted = False,
 ) -> None:
     """Name the postures of people whom the models never saw: the paper's table 2.
 
-    Example: tritrack evaluate postures runs/* --split 's1*:s2*' --out report
+    Clips are tracked by all cores, about 450 MB each; what was tracked is kept, so that a run
+    that was stopped goes on where it was.
+
+    Example: tritrack evaluate postures clips/*/ --split 's1*:s2*' --out report
     """
     from tritrack import evaluating
 
-    report = evaluating.evaluate_postures(runs, out, split, recognizer, mode, console)
-    tell(report, json_wanted, report["table"])
+    plan = evaluating.Plan(split, evaluating.KINDS[recognizer], mode, model, sweep, cache, dask)
+    report = evaluating.evaluate_postures(clips, out, plan, console)
+    tables = [
+        f"{name} recogniser:\n{result['table']}" for name, result in report["recognizers"].items()
+    ]
+    tell(report, json_wanted, "\n\n".join(tables))
 
 
 @evaluate_app.command("tracking")

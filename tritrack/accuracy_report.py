@@ -32,6 +32,7 @@ def headline(report: Mapping[str, Any]) -> dict[str, Any]:
         "confidence_auc": report["confidence"]["auc"]["all"],
         "confidence_gap": report["confidence"]["gap"],
         "body_lengths_mm": report["lengths"]["body"]["all"]["off_mm"],
+        "median_lengths_mm": report["lengths"]["medians"]["all"]["off_mm"],
     }
 
 
@@ -114,7 +115,8 @@ def _lengths(told: Mapping[str, Any]) -> str:
         )
         for name in told["body"]
     ]
-    head = ("", "measured body, mm off", "bias", "published joints, mm off", "bias")
+    told_of = ("measured body", "published joints", "their medians")
+    head = ("", *(cell for what in told_of for cell in (f"{what}, mm off", "bias")))
     return _table("Lengths", head, rows)
 
 

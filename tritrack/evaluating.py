@@ -1,160 +1,160 @@
-"""How well postures of people never learnt from are named: the paper's table 2, as a report."""
+"""How well postures of people never learnt from are named: the paper's experiment (P56-P60)."""
 
-import html
+import time
 from collections.abc import Sequence
-from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
 from rich.console import Console
 
 from common.config import Mode
-from recognizer.evaluation import (
-    Outcome,
-    Recording,
-    confusion,
-    leave_one_performer_out,
-    recognise,
-    table,
-    wilson,
+from recognizer.evaluation import Outcome, Recording, named_by, refuse_who_was_learnt_from
+from recognizer.postures import LEAST_FIT, PostureModel, Recognizer
+from tritrack.cores import spread
+from tritrack.experiment import (
+    EACH_IN_TURN,
+    SWEPT_STATES,
+    SWEPT_SYMBOLS,
+    jobs_of,
+    judged,
+    parts_of,
+    sweep_of,
+    swept,
 )
-from recognizer.postures import POSTURES, Recognizer
+from tritrack.performances import recordings
+from tritrack.posture_page import page_of
+from tritrack.posture_pictures import draw_confusion, draw_worst
+from tritrack.posture_report import result_of, share
+from tritrack.styles import spread_of
 from tritrack.terminal import json_text
-from tritrack.training import TrainingError, recordings
+from tritrack.training import TrainingError, model_named
 
-EACH_IN_TURN: Final = "leave-one-performer-out"
-"""The split in which everybody is named by a model of all others."""
+KINDS: Final[dict[str, tuple[Recognizer, ...]]] = {
+    "both": ("default", "paper"),
+    "default": ("default",),
+    "paper": ("paper",),
+}
+"""Which recognisers stand side by side, by what a command line calls them."""
 
-STYLE: Final = (
-    "body{font:14px sans-serif;margin:2em}table{border-collapse:collapse}"
-    "td,th{border:1px solid #ccc;padding:3px 8px;text-align:right}"
-    "th:first-child{text-align:left}thead th{writing-mode:vertical-rl;text-align:left}"
-)
+
+class Plan(NamedTuple):
+    """What is evaluated, and how."""
+
+    split: str = EACH_IN_TURN
+    """As `experiment.jobs_of` takes it."""
+    recognizers: tuple[Recognizer, ...] = KINDS["both"]
+    mode: Mode | None = None
+    """How clips are tracked; None: in each recogniser's own mode."""
+    model: Path | None = None
+    """Names all clips instead of what would be learnt from some of them; "shipped": those in the
+    package."""
+    sweep: bool = False
+    """The paper's recogniser in other sizes too."""
+    cache: Path = Path("runs/tracked")
+    dask: str = ""
+    """A cluster's address; "" for the cores of this machine."""
 
 
 def evaluate_postures(
-    paths: Sequence[Path],
-    out: Path,
-    split: str,
-    recognizer: Recognizer,
-    mode: Mode | None,
-    console: Console,
+    paths: Sequence[Path], out: Path, plan: Plan, console: Console
 ) -> dict[str, Any]:
-    """Train and test by a split, and write `report.json` and `report.html`.
+    """Train and test by a split, and write `report.json`, `report.html` and its pictures.
 
     Args:
         paths: Clip folders whose `meta.json` names posture and performer, or their run folders.
         out: Folder of the report; made where it is not there.
-        split: EACH_IN_TURN, or performers to learn from and to test on: "r01,r04:r07", "s1*:s2*".
-        recognizer: Which kind of model.
-        mode: How clips are tracked; None: as their settings say.
+        plan: What is evaluated.
         console: For progress and warnings.
 
     Returns:
-        What `report.json` holds, and the table as text.
+        What `report.json` holds.
 
     Raises:
         TrainingError: When nothing can be learnt or tested, or the report cannot be written.
-        ClipError: When a clip cannot be used.
+        RecordingError: When a folder is neither clip nor run, or names no posture.
+        ClipsFailed: When clips cannot be used.
+        ModelError: When the plan's model cannot.
+        ClusterError: When the plan's cluster cannot.
     """
-    given = recordings(paths, mode, console)
+    models = _models(plan)
+    report: dict[str, Any] = {"split": f"{plan.model} models" if plan.model else plan.split}
     try:
-        outcomes = _outcomes(given, split, recognizer)
-        report = _report(outcomes, split, recognizer)
         out.mkdir(parents=True, exist_ok=True)
-        (out / "report.json").write_text(json_text(report) + "\n")
-        (out / "report.html").write_text(page_of(report))
+        with spread(plan.dask):
+            for kind, model in models.items():
+                mode = plan.mode or kind
+                given = recordings(paths, mode, plan.cache, console)
+                report |= {"clips": len(given), "people": _people(given, plan)}
+                result = _result(given, kind, model, plan, console)
+                report.setdefault("recognizers", {})[kind] = {"mode": mode, **result}
+            if plan.sweep and plan.model is None:
+                given = recordings(paths, plan.mode or "paper", plan.cache, console)
+                report["sweep"] = _swept(given, plan, console)
+        _write(report, out)
     except (ValueError, OSError) as error:
         raise TrainingError(f"cannot evaluate into {out}: {error}") from error
     return report
 
 
-def _outcomes(given: list[Recording], split: str, recognizer: Recognizer) -> list[Outcome]:
-    if split == EACH_IN_TURN:
-        if len({one.performer for one in given}) < 2:
-            raise ValueError("one performer alone: nobody is left to learn from")
-        return list(leave_one_performer_out(given, recognizer))
-    learnt, colon, tested = split.partition(":")
-    parts = [_of(given, people) for people in (learnt, tested)]
-    if not colon or not all(parts):
-        raise ValueError(
-            f"the split {split!r} must be {EACH_IN_TURN} or name performers that are there, "
-            f"to learn from and to test on, as in r01,r04:r07"
-        )
-    return recognise(parts[0], parts[1], recognizer)
+def _models(plan: Plan) -> dict[Recognizer, PostureModel | None]:
+    """What names the clips, of each kind; None where it is yet to be learnt."""
+    if plan.model is None:
+        return dict.fromkeys(plan.recognizers)
+    given = [model_named(plan.model, kind) for kind in plan.recognizers]
+    return {model.card.recognizer: model for model in given}
 
 
-def _of(given: list[Recording], people: str) -> list[Recording]:
-    wanted = [pattern.strip() for pattern in people.split(",")]
-    return [one for one in given if any(fnmatchcase(one.performer, name) for name in wanted)]
-
-
-def _report(outcomes: list[Outcome], split: str, recognizer: Recognizer) -> dict[str, Any]:
-    seen = {one.truth for one in outcomes}
-    names = [*(posture for posture in POSTURES if posture in seen), *sorted(seen - set(POSTURES))]
-    counts = confusion(outcomes, names)
-    correct = np.diagonal(counts)
+def _result(
+    given: list[Recording],
+    kind: Recognizer,
+    model: PostureModel | None,
+    plan: Plan,
+    console: Console,
+) -> dict[str, Any]:
+    """All that is said of one recogniser."""
+    began = time.perf_counter()
+    groups: dict[str, list[Outcome]]
+    if model is None:
+        groups = judged(list(jobs_of(given, plan.split, kind)), console)
+    else:
+        refuse_who_was_learnt_from(model.card.performers, given)
+        groups = {"headline": named_by(model, given)}
+    within = groups.get("within test")
     return {
-        "recognizer": recognizer,
-        "split": split,
-        "all": _share(int(correct.sum()), int(counts.sum())),
-        "postures": {
-            posture: _share(int(right), int(row.sum()))
-            for posture, right, row in zip(names, correct, counts, strict=True)
-        },
-        "confusion": {"named": [*names, ""], "counts": counts.tolist()},
-        "table": table(counts, names),
+        **result_of(groups["headline"], LEAST_FIT[kind]),
+        "within_test": result_of(within, LEAST_FIT[kind]) if within else None,
+        "learning_s": round(time.perf_counter() - began, 2),
     }
 
 
-def _share(correct: int, tested: int) -> dict[str, Any]:
-    """Correct of tested with Wilson's 95 % interval (P59)."""
-    share = correct / tested if tested else 0.0
-    return {
-        "correct": correct,
-        "tested": tested,
-        "share": share,
-        "interval_95": wilson(correct, tested),
-    }
-
-
-def page_of(report: dict[str, Any]) -> str:
-    """The report as a page that needs nothing but itself."""
-    title = f"{report['recognizer']} recogniser, {report['split']}"
-    lines = [
-        _line(name, result)
-        for name, result in [*report["postures"].items(), ("all", report["all"])]
+def _swept(given: list[Recording], plan: Plan, console: Console) -> dict[str, Any]:
+    """Right names of each size: a row for each number of symbols, a column for states."""
+    groups = judged(list(sweep_of(given, plan.split)), console)
+    shares = [
+        [share(groups[swept(symbols, states)]) for states in SWEPT_STATES]
+        for symbols in SWEPT_SYMBOLS
     ]
-    named = [name or "no name" for name in report["confusion"]["named"]]
-    matrix = np.array(report["confusion"]["counts"])
-    head = "".join(f"<th>{html.escape(name)}</th>" for name in named)
-    cells = "".join(
-        f"<tr><th>{html.escape(name)}</th>{_cells(row)}</tr>"
-        for name, row in zip(report["postures"], matrix, strict=True)
-    )
-    return (
-        f"<!doctype html><html lang=en><meta charset=utf-8><title>{html.escape(title)}</title>"
-        f"<style>{STYLE}</style><h1>Postures: {html.escape(title)}</h1>"
-        "<table><tr><th>posture<th>correct<th>share<th>95 % interval"
-        f"{''.join(lines)}</table><h2>Shown (row), named (column)</h2>"
-        f"<table><thead><tr><th></th>{head}</tr></thead>{cells}</table></html>\n"
-    )
+    return {"symbols": SWEPT_SYMBOLS, "states": SWEPT_STATES, "shares": shares}
 
 
-def _line(name: str, result: dict[str, Any]) -> str:
-    low, high = result["interval_95"]
-    return (
-        f"<tr><th>{html.escape(name)}<td>{result['correct']}/{result['tested']}"
-        f"<td>{result['share']:.1%}<td>{low:.1%} to {high:.1%}"
-    )
+def _people(given: Sequence[Recording], plan: Plan) -> dict[str, Any]:
+    """Who was learnt from, who was tested, and how widely each group's styles are spread."""
+    parts = None if plan.model else parts_of(given, plan.split)
+    groups = {"tested": given} if parts is None else {"learnt from": parts[0], "tested": parts[1]}
+    return {
+        name: {
+            "performers": sorted({one.performer for one in group}),
+            "clips": len(group),
+            "styles": spread_of(group),
+        }
+        for name, group in groups.items()
+    }
 
 
-def _cells(row: NDArray[np.int64]) -> str:
-    """Cells the darker the larger their share of the row."""
-    shares = row / max(int(row.sum()), 1)
-    return "".join(
-        f'<td style="background:rgba(40,90,200,{0.7 * share:.2f})">{count or ""}</td>'
-        for count, share in zip(row.tolist(), shares.tolist(), strict=True)
-    )
+def _write(report: dict[str, Any], out: Path) -> None:
+    for kind, result in report["recognizers"].items():
+        result["picture"] = f"confusion_{kind}.png"
+        draw_confusion(result, f"{kind} recogniser", out / result["picture"])
+        draw_worst(result, result["mode"], out, f"worst_{kind}")
+    (out / "report.json").write_text(json_text(report) + "\n")
+    (out / "report.html").write_text(page_of(report, out))

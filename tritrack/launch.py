@@ -1,55 +1,24 @@
-"""A live run: the table of its processes, their supervision, and what it leaves behind."""
+"""A live run: its processes started, listened to, supervised, and ended in order."""
 
 import logging
-import multiprocessing
-import os
-import signal
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from multiprocessing import resource_tracker
-from multiprocessing.connection import Connection
-from multiprocessing.process import BaseProcess
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from common.bus import Bus, BusError, open_client
-from common.clips import Clip
 from common.config import Settings
 from common.messages import Body, Cameras, Posture, Pulse
-from common.process import READY_S, Place
+from common.process import READY_S
+from tritrack.parts import Part
+from tritrack.supervise import Watched, watched
 
-SPAWN: Final = multiprocessing.get_context("spawn")
-"""Never fork: Zenoh's threads are not inherited."""
-END_S: Final = 5.0
-"""How long a process may take to close its doors before it is killed."""
 LOOK_S: Final = 0.1
 LAST_WORDS_S: Final = 0.4
 """What was said last is on its way for no longer than this."""
-ONE_THREAD: Final = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
 
-
-class PartFailed(RuntimeError):
-    """A process of the run failed; the text names it and says why."""
-
-
-class Part(NamedTuple):
-    """One process of a run."""
-
-    name: str
-    main: Callable[..., None]
-    arguments: tuple[Any, ...]
-    leads: bool = False
-    """The run is over when all that lead have ended."""
-
-
-class Running(NamedTuple):
-    """A part that was started."""
-
-    part: Part
-    process: BaseProcess
-    words: Connection
-    """On which it says why it fails."""
+log = logging.getLogger(__name__)
 
 
 class Heard(NamedTuple):
@@ -59,93 +28,71 @@ class Heard(NamedTuple):
     postures: list[Posture]
     pulses: dict[str, Pulse]
     cameras: list[Cameras]
-
-
-def live_parts(settings: Settings, clip: Clip, place: Place) -> list[Part]:
-    """The table of a live run: who listens comes before who speaks (P2)."""
-    period_s = clip.every / clip.views[0].fps
-    parts = [
-        Part("integrator", integrator_main, (settings, clip, place)),
-        Part("recognizer", recognizer_main, (settings, period_s, place)),
-    ]
-    if settings.page.port:
-        parts.append(Part("animator", animator_main, (settings, clip.rig, period_s, place)))
-    for view in clip.views:
-        arguments = (settings, view.number, place)
-        parts.append(Part(f"viewer {view.number}", viewer_main, arguments, leads=True))
-    return parts
-
-
-def integrator_main(*arguments: Any) -> None:
-    """The integrator, imported where it runs."""
-    from integrator.__main__ import main
-
-    main(*arguments)
-
-
-def recognizer_main(*arguments: Any) -> None:
-    """The recognizer, imported where it runs."""
-    from recognizer.__main__ import main
-
-    main(*arguments)
-
-
-def animator_main(*arguments: Any) -> None:
-    """The animator, imported where it runs."""
-    from animator.__main__ import main
-
-    main(*arguments)
-
-
-def viewer_main(*arguments: Any) -> None:
-    """A viewer, imported where it runs."""
-    from viewer.__main__ import main
-
-    main(*arguments)
+    notes: list[str]
+    """What the supervisor says itself: which part died, and what becomes of it."""
 
 
 def run(
     parts: Sequence[Part],
     settings: Settings,
     stop: threading.Event,
-    show: Callable[[dict[str, Pulse]], None],
+    show: Callable[[Heard], None],
     heard: Heard,
 ) -> None:
     """Start the parts, listen to them, and end them all when the run is over or stopped.
+
+    A part that dies is started again; the run goes on without a viewer that was given up, as long
+    as another one lives.
 
     Args:
         parts: In the order of their start; they are stopped in the reverse order.
         settings: Of the run.
         stop: Ends the run early.
-        show: Called ten times a second with the newest pulse of each process.
+        show: Called ten times a second with what was heard so far.
         heard: Filled as the run goes, so that a failure loses nothing that was said.
 
     Raises:
-        PartFailed: When a process ends with an error; the others are stopped first.
+        PartFailed: When a process fails before it has worked at all, or was given up; the others
+            are stopped first.
         BusError: When the integrator cannot be reached.
     """
     with ExitStack() as doors:
-        hub = doors.enter_context(_started(parts[0]))
+        hub = doors.enter_context(watched(parts[0]))
         bus = doors.enter_context(_client(settings, hub, stop))
         if bus is None:
             return
         listening = Ears(bus, heard)
-        running = [hub, *(doors.enter_context(_started(part)) for part in parts[1:])]
+        crew = [hub, *(doors.enter_context(watched(part)) for part in parts[1:])]
         try:
-            while not stop.wait(LOOK_S):
+            while not stop.wait(LOOK_S) and not _over(crew):
                 listening.catch_up()
-                show(heard.pulses)
-                _refuse_failures(running)
-                if all(one.process.exitcode == 0 for one in running if one.part.leads):
-                    break
+                _look_after(crew, heard)
+                show(heard)
             time.sleep(LAST_WORDS_S)
         finally:
-            for one in reversed(running):
-                _end(one)
+            for one in reversed(crew):
+                one.end()
             listening.catch_up()
-            show(heard.pulses)
+            show(heard)
         if not stop.is_set():
-            _refuse_failures(running)
+            for one in crew:
+                one.refuse_failure()
+
+
+def _look_after(crew: Sequence[Watched], heard: Heard) -> None:
+    """Start again what died, and say so."""
+    for one in crew:
+        told = one.look(time.monotonic(), heard.pulses)
+        if told:
+            log.warning(told)
+            heard.notes.append(told)
+
+
+def _over(crew: Sequence[Watched]) -> bool:
+    """Whether every viewer has ended or was given up, or a part that all need was given up."""
+    leads = [one for one in crew if one.part.leads]
+    needed = any(one.given_up for one in crew if not one.part.leads)
+    return needed or all(one.done or one.given_up for one in leads)
 
 
 class Ears:
@@ -171,41 +118,7 @@ class Ears:
 
 
 @contextmanager
-def _started(part: Part) -> Iterator[Running]:
-    """A part's process, from its start to its end."""
-    ours, theirs = SPAWN.Pipe(duplex=False)
-    process = SPAWN.Process(name=part.name, target=_guarded, args=(part, theirs), daemon=True)
-    with _inherited():
-        process.start()
-    theirs.close()
-    running = Running(part, process, ours)
-    try:
-        yield running
-    finally:
-        _end(running)
-
-
-@contextmanager
-def _inherited() -> Iterator[None]:
-    """What a process takes over from its supervisor: one thread a library, and deaf to Ctrl-C.
-
-    A terminal sends Ctrl-C to all processes; only the supervisor, who ends the others in order,
-    shall hear it, also while they are still importing.
-    """
-    resource_tracker.ensure_running()  # its own start would lift the block again
-    before = dict(os.environ)
-    os.environ.update(ONE_THREAD)
-    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-        os.environ.clear()
-        os.environ.update(before)
-
-
-@contextmanager
-def _client(settings: Settings, hub: Running, stop: threading.Event) -> Iterator[Bus | None]:
+def _client(settings: Settings, hub: Watched, stop: threading.Event) -> Iterator[Bus | None]:
     """The supervisor's own place on the bus, as soon as the hub's process has opened it.
 
     None when the run was stopped before that.
@@ -218,47 +131,10 @@ def _client(settings: Settings, hub: Running, stop: threading.Event) -> Iterator
     bus: Bus | None = None
     with ExitStack() as door:
         while bus is None and not stop.is_set():
-            _refuse_failures([hub])
+            hub.refuse_failure()
             try:
                 bus = door.enter_context(open_client(settings.bus, settings.room, 1.0))
             except BusError:
                 if time.monotonic() > until_s:
                     raise
         yield bus
-
-
-def _guarded(part: Part, words: Connection) -> None:
-    """Run a part; what it cannot do is said in one line, not in a traceback."""
-    try:
-        part.main(*part.arguments)
-    except Exception as error:
-        logging.getLogger(part.name).debug("failed", exc_info=error)
-        words.send(str(error) or type(error).__name__)
-        raise SystemExit(2) from None
-
-
-def _end(one: Running) -> None:
-    """Ask, wait, then kill."""
-    if one.process.is_alive():
-        one.process.terminate()
-        one.process.join(END_S)
-    if one.process.is_alive():
-        one.process.kill()
-        one.process.join()
-
-
-def _refuse_failures(running: Sequence[Running]) -> None:
-    for one in running:
-        if one.process.exitcode:
-            raise PartFailed(f"{one.part.name}: {_last_words(one)}")
-
-
-def _last_words(one: Running) -> str:
-    """Why a process ended; one that was killed says nothing."""
-    try:
-        if one.words.poll():
-            return str(one.words.recv())
-    except EOFError:
-        pass
-    code = one.process.exitcode or 0
-    return f"killed by signal {-code}" if code < 0 else f"ended with exit code {code}"

@@ -48,10 +48,11 @@ def body_joints_m(bdp: Bdp) -> Floats:
 
 
 def length_errors(clips: Sequence[Compared], bodies: Sequence[Bdp | None]) -> dict[str, Any]:
-    """Mean error of every segment, mm: of the measured body, and of the published joints.
+    """Mean error of every segment, mm: of the measured body, of joints, of their medians.
 
     The true length of a body's segment is its median over the clip; published joints are held to
-    the true ones of the same frame. `off` is the mean size of the error, `bias` its mean.
+    the true ones of the same frame, their medians over a clip to the true medians. `off` is the
+    mean size of the error, `bias` its mean.
 
     Args:
         clips: Those that were tracked.
@@ -59,16 +60,20 @@ def length_errors(clips: Sequence[Compared], bodies: Sequence[Bdp | None]) -> di
     """
     measured: dict[str, list[float]] = {name: [] for name in SEGMENTS}
     published: dict[str, list[Floats]] = {name: [] for name in SEGMENTS}
+    settled: dict[str, list[Floats]] = {name: [] for name in SEGMENTS}
     for clip, bdp in zip(clips, bodies, strict=True):
         true, told = segments_m(clip.true_m), segments_m(clip.tracked_m)
         own = None if bdp is None or not len(clip.rows) else segments_m(body_joints_m(bdp))
         for name in SEGMENTS:
             published[name].append((told[name] - true[name]).ravel())
+            if len(clip.rows):
+                settled[name].append(np.median(told[name], axis=0) - np.median(true[name], axis=0))
             if own is not None:
                 measured[name] += (own[name][0] - np.median(true[name], axis=0)).tolist()
     return {
         "body": _told({name: np.array(off) for name, off in measured.items()}),
         "joints": _told({name: np.concatenate(off) for name, off in published.items()}),
+        "medians": _told({name: np.concatenate([*off, []]) for name, off in settled.items()}),
     }
 
 

@@ -1,7 +1,7 @@
 """The same steps as live, in one process and in lock-step: deterministic, as fast as it goes."""
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
@@ -45,6 +45,10 @@ class Tracked(NamedTuple):
     """Arrays that one view alone adds to `poses.npz`."""
 
 
+Watch = Callable[[dict[ViewerNumber, Frame], dict[int, Report], Body], object]
+"""Looks at the frames of an instant, the reports on them and the body they gave."""
+
+
 class Decoders:
     """One decoder a view, kept over many clips: a child's start costs more than a clip."""
 
@@ -63,9 +67,12 @@ class Decoders:
 
 
 def track_clip(
-    settings: Settings, decoders: Decoders, views: tuple[ViewerNumber, ...] = (1, 2)
+    settings: Settings,
+    decoders: Decoders,
+    views: tuple[ViewerNumber, ...] = (1, 2),
+    watch: Watch | None = None,
 ) -> Tracked:
-    """Track one clip from its videos to its bodies.
+    """Track one clip from its videos to its bodies; `watch` is shown every instant.
 
     Raises:
         ClipError: When the clip cannot be used.
@@ -97,6 +104,8 @@ def track_clip(
         state, body, guide = merge.step(state, pair)
         noticed = noticing.step(noticed, pair)
         bodies.append(body)
+        if watch is not None:
+            watch(frames, reports, body)
         spent["viewers"] += middle - start
         spent["integrator"] += time.perf_counter() - middle
     cut_off = [shortfall(view, decoders.of[view.number].came) for view in clip.views]

@@ -17,10 +17,11 @@ from rich.live import Live as LiveDisplay
 from common.clips import Clip, open_clip
 from common.config import BusSettings, PageSettings, Settings
 from common.messages import Posture, Pulse
-from common.process import Place
+from common.process import Place, logged
 from recognizer.__main__ import model_of
-from tritrack.launch import Heard, live_parts, run
+from tritrack.launch import Heard, run
 from tritrack.offline import both_cameras
+from tritrack.parts import live_parts
 from tritrack.runs import write_postures, write_run
 from tritrack.table import table_of
 from tritrack.terminal import warn
@@ -55,12 +56,13 @@ def live(settings: Settings, out: Path, console: Console, name: str = "") -> dic
     clip = msgspec.structs.replace(clip, name=name or clip.name, rig=both_cameras(clip))
     _refuse_what_would_fail(settings, clip)
     began = time.monotonic()
-    heard = Heard([], [], {}, [])
+    heard = Heard([], [], {}, [], [])
     screen = _Screen(clip, settings, console)
     with _stopped_by_signals() as stop:
-        parts = live_parts(settings, clip, Place(supervised=True, log=_new_log(out)))
+        path = _new_log(out)
+        parts = live_parts(settings, clip, Place(supervised=True, log=path))
         try:
-            with screen.shown([part.name for part in parts]) as show:
+            with screen.shown([part.name for part in parts]) as show, logged("supervisor", path):
                 run(parts, settings, stop, show, heard)
         finally:
             facts = _facts(heard, clip, time.monotonic() - began)
@@ -81,26 +83,26 @@ class _Screen:
             self._warn(warning)
 
     @contextmanager
-    def shown(self, names: list[str]) -> Iterator[Callable[[dict[str, Pulse]], None]]:
-        """A function that shows the newest pulses; the last ones stay when it is over."""
+    def shown(self, names: list[str]) -> Iterator[Callable[[Heard], None]]:
+        """A function that shows the newest pulses and news; the last stay when it is over."""
         table = table_of(names, {}, self._title)
         with LiveDisplay(
             table, console=self._console, refresh_per_second=4, transient=True
         ) as display:
 
-            def show(pulses: dict[str, Pulse]) -> None:
+            def show(heard: Heard) -> None:
                 nonlocal table
-                self._news(pulses)
-                table = table_of(names, pulses, self._title)
+                self._news(heard)
+                table = table_of(names, heard.pulses, self._title)
                 display.update(table)
 
             yield show
         self._console.print(table)
 
-    def _news(self, pulses: dict[str, Pulse]) -> None:
-        for warning in warnings_of(pulses):
+    def _news(self, heard: Heard) -> None:
+        for warning in [*warnings_of(heard.pulses), *heard.notes]:
             self._warn(warning)
-        page = pulses.get("animator")
+        page = heard.pulses.get("animator")
         if page is not None and page.detail not in self._told | {""}:
             self._told.add(page.detail)
             self._console.print(f"the page: [link]{page.detail}[/link]", highlight=False)
@@ -170,7 +172,7 @@ def _facts(heard: Heard, clip: Clip, seconds: float) -> dict[str, Any]:
         "seconds": {"all": round(seconds, 3)},
         "scale_source": source,
         "posture": performed(heard.postures),
-        "warnings": list(dict.fromkeys([*clip.warnings, *warnings_of(heard.pulses)])),
+        "warnings": list(dict.fromkeys([*clip.warnings, *warnings_of(heard.pulses), *heard.notes])),
         "processes": {
             name: {
                 key: round(value, 3) if isinstance(value, float) else value

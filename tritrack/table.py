@@ -19,7 +19,13 @@ COLUMNS: Final = (
     ("p99 ms", "right"),
     ("MB", "right"),
 )
-COLOURS: Final = {"running": "green", "ended": "dim", "ready": "cyan"}
+COLOURS: Final = {
+    "running": "green",
+    "ended": "dim",
+    "ready": "cyan",
+    "restarting": "yellow",
+    "given up": "red",
+}
 
 
 def table_of(names: Sequence[str], pulses: Mapping[str, Pulse], title: str) -> Table:

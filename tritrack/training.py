@@ -1,31 +1,26 @@
 """Posture models from clips or runs."""
 
-import json
-import zipfile
 from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
-import numpy as np
 from rich.console import Console
 
-from common import config
-from common.config import Mode, RecognizerSettings
-from recognizer.__main__ import MOVING
-from recognizer.evaluation import Recording
-from recognizer.features import rows
-from recognizer.learning import train
-from recognizer.model_file import save
-from recognizer.postures import Recognizer
-from recognizer.spotting import motion_of
-from tritrack.offline import Decoders, overridden, track_clip, without_plain_files
-from tritrack.runs import poses
-from tritrack.terminal import bar, warn
+from common.config import Mode
+from recognizer.__main__ import SHIPPED, SHIPPED_PAPER
+from recognizer.learning import taught, train
+from recognizer.model_file import load, save
+from recognizer.postures import PostureModel, Recognizer
+from tritrack.cores import spread
+from tritrack.performances import recordings
+
+SHIPPED_MODELS: Final[dict[Recognizer, Path]] = {"default": SHIPPED, "paper": SHIPPED_PAPER}
+"""What a command line calls `shipped`."""
 
 
 class TrainingError(ValueError):
-    """Clips or runs that nothing can be learnt from; the text names the folder and the cure."""
+    """Nothing can be learnt, or the model cannot be written; the text names the cure."""
 
 
 def train_postures(
@@ -33,28 +28,42 @@ def train_postures(
     out: Path,
     mode: Mode | None,
     console: Console,
-    recognizer: Recognizer = "default",
+    recognizer: Recognizer,
+    cache: Path,
+    add_to: Path | None = None,
 ) -> dict[str, Any]:
     """Learn a model of each posture and write it.
 
     Args:
         paths: Clip folders whose `meta.json` names posture and performer, or their run folders.
         out: The file to write.
-        mode: How clips are tracked; None: as their settings say.
+        mode: How clips are tracked; None: in the recogniser's own mode.
         console: For progress and warnings.
         recognizer: Which kind of model.
+        cache: Folder that keeps what tracking made of clips.
+        add_to: A model whose other postures are kept, and whose kind the new ones get; None: the
+            model knows what was learnt here alone.
 
     Raises:
-        TrainingError: When a folder is neither, or names no posture, or the file cannot be written.
-        ClipError: When a clip cannot be used.
+        RecordingError: When a folder is neither, or names no posture.
+        ClipsFailed: When clips cannot be used.
+        TrainingError: When nothing can be learnt, or the file cannot be written.
+        ModelError: When the model to add to cannot be read.
     """
+    known = model_named(add_to, recognizer) if add_to else None
+    kind = known.card.recognizer if known else recognizer
     learnt: dict[str, list[Any]] = defaultdict(list)
     performers = set()
-    for recording in recordings(paths, mode, console):
+    with spread(""):
+        given = recordings(paths, mode or kind, cache, console)
+    for recording in given:
         learnt[recording.posture].append(recording.rows)
         performers.add(recording.performer)
     try:
-        model = train(dict(learnt), recognizer, performers=sorted(performers))
+        if known is None:
+            model = train(dict(learnt), kind, performers=sorted(performers))
+        else:
+            model = taught(known, learnt, sorted(performers))
         out.parent.mkdir(parents=True, exist_ok=True)
         save(model, out)
     except (ValueError, OSError) as error:
@@ -63,42 +72,14 @@ def train_postures(
         "model": str(out),
         "sequences": {name: len(given) for name, given in sorted(learnt.items())},
         "performers": sorted(performers),
+        "knows": list(model.names),
     }
 
 
-def recordings(paths: Sequence[Path], mode: Mode | None, console: Console) -> list[Recording]:
-    """What was performed in each clip or run: the motion after the opening posture."""
-    folders = without_plain_files(paths, console)
-    with Decoders() as decoders, bar(console) as progress:
-        return [
-            _of_run(path)
-            if (path / "poses.npz").is_file()
-            else _of_clip(path, mode, decoders, console)
-            for path in progress.track(folders, description="reading")
-        ]
+def model_named(path: Path, recognizer: Recognizer) -> PostureModel:
+    """The model in a file, or the one in the package where the path is `shipped`.
 
-
-def _of_clip(path: Path, mode: Mode | None, decoders: Decoders, console: Console) -> Recording:
-    tracked = track_clip(overridden(config.load(path), mode, None), decoders)
-    for warning in tracked.facts["warnings"]:
-        warn(console, warning)
-    return _recording(path, tracked.facts, poses(tracked.bodies))
-
-
-def _of_run(path: Path) -> Recording:
-    try:
-        facts = json.loads((path / "summary.json").read_text())
-        with np.load(path / "poses.npz", allow_pickle=False) as arrays:
-            return _recording(path, facts, {name: arrays[name] for name in arrays.files})
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
-        raise TrainingError(f"{path} is no run folder: {error}; track the clip again") from error
-
-
-def _recording(path: Path, facts: dict[str, Any], arrays: dict[str, Any]) -> Recording:
-    posture = facts.get("posture_meant", "")
-    if not posture:
-        raise TrainingError(f"{path} names no posture: write it into the clip's meta.json")
-    tracked = rows(arrays["angles_deg"], arrays["joints_m"])
-    moving = np.where(np.isin(arrays["status"], MOVING)[:, None], tracked, np.nan)
-    window = RecognizerSettings().window_frames
-    return Recording(facts.get("performer", ""), posture, motion_of(moving, window))
+    Raises:
+        ModelError: When it cannot be read.
+    """
+    return load(SHIPPED_MODELS[recognizer] if path == Path("shipped") else path)

@@ -10,7 +10,7 @@ from common import clock
 from common.bus import Bus, open_client
 from common.clips import View, open_clip, shortfall
 from common.config import Settings
-from common.decoding import Decoder
+from common.decoding import Decoder, DecoderDied
 from common.inbox import Inbox
 from common.messages import (
     ClockAnswer,
@@ -94,11 +94,12 @@ def run(
     pace = Pace(period_s)
     heart = Heart(bus, f"viewer {view.number}", pace)
     guides = Guides(bus.subscribe(Guide), view.number)
-    before = -1
+    before, why = -1, ""
     try:
         while not stop.is_set() and not live.over:
             frame = live.take(period_s)
             if frame is None:
+                heart.beat("running", odd, **_lost(live, guides))
                 continue
             guide = guides.of_frame(before, WAIT_SHARE * period_s)
             state, report = track.step(state, frame, guide)
@@ -108,8 +109,11 @@ def run(
                 bus.publish(_picture(view.number, frame))
             heart.beat("running", odd, **_lost(live, guides))
             before = frame.index
+    except DecoderDied as error:
+        why = str(error)
+        raise
     finally:  # Also when the decoder broke: nobody shall wait for this view again.
-        bus.publish(Ended(viewer=view.number, frames=pace.frames))
+        bus.publish(Ended(viewer=view.number, frames=pace.frames, why=why))
     cut_off = shortfall(view, live.came) if live.over else ""
     if cut_off:
         log.warning(cut_off)

@@ -27,6 +27,8 @@ class Frame(msgspec.Struct, frozen=True):
     """The same moment by the room's clock; offline the same as `captured_s`."""
     picture: Picture
     """(height, width, 3), BGR, at the working size."""
+    next_s: float | None = None
+    """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
 
 
 def recorded(view: View, every: int, decoder: Decoder) -> Iterator[Frame]:
@@ -38,7 +40,8 @@ def recorded(view: View, every: int, decoder: Decoder) -> Iterator[Frame]:
     """
     for decoded in decoder.frames(view.source, view.size, every):
         captured_s = view.captured_s(decoded.index)
-        yield Frame(decoded.index, captured_s, captured_s, decoded.picture)
+        next_s = view.captured_s(decoded.index + every)
+        yield Frame(decoded.index, captured_s, captured_s, decoded.picture, next_s)
 
 
 class RoomClock(NamedTuple):
@@ -53,7 +56,8 @@ class RoomClock(NamedTuple):
 class Live:
     """A view's frames, each given out when it is due; the oldest give way to a late reader.
 
-    A thread takes them from the decoder, so a camera is never kept waiting.
+    A thread takes them from the decoder, so a camera is never kept waiting. Frames that were due
+    before it began, as when a viewer is started again in the middle of a clip, are not given out.
     """
 
     def __init__(
@@ -63,11 +67,14 @@ class Live:
         self._view = view
         self._room = room
         self._clock = clock
+        self._began_s = clock()
+        self._every = every
+        self._missed = 0
         self._stop = threading.Event()
         self._decoder = Decoder()
         self._waiting: Mailbox[Frame] = Mailbox(WAITING)
         self._failure: Exception | None = None
-        self._thread = threading.Thread(target=self._run, args=(every,), daemon=True)
+        self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
     def __enter__(self) -> Self:
@@ -87,8 +94,8 @@ class Live:
 
     @property
     def dropped(self) -> int:
-        """Frames that a late reader never saw."""
-        return self._waiting.dropped
+        """Frames that a late reader never saw, and those that were due before it began."""
+        return self._waiting.dropped + self._missed
 
     @property
     def came(self) -> int:
@@ -112,15 +119,19 @@ class Live:
             raise self._failure
         return frame
 
-    def _run(self, every: int) -> None:
+    def _run(self) -> None:
         """Hand on each frame at its moment; in a thread of its own."""
-        frames = self._decoder.frames(self._view.source, self._view.size, every)
+        frames = self._decoder.frames(self._view.source, self._view.size, self._every)
         try:
             for decoded in frames:
                 frame = self._timed(decoded)
-                if not wait_until(frame.clock_s - self._room.offset_s, self._stop, self._clock):
+                due_s = frame.clock_s - self._room.offset_s
+                if not wait_until(due_s, self._stop, self._clock):
                     return
-                self._waiting.put(frame)
+                if due_s < self._began_s:
+                    self._missed += 1
+                else:
+                    self._waiting.put(frame)
         except Exception as error:  # Whatever ended this thread is the reader's to hear.
             self._failure = error
         finally:
@@ -133,4 +144,6 @@ class Live:
             now_s = decoded.grabbed_s + self._room.offset_s
             return Frame(decoded.index, now_s, now_s, decoded.picture)
         captured_s = self._view.captured_s(decoded.index)
-        return Frame(decoded.index, captured_s, self._room.start_s + captured_s, decoded.picture)
+        next_s = self._view.captured_s(decoded.index + self._every)
+        clock_s = self._room.start_s + captured_s
+        return Frame(decoded.index, captured_s, clock_s, decoded.picture, next_s)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from common.body import POSE_INDEX, body_vector, rest_pose, stature, thesis_bdp
 from common.camera import Camera
 from common.config import Settings
-from common.messages import Facing, Guide, Measure, Report, ViewerNumber, pack
-from viewer import silhouette
+from common.messages import CameraFault, Facing, Guide, Measure, Report, ViewerNumber, pack
+from viewer import lens, silhouette
 from viewer.arms import facade_arms, flank_arms
 from viewer.background import Background
 from viewer.capture import Frame
@@ -45,6 +45,7 @@ class State(NamedTuple):
     rotation: NDArray[np.float64]
     """World to camera, (3, 3)."""
     settings: Settings
+    lens: lens.State
     silhouette: silhouette.State
     vote: Facing
     squatting: bool = False
@@ -61,6 +62,7 @@ def init(
         viewer,
         rotation_of(camera, viewer),
         settings,
+        lens.init(background),
         silhouette.init(background, settings.silhouette),
         "facade" if viewer == 1 else "flank",
     )
@@ -69,11 +71,17 @@ def init(
 def step(state: State, frame: Frame, guide: Guide | None) -> tuple[State, Report]:
     """One frame: silhouette, opening posture, facing, position, arms, legs (P23).
 
+    A picture that shows no room (frozen, black, white) is told and not looked at.
+
     Args:
         state: What this viewer remembers.
         frame: The picture.
         guide: What the integrator made of the frame before; None at the start.
     """
+    watched, fault = lens.step(state.lens, frame.picture)
+    state = state._replace(lens=watched)
+    if fault:
+        return state, _blind_report(state, frame, guide, fault)
     known = guide if _expected(guide, state.viewer) else None
     near = known.root_px[state.viewer - 1] if known is not None else None
     remembered, seen = silhouette.step(state.silhouette, frame.picture, near)
@@ -130,7 +138,15 @@ def _outline_report(state: State, frame: Frame, guide: Guide | None, seen: Seen)
         cut=seen.cut,
         vote=state.vote,
         guide_frame=-1 if guide is None else guide.frames[state.viewer - 1],
+        next_s=frame.next_s,
     )
+
+
+def _blind_report(state: State, frame: Frame, guide: Guide | None, fault: CameraFault) -> Report:
+    """Nobody is seen, and why."""
+    nobody = np.zeros(frame.picture.shape[:2], np.bool_)
+    seen = Seen(nobody, box=None, area_px=0, blobs=0, cut=False)
+    return msgspec.structs.replace(_outline_report(state, frame, guide, seen), fault=fault)
 
 
 def _followed(state: State, seen: Seen, guide: Guide) -> Figure:

@@ -1,0 +1,92 @@
+"""The keys and files of what was tracked: the same clip and settings, and nothing else, match."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+from spoiling import copied, edit_json
+
+from common.config import Settings
+from common.footage import ClipError
+from tritrack import clip_cache
+from tritrack.clip_cache import key_of, read, write
+
+
+@pytest.fixture
+def own(clip: Path, tmp_path: Path) -> Settings:
+    return Settings(clip=str(copied(clip, tmp_path / "own")))
+
+
+def changed(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:-1] + b"?")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda folder: changed(folder / "cam1.avi"),
+        lambda folder: changed(folder / "cam2.avi"),
+        lambda folder: edit_json(folder / "meta.json", lambda meta: meta.update(take=7)),
+        lambda folder: edit_json(folder / "calibration.json", lambda rig: rig.update(fps=14)),
+        lambda folder: (folder / "calibration.json").unlink(),
+        lambda folder: (folder / "cam2.avi").rename(folder / "cam2.mkv"),
+    ],
+)
+def test_any_file_that_is_read_changes_the_key(
+    own: Settings, change: Callable[[Path], object]
+) -> None:
+    before = key_of(own, "tracker")
+    change(Path(own.clip))
+    assert key_of(own, "tracker") != before
+
+
+def test_settings_and_the_tracker_change_the_key_the_truth_does_not(own: Settings) -> None:
+    before = key_of(own, "tracker")
+    assert key_of(own, "another") != before
+    assert key_of(msgspec.structs.replace(own, mode="paper"), "tracker") != before
+    assert key_of(msgspec.structs.replace(own, size="80x60"), "tracker") != before
+    (Path(own.clip) / "truth.npz").write_bytes(b"")
+    assert key_of(own, "tracker") == before
+
+
+def test_a_clip_that_moved_keeps_its_key(own: Settings, tmp_path: Path) -> None:
+    before = key_of(own, "tracker")
+    moved = tmp_path / "elsewhere" / "own"
+    shutil.copytree(own.clip, moved)
+    assert key_of(Settings(clip=str(moved)), "tracker") == before
+
+
+def test_a_camera_is_no_recorded_clip(tmp_path: Path) -> None:
+    settings = msgspec.convert({"camera_1": {"device": 0}}, Settings)
+    with pytest.raises(ClipError, match="camera 0 is no recorded clip"):
+        key_of(settings, "tracker")
+
+
+def test_the_tracker_is_named_by_its_code_and_models(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = clip_cache.tracker_id()
+    assert clip_cache.tracker_id() == before
+    monkeypatch.setattr(clip_cache, "TRACKERS", ("common", "viewer"))
+    assert clip_cache.tracker_id() != before
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.99])
+def test_half_a_file_counts_as_none(tmp_path: Path, share: float) -> None:
+    np.savez(tmp_path / "whole.npz", facts=np.frombuffer(b"{}", np.uint8), frame=np.arange(99))
+    whole = (tmp_path / "whole.npz").read_bytes()
+    write(tmp_path, "half", whole[: int(share * len(whole))])
+    assert read(tmp_path, "half") is None
+    assert read(tmp_path, "never written") is None
+
+
+def test_a_pickle_is_not_read(tmp_path: Path) -> None:
+    arrays = {name: np.array([{}], object) for name in clip_cache.KEPT}
+    np.savez(
+        tmp_path / "k.npz",
+        allow_pickle=True,
+        facts=np.frombuffer(b"{}", np.uint8),
+        **arrays,  # type: ignore[arg-type]
+    )
+    assert read(tmp_path, "k") is None

@@ -1,0 +1,410 @@
+"""A view that is lost in a live run: real processes that are killed, frozen, covered or cut off."""
+
+import json
+import multiprocessing
+import os
+import shutil
+import signal
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+from rich.console import Console
+from spoiling import Film, copied, edit_json, refilmed
+
+from common.bus import BusError, open_client
+from common.config import BusSettings, PageSettings, Settings
+from common.messages import Body, Pulse, Views
+from tritrack import session
+from tritrack.offline import Decoders, track_clip
+from tritrack.parts import Part, live_parts
+from tritrack.runs import poses
+from tritrack.session import free_settings, live
+from tritrack.supervise import PartFailed
+from viewer.lens import FROZEN_AFTER
+
+pytestmark = pytest.mark.slow
+
+RATE_HZ = 5.0
+"""A third of the cameras' rate: what a busy machine keeps up with."""
+PATIENCE_S = 180.0
+FRAMES = 148
+MOTION = 29
+"""First frame after the opening posture."""
+LOST = slice(45, 61)
+"""Frames in which camera 2 is covered."""
+
+
+def slow(clip: Path, folder: Path, rounds: int) -> Path:
+    """The made-up clip at a slow pace, its motion repeated there and back."""
+    copied(clip, folder)
+    refilmed(folder, lambda film: film + rounds * (film[:MOTION:-1] + film[MOTION:]))
+    edit_json(folder / "meta.json", lambda meta: meta.update(fps=RATE_HZ))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def short_clip(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """FRAMES frames, half a minute."""
+    return slow(clip, tmp_path_factory.mktemp("short") / "clip", 1)
+
+
+@pytest.fixture(scope="module")
+def long_clip(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Minutes: on a busy machine a viewer takes as long to start; the witness ends the run."""
+    return slow(clip, tmp_path_factory.mktemp("long") / "clip", 14)
+
+
+def settings_of(clip: Path) -> Settings:
+    return free_settings(Settings(clip=str(clip), page=PageSettings(port=0)))
+
+
+class Witness:
+    """Hears a run from outside, and does it harm at the right moment."""
+
+    def __init__(self, bus: BusSettings, harm: Callable[["Witness"], None]) -> None:
+        self.bodies: list[Body] = []
+        self.said: list[str] = []
+        self.states: list[tuple[str, str]] = []
+        self.lost_at = 0
+        """Frame of the last body before the harm."""
+        self.over = threading.Event()
+        """Ends the run."""
+        self._settings, self._harm = bus, harm
+        self._thread = threading.Thread(target=self._run)
+        self.failure: BaseException | None = None
+
+    def __enter__(self) -> "Witness":
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._thread.join()
+        if self.failure is not None:
+            raise self.failure
+
+    def _run(self) -> None:
+        try:
+            with self._door() as bus:
+                self._bus_bodies, self._bus_pulses = bus.subscribe(Body), bus.subscribe(Pulse)
+                self._harm(self)
+        except BaseException as error:
+            self.failure = error
+        finally:
+            self.over.set()
+
+    @contextmanager
+    def _door(self) -> Iterator[Any]:
+        until_s = time.monotonic() + PATIENCE_S
+        while True:
+            try:
+                with open_client(self._settings, "room", 1.0) as bus:
+                    yield bus
+                return
+            except BusError:
+                if time.monotonic() > until_s:
+                    raise
+
+    def until(self, what: str, seen: Callable[[], bool]) -> None:
+        """Listen until something was seen."""
+        until_s = time.monotonic() + PATIENCE_S
+        while not seen():
+            assert time.monotonic() < until_s, f"waited in vain for {what}"
+            body = self._bus_bodies.take(0.02)
+            self.bodies += [] if body is None else [body, *self._bus_bodies.drain()]
+            for pulse in self._bus_pulses.drain():
+                self.states.append((pulse.process, pulse.state))
+                self.said += [x for x in pulse.detail.splitlines() if x not in self.said]
+
+    def until_views(self, views: Views, frames: int = 3) -> None:
+        """Listen until the last few bodies were made of these views."""
+        start = len(self.bodies)
+        self.until(
+            f"views {views}",
+            lambda: (
+                len(self.bodies) >= start + frames
+                and all(body.views == views for body in self.bodies[-frames:])
+            ),
+        )
+
+    def until_tracked(self) -> None:
+        self.until(
+            "a measured body",
+            lambda: (
+                any(body.status == "measuring" for body in self.bodies)
+                and self.bodies[-1].status == "tracking"
+            ),
+        )
+        self.until_views("both")
+        self.lost_at = self.bodies[-1].frame
+
+    def until_said(self, words: str) -> None:
+        self.until(words, lambda: any(words in line for line in self.said))
+
+
+def pid_of(name: str) -> int:
+    """Of this test's own part."""
+    (pid,) = (one.pid for one in multiprocessing.active_children() if one.name == name)
+    assert pid is not None
+    return pid
+
+
+def rows(out: Path) -> dict[str, Any]:
+    with np.load(out / "poses.npz", allow_pickle=False) as found:
+        return dict(found)
+
+
+@pytest.fixture
+def watched_run(
+    long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Callable[[Callable[[Witness], None]], tuple[dict[str, Any], Witness]]:
+    """A live run that somebody harms; what its summary tells, and what was heard of it."""
+
+    def run(harm: Callable[[Witness], None]) -> tuple[dict[str, Any], Witness]:
+        settings = settings_of(long_clip)
+        with Witness(settings.bus, harm) as witness:
+            monkeypatch.setattr(session, "_stopped_by_signals", lambda: nullcontext(witness.over))
+            facts = live(settings, tmp_path, Console(quiet=True))
+        goes_on_and_comes_back(tmp_path, witness)
+        return facts, witness
+
+    return run
+
+
+def goes_on_and_comes_back(out: Path, witness: Witness) -> None:
+    """What every loss of view 2 has in common (issue 5, Shows 5)."""
+    found = rows(out)
+    since = found["frame"] >= witness.lost_at
+    views, joints_m, status = (found[name][since] for name in ("views", "joints_m", "status"))
+    assert {"1", "both"} <= set(views)
+    assert np.isfinite(joints_m).all(), "a pose is missing"
+    assert np.diff(found["frame"][since]).max() <= 3, "a gap in the stream"
+    assert "measuring" not in status, "measured again"
+
+
+Run = Callable[[Callable[[Witness], None]], tuple[dict[str, Any], Witness]]
+
+
+def test_a_killed_viewer_is_started_again_and_the_body_goes_on(
+    watched_run: Run, tmp_path: Path
+) -> None:
+    def harm(witness: Witness) -> None:
+        witness.until_tracked()
+        os.kill(pid_of("viewer 2"), signal.SIGKILL)
+        witness.until_views("1")
+        witness.until_said("view 2 is lost (it was killed, or its link is cut); view 1 goes on")
+        witness.until_views("both")
+        witness.until_said("view 2 is back")
+
+    facts, _ = watched_run(harm)
+    assert any("viewer 2: killed by signal 9; it is started again" in w for w in facts["warnings"])
+    log = (tmp_path / "log.txt").read_text()
+    assert "supervisor  WARNING viewer 2: killed by signal 9" in log
+    assert "view 2 is lost" in log
+
+
+def test_a_frozen_viewer_is_silent_and_resumes(watched_run: Run) -> None:
+    """SIGSTOP: it keeps its place on the bus for a while and says nothing."""
+
+    def harm(witness: Witness) -> None:
+        witness.until_tracked()
+        frozen = pid_of("viewer 2")
+        os.kill(frozen, signal.SIGSTOP)
+        try:
+            witness.until_views("1")
+            witness.until_said("view 2 is lost (it ")
+        finally:
+            os.kill(frozen, signal.SIGCONT)
+        witness.until_views("both")
+
+    watched_run(harm)
+
+
+def test_a_viewer_that_stays_frozen_is_killed_and_started_again(watched_run: Run) -> None:
+    def harm(witness: Witness) -> None:
+        witness.until_tracked()
+        os.kill(pid_of("viewer 2"), signal.SIGSTOP)
+        witness.until_views("1")
+        witness.until_views("both")
+
+    facts, _ = watched_run(harm)
+    assert any("viewer 2: it has said nothing for" in told for told in facts["warnings"])
+
+
+class Cable:
+    """A TCP link between a viewer and the hub that can be cut and mended."""
+
+    def __init__(self, hub: BusSettings) -> None:
+        self._hub = int(hub.endpoint.rsplit(":", 1)[1])
+        self._door = socket.create_server(("127.0.0.1", 0))
+        self.bus = BusSettings(endpoint=f"tcp/127.0.0.1:{self._door.getsockname()[1]}")
+        self._ends: list[socket.socket] = []
+        self._whole = True
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def _accept(self) -> None:
+        while True:
+            try:
+                near, _ = self._door.accept()
+                far = socket.create_connection(("127.0.0.1", self._hub))
+            except OSError:
+                continue
+            if not self._whole:
+                near.close()
+                far.close()
+                continue
+            self._ends += [near, far]
+            for one, other in ((near, far), (far, near)):
+                threading.Thread(target=self._pump, args=(one, other), daemon=True).start()
+
+    @staticmethod
+    def _pump(one: socket.socket, other: socket.socket) -> None:
+        try:
+            while heard := one.recv(1 << 16):
+                other.sendall(heard)
+        except OSError:
+            pass
+
+    def cut(self) -> None:
+        self._whole = False
+        for end in self._ends:
+            end.close()
+        self._ends.clear()
+
+    def mend(self) -> None:
+        self._whole = True
+
+
+def test_a_cut_link_is_noticed_and_mended(
+    watched_run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cables: list[Cable] = []
+
+    def parts(settings: Settings, *given: Any) -> list[Part]:
+        cables.append(Cable(settings.bus))
+        afar = msgspec.structs.replace(settings, bus=cables[0].bus)
+        *others, last = live_parts(settings, *given)
+        assert last.name == "viewer 2"
+        return [*others, last._replace(arguments=(afar, *last.arguments[1:]))]
+
+    def harm(witness: Witness) -> None:
+        witness.until_tracked()
+        cables[0].cut()
+        witness.until_views("1")
+        witness.until_said("view 2 is lost (it was killed, or its link is cut)")
+        cables[0].mend()
+        witness.until_views("both")
+        witness.until_said("view 2 is back")
+
+    monkeypatch.setattr(session, "live_parts", parts)
+    facts, _ = watched_run(harm)
+    assert not any("viewer 2: " in told for told in facts["warnings"]), "it was started again"
+
+
+def covered(picture_of: Callable[[np.ndarray], np.ndarray]) -> Callable[[Film], Film]:
+    """A film that shows something else for as long as LOST lasts."""
+
+    def change(film: Film) -> Film:
+        other = [picture_of(film[LOST.start])] * (LOST.stop - LOST.start)
+        return [*film[: LOST.start], *other, *film[LOST.stop :]]
+
+    return change
+
+
+def test_a_covered_camera_is_told_and_left_out(short_clip: Path, tmp_path: Path) -> None:
+    """And the same offline, number by number."""
+    folder = shutil.copytree(short_clip, tmp_path / "covered")
+    refilmed(folder, covered(np.zeros_like), cameras=(2,))
+    settings = settings_of(folder)
+    facts = live(settings, tmp_path / "out", Console(quiet=True))
+    assert any("view 2 is lost (its camera's picture is black)" in w for w in facts["warnings"])
+    assert any("view 2 is back" in told for told in facts["warnings"])
+    found = rows(tmp_path / "out")
+    covered_rows = np.isin(found["frame"], range(FRAMES)[LOST])
+    assert set(found["views"][covered_rows]) == {"1"}
+    assert "both" in found["views"][found["frame"] >= LOST.stop]
+    if not any(facts["processes"][f"viewer {n}"]["guide_misses"] for n in (1, 2)):
+        with Decoders() as decoders:
+            offline = poses(track_clip(settings, decoders).bodies)
+        for name, values in offline.items():
+            np.testing.assert_array_equal(found[name], values, err_msg=name)
+
+
+@pytest.mark.parametrize(
+    ("picture_of", "seen_until"),
+    [
+        (lambda picture: picture, LOST.start + 1 + FROZEN_AFTER),
+        (lambda picture: np.full_like(picture, 255), LOST.start),
+        (lambda picture: np.full_like(picture, 110), LOST.start),
+    ],
+    ids=["frozen", "saturated", "covered"],
+)
+def test_what_is_no_picture_of_the_room_is_not_looked_at(
+    short_clip: Path,
+    tmp_path: Path,
+    picture_of: Callable[[np.ndarray], np.ndarray],
+    seen_until: int,
+) -> None:
+    folder = shutil.copytree(short_clip, tmp_path / "covered")
+    refilmed(folder, covered(picture_of), cameras=(2,))
+    with Decoders() as decoders:
+        found = poses(track_clip(settings_of(folder), decoders).bodies)
+    assert set(found["views"][MOTION:seen_until]) == {"both"}
+    assert set(found["views"][seen_until : LOST.stop]) == {"1"}
+    assert set(found["views"][LOST.stop :]) == {"both"}
+    assert np.isfinite(found["joints_m"][MOTION:]).all()
+
+
+def test_a_clip_that_ends_early_leaves_the_other_view(short_clip: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(short_clip, tmp_path / "short")
+    refilmed(folder, lambda film: film[: LOST.start], cameras=(2,))
+    facts = live(settings_of(folder), tmp_path / "out", Console(quiet=True))
+    told = "view 2 is lost (its clip is over); view 1 goes on alone"
+    assert any(told in warning for warning in facts["warnings"])
+    found = rows(tmp_path / "out")
+    assert found["frame"][-1] == FRAMES - 1
+    assert set(found["views"][found["frame"] > LOST.start]) == {"1"}
+
+
+def test_what_is_given_up_fails_the_run_after_the_other_view_was_tracked_to_its_end(
+    short_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tritrack.supervise.TRIES", 0)
+
+    def harm(witness: Witness) -> None:
+        witness.until_tracked()
+        os.kill(pid_of("viewer 2"), signal.SIGKILL)
+
+    settings = settings_of(short_clip)
+    given_up = "viewer 2: killed by signal 9; after 0 new starts it is given up"
+    with (
+        Witness(settings.bus, harm),
+        pytest.raises(PartFailed, match=given_up),
+    ):
+        live(settings, tmp_path, Console(quiet=True))
+    assert rows(tmp_path)["frame"][-1] == FRAMES - 1
+    told = json.loads((tmp_path / "summary.json").read_text())["processes"]["viewer 2"]["state"]
+    assert told == "given up"
+
+
+def test_a_hole_in_one_film_is_bridged_by_the_other(clip: Path, tmp_path: Path) -> None:
+    """Offline too (Shows 4): frames of 1.5 s missing, as the clip's capture times tell."""
+    folder = copied(clip, tmp_path / "hole")
+    kept = [i for i in range(69) if not 37 <= i < 59]
+    refilmed(folder, lambda film: [film[i] for i in kept], cameras=(2,))
+    moments = [i / 15 for i in kept]
+    edit_json(folder / "meta.json", lambda meta: meta.update(capture_s={"cam2": moments}))
+    with Decoders() as decoders:
+        found = poses(track_clip(settings_of(folder), decoders).bodies)
+    assert found["frame"].tolist() == list(range(69))
+    assert set(found["views"][37:59]) == {"1"}
+    assert set(found["views"][59:]) == {"both"}
+    assert np.isfinite(found["joints_m"][MOTION:]).all()
+    assert "measuring" not in found["status"][37:]

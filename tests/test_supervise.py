@@ -1,0 +1,126 @@
+"""What dies is started again, later each time, until it is given up: real processes, no bus."""
+
+import os
+import signal
+import time
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from common.messages import Pulse
+from tritrack.parts import Part
+from tritrack.supervise import BACK_OFF_S, TRIES, PartFailed, Watched, watched
+
+PATIENCE_S = 60.0
+
+
+def sleeps() -> None:
+    """A part that works."""
+    time.sleep(600.0)
+
+
+def breaks(text: str) -> None:
+    """A part that does not."""
+    raise RuntimeError(text)
+
+
+def beating(name: str) -> dict[str, Pulse]:
+    return {name: Pulse(process=name, state="running", frames=7)}
+
+
+@pytest.fixture
+def sleeper() -> Iterator[Watched]:
+    with watched(Part("viewer 2", sleeps, (), leads=True, beats=True)) as one:
+        yield one
+
+
+def until(seen: Callable[[], object]) -> None:
+    until_s = time.monotonic() + PATIENCE_S
+    while not seen():
+        assert time.monotonic() < until_s
+        time.sleep(0.02)
+
+
+def killed(one: Watched) -> None:
+    pid = one.running.process.pid
+    assert pid is not None
+    os.kill(pid, signal.SIGKILL)
+    until(lambda: one.running.process.exitcode is not None)
+
+
+def test_what_dies_is_started_again_and_the_table_says_so(sleeper: Watched) -> None:
+    pulses = beating("viewer 2")
+    assert sleeper.look(100.0, pulses) == ""
+    first = sleeper.running.process.pid
+    killed(sleeper)
+    assert sleeper.look(100.1, pulses) == (
+        "viewer 2: killed by signal 9; it is started again in 0.5 s (1 of 5 times)"
+    )
+    assert (pulses["viewer 2"].state, pulses["viewer 2"].frames) == ("restarting", 7)
+    assert not sleeper.done
+    sleeper.look(100.5, pulses)
+    assert sleeper.running.process.pid == first
+    sleeper.look(100.7, pulses)
+    assert sleeper.running.process.pid != first
+    assert sleeper.running.process.is_alive()
+
+
+def test_each_further_start_waits_twice_as_long_and_then_it_is_given_up(
+    sleeper: Watched,
+) -> None:
+    pulses, now_s, waits = beating("viewer 2"), 100.0, []
+    sleeper.look(now_s, pulses)
+    for _ in range(TRIES):
+        killed(sleeper)
+        sleeper.look(now_s, pulses)
+        before = now_s
+        while sleeper.running.process.exitcode is not None:
+            now_s += BACK_OFF_S / 4
+            sleeper.look(now_s, pulses)
+        waits.append(now_s - before)
+    assert waits == [BACK_OFF_S * 2**n for n in range(TRIES)]
+    killed(sleeper)
+    told = sleeper.look(now_s, pulses)
+    assert told == "viewer 2: killed by signal 9; after 5 new starts it is given up"
+    assert pulses["viewer 2"].state == "given up"
+    with pytest.raises(PartFailed, match="viewer 2: killed by signal 9; after 5 new starts"):
+        sleeper.refuse_failure()
+
+
+def test_what_ran_for_a_minute_has_all_its_tries_again(sleeper: Watched) -> None:
+    pulses, now_s = beating("viewer 2"), 100.0
+    sleeper.look(now_s, pulses)
+    killed(sleeper)
+    sleeper.look(now_s, pulses)
+    for _ in range(200):
+        now_s += 0.5
+        pulses["viewer 2"] = beating("viewer 2")["viewer 2"]
+        sleeper.look(now_s, pulses)
+    killed(sleeper)
+    assert "(1 of 5 times)" in sleeper.look(now_s, pulses)
+
+
+def test_what_hangs_is_killed_but_not_by_a_supervisor_that_slept_itself(sleeper: Watched) -> None:
+    pulses, now_s = beating("viewer 2"), 100.0
+    sleeper.look(now_s, pulses)
+    assert sleeper.look(now_s + 3600.0, pulses) == ""
+    now_s += 3600.0
+    told = ""
+    while not told:
+        now_s += 0.1
+        told = sleeper.look(now_s, pulses)
+    assert now_s - 3700.0 == pytest.approx(5.0, abs=1.0)
+    assert told == "viewer 2: it has said nothing for 5 s, hangs, and is killed"
+    until(lambda: sleeper.running.process.exitcode == -signal.SIGKILL)
+
+
+def test_what_fails_before_it_ever_worked_fails_the_run_with_its_reason() -> None:
+    with watched(Part("viewer 1", breaks, ("no camera",), leads=True)) as one:
+        until(lambda: one.running.process.exitcode is not None)
+        with pytest.raises(PartFailed, match="viewer 1: no camera"):
+            one.look(100.0, {})
+
+
+def test_nothing_runs_after_the_end(sleeper: Watched) -> None:
+    sleeper.end()
+    assert not sleeper.running.process.is_alive()

@@ -1,0 +1,55 @@
+"""Work spread over all cores of this machine, or over a Dask cluster."""
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any, Final, TypeVar
+
+Given = TypeVar("Given")
+Made = TypeVar("Made")
+
+CONNECT_S: Final = 10
+"""How long a cluster may take to answer."""
+
+
+class ClusterError(RuntimeError):
+    """A cluster that cannot be used; the text names it and the cure."""
+
+
+@contextmanager
+def spread(dask: str) -> Iterator[None]:
+    """Whatever `made` does inside is done by all cores, or by a Dask cluster.
+
+    Args:
+        dask: Address of the cluster's scheduler, tcp://host:8786; "" for this machine alone. Its
+            workers need tritrack and must see the clips under the same paths.
+
+    Raises:
+        ClusterError: When it does not answer, or Dask is not installed.
+    """
+    from joblib import parallel_config
+
+    if not dask:
+        with parallel_config(backend="loky", n_jobs=-1, inner_max_num_threads=1):
+            yield
+        return
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise ClusterError("--dask needs Dask: pip install 'tritrack[cluster]'") from error
+    try:
+        client = Client(dask, timeout=CONNECT_S)
+    except (OSError, ValueError) as error:
+        raise ClusterError(
+            f"no Dask scheduler answers at {dask!r} ({error}): start one with `dask scheduler`, "
+            "and workers with `dask worker ADDRESS`"
+        ) from error
+    with client, parallel_config(backend="dask", wait_for_workers_timeout=CONNECT_S):
+        yield
+
+
+def made(work: Callable[[Given], Made], of: Iterable[Given]) -> Iterator[Made]:
+    """What a function of a module makes of each thing, in the order in which they are done."""
+    from joblib import Parallel, delayed
+
+    parallel: Any = Parallel(return_as="generator_unordered", batch_size=1)
+    yield from parallel(delayed(work)(each) for each in of)

@@ -1,0 +1,74 @@
+"""What is wrong with a camera's picture as a whole: it stands still, is black, white or covered."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.messages import CameraFault
+from viewer.background import Background, Frame
+
+FROZEN_AFTER: Final = 2
+"""Repeats that may be no fault: files made for a faster rate hold each picture two or three times,
+and no filmed clip that was looked at held one more than twice."""
+STRIDE: Final = 4
+"""Every so many rows and columns are looked at for brightness."""
+PLAIN: Final = 16.0
+"""Grey levels between the darkest and the brightest tenth of what shows no room at all."""
+VARIED: Final = 2 * PLAIN
+"""The same in a room that is not plain itself."""
+UNLIKE: Final = 25.0
+"""Grey levels by which a picture without a room differs from a room that is plain, too."""
+DARK: Final = 60.0
+BRIGHT: Final = 195.0
+"""Grey levels: below, a plain picture is called black; above, saturated."""
+
+
+class State(NamedTuple):
+    """The picture before, and for how many frames it has been the same."""
+
+    room: NDArray[np.float32]
+    """Grey levels of the empty room, every STRIDE pixels."""
+    last: Frame | None = None
+    repeats: int = 0
+
+
+def init(room: Background) -> State:
+    """Nothing seen yet but the empty room."""
+    return State(_grey(room.centre))
+
+
+def step(state: State, picture: Frame) -> tuple[State, CameraFault]:
+    """One picture (H, W, 3); the fault that makes it useless, or "".
+
+    A sensor's noise makes every picture of its own, so one that is the same, bit for bit, for
+    more than FROZEN_AFTER frames is the camera's memory and not the room.
+    """
+    same = state.last is not None and np.array_equal(picture, state.last)
+    state = State(state.room, picture, state.repeats + 1 if same else 0)
+    if state.repeats > FROZEN_AFTER:
+        return state, "frozen"
+    return state, _blank(state.room, picture)
+
+
+def _blank(room: NDArray[np.float32], picture: Frame) -> CameraFault:
+    grey = _grey(picture)
+    if _contrast(grey) > PLAIN:
+        return ""
+    if _contrast(room) < VARIED and np.abs(grey - room).mean() < UNLIKE:
+        return ""
+    middle = float(np.median(grey))
+    if middle < DARK:
+        return "black"
+    return "saturated" if middle > BRIGHT else "covered"
+
+
+def _contrast(grey: NDArray[np.float32]) -> float:
+    """Grey levels between the darkest and the brightest tenth."""
+    ranked = np.sort(grey, axis=None)
+    tenth = len(ranked) // 10
+    return float(ranked[-1 - tenth] - ranked[tenth])
+
+
+def _grey(picture: NDArray[np.float32] | Frame) -> NDArray[np.float32]:
+    return picture[::STRIDE, ::STRIDE].mean(axis=2, dtype=np.float32)
