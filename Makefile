@@ -10,7 +10,7 @@ setup: $(VENV)/.compiled
 $(VENV)/.installed: pyproject.toml constraints.txt
 	@command -v $(PYTHON) >/dev/null || { echo "tritrack needs Python 3.11: install it, or name it: make PYTHON=/path/to/python3.11"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[page,export,report,cluster,dev]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[page,export,report,single,cluster,dev]'
 	@touch $@
 
 # numba renews a compiled function when its own file changed, not when one that it calls did.

@@ -7,7 +7,7 @@ from typing import Literal
 
 import msgspec
 
-Mode = Literal["default", "paper"]
+Mode = Literal["default", "paper", "thesis"]
 
 
 class SettingsError(ValueError):

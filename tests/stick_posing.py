@@ -7,7 +7,7 @@ import numpy as np
 from common.body import LIMBS, Vector
 from common.similarity import Mask
 from common.stickman import ADULT, ANGLE, BREADTH, RATIO, Stickman, standing
-from viewer.strokes import draw_stick
+from common.strokes import draw_stick
 
 SIZE = (320, 240)
 STATURE_PX = 160.0

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from viewer.background import Frame, is_empty_opening, learn, learn_from_clip, light_gain
+from viewer.background import Frame, is_empty_opening, learn, light_gain
+from viewer.uncovered import learn_uncovered
 
 HEIGHT, WIDTH = 120, 160
 
@@ -64,7 +65,7 @@ def test_one_picture_is_enough_of_a_room() -> None:
     assert learnt.spread.min() >= 2
 
 
-@pytest.mark.parametrize("learner", [learn, learn_from_clip])
+@pytest.mark.parametrize("learner", [learn, learn_uncovered])
 def test_no_frame_is_no_room(learner: object) -> None:
     with pytest.raises(ValueError, match="at least 1 frame, got 0"):
         learner([])  # type: ignore[operator]
@@ -86,27 +87,6 @@ def test_white_room_keeps_its_gain() -> None:
     frame = shot(white, 0.0, 0)
     frame[30:100, 60:100] = 30
     assert light_gain(frame, white.astype(np.float32)) == pytest.approx([1, 1, 1])
-
-
-def test_room_behind_somebody_who_never_leaves_is_guessed_and_says_so() -> None:
-    """T7: a spot that is never seen is flagged, not silently taken for room."""
-    learnt = learn_from_clip([shot(walker(n), 2.0, n) for n in range(40)])
-    trunk = np.zeros((HEIGHT, WIDTH), np.bool_)
-    trunk[38:60, 76:85] = True
-    assert learnt.uncertain[trunk].mean() > 0.8
-    around = np.zeros((HEIGHT, WIDTH), np.bool_)
-    around[25:90, 64:97] = True
-    assert learnt.uncertain[~around].mean() < 0.01
-    off = np.abs(learnt.centre - room()).mean(axis=-1)
-    assert np.median(off[trunk]) < 20
-    assert np.median(off[~around]) < 2
-
-
-def test_room_behind_somebody_who_passes_is_seen() -> None:
-    """T7: where the person walks on, the background is right within 5 grey levels."""
-    learnt = learn_from_clip([shot(passer_by(n), 2.0, n) for n in range(30)])
-    assert np.abs(learnt.centre - room()).mean(axis=-1).max() < 5
-    assert not learnt.uncertain.any()
 
 
 def test_opening_is_empty_until_somebody_stands_in_it() -> None:

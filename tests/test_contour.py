@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from common.stickman import ANGLE, THESIS, standing
+from common.strokes import draw_stick
 from viewer.contour import (
     Curve,
     arm_angles,
@@ -15,7 +16,6 @@ from viewer.contour import (
     runs,
     turn_deg,
 )
-from viewer.strokes import draw_stick
 
 
 def bent(bend_deg: float, seed: int, noise_px: float = 0.5, points: int = 28) -> Curve:

@@ -11,10 +11,11 @@ from common.config import Settings, SilhouetteSettings
 from common.similarity import Mask
 from viewer import track
 from viewer.appearance import counted, familiar
-from viewer.background import Frame, learn, learn_from_clip, light_gain
+from viewer.background import Frame, learn, light_gain
 from viewer.difference import followed, label, seeds
 from viewer.outline import redraw
 from viewer.silhouette import Seen, State, init, step
+from viewer.uncovered import learn_uncovered
 from viewer.view_rehearsal import rehearse
 
 HEIGHT, WIDTH = 240, 320
@@ -175,7 +176,7 @@ def test_after_the_rehearsal_no_frame_waits_for_the_compiler() -> None:
     compiled = [list(kernel.signatures) for kernel in kernels]
     assert all(compiled)
     still = [shot(dressed(room(), body()), 2.0, seed) for seed in range(5)]
-    for background in (learn([shot(room(), 2.0, 9)]), learn_from_clip(still)):
+    for background in (learn([shot(room(), 2.0, 9)]), learn_uncovered(still)):
         state = init(background, SETTINGS)
         for seed in range(9):
             state, _ = step(state, shot(dressed(room(), body(150)), 2.0, seed), None)

@@ -6,8 +6,8 @@ import pytest
 from common.bits import pack_words
 from common.similarity import similarity
 from common.stickman import ADULT, ANGLE, THESIS, place_segments, standing
+from common.strokes import ALL_SEGMENTS, added, draw_segments, draw_stick, match_stick, widening
 from tests.stick_posing import SIZE, drawn, stick_pose
-from viewer.strokes import ALL_SEGMENTS, added, draw_segments, draw_stick, match_stick, widening
 
 
 @pytest.mark.parametrize("angle_deg", [0.0, 20.0, 63.0, 90.0, 135.0, 270.0])

@@ -170,7 +170,10 @@ def animate(settings_file: ConfigPath) -> None:
 def track(
     clips: Annotated[list[Path], typer.Argument(help="Clip folders, or settings files.")],
     out: Out = Path("runs"),
-    mode: ModeName = None,
+    mode: Annotated[
+        Literal["default", "paper", "thesis"] | None,
+        typer.Option(help="Instead of the settings' mode; the thesis's is for one view."),
+    ] = None,
     views: Annotated[
         Literal["12", "1", "2"], typer.Option(help="Both cameras, or only one of them.")
     ] = "12",
@@ -322,6 +325,33 @@ def evaluate_tracking(
     report = against_truth.evaluate_tracking(clips, out, runs, mode, size, console)
     facts = accuracy_report.headline(report)
     tell(facts, json_wanted, f"{accuracy_report.line(report)}; written to {out}")
+
+
+@app.command()
+def single(
+    videos: Annotated[
+        list[Path],
+        typer.Argument(help="Videos of one camera that stands still, or FILE.npz#MASKS."),
+    ],
+    out: Out = Path("runs"),
+    notes: Annotated[
+        Path | None, typer.Option(help="Your inputs, instead of notes.toml beside the video.")
+    ] = None,
+    mode: Annotated[
+        Literal["default", "thesis"], typer.Option(help="The best known, or as printed.")
+    ] = "default",
+    size: Annotated[str, typer.Option(help="Bound of the working picture.")] = "320x240",
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Animate a body from any video of one camera: no calibration, no empty room is needed.
+
+    Example: tritrack single dance.mp4 --out runs
+    """
+    from tritrack.offline import overridden
+    from tritrack.single import single_all
+
+    facts = single_all(videos, out, notes, overridden(Settings(), mode, size), console)
+    tell(facts, json_wanted, f"{len(facts['clips'])} videos followed, written to {out}")
 
 
 @app.command()

@@ -164,6 +164,14 @@ def _page() -> Finding:
         )
 
 
+def _segments() -> Finding:
+    name, cure = "rooms of busy clips (scikit-image)", "pip install 'tritrack[single]'"
+    try:
+        return Finding(name, True, version("scikit-image"), needed=False)
+    except PackageNotFoundError:
+        return Finding(name, False, "not installed", cure, False)
+
+
 def _browser() -> Finding:
     path = (
         shutil.which("chromium")

@@ -1,10 +1,11 @@
 """The same steps as live, in one process and in lock-step: deterministic, as fast as it goes."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import msgspec
@@ -17,8 +18,10 @@ from common.config import Mode, Settings, SettingsError
 from common.decoding import Decoder, DecoderDied, Undecodable
 from common.footage import ClipError
 from common.messages import Body, Guide, Report, ViewerNumber
+from common.notes import Notes
 from integrator import merge, noticing
 from integrator.pairing import Pair
+from tritrack.one_camera import extras_of, follow_clip
 from tritrack.runs import write_run
 from tritrack.terminal import bar, complain, warn
 from viewer import track
@@ -38,6 +41,8 @@ class Tracked(NamedTuple):
     bodies: list[Body]
     facts: dict[str, Any]
     """For the summary: seconds of each stage, scale_source, warnings."""
+    extras: Mapping[str, Any] = MappingProxyType({})
+    """Arrays that one view alone adds to `poses.npz`."""
 
 
 Watch = Callable[[dict[ViewerNumber, Frame], dict[int, Report], Body], object]
@@ -75,6 +80,12 @@ def track_clip(
     """
     began = time.perf_counter()
     clip = open_clip(settings, decoders.of[1], views)
+    if len(clip.views) == 1 and settings.mode != "paper":
+        decoder = decoders.of[clip.views[0].number]
+        followed = follow_clip(clip, settings, decoder, Notes())
+        return Tracked(clip, followed.bodies, followed.facts, extras_of(followed.settled))
+    if settings.mode == "thesis":
+        raise ClipError(f"{clip.name}: the thesis's mode is for one camera: add --views 1")
     rig = both_cameras(clip)
     viewers, odd_rooms = _viewers(clip, rig, settings, decoders)
     prepared = time.perf_counter()
@@ -216,7 +227,7 @@ def track_all(
             for warning in tracked.facts["warnings"]:
                 warn(console, warning)
             done[name] = {**tracked.facts, "clip": name}
-            write_run(out / name, tracked.bodies, settings, done[name])
+            write_run(out / name, tracked.bodies, settings, done[name], tracked.extras)
     if len(done) < len(runs):
         raise ClipsFailed(f"{len(runs) - len(done)} of {len(runs)} clips could not be tracked")
     return {"clips": done}

@@ -1,9 +1,10 @@
 """Run folders: the poses, the summary and the postures of a run, as files."""
 
 import platform
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Final
 
 import msgspec
@@ -23,7 +24,11 @@ class RunError(RuntimeError):
 
 
 def write_run(
-    folder: Path, bodies: Sequence[Body], settings: Settings, facts: dict[str, Any]
+    folder: Path,
+    bodies: Sequence[Body],
+    settings: Settings,
+    facts: dict[str, Any],
+    extras: Mapping[str, Any] = MappingProxyType({}),
 ) -> None:
     """Write `poses.npz` and `summary.json`, each whole or not at all.
 
@@ -32,15 +37,18 @@ def write_run(
         bodies: In the order of time; an instant that camera 1 missed (frame -1) gets no row.
         settings: As resolved for the run.
         facts: What else the summary tells: seconds, scale_source, warnings ...
+        extras: More arrays for `poses.npz`, a row for each of `bodies`.
 
     Raises:
         RunError: When the folder or a file cannot be written: no space, no right.
     """
+    kept = np.array([body.frame >= 0 for body in bodies], np.bool_)
     bodies = [body for body in bodies if body.frame >= 0]
+    more = {name: rows[kept] for name, rows in extras.items()}
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with replacing(folder / "poses.npz") as path, path.open("wb") as file:
-            np.savez(file, allow_pickle=False, **poses(bodies))
+            np.savez(file, allow_pickle=False, **poses(bodies), **more)
         _write_json(folder / "summary.json", _summary(bodies, settings, facts))
     except OSError as error:
         raise _unwritable(folder, error) from error

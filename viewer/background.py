@@ -19,8 +19,6 @@ SENSOR_NOISE: Final = 2.0
 FLOOR: Final = (1.0, 2.5)
 """Least spread of brightness and of colour, grey levels: rounding, and the colour that compression
 smears around a person, which no empty frame can show."""
-GUESSED: Final = 4.0
-"""Spread of a pixel whose room was guessed, grey levels."""
 CHANGES: Final = 12.0
 """Grey levels of brightness that tell a change from noise while no model stands."""
 EDGE_SHARE: Final = 0.45
@@ -58,42 +56,9 @@ def learn(frames: Sequence[Frame]) -> Background:
     """
     if not frames:
         raise ValueError("a background needs at least 1 frame, got 0")
-    even = _even(frames)
+    even = even_light(frames)
     centre = even.mean(axis=0)
-    return Background(centre, _spread(even - centre), np.zeros(centre.shape[:2], np.bool_))
-
-
-def learn_from_clip(frames: Sequence[Frame]) -> Background:
-    """The room from pictures in which somebody is always in view.
-
-    What never changes is room. Inside the hull of what moves, the room is guessed row by row from
-    both sides of the hull, and the guess gives way to what frames show there, if any come near it.
-
-    Args:
-        frames: Pictures from all over a clip, of one size.
-
-    Raises:
-        ValueError: When there is no frame.
-
-    Source: thesis section 3.1.2, without its segmentation of colours; requirement T7.
-    """
-    if not frames:
-        raise ValueError("a background needs at least 1 frame, got 0")
-    even = _even(frames)
-    centre = np.median(even, axis=0).astype(np.float32)
-    away = np.abs((even - centre) @ LUMA)
-    held = _held(away)
-    guess = _bridge(centre, held)
-    near = np.abs((even - guess) @ LUMA) < CHANGES
-    shown = near.sum(axis=0)
-    mean = (even * near[..., None]).sum(axis=0) / np.maximum(shown, 1)[..., None]
-    uncertain = held & (shown == 0)
-    room = np.where(held[..., None], np.where(uncertain[..., None], guess, mean), centre)
-    calm = np.where((away < CHANGES)[..., None], even - centre, 0.0).astype(np.float32)
-    spread = _spread(calm)
-    spread[held] = np.median(spread[~held], axis=0) if not held.all() else SENSOR_NOISE
-    spread[uncertain] = np.maximum(spread[uncertain], GUESSED)
-    return Background(room.astype(np.float32), spread, uncertain)
+    return Background(centre, spread_of(even - centre), np.zeros(centre.shape[:2], np.bool_))
 
 
 def is_empty_opening(opening: Sequence[Frame], sample: Sequence[Frame]) -> bool:
@@ -106,16 +71,16 @@ def is_empty_opening(opening: Sequence[Frame], sample: Sequence[Frame]) -> bool:
         opening: The first frames of a clip.
         sample: Frames from all over it, of the same size.
     """
-    room = np.median(_even(opening), axis=0).astype(np.float32)
+    room = np.median(even_light(opening), axis=0).astype(np.float32)
     room_luma = room @ LUMA
-    room_slope = _slope(room_luma)
+    room_slope = slopes(room_luma)
     in_room, in_frames = 0.0, 0.0
     for frame in sample:
         shares = (LUMA / light_gain(frame, room))[None]
         luma = cv2.transform(frame.astype(np.float32), shares)
-        differs = _large(np.abs(luma - room_luma) > CHANGES)
+        differs = large_regions(np.abs(luma - room_luma) > CHANGES)
         outline = cv2.morphologyEx(differs, cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8)) > 0
-        steeper = _slope(luma) - room_slope
+        steeper = slopes(luma) - room_slope
         in_frames += float(steeper[outline].clip(min=0).sum())
         in_room -= float(steeper[outline].clip(max=0).sum())
     return in_room <= EDGE_SHARE * in_frames
@@ -165,13 +130,13 @@ def light_gain(frame: Frame, room: Floats) -> Floats:
     return gain
 
 
-def _even(frames: Sequence[Frame]) -> Floats:
+def even_light(frames: Sequence[Frame]) -> Floats:
     """All frames under the light of their median: (n, H, W, 3) grey levels."""
     middle = np.median(np.stack(frames), axis=0).astype(np.float32)
     return np.stack([(frame / light_gain(frame, middle)).astype(np.float32) for frame in frames])
 
 
-def _spread(deviations: Floats) -> Floats:
+def spread_of(deviations: Floats) -> Floats:
     """Standard deviation of brightness and colour, (H, W, 2), from (n, H, W, 3) deviations."""
     count = len(deviations)
     if count == 1:
@@ -183,7 +148,7 @@ def _spread(deviations: Floats) -> Floats:
     return np.asarray(np.sqrt(cv2.blur(squares, (5, 5)) + np.square(FLOOR)), np.float32)
 
 
-def _large(mask: NDArray[np.bool_]) -> NDArray[np.uint8]:
+def large_regions(mask: NDArray[np.bool_]) -> NDArray[np.uint8]:
     """Regions as tall as an arm's stroke, 0.1 of the picture; the counter in a corner is none."""
     closed = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
     _, labels, stats, _ = cv2.connectedComponentsWithStats(closed)
@@ -192,38 +157,8 @@ def _large(mask: NDArray[np.bool_]) -> NDArray[np.uint8]:
     return tall[labels].astype(np.uint8)
 
 
-def _slope(luma: Floats) -> Floats:
+def slopes(luma: Floats) -> Floats:
+    """How steeply brightness changes at every pixel, (H, W)."""
     across = cv2.Sobel(luma, cv2.CV_32F, 1, 0)
     down = cv2.Sobel(luma, cv2.CV_32F, 0, 1)
     return cv2.magnitude(across, down)
-
-
-def _held(away: Floats) -> NDArray[np.bool_]:
-    """(H, W) True in the hull of what moves, unless it is plain that the median is the room.
-
-    A person who roams covers any one pixel in few of the frames, and the hull is wide; who stays
-    on the spot leaves a hull that is taller than wide.
-    """
-    moved = (away > CHANGES).mean(axis=0)
-    moving = _large(moved > 0)
-    corners = cv2.findNonZero(moving)
-    if corners is None:
-        return np.zeros(moved.shape, np.bool_)
-    hull = np.zeros(moved.shape, np.uint8)
-    cv2.fillConvexPoly(hull, cv2.convexHull(corners), 1)
-    reach = max(1, moved.shape[0] // 60)
-    hull = cv2.dilate(hull, np.ones((2 * reach + 1, 2 * reach + 1), np.uint8))
-    _, _, width, height = cv2.boundingRect(corners)
-    roams = width > 1.5 * height
-    return (hull > 0) & ((moved == 0) | (moved > 0.3)) if roams else hull > 0
-
-
-def _bridge(picture: Floats, held: NDArray[np.bool_]) -> Floats:
-    """The picture with the held stretch of every row drawn from its two ends."""
-    out = picture.copy()
-    columns = np.arange(picture.shape[1])
-    for y in np.flatnonzero(held.any(axis=1) & ~held.all(axis=1)):
-        known = ~held[y]
-        for c in range(3):
-            out[y, held[y], c] = np.interp(columns[held[y]], columns[known], picture[y, known, c])
-    return out

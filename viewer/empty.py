@@ -6,13 +6,18 @@ from itertools import islice
 from common.clips import View
 from common.config import SilhouetteSettings
 from common.decoding import Decoder
-from viewer.background import Background, Frame, is_empty_opening, learn, learn_from_clip
+from viewer.background import Background, Frame, is_empty_opening, learn
+from viewer.uncovered import is_still, learn_uncovered
 
 SAMPLE = 40
 """How many frames at most, spread over a clip, tell whether its opening is empty."""
 
 LOOKED_AT = 1500
 """How many frames of a clip are looked at for that: a long recording is judged by its start."""
+
+
+LEFT_HIDDEN = 0.01
+"""Who stays on a spot hides 2 to 20 % of the picture all through a clip, who roams up to 0.4 %."""
 
 
 def empty_room(
@@ -35,12 +40,28 @@ def empty_room(
         plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
         return learn(plate), ""
     opening, sample = _looked_at(view, settings.empty_frames, decoder)
-    if is_empty_opening(opening, sample):
+    if is_still(opening) and is_empty_opening(opening, sample):
         return learn(opening), ""
-    return learn_from_clip(sample), (
+    return learn_uncovered(sample), (
         f"{view.source} does not open with an empty room: the background is estimated from the "
         f"clip (name an empty picture with camera_{view.number}.background)"
     )
+
+
+def room_of_clip(
+    view: View, settings: SilhouetteSettings, decoder: Decoder
+) -> tuple[Background, str]:
+    """The same, but from all over a clip where that shows all but a little of the room.
+
+    Light changes through a clip, and with it more than a gain can follow; an empty opening knows
+    nothing of that. It is kept where somebody stays on the spot.
+    """
+    room, odd = empty_room(view, settings, decoder)
+    if odd or view.background or isinstance(view.source, int):
+        return room, odd
+    _, sample = _looked_at(view, settings.empty_frames, decoder)
+    learnt = learn_uncovered(sample)
+    return (learnt if learnt.uncertain.mean() < LEFT_HIDDEN else room), ""
 
 
 def _now(view: View, due: int, decoder: Decoder) -> list[Frame]:

@@ -23,10 +23,10 @@ from common.stickman import (
     Y,
     standing,
 )
+from common.strokes import ALL_SEGMENTS, WITHOUT_ARMS
 from viewer.normal import STATURE_PX
 from viewer.stick_costs import COSTS
 from viewer.stick_search import Moves, Task, beamed, covered, refined
-from viewer.strokes import ALL_SEGMENTS, WITHOUT_ARMS
 
 STARTS: Final = (1.0, 0.3)
 """Breadths of the trunk with which somebody is met of whom nothing is known."""

@@ -21,9 +21,9 @@ from common.stickman import (
     segments_px,
     standing,
 )
+from common.strokes import draw_segments
 from viewer.contour import arm_angles, arm_curve, knees_crossed, line_angle_deg, lower_leg_curves
 from viewer.division import angle_found, ratio_found
-from viewer.strokes import draw_segments
 
 LIMITS_DEG: Final = {"neck": (45.0, 135.0), "waist": (45.0, 135.0), "hip": (240.0, 300.0)}
 """Table 3.3 (T6)."""

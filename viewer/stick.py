@@ -10,10 +10,10 @@ from common.body import Vector
 from common.messages import Fit
 from common.similarity import Mask
 from common.stickman import ADULT, BREADTH, GIRTH, RATIO, STATURE, THESIS, joints_px
+from common.strokes import ALL_SEGMENTS, match_stick
 from viewer.followed import followed
 from viewer.normal import STATURE_PX, normalised
 from viewer.printed import fit_printed
-from viewer.strokes import ALL_SEGMENTS, match_stick
 
 Mode = Literal["default", "thesis"]
 

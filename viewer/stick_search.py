@@ -10,8 +10,8 @@ from common.body import Vector
 from common.kernel import score
 from common.spans import PRIMITIVE
 from common.stickman import ANGLE, POSE_SIZE, RATIO, place_chain, place_segments
+from common.strokes import added, draw_segments
 from viewer.stick_costs import bend_cost, cross_cost, limb_cost, pose_cost
-from viewer.strokes import added, draw_segments
 from viewer.tritree import MOST_STAGES, narrowed
 
 BEAM: Final = 10

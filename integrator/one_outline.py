@@ -1,0 +1,231 @@
+"""Bodies that one silhouette may show: the stick body lifted, and what the outline proposes."""
+
+from collections.abc import Mapping
+from typing import Final, Literal, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from common.bits import count, count_both
+from common.body import (
+    JOINT_NAMES,
+    LIMB_ENDS,
+    LIMBS,
+    Bdp,
+    Vector,
+    body_vector,
+    rest_pose,
+)
+from common.camera import Camera, Rig, centre, project, ray
+from common.kernel import score as similarity_of
+from common.messages import (
+    Fit,
+    Report,
+    ViewerNumber,
+)
+from common.stickman import BREADTH, GIRTH, POSE_SIZE, STATURE, Stickman
+from common.strokes import ALL_SEGMENTS, draw_segments
+from integrator import insight, propose, signs, smoothing
+from integrator.lifting import ORIENTATIONS, SWAPPED, Lifted, Orientation, lift
+from integrator.limbs import PLACES, pose_of
+from integrator.two_outlines import packed
+from integrator.window import Floats
+
+UNSEEN: Final = 0.25
+"""Share of its confidence that the end of a hidden segment keeps."""
+TILTED_DEG: Final = 15.0
+"""A segment that leans less hardly moves with its sign."""
+SIDEWAYS_DEG: Final = 20.0
+"""Somebody who is turned so near to a right angle is seen from the side."""
+TWELVE: Final = [JOINT_NAMES.index(name) for name in PLACES]
+ACROSS: Final = [
+    [JOINT_NAMES.index(f"{side}_{name}") for side in "rl"] for name in ("shoulder", "hip")
+]
+"""The lines of the shoulders and of the hips."""
+GIRTHS: Final = (1.0, 1.15, 1.3)
+"""How thick clothed limbs may be over those of the proportions."""
+PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
+
+
+class Inputs(NamedTuple):
+    """What the user says of a frame (T21, T22)."""
+
+    orientation: Orientation | None = None
+    depth: Mapping[str, str] = {}
+    """LIMBS name to toward or away."""
+    joints_px: Mapping[str, tuple[float, float]] = {}
+    """JOINT_NAMES name to its place in the working picture, sides the person's own."""
+
+
+class State(NamedTuple):
+    """What one frame hands to the next."""
+
+    number: ViewerNumber
+    camera: Camera
+    man: Stickman
+    bdp: Bdp
+    stature_m: float
+    printed: bool
+    """As the thesis prints it: scaled orthography (T19), and nothing is proposed."""
+    smooth: smoothing.State
+    memory: signs.Memory
+    recall: Floats | None = None
+    """What the proposals remember."""
+    pose: Vector | None = None
+    last_s: float | None = None
+    badly: int = 0
+
+
+class Settled(NamedTuple):
+    """What was decided by itself, and how sure that is (T21, T22)."""
+
+    orientation: str = ""
+    orientation_confidence: float = 1.0
+    depth_confidence: tuple[float, ...] = (1.0,) * len(LIMBS)
+
+
+class Hypothesis(NamedTuple):
+    """A body that one silhouette may show."""
+
+    joints_m: NDArray[np.float64]
+    """(15, 3) world."""
+    pose: Vector
+    score: float
+    """S of its parts in the picture."""
+    confidence: Vector
+    """(15,)"""
+    settled: Settled
+
+
+def lifted_body(state: State, report: Report, told: Inputs) -> tuple[State, Hypothesis]:
+    """The stick body in the room, its signs and orientation chosen or told."""
+    fit = report.fit
+    assert fit is not None
+    lengths_m = state.man.lengths * state.stature_m
+    px_per_m = fit.stature_px / state.stature_m
+    picture = (np.array(fit.joints_px), fit.breadth, lengths_m, px_per_m)
+    choice = signs.choose(state.memory, *picture, told.depth, told.orientation)
+    lifted = lift(*picture, choice.signs, choice.orientation)
+    memory = signs.remembered(state.memory, lifted.joints_m, choice, picture[0], fit.breadth)
+    state = state._replace(memory=memory)
+    pixels = _own_sides(picture[0], choice)
+    for name, place in told.joints_px.items():
+        pixels[JOINT_NAMES.index(name)] = place
+    joints_m = in_room(state, pixels, lifted, px_per_m)
+    pose = _pose(state, joints_m)
+    score = fit.score if state.printed else _score(state, pixels, report)
+    depth = tuple(float(sure) for sure in choice.confidence)
+    settled = Settled(choice.orientation, choice.orientation_confidence, depth)
+    return state, Hypothesis(joints_m, pose, score, _sure(fit, lifted, choice), settled)
+
+
+def proposed_body(
+    state: State, report: Report, told: Inputs, dt_s: float
+) -> tuple[State, Hypothesis | None]:
+    """What the outline proposes, the crown where the stick body has it."""
+    assert report.fit is not None
+    seen = (report, None) if state.number == 1 else (None, report)
+    rig = Rig(report.width, report.height, (state.camera, state.camera))
+    known = insight.step(state.recall, state.bdp, rig, seen, dt_s)
+    if known is None or told.orientation or told.depth:
+        return state._replace(recall=None if known is None else known.memory), None
+    joints_m = np.empty((len(JOINT_NAMES), 3))
+    joints_m[insight.AT] = known.joints_m
+    joints_m[PELVIS] = known.joints_m[propose.HIPS].mean(axis=0)
+    middle = known.joints_m[propose.SHOULDERS].mean(axis=0)
+    up = (middle - joints_m[PELVIS]) / max(float(np.linalg.norm(middle - joints_m[PELVIS])), 1e-9)
+    joints_m[NECK] = middle + up * state.man.lengths[11] * state.stature_m
+    joints_m[HEAD] = _at_depth(state.camera, report.fit.joints_px[HEAD], joints_m[NECK])
+    for name, place in told.joints_px.items():
+        at = JOINT_NAMES.index(name)
+        joints_m[at] = _at_depth(state.camera, place, joints_m[at])
+    pose = _pose(state, joints_m)
+    depth = tuple(float(sure) for sure in known.sure[LIMB_ENDS[:, 1]])
+    settled = Settled(_faces(state, joints_m), float(known.sure[PELVIS]), depth)
+    score = _score(state, project(state.camera, joints_m), report)
+    return state._replace(recall=known.memory), Hypothesis(
+        joints_m, pose, score, known.sure, settled
+    )
+
+
+def _pose(state: State, joints_m: NDArray[np.float64]) -> Vector:
+    before = rest_pose() if state.pose is None else state.pose
+    return pose_of(joints_m[TWELVE], body_vector(state.bdp), before)
+
+
+def _score(state: State, joints_px: NDArray[np.float64], report: Report) -> float:
+    """S of a body with these joints, drawn as the stick body is, as thick as fits best."""
+    fit = report.fit
+    assert fit is not None
+    ends = np.empty((12, 4))
+    ends[: len(LIMBS)] = joints_px[LIMB_ENDS].reshape(-1, 4)
+    lines = joints_px[ACROSS]
+    ends[len(LIMBS) :] = lines.reshape(-1, 4)
+    stick = np.ones(POSE_SIZE)
+    stick[STATURE] = fit.stature_px
+    broad = 2 * state.man.lengths[10] * fit.stature_px
+    stick[BREADTH] = min(1.0, float(np.linalg.norm(lines[0, 1] - lines[0, 0])) / broad)
+    seen, found = packed(report), 0.0
+    for girth in GIRTHS:
+        stick[GIRTH] = girth
+        bits = np.zeros_like(seen)
+        draw_segments(
+            ends, stick, state.man.parts, state.man.depth, ALL_SEGMENTS, report.width, bits
+        )
+        found = max(found, float(similarity_of(count_both(bits, seen), count(bits), count(seen))))
+    return found
+
+
+def in_room(
+    state: State, pixels: NDArray[np.float64], lifted: Lifted, px_per_m: float
+) -> NDArray[np.float64]:
+    """The joints in the world, (15, 3) metres, at the depth at which the person is so tall."""
+    camera = state.camera
+    K = np.array(camera.K)
+    depth_m = K[1, 1] / px_per_m
+    plane = (pixels - K[:2, 2]) / np.array([K[0, 0], K[1, 1]])
+    if any(camera.distortion):
+        plane = cv2.undistortPoints(pixels[:, None], K, np.array(camera.distortion))[:, 0]
+    towards_m = lifted.joints_m[:, 2]
+    depths_m = depth_m - towards_m if not state.printed else np.full(len(pixels), depth_m)
+    seen = np.concatenate([plane * depths_m[:, None], (depth_m - towards_m)[:, None]], axis=1)
+    room: NDArray[np.float64] = centre(camera) + seen @ np.array(camera.R)
+    return room
+
+
+def _at_depth(camera: Camera, pixel: tuple[float, float], place_m: Vector) -> NDArray[np.float64]:
+    """What a pixel shows at the depth of a place."""
+    forward = np.array(camera.R)[2]
+    depth_m = float(forward @ (place_m - centre(camera)))
+    along = ray(camera, pixel)
+    found: NDArray[np.float64] = centre(camera) + along * depth_m / float(forward @ along)
+    return found
+
+
+def _own_sides(joints_px: NDArray[np.float64], choice: signs.Choice) -> NDArray[np.float64]:
+    """The stick's joints under the person's own sides."""
+    return joints_px[SWAPPED] if choice.orientation.startswith("backward") else joints_px.copy()
+
+
+def _sure(fit: Fit, lifted: Lifted, choice: signs.Choice) -> Vector:
+    """How sure each joint is: of the fit, of what is hidden, and of the sign where it matters."""
+    sure = np.full(len(JOINT_NAMES), fit.score)
+    for limb, (near, far) in enumerate(LIMB_ENDS):
+        own = UNSEEN if fit.hidden[limb] else 1.0
+        if abs(lifted.tilt_deg[limb]) > TILTED_DEG:
+            own *= float(choice.confidence[limb])
+        sure[far] = (sure[near] if limb > 1 else sure[far]) * own
+    return sure
+
+
+def _faces(state: State, joints_m: NDArray[np.float64]) -> Orientation:
+    """Which of the six ways the body faces, from the line across its shoulders and hips."""
+    at = {name: joints_m[i] for i, name in enumerate(JOINT_NAMES)}
+    across = at["l_shoulder"] - at["r_shoulder"] + at["l_hip"] - at["r_hip"]
+    right, _, away = np.array(state.camera.R) @ across
+    forward = np.degrees(np.arctan2(away, right))
+    side: Literal["left", "right"] = "right" if forward >= 0 else "left"
+    if abs(abs(forward) - 90.0) <= SIDEWAYS_DEG:
+        return side
+    return ORIENTATIONS[ORIENTATIONS.index(side) + (4 if abs(forward) < 90.0 else 2)]

@@ -1,0 +1,119 @@
+"""One view alone: its stick body lifted into the room, and what its outline proposes (3.1.5)."""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body import (
+    ANGLE_NAMES,
+    ANGLES_IN_POSE,
+    Vector,
+    thesis_bdp,
+)
+from common.camera import Camera, project
+from common.messages import (
+    Body,
+    Facing,
+    Pixel,
+    Point,
+    Report,
+    Status,
+    ViewerNumber,
+)
+from common.stickman import Stickman
+from integrator import signs, smoothing
+from integrator.one_outline import Hypothesis, Inputs, Settled, State, lifted_body, proposed_body
+
+LOST_SCORE: Final = 0.35
+"""A body that fits worse than this is not believed."""
+LOST_FRAMES: Final = 5
+"""After so many frames of it the body is lost."""
+SURELY: Final = 1.15
+"""The lifted body goes before the proposed one where its S is higher by this factor."""
+
+
+def init(
+    number: ViewerNumber,
+    camera: Camera,
+    man: Stickman,
+    stature_m: float,
+    printed: bool,
+    period_s: float,
+) -> State:
+    """A view that has seen nobody."""
+    smooth = smoothing.init(len(ANGLE_NAMES), period_s)
+    bdp = thesis_bdp(stature_m)
+    return State(number, camera, man, bdp, stature_m, printed, smooth, signs.init())
+
+
+def step(state: State, report: Report, told: Inputs) -> tuple[State, Body, Settled]:
+    """One frame with somebody: the lifted body competes with the proposed one, by S.
+
+    Args:
+        state: What is remembered.
+        report: With a fit.
+        told: The user's inputs, which go before all else.
+    """
+    state, found = lifted_body(state, report, told)
+    dt_s = 0.0 if state.last_s is None else max(0.0, report.captured_s - state.last_s)
+    if not state.printed:
+        state, other = proposed_body(state, report, told, dt_s)
+        if other is not None and found.score < SURELY * other.score:
+            found = other
+    fits = found.score >= LOST_SCORE
+    raw = found.pose[list(ANGLES_IN_POSE)]
+    believed = raw if fits or state.smooth.P is None else None
+    smooth, angles, _ = smoothing.step(state.smooth, believed, dt_s)
+    badly = 0 if fits else state.badly + 1
+    state = state._replace(smooth=smooth, pose=found.pose, last_s=report.captured_s, badly=badly)
+    return state, _body(state, report, found, angles), found.settled
+
+
+def nobody(state: State, frame: int, captured_s: float) -> tuple[State, Body, Settled]:
+    """A frame without anybody: what was learnt of the body is kept, its pose is not."""
+    fresh = smoothing.init(len(ANGLE_NAMES), state.smooth.period_s)
+    state = state._replace(smooth=fresh, memory=signs.init(), recall=None, pose=None, badly=0)
+    body = Body(
+        frame=frame, captured_s=captured_s, clock_s=captured_s, status="empty", views="none"
+    )
+    return state, body, Settled()
+
+
+def _body(state: State, report: Report, found: Hypothesis, angles_deg: Vector) -> Body:
+    pose = found.pose.copy()
+    pose[list(ANGLES_IN_POSE)] = angles_deg
+    facing: Facing = "flank" if found.settled.orientation in ("left", "right") else "facade"
+    pixels = _pixels(project(state.camera, found.joints_m))
+    fit = report.fit
+    return Body(
+        frame=report.frame,
+        captured_s=report.captured_s,
+        clock_s=report.clock_s,
+        status=_status(state),
+        views="1" if state.number == 1 else "2",
+        joints_m=tuple(_point(place) for place in found.joints_m),
+        joints_px=(pixels, pixels),
+        pose=tuple(pose.tolist()),
+        angles_raw_deg=tuple(found.pose[list(ANGLES_IN_POSE)].tolist()),
+        confidence=tuple(float(sure) for sure in found.confidence),
+        score=(found.score, 0.0) if state.number == 1 else (0.0, found.score),
+        facing=(facing, facing),
+        bdp=state.bdp,
+        matches=2 + (0 if fit is None else fit.matches),
+    )
+
+
+def _status(state: State) -> Status:
+    if state.badly >= LOST_FRAMES:
+        return "lost"
+    return "predicted" if state.badly else "tracking"
+
+
+def _point(place: Vector) -> Point:
+    x, y, z = (float(value) for value in place)
+    return (x, y, z)
+
+
+def _pixels(pixels: NDArray[np.float64]) -> tuple[Pixel, ...]:
+    return tuple((float(u), float(v)) for u, v in pixels)

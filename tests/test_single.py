@@ -1,0 +1,112 @@
+"""Videos of one camera followed to their animations, and what is refused (T1, T2)."""
+
+import json
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from rich.console import Console
+from spoiling import film_of, write_film
+
+from common.config import Settings
+from common.notes import Note, Notes
+from common.notes_file import save_notes
+from tritrack.offline import ClipsFailed, track_all
+from tritrack.single import name_of, single_all
+
+QUIET = Console(quiet=True)
+SMALL = Settings(size="160x120")
+
+
+@pytest.fixture(scope="module")
+def video(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Part of a clip under a name of its own, without a calibration beside it."""
+    path = tmp_path_factory.mktemp("videos") / "waving.avi"
+    write_film(path, film_of(next(clip.glob("cam1.*")))[:40])
+    return path
+
+
+@pytest.fixture(scope="module")
+def run(video: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("runs")
+    single_all([video], out, None, SMALL, QUIET)
+    return out / "waving"
+
+
+def test_a_run_has_all_that_the_thesis_shows(run: Path) -> None:
+    """T1: background, silhouettes, poses, key frames, animation."""
+    assert {path.name for path in run.iterdir()} == {
+        *("poses.npz", "summary.json", "background.png", "overlay.avi"),
+        *("body.bvh", "keyframes.bvh", "keyframes.json"),
+    }
+    summary = json.loads((run / "summary.json").read_text())
+    assert summary["scale_source"] == "assumed"
+    assert summary["effort"]["inputs"]["all"] == 0
+    film = cv2.VideoCapture(str(run / "overlay.avi"))
+    assert film.get(cv2.CAP_PROP_FRAME_COUNT) == summary["frames"] == 40
+
+
+def test_poses_follow_the_person_in_the_picture(run: Path, clip: Path) -> None:
+    """Shows 3: in the picture within 6 % of the body's height."""
+    with np.load(run / "poses.npz") as poses, np.load(clip / "truth.npz") as truth:
+        names = [str(name) for name in truth["joint_names"]]
+        joints = [str(name) for name in poses["joint_names"]]
+        both = [name for name in joints if name[1] == "_"]
+        seen = poses["joints_px"][:, 0][:, [joints.index(name) for name in both]]
+        true = truth["joints2d_cam1"][:40][:, [names.index(name) for name in both]]
+        tall = np.ptp(true[..., 1], axis=1)[:, None]
+        off = np.linalg.norm(seen - true, axis=2) / tall
+        assert poses["orientation"].shape == (40,)
+    assert np.nanmean(off) < 0.06
+
+
+def test_one_view_of_a_clip_is_tracked_by_the_same_code(
+    run: Path, video: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "clip").mkdir()
+    (tmp_path / "clip" / "cam1.avi").write_bytes(video.read_bytes())
+    track_all([tmp_path / "clip"], tmp_path / "runs", None, (1,), "160x120", QUIET)
+    with np.load(run / "poses.npz") as one, np.load(tmp_path / "runs/clip/poses.npz") as other:
+        assert one.files == other.files
+        assert all(np.array_equal(one[n], other[n], equal_nan=n[0] in "jac") for n in one.files[:1])
+        assert np.array_equal(one["joints_m"], other["joints_m"], equal_nan=True)
+
+
+def test_the_notes_beside_a_video_are_obeyed(video: Path, tmp_path: Path) -> None:
+    """T22, T26: who is told to face away does so from that frame on."""
+    path = tmp_path / "waving.avi"
+    path.write_bytes(video.read_bytes())
+    save_notes(tmp_path / "notes.toml", Notes(note=(Note(20, orientation="backward_left"),)))
+    facts = single_all([path], tmp_path / "runs", None, SMALL, QUIET)
+    with np.load(tmp_path / "runs/waving/poses.npz") as poses:
+        assert set(poses["orientation"][20:]) == {"backward_left"}
+        assert "backward_left" not in poses["orientation"][:20]
+    assert facts["clips"]["waving"]["effort"]["inputs"]["orientation"] == 1
+
+
+def refusal(path: Path, out: Path, capsys: pytest.CaptureFixture[str]) -> str:
+    with pytest.raises(ClipsFailed):
+        single_all([path], out, None, SMALL, Console(stderr=True))
+    assert not (out / name_of(path)).exists()
+    return " ".join(capsys.readouterr().err.split())
+
+
+def test_a_camera_that_moves_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """T2: a static background."""
+    scene = np.random.default_rng(5).integers(0, 255, (30, 120, 3), np.uint8)
+    scene = cv2.resize(scene, (960, 120), interpolation=cv2.INTER_NEAREST)
+    write_film(tmp_path / "pan.avi", [scene[:, 20 * n : 20 * n + 160] for n in range(40)])
+    assert "its camera moves" in refusal(tmp_path / "pan.avi", tmp_path / "runs", capsys)
+
+
+def test_what_is_no_video_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "empty.avi").touch()
+    (tmp_path / "text.avi").write_text("no film" * 99)
+    for name, reason in (
+        ("missing.avi", "there is no file"),
+        ("empty.avi", "is empty"),
+        ("text.avi", "text.avi"),
+        ("missing.npz#walk", "cannot read the masks"),
+    ):
+        assert reason in refusal(tmp_path / name, tmp_path / "runs", capsys)
