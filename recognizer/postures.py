@@ -107,6 +107,9 @@ class DensityModel(PostureModel):
 
     mean: Array  # (p, STATES, 27)
     variance: Array  # (p, STATES, 27), positive
+    rest_mean: Array  # (27,), how people stand
+    rest_variance: Array  # (27,), positive
+    fit: Array  # (p,), mean log density of a frame in the middle performance learnt from
 
     def log_emission(self, seen: Rows) -> Array:
         """Of independent normal entries; the square is multiplied out into two matrix products."""

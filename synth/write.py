@@ -165,6 +165,7 @@ def _meta(
         "look": someone.look._asdict(),
         "measures": {name: round(someone.measures[name], 4) for name in MEASURE_NAMES},
         "seed": seed,
+        "acts": [act._asdict() for act in motion.acts],
         "style": {name: round(value, 4) for name, value in motion.style._asdict().items()},
     }
 

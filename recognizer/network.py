@@ -1,0 +1,140 @@
+"""The network of all postures, standing and filler: its best path, frame by frame, compiled."""
+
+import math
+from typing import Any, Final
+
+import numba
+import numpy as np
+
+SCALE: Final = 0.3
+"""Weight of a log density: neighbouring frames say nearly the same."""
+CAP_LIMB, CAP_TRAVEL = 4.0, 36.0
+"""Most that an entry counts in a frame, squared deviations: two for a limb's direction, in which
+people differ, six for travel, in which they do not."""
+LOOSENESS: Final = 2.0
+"""By how much variances are widened for people who were not learnt from."""
+FILLER: Final = 10.0
+"""Log density that the filler gives any pose: so bad may a posture's own poses be."""
+REST_CAP: Final = 4.0
+"""Mean squared deviation of an entry up to which a pose is that of standing."""
+STILL, MOVING = 0.2, 0.6
+"""How fast limbs turn in standing and in motion: change of all directions within three frames."""
+STILL_GAIN, STILL_LOSS = 2.0, -8.0
+"""Bounds of what slowness says for standing in a frame."""
+ENTER, EXIT, CHANGE = 8.0, 8.0, 3.0
+"""What it costs a path to enter a posture, to leave one, and to go from standing to something
+unknown or back."""
+
+ONSET, FRAMES, DENSITY, TRAVEL, VISITED, COUNT, PHASE, NUMBERS = 0, 1, 2, 3, 6, 7, 8, 9
+"""What a path remembers of the posture that it is in: columns of its record."""
+
+
+@numba.njit(cache=True)
+def emissions(seen: Any, speed: Any, mean: Any, variance: Any, rest: Any, rest_variance: Any) -> Any:
+    """Weighted log density of one frame in each state of the network, and what is recorded of it.
+
+    Args:
+        seen: (27,) feature vector.
+        speed: How fast the limbs turn and the body goes.
+        mean: (p, s, 27) of the postures' states; `variance` alike.
+        rest: (27,) how people stand; `rest_variance` alike.
+
+    Returns:
+        (p s + 2,): all states of all postures, standing, the filler; and (p s,): the log density
+        of the postures' states as they were learnt.
+    """
+    postures, states, entries = mean.shape
+    count = postures * states
+    found, plain = np.empty(count + 2), np.empty(count)
+    best = -math.inf
+    for k in range(count):
+        own, wide, level = mean[k // states, k % states], 0.0, 0.0
+        near = variance[k // states, k % states]
+        exact = 0.0
+        for i in range(entries):
+            squared = (seen[i] - own[i]) ** 2 / near[i]
+            cap = CAP_LIMB if i < entries - 3 else CAP_TRAVEL
+            exact += squared
+            wide += min(squared / LOOSENESS, cap)
+            level += math.log(2 * math.pi * near[i])
+        plain[k] = -0.5 * (exact + level)
+        found[k] = -0.5 * SCALE * (wide + level + entries * math.log(LOOSENESS))
+        best = max(best, found[k])
+    away = 0.0
+    for i in range(entries - 3):
+        away += (seen[i] - rest[i]) ** 2 / rest_variance[i]
+    excess = max(0.0, away - REST_CAP * (entries - 3))
+    slow = math.log(MOVING / STILL) - 0.5 * ((speed / STILL) ** 2 - (speed / MOVING) ** 2)
+    found[count] = best - 0.5 * SCALE * excess + min(max(slow, STILL_LOSS), STILL_GAIN)
+    found[count + 1] = SCALE * FILLER
+    return found, plain
+
+
+@numba.njit(cache=True)
+def advance(
+    score: Any, record: Any, ended: Any, emission: Any, plain: Any, log_transition: Any,
+    residual: Any, turn: Any, frame: int, open_: bool,
+) -> Any:  # fmt: skip
+    """One frame further: the best path into every state of the network.
+
+    Args:
+        score: (p s + 2,) of the best path that ends in each state.
+        record: (p s + 2, NUMBERS) what that path did since it entered its posture.
+        ended: (p s + 2, NUMBERS + 2) the last performance on that path: its record, its last frame and
+            the number of its posture, -1 where there is none.
+        emission: What `emissions` gives for this frame; `plain` alike.
+        log_transition: (p, s, s).
+        residual: (p s, 3) travel of this frame less that of each state.
+        turn: (p, 2) the states of each posture between which one repetition goes.
+        frame: Number of this frame.
+        open_: Whether a posture may begin: once somebody was seen standing.
+
+    Returns:
+        score, record and ended of this frame.
+    """
+    postures, states = log_transition.shape[:2]
+    count = postures * states
+    still, filler = count, count + 1
+    new_score = np.empty_like(score)
+    new_record, new_ended = np.zeros_like(record), np.empty_like(ended)
+    source = still if score[still] >= score[filler] else filler
+    enter = score[source] - ENTER if open_ else -math.inf
+    leaver = int(np.argmax(score[:count]))
+    for k in range(count):
+        p, s = k // states, k % states
+        best, origin = enter, -1
+        for i in range(states):
+            value = score[p * states + i] + log_transition[p, i, s]
+            if value > best:
+                best, origin = value, p * states + i
+        new_score[k] = best + emission[k]
+        own = new_record[k]
+        if origin < 0:
+            new_ended[k] = ended[source]
+            own[ONSET], own[PHASE] = frame, 0.0
+        else:
+            new_ended[k] = ended[origin]
+            own[:] = record[origin]
+        own[FRAMES] += 1
+        own[DENSITY] += plain[k]
+        own[TRAVEL : TRAVEL + 3] += residual[k]
+        own[VISITED] = int(own[VISITED]) | (1 << s)
+        if s == turn[p, 1] and own[PHASE] == 0.0:
+            own[COUNT] += 1
+            own[PHASE] = 1.0
+        elif s == turn[p, 0]:
+            own[PHASE] = 0.0
+    for k in (still, filler):
+        other = filler if k == still else still
+        values = (score[k], score[other] - CHANGE, score[leaver] - EXIT)
+        best = max(values)
+        new_score[k] = best + emission[k]
+        if values[0] == best:
+            new_ended[k] = ended[k]
+        elif values[1] == best:
+            new_ended[k] = ended[other]
+        else:
+            new_ended[k, :NUMBERS] = record[leaver]
+            new_ended[k, NUMBERS] = frame - 1
+            new_ended[k, NUMBERS + 1] = leaver // states
+    return new_score - new_score.max(), new_record, new_ended
