@@ -19,12 +19,12 @@ RETURNS: Final = ("walk_sideways", "walk_toward", "walk_slow_bigswing")
 """Postures that lead away: who performed one steps back to where they stood."""
 
 
-def standing(t: Vector, s: Style, still: Track) -> Track:
+def standing(_t: Vector, _style: Style, _still: Track) -> Track:
     """Nothing but the sway."""
     return {}
 
 
-def shifting(t: Vector, s: Style, still: Track) -> Track:
+def shifting(t: Vector, _style: Style, still: Track) -> Track:
     """The weight from one leg to the other, the trunk following, the head about the room."""
     wave = np.sin(2 * np.pi * 0.4 * t)
     found = {"root_roll": 3.0 * wave, "torso_yaw": 9.0 * wave, "head_yaw": 35.0 * wave}
@@ -37,7 +37,7 @@ def shifting(t: Vector, s: Style, still: Track) -> Track:
 def scratching(side: str) -> Move:
     """A hand at the head."""
 
-    def move(t: Vector, s: Style, still: Track) -> Track:
+    def move(t: Vector, _style: Style, _still: Track) -> Track:
         rub = np.sin(2 * np.pi * 3.0 * t)
         return {
             f"{side}_sh_flex": 62.0 + 3.0 * rub,
@@ -52,7 +52,7 @@ def scratching(side: str) -> Move:
 def resting(flex_deg: float, abd_deg: float, twist_deg: float, elbow_deg: float) -> Move:
     """Both arms at rest somewhere else: on the hips, crossed, at a button."""
 
-    def move(t: Vector, s: Style, still: Track) -> Track:
+    def move(t: Vector, _style: Style, _still: Track) -> Track:
         level = {"sh_flex": flex_deg, "sh_abd": abd_deg, "sh_twist": twist_deg, "elbow": elbow_deg}
         return {
             f"{side}_{name}": np.full_like(t, value)
@@ -75,7 +75,7 @@ def stepping_back(posture: str) -> Move:
 def anything(rng: np.random.Generator) -> Move:
     """Joints through their whole ranges, at random."""
 
-    def move(t: Vector, s: Style, still: Track) -> Track:
+    def move(t: Vector, _style: Style, still: Track) -> Track:
         seeded = np.random.default_rng(seed)
         angles_deg, _ = roaming(still, np.maximum(t, 0.0), seeded)
         found = {name: angles_deg[:, i] for i, name in enumerate(ANGLES)}
@@ -88,10 +88,10 @@ def anything(rng: np.random.Generator) -> Move:
 
 
 IDLE: Final[dict[str, Callable[[np.random.Generator], Move]]] = {
-    "shift": lambda rng: shifting,
+    "shift": lambda _rng: shifting,
     "scratch": lambda rng: scratching("lr"[int(rng.integers(2))]),
-    "hands on hips": lambda rng: resting(-8.0, 42.0, -40.0, 92.0),
-    "button": lambda rng: resting(24.0, 12.0, 45.0, 105.0),
+    "hands on hips": lambda _rng: resting(-8.0, 42.0, -40.0, 92.0),
+    "button": lambda _rng: resting(24.0, 12.0, 45.0, 105.0),
     "anything": anything,
 }
 """What may happen in a pause, besides standing."""

@@ -163,9 +163,7 @@ def performed(
     return np.stack(columns, axis=1)
 
 
-def opened(
-    moved: NDArray[np.float64], phase: NDArray[np.uint8], fps: float
-) -> NDArray[np.float64]:
+def opened(moved: NDArray[np.float64], phase: NDArray[np.uint8], fps: float) -> NDArray[np.float64]:
     """The opening before the motion: arms out, then down."""
     at = int((phase < LOWERING).sum())
     frames = np.arange(len(phase), dtype=np.float64)
