@@ -19,7 +19,7 @@ OVER_FRAMES: Final = 3
 LEAST_FRAMES: Final = 10
 """A shorter motion is a twitch: the quickest squat takes 1.5 s."""
 LEAST_STATES: Final = 3
-"""Of the five states of a posture, so many must be met: a part of it is not the posture."""
+"""Of the five states of a posture, so many must be met: a part of a posture is not the posture."""
 MISFIT: Final = 42.0
 """Nats a frame by which a performance may fit worse than those learnt from: some one and a half an
 entry, as people differ. A hand at the head fits a raised arm worse by 150 and more."""
@@ -28,10 +28,18 @@ RIVAL: Final = 9.0
 DRIFT: Final = 0.11
 """By how much travel may differ from the posture's over a performance, leg lengths in five frames
 times its weight: a third of a slow walk. Steps back are no walk."""
+AGAIN_FRAMES: Final = 15
+"""The same posture within a second of its event is the same performance going on, not another: some
+pause between two kicks."""
 SPEED_FRAMES: Final = 3
 """Limbs' speed is the change of their directions within so many frames."""
 KEPT_FRAMES: Final = 150
 """Poses that a performance is judged by: its last ten seconds."""
+REACH: Final = 0.75
+"""Of the distance from standing at the height of a posture: whoever does not get so far does
+something else."""
+LONG_FRAMES: Final = 1000
+"""After so many, where a chain began no longer matters."""
 RARE: Final = 0.05
 """A state in which a posture is for a smaller share of its time marks no repetition."""
 
@@ -72,18 +80,30 @@ class Network:
             self.log_transition = np.log(model.transition)
 
     @cached_property
-    def turn(self) -> NDArray[np.int64]:
-        """The two states of each posture that lie farthest apart, that nearer standing first."""
-        return np.array([self._extremes(p) for p in range(len(self.model.names))])
+    def share(self) -> Array:
+        """How much of its time each posture is in each state, (p, s)."""
+        long = np.linalg.matrix_power(self.model.transition, LONG_FRAMES)
+        return np.asarray(long[:, 0])
 
-    def _extremes(self, p: int) -> tuple[int, int]:
-        mean = self.model.mean[p]
-        share = np.linalg.matrix_power(self.model.transition[p], 1000)[0]
-        apart = np.linalg.norm(mean[:, np.newaxis] - mean, axis=2)
-        apart *= np.minimum.outer(share, share) > RARE
-        one, other = (int(i) for i in np.unravel_index(apart.argmax(), apart.shape))
-        away = np.linalg.norm(mean[[one, other]] - self.model.rest_mean, axis=1)
-        return (one, other) if away[0] <= away[1] else (other, one)
+    @cached_property
+    def away(self) -> Array:
+        """How far each state is from standing, (p, s); 0 where it is rare."""
+        apart = np.linalg.norm(self.model.mean - self.model.rest_mean, axis=2)
+        return np.asarray(np.where(self.share > RARE, apart, 0.0))
+
+    @cached_property
+    def far(self) -> NDArray[np.bool_]:
+        """The states at the height of each posture, (p, s)."""
+        return np.asarray(self.away >= REACH * self.away.max(axis=1, keepdims=True))
+
+    @cached_property
+    def turn(self) -> NDArray[np.int64]:
+        """The state of each posture farthest from standing, and before it that farthest from this
+        one: a repetition goes from one to the other and back, (p, 2)."""
+        far = self.away.argmax(axis=1)
+        mean = self.model.mean
+        apart = np.linalg.norm(mean - mean[np.arange(len(far)), far][:, np.newaxis], axis=2)
+        return np.stack([np.where(self.share > RARE, apart, 0.0).argmax(axis=1), far], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +124,8 @@ class State:
     """Somebody was seen standing: until then no posture begins."""
     judged: int = -1
     """Last frame of the last performance that was judged."""
+    told: str = ""
+    """Posture of the last event; "" where what was judged last was none."""
 
 
 def init(model: DensityModel) -> State:
@@ -137,7 +159,10 @@ def step(state: State, row: NDArray[np.float64] | None) -> tuple[State, Doing]:
     over = state.over[best]
     if over[ONSET] <= state.judged or now - over[LAST] < OVER_FRAMES:
         return state, NOTHING
-    return replace(state, judged=int(over[LAST])), Doing("", 0, _event(state, over))
+    event = _event(state, over)
+    again = event and event.name == state.told and event.first - state.judged <= AGAIN_FRAMES
+    state = replace(state, judged=int(over[LAST]), told=event.name if event else "")
+    return state, Doing("", 0, None if again else event)
 
 
 def _further(state: State, new: Rows, now: int) -> State:
@@ -171,7 +196,7 @@ def _event(state: State, over: NDArray[np.int64]) -> Event | None:
     rows = state.rows[[first <= frame <= last for frame in state.frames]]
     shown, logs = bearings(rows), model.log_emission(rows)
     totals = forward(model.start, model.transition, logs)
-    held = [_holds(model, p, shown, logs[:, p]) for p in range(len(model.names))]
+    held = [_holds(state.network, p, shown, logs[:, p]) for p in range(len(model.names))]
     among = np.where(held, totals, -np.inf)
     posture = int(among.argmax())
     if among[posture] < totals.max() - RIVAL * len(rows):
@@ -182,20 +207,21 @@ def _event(state: State, over: NDArray[np.int64]) -> Event | None:
     return Event(model.names[posture], first, last, posterior, int(over[COUNT]))
 
 
-def _holds(model: DensityModel, posture: int, shown: Bearings, logs: Array) -> bool:
+def _holds(network: Network, posture: int, shown: Bearings, logs: Array) -> bool:
     """Whether frames show the posture, and all of it.
 
     Args:
-        model: Of all postures.
+        network: Of all postures.
         posture: Its number.
         shown: (n, 27) the frames.
         logs: (n, s) their log densities in the posture's states.
     """
-    state = logs.argmax(axis=1)
+    model, state = network.model, logs.argmax(axis=1)
     drift = (shown - model.mean[posture, state])[:, -3:].mean(axis=0)
     return bool(
         len(shown) >= LEAST_FRAMES
         and len(np.unique(state)) >= LEAST_STATES
+        and network.far[posture, state].any()
         and logs.max(axis=1).mean() >= model.fit[posture] - MISFIT
         and np.linalg.norm(drift) <= DRIFT
     )
