@@ -14,7 +14,7 @@ from recognizer.forward import forward
 from recognizer.network import COUNT, LAST, ONSET, SCALE, advance, emissions
 from recognizer.postures import STATES, Array, DensityModel
 
-OVER_FRAMES: Final = 3
+OVER_FRAMES: Final = 2
 """So long a performance must be over on the best path before it is an event."""
 LEAST_FRAMES: Final = 10
 """A shorter motion is a twitch: the quickest squat takes 1.5 s."""

@@ -19,7 +19,7 @@ REST_CAP: Final = 4.0
 """Mean squared deviation of an entry up to which a pose is that of standing."""
 STILL, MOVING = 0.2, 0.6
 """How fast limbs turn in standing and in motion: change of all directions within three frames."""
-SLOWNESS: Final = 2.0
+SLOWNESS: Final = 3.0
 """Weight of what slowness says for standing."""
 STILL_LOSS = -8.0
 """The most that it says against it in a frame."""

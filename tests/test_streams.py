@@ -42,7 +42,7 @@ def test_joined_performances_stand_between() -> None:
     stream = joined("r", given, seed=1)
     assert sorted(act.name for act in stream.acts) == sorted(name for name, _ in given)
     for act, after in zip(stream.acts, (*stream.acts[1:], None), strict=True):
-        assert act.last - act.first >= 38
+        assert act.last - act.first >= 30
         pause = stream.rows[act.last + 3 : after.first if after else None, :17]
         assert len(pause) >= 5
         assert np.abs(pause - standing(1)[0, :17]).max() < 25
