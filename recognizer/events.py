@@ -25,9 +25,9 @@ MISFIT: Final = 42.0
 entry, as people differ. A hand at the head fits a raised arm worse by 150 and more."""
 RIVAL: Final = 9.0
 """Nats a frame by which a posture that holds may fit worse than one that does not."""
-DRIFT: Final = 0.11
+DRIFT, DRIFT_SHARE = 0.09, 0.3
 """By how much travel may differ from the posture's over a performance, leg lengths in five frames
-times its weight: a third of a slow walk. Steps back are no walk."""
+times its weight, and as a share of it: people walk slower or faster. Steps back are no walk."""
 AGAIN_FRAMES: Final = 15
 """The same posture within a second of its event is the same performance going on, not another: some
 pause between two kicks."""
@@ -217,11 +217,12 @@ def _holds(network: Network, posture: int, shown: Bearings, logs: Array) -> bool
         logs: (n, s) their log densities in the posture's states.
     """
     model, state = network.model, logs.argmax(axis=1)
-    drift = (shown - model.mean[posture, state])[:, -3:].mean(axis=0)
+    meant = model.mean[posture, state, -3:].mean(axis=0)
+    drift = np.linalg.norm(shown[:, -3:].mean(axis=0) - meant)
     return bool(
         len(shown) >= LEAST_FRAMES
         and len(np.unique(state)) >= LEAST_STATES
         and network.far[posture, state].any()
         and logs.max(axis=1).mean() >= model.fit[posture] - MISFIT
-        and np.linalg.norm(drift) <= DRIFT
+        and drift <= DRIFT + DRIFT_SHARE * np.linalg.norm(meant)
     )
