@@ -41,7 +41,7 @@ def events_list(performances: Sequence[Performance]) -> str:
         for one in reversed(performances)
     )
     title = f'<div style="{QUIET}">seen from beginning to end</div>'
-    return _block(title + rows) if rows else ""
+    return block(title + rows) if rows else ""
 
 
 def likelihood_bars(posture: Posture | None) -> str:
