@@ -18,9 +18,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from recognizer.baumwelch import START, train_densities
+from recognizer.baumwelch import start, train_densities
 from recognizer.evaluation import Outcome, confusion, wilson
 from recognizer.forward import forward
+from recognizer.postures import STATES
 
 Array = NDArray[np.float64]
 
@@ -77,7 +78,7 @@ def _drawn(mask: NDArray[np.uint8], scale: float) -> Array:
     way = np.array(CANVAS) / 2 - scale * np.array([columns.mean(), rows.mean()])
     matrix = np.array([[scale, 0.0, way[0]], [0.0, scale, way[1]]])
     picture = cv2.warpAffine(mask.astype(np.float32), matrix, CANVAS, flags=cv2.INTER_AREA)
-    return cv2.GaussianBlur(picture, (0, 0), 1.0).astype(np.float64).ravel()
+    return np.asarray(cv2.GaussianBlur(picture, (0, 0), 1.0), np.float64).ravel()
 
 
 def mirrored(one: Filmed) -> Filmed:
@@ -98,7 +99,7 @@ def learn(given: Sequence[Filmed], components: int) -> Models:
     models = []
     for action in actions:
         own = [s / spread for one, s in zip(both, shown, strict=True) if one.action == action]
-        models.append(train_densities(own, "ergodic", 0))
+        models.append(train_densities(own, "ergodic", 0, STATES))
     transition, mean, variance = (np.stack(part) for part in zip(*models, strict=True))
     return Models(middle, axes, spread, actions, transition, mean, variance)
 
@@ -115,8 +116,8 @@ def name(models: Models, one: Filmed) -> str:
     shown = _shown(one, models.middle, models.axes) / models.spread
     apart = np.square(shown[:, np.newaxis, np.newaxis] - models.mean) / models.variance
     logs = -0.5 * (apart + np.log(2 * np.pi * models.variance)).sum(axis=3)
-    start = np.tile(START["ergodic"], (len(models.actions), 1))
-    return models.actions[int(forward(start, models.transition, logs).argmax())]
+    begin = np.tile(start("ergodic", STATES), (len(models.actions), 1))
+    return models.actions[int(forward(begin, models.transition, logs).argmax())]
 
 
 def outcomes(given: Sequence[Filmed], components: int) -> list[Outcome]:

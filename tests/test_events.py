@@ -7,7 +7,7 @@ import pytest
 from acting import perform, performances, standing
 
 from recognizer.events import Event, init, step
-from recognizer.learning import train
+from recognizer.learning import taught, train
 from recognizer.network import CHANGE, ENTER, EXIT, LAST, advance
 from recognizer.postures import DensityModel
 
@@ -78,6 +78,16 @@ def test_a_posture_that_was_not_learnt_is_rejected() -> None:
     assert told(model, still(30), kick, still(30)) == []
     lateral = perform("raise_both_lateral", performer=9)
     assert told(model, still(30), lateral, still(30)) == []
+
+
+def test_a_posture_that_is_taught_later_is_told_too() -> None:
+    """Three performances, added to a model that is there."""
+    known = learnt("squat", "walk_toward", "raise_right_lateral")
+    kicks = [begun(rows) for rows in performances(range(3))["kick_right_forward"]]
+    model = taught(known, {"kick_right_forward": kicks})
+    assert isinstance(model, DensityModel)
+    events = told(model, still(30), perform("kick_right_forward", performer=9), still(30))
+    assert [event.name for event, _ in events] == ["kick_right_forward"]
 
 
 def test_a_part_of_a_posture_is_not_the_posture(model: DensityModel) -> None:
