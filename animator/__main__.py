@@ -19,6 +19,8 @@ from common.rate import Pace
 HEAR_S: Final = 0.05
 BEHIND: Final = 10
 """How far the page stands back when cores are scarce: a pose must never wait for its picture."""
+MOST_PERFORMANCES: Final = 4
+"""So many of those that are over are listed."""
 MOST_REPORTS: Final = 16
 """Reports that wait for their body: it comes within a frame or two."""
 
@@ -49,12 +51,14 @@ class Ears:
         pictures.update((picture.viewer, picture) for picture in self._pictures.drain())
         pulses = {pulse.process: pulse for pulse in self._pulses.drain()}
         postures = self._postures.drain()
+        over = [posture.event for posture in postures if posture.event]
         before = self._snapshot
         self._snapshot = Snapshot(
             body=body,
             reports=reports,
             pictures=pictures,
             posture=postures[-1] if postures else before.posture,
+            performances=(*before.performances, *over)[-MOST_PERFORMANCES:],
             pulses={**before.pulses, **pulses},
         )
         return self._snapshot

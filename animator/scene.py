@@ -12,7 +12,7 @@ from animator.turns import quaternions
 from common.body import JOINT_NAMES, LIMBS, Bdp, Elliptic, Round, Vector, body_vector
 from common.camera import Camera, Rig, centre
 from common.kinematics import HEAD, TORSO, limb_frames
-from common.messages import Body, Picture, Posture, Pulse, Report
+from common.messages import Body, Performance, Picture, Posture, Pulse, Report
 
 Colour = tuple[int, int, int]
 Colours = NDArray[np.uint8]
@@ -56,6 +56,8 @@ class Snapshot(msgspec.Struct, frozen=True):
     pictures: Mapping[int, Picture] = {}
     """By viewer."""
     posture: Posture | None = None
+    performances: tuple[Performance, ...] = ()
+    """The last few that are over."""
     pulses: Mapping[str, Pulse] = {}
     """By process."""
 

@@ -24,6 +24,15 @@ CAMERA_HZ: Final = 15.0
 """Taken for the rate of a camera that names none: the paper's (P1)."""
 
 
+class Act(msgspec.Struct, frozen=True):
+    """One performance within a clip that holds several."""
+
+    name: str
+    first: int
+    """Its first frame; `last` is its last."""
+    last: int
+
+
 class Meta(msgspec.Struct, frozen=True):
     """What a clip's `meta.json` tells; keys that are not listed here are left alone."""
 
@@ -32,6 +41,8 @@ class Meta(msgspec.Struct, frozen=True):
     posture_id: int | None = None
     """-1: what is shown is no posture, whatever `posture` calls it."""
     take: int = 0
+    acts: tuple[Act, ...] = ()
+    """What is performed when, where a clip holds more than one posture."""
     fps: float | None = None
     capture_s: dict[str, tuple[float, ...]] = {}
     """When each frame of a camera was taken, where frames are missing."""

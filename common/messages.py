@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from common.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES, Bdp, Elliptic, Round
 from common.camera import Camera, Rig
 
-PROTOCOL: Final = 2
+PROTOCOL: Final = 3
 MAX_BYTES: Final = 1_000_000
 """No message of ours is larger (a 1920x1080 silhouette has 259 kB)."""
 
@@ -175,6 +175,22 @@ class Body(Moment, frozen=True, kw_only=True):
     matches: int = 0
 
 
+class Performance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One performance of a posture, from standing to standing."""
+
+    name: str
+    onset: int
+    """Its first frame; `end` is its last."""
+    end: int
+    onset_s: float
+    """When these were taken, as `captured_s`."""
+    end_s: float
+    posterior: float
+    """Of this posture among all, in [0, 1]."""
+    times: int = 0
+    """How often its course was gone through: strides, kicks, circles."""
+
+
 class Posture(Moment, frozen=True, kw_only=True):
     """What the body is doing."""
 
@@ -184,6 +200,12 @@ class Posture(Moment, frozen=True, kw_only=True):
     """log P(window | model) of each posture."""
     segment: tuple[int, int] = (0, 0)
     """First and last frame of the window that was judged."""
+    doing: str = ""
+    """The posture that is under way; "" while standing or doing something unknown."""
+    times: int = 0
+    """How often its course was gone through so far."""
+    event: Performance | None = None
+    """A performance that is over; told once."""
 
 
 class Picture(Moment, frozen=True, kw_only=True):
@@ -376,6 +398,6 @@ def _numbers(value: object) -> Iterator[float]:
     elif isinstance(value, dict):
         for item in value.values():
             yield from _numbers(item)
-    elif isinstance(value, Measure | Fit | Bdp | Elliptic | Round | Rig | Camera):
+    elif isinstance(value, Measure | Fit | Performance | Bdp | Elliptic | Round | Rig | Camera):
         for item in msgspec.structs.astuple(value):
             yield from _numbers(item)

@@ -3,8 +3,8 @@
 import gc
 import threading
 import time
-from collections import deque
 from pathlib import Path
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,42 +12,86 @@ from numpy.typing import NDArray
 from common.body import ANGLES_IN_POSE
 from common.bus import Bus, open_client
 from common.config import Settings
-from common.messages import Body, Posture
+from common.messages import Body, Performance, Posture
 from common.process import READY_S, Heart, Place, process
 from common.rate import Pace
-from recognizer import spotting
+from recognizer import events, spotting
 from recognizer.features import ROW_NAMES, rows
 from recognizer.model_file import ModelError, load
-from recognizer.postures import PostureModel
+from recognizer.postures import DensityModel, PostureModel
 
 SHIPPED = Path(__file__).parent / "postures.npz"
 """The model that is used when the settings name none."""
 SHIPPED_PAPER = SHIPPED.with_name("postures_paper.npz")
 """The same in `paper` mode: the paper's recogniser, learnt from what that mode tracks."""
+REACH_FRAMES: Final = 900
+"""A performance that is longer is told from there on: a minute at the paper's rate."""
 HEAR_S = 0.05
 MOVING = ("tracking", "predicted")
 """States in which a body's angles say what it does; the opening posture is no motion."""
 
 
-def step(state: spotting.State, frames: deque[int], body: Body) -> tuple[spotting.State, Posture]:
-    """One body more: the judgement of the window that ends with it.
+class State(NamedTuple):
+    """What is remembered of a stream."""
 
-    Args:
-        state: Of the window.
-        frames: Frame numbers of all steps so far that a window can reach; this one is added.
-        body: As the integrator published it.
-    """
-    state, judged = spotting.step(state, row_of(body))
-    frames.append(body.frame)
-    newest = state.next_frame - 1
-    return state, Posture(
+    window: spotting.State
+    events: events.State | None
+    """None where the model is the paper's: it knows nothing but postures."""
+    frames: tuple[tuple[int, float], ...] = ()
+    """Number and time of each body so far that a performance can reach."""
+
+
+def init(model: PostureModel, window_frames: int) -> State:
+    """Nothing seen yet."""
+    network = events.init(model) if isinstance(model, DensityModel) else None
+    return State(spotting.init(model, window_frames), network)
+
+
+def step(state: State, body: Body) -> tuple[State, Posture]:
+    """One body more: the judgement of the window that ends with it, and what is under way."""
+    row = row_of(body)
+    window, judged = spotting.step(state.window, row)
+    network, doing = state.events, events.NOTHING
+    if network is not None:
+        network, doing = events.step(network, row)
+    frames = (*state.frames, (body.frame, body.captured_s))[-REACH_FRAMES:]
+    oldest = window.next_frame - len(frames)
+
+    def at(step_number: int) -> tuple[int, float]:
+        return frames[max(step_number - oldest, 0)]
+
+    return State(window, network, frames), Posture(
         frame=body.frame,
         captured_s=body.captured_s,
         clock_s=body.clock_s,
         name=judged.name,
         log_likelihoods=judged.log_likelihoods,
-        segment=(frames[judged.first - newest - 1], frames[judged.last - newest - 1]),
+        segment=(at(judged.first)[0], at(judged.last)[0]),
+        doing=doing.name,
+        times=doing.times,
+        event=doing.event and performance(doing.event, at(doing.event.first), at(doing.event.last)),
     )
+
+
+def performance(
+    event: events.Event, onset: tuple[int, float], end: tuple[int, float]
+) -> Performance:
+    """An event in the frames and seconds of the stream."""
+    return Performance(
+        name=event.name,
+        onset=onset[0],
+        end=end[0],
+        onset_s=onset[1],
+        end_s=end[1],
+        posterior=event.posterior,
+        times=event.times,
+    )
+
+
+def words(one: Performance) -> str:
+    """A performance in a line."""
+    times = f", {one.times} times" if one.times > 1 else ""
+    return f"{one.onset_s:.1f} to {one.end_s:.1f} s: {one.name}{times} ({one.posterior:.0%} sure)"
 
 
 def row_of(body: Body) -> NDArray[np.float64] | None:
@@ -58,17 +102,11 @@ def row_of(body: Body) -> NDArray[np.float64] | None:
     return rows(angles_deg, np.array([body.joints_m]))[0]
 
 
-def reach(window_frames: int) -> deque[int]:
-    """Room for the frame numbers that a window may name."""
-    return deque(maxlen=window_frames + 4 * spotting.MISSED_FRAMES)
-
-
 def run(
     model: PostureModel, settings: Settings, bus: Bus, period_s: float, stop: threading.Event
 ) -> None:
     """Judge every body that is published until stopped."""
-    window = settings.recognizer.window_frames
-    state, frames = spotting.init(model, window), reach(window)
+    state, told = init(model, settings.recognizer.window_frames), ""
     pace = Pace(period_s)
     heart = Heart(bus, "recognizer", pace)
     bodies = bus.subscribe(Body)
@@ -76,11 +114,12 @@ def run(
     while not stop.is_set():
         body = bodies.take(HEAR_S)
         if body is not None:
-            state, posture = step(state, frames, body)
+            state, posture = step(state, body)
             bus.publish(posture)
+            told = words(posture.event) if posture.event else told
             pace.done(body.clock_s, time.monotonic())
-            heart.beat("running", dropped=bodies.dropped, malformed=bodies.malformed)
-    heart.beat("ended", dropped=bodies.dropped, malformed=bodies.malformed)
+            heart.beat("running", told, dropped=bodies.dropped, malformed=bodies.malformed)
+    heart.beat("ended", told, dropped=bodies.dropped, malformed=bodies.malformed)
 
 
 def model_of(settings: Settings, meant: str = "") -> PostureModel:
@@ -105,6 +144,17 @@ def model_of(settings: Settings, meant: str = "") -> PostureModel:
     return model
 
 
+def rehearse(model: PostureModel, window_frames: int) -> None:
+    """Compile or load what a step runs."""
+    window = spotting.init(model, window_frames)
+    network = events.init(model) if isinstance(model, DensityModel) else None
+    for turn_deg in range(spotting.NAMED_FROM_FRAMES + 2):
+        row = np.full(len(ROW_NAMES), 9.0 * turn_deg)
+        window, _ = spotting.step(window, row)
+        if network is not None:
+            network, _ = events.step(network, row)
+
+
 def main(settings: Settings, period_s: float, place: Place = Place()) -> None:
     """Load the model, name postures until stopped, close.
 
@@ -113,9 +163,7 @@ def main(settings: Settings, period_s: float, place: Place = Place()) -> None:
         BusError: When the integrator does not answer.
     """
     model = model_of(settings)
-    rehearsal = spotting.init(model, settings.recognizer.window_frames)
-    for turn_deg in range(spotting.NAMED_FROM_FRAMES + 2):
-        rehearsal, _ = spotting.step(rehearsal, np.full(len(ROW_NAMES), 9.0 * turn_deg))
+    rehearse(model, settings.recognizer.window_frames)
     with (
         process("recognizer", place) as stop,
         open_client(settings.bus, settings.room, READY_S) as bus,

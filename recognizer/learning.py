@@ -8,6 +8,7 @@ from recognizer.baumwelch import nearness, start, train_densities, train_symbols
 from recognizer.bearing import bearings
 from recognizer.codebook import SYMBOLS, Codebook, fit, symbols
 from recognizer.features import Rows, features, with_pose
+from recognizer.filler import fit_of, standing
 from recognizer.postures import (
     STATES,
     Card,
@@ -138,11 +139,11 @@ def _symbol_model(
 
 def _density_model(seen: list[list[Rows]], card: Card, states: int) -> DensityModel:
     """Of sequences posture by posture, in the order of the card."""
-    models = [
-        train_densities([bearings(one) for one in given], card.topology, card.seed, states)
-        for given in seen
-    ]
+    shown = [[bearings(one) for one in given] for given in seen]
+    models = [train_densities(given, card.topology, card.seed, states) for given in shown]
     transition, mean, variance = (np.stack(part) for part in zip(*models, strict=True))
+    rest_mean, rest_variance = standing(shown)
+    fits = [fit_of(*of) for of in zip(shown, mean, variance, strict=True)]
     return DensityModel(
         names=tuple(card.sequences),
         start=np.tile(start(card.topology, states), (len(seen), 1)),
@@ -150,4 +151,7 @@ def _density_model(seen: list[list[Rows]], card: Card, states: int) -> DensityMo
         card=card,
         mean=mean,
         variance=variance,
+        rest_mean=rest_mean,
+        rest_variance=rest_variance,
+        fit=np.array(fits),
     )

@@ -21,7 +21,7 @@ from recognizer.postures import (
     SymbolModel,
 )
 
-VERSION: Final = 2
+VERSION: Final = 3
 MAX_BYTES: Final = 10_000_000
 """No model is larger unpacked: fifteen postures take 50 kB."""
 
@@ -133,7 +133,8 @@ def _shapes(header: Header) -> dict[str, tuple[int, ...]]:
     chain = {"start": (p, STATES), "transition": (p, STATES, STATES)}
     if header.card.recognizer == "paper":
         return chain | {"codebook": (SYMBOLS, entries), "emission": (p, STATES, SYMBOLS)}
-    return chain | {"mean": (p, STATES, entries), "variance": (p, STATES, entries)}
+    rest = {"rest_mean": (entries,), "rest_variance": (entries,), "fit": (p,)}
+    return chain | rest | {"mean": (p, STATES, entries), "variance": (p, STATES, entries)}
 
 
 def _refuse_false_arrays(
@@ -150,7 +151,8 @@ def _refuse_false_arrays(
             raise ValueError(f"the rows of {name} are no probabilities")
     if "emission" in arrays and (arrays["emission"] == 0).any():
         raise ValueError("emission calls a symbol impossible")
-    if "variance" in arrays and (arrays["variance"] <= 0).any():
+    variances = [array for name, array in arrays.items() if "variance" in name]
+    if any((array <= 0).any() for array in variances):
         raise ValueError("variance holds a number that is not positive")
 
 

@@ -48,7 +48,7 @@ LEAST_FIT: Final[dict[Recognizer, float]] = {"default": 23.0, "paper": -3.2}
 taught. Of 420 held-out made-up performances 2 % lie below; of the same ones, judged by models to
 which nobody had taught their posture, 77 % and 35 %: the others have a near relative."""
 
-PER_POSTURE: Final = ("start", "transition", "emission", "mean", "variance")
+PER_POSTURE: Final = ("start", "transition", "emission", "mean", "variance", "fit")
 """Arrays of a model with a row for each posture; the others all postures share."""
 
 
@@ -107,6 +107,9 @@ class DensityModel(PostureModel):
 
     mean: Array  # (p, STATES, 27)
     variance: Array  # (p, STATES, 27), positive
+    rest_mean: Array  # (27,), how people stand
+    rest_variance: Array  # (27,), positive
+    fit: Array  # (p,), mean log density of a frame in the middle performance learnt from
 
     def log_emission(self, seen: Rows) -> Array:
         """Of independent normal entries; the square is multiplied out into two matrix products."""

@@ -42,7 +42,7 @@ def posed(
         measures: Of the body.
         angles_deg: (n, 27), in the order of ANGLES.
         start_m: (2,) x and z of the pelvis in the first frame.
-        leash: (n, 2) where the pelvis is drawn to; feet then slide.
+        leash: (n, 2) where the pelvis is drawn to; feet then slide. NaN: nowhere.
     """
     angle = {name: angles_deg[:, i] for i, name in enumerate(ANGLES)}
     bones = bone_frames(measures, angle)
@@ -89,6 +89,6 @@ def _planted(
     root[0, [0, 2]] = start_m
     for i, step in enumerate(steps):
         root[i + 1, [0, 2]] = root[i, [0, 2]] + step
-        if leash is not None:
+        if leash is not None and np.isfinite(leash[i + 1]).all():
             root[i + 1, [0, 2]] += LEASH * (leash[i + 1] - root[i + 1, [0, 2]])
     return root

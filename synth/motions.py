@@ -35,6 +35,15 @@ SWAY_SHARE: Final = {
 """Size of the sway of a joint in units of `jit`; 0.6 where none is named."""
 
 
+class Act(NamedTuple):
+    """One performance within a take."""
+
+    name: str
+    first: int
+    """Frames in which the body left its stance and came back to it."""
+    last: int
+
+
 class Motion(NamedTuple):
     """What somebody does in a clip, frame by frame."""
 
@@ -51,6 +60,8 @@ class Motion(NamedTuple):
     phase: NDArray[np.uint8]
     style: Style
     """Of this take."""
+    acts: tuple[Act, ...] = ()
+    """What was performed when, where a take holds several performances."""
 
     @property
     def present(self) -> NDArray[np.bool_]:
@@ -82,17 +93,17 @@ def performance(
     time_s = (np.arange(len(phase)) - int((phase < MOTION).sum())) / fps
     if posture != "free":
         time_s = np.where(time_s > 0.0, time_s % MOTION_S, time_s)
-    stance = _stance(style, time_s)
+    still = stance(style, time_s)
     leash = None
     if posture == "free":
-        moved, leash = roaming(stance, time_s, rng)
+        moved, leash = roaming(still, time_s, rng)
     else:
-        moved = _performed(MOVES[posture], stance, time_s, style)
-    angles_deg = _opened(moved, phase, fps) + _sway(style, time_s, rng)
-    return _motion(someone, posture, fps, angles_deg, phase, style, leash)
+        moved = performed(MOVES[posture], still, time_s, style)
+    angles_deg = opened(moved, phase, fps) + sway(style, time_s, rng)
+    return staged(someone, posture, fps, angles_deg, phase, style, leash)
 
 
-def _motion(
+def staged(
     someone: Person,
     posture: str,
     fps: float,
@@ -101,6 +112,7 @@ def _motion(
     style: Style,
     leash: Vector | None,
 ) -> Motion:
+    """A take from the joint angles of all its frames: feet on the floor, in the room's middle."""
     start = np.array([style.x0, style.z0])
     body = posed(someone.measures, angles_deg, start, leash)
     if leash is None:
@@ -114,7 +126,7 @@ def _motion(
     return Motion(posture, fps, joints, body.bones, angles, root, phase, style)
 
 
-def _stance(s: Style, t: Vector) -> Track:
+def stance(s: Style, t: Vector) -> Track:
     """How a person stands who does nothing."""
     still = dict.fromkeys(ANGLES, np.zeros_like(t))
     level = {
@@ -136,22 +148,22 @@ def _stance(s: Style, t: Vector) -> Track:
     return still
 
 
-def _performed(move: Move, stance: Track, t: Vector, s: Style) -> NDArray[np.float64]:
+def performed(
+    move: Move, still: Track, t: Vector, s: Style, lasts_s: float = MOTION_S
+) -> NDArray[np.float64]:
     """Angles (n, 27) of a movement that eases in and out of the stance, the left arm later."""
-    ease = smooth(t / RAMP_S) * smooth((MOTION_S - t) / RAMP_S)
-    on_time, late = move(t, s, stance), move(t - s.delay, s, stance)
+    ease = smooth(t / RAMP_S) * smooth((lasts_s - t) / RAMP_S)
+    on_time, late = move(t, s, still), move(t - s.delay, s, still)
     columns = []
     for name in ANGLES:
         left_arm = name.startswith(("l_sh", "l_elbow"))
-        moved = (late if left_arm else on_time).get(name, stance[name])
+        moved = (late if left_arm else on_time).get(name, still[name])
         larger = 1.0 + s.asym if left_arm else 1.0
-        columns.append(stance[name] + ease * larger * (moved - stance[name]))
+        columns.append(still[name] + ease * larger * (moved - still[name]))
     return np.stack(columns, axis=1)
 
 
-def _opened(
-    moved: NDArray[np.float64], phase: NDArray[np.uint8], fps: float
-) -> NDArray[np.float64]:
+def opened(moved: NDArray[np.float64], phase: NDArray[np.uint8], fps: float) -> NDArray[np.float64]:
     """The opening before the motion: arms out, then down."""
     at = int((phase < LOWERING).sum())
     frames = np.arange(len(phase), dtype=np.float64)
@@ -164,7 +176,8 @@ def _opened(
     return angles
 
 
-def _sway(s: Style, t: Vector, rng: np.random.Generator) -> NDArray[np.float64]:
+def sway(s: Style, t: Vector, rng: np.random.Generator) -> NDArray[np.float64]:
+    """The sway that nobody can hold back, (n, 27)."""
     columns = []
     for name in ANGLES:
         share = next((v for key, v in SWAY_SHARE.items() if key in name), 0.6)
@@ -183,9 +196,10 @@ _FIVE: Final[dict[str, Movement]] = {
     "squat": "squatting",
     "kick": "kicking",
     "free": "free",
+    "stream": "free",
 }
 
 
 def movement(posture: str) -> Movement:
-    """Which of the paper's five movements a posture belongs to, or free."""
+    """Which of the paper's five movements a posture belongs to; free motion and streams to none."""
     return _FIVE[posture.split("_", maxsplit=1)[0]]

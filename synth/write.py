@@ -17,6 +17,7 @@ from synth.motions import POSTURES, Motion, movement, performance
 from synth.people import MEASURE_NAMES, Person, measure_vector, person
 from synth.render import Shot, render
 from synth.skeleton import ANGLES, JOINTS
+from synth.streaming import streamed
 
 FPS: Final = 15.0
 """The paper's frame rate (P1)."""
@@ -35,7 +36,7 @@ class SynthError(ValueError):
 
 def write_set(
     out: Path,
-    motion: Literal["postures", "free"],
+    motion: Literal["postures", "free", "stream"],
     performers: int,
     takes: int,
     seed: int,
@@ -47,7 +48,7 @@ def write_set(
 
     Args:
         out: Folder, made where it is missing; clips of the same names are replaced.
-        motion: The named postures, or people who turn and move at random.
+        motion: The named postures; people who turn and move at random; all postures in one take.
         performers: How many people; the first of seed s is person(s * performers).
         takes: Of each posture by each person.
         seed: The same one gives the same clips, byte for byte.
@@ -61,7 +62,7 @@ def write_set(
     Raises:
         SynthError: When nothing would be written, or a posture or the motion is not known.
     """
-    names = ("free",) if motion == "free" else postures
+    names = (motion,) if motion in ("free", "stream") else postures
     _refuse_what_cannot_be(motion, performers, takes, seed, size, names)
     rig = default_rig(*size)
     out.mkdir(parents=True, exist_ok=True)
@@ -71,7 +72,10 @@ def write_set(
     for done, (number, take, posture) in enumerate(jobs, 1):
         someone = person(seed * performers + number)
         own = take + 1000 * seed
-        moved = performance(someone, posture, own, FPS)
+        if motion == "stream":
+            moved = streamed(someone, own, FPS, postures)
+        else:
+            moved = performance(someone, posture, own, FPS)
         folders.append(out / clip_name(someone, posture, take))
         room = seed * ROOM_SEED + number
         write_clip(folders[-1], someone, moved, rig, room, own, take)
@@ -165,6 +169,7 @@ def _meta(
         "look": someone.look._asdict(),
         "measures": {name: round(someone.measures[name], 4) for name in MEASURE_NAMES},
         "seed": seed,
+        "acts": [act._asdict() for act in motion.acts],
         "style": {name: round(value, 4) for name, value in motion.style._asdict().items()},
     }
 
@@ -216,8 +221,8 @@ def _refuse_what_cannot_be(
     size: tuple[int, int],
     names: tuple[str, ...],
 ) -> None:
-    if motion not in ("postures", "free"):
-        raise SynthError(f"motion must be postures or free, got {motion!r}")
+    if motion not in ("postures", "free", "stream"):
+        raise SynthError(f"motion must be postures, free or stream, got {motion!r}")
     for what, number in (("performers", performers), ("takes", takes)):
         if number < 1:
             raise SynthError(f"{what} must be at least 1, got {number}")
@@ -225,6 +230,6 @@ def _refuse_what_cannot_be(
         raise SynthError(f"seed must not be negative, got {seed}")
     if min(size) < 32 or max(size) > 4096:
         raise SynthError(f"a picture has 32 to 4096 pixels each way, got {size[0]}x{size[1]}")
-    unknown = [name for name in names if name not in (*POSTURES, "free")]
+    unknown = [name for name in names if name not in (*POSTURES, "free", "stream")]
     if unknown or not names:
         raise SynthError(f"unknown posture {unknown or names}; known are {', '.join(POSTURES)}")

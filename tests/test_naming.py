@@ -7,8 +7,7 @@ import cv2
 import pytest
 
 from common.config import Settings
-from recognizer import spotting
-from recognizer.__main__ import SHIPPED, reach, step
+from recognizer.__main__ import SHIPPED, init, step
 from recognizer.model_file import load
 from tritrack.offline import Decoders, track_clip
 from tritrack.session import performed
@@ -18,9 +17,9 @@ def named(clip: Path) -> str:
     """What a live run of the clip would say at its end."""
     with Decoders() as decoders:
         bodies = track_clip(Settings(clip=str(clip)), decoders).bodies
-    state, frames, postures = spotting.init(load(SHIPPED), 40), reach(40), []
+    state, postures = init(load(SHIPPED), 40), []
     for body in bodies:
-        state, posture = step(state, frames, body)
+        state, posture = step(state, body)
         postures.append(posture)
     return performed(postures)
 

@@ -3,11 +3,13 @@
 import re
 from typing import Any
 
+import msgspec
 import pytest
 
 from animator.page.panel import (
     STATUS_WORDS,
     bar_shares,
+    events_list,
     likelihood_bars,
     posture_headline,
     pulse_table,
@@ -15,7 +17,7 @@ from animator.page.panel import (
     views_table,
 )
 from common.body import rest_pose
-from common.messages import Body, Posture, Pulse, Report, Status
+from common.messages import Body, Performance, Posture, Pulse, Report, Status
 
 LIKELIHOODS = {"squat": -90.5, "walk_in_place": -61.25, "kick_left_side": -140.0}
 
@@ -78,6 +80,24 @@ def test_a_posture_that_is_not_known_yet_is_said_to_be_so() -> None:
     assert "no posture yet" in posture_headline(None)
     assert "no posture yet" in posture_headline(posture(name=""))
     assert "walk in place" in posture_headline(posture())
+
+
+def test_what_is_under_way_stands_in_the_headline_with_its_repetitions() -> None:
+    under_way = msgspec.structs.replace(posture("squat"), doing="kick_left_side", times=2)
+    assert "kick left side × 2" in posture_headline(under_way)
+    assert "squat" not in posture_headline(under_way)
+
+
+def test_performances_that_are_over_are_listed_from_the_newest() -> None:
+    over = [
+        Performance("squat", 30, 60, 2.0, 4.0, 1.0, 1),
+        Performance("walk_in_place", 90, 150, 6.0, 10.0, 1.0, 3),
+    ]
+    html = events_list(over)
+    assert html.index("walk in place × 3") < html.index("squat")
+    assert "2.0 to 4.0 s" in html
+    assert events_list([]) == ""
+    assert "<img" not in events_list([msgspec.structs.replace(over[0], name="<img src=x>")])
 
 
 def test_names_from_the_bus_cannot_become_markup() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from common.body import ANGLE_NAMES, JOINT_NAMES
 from common.config import Settings
-from common.messages import Body, Posture
+from common.messages import Body, Performance, Posture
 from tritrack.offline import Decoders, track_clip
 from tritrack.runs import RunError, poses, write_postures, write_run
 
@@ -160,16 +160,30 @@ def test_postures_name_frame_time_segment_and_scores(tmp_path: Path) -> None:
         name="squat",
         segment=(1, 40),
         log_likelihoods={"squat": -12.34567},
+        doing="",
+        event=Performance("squat", 8, 36, 0.533, 2.4, 0.99, 1),
     )
     write_postures(tmp_path, [said], "squat")
     assert strict((tmp_path / "posture.json").read_text()) == {
         "posture": "squat",
+        "events": [
+            {
+                "name": "squat",
+                "onset": 8,
+                "end": 36,
+                "onset_s": 0.533,
+                "end_s": 2.4,
+                "posterior": 0.99,
+                "times": 1,
+            }
+        ],
         "frames": [
             {
                 "frame": 40,
                 "time_s": 2.6667,
                 "name": "squat",
                 "segment": [1, 40],
+                "doing": "",
                 "log_likelihoods": {"squat": -12.346},
             }
         ],

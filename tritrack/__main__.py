@@ -194,7 +194,8 @@ def track(
 def synth(
     out: Out,
     motion: Annotated[
-        Literal["postures", "free"], typer.Option(help="The 15 postures, or free motion.")
+        Literal["postures", "free", "stream"],
+        typer.Option(help="The 15 postures, free motion, or all of them in one take."),
     ] = "postures",
     performers: Annotated[int, typer.Option(min=1, max=1000, help="How many people.")] = 1,
     takes: Annotated[int, typer.Option(min=1, max=100, help="Of each posture by each person.")] = 1,
@@ -303,6 +304,29 @@ def evaluate_postures(
         f"{name} recogniser:\n{result['table']}" for name, result in report["recognizers"].items()
     ]
     tell(report, json_wanted, "\n\n".join(tables))
+
+
+@evaluate_app.command("spotting")
+def evaluate_spotting(
+    runs: Annotated[
+        list[Path],
+        typer.Argument(help="Streams, or clips of one posture each, or their run folders."),
+    ],
+    out: Out,
+    model: Annotated[
+        Path | None, typer.Option(help="A model file, instead of the one in the package.")
+    ] = None,
+    mode: ModeName = None,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Find performances in streams that nobody cuts: how many, how soon, how many that are none.
+
+    Example: tritrack evaluate spotting runs/*_stream --out report
+    """
+    from tritrack import spotting_report
+
+    report = spotting_report.evaluate_spotting(runs, out, model, mode, console)
+    tell(report, json_wanted, report["table"])
 
 
 @evaluate_app.command("tracking")

@@ -13,7 +13,7 @@ from tritrack.terminal import bar
 
 def make_clips(
     out: Path,
-    motion: Literal["postures", "free"],
+    motion: Literal["postures", "free", "stream"],
     performers: int,
     takes: int,
     seed: int,

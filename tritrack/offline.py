@@ -116,6 +116,7 @@ def track_clip(
         "clip": clip.name,
         "performer": clip.meta.performer,
         "posture_meant": clip.meta.posture,
+        **({"acts": msgspec.to_builtins(clip.meta.acts)} if clip.meta.acts else {}),
         "seconds": {name: round(value, 4) for name, value in seconds.items()},
         "frames_a_second": round(len(bodies) / (done - prepared), 1),
         "scale_source": state.scale_source,

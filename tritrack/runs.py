@@ -55,13 +55,16 @@ def write_run(
 
 
 def write_postures(folder: Path, postures: Iterable[Posture], performed: str) -> None:
-    """Write `posture.json`: the name and scores of each frame, and of the whole performance."""
+    """Write `posture.json`: performances, each frame's name and scores, the clip's name."""
+    postures = list(postures)
+    events = [msgspec.to_builtins(posture.event) for posture in postures if posture.event]
     rows = [
         {
             "frame": posture.frame,
             "time_s": round(posture.captured_s, 4),
             "name": posture.name,
             "segment": posture.segment,
+            "doing": posture.doing,
             "log_likelihoods": {
                 name: round(value, 3) for name, value in posture.log_likelihoods.items()
             },
@@ -71,7 +74,9 @@ def write_postures(folder: Path, postures: Iterable[Posture], performed: str) ->
     ]
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        _write_json(folder / "posture.json", {"posture": performed, "frames": rows})
+        _write_json(
+            folder / "posture.json", {"posture": performed, "events": events, "frames": rows}
+        )
     except OSError as error:
         raise _unwritable(folder, error) from error
 

@@ -106,6 +106,10 @@ class _Screen:
         if page is not None and page.detail not in self._told | {""}:
             self._told.add(page.detail)
             self._console.print(f"the page: [link]{page.detail}[/link]", highlight=False)
+        posture = heard.pulses.get("recognizer")
+        if posture is not None and posture.detail not in self._told | {""}:
+            self._told.add(posture.detail)
+            self._console.print(posture.detail, highlight=False)
 
     def _warn(self, text: str) -> None:
         if text not in self._told:

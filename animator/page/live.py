@@ -160,6 +160,7 @@ class LivePage:
     def _build_panel(self) -> None:
         gui = self._server.gui
         self._headline = gui.add_html("")
+        self._events = gui.add_html("")
         self._status = gui.add_html("")
         self._views = gui.add_html("")
         self._bars = gui.add_html("")
@@ -188,6 +189,7 @@ class LivePage:
     def _show_panel(self, snapshot: Snapshot) -> None:
         body, pulses = snapshot.body, snapshot.pulses.values()
         self._headline.content = panel.posture_headline(snapshot.posture)
+        self._events.content = panel.events_list(snapshot.performances)
         self._status.content = panel.status_line(body, pulses)
         self._views.content = panel.views_table(body, snapshot.reports, len(self._rig.cameras))
         self._bars.content = panel.likelihood_bars(snapshot.posture)

@@ -1,11 +1,11 @@
 """What the page says beside the room: posture, views, body and processes, as pieces of HTML."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from typing import Final
 
 from animator.scene import LEFT, RIGHT, TRUNK, Colour
-from common.messages import Body, Facing, Posture, Pulse, Report, Status
+from common.messages import Body, Facing, Performance, Posture, Pulse, Report, Status
 
 ACCENT: Final[Colour] = (62, 142, 126)
 QUIET: Final = "opacity:.62;font-size:.85em"
@@ -21,12 +21,27 @@ FACING_WORDS: Final[dict[Facing, str]] = {"facade": "front or back", "flank": "s
 
 
 def posture_headline(posture: Posture | None) -> str:
-    """The posture's name, large."""
+    """The posture's name, large; pale while nobody performs it: the nearest of the names then."""
     name = spoken(posture.name) if posture else ""
-    colour = _rgb(ACCENT) if name else "inherit"
+    if posture and posture.doing:
+        times = f" × {posture.times}" if posture.times > 1 else ""
+        name = f"{spoken(posture.doing)}{times}"
+    colour = _rgb(ACCENT) if posture and posture.doing else "inherit;opacity:.62"
     shown = escape(name) or '<span style="opacity:.4">no posture yet</span>'
     style = f"font-size:1.65em;line-height:1.2;font-weight:650;color:{colour}"
     return block(f'<div style="{style}">{shown}</div>')
+
+
+def events_list(performances: Sequence[Performance]) -> str:
+    """The last performances that are over, the newest first."""
+    rows = "".join(
+        f"<div>{escape(spoken(one.name))}"
+        f"{f' × {one.times}' if one.times > 1 else ''}"
+        f' <span style="{QUIET}">{one.onset_s:.1f} to {one.end_s:.1f} s</span></div>'
+        for one in reversed(performances)
+    )
+    title = f'<div style="{QUIET}">seen from beginning to end</div>'
+    return block(title + rows) if rows else ""
 
 
 def likelihood_bars(posture: Posture | None) -> str:

@@ -1,0 +1,133 @@
+"""The network of all postures, standing and filler: its best path, frame by frame, compiled."""
+
+import math
+from typing import Any, Final
+
+import numba
+import numpy as np
+
+SCALE: Final = 0.3
+"""Weight of a log density: neighbouring frames say nearly the same."""
+CAP_LIMB, CAP_TRAVEL = 4.0, 36.0
+"""Most that an entry counts in a frame, squared deviations: two for a limb's direction, in which
+people differ, six for travel, in which they do not."""
+LOOSENESS: Final = 2.0
+"""By how much variances are widened for people who were not learnt from."""
+FILLER: Final = 10.0
+"""Log density that the filler gives any pose: so bad may a posture's own poses be."""
+REST_CAP: Final = 4.0
+"""Mean squared deviation of an entry up to which a pose is that of standing."""
+STILL, MOVING = 0.2, 0.6
+"""How fast limbs turn in standing and in motion: change of all directions within three frames."""
+SLOWNESS: Final = 3.0
+"""Weight of what slowness says for standing."""
+STILL_LOSS = -8.0
+"""The most that it says against it in a frame."""
+ENTER, EXIT, CHANGE = 8.0, 8.0, 3.0
+"""What it costs a path to enter a posture, to leave one, and to go from standing to something
+unknown or back."""
+
+ONSET, COUNT, PHASE, LAST = 0, 1, 2, 3
+"""What a path remembers of the posture that it is in: its first frame, how often the course was
+gone through, whether it is in its second half; and of one that is over: its last frame."""
+
+
+@numba.njit(cache=True)
+def emissions(
+    seen: Any, speed: Any, mean: Any, variance: Any, rest: Any, rest_variance: Any
+) -> Any:
+    """Weighted log density of one frame in each state of the network, (p s + 2,): all states of all
+    postures, standing, the filler.
+
+    Args:
+        seen: (27,) feature vector.
+        speed: How fast the limbs turn and the body goes.
+        mean: (p, s, 27) of the postures' states; `variance` alike.
+        rest: (27,) how people stand; `rest_variance` alike.
+    """
+    postures, states, entries = mean.shape
+    count = postures * states
+    found = np.empty(count + 2)
+    best = -math.inf
+    for k in range(count):
+        own, wide, level = mean[k // states, k % states], 0.0, 0.0
+        near = variance[k // states, k % states]
+        for i in range(entries):
+            squared = (seen[i] - own[i]) ** 2 / near[i]
+            cap = CAP_LIMB if i < entries - 3 else CAP_TRAVEL
+            wide += min(squared / LOOSENESS, cap)
+            level += math.log(2 * math.pi * near[i])
+        found[k] = -0.5 * SCALE * (wide + level + entries * math.log(LOOSENESS))
+        best = max(best, found[k])
+    away = 0.0
+    for i in range(entries - 3):
+        away += (seen[i] - rest[i]) ** 2 / rest_variance[i]
+    excess = max(0.0, away - REST_CAP * (entries - 3))
+    slow = math.log(MOVING / STILL) - 0.5 * ((speed / STILL) ** 2 - (speed / MOVING) ** 2)
+    found[count] = best - 0.5 * SCALE * excess + max(SLOWNESS * slow, STILL_LOSS)
+    found[count + 1] = SCALE * FILLER
+    return found
+
+
+@numba.njit(cache=True)
+def advance(
+    score: Any, record: Any, over: Any, emission: Any, log_transition: Any, turn: Any, frame: int,
+    open_: bool,
+) -> Any:  # fmt: skip
+    """One frame further: the best path into every state of the network.
+
+    Args:
+        score: (p s + 2,) of the best path that ends in each state.
+        record: (p s + 2, LAST) what that path did since it entered its posture.
+        over: (p s + 2, LAST + 1) the same of the last performance on that path that is over, and
+            its last frame; -1 where there is none.
+        emission: What `emissions` gives for this frame.
+        log_transition: (p, s, s).
+        turn: (p, 2) the states of each posture between which one repetition goes.
+        frame: Number of this frame.
+        open_: Whether a posture may begin: once somebody was seen standing.
+
+    Returns:
+        score, record and over of this frame.
+    """
+    postures, states = log_transition.shape[:2]
+    count = postures * states
+    still, filler = count, count + 1
+    new_score = np.empty_like(score)
+    new_record, new_over = np.zeros_like(record), np.empty_like(over)
+    source = still if score[still] >= score[filler] else filler
+    enter = score[source] - ENTER if open_ else -math.inf
+    leaver = int(np.argmax(score[:count]))
+    for k in range(count):
+        p, s = k // states, k % states
+        best, origin = enter, -1
+        for i in range(states):
+            value = score[p * states + i] + log_transition[p, i, s]
+            if value > best:
+                best, origin = value, p * states + i
+        new_score[k] = best + emission[k]
+        own = new_record[k]
+        if origin < 0:
+            new_over[k] = over[source]
+            own[ONSET] = frame
+        else:
+            new_over[k] = over[origin]
+            own[:] = record[origin]
+        if s == turn[p, 1] and own[PHASE] == 0:
+            own[COUNT] += 1
+            own[PHASE] = 1
+        elif s == turn[p, 0]:
+            own[PHASE] = 0
+    for k in (still, filler):
+        other = filler if k == still else still
+        values = (score[k], score[other] - CHANGE, score[leaver] - EXIT)
+        best = max(values)
+        new_score[k] = best + emission[k]
+        if values[0] == best:
+            new_over[k] = over[k]
+        elif values[1] == best:
+            new_over[k] = over[other]
+        else:
+            new_over[k, :LAST] = record[leaver]
+            new_over[k, LAST] = frame - 1
+    return new_score - new_score.max(), new_record, new_over

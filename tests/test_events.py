@@ -1,0 +1,150 @@
+"""Performances found in a stream that nobody cuts."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from acting import perform, performances, standing
+
+from recognizer.events import Event, init, step
+from recognizer.learning import taught, train
+from recognizer.network import CHANGE, ENTER, EXIT, LAST, advance
+from recognizer.postures import DensityModel
+
+SHOWN = ("squat", "walk_toward", "raise_right_lateral", "kick_right_forward")
+"""Some of the fifteen: a network of few is as good an example, and faster."""
+SHAKE = np.repeat([0.7, 0.002], [17, 3])
+"""Of a person who stands: degrees, then leg lengths."""
+
+
+def learnt(*names: str) -> DensityModel:
+    """A model of performances that begin in standing."""
+    shown = performances(range(6))
+    model = train({name: [begun(rows) for rows in shown[name]] for name in names})
+    assert isinstance(model, DensityModel)
+    return model
+
+
+def begun(rows: np.ndarray) -> np.ndarray:
+    """The same with a moment of standing before, and the way there."""
+    return np.concatenate([still(5, rows[0, 17:]), rows])
+
+
+def still(frames: int, place: np.ndarray | None = None) -> np.ndarray:
+    rows = standing(frames) + np.random.default_rng(frames).normal(0.0, 1.0, (frames, 20)) * SHAKE
+    if place is not None:
+        rows[:, 17:] = place
+    return rows
+
+
+@pytest.fixture(scope="module")
+def model() -> DensityModel:
+    return learnt(*SHOWN)
+
+
+def told(model: DensityModel, *pieces: np.ndarray) -> list[tuple[Event, int]]:
+    """The events of a stream with the frame in which each was told; everybody moves on from where
+    they are."""
+    state, events = init(model), []
+    for frame, row in enumerate(np.concatenate(pieces)):
+        state, doing = step(state, row)
+        if doing.event:
+            events.append((doing.event, frame))
+    return events
+
+
+@pytest.mark.parametrize("posture", ["squat", "raise_right_lateral", "kick_right_forward"])
+def test_a_performance_is_one_event_with_its_beginning_and_end(
+    model: DensityModel, posture: str
+) -> None:
+    """Nobody cuts the stream: two seconds of standing, the posture, two of standing."""
+    events = told(model, still(30), perform(posture, performer=9), still(30))
+    assert [event.name for event, _ in events] == [posture]
+    event, frame = events[0]
+    assert event.first == pytest.approx(30, abs=6)
+    assert event.last == pytest.approx(69, abs=6)
+    assert frame <= 69 + 9
+    assert event.posterior > 0.9
+
+
+def test_standing_is_no_event(model: DensityModel) -> None:
+    assert told(model, still(200)) == []
+
+
+def test_a_posture_that_was_not_learnt_is_rejected() -> None:
+    """The stream of the test above, by a model that never saw the kick."""
+    model = learnt("squat", "walk_toward", "raise_right_lateral")
+    kick = perform("kick_right_forward", performer=9)
+    assert told(model, still(30), kick, still(30)) == []
+    lateral = perform("raise_both_lateral", performer=9)
+    assert told(model, still(30), lateral, still(30)) == []
+
+
+def test_a_posture_that_is_taught_later_is_told_too() -> None:
+    """Three performances, added to a model that is there."""
+    known = learnt("squat", "walk_toward", "raise_right_lateral")
+    kicks = [begun(rows) for rows in performances(range(3))["kick_right_forward"]]
+    model = taught(known, {"kick_right_forward": kicks})
+    assert isinstance(model, DensityModel)
+    events = told(model, still(30), perform("kick_right_forward", performer=9), still(30))
+    assert [event.name for event, _ in events] == ["kick_right_forward"]
+
+
+def test_a_part_of_a_posture_is_not_the_posture(model: DensityModel) -> None:
+    """Half a second of it."""
+    assert told(model, still(30), perform("squat", performer=9)[:6], still(30)) == []
+
+
+def test_nothing_begins_before_somebody_stood(model: DensityModel) -> None:
+    """A person who comes in squatting is not told."""
+    squat = perform("squat", performer=9)
+    assert told(model, squat[10:30]) == []
+
+
+def test_frames_without_a_pose_add_nothing(model: DensityModel) -> None:
+    squat, nowhere = perform("squat", performer=9), np.full((2, 20), np.nan)
+    plain = told(model, still(30), squat, still(30))
+    gaps = told(model, still(30), squat[:20], nowhere, squat[20:], still(30))
+    assert [event.name for event, _ in gaps] == [event.name for event, _ in plain]
+    assert gaps[0][0].last == plain[0][0].last + 2
+
+
+def test_a_step_leaves_the_state_it_was_given_alone(model: DensityModel) -> None:
+    state = init(model)
+    for row in still(30):
+        state, _ = step(state, row)
+    before = replace(state, score=state.score.copy())
+    step(state, perform("squat", performer=9)[0])
+    assert np.array_equal(state.score, before.score)
+
+
+def test_the_best_path_is_that_of_all_paths_tried() -> None:
+    """Two postures of two states, standing and the filler, five frames: every path is scored by
+    hand, Rabiner's section III B by brute force."""
+    rng = np.random.default_rng(0)
+    transition = rng.dirichlet((1.0, 1.0), (2, 2))
+    logs = rng.normal(0.0, 6.0, (5, 6))
+    turn = np.zeros((2, 2), np.int64)
+    score = np.array([-np.inf] * 5 + [0.0])
+    record, over = np.zeros((6, LAST), np.int64), np.full((6, LAST + 1), -1)
+    for frame, emission in enumerate(logs):
+        score, record, over = advance(
+            score, record, over, emission, np.log(transition), turn, frame, True
+        )
+    best = np.full(6, -np.inf)
+    paths = np.stack(np.meshgrid(*[np.arange(6)] * 5, indexing="ij"), axis=-1).reshape(-1, 5)
+    cost = np.array([[move(transition, i, j) for j in range(6)] for i in range(6)])
+    ways = np.concatenate([np.full((len(paths), 1), 5), paths], axis=1)
+    totals = cost[ways[:, :-1], ways[:, 1:]].sum(axis=1) + logs[np.arange(5), paths].sum(axis=1)
+    np.maximum.at(best, paths[:, -1], totals)
+    assert score == pytest.approx(best - best.max(), abs=1e-9)
+
+
+def move(transition: np.ndarray, i: int, j: int) -> float:
+    """What it costs a path to go from one state of the network to another."""
+    if i < 4 and j < 4:
+        inside = i // 2 == j // 2
+        return float(np.log(transition[i // 2, i % 2, j % 2])) if inside else -np.inf
+    if i >= 4 and j >= 4:
+        return 0.0 if i == j else -CHANGE
+    return -ENTER if i >= 4 else -EXIT
