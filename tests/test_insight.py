@@ -12,7 +12,7 @@ from staging import HEIGHT, RIG, WIDTH, Stage, Told, exact
 from common.body import JOINT_NAMES, Vector
 from common.config import Settings
 from common.similarity import Mask
-from integrator.insight import AT
+from integrator.insight import AT, SURENESS, probability
 from synth.footing import posed
 from synth.mesh import body_mesh
 from synth.motions import MOTION, TPOSE, performance
@@ -142,3 +142,15 @@ def test_the_memory_goes_with_the_person() -> None:
     stage.see((empty, empty))
     assert stage.state.insight is None
     assert stage.state.opening.measured
+
+
+def test_a_probability_keeps_the_order_and_the_bounds() -> None:
+    sure = np.linspace(0.001, 1.0, 200)
+    told = probability(sure)
+    assert (np.diff(told) > 0).all()
+    assert 0.0 < told[0] < 0.01
+    assert told[-1] == 1.0
+    logit = np.log(told[:-1] / (1 - told[:-1]))
+    assert logit == pytest.approx(
+        SURENESS[0] * np.log(sure[:-1] / (1 - sure[:-1])) + SURENESS[1], abs=1e-9
+    )
