@@ -1,6 +1,7 @@
 """The ten-cylinder body: definition parameters (BDPs), joints, angles (BAPs) and their limits."""
 
 import math
+from functools import lru_cache
 from typing import Final
 
 import msgspec
@@ -61,7 +62,9 @@ class Bdp(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True)
     def lengths(self) -> list[float]:
         """The 26 numbers, in the order of the fields."""
         return [
-            float(length) for part in LIMBS for length in msgspec.structs.astuple(_part(self, part))
+            float(length)
+            for part in msgspec.structs.astuple(self)
+            for length in msgspec.structs.astuple(part)
         ]
 
 
@@ -289,6 +292,12 @@ def body_vector(bdp: Bdp) -> Vector:
     hips lie above the navel. 38: how far the joint centres of the shoulders, and with them the
     arms' landmarks, lie within the cylinders'.
     """
+    return np.array(_body_numbers(bdp))
+
+
+@lru_cache(maxsize=64)
+def _body_numbers(bdp: Bdp) -> tuple[float, ...]:
+    """The same numbers: a body hardly changes from frame to frame."""
     torso, leg, height = bdp.torso, bdp.r_upper_leg, stature(bdp)
     inset = torso.long_radius - SHOULDERS_APART / 2 * height
     arms = [
@@ -299,19 +308,17 @@ def body_vector(bdp: Bdp) -> Vector:
         bdp.r_upper_leg.height + bdp.r_lower_leg.height,
         bdp.l_upper_leg.height + bdp.l_lower_leg.height,
     ]
-    return np.array(
-        [
-            *bdp.lengths(),
-            torso.long_radius,
-            torso.height - SHOULDER_DROP * torso.long_radius,
-            torso.long_radius - leg.long_radius,
-            *(ELBOW_SHARE * (inset + arm) for arm in arms),
-            *(WRIST_SHARE * (inset + arm) for arm in arms),
-            *(length - KNEE_SHARE * height for length in legs),
-            *(length - ANKLE_SHARE * height for length in legs),
-            HIP_SHARE * height - legs[0],
-            inset,
-        ]
+    return (
+        *bdp.lengths(),
+        torso.long_radius,
+        torso.height - SHOULDER_DROP * torso.long_radius,
+        torso.long_radius - leg.long_radius,
+        *(ELBOW_SHARE * (inset + arm) for arm in arms),
+        *(WRIST_SHARE * (inset + arm) for arm in arms),
+        *(length - KNEE_SHARE * height for length in legs),
+        *(length - ANKLE_SHARE * height for length in legs),
+        HIP_SHARE * height - legs[0],
+        inset,
     )
 
 
@@ -327,11 +334,6 @@ def wrapped_deg(angle_deg: float) -> float:
     """The same angle in (-180, 180]."""
     turned = math.remainder(angle_deg, 360.0)
     return 180.0 if turned == -180.0 else turned
-
-
-def _part(bdp: Bdp, name: str) -> Elliptic | Round:
-    part: Elliptic | Round = getattr(bdp, name)
-    return part
 
 
 def body_of_lengths(lengths: list[float]) -> Bdp:

@@ -1,5 +1,6 @@
 """Cameras: intrinsics, extrinsics, distortion; the paper's orthogonal rig as a special case."""
 
+from functools import lru_cache
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -172,6 +173,7 @@ def paper_rig(
     return Rig(width, height, tuple(cameras))
 
 
+@lru_cache(maxsize=4)
 def as_paper_rig(rig: Rig) -> PaperRig | None:
     """The paper's four numbers for a rig of its kind (within 1 degree and 5 cm), else None."""
     if len(rig.cameras) != 2:
@@ -188,10 +190,29 @@ def as_paper_rig(rig: Rig) -> PaperRig | None:
     )
 
 
+class Arrays(NamedTuple):
+    """A camera's numbers as read-only arrays."""
+
+    K: Vector
+    R: Vector
+    t: Vector
+    centre: Vector
+    """(3,) world, metres."""
+
+
+@lru_cache(maxsize=16)
+def arrays_of(camera: Camera) -> Arrays:
+    """A camera's numbers, made into arrays once."""
+    K, R, t = np.array(camera.K), np.array(camera.R), np.array(camera.t)
+    arrays = Arrays(K, R, t, -R.T @ t)
+    for array in arrays:
+        array.setflags(write=False)
+    return arrays
+
+
 def centre(camera: Camera) -> Vector:
     """Where the camera stands in the world, shape (3,), metres."""
-    place: Vector = -np.array(camera.R).T @ np.array(camera.t)
-    return place
+    return arrays_of(camera).centre
 
 
 def project(camera: Camera, points_m: Vector) -> Vector:
@@ -199,10 +220,9 @@ def project(camera: Camera, points_m: Vector) -> Vector:
 
     A point on or behind the camera's plane gives NaN.
     """
-    seen = np.asarray(points_m, float) @ np.array(camera.R).T + np.array(camera.t)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        plane = np.where(seen[:, 2:] > 1e-9, seen[:, :2] / seen[:, 2:], np.nan)
-    K = np.array(camera.K)
+    K, R, t, _ = arrays_of(camera)
+    seen = np.asarray(points_m, float) @ R.T + t
+    plane = seen[:, :2] / np.where(seen[:, 2:] > 1e-9, seen[:, 2:], np.nan)
     if any(camera.distortion):
         rays = np.concatenate([np.nan_to_num(plane), np.ones((len(plane), 1))], axis=1)
         bent, _ = cv2.projectPoints(
@@ -216,11 +236,11 @@ def project(camera: Camera, points_m: Vector) -> Vector:
 
 def ray(camera: Camera, pixel: tuple[float, float]) -> Vector:
     """Direction in the world, shape (3,), unit length, of what a pixel shows."""
-    K = np.array(camera.K)
+    K, R, _, _ = arrays_of(camera)
     straight = cv2.undistortPoints(
         np.array([[pixel]], float), K, np.array(camera.distortion or (0.0,) * 5)
     )[0, 0]
-    direction: Vector = np.array(camera.R).T @ np.array([straight[0], straight[1], 1.0])
+    direction: Vector = R.T @ np.array([straight[0], straight[1], 1.0])
     return direction / float(np.linalg.norm(direction))
 
 

@@ -125,27 +125,32 @@ def segments(body: Vector, pose: Vector) -> NDArray[np.float64]:
     return np.stack([frames[:, :3], ends], axis=1)
 
 
-def joints(body: Vector, pose: Vector) -> NDArray[np.float64]:
+@numba.njit(cache=True)
+def joints(body: Any, pose: Any) -> Any:
     """The 15 landmarks, (15, 3), world metres, in the order of JOINT_NAMES."""
-    frames = limb_frames(body, pose)
-    limb = segments(body, pose)
-    across, up = frames[TORSO, [3, 6, 9]], frames[TORSO, [4, 7, 10]]
-    pelvis = limb[TORSO, 0] + body[37] * up
-    rows = [pelvis, limb[TORSO, 1], limb[HEAD, 1]]
-    for side in (1, 0):
-        arm, leg = ARM_LIMBS[side], LEG_LIMBS[side]
-        inwards = (body[38] if side == 0 else -body[38]) * across
-        rows.append(limb[arm[0], 0] + inwards)
-        rows += [_along(limb[list(arm)], body[at + side]) + inwards for at in (29, 31)]
-        rows.append(limb[leg[0], 0] + body[37] * up)
-        rows += [_along(limb[list(leg)], body[at + side]) for at in (33, 35)]
-    return np.array(rows)
+    frames, out = np.empty((10, FRAME)), np.empty((15, 3))
+    place_limbs(body, pose, ALL_LIMBS, frames)
+    for i in range(3):
+        across, up = frames[TORSO, 3 + 3 * i], frames[TORSO, 4 + 3 * i]
+        out[0, i] = frames[TORSO, i] + body[37] * up
+        out[1, i] = frames[TORSO, i] + body[2] * up
+        out[2, i] = frames[HEAD, i] + body[5] * frames[HEAD, 4 + 3 * i]
+        for side, at in ((1, 3), (0, 9)):
+            arm, leg = 6 + side, 2 + side
+            inwards = (body[38] if side == 0 else -body[38]) * across
+            out[at, i] = frames[arm, i] + inwards
+            out[at + 1, i] = _along(frames, body, arm, body[29 + side], i) + inwards
+            out[at + 2, i] = _along(frames, body, arm, body[31 + side], i) + inwards
+            out[at + 3, i] = frames[leg, i] + body[37] * up
+            out[at + 4, i] = _along(frames, body, leg, body[33 + side], i)
+            out[at + 5, i] = _along(frames, body, leg, body[35 + side], i)
+    return out
 
 
-def _along(chain: NDArray[np.float64], distance_m: float) -> NDArray[np.float64]:
-    """The point so far along two cylinders that follow each other, (2, 2, 3)."""
-    lengths = np.linalg.norm(chain[:, 1] - chain[:, 0], axis=1)
-    part = 0 if distance_m <= lengths[0] else 1
-    share = (distance_m - part * lengths[0]) / lengths[part]
-    point: NDArray[np.float64] = chain[part, 0] + share * (chain[part, 1] - chain[part, 0])
-    return point
+@numba.njit(cache=True)
+def _along(frames: Any, body: Any, upper: int, distance_m: float, i: int) -> float:
+    """Coordinate i of the point so far along an upper limb and the lower one that follows it."""
+    beyond_m = distance_m - body[_LENGTH_AT[upper]]
+    if beyond_m <= 0.0:
+        return frames[upper, i] + distance_m * frames[upper, 4 + 3 * i]
+    return frames[upper + 2, i] + beyond_m * frames[upper + 2, 4 + 3 * i]

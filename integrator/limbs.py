@@ -1,11 +1,12 @@
 """From twelve joints to the angles of the ten cylinders: the way back through the kinematics."""
 
-from typing import Final
+import math
+from typing import Any, Final
 
+import numba
 import numpy as np
-from numpy.typing import NDArray
 
-from common.body import LIMITS_DEG, POSE_INDEX, Vector
+from common.body import LIMITS_DEG, POSE_NAMES
 
 PLACES: Final = {
     f"{side}_{name}": 2 * i + (side == "r")
@@ -19,8 +20,15 @@ STRAIGHT_DEG: Final = 12.0
 ASTRAY: Final = 3.0
 """How much worse a degree beyond a joint's limits is than a degree from the pose before."""
 
+_LOW_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[0] for name in POSE_NAMES])
+_HIGH_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[1] for name in POSE_NAMES])
+"""Limits of each parameter of a pose."""
+_SHOULDER, _ELBOW, _HIP, _KNEE = 9, 15, 17, 23
+"""Where the right limbs' angles begin in a pose; the left's follow each joint's."""
 
-def pose_of(joints_m: NDArray[np.float64], body: Vector, before: Vector) -> Vector:
+
+@numba.njit(cache=True)
+def pose_of(joints_m: Any, body: Any, before: Any) -> Any:
     """The pose, (25,), that puts a body's landmarks where joints are, but for their lengths.
 
     Args:
@@ -28,114 +36,131 @@ def pose_of(joints_m: NDArray[np.float64], body: Vector, before: Vector) -> Vect
         body: Body vector.
         before: Pose of the frame before: of two ways to the same place, the nearer one is taken.
     """
-    at = {name: joints_m[i] for name, i in PLACES.items()}
     pose = before.copy()
     trunk = trunk_of(joints_m)
-    _set(pose, "torso", _turns(trunk))
-    hips = (at["l_hip"] + at["r_hip"]) / 2
-    pose[:3] = hips - body[37] * trunk[:, 1]
-    for i, side in enumerate("rl"):
-        _arm(pose, [at[f"{side}_{n}"] @ trunk for n in ("shoulder", "elbow", "wrist")], body, i)
-        _leg(pose, [at[f"{side}_{n}"] @ trunk for n in ("hip", "knee", "ankle")], body, i)
+    for i in range(3):
+        pose[i] = (joints_m[6, i] + joints_m[7, i]) / 2 - body[37] * trunk[i, 1]
+    # theta_X, theta_Y, theta_Z of R_y R_x R_z
+    pose[3] = -math.degrees(math.asin(_cosine(trunk[1, 2])))
+    pose[4] = math.degrees(math.atan2(trunk[0, 2], trunk[2, 2]))
+    pose[5] = math.degrees(math.atan2(trunk[1, 0], trunk[1, 1]))
+    own = np.empty((12, 3))
+    for place in range(12):
+        for i in range(3):
+            own[place, i] = (
+                joints_m[place, 0] * trunk[0, i]
+                + joints_m[place, 1] * trunk[1, i]
+                + joints_m[place, 2] * trunk[2, i]
+            )
+    for side in range(2):
+        _set_arm(pose, own, body, side)
+        _set_leg(pose, own, body, side)
     return pose
 
 
-def trunk_of(joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
+@numba.njit(cache=True)
+def trunk_of(joints_m: Any) -> Any:
     """Axes of the trunk as columns, (3, 3): left, up, front."""
-    at = {name: joints_m[PLACES[name]] for name in ("l_shoulder", "r_shoulder", "l_hip", "r_hip")}
-    up = at["l_shoulder"] + at["r_shoulder"] - at["l_hip"] - at["r_hip"]
-    up /= np.linalg.norm(up)
-    across = at["l_shoulder"] - at["r_shoulder"] + at["l_hip"] - at["r_hip"]
-    front = np.cross(across, up)
-    front /= np.linalg.norm(front)
-    return np.stack([np.cross(up, front), up, front], axis=1)
+    up, across = np.empty(3), np.empty(3)
+    for i in range(3):
+        left, right = joints_m[0, i] - joints_m[7, i], joints_m[1, i] - joints_m[6, i]
+        up[i], across[i] = left + right, left - right
+    trunk = np.empty((3, 3))
+    trunk[:, 1] = _unit(up)
+    trunk[:, 2] = _unit(_cross(across, trunk[:, 1]))
+    trunk[:, 0] = _cross(trunk[:, 1], trunk[:, 2])
+    return trunk
 
 
-def _turns(trunk: NDArray[np.float64]) -> Vector:
-    """theta_X, theta_Y, theta_Z, degrees, of R_y R_x R_z."""
-    x = -np.arcsin(np.clip(trunk[1, 2], -1.0, 1.0))
-    y = np.arctan2(trunk[0, 2], trunk[2, 2])
-    z = np.arctan2(trunk[1, 0], trunk[1, 1])
-    return np.degrees([x, y, z])
-
-
-def _set(pose: Vector, joint: str, turns_deg: Vector) -> None:
-    for axis, turn in zip("xyz", turns_deg, strict=True):
-        pose[POSE_INDEX[f"{joint}_{axis}"]] = turn
-
-
-def _arm(pose: Vector, chain: list[Vector], body: Vector, i: int) -> None:
-    """Shoulder and elbow of one arm, in the trunk's axes."""
-    side, (shoulder, elbow, wrist) = "rl"[i], chain
+@numba.njit(cache=True)
+def _set_arm(pose: Any, own: Any, body: Any, side: int) -> None:
+    """Shoulder and elbow of one arm (0 right, 1 left), from joints in the trunk's axes."""
+    shoulder, elbow, wrist = own[1 - side], own[3 - side], own[5 - side]
+    at, bend = _SHOULDER + 3 * side, _ELBOW + side
     upper = _unit(elbow - shoulder)
-    x, z = _aim(upper, f"{side}_shoulder", pose)
-    lower = _unit(wrist - shoulder - body[19 + 2 * i] * upper)
-    across, along, front = _framed(lower, x, z)
-    bent = np.degrees(np.arccos(np.clip(along, -1.0, 1.0)))
-    y_at, e_at = POSE_INDEX[f"{side}_shoulder_y"], POSE_INDEX[f"{side}_elbow_x"]
+    x, z = _aim(upper, at, pose)
+    across, along, front = _framed(_unit(wrist - shoulder - body[19 + 2 * side] * upper), x, z)
+    bent = math.degrees(math.acos(_cosine(along)))
     if bent > STRAIGHT_DEG:
-        y = np.degrees(np.arctan2(across, front))
-        pose[y_at], pose[e_at] = y, bent
+        pose[at + 1], pose[bend] = math.degrees(math.atan2(across, front)), bent
     else:
-        twist = np.radians(pose[y_at])
-        pose[e_at] = np.degrees(np.arctan2(across * np.sin(twist) + front * np.cos(twist), along))
-    pose[POSE_INDEX[f"{side}_shoulder_x"]], pose[POSE_INDEX[f"{side}_shoulder_z"]] = x, z
+        pose[bend] = _turn_deg(across, along, front, pose[at + 1])
+    pose[at], pose[at + 2] = x, z
 
 
-def _leg(pose: Vector, chain: list[Vector], body: Vector, i: int) -> None:
-    """Hip and knee of one leg, in the trunk's axes; the knee bends about the hip's twisted axis."""
-    side, (hip, knee, ankle) = "rl"[i], chain
-    start = hip - np.array([0.0, body[37], 0.0])
+@numba.njit(cache=True)
+def _set_leg(pose: Any, own: Any, body: Any, side: int) -> None:
+    """Hip and knee of one leg; the knee bends about the hip's twisted axis."""
+    start, knee, ankle = own[7 - side].copy(), own[9 - side], own[11 - side]
+    start[1] -= body[37]
+    at, bend = _HIP + 3 * side, _KNEE + side
     upper = _unit(knee - start)
-    x, z = _aim(upper, f"{side}_hip", pose)
-    lower = _unit(ankle - start - body[8 + 3 * i] * upper)
-    across, along, front = _framed(lower, x, z)
-    bent = np.degrees(np.arccos(np.clip(along, -1.0, 1.0)))
+    x, z = _aim(upper, at, pose)
+    across, along, front = _framed(_unit(ankle - start - body[8 + 3 * side] * upper), x, z)
+    bent = math.degrees(math.acos(_cosine(along)))
     if bent > STRAIGHT_DEG:
-        y = np.degrees(np.arctan2(-across, -front))
-        pose[POSE_INDEX[f"{side}_hip_y"]] = y
-        pose[POSE_INDEX[f"{side}_knee_x"]] = -bent
+        pose[at + 1], pose[bend] = math.degrees(math.atan2(-across, -front)), -bent
     else:
-        twist = np.radians(pose[POSE_INDEX[f"{side}_hip_y"]])
-        turn = np.degrees(np.arctan2(across * np.sin(twist) + front * np.cos(twist), along))
-        pose[POSE_INDEX[f"{side}_knee_x"]] = min(0.0, turn)
-    pose[POSE_INDEX[f"{side}_hip_x"]], pose[POSE_INDEX[f"{side}_hip_z"]] = x, z
+        pose[bend] = min(0.0, _turn_deg(across, along, front, pose[at + 1]))
+    pose[at], pose[at + 2] = x, z
 
 
-def _unit(arrow: Vector) -> Vector:
-    found: Vector = arrow / max(float(np.linalg.norm(arrow)), 1e-9)
-    return found
+@numba.njit(cache=True)
+def _turn_deg(across: float, along: float, front: float, twist_deg: float) -> float:
+    """How far a lower limb is turned against its upper one, about that one's twisted axis."""
+    twist = math.radians(twist_deg)
+    return math.degrees(math.atan2(across * math.sin(twist) + front * math.cos(twist), along))
 
 
-def _aim(axis: Vector, joint: str, before: Vector) -> tuple[float, float]:
+@numba.njit(cache=True)
+def _unit(arrow: Any) -> Any:
+    return arrow / max(math.sqrt(arrow[0] ** 2 + arrow[1] ** 2 + arrow[2] ** 2), 1e-9)
+
+
+@numba.njit(cache=True)
+def _cross(a: Any, b: Any) -> Any:
+    x = a[1] * b[2] - a[2] * b[1]
+    return np.array([x, a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+@numba.njit(cache=True)
+def _cosine(value: float) -> float:
+    return min(max(value, -1.0), 1.0)
+
+
+@numba.njit(cache=True)
+def _aim(axis: Any, at: int, before: Any) -> tuple[float, float]:
     """theta_X and theta_Z, degrees, that lead a limb along an axis: of two ways the likelier."""
-    x = float(np.degrees(np.arcsin(np.clip(axis[2], -1.0, 1.0))))
-    z = float(np.degrees(np.arctan2(-axis[0], axis[1])))
-    ways = [(x, z % 360.0), ((180.0 - x + 180.0) % 360.0 - 180.0, (z + 180.0) % 360.0)]
-
-    def cost(way: tuple[float, float]) -> float:
-        total = 0.0
-        for name, turn in zip("xz", way, strict=True):
-            low, high = LIMITS_DEG[f"{joint}_{name}"]
-            total += abs(_apart(turn, before[POSE_INDEX[f"{joint}_{name}"]]))
-            total += (
-                ASTRAY
-                * min(abs(_apart(turn, low)), abs(_apart(turn, high)))
-                * (not low <= turn <= high)
-            )
-        return total
-
-    return min(ways, key=cost)
+    x = math.degrees(math.asin(_cosine(axis[2])))
+    z = math.degrees(math.atan2(-axis[0], axis[1]))
+    one, other = (x, z % 360.0), ((180.0 - x + 180.0) % 360.0 - 180.0, (z + 180.0) % 360.0)
+    if _cost(at, one[0], before) + _cost(at + 2, one[1], before) <= (
+        _cost(at, other[0], before) + _cost(at + 2, other[1], before)
+    ):
+        return one
+    return other
 
 
+@numba.njit(cache=True)
+def _cost(at: int, turn_deg: float, before: Any) -> float:
+    """How far a parameter would turn, and how far beyond its limits."""
+    low, high = _LOW_DEG[at], _HIGH_DEG[at]
+    total = abs(_apart(turn_deg, before[at]))
+    if not low <= turn_deg <= high:
+        total += ASTRAY * min(abs(_apart(turn_deg, low)), abs(_apart(turn_deg, high)))
+    return total
+
+
+@numba.njit(cache=True)
 def _apart(one_deg: float, other_deg: float) -> float:
-    return float((one_deg - other_deg + 180.0) % 360.0 - 180.0)
+    return (one_deg - other_deg + 180.0) % 360.0 - 180.0
 
 
-def _framed(arrow: Vector, x_deg: float, z_deg: float) -> Vector:
+@numba.njit(cache=True)
+def _framed(arrow: Any, x_deg: float, z_deg: float) -> tuple[float, float, float]:
     """An arrow of the trunk's axes in those of a limb turned by R_z R_x."""
-    a, b = np.radians(z_deg), np.radians(x_deg)
-    z = np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]])
-    x = np.array([[1, 0, 0], [0, np.cos(b), -np.sin(b)], [0, np.sin(b), np.cos(b)]])
-    found: Vector = (z @ x).T @ arrow
-    return found
+    a, b = math.radians(z_deg), math.radians(x_deg)
+    across = math.cos(a) * arrow[0] + math.sin(a) * arrow[1]
+    along = math.cos(a) * arrow[1] - math.sin(a) * arrow[0]
+    front = math.cos(b) * arrow[2] - math.sin(b) * along
+    return across, math.cos(b) * along + math.sin(b) * arrow[2], front

@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 
 from common.body import Bdp, Vector
-from common.camera import Camera, PaperRig, centre, ray
+from common.camera import Camera, PaperRig, arrays_of, centre, ray
 from common.messages import Measure, Pixel
 
 PARALLEL: Final = 1e-9
@@ -62,7 +62,7 @@ def triangulate(cameras: tuple[Camera, Camera], pixels: tuple[Pixel, Pixel]) -> 
     It is eq. (3) for cameras that stand anywhere. NaN where the rays are parallel.
     """
     first, second = (ray(camera, pixel) for camera, pixel in zip(cameras, pixels, strict=True))
-    if np.sum(np.cross(first, second) ** 2) < PARALLEL:
+    if 1.0 - float(first @ second) ** 2 < PARALLEL:
         return np.full(3, np.nan)
     normal, pull = np.zeros((3, 3)), np.zeros(3)
     for camera, direction in zip(cameras, (first, second), strict=True):
@@ -77,7 +77,7 @@ def px_per_m(camera: Camera, point_m: Vector) -> float:
 
     NaN where the point is not in front of the camera.
     """
-    depth_m = float(np.array(camera.R)[2] @ np.asarray(point_m) + camera.t[2])
+    depth_m = float(arrays_of(camera).R[2] @ np.asarray(point_m) + camera.t[2])
     return camera.K[0][0] / depth_m if depth_m > 0 else float("nan")
 
 

@@ -5,7 +5,6 @@ from typing import Final, NamedTuple
 
 import numpy as np
 from filterpy.common import Q_discrete_white_noise
-from filterpy.kalman import predict, update
 
 from common.body import Vector
 
@@ -33,9 +32,10 @@ class State(NamedTuple):
     settings: Smoothing
     period_s: float
     x: Vector
-    """(2 n,): each angle, degrees, followed by its speed, degrees a second."""
+    """(2, n): the angles, degrees, and their speeds, degrees a second."""
     P: Vector | None
-    """(2 n, 2 n) covariance of `x`; None until something was measured."""
+    """(2, 2) covariance of an angle and its speed: all are measured together and alike, so it is
+    the same for each, and no angle tells of another. None until something was measured."""
 
 
 def init(n: int, period_s: float, settings: Smoothing = Smoothing()) -> State:
@@ -46,7 +46,7 @@ def init(n: int, period_s: float, settings: Smoothing = Smoothing()) -> State:
         period_s: Time between frames; what a step of no given time takes.
         settings: How much is believed.
     """
-    return State(settings, period_s, np.zeros(2 * n), None)
+    return State(settings, period_s, np.zeros((2, n)), None)
 
 
 def step(state: State, angles_deg: Vector | None, dt_s: float) -> tuple[State, Vector, Vector]:
@@ -66,41 +66,32 @@ def step(state: State, angles_deg: Vector | None, dt_s: float) -> tuple[State, V
         The state, the smooth angles (n,) and their speeds (n,), degrees a second; NaN as long as
         nothing was measured.
     """
-    n = len(state.x) // 2
     if state.P is None:
         if angles_deg is None:
-            return state, np.full(n, np.nan), np.full(n, np.nan)
+            unknown = np.full(state.x.shape[1], np.nan)
+            return state, unknown, unknown.copy()
         state = _started(state, angles_deg)
-        return state, state.x[::2].copy(), state.x[1::2].copy()
-    model = _model(n, dt_s, state.settings)
-    x, P = predict(state.x, state.P, model.F, model.Q)
-    if angles_deg is not None:
-        x[::2] += 360.0 * np.round((angles_deg - x[::2]) / 360.0)
-        x, P = update(x, P, angles_deg, model.R, model.H)
-    return state._replace(x=x, P=P), x[::2].copy(), x[1::2].copy()
+    else:
+        state = _stepped(state, state.P, angles_deg, dt_s)
+    return state, state.x[0].copy(), state.x[1].copy()
+
+
+def _stepped(state: State, before: Vector, angles_deg: Vector | None, dt_s: float) -> State:
+    F = np.array([[1.0, dt_s], [0.0, 1.0]])
+    x, P = F @ state.x, F @ before @ F.T + _noise(dt_s, state.settings)
+    if angles_deg is None:
+        return state._replace(x=x, P=P)
+    x[0] += 360.0 * np.round((angles_deg - x[0]) / 360.0)
+    K = P[:, :1] / (P[0, 0] + state.settings.noise_deg**2)
+    return state._replace(x=x + K * (angles_deg - x[0]), P=P - K * P[:1])
 
 
 def _started(state: State, angles_deg: Vector) -> State:
-    x = np.zeros_like(state.x)
-    x[::2] = angles_deg
-    spread = np.tile([state.settings.noise_deg**2, START_SPEED_DEG_S**2], len(angles_deg))
-    return state._replace(x=x, P=np.diag(spread))
-
-
-class _Model(NamedTuple):
-    F: Vector
-    Q: Vector
-    H: Vector
-    R: Vector
+    x = np.stack([angles_deg, np.zeros_like(angles_deg)])
+    return state._replace(x=x, P=np.diag([state.settings.noise_deg**2, START_SPEED_DEG_S**2]))
 
 
 @lru_cache(maxsize=16)
-def _model(n: int, dt_s: float, settings: Smoothing) -> _Model:
-    """The filter's matrices for n independent angles, all alike."""
-    one = np.eye(n, dtype=np.float64)
-    return _Model(
-        F=np.kron(one, np.array([[1.0, dt_s], [0.0, 1.0]])),
-        Q=Q_discrete_white_noise(2, dt_s, settings.acceleration_deg_s2**2, block_size=n),
-        H=np.kron(one, np.array([[1.0, 0.0]])),
-        R=settings.noise_deg**2 * one,
-    )
+def _noise(dt_s: float, settings: Smoothing) -> Vector:
+    """(2, 2) what an unknown acceleration adds to the covariance in a step."""
+    return np.asarray(Q_discrete_white_noise(2, dt_s, settings.acceleration_deg_s2**2), np.float64)

@@ -1,5 +1,6 @@
 """What each view shows of somebody, in a window as large as the person."""
 
+from functools import lru_cache
 from typing import Final, NamedTuple
 
 import cv2
@@ -7,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body import Vector
-from common.camera import Camera, Rig, centre, project, ray
+from common.camera import Camera, Rig, arrays_of, centre, project, ray
 from integrator.perspective import triangulate
 
 Mask = NDArray[np.bool_]
@@ -48,6 +49,7 @@ class Look(NamedTuple):
     """(3, 3) rows: the axes of the frame of the proposal in the world."""
 
 
+@lru_cache(maxsize=4)
 def axes_of(rig: Rig) -> Vector:
     """Axes of the proposals' frame, rows (3, 3): x right in camera 1, y up, z towards it."""
     right = np.array(rig.cameras[0].R)[0] * [1.0, 0.0, 1.0]
@@ -127,7 +129,7 @@ def _cells(mask: Mask, camera: Camera, middle_m: Vector, stature_m: float) -> Fl
     at, above = project(camera, np.stack([middle_m, middle_m + UPWARDS_M]))
     up = above - at
     up /= max(float(np.linalg.norm(up)), 1e-9)
-    depth_m = float(np.array(camera.R)[2] @ middle_m + camera.t[2])
+    depth_m = float(arrays_of(camera).R[2] @ middle_m + camera.t[2])
     size_px = camera.K[0][0] * stature_m / depth_m
     right = np.array([-up[1], up[0]]) * size_px * 2 * ASIDE / (FINER * COLUMNS)
     down = -up * size_px * (UP + DOWN) / (FINER * ROWS)

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from viewer.background import Frame, is_empty_opening, learn, light_gain
+from viewer.background import is_empty_opening, learn, light_gain
+from viewer.stacks import Frame
 from viewer.uncovered import learn_uncovered
 
 HEIGHT, WIDTH = 120, 160

@@ -11,10 +11,11 @@ from common.config import Settings, SilhouetteSettings
 from common.similarity import Mask
 from viewer import track
 from viewer.appearance import counted, familiar
-from viewer.background import Frame, learn, light_gain
+from viewer.background import learn, light_gain
 from viewer.difference import followed, label, seeds
 from viewer.outline import redraw
 from viewer.silhouette import Seen, State, init, step
+from viewer.stacks import Frame
 from viewer.uncovered import learn_uncovered
 from viewer.view_rehearsal import rehearse
 

@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from filterpy.common import Q_discrete_white_noise
+from filterpy.kalman import predict, update
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from common.body import ANGLE_NAMES, Vector, wrapped_deg
-from integrator.smoothing import State, init, step
+from integrator.smoothing import START_SPEED_DEG_S, Smoothing, State, init, step
 
 PERIOD_S = 1 / 15
 SWING_DEG_S = 200.0
@@ -136,3 +138,21 @@ def test_nothing_is_known_before_the_first_measurement() -> None:
     assert np.isnan(speeds).all()
     state, angles, _ = step(state, np.array([10.0, 20.0]), PERIOD_S)
     assert angles.tolist() == [10.0, 20.0]
+
+
+def test_all_angles_are_filtered_as_filterpy_filters_each() -> None:
+    rng, settings, dt_s = np.random.default_rng(3), Smoothing(), 1 / 15
+    measured = np.cumsum(rng.normal(0.0, 8.0, (30, 3)), axis=0)
+    state = init(3, dt_s)
+    x = [np.array([angle, 0.0]) for angle in measured[0]]
+    P = np.diag([settings.noise_deg**2, START_SPEED_DEG_S**2])
+    F = np.array([[1.0, dt_s], [0.0, 1.0]])
+    Q = Q_discrete_white_noise(2, dt_s, settings.acceleration_deg_s2**2)
+    R, H = np.array([[settings.noise_deg**2]]), np.array([[1.0, 0.0]])
+    state, _, _ = step(state, measured[0], dt_s)
+    for angles in measured[1:]:
+        state, smooth, _ = step(state, angles, dt_s)
+        foreseen = [predict(each, P, F, Q) for each in x]
+        told = [update(each, now, a, R, H) for (each, now), a in zip(foreseen, angles, strict=True)]
+        x, P = [each for each, _ in told], told[0][1]
+        np.testing.assert_allclose(smooth, [each[0] for each in x], rtol=1e-9)

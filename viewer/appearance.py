@@ -4,8 +4,8 @@ from typing import Final
 
 import numpy as np
 
-from viewer.background import Floats, Frame
 from viewer.difference import KERNEL, Bytes, shade_of, unshaded
+from viewer.stacks import Floats, Frame
 
 SHADES: Final = 2048
 """8 steps of brightness times 16 x 16 of blue and red against it."""

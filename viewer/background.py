@@ -8,12 +8,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-Frame = NDArray[np.uint8]
-"""A picture at the working size: (H, W, 3), blue green red."""
-Floats = NDArray[np.float32]
+from viewer.stacks import LUMA, Floats, Frame, median, squares
 
-LUMA: Final = np.array([0.114, 0.587, 0.299], np.float32)
-"""Shares of blue, green and red in brightness (ITU-R BT.601)."""
 SENSOR_NOISE: Final = 2.0
 """Grey levels; taken for granted where one picture alone shows the room."""
 FLOOR: Final = (1.0, 2.5)
@@ -71,7 +67,7 @@ def is_empty_opening(opening: Sequence[Frame], sample: Sequence[Frame]) -> bool:
         opening: The first frames of a clip.
         sample: Frames from all over it, of the same size.
     """
-    room = np.median(even_light(opening), axis=0).astype(np.float32)
+    room = median(even_light(opening))
     room_luma = room @ LUMA
     room_slope = slopes(room_luma)
     in_room, in_frames = 0.0, 0.0
@@ -132,8 +128,13 @@ def light_gain(frame: Frame, room: Floats) -> Floats:
 
 def even_light(frames: Sequence[Frame]) -> Floats:
     """All frames under the light of their median: (n, H, W, 3) grey levels."""
-    middle = np.median(np.stack(frames), axis=0).astype(np.float32)
-    return np.stack([(frame / light_gain(frame, middle)).astype(np.float32) for frame in frames])
+    middle = median(frames)
+    height, width = middle.shape[:2]
+    # long rows divide five times as fast as triples do
+    rows = [
+        frame.reshape(height, -1) / np.tile(light_gain(frame, middle), width) for frame in frames
+    ]
+    return np.stack(rows).reshape(-1, height, width, 3)
 
 
 def spread_of(deviations: Floats) -> Floats:
@@ -141,20 +142,21 @@ def spread_of(deviations: Floats) -> Floats:
     count = len(deviations)
     if count == 1:
         return np.full((*deviations.shape[1:3], 2), np.hypot(SENSOR_NOISE, FLOOR), np.float32)
-    luma = deviations @ LUMA
-    colour = deviations - luma[..., None]
-    # colour has two degrees of freedom: the third is brightness
-    squares = np.stack([(luma**2).sum(0), (colour**2).sum((0, 3)) / 2], axis=-1) / (count - 1)
-    return np.asarray(np.sqrt(cv2.blur(squares, (5, 5)) + np.square(FLOOR)), np.float32)
+    pooled = squares(deviations) / np.float32(count - 1)
+    return np.asarray(np.sqrt(cv2.blur(pooled, (5, 5)) + np.square(FLOOR)), np.float32)
 
 
 def large_regions(mask: NDArray[np.bool_]) -> NDArray[np.uint8]:
     """Regions as tall as an arm's stroke, 0.1 of the picture; the counter in a corner is none."""
-    closed = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
-    _, labels, stats, _ = cv2.connectedComponentsWithStats(closed)
-    tall = stats[:, cv2.CC_STAT_HEIGHT] >= 0.1 * mask.shape[0]
-    tall[0] = False
-    return tall[labels].astype(np.uint8)
+    closed = cv2.morphologyEx(mask.view(np.uint8), cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
+    contours, tree = cv2.findContours(closed, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+    low = [
+        contour
+        for number, contour in enumerate(contours)
+        if tree[0, number, 3] < 0 and cv2.boundingRect(contour)[3] < 0.1 * mask.shape[0]
+    ]
+    cv2.drawContours(closed, low, -1, 0, cv2.FILLED)
+    return np.asarray(closed, np.uint8)
 
 
 def slopes(luma: Floats) -> Floats:

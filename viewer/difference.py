@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from viewer.background import Floats, Frame
+from viewer.stacks import Floats, Frame
 
 Bytes = NDArray[np.uint8]
 Triple = tuple[np.float32, np.float32, np.float32]

@@ -6,7 +6,8 @@ from itertools import islice
 from common.clips import View
 from common.config import SilhouetteSettings
 from common.decoding import Decoder
-from viewer.background import Background, Frame, is_empty_opening, learn
+from viewer.background import Background, is_empty_opening, learn
+from viewer.stacks import Frame
 from viewer.uncovered import is_still, learn_uncovered
 
 SAMPLE = 40

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.messages import CameraFault
-from viewer.background import Background, Frame
+from viewer.background import Background
+from viewer.stacks import Frame
 
 FROZEN_AFTER: Final = 2
 """Repeats that may be no fault: files made for a faster rate hold each picture two or three times,

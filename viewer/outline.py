@@ -4,8 +4,8 @@ from typing import Final
 
 import numpy as np
 
-from viewer.background import Floats, Frame
 from viewer.difference import BLUE, GREEN, INLINE, KERNEL, ONE, RED, SURE, WHITE, Bytes, settle
+from viewer.stacks import Floats, Frame
 
 Colour = tuple[np.float32, np.float32, np.float32, np.float32]
 NEAR: Final = np.exp(-np.arange(9, dtype=np.float32) / np.float32(2 * 1.2**2))

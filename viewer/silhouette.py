@@ -10,9 +10,10 @@ from common.config import SilhouetteSettings
 from common.messages import Box
 from common.similarity import Mask
 from viewer.appearance import counted, familiar, fresh
-from viewer.background import Background, Floats, Frame, learn, light_gain
+from viewer.background import Background, learn, light_gain
 from viewer.difference import Bytes, followed, label, seeds
 from viewer.outline import redraw
+from viewer.stacks import Floats, Frame
 
 ROUNDS: Final = 2
 """How often the outline is drawn again, a pixel further each time; once where pixels are large."""

@@ -11,15 +11,13 @@ from common.similarity import Mask
 from viewer.background import (
     CHANGES,
     EDGE_SHARE,
-    LUMA,
     Background,
-    Floats,
-    Frame,
     even_light,
     large_regions,
     slopes,
     spread_of,
 )
+from viewer.stacks import LUMA, Floats, Frame, median
 
 GUESSED: Final = 4.0
 """Spread of a pixel whose room was guessed, grey levels."""
@@ -78,7 +76,7 @@ def learn_uncovered(frames: Sequence[Frame]) -> Background:
     if not frames:
         raise ValueError("a background needs at least 1 frame, got 0")
     even = even_light(frames)
-    centre = np.median(even, axis=0).astype(np.float32)
+    centre = median(even)
     away = np.abs(even - centre).max(axis=3)
     labels = segments(centre)
     for stays in (True, False):
@@ -108,7 +106,7 @@ def _filled(even: Floats, centre: Floats, held: Mask) -> tuple[Floats, Mask]:
 def is_still(opening: Sequence[Frame]) -> bool:
     """Whether nobody moves in the opening frames: who runs through them leaves no outline."""
     even = even_light(opening)
-    away = np.abs((even - np.median(even, axis=0)) @ LUMA)
+    away = np.abs((even - median(even)) @ LUMA)
     return not any(large_regions(off > CHANGES).any() for off in away)
 
 
