@@ -27,9 +27,9 @@ from common.config import Mode, Settings
 from common.kinematics import joints
 from common.messages import Guide, decode, encode
 from integrator import merge
+from integrator.belief import LOST_FRAMES
 from integrator.pairing import Pair
 from integrator.place import scales_at
-from integrator.telling import LOST_FRAMES
 
 MODES = pytest.mark.parametrize("mode", ["paper", "default"])
 

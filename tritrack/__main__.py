@@ -54,7 +54,7 @@ OwnMode = Annotated[
 ]
 CACHE = Path("runs/tracked")
 Cache = Annotated[
-    Path, typer.Option(help="Keeps what tracking made of clips, 40 kB each; may be deleted.")
+    Path, typer.Option(help="Keeps what tracking made of clips, 56 kB each; may be deleted.")
 ]
 RecognizerName = Annotated[
     Literal["default", "paper"], typer.Option(help="The better models, or the paper's.")
