@@ -106,4 +106,4 @@ def _point(place: Vector) -> Point:
 
 
 def _pixels(pixels: NDArray[np.float64]) -> tuple[Pixel, ...]:
-    return tuple((float(u), float(v)) for u, v in pixels)
+    return tuple((float(u), float(v)) for u, v in np.nan_to_num(pixels, nan=-1.0))
