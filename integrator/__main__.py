@@ -28,6 +28,8 @@ from integrator.pairing import Pair
 LEAD_S: Final = 0.5
 """From the last viewer's being ready to the first frame: time for all to hear of it."""
 HEAR_S: Final = 0.02
+LOOK_S: Final = 0.5
+"""Viewers so fast that a report always waits are asked after so long whether they are there."""
 LAST_WORDS_S: Final = 1.0
 """All others meet here: how long the room stays open after the last body."""
 SUPERVISED_S: Final = 60.0
@@ -73,6 +75,7 @@ class Ears:
         self._paired = pairing.init(period_s, viewers)
         self._present = presence.init(period_s, viewers)
         self._wait_s = OVERDUE_PERIODS * period_s
+        self._looked_s = time.monotonic()
         bus.answer(ClockQuestion, self.starter.answer)
 
     @property
@@ -94,8 +97,10 @@ class Ears:
             self.starter.begun(report)
             self._present = presence.heard(self._present, report, now_s)
             self._paired, complete = pairing.step(self._paired, report)
-        else:  # What a viewer said before it went comes first.
-            complete = self._who_came_and_went(now_s)
+        if report is None or now_s - self._looked_s > LOOK_S:
+            # What a viewer said before it went comes first, unless there is always a report.
+            complete += self._who_came_and_went(now_s)
+            self._looked_s = now_s
         self._paired, alone = pairing.overdue(self._paired, now_s, self._wait_s)
         self._present, told = presence.step(self._present, now_s)
         for line in told:

@@ -40,8 +40,8 @@ def step(opening: Opening, rig: Rig, seen: Seen, pose: Vector) -> Opening:
     """One instant more of a person in view.
 
     The body is fitted to the first instant that shows the whole person in both views, and once
-    more to that and a few later ones together: a prior, or, once it is over, what the opening posture
-    told. An extra of `default` mode: the paper measures once.
+    more to that and a few later ones together: a prior, or, once it is over, what the opening
+    posture told. An extra of `default` mode: the paper measures once.
 
     Args:
         opening: What is known of the body; returned as it is while it is being measured.

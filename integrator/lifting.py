@@ -1,36 +1,15 @@
 """From the picture's plane into the room: depth of every segment by scaled orthography (3.1.5)."""
 
 import math
-from typing import Final, Literal, NamedTuple, get_args
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import JOINT_NAMES, LIMBS, Vector
-
-Orientation = Literal[
-    "left", "right", "backward_left", "backward_right", "forward_left", "forward_right"
-]
-"""Which way a person faces: left and right as in the picture, forward to the camera (T22)."""
-ORIENTATIONS: Final[tuple[Orientation, ...]] = get_args(Orientation)
+from common.body import JOINT_NAMES, LIMB_ENDS, Vector
+from common.notes import Orientation
 
 _AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
-_PARENTS: Final = {"upper_arm": ("shoulder", "elbow"), "lower_arm": ("elbow", "wrist")}
-_PARENTS_LEG: Final = {"upper_leg": ("hip", "knee"), "lower_leg": ("knee", "ankle")}
-
-
-def _ends_of(limb: str) -> tuple[int, int]:
-    if limb == "torso":
-        return _AT["pelvis"], _AT["neck"]
-    if limb == "head":
-        return _AT["neck"], _AT["head_top"]
-    side, kind = limb[:2], limb[2:]
-    near, far = {**_PARENTS, **_PARENTS_LEG}[kind]
-    return _AT[side + near], _AT[side + far]
-
-
-ENDS: Final = np.array([_ends_of(limb) for limb in LIMBS])
-"""(10, 2): the joints, of JOINT_NAMES, between which each of LIMBS lies."""
 
 SWAPPED: Final = np.array(
     [_AT[{"l_": "r_", "r_": "l_"}.get(name[:2], name[:2]) + name[2:]] for name in JOINT_NAMES]
@@ -114,14 +93,14 @@ def lift(
     backward = orientation.startswith("backward")
     pixels = joints_px[SWAPPED] if backward else joints_px
     flat_m = pixels / px_per_m * np.array([1.0, -1.0])
-    lengths_px = np.linalg.norm(pixels[ENDS[:, 1]] - pixels[ENDS[:, 0]], axis=1)
+    lengths_px = np.linalg.norm(pixels[LIMB_ENDS[:, 1]] - pixels[LIMB_ENDS[:, 0]], axis=1)
     depth_m = np.where(np.asarray(signs) < 0, -1.0, 1.0) * depths_m(
         lengths_m[:10], lengths_px, px_per_m
     )
     yaw_deg = yaw_of(orientation, breadth)
     z_m = np.zeros(len(JOINT_NAMES))
     leftwards = -math.sin(math.radians(yaw_deg))
-    for limb, (near, far) in enumerate(ENDS):
+    for limb, (near, far) in enumerate(LIMB_ENDS):
         z_m[far] = z_m[near] + depth_m[limb]
         if limb == 0:
             drop = lengths_m[11] / lengths_m[0] * depth_m[0]

@@ -1,6 +1,6 @@
 """Two reports in, one body out: position, body, facing, pose, in the order of section 4."""
 
-from typing import Final, Literal
+from typing import Literal
 
 from common.bits import count
 from common.body import (
@@ -20,15 +20,13 @@ from common.messages import Body, Facing, Guide, Report
 from integrator import adapting, insight, opening, smoothing, telling
 from integrator.arbiter import Sight, arbitrate
 from integrator.assumed import assumed_rig
+from integrator.belief import LOST_SCORE
 from integrator.fusion import fused
 from integrator.hypotheses import settled
 from integrator.memory import State
 from integrator.pairing import Pair, Seen
 from integrator.place import place_of, roots_of, scales_at
 from integrator.two_outlines import packed
-
-LOST_SCORE: Final = 0.35
-"""A model that fits worse than this in every view is not believed."""
 
 
 def init(rig: Rig | None, period_s: float, settings: Settings) -> State:

@@ -24,10 +24,11 @@ from common.messages import (
     Report,
     ViewerNumber,
 )
+from common.notes import ORIENTATIONS, Orientation
 from common.stickman import BREADTH, GIRTH, POSE_SIZE, STATURE, Stickman
 from common.strokes import ALL_SEGMENTS, draw_segments
 from integrator import insight, propose, signs, smoothing
-from integrator.lifting import ORIENTATIONS, SWAPPED, Lifted, Orientation, lift
+from integrator.lifting import SWAPPED, Lifted, lift
 from integrator.limbs import PLACES, pose_of
 from integrator.two_outlines import packed
 from integrator.window import Floats

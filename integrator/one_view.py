@@ -18,17 +18,13 @@ from common.messages import (
     Pixel,
     Point,
     Report,
-    Status,
     ViewerNumber,
 )
 from common.stickman import Stickman
 from integrator import signs, smoothing
+from integrator.belief import LOST_SCORE, status_of
 from integrator.one_outline import Hypothesis, Inputs, Settled, State, lifted_body, proposed_body
 
-LOST_SCORE: Final = 0.35
-"""A body that fits worse than this is not believed."""
-LOST_FRAMES: Final = 5
-"""After so many frames of it the body is lost."""
 SURELY: Final = 1.15
 """The lifted body goes before the proposed one where its S is higher by this factor."""
 
@@ -90,7 +86,7 @@ def _body(state: State, report: Report, found: Hypothesis, angles_deg: Vector) -
         frame=report.frame,
         captured_s=report.captured_s,
         clock_s=report.clock_s,
-        status=_status(state),
+        status=status_of(state.badly, "tracking"),
         views="1" if state.number == 1 else "2",
         joints_m=tuple(_point(place) for place in found.joints_m),
         joints_px=(pixels, pixels),
@@ -104,16 +100,10 @@ def _body(state: State, report: Report, found: Hypothesis, angles_deg: Vector) -
     )
 
 
-def _status(state: State) -> Status:
-    if state.badly >= LOST_FRAMES:
-        return "lost"
-    return "predicted" if state.badly else "tracking"
-
-
 def _point(place: Vector) -> Point:
     x, y, z = (float(value) for value in place)
     return (x, y, z)
 
 
 def _pixels(pixels: NDArray[np.float64]) -> tuple[Pixel, ...]:
-    return tuple((float(u), float(v)) for u, v in pixels)
+    return tuple((float(u), float(v)) for u, v in np.nan_to_num(pixels, nan=-1.0))

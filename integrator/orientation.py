@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body import JOINT_NAMES
-from integrator.lifting import Orientation
+from common.notes import Orientation
 
 PROFILE, FRONTAL = 0.65, 0.8
 """Below and above this mean breadth a body is taken to be in profile, or not."""

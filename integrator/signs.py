@@ -7,8 +7,9 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import LIMBS, Vector
-from integrator.lifting import ENDS, SWAPPED, Orientation, depths_m, yaw_of
+from common.body import LIMB_ENDS, LIMBS, Vector
+from common.notes import Orientation
+from integrator.lifting import SWAPPED, depths_m, yaw_of
 from integrator.orientation import Bearing, faced
 
 CHAINS: Final = np.array([[0, 1], [6, 8], [7, 9], [2, 4], [3, 5]])
@@ -56,7 +57,7 @@ def init() -> Memory:
 
 def directions_of(joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
     """Where each of LIMBS points, (10, 3), unit vectors, from joints (15, 3)."""
-    along = joints_m[ENDS[:, 1]] - joints_m[ENDS[:, 0]]
+    along = joints_m[LIMB_ENDS[:, 1]] - joints_m[LIMB_ENDS[:, 0]]
     unit: NDArray[np.float64] = along / np.maximum(np.linalg.norm(along, axis=1), 1e-9)[:, None]
     return unit
 
@@ -81,7 +82,7 @@ def choose(
     bearing = faced(memory.bearing, joints_px, breadth)
     facing = orientation or bearing.orientation
     pixels = joints_px[SWAPPED] if facing.startswith("backward") else joints_px
-    flat_m = (pixels[ENDS[:, 1]] - pixels[ENDS[:, 0]]) / px_per_m * np.array([1.0, -1.0])
+    flat_m = (pixels[LIMB_ENDS[:, 1]] - pixels[LIMB_ENDS[:, 0]]) / px_per_m * np.array([1.0, -1.0])
     lengths_px = np.linalg.norm(flat_m, axis=1) * px_per_m
     deep_m = depths_m(lengths_m[: len(LIMBS)], lengths_px, px_per_m)
     yaw = math.radians(yaw_of(facing, breadth))

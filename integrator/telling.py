@@ -10,12 +10,10 @@ from common.camera import Rig, project
 from common.kinematics import joints
 from common.messages import Body, Guide, Pixel, Point, Status, Views
 from integrator import insight
+from integrator.belief import status_of
 from integrator.memory import State
 from integrator.pairing import Pair
 from integrator.place import pixels_of, scales_at, scales_since
-
-LOST_FRAMES = 5
-"""A model that fits badly in every view for so many frames is lost."""
 
 
 def body_of(
@@ -132,11 +130,7 @@ def _moment(state: State, pair: Pair) -> dict[str, Any]:
 
 def _status(state: State) -> Status:
     """By presence, the opening and the fit together: never by S alone (M25)."""
-    if state.badly >= LOST_FRAMES:
-        return "lost"
-    if state.badly:
-        return "predicted"
-    return "measuring" if state.opening.under_way else "tracking"
+    return status_of(state.badly, "measuring" if state.opening.under_way else "tracking")
 
 
 def _views(pair: Pair) -> Views:

@@ -8,7 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body import Vector
+<<<<<<< HEAD
 from common.camera import Camera, Rig, arrays_of, centre, project, ray
+=======
+from common.camera import Camera, Rig, centre, project, ray
+from common.kernel import NEAREST_M
+>>>>>>> bccc85bd08d42595fb69e211b7b7d1d58e0769f9
 from integrator.perspective import triangulate
 
 Mask = NDArray[np.bool_]
@@ -60,7 +65,7 @@ def axes_of(rig: Rig) -> Vector:
 def look(
     masks: tuple[Mask | None, Mask | None], rig: Rig, stature_m: float, since_s: float
 ) -> Look | None:
-    """The silhouettes as the network wants them; None where their rays do not meet in the room.
+    """The silhouettes as the network wants them; None where their rays do not meet before both.
 
     Args:
         masks: Of the views that see somebody, (H, W), not empty; None for the others.
@@ -92,6 +97,8 @@ def _middle_m(masks: tuple[Mask | None, Mask | None], rig: Rig) -> Vector | None
         found = triangulate(
             (rig.cameras[0], rig.cameras[1]), (_middle_px(first), _middle_px(second))
         )
+        if not all(_depth_m(camera, found) >= NEAREST_M for camera in rig.cameras):
+            return None
     else:
         n = 0 if first is not None else 1
         mask = first if first is not None else second
@@ -124,13 +131,22 @@ def _middle_px(mask: Mask) -> tuple[float, float]:
     )
 
 
+def _depth_m(camera: Camera, place_m: Vector) -> float:
+    """How far before a camera a place is; negative behind it, NaN where there is no place."""
+    return float(np.array(camera.R)[2] @ place_m + camera.t[2])
+
+
 def _cells(mask: Mask, camera: Camera, middle_m: Vector, stature_m: float) -> Floats:
     """How much of each cell is covered, (ROWS, COLUMNS): upright, as large as the person."""
     at, above = project(camera, np.stack([middle_m, middle_m + UPWARDS_M]))
     up = above - at
     up /= max(float(np.linalg.norm(up)), 1e-9)
+<<<<<<< HEAD
     depth_m = float(arrays_of(camera).R[2] @ middle_m + camera.t[2])
     size_px = camera.K[0][0] * stature_m / depth_m
+=======
+    size_px = camera.K[0][0] * stature_m / _depth_m(camera, middle_m)
+>>>>>>> bccc85bd08d42595fb69e211b7b7d1d58e0769f9
     right = np.array([-up[1], up[0]]) * size_px * 2 * ASIDE / (FINER * COLUMNS)
     down = -up * size_px * (UP + DOWN) / (FINER * ROWS)
     corner = at + up * size_px * UP - right * FINER * COLUMNS / 2

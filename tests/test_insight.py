@@ -71,7 +71,7 @@ def default() -> Stage:
     return Stage(settings=Settings(mode="default"))
 
 
-@pytest.mark.parametrize("posture", ["squat", "kick_right_forward", "swing_both_backforth"])
+@pytest.mark.parametrize("posture", ["squat", "kick_right_forward", "raise_left_lateral"])
 def test_somebody_new_is_followed(posture: str) -> None:
     did = shown(posture)
     stage = default()

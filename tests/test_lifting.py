@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from common.body import JOINT_NAMES, LIMBS
+from common.body import JOINT_NAMES, LIMB_ENDS, LIMBS
 from common.stickman import ADULT, joints_px
-from integrator.lifting import ENDS, depths_m, lift, tilt_errors_deg, yaw_of
+from integrator.lifting import depths_m, lift, tilt_errors_deg, yaw_of
 from tests.stick_posing import STATURE_PX, stick_pose
 
 LENGTHS_M = ADULT.lengths * 1.75
@@ -65,7 +65,7 @@ def test_every_segment_has_its_length_in_space() -> None:
         pose[14:24] = rng.uniform(0.1, 1.0, 10)
         signs = rng.choice([-1.0, 1.0], 10)
         lifted = lift(joints_px(ADULT, pose), 1.0, LENGTHS_M, PX_PER_M, signs, "forward_left")
-        along = lifted.joints_m[ENDS[:, 1]] - lifted.joints_m[ENDS[:, 0]]
+        along = lifted.joints_m[LIMB_ENDS[:, 1]] - lifted.joints_m[LIMB_ENDS[:, 0]]
         assert np.linalg.norm(along, axis=1) == pytest.approx(LENGTHS_M[:10])
         assert np.sign(lifted.depth_m) == pytest.approx(signs)
 
@@ -96,5 +96,5 @@ def test_who_faces_the_right_has_the_left_shoulder_away_from_the_camera() -> Non
 
 
 def test_all_ten_limbs_lie_between_joints() -> None:
-    assert ENDS.shape == (len(LIMBS), 2)
-    assert [JOINT_NAMES[i] for i in ENDS[LIMBS.index("l_lower_leg")]] == ["l_knee", "l_ankle"]
+    assert LIMB_ENDS.shape == (len(LIMBS), 2)
+    assert [JOINT_NAMES[i] for i in LIMB_ENDS[LIMBS.index("l_lower_leg")]] == ["l_knee", "l_ankle"]

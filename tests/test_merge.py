@@ -27,9 +27,9 @@ from common.config import Mode, Settings
 from common.kinematics import joints
 from common.messages import Guide, decode, encode
 from integrator import merge
+from integrator.belief import LOST_FRAMES
 from integrator.pairing import Pair
 from integrator.place import scales_at
-from integrator.telling import LOST_FRAMES
 
 MODES = pytest.mark.parametrize("mode", ["paper", "default"])
 
@@ -93,13 +93,12 @@ def test_standing_squatting_and_lifting_are_told_apart() -> None:
         assert bent[lifted][0] < 20.0
 
 
-@MODES
 @pytest.mark.parametrize("side", ["r", "l"])
-def test_an_arm_raised_sideways_is_the_facades(mode: Mode, side: str) -> None:
+def test_an_arm_raised_sideways_is_the_facades(side: str) -> None:
     """P51: theta_Z down from the opening posture to 120 degrees (240)."""
     target_deg = 120.0 if side == "r" else 240.0
     target = standing(**{f"{side}_shoulder_z": target_deg})
-    stage = after_opening(Stage(settings=Settings(mode=mode)))
+    stage = after_opening(Stage())
     last = stage.show(between(standing(), target, 12) + [target] * 4)[-1]
     assert angle(last, f"{side}_shoulder_z") == pytest.approx(target_deg, abs=8.0)
     assert errors_m(last, target).mean() < 0.1

@@ -17,7 +17,7 @@ from spoiling import copied, cut_off, uncalibrated
 
 from common.config import PageSettings, Settings
 from common.messages import Posture, Pulse
-from tritrack.session import free_settings, live, performed, warnings_of
+from tritrack.session import LiveRefused, free_settings, live, performed, warnings_of
 
 
 def settings_of(clip: Path) -> Settings:
@@ -47,6 +47,12 @@ def test_warnings_come_from_viewers_and_integrator_a_line_each() -> None:
         "viewer 1": pulse("viewer 1", ""),
     }
     assert warnings_of(pulses) == ["no calibration", "no empty room", "cut off"]
+
+
+def test_the_thesis_mode_of_a_settings_file_is_refused_live(tmp_path: Path) -> None:
+    with pytest.raises(LiveRefused, match="tritrack single VIDEO --mode thesis"):
+        live(Settings(mode="thesis"), tmp_path / "run", Console(quiet=True))
+    assert not (tmp_path / "run").exists()
 
 
 def test_free_settings_open_no_page_where_none_was_wanted() -> None:

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from common.body import JOINT_NAMES, LIMBS
+from common.notes import Orientation
 from common.stickman import ADULT, BREADTH, joints_px
 from integrator import signs
-from integrator.lifting import Orientation, lift
+from integrator.lifting import lift
 from tests.stick_posing import STATURE_PX, stick_pose
 
 LENGTHS_M = ADULT.lengths * 1.75

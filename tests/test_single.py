@@ -110,3 +110,22 @@ def test_what_is_no_video_is_refused(tmp_path: Path, capsys: pytest.CaptureFixtu
         ("missing.npz#walk", "cannot read the masks"),
     ):
         assert reason in refusal(tmp_path / name, tmp_path / "runs", capsys)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_speck_among_silhouettes_is_nobody(tmp_path: Path) -> None:
+    masks = np.zeros((24, 120, 160), np.bool_)
+    masks[:, 20:110, 70:90] = True
+    masks[3] = False
+    masks[3, 50, 50] = True
+    np.savez(tmp_path / "speck.npz", masks=masks)
+    single_all([tmp_path / "speck.npz"], tmp_path / "runs", None, SMALL, QUIET)
+    with np.load(tmp_path / "runs" / "speck" / "poses.npz") as poses:
+        assert (poses["status"] == "empty").tolist() == [row == 3 for row in range(24)]
+
+
+@pytest.mark.filterwarnings("error")
+def test_where_nobody_is_seen_that_is_said(tmp_path: Path) -> None:
+    np.savez(tmp_path / "empty.npz", masks=np.zeros((3, 120, 160), np.bool_))
+    facts = single_all([tmp_path / "empty.npz"], tmp_path / "runs", None, SMALL, QUIET)
+    assert "nobody was seen" in facts["clips"]["empty"]["warnings"][0]

@@ -44,3 +44,11 @@ def test_who_is_partly_outside_tells_no_height() -> None:
 def test_nobody_has_no_height() -> None:
     nothing = np.full(4, np.nan)
     assert np.isnan(statures_px(nothing, nothing, np.zeros(4, np.bool_))).all()
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_few_frames_of_which_one_is_odd_still_have_a_height() -> None:
+    crowns, soles = np.array([20.0, 20, 20, 50, 20, 20]), np.array([110.0, 110, 110, 51, 110, 110])
+    found = statures_px(crowns, soles, np.ones(6, np.bool_))
+    assert np.isfinite(found).all()
+    assert found.min() > 0.0

@@ -76,6 +76,24 @@ def test_the_middle_is_where_both_views_have_it() -> None:
     assert np.array(told)[:, 0] == pytest.approx(np.array(spread)[:, 0], abs=0.5)
 
 
+@pytest.mark.parametrize(("columns", "meet"), [((5, 150), True), ((150, 5), False)])
+def test_silhouettes_that_meet_behind_the_cameras_are_nobodys(
+    columns: tuple[int, int], meet: bool
+) -> None:
+    """Cameras 30 degrees apart whose rays cross before them, or lead apart."""
+    first = paper_rig((160, 120), (200.0, 200.0), (4.0, 4.0), (1.0, 1.0)).cameras[0]
+    sine, cosine = 0.5, 0.75**0.5
+    turn = np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
+    R = np.array(first.R) @ turn
+    t = -R @ turn.T @ centre(first)
+    second = msgspec.structs.replace(first, name="cam2", R=as_matrix(R), t=as_row(t))
+    masks = np.zeros((2, 120, 160), np.bool_)
+    for mask, column in zip(masks, columns, strict=True):
+        mask[30:100, column : column + 8] = True
+    found = look((masks[0], masks[1]), Rig(160, 120, (first, second)), STATURE_M, 1 / 15)
+    assert (found is not None) == meet
+
+
 @pytest.mark.parametrize("alone", [0, 1])
 def test_one_view_alone_takes_the_feet_to_the_floor(alone: int) -> None:
     """The lowest row's ray meets y = 0 where the figure stands; the other window stays empty."""

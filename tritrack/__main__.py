@@ -54,7 +54,7 @@ OwnMode = Annotated[
 ]
 CACHE = Path("runs/tracked")
 Cache = Annotated[
-    Path, typer.Option(help="Keeps what tracking made of clips, 40 kB each; may be deleted.")
+    Path, typer.Option(help="Keeps what tracking made of clips, 56 kB each; may be deleted.")
 ]
 RecognizerName = Annotated[
     Literal["default", "paper"], typer.Option(help="The better models, or the paper's.")
@@ -125,7 +125,7 @@ def view(
     from viewer.__main__ import main as viewer_main
 
     number: ViewerNumber = 1 if viewer == 1 else 2
-    viewer_main(config.load(settings_file), number)
+    viewer_main(live_settings(settings_file), number)
 
 
 @app.command()
@@ -136,7 +136,7 @@ def integrate(settings_file: ConfigPath) -> None:
     """
     from integrator.__main__ import main as integrator_main
 
-    settings = config.load(settings_file)
+    settings = live_settings(settings_file)
     integrator_main(settings, two_camera_clip(settings))
 
 
@@ -148,7 +148,7 @@ def recognize(settings_file: ConfigPath) -> None:
     """
     from recognizer.__main__ import main as recognizer_main
 
-    settings = config.load(settings_file)
+    settings = live_settings(settings_file)
     clip = two_camera_clip(settings)
     recognizer_main(settings, clip.every / clip.views[0].fps)
 
@@ -161,7 +161,7 @@ def animate(settings_file: ConfigPath) -> None:
     """
     from animator.__main__ import main as animator_main
 
-    settings = config.load(settings_file)
+    settings = live_settings(settings_file)
     clip = two_camera_clip(settings)
     animator_main(settings, clip.rig, clip.every / clip.views[0].fps)
 
@@ -448,6 +448,15 @@ def bench(
     from tritrack.bench import main as bench_main
 
     bench_main(json_wanted, quick)
+
+
+def live_settings(path: Path) -> Settings:
+    """The settings of a process of a live run."""
+    from tritrack.session import refuse_mode
+
+    settings = config.load(path)
+    refuse_mode(settings)
+    return settings
 
 
 def two_camera_clip(settings: Settings) -> Any:

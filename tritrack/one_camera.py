@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Sequence
-from typing import Any, Final, Literal, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,7 +109,7 @@ def follow_clip(clip: Clip, settings: Settings, decoder: Decoder, notes: Notes) 
         "scale_source": "assumed" if camera is None else "calibrated",
         "stature_m": round(stature_m, 3),
         "never_uncovered": round(float(room.uncertain.mean()), 4),
-        "warnings": [*clip.warnings, *filter(None, (odd, cut_off))],
+        "warnings": [*clip.warnings, *filter(None, (odd, cut_off, _nobody_in(bodies)))],
     }
     turn = np.array(PAPER_ROTATIONS[0] if camera is None else camera.R)
     return Followed(bodies, settled, outlines, view.size, 1 / period_s, turn, clip, room, facts)
@@ -129,7 +129,7 @@ def follow_masks(
         "frames_a_second": round(len(bodies) / max(spent, 1e-9), 1),
         "scale_source": "assumed",
         "stature_m": round(stature_m, 3),
-        "warnings": [],
+        "warnings": list(filter(None, (_nobody_in(bodies),))),
     }
     turn = np.array(PAPER_ROTATIONS[0])
     return Followed(bodies, settled, outlines, size, 1 / period_s, turn, None, None, facts)
@@ -168,21 +168,26 @@ def poses_of(
     tall_px = statures_px(rows[:, 0], rows[:, 1], whole)
     stature_m = settings.body.stature_m
     if camera is None:
-        camera = assumed_camera(size, np.nanmedian(rows[:, 1]), np.nanmedian(tall_px), stature_m)
+        stands = np.isfinite(tall_px)
+        sole, tall = (
+            (float(np.median(rows[stands, 1])), float(np.median(tall_px[stands])))
+            if stands.any()
+            else (float(size[1]), float(size[1]))
+        )
+        camera = assumed_camera(size, sole, tall, stature_m)
     printed = settings.mode == "thesis"
     man = THESIS if printed else ADULT
     state = one_view.init(number, camera, man, stature_m, printed, period_s)
-    mode: Literal["default", "thesis"] = "thesis" if printed else "default"
+    mode: stick.Mode = "thesis" if printed else "default"
     before: stick.Stick | None = None
     bodies, settled = [], []
     for outline, stature_px in zip(outlines, tall_px, strict=True):
-        if outline.somebody:
-            mask = outline.mask(width)
-            before = stick.fit(mask, before, mode, float(stature_px))
+        mask = outline.mask(width)
+        before = _fitted(mask, before, mode, float(stature_px))
+        if before is not None:
             report = _report(outline, mask, number, stick.told(before))
             state, body, own = one_view.step(state, report, _inputs(notes, outline.frame, scale))
         else:
-            before = None
             state, body, own = one_view.nobody(state, outline.frame, outline.captured_s)
         bodies.append(body)
         settled.append(own)
@@ -198,6 +203,23 @@ def extras_of(settled: Sequence[Settled]) -> dict[str, Any]:
             -1, len(LIMBS)
         ),
     }
+
+
+def _nobody_in(bodies: Sequence[Body]) -> str:
+    """What is odd where no frame shows anybody; "" otherwise."""
+    if any(body.joints_m for body in bodies):
+        return ""
+    return "nobody was seen: the person must move, and be a sixth of the picture high at least"
+
+
+def _fitted(
+    mask: Mask, before: stick.Stick | None, mode: stick.Mode, stature_px: float
+) -> stick.Stick | None:
+    """The stick body of a silhouette; None where it shows nobody, or too little of anybody."""
+    try:
+        return stick.fit(mask, before, mode, stature_px)
+    except stick.NoBody:
+        return None
 
 
 def _report(outline: Outline, mask: Mask, number: ViewerNumber, fit: Fit) -> Report:

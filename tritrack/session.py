@@ -52,6 +52,7 @@ def live(settings: Settings, out: Path, console: Console, name: str = "") -> dic
         PartFailed, BusError, RunError: When something failed; what was tracked until then is
             written first.
     """
+    refuse_mode(settings)
     clip = open_clip(settings)
     clip = msgspec.structs.replace(clip, name=name or clip.name, rig=both_cameras(clip))
     _refuse_what_would_fail(settings, clip)
@@ -125,6 +126,19 @@ def warnings_of(pulses: Mapping[str, Pulse]) -> list[str]:
         if name.startswith("viewer") or name == "integrator"
         for line in pulse.detail.splitlines()
     ]
+
+
+def refuse_mode(settings: Settings) -> None:
+    """Say that the thesis's mode has no processes.
+
+    Raises:
+        LiveRefused: When it is asked for.
+    """
+    if settings.mode == "thesis":
+        raise LiveRefused(
+            "the thesis's mode is not for live runs: set mode = 'default' or 'paper', or follow "
+            "a recorded video with: tritrack single VIDEO --mode thesis"
+        )
 
 
 def _refuse_what_would_fail(settings: Settings, clip: Clip) -> None:

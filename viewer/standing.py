@@ -48,7 +48,8 @@ def statures_px(crowns: Vector, soles: Vector, whole: NDArray[np.bool_]) -> Vect
     low, high = np.quantile(soles[told], (0.05, 0.95))
     if high - low > NEARER * np.median(heights[told]):
         some = np.flatnonzero(told)[:: max(1, told.sum() // MOST_SAMPLES)]
-        slope = float(theilslopes(heights[some], soles[some])[0])
+        with np.errstate(invalid="ignore"):  # in its error bar, which nobody reads
+            slope = float(theilslopes(heights[some], soles[some])[0])
     flat = heights[told] - slope * soles[told]
     level = float(np.quantile(flat, UPRIGHT))
     least = float(np.quantile(heights[told], 0.1))

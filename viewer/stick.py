@@ -51,6 +51,10 @@ class Stick(NamedTuple):
         return float(self.pose[STATURE])
 
 
+class NoBody(ValueError):
+    """A silhouette to which no body can be fitted."""
+
+
 def fit(
     mask: Mask,
     before: Stick | None,
@@ -68,13 +72,13 @@ def fit(
         stature_px: Height of the body standing upright, in pixels of the mask (T20).
 
     Raises:
-        ValueError: When the mask is empty or the stature is no height: nobody can be fitted.
+        NoBody: When the mask is empty, or nothing of its stature, or that is no height.
     """
     if not mask.any() or not stature_px > 0.0:
-        raise ValueError(f"no body to fit: {mask.sum()} pixels, a stature of {stature_px}")
+        raise NoBody(f"no body to fit: {mask.sum()} pixels, a stature of {stature_px}")
     normal, man = normalised(mask, stature_px), MEN[mode]
     if not normal.mask.any():
-        raise ValueError(f"no body to fit: {mask.sum()} pixels are nothing of {stature_px}")
+        raise NoBody(f"no body to fit: {mask.sum()} pixels are nothing of {stature_px}")
     if mode == "thesis":
         pose, hidden, evaluations = fit_printed(normal.mask, float(STATURE_PX))
     else:
