@@ -8,12 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body import Vector
-<<<<<<< HEAD
 from common.camera import Camera, Rig, arrays_of, centre, project, ray
-=======
-from common.camera import Camera, Rig, centre, project, ray
 from common.kernel import NEAREST_M
->>>>>>> bccc85bd08d42595fb69e211b7b7d1d58e0769f9
 from integrator.perspective import triangulate
 
 Mask = NDArray[np.bool_]
@@ -133,7 +129,7 @@ def _middle_px(mask: Mask) -> tuple[float, float]:
 
 def _depth_m(camera: Camera, place_m: Vector) -> float:
     """How far before a camera a place is; negative behind it, NaN where there is no place."""
-    return float(np.array(camera.R)[2] @ place_m + camera.t[2])
+    return float(arrays_of(camera).R[2] @ place_m + camera.t[2])
 
 
 def _cells(mask: Mask, camera: Camera, middle_m: Vector, stature_m: float) -> Floats:
@@ -141,12 +137,7 @@ def _cells(mask: Mask, camera: Camera, middle_m: Vector, stature_m: float) -> Fl
     at, above = project(camera, np.stack([middle_m, middle_m + UPWARDS_M]))
     up = above - at
     up /= max(float(np.linalg.norm(up)), 1e-9)
-<<<<<<< HEAD
-    depth_m = float(arrays_of(camera).R[2] @ middle_m + camera.t[2])
-    size_px = camera.K[0][0] * stature_m / depth_m
-=======
     size_px = camera.K[0][0] * stature_m / _depth_m(camera, middle_m)
->>>>>>> bccc85bd08d42595fb69e211b7b7d1d58e0769f9
     right = np.array([-up[1], up[0]]) * size_px * 2 * ASIDE / (FINER * COLUMNS)
     down = -up * size_px * (UP + DOWN) / (FINER * ROWS)
     corner = at + up * size_px * UP - right * FINER * COLUMNS / 2
