@@ -39,9 +39,9 @@ APART: Final = 12
 def step(opening: Opening, rig: Rig, seen: Seen, pose: Vector) -> Opening:
     """One instant more of a person in view.
 
-    The body is fitted to the first instant that shows the whole person in both views, and again
-    to that and a few later ones together: a prior, or, once it is over, what the opening posture
-    told. An extra of `default` mode: the paper measures once.
+    The body is fitted to the first instant that shows the whole person in both views, and once
+    more to that and a few later ones together: a prior, or, once it is over, what the opening
+    posture told. An extra of `default` mode: the paper measures once.
 
     Args:
         opening: What is known of the body; returned as it is while it is being measured.
@@ -58,7 +58,9 @@ def step(opening: Opening, rig: Rig, seen: Seen, pose: Vector) -> Opening:
     if opening.samples and opening.unsampled < APART:
         return opening._replace(unsampled=opening.unsampled + 1)
     samples = (*opening.samples, Sample(pose, (first, second)))
-    body = adapted(opening.bdp, rig, samples)
+    body = opening.bdp
+    if len(samples) in (1, MOST_SAMPLES):
+        body = adapted(body, rig, samples)
     return opening._replace(bdp=body, samples=samples, unsampled=0)
 
 
