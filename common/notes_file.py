@@ -109,8 +109,8 @@ def notes_text(notes: Notes) -> str:
 
 
 def _quoted(text: str) -> str:
-    """A TOML string: JSON's escapes are among TOML's."""
-    return msgspec.json.encode(text).decode()
+    """A TOML string: JSON's escapes are among TOML's, which wants DEL escaped too."""
+    return msgspec.json.encode(text).decode().replace("\x7f", "\\u007f")
 
 
 def _explained(error: str, text: str) -> str:
