@@ -1,6 +1,5 @@
 """The retouching of a run: its video, its poses and its notes on a page, until Ctrl-C."""
 
-import threading
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -18,6 +17,7 @@ from common.decoding import Decoder
 from common.footage import ClipError
 from common.notes import Notes
 from common.notes_file import NotesError, load_notes, notes_path, save_notes
+from common.process import Place, process
 from tritrack.ledger import facts_of, ledger
 from tritrack.past_run import PastRun, open_run
 from tritrack.terminal import bar
@@ -77,14 +77,14 @@ def retouch(
             return str(error), False
         return f"{ledger(take, new).given.total} inputs, kept in {path.name}", True
 
-    page = RetouchPage(take, clip.views[0].source_size, picture_of, notes, keep, port)
-    console.print(f"the page is at {page.address}; Ctrl-C ends it", highlight=False)
-    try:
-        threading.Event().wait()
-    except KeyboardInterrupt:
-        console.print("then fit the video again with these notes: tritrack single", highlight=False)
-    finally:
-        page.close()
+    with process("retouch", Place()) as stop:
+        page = RetouchPage(take, clip.views[0].source_size, picture_of, notes, keep, port)
+        console.print(f"the page is at {page.address}; Ctrl-C ends it", highlight=False)
+        try:
+            stop.wait()
+        finally:
+            page.close()
+    console.print("then fit the video again with these notes: tritrack single", highlight=False)
     return {"notes": str(path), **facts_of(ledger(take, page.notes))}
 
 
