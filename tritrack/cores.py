@@ -27,10 +27,14 @@ def spread(dask: str) -> Iterator[None]:
         ClusterError: When it does not answer, or Dask is not installed.
     """
     from joblib import parallel_config
+    from joblib.externals.loky import get_reusable_executor
 
     if not dask:
-        with parallel_config(backend="loky", n_jobs=-1, inner_max_num_threads=1):
-            yield
+        try:
+            with parallel_config(backend="loky", n_jobs=-1, inner_max_num_threads=1):
+                yield
+        finally:  # idle workers would keep their memory for minutes
+            get_reusable_executor().shutdown(wait=True)
         return
     try:
         from distributed import Client
