@@ -128,14 +128,16 @@ def _believed(
 ) -> tuple[State, Vector]:
     """The pose that the silhouettes propose, else the fused one with its doubts settled.
 
-    Both are departures from the paper.
+    Both are departures from the paper. An assumed rig's places are not those that the network was
+    taught in: there the doubts are settled by matching.
     """
     if state.settings.mode != "default":
         return state, pose
     bdp = state.opening.bdp
     assert bdp is not None
     memory = None if state.insight is None else state.insight.memory
-    known = insight.step(memory, bdp, rig, seen, dt_s)
+    calibrated = state.scale_source == "calibrated"
+    known = insight.step(memory, bdp, rig, seen, dt_s) if calibrated else None
     if known is None:
         state = state._replace(insight=None, beside_m=None)
         return state, _settled(state, rig, seen, pose)
