@@ -65,18 +65,3 @@ def test_the_facing_is_not_changed_on_the_word_of_one_view() -> None:
     stage = met(standing())
     told = lone(stage, [*between(standing(), raised, 10), *[raised] * 10])
     assert {body.facing for body in told} == {("facade", "flank")}
-
-
-def test_two_views_resume_with_the_body_that_was_measured() -> None:
-    stage = met(standing())
-    before = stage.show([standing()])[-1].body
-    alone = lone(stage, [standing()] * 22)
-    after = stage.show([standing()] * 3)[-1].body
-    assert (after.status, after.views) == ("tracking", "both")
-    assert {body.status for body in alone} == {"tracking"}
-    assert before.bdp is not None
-    assert after.bdp is not None
-    assert {body.bdp for body in alone} == {before.bdp}
-    assert after.bdp.r_upper_leg.height == before.bdp.r_upper_leg.height
-    # a cylinder's outline has no feet: the far arm of the other view comes back over some frames
-    assert np.linalg.norm(np.subtract(after.joints_m, before.joints_m), axis=1).mean() < 0.1

@@ -34,7 +34,7 @@ def test_each_codeword_is_the_mean_of_what_it_stands_for(seen: np.ndarray) -> No
     codebook = fit(seen)
     given = symbols(codebook, seen)
     means = np.stack([(seen * WEIGHTS)[given == symbol].mean(axis=0) for symbol in range(SYMBOLS)])
-    assert np.abs(means - codebook).max() < 0.05
+    assert np.abs(means - codebook).max() < 0.02
 
 
 def test_the_same_vectors_give_the_same_codewords_bit_for_bit(seen: np.ndarray) -> None:

@@ -3,14 +3,16 @@
 They have feet and faces of their own: cylinders look the same from behind.
 """
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 from staging import HEIGHT, RIG, WIDTH, Stage, Told, exact
 
-from common.body import JOINT_NAMES, Vector
+from common.body import JOINT_NAMES, POSE_INDEX, Vector, stature
 from common.config import Settings
+from common.messages import decode, encode
 from common.similarity import Mask
 from integrator.insight import AT, SURENESS, probability
 from synth.footing import posed
@@ -67,11 +69,17 @@ def missed_mm(told: list[Told], truth: Vector) -> Vector:
     return 1e3 * np.linalg.norm(off, axis=-1)
 
 
+def angle(told: Told, name: str) -> float:
+    return told.guide.pose[POSE_INDEX[name]]
+
+
 def default() -> Stage:
     return Stage(settings=Settings(mode="default"))
 
 
-@pytest.mark.parametrize("posture", ["squat", "kick_right_forward", "raise_left_lateral"])
+@pytest.mark.parametrize(
+    "posture", ["squat", "kick_right_forward", "raise_left_lateral", "swing_both_backforth"]
+)
 def test_somebody_new_is_followed(posture: str) -> None:
     did = shown(posture)
     stage = default()
@@ -79,6 +87,65 @@ def test_somebody_new_is_followed(posture: str) -> None:
     assert missed[:3].mean() < 120  # by prior proportions
     assert missed[did.phase == MOTION].mean() < 60
     assert np.median(missed) < 40
+
+
+def test_a_pose_is_told_from_the_first_frame_on() -> None:
+    """Measuring, by prior proportions; tracking once three frames have made the body (P46)."""
+    did, stage = shown("squat"), default()
+    told = [stage.see(pair) for pair in did.masks[:8]]
+    assert [t.body.status for t in told] == ["measuring"] * 2 + ["tracking"] * 6
+    for t in told:
+        assert len(t.body.joints_m) == len(t.body.confidence) == 15
+        assert decode(encode(t.body), type(t.body)) == t.body
+        assert decode(encode(t.guide), type(t.guide)) == t.guide
+    assert missed_mm(told, did.joints_m[:8]).mean(axis=1).max() < 150
+    assert [t.guide.measured for t in told] == [False] * 2 + [True] * 6
+    assert told[-1].guide.bdp is not None
+    true_m = person(SOMEBODY).measures["stature_m"]
+    assert stature(told[-1].guide.bdp) == pytest.approx(true_m, abs=0.08)
+
+
+def test_squats_and_lifts_are_told_apart_by_the_hips() -> None:
+    """P52-P54: both bend in a squat, one in a kick, none while standing."""
+    bent = {}
+    for posture in ("squat", "kick_right_forward"):
+        did, stage = shown(posture), default()
+        told = [stage.see(pair) for pair in did.masks]
+        hips = np.array([[angle(t, f"{side}_hip_x") for side in "rl"] for t in told])
+        bent[posture] = np.abs(hips[did.phase == MOTION])
+        assert np.abs(hips[18]).max() < 15
+    assert bent["squat"].min(axis=1).max() > 40
+    assert bent["kick_right_forward"][:, 0].max() > 40
+    assert bent["kick_right_forward"][:, 1].max() < 25
+
+
+def test_two_views_resume_with_the_body_that_was_measured() -> None:
+    did, stage = shown("squat"), default()
+    for pair in did.masks[:20]:
+        stage.see(pair)
+    still = did.masks[20]
+    before = [stage.see(still).body for _ in range(3)][-1]
+    alone = [stage.see((still[0], None)).body for _ in range(22)]
+    after = [stage.see(still).body for _ in range(3)][-1]
+    assert (after.status, after.views) == ("tracking", "both")
+    assert {body.status for body in alone} == {"tracking"}
+    assert before.bdp is not None
+    assert after.bdp is not None
+    assert {body.bdp for body in alone} == {before.bdp}
+    assert after.bdp.r_upper_leg.height == before.bdp.r_upper_leg.height
+    assert np.allclose(after.joints_m, before.joints_m, atol=0.05)
+
+
+def test_a_turn_to_camera_2_exchanges_facade_and_flank() -> None:
+    """P47-P49: exactly one facade at any time; theta_Y^T follows to -90."""
+    turn = np.array([[0.0, 0.4, 0.8, 1.0], [0.0, 0.0, -90.0, -90.0]])
+    did, stage = shown("walk_in_place", turn), default()
+    told = [stage.see(pair) for pair in did.masks]
+    assert all(set(t.body.facing) == {"facade", "flank"} for t in told)
+    assert told[0].body.facing == ("facade", "flank")
+    assert told[-1].body.facing == ("flank", "facade")
+    assert told[-1].guide.pose[POSE_INDEX["torso_y"]] == pytest.approx(-90.0, abs=10.0)
+    assert sum(a.body.facing != b.body.facing for a, b in pairwise(told)) == 1
 
 
 def test_without_an_opening_posture_front_and_back_are_told_by_the_feet() -> None:
@@ -102,7 +169,7 @@ def test_one_viewer_alone_carries_on(silent: int) -> None:
     assert {t.body.views for t in told[25:45]} == {"2" if silent == 0 else "1"}
     assert {t.body.status for t in told[25:45]} == {"tracking"}
     missed = missed_mm(told, did.joints_m)
-    assert missed[25:45].mean() < 150
+    assert missed[25:45].mean() < 120
     assert missed[48:].mean() < 60
     assert told[-1].body.views == "both"
 

@@ -178,9 +178,8 @@ def test_symbols_that_a_posture_never_showed_keep_its_likelihood_finite(
 
 def test_unseen_symbols_are_likelier_the_nearer_they_lie_to_seen_ones() -> None:
     """What one person showed vouches for what the next one does a little differently."""
-    sequences = performances(range(2))
+    sequences = performances(range(6))
     model = train(sequences, "paper")
-    ratios = []
     for i, posture in enumerate(POSTURES):
         shown = np.concatenate(
             [symbols(model.codebook, features(one)) for one in sequences[posture]]
@@ -188,9 +187,7 @@ def test_unseen_symbols_are_likelier_the_nearer_they_lie_to_seen_ones() -> None:
         unseen = np.setdiff1d(np.arange(64), shown)
         apart = np.linalg.norm(model.codebook[unseen, np.newaxis] - model.codebook[shown], axis=2)
         nearest, farthest = unseen[[apart.min(axis=1).argmin(), apart.min(axis=1).argmax()]]
-        ratios.append(model.emission[i, :, nearest].sum() / model.emission[i, :, farthest].sum())
-    assert min(ratios) > 0.9
-    assert np.median(ratios) > 2
+        assert model.emission[i, :, nearest].sum() > 2 * model.emission[i, :, farthest].sum()
 
 
 def test_the_likeliest_posture_is_named(model: SymbolModel) -> None:
