@@ -20,14 +20,15 @@ JOINTS: Final = tuple(
 SHOULDERS, HIPS = slice(0, 2), slice(6, 8)
 
 SHIPPED: Final = Path(__file__).with_name("proposals.npz")
-VERSION: Final = 2
+VERSION: Final = 3
 SAYS: Final = 4 * len(JOINTS)
 """What the network says: three coordinates of each joint, and how sure it is of each."""
 
 
 class Network(NamedTuple):
-    """Principal components of a window; then a layer, a gated recurrent unit, and two layers.
+    """Principal components of a window; then two layers, a gated recurrent unit, and two layers.
 
+    The second layer adds to what the first found.
     Weights are (inputs, outputs). The unit is that of Cho et al. 2014 with the reset gate on the
     hidden product; its gates are in the order reset, update, new.
     """
@@ -38,6 +39,8 @@ class Network(NamedTuple):
     """(CELLS, n)"""
     think: Floats
     think_bias: Floats
+    deepen: Floats
+    deepen_bias: Floats
     take: Floats
     take_bias: Floats
     keep: Floats
@@ -71,6 +74,7 @@ def step(
     n = network
     shown = inputs(n.mean, n.components, seen.windows, seen.beside)
     thought = (shown @ n.think + n.think_bias).clip(min=0.0)
+    thought = (thought @ n.deepen + n.deepen_bias + thought).clip(min=0.0)
     memory = np.zeros(len(n.keep), np.float32) if memory is None else memory
     taken, kept = thought @ n.take + n.take_bias, memory @ n.keep + n.keep_bias
     own = len(memory)
@@ -143,12 +147,15 @@ def _refuse_misfits(network: Network, path: Path) -> None:
         "mean": (CELLS,),
         "components": (CELLS, sees),
         "think": (2 * sees + BESIDE, thinks),
+        "deepen": (thinks, thinks),
         "take": (thinks, 3 * keeps),
         "keep": (keeps, 3 * keeps),
         "join": (thinks + keeps, joins),
         "say": (joins, SAYS),
     }
-    due |= {f"{name}_bias": due[name][1:] for name in ("think", "take", "keep", "join", "say")}
+    due |= {
+        f"{name}_bias": due[name][1:] for name in ("think", "deepen", "take", "keep", "join", "say")
+    }
     for name, shape in due.items():
         part = getattr(n, name)
         if part.shape != shape:

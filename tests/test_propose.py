@@ -21,6 +21,7 @@ def network(fill: float = 0.0) -> Network:
     """Three components, four units of each layer, all weights alike."""
     sizes = {
         "think": (6 + BESIDE, 4),
+        "deepen": (4, 4),
         "take": (4, 12),
         "keep": (4, 12),
         "join": (8, 4),
@@ -71,6 +72,17 @@ def test_a_shut_gate_keeps_the_memory() -> None:
     shut.take_bias[4:8] = 60.0
     memory, _ = propose.step(shut, np.arange(4, dtype=np.float32), SEEN, 1.75)
     assert memory == pytest.approx(np.arange(4))
+
+
+def test_the_second_layer_adds_to_the_first() -> None:
+    """Thought 3, deepened by half of it, 4.5; a sum of four says 18."""
+    told = network()
+    told.think_bias[:] = 3.0
+    told.deepen[:] = 0.5 * np.eye(4)
+    told.join[:4] = np.eye(4)
+    told.say[:, 0] = 1.0
+    _, found = propose.step(told, None, SEEN._replace(middle_m=np.zeros(3)), 1.0)
+    assert found.joints_m[0] == pytest.approx([18.0, 0.0, 0.0])
 
 
 def test_a_silent_network_says_the_middle_and_is_undecided() -> None:
