@@ -129,8 +129,8 @@ def report(viewer: ViewerNumber, mask: Mask | None = None, **said: object) -> Re
     given = {"frame": 0, "captured_s": 0.0, "clock_s": 0.0, "box": box, **said}
     return Report(
         viewer=viewer,
-        width=WIDTH,
-        height=HEIGHT,
+        width=seen.shape[1],
+        height=seen.shape[0],
         silhouette=pack(seen),
         **given,  # type: ignore[arg-type]
     )
