@@ -82,36 +82,25 @@ LIMBS: Final = (
 )
 """The ten cylinders, in the order of Bdp's fields and of every array of limbs."""
 
-SPHERICAL_JOINTS: Final = ("navel", "neck", "r_shoulder", "l_shoulder", "r_hip", "l_hip")
-FLEXION_JOINTS: Final = ("r_elbow", "l_elbow", "r_knee", "l_knee")
+JOINT_AXES: Final = {
+    "torso": "xyz",
+    "neck": "xyz",
+    "r_shoulder": "xyz",
+    "l_shoulder": "xyz",
+    "r_elbow": "x",
+    "l_elbow": "x",
+    "r_hip": "xyz",
+    "l_hip": "xyz",
+    "r_knee": "x",
+    "l_knee": "x",
+}
+"""The ten joints and the axes they turn about: six are spherical, four only bend (P6). The torso
+turns at the navel."""
 
 POSITION_NAMES: Final = ("x", "y", "z")
 """Place of the navel in the world: the first three entries of a pose."""
 
-DOF_NAMES: Final = (
-    "torso_x",
-    "torso_y",
-    "torso_z",
-    "neck_x",
-    "neck_y",
-    "neck_z",
-    "r_shoulder_x",
-    "r_shoulder_y",
-    "r_shoulder_z",
-    "l_shoulder_x",
-    "l_shoulder_y",
-    "l_shoulder_z",
-    "r_elbow_x",
-    "l_elbow_x",
-    "r_hip_x",
-    "r_hip_y",
-    "r_hip_z",
-    "l_hip_x",
-    "l_hip_y",
-    "l_hip_z",
-    "r_knee_x",
-    "l_knee_x",
-)
+DOF_NAMES: Final = tuple(f"{joint}_{axis}" for joint, axes in JOINT_AXES.items() for axis in axes)
 """The 22 angles of a pose, degrees (P7, M17)."""
 
 POSE_NAMES: Final = POSITION_NAMES + DOF_NAMES
@@ -284,7 +273,7 @@ HIP_SHARE, KNEE_SHARE, ANKLE_SHARE = 0.530, 0.285, 0.039
 
 
 def body_vector(bdp: Bdp) -> Vector:
-    """The body as the kernel wants it, shape (BODY_SIZE,): 26 lengths, attachments, landmarks.
+    """The body as the kernel wants it, shape (39,): 26 lengths, attachments, landmarks.
 
     Entries 0-25 are the BDPs in the order of LIMBS. 26-28: shoulder_x, shoulder_y, hip_x from the
     navel, in body axes, both sides alike. 29-36: how far elbow, wrist, knee and ankle lie from
@@ -320,9 +309,6 @@ def _body_numbers(bdp: Bdp) -> tuple[float, ...]:
         HIP_SHARE * height - legs[0],
         inset,
     )
-
-
-BODY_SIZE: Final = 39
 
 
 def stature(bdp: Bdp) -> float:

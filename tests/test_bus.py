@@ -12,11 +12,11 @@ from typing import NamedTuple
 import msgspec
 import pytest
 import zenoh
+from local_bus import LocalBus
 
 from common.bus import Bus, BusError, open_client, open_hub
 from common.config import BusSettings
 from common.inbox import BOUND, Alive, Inbox
-from common.local_bus import LocalBus
 from common.mailbox import Mailbox
 from common.messages import (
     MAX_BYTES,

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from local_bus import LocalBus
 from staging import report
 
 from common.bus import Bus, open_client, open_hub
@@ -14,7 +15,6 @@ from common.clips import View
 from common.config import BusSettings, PageSettings, Settings
 from common.decoding import DecoderDied
 from common.inbox import BOUND
-from common.local_bus import LocalBus
 from common.messages import (
     Body,
     Cameras,

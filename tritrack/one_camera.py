@@ -196,12 +196,14 @@ def poses_of(
 
 def extras_of(settled: Sequence[Settled]) -> dict[str, Any]:
     """What `poses.npz` of a single view has beside the arrays of every run."""
+    limbs = {
+        name: np.array([getattr(own, name) for own in settled]).reshape(-1, len(LIMBS))
+        for name in ("depth_confidence", "depth_error_deg")
+    }
     return {
         "orientation": np.array([own.orientation for own in settled], "U14"),
         "orientation_confidence": np.array([own.orientation_confidence for own in settled]),
-        "depth_confidence": np.array([own.depth_confidence for own in settled]).reshape(
-            -1, len(LIMBS)
-        ),
+        **limbs,
     }
 
 
