@@ -5,16 +5,8 @@ from collections.abc import Callable
 from typing import Final, Generic, NamedTuple
 
 from common.mailbox import Mailbox
-from common.messages import (
-    TOPICS,
-    ClockQuestion,
-    MalformedMessage,
-    Message,
-    Said,
-    decode,
-    key_of,
-    pattern_of,
-)
+from common.messages import ClockQuestion, Message
+from common.wire import TOPICS, MalformedMessage, Said, decode, key_of, pattern_of
 
 QUESTIONS: Final[dict[type[Message], str]] = {ClockQuestion: "tritrack/{room}/clock"}
 """Where each kind of question is answered."""

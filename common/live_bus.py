@@ -9,17 +9,8 @@ import zenoh
 
 from common.inbox import BOUND, QUESTIONS, Alive, Inbox, answered, checked
 from common.mailbox import Mailbox
-from common.messages import (
-    TOPICS,
-    MalformedMessage,
-    Message,
-    Picture,
-    Said,
-    encode,
-    key_of,
-    pattern_of,
-    refuse_size,
-)
+from common.messages import Message, Picture
+from common.wire import TOPICS, MalformedMessage, Said, encode, key_of, pattern_of, refuse_size
 
 AT_ONCE: Final = 4
 """Newest-only samples that may wait for our own thread: two viewers speak at the same moment.

@@ -9,15 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bits import count, count_both
-from common.body import (
-    JOINT_NAMES,
-    LIMB_ENDS,
-    LIMBS,
-    Bdp,
-    Vector,
-    body_vector,
-    rest_pose,
-)
+from common.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Bdp, Vector, rest_pose
 from common.camera import Camera, Rig, centre, project, ray
 from common.kernel import score as similarity_of
 from common.messages import (
@@ -26,6 +18,7 @@ from common.messages import (
     ViewerNumber,
 )
 from common.notes import ORIENTATIONS, Orientation
+from common.proportions import body_vector
 from common.stickman import BREADTH, GIRTH, POSE_SIZE, STATURE, Stickman
 from common.strokes import ALL_SEGMENTS, draw_segments
 from integrator import insight, propose, signs, smoothing

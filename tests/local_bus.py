@@ -5,7 +5,8 @@ from typing import Any
 
 from common.inbox import BOUND, QUESTIONS, Alive, Inbox, answered, checked
 from common.mailbox import Mailbox
-from common.messages import Message, Said, encode, key_of
+from common.messages import Message
+from common.wire import Said, encode, key_of
 
 
 class LocalBus:

@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 from posing import box_of, posed
 
-from common.body import Bdp, Vector, body_vector, thesis_bdp
+from common.body import Bdp, Vector
 from common.camera import Rig, paper_rig
 from common.config import Settings
 from common.kernel import draw_body, view_of
-from common.messages import Body, Box, Guide, Report, ViewerNumber, pack
+from common.messages import Body, Box, Guide, Report, ViewerNumber
+from common.proportions import body_vector, thesis_bdp
 from common.similarity import Mask
+from common.wire import pack
 from integrator import merge
 from integrator.pairing import Pair
 from viewer import track

@@ -6,9 +6,10 @@ import pytest
 from posing import posed
 from staging import report, silhouettes
 
-from common.body import Bdp, Vector, stature, thesis_bdp
+from common.body import Bdp, Vector
 from common.camera import paper_rig
 from common.messages import Report
+from common.proportions import stature, thesis_bdp
 from integrator import adapting
 from integrator.opening import Opening, Sample
 

@@ -18,17 +18,8 @@ from common.bus import Bus, BusError, open_client, open_hub
 from common.config import BusSettings
 from common.inbox import BOUND, Alive, Inbox
 from common.mailbox import Mailbox
-from common.messages import (
-    MAX_BYTES,
-    ClockAnswer,
-    ClockQuestion,
-    Guide,
-    Picture,
-    Posture,
-    Pulse,
-    Report,
-    encode,
-)
+from common.messages import ClockAnswer, ClockQuestion, Guide, Picture, Posture, Pulse, Report
+from common.wire import MAX_BYTES, encode
 
 ROOM = "hall"
 SOON_S = 5.0

@@ -6,11 +6,12 @@ from posing import posed
 from staging import report
 
 from common.bits import count, pack_words
-from common.body import POSE_INDEX, POSE_NAMES, Vector, body_vector, thesis_bdp
+from common.body import POSE_INDEX, POSE_NAMES, Vector
 from common.camera import paper_rig
 from common.kernel import draw_body, view_of
 from common.kinematics import limb_frames
 from common.messages import Report
+from common.proportions import body_vector, thesis_bdp
 from common.similarity import Mask, similarity
 from integrator.hypotheses import moving, products, settled, turned
 

@@ -4,10 +4,12 @@ import msgspec
 import numpy as np
 import pytest
 
-from common.body import JOINT_NAMES, LIMBS, THESIS_RATIOS
+from common.body import JOINT_NAMES, LIMBS
 from common.camera import paper_rig, project
-from common.messages import Body, Box, Fit, Report, pack
+from common.messages import Body, Box, Fit, Report
+from common.proportions import THESIS_RATIOS
 from common.stickman import ADULT, ANGLE, THESIS, Stickman, joints_px, standing
+from common.wire import pack
 from integrator import one_view
 from integrator.one_outline import Inputs, State
 

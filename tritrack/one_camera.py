@@ -13,10 +13,11 @@ from common.clips import Clip, shortfall
 from common.config import Settings
 from common.decoding import Decoder
 from common.footage import ClipError
-from common.messages import Body, Box, Fit, Report, ViewerNumber, pack
+from common.messages import Body, Box, Fit, Report, ViewerNumber
 from common.notes import Notes, held
 from common.similarity import Mask
 from common.stickman import ADULT, THESIS
+from common.wire import pack
 from integrator import one_view
 from integrator.assumed import assumed_camera
 from integrator.one_outline import Inputs, Settled

@@ -8,9 +8,10 @@ import msgspec
 import numpy as np
 
 from common.bits import count, pack_words
-from common.body import POSE_INDEX, Bdp, Round, body_vector, rest_pose
+from common.body import POSE_INDEX, Bdp, Round, rest_pose
 from common.camera import PAPER_ROTATIONS
 from common.kernel import match
+from common.proportions import body_vector
 from common.similarity import Mask
 from viewer.figure import view_at
 from viewer.tritree import tritree
