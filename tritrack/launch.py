@@ -79,6 +79,10 @@ def run(
             for one in reversed(crew):
                 one.end()
             listening.catch_up()
+            if listening.dropped:
+                heard.notes.append(
+                    f"{listening.dropped} poses or postures were lost on the way to the run folder"
+                )
             show(heard)
         if not stop.is_set():
             for one in crew:
@@ -113,6 +117,11 @@ class Ears:
         self._cameras = bus.subscribe(Cameras)
         told = bus.latest(Cameras, LAST_WORDS_S)
         heard.cameras.extend([] if told is None else [told])
+
+    @property
+    def dropped(self) -> int:
+        """How many bodies and postures never came here."""
+        return self._bodies.dropped + self._postures.dropped
 
     def catch_up(self) -> None:
         """Take in all that was said since."""
