@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import FrameType
 from typing import Any, Final
 
@@ -61,10 +62,12 @@ def live(settings: Settings, out: Path, console: Console, name: str = "") -> dic
     screen = _Screen(clip, settings, console)
     with _stopped_by_signals() as stop:
         path = _new_log(out)
-        parts = live_parts(settings, clip, Place(supervised=True, log=path))
         try:
-            with screen.shown([part.name for part in parts]) as show, logged("supervisor", path):
-                run(parts, settings, stop, show, heard)
+            with TemporaryDirectory(prefix=".kept-", dir=out) as kept:
+                parts = live_parts(settings, clip, Place(True, path, Path(kept)))
+                names = [part.name for part in parts]
+                with screen.shown(names) as show, logged("supervisor", path):
+                    run(parts, settings, stop, show, heard)
         finally:
             postures = heard.postures.all()
             facts = _facts(heard, performed(postures), clip, time.monotonic() - began)
