@@ -5,7 +5,7 @@ from itertools import islice
 
 from common.clips import View
 from common.config import SilhouetteSettings
-from common.decoding import Decoder
+from common.reel import Reader
 from viewer.background import Background, is_empty_opening, learn
 from viewer.stacks import Frame
 from viewer.uncovered import is_still, learn_uncovered
@@ -21,9 +21,7 @@ LEFT_HIDDEN = 0.01
 """Who stays on a spot hides 2 to 20 % of the picture all through a clip, who roams up to 0.4 %."""
 
 
-def empty_room(
-    view: View, settings: SilhouetteSettings, decoder: Decoder
-) -> tuple[Background, str]:
+def empty_room(view: View, settings: SilhouetteSettings, decoder: Reader) -> tuple[Background, str]:
     """What the room looks like without the person, and what is odd about how that is known.
 
     Args:
@@ -50,7 +48,7 @@ def empty_room(
 
 
 def room_of_clip(
-    view: View, settings: SilhouetteSettings, decoder: Decoder
+    view: View, settings: SilhouetteSettings, decoder: Reader
 ) -> tuple[Background, str]:
     """The same, but from all over a clip where that shows all but a little of the room.
 
@@ -65,12 +63,12 @@ def room_of_clip(
     return (learnt if learnt.uncertain.mean() < LEFT_HIDDEN else room), ""
 
 
-def _now(view: View, due: int, decoder: Decoder) -> list[Frame]:
+def _now(view: View, due: int, decoder: Reader) -> list[Frame]:
     """The first frames that a camera gives."""
     return [got.picture for got in islice(decoder.frames(view.source, view.size), due)]
 
 
-def _looked_at(view: View, due: int, decoder: Decoder) -> tuple[list[Frame], list[Frame]]:
+def _looked_at(view: View, due: int, decoder: Reader) -> tuple[list[Frame], list[Frame]]:
     """The opening frames, and frames from everywhere in the clip."""
     stride = max(1, math.ceil(min(view.frames, LOOKED_AT) / SAMPLE))
     opening: list[Frame] = []
