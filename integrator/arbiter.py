@@ -2,6 +2,10 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
+from common.body import POSE_INDEX, Vector
+from common.camera import Rig, centre
 from common.messages import Facing
 
 
@@ -51,3 +55,12 @@ def _strength_px(sight: Sight) -> float:
     changed = sight.vote != sight.before
     to_facade = (sight.vote == "facade") == changed
     return abs(sight.width_px - (sight.th_high_px if to_facade else sight.th_low_px))
+
+
+def facing_of(rig: Rig, pose: Vector) -> tuple[Facing, Facing]:
+    """What viewers 1 and 2 see of a pose that is known: who is more before it, or behind it."""
+    yaw = np.radians(pose[POSE_INDEX["torso_y"]])
+    front = np.array([np.sin(yaw), np.cos(yaw)])
+    ways = [(centre(camera) - pose[:3])[[0, 2]] for camera in rig.cameras]
+    first, second = (abs(front @ way) / np.linalg.norm(way) for way in ways)
+    return ("facade", "flank") if first >= second else ("flank", "facade")
