@@ -1,8 +1,7 @@
 """Facade or flank, settled between the two viewers: exactly one sees the facade (section 4.3)."""
 
+import math
 from typing import NamedTuple
-
-import numpy as np
 
 from common.body import POSE_INDEX, Vector
 from common.camera import Rig, centre
@@ -59,8 +58,9 @@ def _strength_px(sight: Sight) -> float:
 
 def facing_of(rig: Rig, pose: Vector) -> tuple[Facing, Facing]:
     """What viewers 1 and 2 see of a pose that is known: who is more before it, or behind it."""
-    yaw = np.radians(pose[POSE_INDEX["torso_y"]])
-    front = np.array([np.sin(yaw), np.cos(yaw)])
-    ways = [(centre(camera) - pose[:3])[[0, 2]] for camera in rig.cameras]
-    first, second = (abs(front @ way) / np.linalg.norm(way) for way in ways)
-    return ("facade", "flank") if first >= second else ("flank", "facade")
+    yaw = math.radians(pose[POSE_INDEX["torso_y"]])
+    shares = []
+    for camera in rig.cameras:
+        x, _, z = centre(camera) - pose[:3]
+        shares.append(abs(math.sin(yaw) * x + math.cos(yaw) * z) / math.hypot(x, z))
+    return ("facade", "flank") if shares[0] >= shares[1] else ("flank", "facade")

@@ -119,12 +119,8 @@ def _standing_m(mask: Mask, camera: Camera) -> Vector:
 
 
 def _middle_px(mask: Mask) -> tuple[float, float]:
-    columns, rows = mask.sum(axis=0), mask.sum(axis=1)
-    area = columns.sum()
-    return (
-        float(columns @ np.arange(0.5, len(columns)) / area),
-        float(rows @ np.arange(0.5, len(rows)) / area),
-    )
+    sums = cv2.moments(mask.view(np.uint8), binaryImage=True)
+    return sums["m10"] / sums["m00"] + 0.5, sums["m01"] / sums["m00"] + 0.5
 
 
 def _depth_m(camera: Camera, place_m: Vector) -> float:
@@ -144,7 +140,7 @@ def _cells(mask: Mask, camera: Camera, middle_m: Vector, stature_m: float) -> Fl
     start = corner + (right + down) / 2 - 0.5
     warp = np.stack([right, down, start], axis=1)
     fine = cv2.warpAffine(
-        mask.astype(np.uint8) * 255,
+        mask.view(np.uint8) * np.uint8(255),
         warp,
         (FINER * COLUMNS, FINER * ROWS),
         flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
