@@ -3,8 +3,10 @@
 import math
 from itertools import islice
 
+import cv2
+
 from common.clips import View
-from common.config import SilhouetteSettings
+from common.config import SilhouetteSettings, working_size
 from common.reel import Reader
 from viewer.background import Background, is_empty_opening, learn
 from viewer.stacks import Frame
@@ -12,6 +14,9 @@ from viewer.uncovered import is_still, learn_uncovered
 
 SAMPLE = 40
 """How many frames at most, spread over a clip, tell whether its opening is empty."""
+
+COARSE = (160, 120)
+"""How finely, at most: as finely as the paper looks; every other frame is enough."""
 
 LOOKED_AT = 1500
 """How many frames of a clip are looked at for that: a long recording is judged by its start."""
@@ -39,7 +44,8 @@ def empty_room(view: View, settings: SilhouetteSettings, decoder: Reader) -> tup
         plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
         return learn(plate), ""
     opening, sample = _looked_at(view, settings.empty_frames, decoder)
-    if is_still(opening) and is_empty_opening(opening, sample):
+    coarse = _reduced(opening)
+    if is_still(coarse) and is_empty_opening(coarse, _reduced(sample[::2])):
         return learn(opening), ""
     return learn_uncovered(sample), (
         f"{view.source} does not open with an empty room: the background is estimated from the "
@@ -61,6 +67,15 @@ def room_of_clip(
     _, sample = _looked_at(view, settings.empty_frames, decoder)
     learnt = learn_uncovered(sample)
     return (learnt if learnt.uncertain.mean() < LEFT_HIDDEN else room), ""
+
+
+def _reduced(frames: list[Frame]) -> list[Frame]:
+    """The frames, no larger than COARSE."""
+    size = (frames[0].shape[1], frames[0].shape[0])
+    coarse = working_size(size, COARSE)
+    if coarse == size:
+        return frames
+    return [cv2.resize(frame, coarse, interpolation=cv2.INTER_AREA) for frame in frames]
 
 
 def _now(view: View, due: int, decoder: Reader) -> list[Frame]:

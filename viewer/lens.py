@@ -72,9 +72,17 @@ def _contrast(grey: NDArray[np.float32]) -> float:
     return float(ranked[-1 - tenth] - ranked[tenth])
 
 
+@numba.njit(cache=True)
 def _grey(picture: NDArray[np.float32] | Frame) -> NDArray[np.float32]:
-    coarse = picture[::STRIDE, ::STRIDE].astype(np.float32)
-    return (coarse[..., 0] + coarse[..., 1] + coarse[..., 2]) / np.float32(3)
+    height, width = picture.shape[:2]
+    rows, columns = (height + STRIDE - 1) // STRIDE, (width + STRIDE - 1) // STRIDE
+    grey = np.empty((rows, columns), np.float32)
+    for i in range(rows):
+        for j in range(columns):
+            pixel = picture[i * STRIDE, j * STRIDE]
+            total = np.float32(pixel[0]) + np.float32(pixel[1]) + np.float32(pixel[2])
+            grey[i, j] = total / np.float32(3)
+    return grey
 
 
 @numba.njit(cache=True)
