@@ -45,8 +45,10 @@ def step(
     rig: Rig,
     seen: tuple[Report | None, Report | None],
     since_s: float,
-) -> Insight | None:
-    """The joints that silhouettes propose, whole ones where there are any; None without a place.
+) -> Insight:
+    """The joints that silhouettes propose, whole ones where there are any.
+
+    Two that no one person can cast are two things: the larger is believed to be the person.
 
     Args:
         memory: Of the instant before; None at the first.
@@ -62,7 +64,10 @@ def step(
     height_m = stature(bdp)
     shown = look((first, second), rig, height_m, since_s)
     if shown is None:
-        return None
+        areas_px = [0 if report is None else report.area_px for report in seen]
+        larger = (first, None) if areas_px[0] >= areas_px[1] else (None, second)
+        shown = look(larger, rig, height_m, since_s)
+    assert shown is not None  # one alone stands somewhere
     memory, found = propose.step(propose.shipped(), memory, shown, height_m)
     found.joints_m[propose.HIPS] -= height_m * trunk_of(found.joints_m) @ HIPS_OFF
     sure, own = np.zeros(len(JOINT_NAMES)), probability(found.sure)

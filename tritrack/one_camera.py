@@ -15,6 +15,7 @@ from common.decoding import Decoder
 from common.footage import ClipError
 from common.messages import Body, Box, Fit, Report, ViewerNumber
 from common.notes import Notes, held
+from common.reel import Reader, Reel
 from common.similarity import Mask
 from common.stickman import ADULT, THESIS
 from common.wire import pack
@@ -83,11 +84,12 @@ def follow_clip(clip: Clip, settings: Settings, decoder: Decoder, notes: Notes) 
     """
     began = time.perf_counter()
     view = clip.views[0]
-    room, odd = room_of_clip(view, settings.silhouette, decoder)
+    reel = Reel(decoder)
+    room, odd = room_of_clip(view, settings.silhouette, reel)
     ready = time.perf_counter()
-    outlines = _outlines(clip, room, settings, decoder)
+    outlines = _outlines(clip, room, settings, reel)
     _refuse_a_moving_camera(outlines, view.size, str(view.source))
-    cut_off = shortfall(view, decoder.came)
+    cut_off = shortfall(view, reel.came)
     camera = clip.rig.cameras[0] if clip.rig is not None else None
     period_s = clip.every / view.fps
     scale = view.size[0] / view.source_size[0]
@@ -252,7 +254,7 @@ def _inputs(notes: Notes, frame: int, scale: float) -> Inputs:
     return Inputs(told.orientation, told.depth, places)
 
 
-def _outlines(clip: Clip, room: Background, settings: Settings, decoder: Decoder) -> list[Outline]:
+def _outlines(clip: Clip, room: Background, settings: Settings, decoder: Reader) -> list[Outline]:
     view = clip.views[0]
     state = silhouette.init(room, settings.silhouette)
     near: tuple[float, float] | None = None
