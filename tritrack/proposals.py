@@ -10,7 +10,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 from rich.console import Console
 
-from integrator.propose import JOINTS, SAYS, Network, aimed, inputs, save
+from integrator.propose import JOINTS, SAYS, SEES, Network, aimed, halves, save
 from integrator.window import BESIDE, CELLS, look
 from synth.outlines import AT_LARGE, ORDINARY, Manner, Outline, outlines
 from synth.skeleton import JOINTS as ALL_JOINTS
@@ -162,7 +162,7 @@ def _components(shown: list[Example]) -> tuple[Floats, Floats]:
     """Mean (CELLS,) and components (CELLS, COMPONENTS) of windows, scaled to spreads of about 1."""
     sampled = [
         each.cells[:: 1 + len(each.cells) // SAMPLED][
-            each.beside[:: 1 + len(each.cells) // SAMPLED][:, [0, 5]] > 0
+            each.beside[:: 1 + len(each.cells) // SAMPLED][:, SEES] > 0
         ]
         for each in shown
     ]
@@ -178,7 +178,8 @@ def _components(shown: list[Example]) -> tuple[Floats, Floats]:
 def _lesson(torch: Any, mean: Floats, components: Floats, shown: Example) -> tuple[Any, ...]:
     """Inputs, what is due, ones, and the stature: as tensors of an example's instants."""
     windows = shown.cells.astype(np.float32) / np.float32(255)
-    seen = inputs(mean, components, windows, shown.beside)
+    seen = (windows - mean) @ components * shown.beside[:, SEES, None]
+    seen = np.concatenate([seen.reshape(len(seen), -1), shown.beside], axis=1)
     ones = np.ones(len(seen), np.float32)
     parts = (seen, shown.due, ones, ones * np.float32(shown.stature_m))
     return tuple(torch.from_numpy(part) for part in parts)
@@ -250,14 +251,14 @@ def _kept(torch: Any, unit: Any, thought: Any) -> Any:
 
 
 def _network(mean: Floats, components: Floats, parts: list[Any]) -> Network:
-    def pair(weight: Any, bias: Any) -> Iterator[Floats]:
-        yield np.ascontiguousarray(weight.detach().numpy().T)
+    def pair(weight: Any, bias: Any) -> Iterator[Any]:
+        yield halves(weight.detach().numpy().T)
         yield bias.detach().numpy().copy()
 
     think, deepen, remember, join, say = parts
     return Network(
-        mean,
-        components,
+        halves(components),
+        -mean @ components,
         *pair(think.weight, think.bias),
         *pair(deepen.weight, deepen.bias),
         *pair(remember.weight_ih_l0, remember.bias_ih_l0),
