@@ -1,7 +1,7 @@
 """The network that proposes poses, learnt from outlines of made-up people."""
 
 import multiprocessing
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -9,6 +9,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 from rich.console import Console
+from rich.progress import Progress
 
 from integrator.propose import JOINTS, SAYS, SEES, Network, aimed, halves, save
 from integrator.window import BESIDE, CELLS, look
@@ -27,7 +28,8 @@ LIFTED: Final = 0.02
 """What is added to a component's spread before dividing by it, in those of the first."""
 LAYERS: Final = (512, 512, 384)
 """Units that think (twice), remember and join."""
-EPOCHS, BATCH, RATE, WARM_STEPS = 24, 64, 2e-3, 150
+ROUNDS, BATCH, WARM_STEPS = ((24, 2e-3), (20, 1e-3)), 64, 150
+"""Epochs and highest rate of each round, in which the rate rises, and falls to nothing."""
 DECAY: Final = 1e-4
 STEEPEST: Final = 1.0
 """Size that a slope is cut to."""
@@ -122,7 +124,11 @@ def example(shown: Iterable[Outline], rng: np.random.Generator) -> Example:
 
 
 def learnt(
-    shown: list[Example], seed: int, console: Console, epochs: int = EPOCHS, batch: int = BATCH
+    shown: list[Example],
+    seed: int,
+    console: Console,
+    rounds: Sequence[tuple[int, float]] = ROUNDS,
+    batch: int = BATCH,
 ) -> Network:
     """The network that misses least: mean distance of the joints, by Adam.
 
@@ -130,7 +136,7 @@ def learnt(
         shown: Performances.
         seed: Of the network's start and the order of the performances.
         console: For progress.
-        epochs: How often each is shown.
+        rounds: How often each is shown, and the highest rate, round by round.
         batch: How many are shown at once.
 
     Raises:
@@ -141,21 +147,37 @@ def learnt(
     rng, (mean, components) = np.random.default_rng(seed), _components(shown)
     lessons = [_lesson(torch, mean, components, each) for each in shown]
     parts = _parts(torch, np.concatenate([each.due for each in shown]).mean(0))
-    weights = [weight for part in parts for weight in part.parameters()]
-    adam = torch.optim.AdamW(weights, lr=RATE, weight_decay=DECAY)
-    count = len(shown) // batch
-    pace = torch.optim.lr_scheduler.OneCycleLR(
-        adam, RATE, total_steps=epochs * count + 1, pct_start=min(0.3, WARM_STEPS / epochs / count)
-    )
     with bar(console) as progress:
-        for _ in progress.track(range(epochs), description="learning"):
-            for rows in np.array_split(rng.permutation(len(shown)), count):
-                adam.zero_grad()
-                _missed(torch, parts, [lessons[row] for row in rows]).backward()
-                torch.nn.utils.clip_grad_norm_(weights, STEEPEST)
-                adam.step()
-                pace.step()
+        for epochs, rate in rounds:
+            _round(torch, parts, lessons, rng, epochs, rate, batch, progress)
     return _network(mean, components, parts)
+
+
+def _round(
+    torch: Any,
+    parts: list[Any],
+    lessons: list[tuple[Any, ...]],
+    rng: np.random.Generator,
+    epochs: int,
+    rate: float,
+    batch: int,
+    progress: Progress,
+) -> None:
+    """Show all lessons so often, in other orders."""
+    weights = [weight for part in parts for weight in part.parameters()]
+    adam = torch.optim.AdamW(weights, lr=rate, weight_decay=DECAY)
+    count = len(lessons) // batch
+    warm = min(0.3, WARM_STEPS / epochs / count)
+    pace = torch.optim.lr_scheduler.OneCycleLR(
+        adam, rate, total_steps=epochs * count + 1, pct_start=warm
+    )
+    for _ in progress.track(range(epochs), description="learning"):
+        for rows in np.array_split(rng.permutation(len(lessons)), count):
+            adam.zero_grad()
+            _missed(torch, parts, [lessons[row] for row in rows]).backward()
+            torch.nn.utils.clip_grad_norm_(weights, STEEPEST)
+            adam.step()
+            pace.step()
 
 
 def _components(shown: list[Example]) -> tuple[Floats, Floats]:
