@@ -1,8 +1,9 @@
 """The pose of the angles that the viewers found: fused, its doubts settled by both silhouettes."""
 
-from common.body import POSE_INDEX, YAW_DEG, Vector, body_vector, rest_pose
+from common.body import POSE_INDEX, YAW_DEG, Vector, rest_pose
 from common.camera import Rig
 from common.messages import Facing
+from common.proportions import body_vector
 from integrator.arbiter import Sight, arbitrate
 from integrator.fusion import fused
 from integrator.hypotheses import settled
