@@ -14,7 +14,7 @@ from common.strokes import added, draw_segments
 from viewer.stick_costs import bend_cost, cross_cost, limb_cost, pose_cost
 from viewer.tritree import MOST_STAGES, narrowed
 
-BEAM: Final = 10
+BEAM: Final = 6
 """Upper limbs that are kept while their lower limbs are tried."""
 UPPER_STEP_DEG, LOWER_STEP_DEG = 15.0, 20.0
 SHORTENINGS: Final = np.array([1.0, 0.8, 0.5, 0.2])
