@@ -53,7 +53,7 @@ def step(opening: Opening, rig: Rig, seen: Seen, pose: Vector) -> Opening:
     done = opening.under_way or len(opening.samples) == MOST_SAMPLES
     if done or first is None or second is None or opening.bdp is None:
         return opening
-    if first.cut or second.cut or (first.width, first.height) != (second.width, second.height):
+    if first.cut or second.cut:
         return opening
     if opening.samples and opening.unsampled < APART:
         return opening._replace(unsampled=opening.unsampled + 1)

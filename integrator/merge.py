@@ -17,7 +17,7 @@ from common.config import Settings
 from common.kernel import match, view_of
 from common.kinematics import ALL_LIMBS
 from common.messages import Body, Facing, Guide, Report
-from integrator import adapting, insight, opening, smoothing, telling
+from integrator import adapting, insight, matched, opening, smoothing, telling
 from integrator.arbiter import Sight, arbitrate
 from integrator.assumed import assumed_rig
 from integrator.belief import LOST_SCORE
@@ -144,6 +144,9 @@ def _believed(
     before = rest_pose() if state.pose is None else state.pose
     body = body_vector(bdp)
     pose, beside_m = insight.pose_and_rest(body, before, known.joints_m)
+    better = matched.instead(pose, state.pose, body, rig, seen)
+    if better is not None:
+        return state._replace(insight=known, beside_m=None), better
     return state._replace(insight=known, beside_m=beside_m), pose
 
 
@@ -151,8 +154,6 @@ def _settled(state: State, rig: Rig, seen: Seen, pose: Vector) -> Vector:
     """What one view alone cannot tell, by both silhouettes: a departure from the paper (L2, L3)."""
     first, second = seen
     if first is None or second is None:
-        return pose
-    if (first.width, first.height) != (second.width, second.height):
         return pose
     assert state.opening.bdp is not None
     before = rest_pose() if state.pose is None else state.pose
