@@ -1,22 +1,25 @@
 """A pose matched to both silhouettes, where the proposed one matches badly."""
 
-from typing import Final
+import math
+from operator import itemgetter
+from typing import Any, Final, NamedTuple
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body import LIMITS_DEG, POSE_INDEX, POSE_NAMES, Vector, rest_pose
 from common.camera import Rig
 from common.kernel import match
-from common.kinematics import ALL_LIMBS
+from common.kinematics import ALL_LIMBS, joints
 from integrator.hypotheses import products
 from integrator.pairing import Seen
 from integrator.two_outlines import Outlines, outlines_of
 
 POOR: Final = 0.6
 """A proposal of less S in either view is matched: of r01's and r04's every twentieth is."""
-BETTER: Final = 1.1
-"""How many times better S1 S2 must be for a matched pose to be taken for the proposed one."""
+TELLING: Final = 250.0
+"""What the log of S1 S2 counts beside the log likelihood of what was proposed."""
 
 ROUNDS: Final = 20
 SAMPLES: Final = 50
@@ -42,60 +45,70 @@ AT_FIRST: Final = 2.0
 """How many times wider poses are tried where none was known before."""
 YAWS_DEG: Final = range(0, 360, 45)
 
+_RADII: Final = np.linspace(0.2, 4.0, 60)
+_WITHIN: Final = (
+    _RADII,
+    np.array(
+        [
+            math.erf(r / math.sqrt(2.0)) - math.sqrt(2.0 / math.pi) * r * math.exp(-r * r / 2.0)
+            for r in _RADII
+        ]
+    ),
+)
+"""Radii in standard deviations, and how probably a point of a round normal cloud is within."""
 _LOW: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[0] for name in POSE_NAMES])
 _HIGH: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[1] for name in POSE_NAMES])
 _DRAWS: Final = np.random.default_rng(1).standard_normal((ROUNDS, SAMPLES, len(POSE_NAMES)))
 """The same at every instant, so that a run can be repeated."""
 
 
-def instead(
-    proposed: Vector, before: Vector | None, body: Vector, rig: Rig, seen: Seen
-) -> Vector | None:
-    """The pose with the highest S1 S2 near the proposed one, or near the one before it.
+class Wanted(NamedTuple):
+    """What a pose is held against."""
 
-    Where no pose was known before, also near somebody who stands where the proposed pose is,
-    turned to any side.
+    body: Vector
+    """Body vector."""
+    outlines: Outlines
+    joints_m: NDArray[np.float64]
+    """(15, 3) the landmarks of the proposed pose."""
+    tightness: Vector
+    """(15,) 1 / m^2: half the inverse variance of each of them."""
+
+
+def instead(
+    proposed: Vector, sure: Vector, before: Vector | None, body: Vector, rig: Rig, seen: Seen
+) -> Vector | None:
+    """The pose that both silhouettes and the proposed one together speak for.
+
+    It is looked for near the proposed one, or near the one before it; where none was known before,
+    also near somebody who stands where the proposed pose is, turned to any side.
 
     Args:
         proposed: By the silhouettes, (25,).
+        sure: (15,) how probably each of its landmarks is less than 50 mm off.
         before: Of the frame before; None at the first.
         body: Body vector.
         rig: Two cameras.
         seen: Both views' reports.
 
     Returns:
-        None where the proposed pose matches well, where no other matches surely better, and where
-        one view alone shows somebody.
+        None where the proposed pose matches well, and where one view alone shows somebody.
     """
     first, second = seen
     if first is None or second is None:
         return None
     outlines = outlines_of(rig, (first, second))
-    scores = [_in_view(n, proposed, body, outlines) for n in range(2)]
-    if min(scores) >= POOR:
+    if min(_in_view(n, proposed, body, outlines) for n in range(2)) >= POOR:
         return None
-    pose, likely = _searched(proposed, before, body, outlines)
-    return pose if likely > BETTER * scores[0] * scores[1] else None
-
-
-def _in_view(n: int, pose: Vector, body: Vector, seen: Outlines) -> float:
-    masks, own = seen.seen[n], int(seen.seen_px[n])
-    return float(match(body, pose, seen.views[n], ALL_LIMBS, seen.width, masks, own))
-
-
-def _searched(
-    proposed: Vector, before: Vector | None, body: Vector, seen: Outlines
-) -> tuple[Vector, float]:
+    wanted = Wanted(body, outlines, joints(body, proposed), 0.5 / _spread_m(sure) ** 2)
     if before is None:
         starts = [proposed, *_standing(proposed)]
-        found = [climbed(start, AT_FIRST, body, seen) for start in starts]
-        return max(found, key=lambda each: each[1])
+        return max((climbed(start, AT_FIRST, wanted) for start in starts), key=itemgetter(1))[0]
     near = np.stack([before, proposed])
-    return climbed(near[products(body, near, ALL_LIMBS, *seen).argmax()], 1.0, body, seen)
+    return climbed(near[likelihoods(near, wanted).argmax()], 1.0, wanted)[0]
 
 
-def climbed(start: Vector, wider: float, body: Vector, seen: Outlines) -> tuple[Vector, float]:
-    """The best pose that rounds of samples met, and its S1 S2.
+def climbed(start: Vector, wider: float, wanted: Wanted) -> tuple[Vector, float]:
+    """The likeliest pose that rounds of samples met, and its log likelihood.
 
     Each round draws poses around the mean of the round before's best, as far apart as those were
     (the cross-entropy method of Rubinstein 1999, a deviation for each parameter).
@@ -103,21 +116,51 @@ def climbed(start: Vector, wider: float, body: Vector, seen: Outlines) -> tuple[
     Args:
         start: Where the first round looks, (25,).
         wider: Times SPREAD that it looks around.
-        body: Body vector.
-        seen: Both views' silhouettes.
+        wanted: What poses are held against.
     """
     middle, spread = start, wider * SPREAD
-    best, likely = start, float(products(body, start[None], ALL_LIMBS, *seen)[0])
+    best, likely = start, float(likelihoods(start[None], wanted)[0])
     for draws in _DRAWS:
         poses: NDArray[np.float64] = np.clip(middle + draws * spread, _LOW, _HIGH)
         poses[0] = best
-        found = products(body, poses, ALL_LIMBS, *seen)
+        found = likelihoods(poses, wanted)
         order = np.argsort(-found, kind="stable")[:BEST]
         if found[order[0]] > likely:
             best, likely = poses[order[0]], float(found[order[0]])
         middle = poses[order].mean(axis=0)
         spread = KEPT * spread + (1 - KEPT) * WIDENED * poses[order].std(axis=0)
     return best, likely
+
+
+def likelihoods(poses: NDArray[np.float64], wanted: Wanted) -> Vector:
+    """Log likelihood of each pose, (n,): what both outlines say, and what was proposed."""
+    fits = products(wanted.body, poses, ALL_LIMBS, *wanted.outlines)
+    astray = _astray(wanted.body, poses, wanted.joints_m, wanted.tightness)
+    found: Vector = TELLING * np.log(np.maximum(fits, 1e-9)) - astray
+    return found
+
+
+@numba.njit(cache=True)
+def _astray(body: Any, poses: Any, joints_m: Any, tightness: Any) -> Any:
+    """How improbably far the landmarks of each pose are from others, (n,)."""
+    found = np.zeros(len(poses))
+    for i in range(len(poses)):
+        off = joints(body, poses[i]) - joints_m
+        for j in range(len(tightness)):
+            square = off[j, 0] ** 2 + off[j, 1] ** 2 + off[j, 2] ** 2
+            found[i] += math.log1p(tightness[j] * square)
+    return found
+
+
+def _spread_m(sure: Vector) -> Vector:
+    """Standard deviation of a joint that is so probably less than 50 mm off, each axis."""
+    found: Vector = 0.05 / np.interp(sure, _WITHIN[1], _WITHIN[0])
+    return found
+
+
+def _in_view(n: int, pose: Vector, body: Vector, seen: Outlines) -> float:
+    masks, own = seen.seen[n], int(seen.seen_px[n])
+    return float(match(body, pose, seen.views[n], ALL_LIMBS, seen.width, masks, own))
 
 
 def _standing(proposed: Vector) -> list[Vector]:

@@ -33,3 +33,5 @@ class State(NamedTuple):
     """What the silhouettes last proposed, and the memory behind it."""
     badly: int = 0
     """For how many frames the model has fitted badly."""
+    doubted: bool = True
+    """The outlines of the instant before fitted badly or had strays, or there were none."""

@@ -17,7 +17,7 @@ from common.config import Settings
 from common.kernel import match, view_of
 from common.kinematics import ALL_LIMBS
 from common.messages import Body, Facing, Guide, Report
-from integrator import adapting, insight, matched, opening, smoothing, telling
+from integrator import adapting, hull, insight, matched, opening, smoothing, telling
 from integrator.arbiter import Sight, arbitrate
 from integrator.assumed import assumed_rig
 from integrator.belief import LOST_SCORE
@@ -52,6 +52,7 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
     now_s, before_s = pair.newest.captured_s, state.last_s
     dt_s = 0.0 if before_s is None else max(0.0, now_s - before_s)
     state = state._replace(frames=_heard(state.frames, pair), last_s=now_s)
+    pair, strays = _of_one_piece(state, pair)
     seen = pair.with_somebody
     state = _with_rig(state, seen)
     rig = state.rig
@@ -66,7 +67,16 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
         state = state._replace(opening=adapting.step(state.opening, rig, seen, pose))
     state, angles, scores = _smoothed(state._replace(pose=pose), rig, pair, dt_s)
     body = telling.body_of(state, rig, pair, angles, scores)
+    state = state._replace(doubted=strays or min(scores) < matched.POOR)
     return state, body, telling.guide_of(state, rig, pair, settled_at is not None)
+
+
+def _of_one_piece(state: State, pair: Pair) -> hull.Cleaned:
+    """The reports without what is no part of the person, where that is to be feared: an extra."""
+    rig, known = state.rig, state.scale_source == "calibrated"
+    if rig is None or not known or state.settings.mode != "default" or not state.doubted:
+        return hull.Cleaned(pair, False)
+    return hull.cleaned(rig, pair)
 
 
 def _heard(frames: tuple[int, int], pair: Pair) -> tuple[int, int]:
@@ -144,9 +154,9 @@ def _believed(
     before = rest_pose() if state.pose is None else state.pose
     body = body_vector(bdp)
     pose, beside_m = insight.pose_and_rest(body, before, known.joints_m)
-    better = matched.instead(pose, state.pose, body, rig, seen)
+    better = matched.instead(pose, known.sure, state.pose, body, rig, seen)
     if better is not None:
-        return state._replace(insight=known, beside_m=None), better
+        return state._replace(insight=known, beside_m=beside_m), better
     return state._replace(insight=known, beside_m=beside_m), pose
 
 
@@ -191,4 +201,4 @@ def _score(body: Vector, pose: Vector, rig: Rig, n: int, report: Report | None) 
 def _without_pose(state: State) -> State:
     """Nobody is in any view: what was learnt of the body is kept, its pose is not."""
     fresh = smoothing.init(len(ANGLE_NAMES), state.smooth.period_s)
-    return state._replace(pose=None, badly=0, smooth=fresh, insight=None)
+    return state._replace(pose=None, badly=0, smooth=fresh, insight=None, doubted=True)

@@ -1,0 +1,176 @@
+"""What two outlines show of one piece of space: a person, without what else differs from the room.
+
+A place that both views show belongs to their common hull (Laurentini 1994); a person is one piece
+of it, and the largest and tallest. Shadows, glare and moved furniture are others, or none.
+"""
+
+from typing import Any, Final, NamedTuple
+
+import cv2
+import msgspec
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from common.camera import Camera, Rig
+from common.kernel import NEAREST_M, view_of
+from common.messages import Box, Report, pack, unpack
+from common.similarity import Mask
+from integrator.pairing import Pair
+from integrator.perspective import triangulate
+
+CELL_M: Final = 0.05
+"""Thinner than an arm, so that it stays in one piece with its hand."""
+ASIDE_CELLS: Final = 40
+"""2 m to each side of the middle of the outlines, which strays draw away from the person."""
+UP_CELLS: Final = 48
+FLOOR_M: Final = 0.05
+"""What is lower lies on the floor."""
+STRAY_SHARE: Final = 0.03
+"""Less than this of an outline is left as it is: the hull is coarse."""
+
+
+class Cleaned(NamedTuple):
+    """Two reports of one piece, and whether anything else was in them."""
+
+    pair: Pair
+    strays: bool
+
+
+def cleaned(rig: Rig, pair: Pair) -> Cleaned:
+    """The reports of an instant without what is no part of the person.
+
+    Args:
+        rig: Two cameras; their world has y up and its floor at 0.
+        pair: What was seen, left as it is where one view alone shows somebody.
+    """
+    first, second = pair.with_somebody
+    if first is None or second is None:
+        return Cleaned(pair, False)
+    masks = (unpack(first), unpack(second))
+    kept = one_piece(rig, masks)
+    if kept is None or not any(
+        after.sum() < (1.0 - STRAY_SHARE) * before.sum()
+        for after, before in zip(kept, masks, strict=True)
+    ):
+        return Cleaned(pair, False)
+    return Cleaned(Pair(_told(first, kept[0]), _told(second, kept[1])), True)
+
+
+def one_piece(rig: Rig, masks: tuple[Mask, Mask]) -> tuple[Mask, Mask] | None:
+    """Both outlines' parts that show the largest piece of their hull; None where there is none.
+
+    Args:
+        rig: Two cameras.
+        masks: Not empty.
+    """
+    first, second = (_middle_px(mask) for mask in masks)
+    middle_m = triangulate((rig.cameras[0], rig.cameras[1]), (first, second))
+    if not np.isfinite(middle_m).all():
+        return None
+    corner_m = middle_m - ASIDE_CELLS * CELL_M
+    corner_m[1] = FLOOR_M
+    views = np.array([view_of(camera) for camera in rig.cameras])
+    full = np.full((2 * ASIDE_CELLS, UP_CELLS, 2 * ASIDE_CELLS), -1, np.int32)
+    for view, mask in zip(views, masks, strict=True):
+        _carve(full, corner_m, view, mask)
+    piece = _largest(full)
+    if not len(piece):
+        return None
+    places_m = corner_m + (piece + 0.5) * CELL_M
+    kept = [
+        mask & _shown(places_m, camera, mask)
+        for mask, camera in zip(masks, rig.cameras, strict=True)
+    ]
+    return (kept[0], kept[1]) if kept[0].any() and kept[1].any() else None
+
+
+def _middle_px(mask: Mask) -> tuple[float, float]:
+    rows, columns = np.nonzero(mask)
+    return float(np.median(columns)) + 0.5, float(np.median(rows)) + 0.5
+
+
+@numba.njit(cache=True)
+def _carve(full: Any, corner_m: Any, view: Any, mask: Any) -> None:
+    """Empty the cells that a view sees the room behind; full ones are 0, unseen ones stay -1."""
+    height, width = mask.shape
+    for i in range(full.shape[0]):
+        for j in range(full.shape[1]):
+            for k in range(full.shape[2]):
+                x = corner_m[0] + (i + 0.5) * CELL_M
+                y = corner_m[1] + (j + 0.5) * CELL_M
+                z = corner_m[2] + (k + 0.5) * CELL_M
+                depth = view[6] * x + view[7] * y + view[8] * z + view[11]
+                if depth < NEAREST_M:
+                    continue
+                across = view[0] * x + view[1] * y + view[2] * z + view[9]
+                down = view[3] * x + view[4] * y + view[5] * z + view[10]
+                u = int(np.floor(across / depth * view[12] + view[14]))
+                v = int(np.floor(down / depth * view[13] + view[15]))
+                if 0 <= u < width and 0 <= v < height:
+                    if not mask[v, u]:
+                        full[i, j, k] = -2
+                    elif full[i, j, k] == -1:
+                        full[i, j, k] = 0
+
+
+@numba.njit(cache=True)
+def _largest(full: Any) -> Any:
+    """Cells, (n, 3), of the piece with the largest product of volume and height."""
+    best, most = np.empty((0, 3), np.int64), 0
+    waiting = np.empty((full.size, 3), np.int64)
+    for i in range(full.shape[0]):
+        for j in range(full.shape[1]):
+            for k in range(full.shape[2]):
+                if full[i, j, k] == 0:
+                    size = _fill(full, i, j, k, waiting)
+                    rows = waiting[:size, 1]
+                    worth = size * (rows.max() - rows.min() + 1)
+                    if worth > most:
+                        best, most = waiting[:size].copy(), worth
+    return best
+
+
+@numba.njit(cache=True)
+def _fill(full: Any, i: int, j: int, k: int, waiting: Any) -> int:
+    """Write the cells of one piece into `waiting` and mark them; returns how many."""
+    waiting[0] = i, j, k
+    full[i, j, k] = 1
+    done, size = 0, 1
+    while done < size:
+        at = waiting[done]
+        done += 1
+        for x in range(max(0, at[0] - 1), min(full.shape[0], at[0] + 2)):
+            for y in range(max(0, at[1] - 1), min(full.shape[1], at[1] + 2)):
+                for z in range(max(0, at[2] - 1), min(full.shape[2], at[2] + 2)):
+                    if full[x, y, z] == 0:
+                        full[x, y, z] = 1
+                        waiting[size] = x, y, z
+                        size += 1
+    return size
+
+
+def _shown(places_m: NDArray[np.float64], camera: Camera, mask: Mask) -> Mask:
+    """Where a view shows places, each as large as a cell is there."""
+    seen = places_m @ np.array(camera.R).T + camera.t
+    K, depth = np.array(camera.K), seen[:, 2]
+    u, v = (np.floor(seen[:, :2] / depth[:, None] * [K[0, 0], K[1, 1]] + K[:2, 2])).astype(int).T
+    inside = (depth > NEAREST_M) & (u >= 0) & (v >= 0) & (u < mask.shape[1]) & (v < mask.shape[0])
+    dots = np.zeros(mask.shape, np.uint8)
+    dots[v[inside], u[inside]] = 1
+    reach = int(np.ceil(CELL_M * K[0, 0] / np.median(depth)))
+    around = np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
+    return np.asarray(cv2.dilate(dots, around) > 0)
+
+
+def _told(report: Report, mask: Mask) -> Report:
+    """The report with another outline."""
+    left, top, width, height = cv2.boundingRect(mask.view(np.uint8))
+    cut = not (left and top) or left + width == mask.shape[1] or top + height == mask.shape[0]
+    return msgspec.structs.replace(
+        report,
+        silhouette=pack(mask),
+        box=Box(left=left, right=left + width - 1, top=top, bottom=top + height - 1),
+        area_px=int(mask.sum()),
+        cut=cut,
+    )
