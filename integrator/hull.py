@@ -71,7 +71,7 @@ def one_piece(rig: Rig, masks: tuple[Mask, Mask]) -> tuple[Mask, Mask] | None:
     corner_m = middle_m - ASIDE_CELLS * CELL_M
     corner_m[1] = FLOOR_M
     views = np.array([view_of(camera) for camera in rig.cameras])
-    full = np.full((2 * ASIDE_CELLS, UP_CELLS, 2 * ASIDE_CELLS), -1, np.int32)
+    full = np.zeros((2 * ASIDE_CELLS, UP_CELLS, 2 * ASIDE_CELLS), np.int32)
     for view, mask in zip(views, masks, strict=True):
         _carve(full, corner_m, view, mask)
     piece = _largest(full)
@@ -92,7 +92,10 @@ def _middle_px(mask: Mask) -> tuple[float, float]:
 
 @numba.njit(cache=True)
 def _carve(full: Any, corner_m: Any, view: Any, mask: Any) -> None:
-    """Empty the cells that a view sees the room behind; full ones are 0, unseen ones stay -1."""
+    """Count the views that see each cell covered; -1 where one sees the room there.
+
+    What one view covers and the other has outside its picture may be an arm that reaches out.
+    """
     height, width = mask.shape
     for i in range(full.shape[0]):
         for j in range(full.shape[1]):
@@ -109,45 +112,46 @@ def _carve(full: Any, corner_m: Any, view: Any, mask: Any) -> None:
                 v = int(np.floor(down / depth * view[13] + view[15]))
                 if 0 <= u < width and 0 <= v < height:
                     if not mask[v, u]:
-                        full[i, j, k] = -2
-                    elif full[i, j, k] == -1:
-                        full[i, j, k] = 0
+                        full[i, j, k] = -1
+                    elif full[i, j, k] >= 0:
+                        full[i, j, k] += 1
 
 
 @numba.njit(cache=True)
 def _largest(full: Any) -> Any:
-    """Cells, (n, 3), of the piece with the largest product of volume and height."""
+    """Cells, (n, 3), of the piece that both views see, with the most volume times height."""
     best, most = np.empty((0, 3), np.int64), 0
     waiting = np.empty((full.size, 3), np.int64)
     for i in range(full.shape[0]):
         for j in range(full.shape[1]):
             for k in range(full.shape[2]):
-                if full[i, j, k] == 0:
-                    size = _fill(full, i, j, k, waiting)
+                if full[i, j, k] == 2:
+                    size, both = _fill(full, i, j, k, waiting)
                     rows = waiting[:size, 1]
-                    worth = size * (rows.max() - rows.min() + 1)
+                    worth = both * (rows.max() - rows.min() + 1)
                     if worth > most:
                         best, most = waiting[:size].copy(), worth
     return best
 
 
 @numba.njit(cache=True)
-def _fill(full: Any, i: int, j: int, k: int, waiting: Any) -> int:
-    """Write the cells of one piece into `waiting` and mark them; returns how many."""
+def _fill(full: Any, i: int, j: int, k: int, waiting: Any) -> tuple[int, int]:
+    """Write the cells of one piece into `waiting`, and mark them; how many, and how many of both."""
     waiting[0] = i, j, k
-    full[i, j, k] = 1
-    done, size = 0, 1
+    full[i, j, k] = -1
+    done, size, both = 0, 1, 1
     while done < size:
         at = waiting[done]
         done += 1
         for x in range(max(0, at[0] - 1), min(full.shape[0], at[0] + 2)):
             for y in range(max(0, at[1] - 1), min(full.shape[1], at[1] + 2)):
                 for z in range(max(0, at[2] - 1), min(full.shape[2], at[2] + 2)):
-                    if full[x, y, z] == 0:
-                        full[x, y, z] = 1
+                    if full[x, y, z] > 0:
+                        both += full[x, y, z] == 2
+                        full[x, y, z] = -1
                         waiting[size] = x, y, z
                         size += 1
-    return size
+    return size, both
 
 
 def _shown(places_m: NDArray[np.float64], camera: Camera, mask: Mask) -> Mask:
