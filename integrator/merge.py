@@ -8,6 +8,7 @@ from common.body import (
     ANGLES_IN_POSE,
     POSE_INDEX,
     YAW_DEG,
+    Bdp,
     Vector,
     body_vector,
     rest_pose,
@@ -29,7 +30,9 @@ from integrator.place import place_of, roots_of, scales_at
 from integrator.two_outlines import packed
 
 
-def init(rig: Rig | None, period_s: float, settings: Settings) -> State:
+def init(
+    rig: Rig | None, period_s: float, settings: Settings, body: Bdp | None = None
+) -> State:
     """An integrator that has heard nothing.
 
     Args:
@@ -37,9 +40,11 @@ def init(rig: Rig | None, period_s: float, settings: Settings) -> State:
             of the paper's kind is assumed when somebody is seen.
         period_s: Time between frames.
         settings: Of the run.
+        body: Universal BDPs, metres, where they were measured before.
     """
     source: Literal["calibrated", "assumed"] = "assumed" if rig is None else "calibrated"
-    return State(settings, rig, source, smoothing.init(len(ANGLE_NAMES), period_s))
+    smooth = smoothing.init(len(ANGLE_NAMES), period_s)
+    return State(settings, rig, source, smooth, opening.init(body))
 
 
 def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:

@@ -55,6 +55,14 @@ class Opening(NamedTuple):
         return bool(self.bodies) and not self.measured
 
 
+def init(body: Bdp | None) -> Opening:
+    """Nothing is known, or a body that was measured before: its navel is where its legs have it."""
+    if body is None:
+        return Opening()
+    legs_m = body.r_upper_leg.height + body.r_lower_leg.height
+    return Opening(body, True, (0.0, legs_m, 0.0))
+
+
 def prior(rig: Rig, seen: Seen) -> Bdp:
     """The thesis's proportions at the height that the silhouettes show (T4).
 

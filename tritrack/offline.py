@@ -12,6 +12,7 @@ import msgspec
 from rich.console import Console
 
 from common import config
+from common.body import Bdp
 from common.camera import Rig
 from common.clips import Clip, open_clip, shortfall
 from common.config import Mode, Settings, SettingsError
@@ -22,6 +23,7 @@ from common.notes import Notes
 from integrator import merge, noticing
 from integrator.pairing import Pair
 from tritrack.one_camera import extras_of, follow_clip
+from tritrack.opening_clip import body_of
 from tritrack.runs import write_run
 from tritrack.terminal import bar, complain, warn
 from viewer import track
@@ -87,9 +89,10 @@ def track_clip(
     if settings.mode == "thesis":
         raise ClipError(f"{clip.name}: the thesis's mode is for one camera: add --views 1")
     rig = both_cameras(clip)
+    known = body_of(settings, lambda own: track_clip(own, decoders).bodies)
     viewers, odd_rooms = _viewers(clip, rig, settings, decoders)
     prepared = time.perf_counter()
-    state = merge.init(rig, clip.every / clip.views[0].fps, settings)
+    state = merge.init(rig, clip.every / clip.views[0].fps, settings, known)
     noticed = noticing.State()
     guide: Guide | None = None
     bodies: list[Body] = []
@@ -123,6 +126,16 @@ def track_clip(
         "warnings": [*clip.warnings, *odd_rooms, *filter(None, cut_off), *noticed_odd],
     }
     return Tracked(clip, bodies, facts)
+
+
+def measured_before(settings: Settings) -> Bdp | None:
+    """The person's body as the opening clip that the settings name tells it, if they name one.
+
+    Raises:
+        SettingsError, ClipError, DecoderDied: As `body_of` and `track_clip` do.
+    """
+    with Decoders() as decoders:
+        return body_of(settings, lambda own: track_clip(own, decoders).bodies)
 
 
 def overridden(settings: Settings, mode: Mode | None, size: str | None) -> Settings:
