@@ -50,7 +50,7 @@ def cameras_of(given: dict[str, Any], boxed: tuple[str, ...]) -> dict[str, Any]:
     for camera in given["cameras"]:
         K = np.array(camera["K_calib"])
         if camera["name"] in boxed:
-            K[:2] *= BOXED[0] / WHOLE[0]
+            K[1] *= BOXED[0] / WHOLE[0]  # and K[0] follows when the picture is taken as it is
             K[1, 2] += BAR_PX
         K[:2, 2] += 0.5
         cameras.append(

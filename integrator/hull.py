@@ -26,6 +26,8 @@ ASIDE_CELLS: Final = 40
 UP_CELLS: Final = 48
 FLOOR_M: Final = 0.05
 """What is lower lies on the floor."""
+REACH_CELLS: Final = 10
+"""How far an arm may reach out of one of the pictures."""
 STRAY_SHARE: Final = 0.03
 """Less than this of an outline is left as it is: the hull is coarse."""
 
@@ -119,39 +121,68 @@ def _carve(full: Any, corner_m: Any, view: Any, mask: Any) -> None:
 
 @numba.njit(cache=True)
 def _largest(full: Any) -> Any:
-    """Cells, (n, 3), of the piece that both views see, with the most volume times height."""
-    best, most = np.empty((0, 3), np.int64), 0
-    waiting = np.empty((full.size, 3), np.int64)
+    """Cells, (n, 3), of the piece that both views see with the most volume times height.
+
+    And of what one view sees next to it, an arm that reaches out of the other's picture.
+    """
+    first, last, most, end = 0, 0, 0, 0
+    piece = np.empty((full.size, 3), np.int64)
     for i in range(full.shape[0]):
         for j in range(full.shape[1]):
             for k in range(full.shape[2]):
                 if full[i, j, k] == 2:
-                    size, both = _fill(full, i, j, k, waiting)
-                    rows = waiting[:size, 1]
-                    worth = both * (rows.max() - rows.min() + 1)
+                    piece[end] = i, j, k
+                    full[i, j, k] = -1
+                    begin, end = end, _spread(full, 2, piece, end, end + 1)
+                    rows = piece[begin:end, 1]
+                    worth = (end - begin) * (rows.max() - rows.min() + 1)
                     if worth > most:
-                        best, most = waiting[:size].copy(), worth
-    return best
+                        first, last, most = begin, end, worth
+    piece[: last - first] = piece[first:last].copy()
+    begin, end = 0, last - first
+    for _ in range(REACH_CELLS):
+        before = end
+        end = _ring(full, piece, begin, end)
+        begin = before
+    return piece[:end]
 
 
 @numba.njit(cache=True)
-def _fill(full: Any, i: int, j: int, k: int, waiting: Any) -> tuple[int, int]:
-    """Write the cells of one piece into `waiting`, and mark them; how many, and how many of both."""
-    waiting[0] = i, j, k
-    full[i, j, k] = -1
-    done, size, both = 0, 1, 1
-    while done < size:
-        at = waiting[done]
+def _spread(full: Any, value: int, piece: Any, done: int, end: int) -> int:
+    """Write all that hangs together with cells of a piece behind them; returns its end."""
+    while done < end:
+        end = _around(full, value, piece, done, end)
         done += 1
-        for x in range(max(0, at[0] - 1), min(full.shape[0], at[0] + 2)):
-            for y in range(max(0, at[1] - 1), min(full.shape[1], at[1] + 2)):
-                for z in range(max(0, at[2] - 1), min(full.shape[2], at[2] + 2)):
-                    if full[x, y, z] > 0:
-                        both += full[x, y, z] == 2
-                        full[x, y, z] = -1
-                        waiting[size] = x, y, z
-                        size += 1
-    return size, both
+    return end
+
+
+@numba.njit(cache=True)
+def _ring(full: Any, piece: Any, begin: int, end: int) -> int:
+    """Write what one view alone sees next to some cells of a piece; returns its new end."""
+    stop = end
+    for at in range(begin, stop):
+        end = _around(full, 1, piece, at, end)
+    return end
+
+
+@numba.njit(cache=True)
+def _around(full: Any, value: int, piece: Any, at: int, end: int) -> int:
+    """Write the cells with a value that share a side with a cell behind a piece, and mark them."""
+    for axis in range(3):
+        for step in (-1, 1):
+            i, j, k = piece[at]
+            if axis == 0:
+                i += step
+            elif axis == 1:
+                j += step
+            else:
+                k += step
+            inside = 0 <= i < full.shape[0] and 0 <= j < full.shape[1] and 0 <= k < full.shape[2]
+            if inside and full[i, j, k] == value:
+                full[i, j, k] = -1
+                piece[end] = i, j, k
+                end += 1
+    return end
 
 
 def _shown(places_m: NDArray[np.float64], camera: Camera, mask: Mask) -> Mask:

@@ -1,6 +1,7 @@
 """A pose matched to both silhouettes, where the proposed one matches badly."""
 
 import math
+from itertools import product
 from operator import itemgetter
 from typing import Any, Final, NamedTuple
 
@@ -80,7 +81,8 @@ def instead(
     """The pose that both silhouettes and the proposed one together speak for.
 
     It is looked for near the proposed one, or near the one before it; where none was known before,
-    also near somebody who stands where the proposed pose is, turned to any side.
+    also near somebody who stands where the proposed pose is, turned to any side. A proposal that
+    no pose near it makes match is refuted: then the outlines alone speak.
 
     Args:
         proposed: By the silhouettes, (25,).
@@ -100,6 +102,14 @@ def instead(
     if min(_in_view(n, proposed, body, outlines) for n in range(2)) >= POOR:
         return None
     wanted = Wanted(body, outlines, joints(body, proposed), 0.5 / _spread_m(sure) ** 2)
+    pose = proposed if before is None else _searched(proposed, before, wanted)
+    if min(_in_view(n, pose, body, outlines) for n in range(2)) >= POOR:
+        return pose
+    refuted = wanted._replace(tightness=np.zeros(len(sure)))
+    return _searched(pose, before, refuted)
+
+
+def _searched(proposed: Vector, before: Vector | None, wanted: Wanted) -> Vector:
     if before is None:
         starts = [proposed, *_standing(proposed)]
         return max((climbed(start, AT_FIRST, wanted) for start in starts), key=itemgetter(1))[0]
@@ -164,11 +174,13 @@ def _in_view(n: int, pose: Vector, body: Vector, seen: Outlines) -> float:
 
 
 def _standing(proposed: Vector) -> list[Vector]:
-    """Somebody at the place of a pose who stands with hanging arms, turned to every side."""
+    """Somebody who stands at the place of a pose, arms hanging or stretched, to every side."""
     poses = []
-    for yaw_deg in YAWS_DEG:
+    for yaw_deg, raised_deg in product(YAWS_DEG, (0.0, 90.0)):
         pose = rest_pose()
         pose[:3] = proposed[:3]
         pose[POSE_INDEX["torso_y"]] = yaw_deg
+        pose[POSE_INDEX["r_shoulder_z"]] -= raised_deg
+        pose[POSE_INDEX["l_shoulder_z"]] += raised_deg
         poses.append(pose)
     return poses
