@@ -53,11 +53,24 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
     Universal BDPs come from the opening posture (P46), the arbiter settles the facing (P48),
     position and angles are fused (P50-P54) and smoothed; the viewers are told BDPs, positions
     and facing for their next frame (P2).
+
+    In `default` mode outlines that fit badly are looked at again, without what is no part of the
+    person, and so are those after them.
     """
+    clean, strays = _of_one_piece(state, pair) if state.doubted else (pair, False)
+    after, body, guide = _merged(state, clean)
+    if min(body.score) < matched.POOR and not state.doubted:
+        clean, strays = _of_one_piece(state, pair)
+        after, body, guide = _merged(state, clean) if strays else (after, body, guide)
+    doubted = strays or min(body.score) < matched.POOR
+    return after._replace(doubted=doubted), body, guide
+
+
+def _merged(state: State, pair: Pair) -> tuple[State, Body, Guide]:
+    """The same with outlines that are believed."""
     now_s, before_s = pair.newest.captured_s, state.last_s
     dt_s = 0.0 if before_s is None else max(0.0, now_s - before_s)
     state = state._replace(frames=_heard(state.frames, pair), last_s=now_s)
-    pair, strays = _of_one_piece(state, pair)
     seen = pair.with_somebody
     state = _with_rig(state, seen)
     rig = state.rig
@@ -72,14 +85,13 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
         state = state._replace(opening=adapting.step(state.opening, rig, seen, pose))
     state, angles, scores = _smoothed(state._replace(pose=pose), rig, pair, dt_s)
     body = telling.body_of(state, rig, pair, angles, scores)
-    state = state._replace(doubted=strays or min(scores) < matched.POOR)
     return state, body, telling.guide_of(state, rig, pair, settled_at is not None)
 
 
 def _of_one_piece(state: State, pair: Pair) -> hull.Cleaned:
-    """The reports without what is no part of the person, where that is to be feared: an extra."""
+    """The reports without what is no part of the person: a departure from the paper."""
     rig, known = state.rig, state.scale_source == "calibrated"
-    if rig is None or not known or state.settings.mode != "default" or not state.doubted:
+    if rig is None or not known or state.settings.mode != "default":
         return hull.Cleaned(pair, False)
     return hull.cleaned(rig, pair)
 
@@ -206,4 +218,4 @@ def _score(body: Vector, pose: Vector, rig: Rig, n: int, report: Report | None) 
 def _without_pose(state: State) -> State:
     """Nobody is in any view: what was learnt of the body is kept, its pose is not."""
     fresh = smoothing.init(len(ANGLE_NAMES), state.smooth.period_s)
-    return state._replace(pose=None, badly=0, smooth=fresh, insight=None, doubted=True)
+    return state._replace(pose=None, badly=0, smooth=fresh, insight=None)
