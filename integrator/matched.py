@@ -19,6 +19,8 @@ from integrator.two_outlines import Outlines, outlines_of
 
 POOR: Final = 0.6
 """A proposal of less S in either view is matched: of r01's and r04's every twentieth is."""
+BETTER: Final = 1.25
+"""How many times better S1 S2 must be for a matched pose to go on."""
 TELLING: Final = 250.0
 """What the log of S1 S2 counts beside the log likelihood of what was proposed."""
 
@@ -44,6 +46,8 @@ SPREAD: Final = np.array([_SPREADS[name] for name in POSE_NAMES])
 """Standard deviation of the first round, metres and degrees: what a body does in 1/15 s."""
 AT_FIRST: Final = 2.0
 """How many times wider poses are tried where none was known before."""
+CLIMBED_AGAIN: Final = 3
+"""Of those, how many are followed up: which way somebody faces is told by little."""
 YAWS_DEG: Final = range(0, 360, 45)
 
 _RADII: Final = np.linspace(0.2, 4.0, 60)
@@ -76,7 +80,13 @@ class Wanted(NamedTuple):
 
 
 def instead(
-    proposed: Vector, sure: Vector, before: Vector | None, body: Vector, rig: Rig, seen: Seen
+    proposed: Vector,
+    sure: Vector,
+    before: Vector | None,
+    held: bool,
+    body: Vector,
+    rig: Rig,
+    seen: Seen,
 ) -> Vector | None:
     """The pose that both silhouettes and the proposed one together speak for.
 
@@ -88,6 +98,7 @@ def instead(
         proposed: By the silhouettes, (25,).
         sure: (15,) how probably each of its landmarks is less than 50 mm off.
         before: Of the frame before; None at the first.
+        held: That was matched too; a proposal must match nearly as well to be believed again.
         body: Body vector.
         rig: Two cameras.
         seen: Both views' reports.
@@ -99,20 +110,29 @@ def instead(
     if first is None or second is None:
         return None
     outlines = outlines_of(rig, (first, second))
-    if min(_in_view(n, proposed, body, outlines) for n in range(2)) >= POOR:
-        return None
-    wanted = Wanted(body, outlines, joints(body, proposed), 0.5 / _spread_m(sure) ** 2)
+    wanted = Wanted(body, outlines, joints(body, proposed), 0.5 / spread_m(sure) ** 2)
+    if _poorest(proposed, wanted) >= POOR:
+        return _held(proposed, before, wanted) if held and before is not None else None
     pose = proposed if before is None else _searched(proposed, before, wanted)
-    if min(_in_view(n, pose, body, outlines) for n in range(2)) >= POOR:
+    if _poorest(pose, wanted) >= POOR:
         return pose
     refuted = wanted._replace(tightness=np.zeros(len(sure)))
     return _searched(pose, before, refuted)
 
 
+def _held(proposed: Vector, before: Vector, wanted: Wanted) -> Vector | None:
+    """The pose that goes on from the one before, where the proposed one matches surely worse."""
+    pose, _ = climbed(before, 1.0, wanted)
+    fits = products(wanted.body, np.stack([pose, proposed]), ALL_LIMBS, *wanted.outlines)
+    return pose if fits[0] > BETTER * fits[1] else None
+
+
 def _searched(proposed: Vector, before: Vector | None, wanted: Wanted) -> Vector:
     if before is None:
         starts = [proposed, *_standing(proposed)]
-        return max((climbed(start, AT_FIRST, wanted) for start in starts), key=itemgetter(1))[0]
+        found = [climbed(start, AT_FIRST, wanted) for start in starts]
+        likely = sorted(found, key=itemgetter(1), reverse=True)[:CLIMBED_AGAIN]
+        return max((climbed(pose, 1.0, wanted) for pose, _ in likely), key=itemgetter(1))[0]
     near = np.stack([before, proposed])
     return climbed(near[likelihoods(near, wanted).argmax()], 1.0, wanted)[0]
 
@@ -162,15 +182,19 @@ def _astray(body: Any, poses: Any, joints_m: Any, tightness: Any) -> Any:
     return found
 
 
-def _spread_m(sure: Vector) -> Vector:
+def spread_m(sure: Vector) -> Vector:
     """Standard deviation of a joint that is so probably less than 50 mm off, each axis."""
     found: Vector = 0.05 / np.interp(sure, _WITHIN[1], _WITHIN[0])
     return found
 
 
-def _in_view(n: int, pose: Vector, body: Vector, seen: Outlines) -> float:
-    masks, own = seen.seen[n], int(seen.seen_px[n])
-    return float(match(body, pose, seen.views[n], ALL_LIMBS, seen.width, masks, own))
+def _poorest(pose: Vector, wanted: Wanted) -> float:
+    """S of a pose in the view where it is lower."""
+    body, (views, masks, areas, width) = wanted.body, wanted.outlines
+    return min(
+        float(match(body, pose, view, ALL_LIMBS, width, mask, int(area)))
+        for view, mask, area in zip(views, masks, areas, strict=True)
+    )
 
 
 def _standing(proposed: Vector) -> list[Vector]:

@@ -30,9 +30,7 @@ from integrator.place import place_of, roots_of, scales_at
 from integrator.two_outlines import packed
 
 
-def init(
-    rig: Rig | None, period_s: float, settings: Settings, body: Bdp | None = None
-) -> State:
+def init(rig: Rig | None, period_s: float, settings: Settings, body: Bdp | None = None) -> State:
     """An integrator that has heard nothing.
 
     Args:
@@ -166,15 +164,14 @@ def _believed(
     calibrated = state.scale_source == "calibrated"
     known = insight.step(memory, bdp, rig, seen, dt_s) if calibrated else None
     if known is None:
-        state = state._replace(insight=None, beside_m=None)
+        state = state._replace(insight=None, beside_m=None, matched=False)
         return state, _settled(state, rig, seen, pose)
     before = rest_pose() if state.pose is None else state.pose
     body = body_vector(bdp)
     pose, beside_m = insight.pose_and_rest(body, before, known.joints_m)
-    better = matched.instead(pose, known.sure, state.pose, body, rig, seen)
-    if better is not None:
-        return state._replace(insight=known, beside_m=beside_m), better
-    return state._replace(insight=known, beside_m=beside_m), pose
+    better = matched.instead(pose, known.sure, state.pose, state.matched, body, rig, seen)
+    state = state._replace(insight=known, beside_m=beside_m, matched=better is not None)
+    return state, pose if better is None else better
 
 
 def _settled(state: State, rig: Rig, seen: Seen, pose: Vector) -> Vector:
@@ -218,4 +215,4 @@ def _score(body: Vector, pose: Vector, rig: Rig, n: int, report: Report | None) 
 def _without_pose(state: State) -> State:
     """Nobody is in any view: what was learnt of the body is kept, its pose is not."""
     fresh = smoothing.init(len(ANGLE_NAMES), state.smooth.period_s)
-    return state._replace(pose=None, badly=0, smooth=fresh, insight=None)
+    return state._replace(pose=None, badly=0, smooth=fresh, insight=None, matched=False)

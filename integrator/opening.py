@@ -102,9 +102,7 @@ def _crown_m(rig: Rig, seen: Seen, place: Vector) -> float:
     return float(found[1]) if np.isfinite(found).all() else np.inf
 
 
-def _upwards(
-    report: Report, camera: Camera, place: Vector
-) -> tuple[Vector, NDArray[np.intp]]:
+def _upwards(report: Report, camera: Camera, place: Vector) -> tuple[Vector, NDArray[np.intp]]:
     """How far up each pixel of an outline is in its picture, (n,), and the pixels, (n, 2)."""
     at, above = project(camera, np.stack([place, place + UPWARDS_M]))
     rows, columns = np.nonzero(unpack(report))
