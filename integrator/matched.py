@@ -21,7 +21,9 @@ POOR: Final = 0.6
 """A proposal of less S in either view is matched: of r01's and r04's every twentieth is."""
 BETTER: Final = 1.25
 """How many times better S1 S2 must be for a matched pose to go on."""
-TELLING: Final = 250.0
+DOUBT: Final = 6.0
+"""How fast a proposal that fits worse is believed less, however sure it is of itself."""
+TELLING: Final = 150.0
 """What the log of S1 S2 counts beside the log likelihood of what was proposed."""
 
 ROUNDS: Final = 20
@@ -111,8 +113,10 @@ def instead(
         return None
     outlines = outlines_of(rig, (first, second))
     wanted = Wanted(body, outlines, joints(body, proposed), 0.5 / spread_m(sure) ** 2)
-    if _poorest(proposed, wanted) >= POOR:
+    fits = _poorest(proposed, wanted)
+    if fits >= POOR:
         return _held(proposed, before, wanted) if held and before is not None else None
+    wanted = wanted._replace(tightness=wanted.tightness * (fits / POOR) ** DOUBT)
     pose = proposed if before is None else _searched(proposed, before, wanted)
     if _poorest(pose, wanted) >= POOR:
         return pose

@@ -68,7 +68,7 @@ def test_a_proposal_that_matches_is_left_alone() -> None:
 def test_a_pose_that_was_matched_goes_on_until_a_proposal_matches_as_well() -> None:
     truth = on_one_leg()
     seen, proposed = seen_as(truth), truth.copy()
-    proposed[POSE_INDEX["torso_z"]] -= 7.0
+    proposed[POSE_INDEX["l_hip_z"]] -= 10.0
     assert min(scores(proposed, seen)) > matched.POOR
     found = matched.instead(proposed, UNSURE, on_one_leg(42.0), True, VECTOR, ROLLED, seen)
     assert found is not None
