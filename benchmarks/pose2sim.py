@@ -17,10 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common import config
-from common.body import body_vector
 from common.camera import Rig
 from common.kernel import draw_body, view_of
-from common.messages import Body, Report, unpack
+from common.messages import Body, Report
+from common.proportions import body_vector
+from common.wire import unpack
 from tritrack.offline import Decoders, both_cameras, track_clip
 from tritrack.runs import write_run
 from viewer.capture import Frame

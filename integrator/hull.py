@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from common.camera import Camera, Rig
 from common.kernel import NEAREST_M, view_of
-from common.messages import Box, Report, pack, unpack
+from common.messages import Box, Report
 from common.similarity import Mask
+from common.wire import pack, unpack
 from integrator.pairing import Pair
 from integrator.perspective import triangulate
 

@@ -1,5 +1,6 @@
 """Bodies that one silhouette may show: the stick body lifted, and what the outline proposes."""
 
+import math
 from collections.abc import Mapping
 from typing import Final, Literal, NamedTuple
 
@@ -8,15 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bits import count, count_both
-from common.body import (
-    JOINT_NAMES,
-    LIMB_ENDS,
-    LIMBS,
-    Bdp,
-    Vector,
-    body_vector,
-    rest_pose,
-)
+from common.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Bdp, Vector, rest_pose
 from common.camera import Camera, Rig, centre, project, ray
 from common.kernel import score as similarity_of
 from common.messages import (
@@ -25,6 +18,7 @@ from common.messages import (
     ViewerNumber,
 )
 from common.notes import ORIENTATIONS, Orientation
+from common.proportions import body_vector
 from common.stickman import BREADTH, GIRTH, POSE_SIZE, STATURE, Stickman
 from common.strokes import ALL_SEGMENTS, draw_segments
 from integrator import insight, propose, signs, smoothing
@@ -84,6 +78,9 @@ class Settled(NamedTuple):
     orientation: str = ""
     orientation_confidence: float = 1.0
     depth_confidence: tuple[float, ...] = (1.0,) * len(LIMBS)
+    depth_error_deg: tuple[float, ...] = (math.nan,) * len(LIMBS)
+    """How far a segment's angle out of the picture changes with a pixel of its length (T19); NaN
+    where the pose was not lifted from its segments."""
 
 
 class Hypothesis(NamedTuple):
@@ -117,7 +114,8 @@ def lifted_body(state: State, report: Report, told: Inputs) -> tuple[State, Hypo
     pose = _pose(state, joints_m)
     score = fit.score if state.printed else _score(state, pixels, report)
     depth = tuple(float(sure) for sure in choice.confidence)
-    settled = Settled(choice.orientation, choice.orientation_confidence, depth)
+    errors = tuple(float(error) for error in lifted.error_deg)
+    settled = Settled(choice.orientation, choice.orientation_confidence, depth, errors)
     return state, Hypothesis(joints_m, pose, score, _sure(fit, lifted, choice), settled)
 
 

@@ -6,9 +6,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import Bdp, Vector, body_of_lengths, thesis_bdp
+from common.body import Bdp, Vector, body_of_lengths
 from common.camera import Camera, Rig, project
-from common.messages import Pixel, Report, unpack
+from common.messages import Pixel, Report
+from common.proportions import thesis_bdp
+from common.wire import unpack
 from integrator.pairing import Seen
 from integrator.perspective import px_per_m, triangulate, universal_bdp
 from integrator.place import place_of, roots_of, scales_at

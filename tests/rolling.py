@@ -5,11 +5,13 @@ import math
 import numpy as np
 from posing import box_of, posed
 
-from common.body import Vector, body_vector, thesis_bdp
+from common.body import Vector
 from common.camera import Camera, Rig, as_matrix, as_row
 from common.kernel import draw_body, view_of
-from common.messages import Report, ViewerNumber, pack
+from common.messages import Report, ViewerNumber
+from common.proportions import body_vector, thesis_bdp
 from common.similarity import Mask
+from common.wire import pack
 
 SIZE = (160, 240)
 BODY = thesis_bdp(1.75)

@@ -5,8 +5,8 @@ from posing import posed
 from rolling import ROLLED, on_one_leg, outlines, told
 
 from common.camera import project
-from common.messages import unpack
 from common.similarity import Mask
+from common.wire import unpack
 from integrator import hull
 from integrator.pairing import Pair
 

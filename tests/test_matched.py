@@ -6,9 +6,10 @@ from posing import posed
 from rolling import BODY, ROLLED, on_one_leg, outlines, told
 from scipy.stats import maxwell
 
-from common.body import LIMITS_DEG, POSE_INDEX, Vector, body_vector
+from common.body import LIMITS_DEG, POSE_INDEX, Vector
 from common.kernel import match, view_of
 from common.kinematics import ALL_LIMBS, joints
+from common.proportions import body_vector
 from integrator import matched
 from integrator.two_outlines import outlines_of
 

@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 
 from common import config
-from common.body import thesis_bdp
 from common.config import Settings, SettingsError
 from common.footage import ClipError
 from common.messages import Body
+from common.proportions import thesis_bdp
 from tritrack.offline import Decoders, measured_before, track_clip
 from tritrack.opening_clip import body_of
 
