@@ -2,60 +2,130 @@
 
 Run: python benchmarks/pose2sim.py $TRITRACK_DATA/real/pose2sim_balancing --out DIR
 
-Writes a calibration and a settings file for each pair, tracks it, and prints the share of the
-frames that are tracked with S >= 0.6 in both views.
+Writes a calibration and settings for each pair, measures the body in the trial's T-pose, tracks the
+pair, prints the share of the frames that are tracked with S >= 0.6 in both views and writes a
+contact sheet; then how far the joints lie apart that two pairs without a common camera have found.
 """
 
 import argparse
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
+import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from common import config
-from tritrack.offline import Decoders, track_clip
+from common.camera import Rig
+from common.kernel import draw_body, view_of
+from common.messages import Body, Report
+from common.proportions import body_vector
+from common.wire import unpack
+from tritrack.offline import Decoders, both_cameras, track_clip
 from tritrack.runs import write_run
+from viewer.capture import Frame
 
-PAIRS = (("cam01", "cam04"), ("cam03", "cam04"), ("cam02", "cam03"))
-Y_UP = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+PAIRS: Final = (("cam01", "cam04"), ("cam03", "cam04"), ("cam02", "cam03"))
+APART: Final = ("cam01_cam04", "cam02_cam03")
+"""Pairs without a common camera: what both find is not one camera's mistake."""
+Y_UP: Final = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 """Their world has z up; rows: our axes in theirs."""
+BOXED: Final = (1080, 1920)
+"""Size of the videos that were shrunk by 1080 / 1088 and put between black bars ..."""
+WHOLE: Final = (1088, 1920)
+BAR_PX: Final = 7
+"""... so high each. Of the trial they are cam01's and cam02's, of the T-pose the other two's."""
+SHOWN: Final = 12
+"""Frames on a contact sheet."""
+
+Picture = NDArray[np.uint8]
 
 
-def calibration(given: dict[str, Any]) -> dict[str, Any]:
-    """Their `cameras.json` as ours: y up; their pixels have their centres at whole numbers."""
+def cameras_of(given: dict[str, Any], boxed: tuple[str, ...]) -> dict[str, Any]:
+    """Their `cameras.json` as ours: y up; their pixels have their centres at whole numbers.
+
+    A distortion of the picture that a bar moves is left as it is: it is below a pixel.
+    """
     cameras = []
     for camera in given["cameras"]:
-        K = np.array(camera["K_video"])
+        K = np.array(camera["K_calib"])
+        if camera["name"] in boxed:
+            K[1] *= BOXED[0] / WHOLE[0]  # and K[0] follows when the picture is taken as it is
+            K[1, 2] += BAR_PX
         K[:2, 2] += 0.5
-        R = np.array(camera["R_world_to_cam"]) @ Y_UP.T
         cameras.append(
             {
                 "name": camera["name"],
                 "K": K.tolist(),
-                "R": R.tolist(),
+                "R": (np.array(camera["R_world_to_cam"]) @ Y_UP.T).tolist(),
                 "t": camera["t_world_to_cam_m"],
                 "distortion": camera["dist_qca"],
             }
         )
-    width, height = given["cameras"][0]["video_size"]
-    return {"width": width, "height": height, "fps": 60.0, "cameras": cameras}
+    return {"width": WHOLE[0], "height": WHOLE[1], "fps": 60.0, "cameras": cameras}
 
 
-SETTINGS = """calibration = "{out}/calibration.json"
+def rebarred(plate: Picture) -> Picture:
+    """A plate of the trial as the T-pose has the same camera: bars taken away, or put there."""
+    if plate.shape[1] == BOXED[0]:
+        return np.asarray(cv2.resize(plate[BAR_PX:-BAR_PX], WHOLE), np.uint8)
+    inside = cv2.resize(plate, (BOXED[0], BOXED[1] - 2 * BAR_PX))
+    return np.asarray(cv2.copyMakeBorder(inside, BAR_PX, BAR_PX, 0, 0, cv2.BORDER_CONSTANT))
+
+
+SETTINGS: Final = """{opening}
+calibration = "{calibration}"
 size = "{size}"
 every = {every}
 
 [camera_1]
-source = "{data}/{one}.mp4"
-background = "{data}/bg_{one}.png"
+source = "{videos}{one}.mp4"
+background = "{plates}/bg_{one}.png"
 calibrated_as = "{one}"
 
 [camera_2]
-source = "{data}/{two}.mp4"
-background = "{data}/bg_{two}.png"
+source = "{videos}{two}.mp4"
+background = "{plates}/bg_{two}.png"
 calibrated_as = "{two}"
 """
+
+
+def write_settings(data: Path, out: Path, size: str, every: int) -> list[Path]:
+    """The settings of each pair, and beside them what they name."""
+    given = json.loads((data / "cameras.json").read_text())
+    for name, boxed in (("trial", ("cam01", "cam02")), ("tpose", ("cam03", "cam04"))):
+        (out / f"{name}.json").write_text(json.dumps(cameras_of(given, boxed)))
+    for plate in data.glob("bg_*.png"):
+        cv2.imwrite(str(out / plate.name), rebarred(cv2.imread(str(plate))))
+    found = []
+    for one, two in PAIRS:
+        found.append(out / f"{one}_{two}.toml")
+        opening = f"tpose_{one}_{two}.toml"
+        of_trial = {"opening": f'opening = "{opening}"', "calibration": "trial.json"}
+        of_trial |= {"videos": f"{data}/", "plates": str(data)}
+        of_tpose = {"opening": "", "calibration": "tpose.json"}
+        of_tpose |= {"videos": f"{data}/tpose/T00_", "plates": str(out.resolve())}
+        shared = {"one": one, "two": two, "size": size}
+        found[-1].write_text(SETTINGS.format(**of_trial, **shared, every=every))
+        (out / opening).write_text(SETTINGS.format(**of_tpose, **shared, every=1))
+    return found
+
+
+def overlay(frame: Frame, report: Report, body: Body, rig: Rig) -> Picture:
+    """A view: blue the model alone, red the silhouette alone, green both."""
+    n = report.viewer - 1
+    picture = frame.picture // 2
+    height, width = picture.shape[:2]
+    seen = unpack(report)
+    if body.bdp is not None and body.pose:
+        pose, view = np.array(body.pose), view_of(rig.cameras[n])
+        model = draw_body(body_vector(body.bdp), pose, view, (width, height))
+        for where, colour in ((model & ~seen, 0), (model & seen, 1), (seen & ~model, 2)):
+            picture[where, colour] += 110
+    text = f"{body.frame}: S {body.score[n]:.2f}"
+    cv2.putText(picture, text, (4, 14), cv2.FONT_HERSHEY_SIMPLEX, 0.45, (255, 255, 255), 1)
+    return picture
 
 
 def main() -> None:
@@ -66,26 +136,38 @@ def main() -> None:
     parser.add_argument("--every", type=int, default=4, help="of 60 frames a second")
     asked = parser.parse_args()
     asked.out.mkdir(parents=True, exist_ok=True)
-    rig = calibration(json.loads((asked.data / "cameras.json").read_text()))
-    (asked.out / "calibration.json").write_text(json.dumps(rig))
+    found = {}
     with Decoders() as decoders:
-        for one, two in PAIRS:
-            path = asked.out / f"{one}_{two}.toml"
-            path.write_text(
-                SETTINGS.format(
-                    out=asked.out,
-                    data=asked.data,
-                    one=one,
-                    two=two,
-                    size=asked.size,
-                    every=asked.every,
-                )
-            )
+        for path in write_settings(asked.data.resolve(), asked.out, asked.size, asked.every):
             settings = config.load(path)
-            tracked = track_clip(settings, decoders)
+            rows: list[tuple[dict[Any, Frame], dict[int, Report], Body]] = []
+            tracked = track_clip(settings, decoders, watch=lambda *row, to=rows: to.append(row))
             write_run(asked.out / path.stem, tracked.bodies, settings, tracked.facts)
+            rig = both_cameras(tracked.clip)
+            assert rig is not None
+            sheet(rows, rig, asked.out / f"{path.stem}.png")
+            found[path.stem] = np.array([body.joints_m for body in tracked.bodies])
             good = [body.status == "tracking" and min(body.score) >= 0.6 for body in tracked.bodies]
-            print(f"{one} and {two}: {np.mean(good):.1%} of {len(good)} frames followed")
+            print(f"{path.stem}: {np.mean(good):.1%} of {len(good)} frames followed")
+    off_mm = 1e3 * np.linalg.norm(found[APART[0]] - found[APART[1]], axis=2)
+    print(f"{' and '.join(APART)} have joints {np.median(off_mm):.0f} mm apart (median)")
+
+
+def sheet(
+    rows: list[tuple[dict[Any, Frame], dict[int, Report], Body]], rig: Rig, path: Path
+) -> None:
+    """Write some instants, both views of each, as one picture."""
+    shown = rows[:: max(1, len(rows) // SHOWN)]
+    high = max(frame.picture.shape[0] for frame in shown[0][0].values())
+    views = []
+    for frames, reports, body in shown:
+        for number in (1, 2):
+            one = overlay(frames[number], reports[number], body, rig)
+            below = high - one.shape[0]
+            views.append(cv2.copyMakeBorder(one, 0, below, 0, 0, cv2.BORDER_CONSTANT))
+    views = views[: len(views) // 8 * 8]
+    lines = [np.hstack(views[i : i + 8]) for i in range(0, len(views), 8)]
+    cv2.imwrite(str(path), np.vstack(lines))
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ from typing import Final
 
 import msgspec
 
+from common.body import Bdp
 from common.camera import CalibrationError, Camera, Rig, fitted, load_rig
 from common.config import Settings, size_of, working_size
 from common.decoding import Decoder, DecoderDied, Source, Undecodable, VideoInfo
@@ -85,6 +86,8 @@ class Clip(msgspec.Struct, frozen=True):
     meta: Meta
     warnings: tuple[str, ...] = ()
     """What is odd but does not stop a run."""
+    body: Bdp | None = None
+    """The person's lengths, metres, where they were measured before."""
 
 
 def open_clip(

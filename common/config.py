@@ -125,6 +125,9 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A clip folder with cam1.*, cam2.*; environment variables are filled in."""
     calibration: str = ""
     """A calibration.json; the one beside the clip or one folder up when empty."""
+    opening: str = ""
+    """A clip folder, or a settings file, that shows the person in a T before the run: the body is
+    measured there. Its cameras may stand elsewhere."""
     size: str = "160x120"
     """Bound of the working picture: aspect kept."""
     every: int = 1
@@ -220,6 +223,7 @@ def _with_full_paths(settings: Settings, path: Path) -> Settings:
         settings,
         clip=full(settings.clip),
         calibration=full(settings.calibration),
+        opening=full(settings.opening),
         camera_1=camera(settings.camera_1),
         camera_2=camera(settings.camera_2),
         recognizer=msgspec.structs.replace(

@@ -182,7 +182,7 @@ def main(settings: Settings, clip: Clip, place: Place = Place()) -> None:
         bus.keep(Guide)
         bus.keep(Cameras)
         bus.announce("integrator")
-        state = merge.init(clip.rig, period_s, settings)
+        state = merge.init(clip.rig, period_s, settings, clip.body)
         rehearse(settings, clip.views[0].size)
         gc.collect()
         gc.freeze()

@@ -10,7 +10,7 @@ from common.body import LIMBS, Bdp, Vector
 from common.camera import Rig
 from common.kernel import match
 from common.kinematics import ALL_LIMBS
-from common.proportions import body_vector
+from common.proportions import body_vector, stature, thesis_bdp
 from integrator.opening import Opening, Sample
 from integrator.pairing import Seen
 from integrator.two_outlines import outlines_of
@@ -28,10 +28,16 @@ GROUPS: Final[tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]] = (
 """What is scaled together: limbs and their lengths. The heights of head, trunk and legs stay: they
 make up the stature, which the silhouette tells."""
 
+TELLING: Final = 1.2
+"""Sum of S over both views; an outline that the body fits less is not of it alone."""
+WIDEST: Final = 1.2
+"""Times the thesis's radii at that stature: a limb that would be wider covers something else."""
 FACTORS: Final = (0.85, 0.93, 1.08, 1.18)
 ROUNDS: Final = 3
 
 
+RADII: Final = [*range(0, 18, 3), *range(1, 18, 3), 18, 20, 22, 24]
+"""Where a body vector has the radii of the limbs."""
 MOST_SAMPLES: Final = 6
 APART: Final = 12
 """Frames between two samples: most of a second, in which a pose changes."""
@@ -54,12 +60,13 @@ def step(opening: Opening, rig: Rig, seen: Seen, pose: Vector) -> Opening:
     done = opening.under_way or len(opening.samples) == MOST_SAMPLES
     if done or first is None or second is None or opening.bdp is None:
         return opening
-    if first.cut or second.cut or (first.width, first.height) != (second.width, second.height):
+    if first.cut or second.cut:
         return opening
     if opening.samples and opening.unsampled < APART:
         return opening._replace(unsampled=opening.unsampled + 1)
-    samples = (*opening.samples, Sample(pose, (first, second)))
-    body = opening.bdp
+    samples, body = (*opening.samples, Sample(pose, (first, second))), opening.bdp
+    if float(fit(body_vector(body), *_outlines(rig, samples[-1:]))) < TELLING:
+        return opening
     if len(samples) in (1, MOST_SAMPLES):
         body = adapted(body, rig, samples)
     return opening._replace(bdp=body, samples=samples, unsampled=0)
@@ -80,7 +87,7 @@ def adapted(bdp: Bdp, rig: Rig, samples: tuple[Sample, ...]) -> Bdp:
         for limbs, lengths in GROUPS:
             for trial in [_scaled(body, limbs, lengths, factor) for factor in FACTORS]:
                 found = float(fit(body_vector(trial), *outlines))
-                if found > best:
+                if found > best and _of_a_person(trial):
                     best, body = found, trial
         if best == before:
             break
@@ -116,6 +123,11 @@ def _outlines(rig: Rig, samples: tuple[Sample, ...]) -> tuple[Any, Any, Any, Any
         np.array([both.seen_px for both in each]),
         each[0].width,
     )
+
+
+def _of_a_person(bdp: Bdp) -> bool:
+    usual = body_vector(thesis_bdp(stature(bdp)))
+    return bool((body_vector(bdp)[RADII] <= WIDEST * usual[RADII]).all())
 
 
 def _scaled(bdp: Bdp, limbs: tuple[str, ...], lengths: tuple[str, ...], factor: float) -> Bdp:

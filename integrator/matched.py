@@ -74,8 +74,6 @@ def _settled(state: State, rig: Rig, seen: Seen, pose: Vector) -> Vector:
     first, second = seen
     if first is None or second is None:
         return pose
-    if (first.width, first.height) != (second.width, second.height):
-        return pose
     assert state.opening.bdp is not None
     before = rest_pose() if state.pose is None else state.pose
     known, body = state.opening, body_vector(state.opening.bdp)

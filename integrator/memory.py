@@ -33,3 +33,7 @@ class State(NamedTuple):
     """What the silhouettes last proposed, and the memory behind it."""
     badly: int = 0
     """For how many frames the model has fitted badly."""
+    matched: bool = False
+    """The pose was matched to the outlines, as the proposed one fitted badly."""
+    doubted: bool = True
+    """The outlines of the instant before fitted badly or had strays, or there were none."""

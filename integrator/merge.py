@@ -3,14 +3,14 @@
 from typing import Literal
 
 from common.bits import count
-from common.body import ANGLE_NAMES, ANGLES_IN_POSE, Vector, rest_pose
+from common.body import ANGLE_NAMES, ANGLES_IN_POSE, Bdp, Vector, rest_pose
 from common.camera import Rig
 from common.config import Settings, proposes
 from common.kernel import match, view_of
 from common.kinematics import ALL_LIMBS
 from common.messages import Body, Guide, Report
 from common.proportions import body_vector
-from integrator import adapting, insight, matched, opening, smoothing, telling
+from integrator import adapting, corrected, hull, insight, matched, opening, smoothing, telling
 from integrator.arbiter import facing_of
 from integrator.assumed import assumed_rig
 from integrator.belief import LOST_SCORE
@@ -19,7 +19,7 @@ from integrator.pairing import Pair, Seen
 from integrator.two_outlines import packed
 
 
-def init(rig: Rig | None, period_s: float, settings: Settings) -> State:
+def init(rig: Rig | None, period_s: float, settings: Settings, body: Bdp | None = None) -> State:
     """An integrator that has heard nothing.
 
     Args:
@@ -27,9 +27,11 @@ def init(rig: Rig | None, period_s: float, settings: Settings) -> State:
             of the paper's kind is assumed when somebody is seen.
         period_s: Time between frames.
         settings: Of the run.
+        body: Universal BDPs, metres, where they were measured before.
     """
     source: Literal["calibrated", "assumed"] = "assumed" if rig is None else "calibrated"
-    return State(settings, rig, source, smoothing.init(len(ANGLE_NAMES), period_s))
+    smooth = smoothing.init(len(ANGLE_NAMES), period_s)
+    return State(settings, rig, source, smooth, opening.init(body))
 
 
 def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
@@ -38,7 +40,21 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
     Universal BDPs come from the opening posture (P46), the arbiter settles the facing (P48),
     position and angles are fused (P50-P54) and smoothed; the viewers are told BDPs, positions
     and facing for their next frame (P2).
+
+    In `default` mode outlines that fit badly are looked at again, without what is no part of the
+    person, and so are those after them.
     """
+    clean, strays = _of_one_piece(state, pair) if state.doubted else (pair, False)
+    after, body, guide = _merged(state, clean)
+    if min(body.score) < corrected.POOR and not state.doubted:
+        clean, strays = _of_one_piece(state, pair)
+        after, body, guide = _merged(state, clean) if strays else (after, body, guide)
+    doubted = strays or min(body.score) < corrected.POOR
+    return after._replace(doubted=doubted), body, guide
+
+
+def _merged(state: State, pair: Pair) -> tuple[State, Body, Guide]:
+    """The same with outlines that are believed."""
     now_s, before_s = pair.newest.captured_s, state.last_s
     dt_s = 0.0 if before_s is None else max(0.0, now_s - before_s)
     state = state._replace(frames=_heard(state.frames, pair), last_s=now_s)
@@ -61,6 +77,14 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
     state, angles, scores = _smoothed(state, rig, pair, dt_s)
     body = telling.body_of(state, rig, pair, angles, scores)
     return state, body, telling.guide_of(state, rig, pair, settled_at is not None)
+
+
+def _of_one_piece(state: State, pair: Pair) -> hull.Cleaned:
+    """The reports without what is no part of the person: a departure from the paper."""
+    rig, known = state.rig, state.scale_source == "calibrated"
+    if rig is None or not known or state.settings.mode != "default":
+        return hull.Cleaned(pair, False)
+    return hull.cleaned(rig, pair)
 
 
 def _heard(frames: tuple[int, int], pair: Pair) -> tuple[int, int]:
@@ -86,8 +110,12 @@ def _proposed(state: State, rig: Rig, seen: Seen, dt_s: float) -> State:
     memory = None if state.insight is None else state.insight.memory
     known = insight.step(memory, bdp, rig, seen, dt_s)
     before = rest_pose() if state.pose is None else state.pose
-    pose, beside_m = insight.pose_and_rest(body_vector(bdp), before, known.joints_m)
-    return state._replace(insight=known, beside_m=beside_m, pose=pose, facing=facing_of(rig, pose))
+    body = body_vector(bdp)
+    pose, beside_m = insight.pose_and_rest(body, before, known.joints_m)
+    better = corrected.instead(pose, known.sure, state.pose, state.matched, body, rig, seen)
+    state = state._replace(insight=known, beside_m=beside_m, matched=better is not None)
+    pose = pose if better is None else better
+    return state._replace(pose=pose, facing=facing_of(rig, pose))
 
 
 def _smoothed(
@@ -117,4 +145,4 @@ def _score(body: Vector, pose: Vector, rig: Rig, n: int, report: Report | None) 
 def _without_pose(state: State) -> State:
     """Nobody is in any view: what was learnt of the body is kept, its pose is not."""
     fresh = smoothing.init(len(ANGLE_NAMES), state.smooth.period_s)
-    return state._replace(pose=None, badly=0, smooth=fresh, insight=None)
+    return state._replace(pose=None, badly=0, smooth=fresh, insight=None, matched=False)

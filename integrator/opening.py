@@ -4,14 +4,15 @@ from typing import Final, NamedTuple
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from common.body import Bdp, Vector, body_of_lengths
 from common.camera import Camera, Rig, project
-from common.messages import Report
+from common.messages import Pixel, Report
 from common.proportions import thesis_bdp
 from common.wire import unpack
 from integrator.pairing import Seen
-from integrator.perspective import px_per_m, universal_bdp
+from integrator.perspective import px_per_m, triangulate, universal_bdp
 from integrator.place import place_of, roots_of, scales_at
 from integrator.window import UPWARDS_M
 
@@ -57,10 +58,19 @@ class Opening(NamedTuple):
         return bool(self.bodies) and not self.measured
 
 
+def init(body: Bdp | None) -> Opening:
+    """Nothing is known, or a body that was measured before: its navel is where its legs have it."""
+    if body is None:
+        return Opening()
+    legs_m = body.r_upper_leg.height + body.r_lower_leg.height
+    return Opening(body, True, (0.0, legs_m, 0.0))
+
+
 def prior(rig: Rig, seen: Seen) -> Bdp:
     """The thesis's proportions at the height that the silhouettes show (T4).
 
-    The smaller of two: what is no part of the person makes an outline larger.
+    The smallest: what is no part of the person makes an outline larger. The crown of somebody who
+    stands is as high above the floor, wherever their outline ends below.
     """
     place = place_of(rig, roots_of(seen), np.zeros(3), 0)
     heights = [
@@ -70,16 +80,36 @@ def prior(rig: Rig, seen: Seen) -> Bdp:
         and not report.cut
         and np.isfinite(height := _height_m(report, camera, place))
     ]
+    if len(heights) == 2:
+        heights.append(_crown_m(rig, seen, place))
     low, high = STATURES_M
     return thesis_bdp(min(high, max(low, min(heights))) if heights else USUAL_M)
 
 
 def _height_m(report: Report, camera: Camera, place: Vector) -> float:
     """How far an outline reaches along what is upright in its picture, metres."""
+    along, _ = _upwards(report, camera, place)
+    return float((along.max() + 1.0 - along.min()) / px_per_m(camera, place))
+
+
+def _crown_m(rig: Rig, seen: Seen, place: Vector) -> float:
+    """Height above the floor of what is highest in both outlines; inf where that is nowhere."""
+    tops: list[Pixel] = []
+    for report, camera in zip(seen, rig.cameras, strict=True):
+        assert report is not None
+        along, pixels = _upwards(report, camera, place)
+        column, row = pixels[along.argmax()] + 0.5
+        tops.append((float(column), float(row)))
+    found = triangulate((rig.cameras[0], rig.cameras[1]), (tops[0], tops[1]))
+    return float(found[1]) if np.isfinite(found).all() else np.inf
+
+
+def _upwards(report: Report, camera: Camera, place: Vector) -> tuple[Vector, NDArray[np.intp]]:
+    """How far up each pixel of an outline is in its picture, (n,), and the pixels, (n, 2)."""
     at, above = project(camera, np.stack([place, place + UPWARDS_M]))
     rows, columns = np.nonzero(unpack(report))
-    along = np.stack([columns, rows], axis=1) @ (above - at) / np.linalg.norm(above - at)
-    return float((along.max() + 1.0 - along.min()) / px_per_m(camera, place))
+    pixels = np.stack([columns, rows], axis=1)
+    return pixels @ (above - at) / np.linalg.norm(above - at), pixels
 
 
 def step(opening: Opening, rig: Rig, seen: Seen, due: int) -> tuple[Opening, Vector | None]:

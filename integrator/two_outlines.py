@@ -26,13 +26,20 @@ class Outlines(NamedTuple):
 
 
 def outlines_of(rig: Rig, seen: tuple[Report, Report]) -> Outlines:
-    """The silhouettes of two reports, and the views of a rig."""
-    masks = np.array([packed(report) for report in seen])
+    """The silhouettes of two reports, and the views of a rig.
+
+    Pictures of two sizes are both taken to be as wide and as high as the larger is.
+    """
+    each = [packed(report) for report in seen]
+    rows, words = np.max([mask.shape for mask in each], axis=0)
+    masks = np.zeros((2, rows, words), np.uint64)
+    for whole, mask in zip(masks, each, strict=True):
+        whole[: mask.shape[0], : mask.shape[1]] = mask
     return Outlines(
         np.array([view_of(camera) for camera in rig.cameras]),
         masks,
         np.array([count(mask) for mask in masks]),
-        seen[0].width,
+        max(report.width for report in seen),
     )
 
 

@@ -81,3 +81,25 @@ def test_samples_are_few_and_apart() -> None:
             taken.append(frame)
     assert taken == [0, 13, 26, 39, 52, 65]
     assert np.diff(taken).min() > adapting.APART
+
+
+def test_an_outline_that_the_body_explains_badly_tells_no_widths() -> None:
+    """Something else belongs to it, or the pose is wrong."""
+    known, pose = Opening(bdp=PRIOR), standing()
+    elsewhere = pose.copy()
+    elsewhere[0] += 0.4
+    assert adapting.step(known, RIG, seen_as(slim(), pose), elsewhere) is known
+
+
+def test_no_limb_becomes_wider_than_a_persons() -> None:
+    """Shanks that a slab on the floor widens threefold in the outline."""
+    thick = msgspec.structs.replace(
+        PRIOR.r_lower_leg,
+        long_radius=3 * PRIOR.r_lower_leg.long_radius,
+        short_radius=3 * PRIOR.r_lower_leg.short_radius,
+    )
+    slab = msgspec.structs.replace(PRIOR, r_lower_leg=thick, l_lower_leg=thick)
+    pose = standing()
+    found = adapting.adapted(PRIOR, RIG, (Sample(pose, seen_as(slab, pose)),))
+    widest = adapting.WIDEST * PRIOR.r_lower_leg.long_radius
+    assert PRIOR.r_lower_leg.long_radius < found.r_lower_leg.long_radius <= widest

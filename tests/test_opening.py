@@ -3,7 +3,8 @@
 import msgspec
 import numpy as np
 import pytest
-from posing import box_of
+from posing import box_of, posed
+from rolling import BODY, ROLLED, outlines, told
 from staging import PERSON, RIG, opening, report, silhouettes, standing
 
 from common.body import Bdp
@@ -148,3 +149,17 @@ def test_legs_reach_the_floor() -> None:
     assert place is not None
     assert body.r_upper_leg.height + body.r_lower_leg.height == pytest.approx(float(place[1]))
     assert isinstance(good[0] and good[0].measure, Measure)
+
+
+def test_the_crown_tells_the_stature_where_the_outline_goes_on_below_the_feet() -> None:
+    """A slab on the floor before the person, seen from above by rolled cameras."""
+    pose = posed(r_shoulder_z=90.0, l_shoulder_z=270.0)
+    pose[1] = BODY.r_upper_leg.height + BODY.r_lower_leg.height
+    spoilt = []
+    for mask in outlines(pose):
+        rows, columns = np.nonzero(mask)
+        lowest, middle = rows.max(), int(np.median(columns))
+        mask[lowest - 10 : lowest + 14, middle - 15 : middle + 15] = True
+        spoilt.append(mask)
+    found = prior(ROLLED, (told(1, spoilt[0]), told(2, spoilt[1])))
+    assert stature(found) == pytest.approx(stature(BODY), abs=0.05)

@@ -70,9 +70,11 @@ def integrate(settings_file: ConfigPath) -> None:
     Example: tritrack integrate configs/live.toml
     """
     from integrator.__main__ import main as integrator_main
+    from tritrack.offline import measured_before
 
     settings = live_settings(settings_file)
-    integrator_main(settings, two_camera_clip(settings))
+    clip = two_camera_clip(settings)
+    integrator_main(settings, msgspec.structs.replace(clip, body=measured_before(settings)))
 
 
 def recognize(settings_file: ConfigPath) -> None:

@@ -11,6 +11,7 @@ import msgspec
 from rich.console import Console
 
 from common import config
+from common.body import Bdp
 from common.camera import Rig
 from common.clips import Clip, open_clip, shortfall
 from common.config import Mode, Settings, SettingsError
@@ -24,6 +25,7 @@ from integrator.pairing import Pair
 from tritrack.clip_paths import ClipsFailed, run_names, without_plain_files
 from tritrack.instants import instants, rooms
 from tritrack.one_camera import extras_of, follow_clip
+from tritrack.opening_clip import body_of
 from tritrack.runs import write_run
 from tritrack.terminal import bar, complain, warn
 from viewer import track
@@ -113,6 +115,7 @@ def track_clip(
 def _prepared(clip: Clip, settings: Settings, decoders: Decoders, began: float) -> Prepared:
     """Viewers that know their rooms and an integrator that knows the rig."""
     rig = both_cameras(clip)
+    known = body_of(settings, lambda own: track_clip(own, decoders).bodies)
     reels = {view.number: Reel(decoders.of[view.number]) for view in clip.views}
     viewers: dict[ViewerNumber, track.State] = {}
     odd_rooms = []
@@ -121,7 +124,7 @@ def _prepared(clip: Clip, settings: Settings, decoders: Decoders, began: float) 
         odd_rooms += [odd] if odd else []
         camera = None if rig is None else rig.cameras[view.number - 1]
         viewers[view.number] = track.init(view.number, room, camera, settings)
-    integrator = merge.init(rig, clip.every / clip.views[0].fps, settings)
+    integrator = merge.init(rig, clip.every / clip.views[0].fps, settings, known)
     return Prepared(clip, reels, viewers, integrator, odd_rooms, time.perf_counter() - began)
 
 
@@ -167,6 +170,16 @@ def _facts(ready: Prepared, done: Performance) -> dict[str, Any]:
         "scale_source": done.integrator.scale_source,
         "warnings": [*odd, *noticing.warnings(done.noticed, done.integrator)],
     }
+
+
+def measured_before(settings: Settings) -> Bdp | None:
+    """The person's body as the opening clip that the settings name tells it, if they name one.
+
+    Raises:
+        SettingsError, ClipError, DecoderDied: As `body_of` and `track_clip` do.
+    """
+    with Decoders() as decoders:
+        return body_of(settings, lambda own: track_clip(own, decoders).bodies)
 
 
 def overridden(settings: Settings, mode: Mode | None, size: str | None) -> Settings:

@@ -21,7 +21,7 @@ from common.messages import Posture, Pulse
 from common.process import Place, logged
 from recognizer.__main__ import model_of
 from tritrack.launch import Heard, nothing_heard, run
-from tritrack.offline import both_cameras
+from tritrack.offline import both_cameras, measured_before
 from tritrack.parts import live_parts
 from tritrack.runs import write_postures, write_run
 from tritrack.table import table_of
@@ -55,7 +55,12 @@ def live(settings: Settings, out: Path, console: Console, name: str = "") -> dic
     """
     refuse_mode(settings)
     clip = open_clip(settings)
-    clip = msgspec.structs.replace(clip, name=name or clip.name, rig=both_cameras(clip))
+    clip = msgspec.structs.replace(
+        clip,
+        name=name or clip.name,
+        rig=both_cameras(clip),
+        body=measured_before(settings),
+    )
     _refuse_what_would_fail(settings, clip)
     began = time.monotonic()
     heard = nothing_heard()
