@@ -33,6 +33,8 @@ KNOWN: Final = np.float32(1.0)
 """Evidence of a colour that only the body has."""
 PULL: Final = np.float32(0.3)
 """What a neighbour at an edge weighs against a pixel's own evidence."""
+UNSURE: Final = np.float32(2.0)
+"""A pixel and its neighbours that together speak less loudly are looked at again."""
 CORNER: Final = np.float32(0.7)
 """What a neighbour at a corner weighs against one at an edge."""
 FOLLOW: Final = np.float32(0.2)
@@ -57,6 +59,7 @@ def seeds(frame: Frame, room: Floats, weight: Floats, gain: Floats, cell: int) -
 @KERNEL
 def label(
     mask: Bytes,
+    doubt: Bytes,
     frame: Frame,
     room: Floats,
     weight: Floats,
@@ -65,24 +68,21 @@ def label(
     cells: Bytes,
     cell: int,
 ) -> None:
-    """Tell person from room inside the cells: a pixel's evidence and its neighbours'."""
+    """Guess who is person inside the cells, by a pixel's evidence and its neighbours'.
+
+    Sets the mask where they together speak for the person, and doubt where they hardly speak.
+    """
     height, width = mask.shape
     evidence = np.zeros((height, width), np.float32)
-    for i, j in np.argwhere(cells):
+    places = np.argwhere(cells)
+    for i, j in places:
         for y in range(i * cell, min((i + 1) * cell, height)):
             given, empty, sure = frame[y], room[y], weight[y]
             for x in range(j * cell, min((j + 1) * cell, width)):
                 far = np.sqrt(unshaded(given, empty, sure, gain, x))
                 told = (far - DIFFERS) * STEEP + KNOWN * known[shade_of(given, gain, x)]
                 evidence[y, x] = min(max(told, -SURE), SURE)
-    settle(mask, evidence, cells, cell, PULL)
-
-
-@KERNEL
-def settle(mask: Bytes, evidence: Floats, cells: Bytes, cell: int, pull: np.float32) -> None:
-    """Set the mask where a pixel and its eight neighbours together speak for the person."""
-    height, width = mask.shape
-    for i, j in np.argwhere(cells):
+    for i, j in places:
         for y in range(i * cell, min((i + 1) * cell, height)):
             up, down = max(y - 1, 0), min(y + 1, height - 1)
             for x in range(j * cell, min((j + 1) * cell, width)):
@@ -90,7 +90,8 @@ def settle(mask: Bytes, evidence: Floats, cells: Bytes, cell: int, pull: np.floa
                 edges = evidence[up, x] + evidence[down, x] + evidence[y, left] + evidence[y, right]
                 corners = evidence[up, left] + evidence[up, right]
                 corners += evidence[down, left] + evidence[down, right]
-                mask[y, x] = evidence[y, x] + pull * (edges + CORNER * corners) > 0
+                told = evidence[y, x] + PULL * (edges + CORNER * corners)
+                mask[y, x], doubt[y, x] = told > 0, abs(told) < UNSURE
 
 
 @KERNEL
@@ -134,6 +135,21 @@ def _distance(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) 
     b, g, r = _off(given, room, gain, x)
     luma = BLUE * b + GREEN * g + RED * r
     return luma * luma * weight[x, 0] + _square(b - luma, g - luma, r - luma) * weight[x, 1]
+
+
+@INLINE
+def brightness(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> np.float32:
+    """How much brighter than the room a pixel of a row is, in spreads."""
+    b, g, r = _off(given, room, gain, x)
+    return (BLUE * b + GREEN * g + RED * r) * np.sqrt(weight[x, 0])
+
+
+@INLINE
+def colour(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> np.float32:
+    """How far a pixel of a row is from the room by colour alone, in spreads squared."""
+    b, g, r = _off(given, room, gain, x)
+    luma = BLUE * b + GREEN * g + RED * r
+    return _square(b - luma, g - luma, r - luma) * weight[x, 1]
 
 
 @INLINE

@@ -1,0 +1,90 @@
+"""A small network that tells body from room at a pixel, learnt from clips whose masks are known."""
+
+import zipfile
+from functools import cache
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from viewer.difference import KERNEL
+from viewer.outline import CLUES
+from viewer.stacks import Floats
+
+SHIPPED: Final = Path(__file__).with_name("silhouettes.npz")
+"""Learnt from made-up people; docs/models.md says of whom."""
+HIDDEN: Final = 16
+"""Units between the clues and the answer."""
+
+
+class Network(NamedTuple):
+    """One hidden layer of rectified units, and the log odds that a pixel is body."""
+
+    enter: Floats
+    """(CLUES, HIDDEN)."""
+    enter_bias: Floats
+    """(HIDDEN,)."""
+    leave: Floats
+    """(HIDDEN,)."""
+    leave_bias: Floats
+    """(1,)."""
+
+
+SHAPES: Final = ((CLUES, HIDDEN), (HIDDEN,), (HIDDEN,), (1,))
+
+
+class NetworkError(ValueError):
+    """A file that holds no network of silhouettes."""
+
+
+@cache
+def shipped() -> Network:
+    """The network that came with tritrack."""
+    return load(SHIPPED)
+
+
+def load(path: Path) -> Network:
+    """The network in a file that `save` wrote.
+
+    Raises:
+        NetworkError: When the file is missing, damaged or holds something else.
+    """
+    cure = "install tritrack again, or tritrack train --what silhouettes"
+    try:
+        with np.load(path, allow_pickle=False) as held:
+            network = Network(*(held[field] for field in Network._fields))
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise NetworkError(f"{path} holds no network of silhouettes: {cure}") from error
+    sound = all(
+        values.shape == shape and values.dtype == np.float32 and np.isfinite(values).all()
+        for values, shape in zip(network, SHAPES, strict=True)
+    )
+    if not sound:
+        raise NetworkError(f"{path} holds another network than silhouettes ask for: {cure}")
+    return network
+
+
+def save(network: Network, path: Path) -> None:
+    """Write a network."""
+    np.savez_compressed(path, allow_pickle=False, **network._asdict())
+
+
+@KERNEL
+def judged(network: Network, clues: Floats) -> Floats:
+    """Log odds (n,) that each of n pixels is body, by its clues (n, CLUES)."""
+    enter, enter_bias, leave, leave_bias = network
+    count = len(clues)
+    out = np.empty(count, np.float32)
+    sums = np.empty(HIDDEN, np.float32)
+    for i in range(count):
+        for h in range(HIDDEN):
+            sums[h] = enter_bias[h]
+        for k in range(CLUES):
+            clue = clues[i, k]
+            for h in range(HIDDEN):
+                sums[h] += clue * enter[k, h]
+        odds = leave_bias[0]
+        for h in range(HIDDEN):
+            odds += max(sums[h], np.float32(0)) * leave[h]
+        out[i] = odds
+    return out
