@@ -7,7 +7,6 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from viewer.difference import KERNEL
 from viewer.outline import CLUES
 from viewer.stacks import Floats
 
@@ -69,22 +68,8 @@ def save(network: Network, path: Path) -> None:
     np.savez_compressed(path, allow_pickle=False, **network._asdict())
 
 
-@KERNEL
 def judged(network: Network, clues: Floats) -> Floats:
     """Log odds (n,) that each of n pixels is body, by its clues (n, CLUES)."""
-    enter, enter_bias, leave, leave_bias = network
-    count = len(clues)
-    out = np.empty(count, np.float32)
-    sums = np.empty(HIDDEN, np.float32)
-    for i in range(count):
-        for h in range(HIDDEN):
-            sums[h] = enter_bias[h]
-        for k in range(CLUES):
-            clue = clues[i, k]
-            for h in range(HIDDEN):
-                sums[h] += clue * enter[k, h]
-        odds = leave_bias[0]
-        for h in range(HIDDEN):
-            odds += max(sums[h], np.float32(0)) * leave[h]
-        out[i] = odds
-    return out
+    seen = clues @ network.enter
+    seen += network.enter_bias
+    return np.asarray(np.maximum(seen, 0, out=seen) @ network.leave + network.leave_bias)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viewer.coverage import FACTS, SHARES, covered, sides_of
-from viewer.difference import INLINE, KERNEL, Bytes, brightness, colour, shade_of, unshaded
+from viewer.difference import KERNEL, Bytes
 from viewer.stacks import Floats, Frame
 
 ROWS: Final = 240
@@ -15,21 +15,16 @@ ROWS: Final = 240
 of the body around a pixel."""
 SIDE_SHARE: Final = 1 / 60
 """How far around a pixel the colours of body and room are asked for, of the picture's height."""
-COUNTED: Final = (1, 3, 7)
+COUNTED: Final = (3, 7)
 """How far the neighbourhoods reach whose share of body is a clue."""
-NEAR: Final = 2
-"""How far from the guess's outline pixels are looked at, and their neighbours from them."""
+NEAR_SHARE: Final = 1 / 120
+"""How far from the guess's outline pixels are looked at, of the picture's height."""
 CROSS: Final = np.array(
-    [(i, j) for i in range(-NEAR, NEAR + 1) for j in range(-NEAR, NEAR + 1) if abs(i) + abs(j) < 3],
-    np.int64,
+    [(i, j) for i in range(-2, 3) for j in range(-2, 3) if abs(i) + abs(j) <= 2], np.int64
 )
 """Neighbours whose coverage is a clue."""
-ALONE: Final = 4
-"""What is known of a pixel alone: see `_alone`."""
-CLUES: Final = SHARES * len(CROSS) + FACTS + len(COUNTED) + ALONE
+CLUES: Final = SHARES * len(CROSS) + len(COUNTED) + FACTS
 """What the network sees of a pixel."""
-FAR, SPREADS = np.float32(20.0), np.float32(8.0)
-"""Spreads from the room beyond which distance says no more, and those that are worth a one."""
 
 
 def clues_of(
@@ -55,25 +50,26 @@ def clues_of(
     Returns:
         Row and column (n, 2) of the pixels, and their clues (n, CLUES).
     """
-    stride = max(1, round(frame.shape[0] / ROWS))
     if not mask.any():
         return np.empty((0, 2), np.int32), np.empty((0, CLUES), np.float32)
-    left, top, right, bottom = _window(cv2.bitwise_or(mask, doubt), 2 * NEAR * stride)
+    rows = frame.shape[0]
+    stride, near = max(1, round(rows / ROWS)), max(1, round(NEAR_SHARE * rows))
+    left, top, right, bottom = _window(cv2.bitwise_or(mask, doubt), near + 2 * stride)
     window = slice(top, bottom), slice(left, right)
     own = np.ascontiguousarray(mask[window])
-    around = np.ones((2 * NEAR * stride + 1,) * 2, np.uint8)
-    band = cv2.morphologyEx(own, cv2.MORPH_GRADIENT, around) | doubt[window]
-    reach = cv2.dilate(band, around) + band
+    band = cv2.morphologyEx(own, cv2.MORPH_GRADIENT, _square(near)) | doubt[window]
+    reach = cv2.dilate(band, _square(2 * stride)) + band
     sides = sides_of(frame, room, gain, counts_3x3(own), top, left)
-    size = 2 * round(SIDE_SHARE * frame.shape[0]) + 1
-    sides = cv2.blur(sides, (size, size), borderType=cv2.BORDER_REPLICATE)
-    shares, facts = covered(frame, room, gain, sides, reach, top, left)
+    size = (2 * round(SIDE_SHARE * rows) + 1,) * 2
+    means = cv2.boxFilter(sides, cv2.CV_32F, size, borderType=cv2.BORDER_REPLICATE)
+    shares, places, facts = covered(frame, room, weight, gain, known, means, reach, (top, left))
     counts = [_share(own, 2 * far * stride + 1) for far in COUNTED]
-    places = np.argwhere(band).astype(np.int32)
     clues = _gathered(places, shares, facts, *counts, stride)
-    places += np.array([top, left], np.int32)
-    _alone(frame, room, weight, gain, known, places, clues[:, -ALONE:])
-    return places, clues
+    return places + np.array([top, left], np.int32), clues
+
+
+def _square(far: int) -> Bytes:
+    return np.ones((2 * far + 1,) * 2, np.uint8)
 
 
 def counts_3x3(mask: Bytes) -> Bytes:
@@ -105,13 +101,11 @@ def _gathered(
     places: NDArray[np.int32],
     shares: Floats,
     facts: Floats,
-    near: Bytes,
     around: Bytes,
     wide: Bytes,
     stride: int,
 ) -> Floats:
-    """(n, CLUES), but for those of a pixel alone."""
-    height, width = near.shape
+    height, width = wide.shape
     out = np.empty((len(places), CLUES), np.float32)
     unit = np.float32(1 / 255)
     for n in range(len(places)):
@@ -122,36 +116,7 @@ def _gathered(
             for s in range(SHARES):
                 at[k + s] = shares[v, u, s]
             k += SHARES
+        at[k], at[k + 1] = unit * np.float32(around[y, x]), unit * np.float32(wide[y, x])
         for s in range(FACTS):
-            at[k + s] = facts[n, s]
-        k += FACTS
-        at[k] = unit * np.float32(near[y, x])
-        at[k + 1] = unit * np.float32(around[y, x])
-        at[k + 2] = unit * np.float32(wide[y, x])
+            at[k + 2 + s] = facts[n, s]
     return out
-
-
-@KERNEL
-def _alone(
-    frame: Frame,
-    room: Floats,
-    weight: Floats,
-    gain: Floats,
-    known: Floats,
-    places: NDArray[np.int32],
-    out: Floats,
-) -> None:
-    """Distance from the room with shadows forgiven, how much brighter, how much another colour,
-    and whose colour it is."""
-    for n in range(len(places)):
-        y, x = places[n, 0], places[n, 1]
-        given, empty, sure = frame[y], room[y], weight[y]
-        out[n, 0] = _spreads(np.sqrt(unshaded(given, empty, sure, gain, x)))
-        out[n, 1] = _spreads(brightness(given, empty, sure, gain, x))
-        out[n, 2] = _spreads(np.sqrt(colour(given, empty, sure, gain, x)))
-        out[n, 3] = known[shade_of(given, gain, x)]
-
-
-@INLINE
-def _spreads(far: np.float32) -> np.float32:
-    return min(max(far, -FAR), FAR) / SPREADS
