@@ -7,13 +7,12 @@ from typing import Any, Final, NamedTuple
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 from rich.console import Console
 
 from common.config import SilhouetteSettings
 from synth.exposure import default_rig
 from synth.motions import EMPTY, POSTURES, Motion, performance
-from synth.people import Person, person
+from synth.people import Colour, Person, person
 from synth.render import Frame, Mask, render, room_of
 from synth.room import Room
 from tritrack.terminal import bar
@@ -37,9 +36,11 @@ PIXELS: Final = 400
 FREE_EVERY: Final = 3
 """Every third person moves at random."""
 QUALITY: Final = (75, 96)
-"""Of the JPEG pictures that a film is made of."""
-ALIKE_SHARE: Final = 0.6
-"""Share of the people who wear the room's colours, and about half of their clothes do."""
+"""Of the JPEG pictures that a film is made of; development clips have 86."""
+ALIKE_SHARE, PIECE_SHARE = 0.6, 0.55
+"""Share of the people who wear the room's colours, and of their clothes that do."""
+PEOPLE, ROOMS = 400_000, 300_000
+"""First ones: no set of clips has them."""
 EPOCHS, BATCH, RATE = 10, 512, 3e-3
 NARROW: Final = 1e-3
 """Least spread that a clue is divided by."""
@@ -100,13 +101,13 @@ def taught_by(seed: int) -> Taught:
 
 def films(seed: int, rng: np.random.Generator) -> list[Film]:
     """A performance as two cameras filmed it: the empty room, then somebody amid a movement."""
-    rig = default_rig(*SIZE)
-    someone = _dressed(person(seed), room_of(seed, rig), rng)
-    free = seed % FREE_EVERY == 0
-    moved = _cut(performance(someone, "free" if free else POSTURES[seed % len(POSTURES)], seed), rng)
+    rig, staging = default_rig(*SIZE), np.random.default_rng([seed, 77])
+    someone = _dressed(person(PEOPLE + seed), room_of(ROOMS + seed, rig), staging)
+    posture = POSTURES[seed % len(POSTURES)] if seed % FREE_EVERY else "free"
+    moved = _cut(performance(someone, posture, seed), staging)
     quality = [cv2.IMWRITE_JPEG_QUALITY, int(rng.integers(*QUALITY))]
     seen = [Film([], []), Film([], [])]
-    for shot in render(someone, moved, rig, seed, seed):
+    for shot in render(someone, moved, rig, ROOMS + seed, seed):
         for film, frame, mask in zip(seen, shot[:2], shot[2:], strict=True):
             packed = cv2.imencode(".jpg", frame, quality)[1]
             film.frames.append(np.asarray(cv2.imdecode(packed, cv2.IMREAD_COLOR), np.uint8))
@@ -119,20 +120,26 @@ def _dressed(someone: Person, room: Room, rng: np.random.Generator) -> Person:
     if rng.random() >= ALIKE_SHARE:
         return someone
     look = someone.look
-    for piece in ("shirt", "trousers"):
-        if rng.random() < 0.5:
-            picture = room.pictures[rng.integers(2)]
-            y, x = rng.integers(70, 190), rng.integers(110, 200)
-            behind = np.median(picture[y : y + 20, x : x + 20].reshape(-1, 3), axis=0)
-            worn = behind * rng.uniform(0.8, 1.2) + rng.normal(0, 6, 3)
-            look = look._replace(**{piece: tuple(np.clip(worn, 10, 245).astype(int).tolist())})
-    return someone._replace(look=look)
+    trousers = _worn(look.trousers, room, rng)
+    shirt = _worn(look.shirt, room, rng)
+    return someone._replace(look=look._replace(trousers=trousers, shirt=shirt))
+
+
+def _worn(own: Colour, room: Room, rng: np.random.Generator) -> Colour:
+    """A colour of the room's, about, or the person's own."""
+    if rng.random() >= PIECE_SHARE:
+        return own
+    picture = room.pictures[rng.integers(2)]
+    y, x = rng.integers(70, 190), rng.integers(110, 200)
+    behind = np.median(picture[y : y + 20, x : x + 20].reshape(-1, 3), axis=0)
+    worn = np.clip(behind * rng.uniform(0.8, 1.2) + rng.normal(0, 6, 3), 10, 245)
+    return int(worn[0]), int(worn[1]), int(worn[2])
 
 
 def _cut(moved: Motion, rng: np.random.Generator) -> Motion:
     """The empty room and MOMENTS of what follows."""
     empty = int(np.count_nonzero(moved.phase == EMPTY))
-    start = int(rng.integers(empty, len(moved.phase) - MOMENTS))
+    start = int(rng.integers(empty, len(moved.phase) - MOMENTS - 2))
     rows = np.r_[0:empty, start : start + MOMENTS]
     return moved._replace(
         joints_m=moved.joints_m[rows],

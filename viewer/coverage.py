@@ -58,15 +58,21 @@ def sides_of(frame: Frame, room: Floats, gain: Floats, inside: Bytes, top: int, 
     height, width = inside.shape
     out = np.zeros((height, width, SIDES), np.uint8)
     for y in range(height):
-        given, empty = frame[y + top], room[y + top]
+        given, empty, side, row = frame[y + top], room[y + top], inside[y], out[y]
         for x in range(width):
-            u, at = x + left, out[y, x]
-            if inside[y, x] == 9:
-                at[0], at[1], at[2], at[3] = given[u, 0], given[u, 1], given[u, 2], 1
-            elif inside[y, x] == 0:
+            u = x + left
+            b, g, r = np.float32(given[u, 0]), np.float32(given[u, 1]), np.float32(given[u, 2])
+            if side[x] == 9:
+                row[x, 0], row[x, 1], row[x, 2], row[x, 3] = (
+                    given[u, 0],
+                    given[u, 1],
+                    given[u, 2],
+                    1,
+                )
+            elif side[x] == 0:
+                row[x, 4] = _level(b, g, r)
                 due_b, due_g, due_r = _due(empty, gain, u, ONE)
-                at[4] = int(BLUE * given[u, 0] + GREEN * given[u, 1] + RED * given[u, 2] + HALF)
-                at[5] = int(BLUE * due_b + GREEN * due_g + RED * due_r + HALF)
+                row[x, 5] = _level(due_b, due_g, due_r)
     return out
 
 
@@ -145,6 +151,11 @@ def _tell(out: Floats, off: Colour, full: Colour, share: np.float32, beside: Bes
 @INLINE
 def _spreads(far: np.float32) -> np.float32:
     return min(max(far, -FAR), FAR) / SPREADS
+
+
+@INLINE
+def _level(b: np.float32, g: np.float32, r: np.float32) -> np.uint8:
+    return np.uint8(np.int32(BLUE * b + GREEN * g + RED * r + HALF))
 
 
 @INLINE

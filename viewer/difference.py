@@ -33,7 +33,7 @@ KNOWN: Final = np.float32(1.0)
 """Evidence of a colour that only the body has."""
 PULL: Final = np.float32(0.3)
 """What a neighbour at an edge weighs against a pixel's own evidence."""
-UNSURE: Final = np.float32(2.0)
+UNSURE: Final = np.float32(1.0)
 """A pixel and its neighbours that together speak less loudly are looked at again."""
 CORNER: Final = np.float32(0.7)
 """What a neighbour at a corner weighs against one at an edge."""
@@ -52,7 +52,9 @@ def seeds(frame: Frame, room: Floats, weight: Floats, gain: Floats, cell: int) -
             given, empty, sure = frame[y], room[y], weight[y]
             for j in range(out.shape[1]):
                 x = min(j * cell + k, width - 1)
-                out[i, j] |= unshaded(given, empty, sure, gain, x) > SEED * SEED
+                # whatever a shadow explains, it is no farther than without: most stop here
+                if _distance(given, empty, sure, gain, x) > SEED * SEED:
+                    out[i, j] |= unshaded(given, empty, sure, gain, x) > SEED * SEED
     return out
 
 
@@ -156,7 +158,9 @@ def colour(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> 
 def unshaded(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> np.float32:
     """The same, but by colour alone where a soft shadow may lie: the room, only darker."""
     b, g, r = _off(given, room, gain, x)
-    due_b, due_g, due_r = given[x, 0] - b, given[x, 1] - g, given[x, 2] - r
+    # without the casts numba would go on in doubles
+    due_b, due_g = np.float32(given[x, 0]) - b, np.float32(given[x, 1]) - g
+    due_r = np.float32(given[x, 2]) - r
     luma = BLUE * b + GREEN * g + RED * r
     total = luma * luma * weight[x, 0] + _square(b - luma, g - luma, r - luma) * weight[x, 1]
     part = luma / max(BLUE * due_b + GREEN * due_g + RED * due_r, ONE)

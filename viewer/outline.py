@@ -56,14 +56,15 @@ def clues_of(
     stride, near = max(1, round(rows / ROWS)), max(1, round(NEAR_SHARE * rows))
     left, top, right, bottom = _window(cv2.bitwise_or(mask, doubt), near + 2 * stride)
     window = slice(top, bottom), slice(left, right)
-    own = np.ascontiguousarray(mask[window])
+    own = mask[window].copy()
     band = cv2.morphologyEx(own, cv2.MORPH_GRADIENT, _square(near)) | doubt[window]
     reach = cv2.dilate(band, _square(2 * stride)) + band
     sides = sides_of(frame, room, gain, counts_3x3(own), top, left)
     size = (2 * round(SIDE_SHARE * rows) + 1,) * 2
     means = cv2.boxFilter(sides, cv2.CV_32F, size, borderType=cv2.BORDER_REPLICATE)
     shares, places, facts = covered(frame, room, weight, gain, known, means, reach, (top, left))
-    counts = [_share(own, 2 * far * stride + 1) for far in COUNTED]
+    own *= np.uint8(255)
+    counts = [_mean(own, 2 * far * stride + 1) for far in COUNTED]
     clues = _gathered(places, shares, facts, *counts, stride)
     return places + np.array([top, left], np.int32), clues
 
@@ -90,10 +91,8 @@ def _window(mask: Bytes, margin: int) -> tuple[int, int, int, int]:
     )
 
 
-def _share(mask: Bytes, size: int) -> Bytes:
-    """How much of every neighbourhood is in the mask, of 255."""
-    border = cv2.BORDER_REPLICATE
-    return np.asarray(cv2.blur(mask * np.uint8(255), (size, size), borderType=border))
+def _mean(shares: Bytes, size: int) -> Bytes:
+    return np.asarray(cv2.blur(shares, (size, size), borderType=cv2.BORDER_REPLICATE))
 
 
 @KERNEL

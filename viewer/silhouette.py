@@ -26,6 +26,8 @@ PART_SHARE: Final = 0.0002
 """Specks below this share of the picture are dropped."""
 APART_SHARE: Final = 0.2
 """Regions this share of the picture's height apart can still be one body."""
+ALONE: Final = np.array([False, True])
+"""Which regions are the person's where there is one (row 0: none)."""
 FOLLOW_EVERY: Final = 8
 """Frames between two looks at the slow light."""
 
@@ -121,7 +123,6 @@ def guess(state: State, frame: Frame, near_px: tuple[float, float] | None) -> Gu
     mask, doubt = np.zeros(frame.shape[:2], np.uint8), np.zeros(frame.shape[:2], np.uint8)
     if blobs:
         label(mask, doubt, frame, room, weight, gain, known, cells, cell)
-        _tidy(mask)
     return Guess(
         gain, cells, cell, blobs, mask, *clues_of(frame, room, weight, gain, known, mask, doubt)
     )
@@ -162,7 +163,7 @@ def _choose(
     else:
         off = (centres[large] + 0.5) * cell - near_px
         best = large[np.argmin(np.hypot(off[:, 0], off[:, 1]))]
-    own = _same_body(stats, int(best), found.shape[0])
+    own = _same_body(stats, int(best), found.shape[0]) if len(stats) > 2 else ALONE
     return own[labels].astype(np.uint8), int(np.count_nonzero(~own[large])) + 1
 
 
