@@ -9,7 +9,7 @@ from rich.console import Console
 from tritrack import outlining
 from tritrack.outlining import Taught, films, fitted, taught_by, train_silhouettes
 from tritrack.training import TrainingError
-from viewer.judge import judged, load
+from viewer.judge import judged, load, shipped
 from viewer.outline import CLUES
 
 
@@ -37,11 +37,16 @@ def test_films_show_the_empty_room_then_somebody() -> None:
 
 
 @pytest.mark.slow
-def test_a_network_is_learnt_from_a_made_up_person(tmp_path: Path) -> None:
-    """P3: what is learnt of one tells another's pixels, is repeatable, and can be loaded."""
-    one, other = taught_by(1), taught_by(2)
-    again = taught_by(1)
+def test_what_is_learnt_is_repeatable_and_can_be_loaded(tmp_path: Path) -> None:
+    one, again = taught_by(1), taught_by(1)
     assert all(np.array_equal(a, b) for a, b in zip(one, again, strict=True))
     outlining.save(fitted(one, 0), tmp_path / "learnt.npz")
-    told = judged(load(tmp_path / "learnt.npz"), other.clues) > 0
-    assert np.mean(told == other.body) > 0.85
+    told = judged(load(tmp_path / "learnt.npz"), one.clues) > 0
+    assert np.mean(told == one.body) > 0.9
+
+
+@pytest.mark.slow
+def test_the_shipped_network_tells_the_pixels_of_somebody_new() -> None:
+    """P3: nine in ten of the doubtful pixels of a person and a room that were not learnt from."""
+    new = taught_by(outlining.PERFORMANCES + 1000)
+    assert np.mean((judged(shipped(), new.clues) > 0) == new.body) > 0.9

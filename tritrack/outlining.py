@@ -1,6 +1,7 @@
 """The network that draws outlines, learnt from films of made-up people whose masks are known."""
 
 import multiprocessing
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -176,6 +177,7 @@ def _looked_at(film: Film, rng: np.random.Generator) -> Iterator[Taught]:
 
 def fitted(taught: Taught, seed: int) -> Network:
     """The network that tells them apart, by Adam; the clues' scales end up in its weights."""
+    from sklearn.exceptions import ConvergenceWarning
     from sklearn.neural_network import MLPClassifier
 
     middle, spread = taught.clues.mean(axis=0), taught.clues.std(axis=0) + NARROW
@@ -187,7 +189,10 @@ def fitted(taught: Taught, seed: int) -> Network:
         n_iter_no_change=EPOCHS,
         random_state=seed,
     )
-    model.fit((taught.clues - middle) / spread, taught.body)
+    with warnings.catch_warnings():
+        # EPOCHS are enough, whether or not more would still change it
+        warnings.simplefilter("ignore", ConvergenceWarning)
+        model.fit((taught.clues - middle) / spread, taught.body)
     enter = model.coefs_[0] / spread[:, None]
     arrays = (enter, model.intercepts_[0] - middle @ enter, model.coefs_[1][:, 0])
     return Network(*(np.asarray(each, np.float32) for each in (*arrays, model.intercepts_[1])))
