@@ -46,7 +46,9 @@ def test_what_is_learnt_is_repeatable_and_can_be_loaded(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_shipped_network_tells_the_pixels_of_somebody_new() -> None:
-    """P3: nine in ten of the doubtful pixels of a person and a room that were not learnt from."""
-    new = taught_by(outlining.PERFORMANCES + 1000)
-    assert np.mean((judged(shipped(), new.clues) > 0) == new.body) > 0.9
+def test_the_shipped_network_tells_the_pixels_of_people_it_never_saw() -> None:
+    """P3: nine in ten of the doubtful ones, clothes of the wall's colour among them."""
+    first = outlining.PERFORMANCES
+    new = [taught_by(seed) for seed in range(first, first + 3)]
+    right = [(judged(shipped(), each.clues) > 0) == each.body for each in new]
+    assert np.mean(right) > 0.9
