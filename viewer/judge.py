@@ -6,7 +6,9 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from viewer.difference import KERNEL, Bytes
 from viewer.outline import CLUES
 from viewer.stacks import Floats
 
@@ -14,6 +16,10 @@ SHIPPED: Final = Path(__file__).with_name("silhouettes.npz")
 """Learnt from made-up people; docs/models.md says of whom."""
 HIDDEN: Final = 16
 """Units between the clues and the answer."""
+
+
+LIKELY: Final = np.float32(-0.4)
+"""Log odds from which a pixel is body: chosen on development performers r01 and r04."""
 
 
 class Network(NamedTuple):
@@ -73,3 +79,10 @@ def judged(network: Network, clues: Floats) -> Floats:
     seen = clues @ network.enter
     seen += network.enter_bias
     return np.asarray(np.maximum(seen, 0, out=seen) @ network.leave + network.leave_bias)
+
+
+@KERNEL
+def redraw(mask: Bytes, places: NDArray[np.int32], odds: Floats) -> None:
+    """Set the mask at row and column (n, 2), where the odds say so."""
+    for n in range(len(odds)):
+        mask[places[n, 0], places[n, 1]] = odds[n] > LIKELY

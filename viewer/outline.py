@@ -65,8 +65,8 @@ def clues_of(
     shares, places, facts = covered(frame, room, weight, gain, known, means, reach, (top, left))
     own *= np.uint8(255)
     counts = [_mean(own, 2 * far * stride + 1) for far in COUNTED]
-    clues = _gathered(places, shares, facts, *counts, stride)
-    return places + np.array([top, left], np.int32), clues
+    clues = _gathered(places, shares, facts, *counts, stride, (top, left))
+    return places, clues
 
 
 def _square(far: int) -> Bytes:
@@ -103,7 +103,9 @@ def _gathered(
     around: Bytes,
     wide: Bytes,
     stride: int,
+    corner: tuple[int, int],
 ) -> Floats:
+    """The clues (n, CLUES); moves the places from the window to the frame, whose corner it is."""
     height, width = wide.shape
     out = np.empty((len(places), CLUES), np.float32)
     unit = np.float32(1 / 255)
@@ -118,4 +120,5 @@ def _gathered(
         at[k], at[k + 1] = unit * np.float32(around[y, x]), unit * np.float32(wide[y, x])
         for s in range(FACTS):
             at[k + 2 + s] = facts[n, s]
+        places[n, 0], places[n, 1] = y + corner[0], x + corner[1]
     return out

@@ -12,12 +12,10 @@ from common.similarity import Mask
 from viewer.appearance import counted, familiar, fresh
 from viewer.background import Background, learn, light_gain
 from viewer.difference import Bytes, followed, label, seeds
-from viewer.judge import judged, shipped
+from viewer.judge import judged, redraw, shipped
 from viewer.outline import clues_of, counts_3x3
 from viewer.stacks import Floats, Frame
 
-LIKELY: Final = np.float32(-0.4)
-"""Log odds from which a pixel is body: chosen on development performers r01 and r04."""
 CELLS: Final = 60
 """Rows of the coarse picture on which regions are told apart."""
 HOLE_SHARE: Final = 0.001
@@ -139,7 +137,7 @@ def learn_colours(state: State, mask: Bytes, frame: Frame, first: Guess) -> Stat
 def _outlined(first: Guess) -> Bytes:
     """The mask with its outline drawn again, and cleaned."""
     mask = first.mask.copy()
-    mask[first.places[:, 0], first.places[:, 1]] = judged(shipped(), first.clues) > LIKELY
+    redraw(mask, first.places, judged(shipped(), first.clues))
     _tidy(mask)
     return mask
 
