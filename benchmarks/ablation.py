@@ -42,11 +42,10 @@ PLAIN_LEVELS = 25
 """Grey levels by which a pixel of a plain silhouette differs from the room."""
 
 
-def plain_cut_out(
-    mask: Any, state: silhouette.State, frame: Any, gain: Any, cells: Any, cell: int
-) -> None:
+def plain_label(mask: Any, _: Any, frame: Any, room: Any, *given: Any) -> None:
     """Subtraction, threshold and a 3x3 opening, as printed (section 1), near the person."""
-    off = np.abs(frame - state.room * gain).max(axis=2)
+    _, gain, _, cells, cell = given
+    off = np.abs(frame - room * gain).max(axis=2)
     opened = cv2.morphologyEx(
         (off > PLAIN_LEVELS).astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3))
     )
@@ -84,14 +83,15 @@ SILHOUETTES = (
         "silhouettes follow the exposure",
         ((silhouette, "light_gain", lambda *_: np.ones(3, np.float32)),),
     ),
-    Step(
-        "silhouettes by noise, shadows and neighbours", ((silhouette, "_cut_out", plain_cut_out),)
-    ),
+    Step("silhouettes by noise, shadows and neighbours", ((silhouette, "label", plain_label),)),
     Step(
         "silhouettes know the body's colours",
         ((silhouette, "familiar", lambda counts: np.zeros(counts.shape[1], np.float32)),),
     ),
-    Step("outlines drawn by coverage", ((silhouette, "redraw", lambda *_: None),)),
+    Step(
+        "outlines drawn by coverage and a network",
+        ((silhouette, "_outlined", lambda first: first.mask),),
+    ),
     Step("the room follows slow light", ((silhouette, "_follow", lambda state, *_: state),)),
 )
 """How a viewer finds its silhouette: in both modes, but more than is printed."""

@@ -66,7 +66,8 @@ def _section(
         syy += py * py
     half_height = max(math.sqrt(syy), THINNEST * math.sqrt(sxx))
     shear = sxy / (half_height * half_height)
-    half_width = math.sqrt(max(sxx - shear * sxy, THINNEST * THINNEST * sxx))
+    # a limb that lies exactly across the picture has a section of no width at all
+    half_width = math.sqrt(max(sxx - shear * sxy, THINNEST * THINNEST * max(sxx, syy)))
     return shear, half_width / half_height, half_height
 
 

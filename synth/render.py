@@ -71,7 +71,7 @@ def render(someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int)
     scale = max(2, round(FINE_PX / rig.width))
     look = someone.look
     pattern = (float(PATTERNS.index(look.pattern)), look.pitch_m, float(MATERIAL["shirt"]))
-    scene = _Scene(body_mesh(someone), _palette(look), pattern, _room(room_seed, rig), rig, scale)
+    scene = _Scene(body_mesh(someone), _palette(look), pattern, room_of(room_seed, rig), rig, scale)
     places = _placed(scene.mesh, motion)
     gains, smeared = exposures(len(motion.phase), seed, motion.fps), blurred(motion)
     rng = np.random.default_rng([seed, 3])
@@ -91,7 +91,7 @@ def render(someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int)
 
 
 @lru_cache(maxsize=2)
-def _room(seed: int, rig: Rig) -> Room:
+def room_of(seed: int, rig: Rig) -> Room:
     """A performer's takes share a room; furnishing one costs as much as twenty frames."""
     return furnished(seed, rig)
 

@@ -22,8 +22,8 @@ def train(
         typer.Argument(help="Clips that name their posture, or their run folders."),
     ] = None,
     what: Annotated[
-        Literal["postures", "proposals"],
-        typer.Option(help="What is learnt; proposals of poses need no clips."),
+        Literal["postures", "proposals", "silhouettes"],
+        typer.Option(help="What is learnt; proposals and silhouettes need no clips."),
     ] = "postures",
     recognizer: RecognizerName = "default",
     mode: OwnMode = None,
@@ -34,7 +34,7 @@ def train(
     cache: Cache = CACHE,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Learn postures from clips or runs, or how outlines show poses from made-up people.
+    """Learn postures from clips or runs, or poses and silhouettes from made-up people.
 
     A new posture needs three takes; with --add-to, the shipped model or another learns it too.
 
@@ -45,6 +45,12 @@ def train(
 
         facts = train_proposals(out, 0, console)
         tell(facts, json_wanted, f"{facts['instants']} instants learnt, written to {out}")
+        return
+    if what == "silhouettes":
+        from tritrack.outlining import train_silhouettes
+
+        facts = train_silhouettes(out, 0, console)
+        tell(facts, json_wanted, f"{facts['pixels']} pixels learnt, written to {out}")
         return
     if not runs:
         raise typer.BadParameter("name clips or run folders to learn postures from")

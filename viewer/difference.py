@@ -33,6 +33,8 @@ KNOWN: Final = np.float32(1.0)
 """Evidence of a colour that only the body has."""
 PULL: Final = np.float32(0.3)
 """What a neighbour at an edge weighs against a pixel's own evidence."""
+UNSURE: Final = np.float32(1.0)
+"""A pixel and its neighbours that together speak less loudly are looked at again."""
 CORNER: Final = np.float32(0.7)
 """What a neighbour at a corner weighs against one at an edge."""
 FOLLOW: Final = np.float32(0.2)
@@ -50,13 +52,16 @@ def seeds(frame: Frame, room: Floats, weight: Floats, gain: Floats, cell: int) -
             given, empty, sure = frame[y], room[y], weight[y]
             for j in range(out.shape[1]):
                 x = min(j * cell + k, width - 1)
-                out[i, j] |= unshaded(given, empty, sure, gain, x) > SEED * SEED
+                # whatever a shadow explains, it is no farther than without: most stop here
+                if _distance(given, empty, sure, gain, x) > SEED * SEED:
+                    out[i, j] |= unshaded(given, empty, sure, gain, x) > SEED * SEED
     return out
 
 
 @KERNEL
 def label(
     mask: Bytes,
+    doubt: Bytes,
     frame: Frame,
     room: Floats,
     weight: Floats,
@@ -65,24 +70,21 @@ def label(
     cells: Bytes,
     cell: int,
 ) -> None:
-    """Tell person from room inside the cells: a pixel's evidence and its neighbours'."""
+    """Guess who is person inside the cells, by a pixel's evidence and its neighbours'.
+
+    Sets the mask where they together speak for the person, and doubt where they hardly speak.
+    """
     height, width = mask.shape
     evidence = np.zeros((height, width), np.float32)
-    for i, j in np.argwhere(cells):
+    places = np.argwhere(cells)
+    for i, j in places:
         for y in range(i * cell, min((i + 1) * cell, height)):
             given, empty, sure = frame[y], room[y], weight[y]
             for x in range(j * cell, min((j + 1) * cell, width)):
                 far = np.sqrt(unshaded(given, empty, sure, gain, x))
                 told = (far - DIFFERS) * STEEP + KNOWN * known[shade_of(given, gain, x)]
                 evidence[y, x] = min(max(told, -SURE), SURE)
-    settle(mask, evidence, cells, cell, PULL)
-
-
-@KERNEL
-def settle(mask: Bytes, evidence: Floats, cells: Bytes, cell: int, pull: np.float32) -> None:
-    """Set the mask where a pixel and its eight neighbours together speak for the person."""
-    height, width = mask.shape
-    for i, j in np.argwhere(cells):
+    for i, j in places:
         for y in range(i * cell, min((i + 1) * cell, height)):
             up, down = max(y - 1, 0), min(y + 1, height - 1)
             for x in range(j * cell, min((j + 1) * cell, width)):
@@ -90,7 +92,8 @@ def settle(mask: Bytes, evidence: Floats, cells: Bytes, cell: int, pull: np.floa
                 edges = evidence[up, x] + evidence[down, x] + evidence[y, left] + evidence[y, right]
                 corners = evidence[up, left] + evidence[up, right]
                 corners += evidence[down, left] + evidence[down, right]
-                mask[y, x] = evidence[y, x] + pull * (edges + CORNER * corners) > 0
+                told = evidence[y, x] + PULL * (edges + CORNER * corners)
+                mask[y, x], doubt[y, x] = told > 0, abs(told) < UNSURE
 
 
 @KERNEL
@@ -137,10 +140,27 @@ def _distance(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) 
 
 
 @INLINE
+def brightness(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> np.float32:
+    """How much brighter than the room a pixel of a row is, in spreads."""
+    b, g, r = _off(given, room, gain, x)
+    return (BLUE * b + GREEN * g + RED * r) * np.sqrt(weight[x, 0])
+
+
+@INLINE
+def colour(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> np.float32:
+    """How far a pixel of a row is from the room by colour alone, in spreads squared."""
+    b, g, r = _off(given, room, gain, x)
+    luma = BLUE * b + GREEN * g + RED * r
+    return _square(b - luma, g - luma, r - luma) * weight[x, 1]
+
+
+@INLINE
 def unshaded(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> np.float32:
     """The same, but by colour alone where a soft shadow may lie: the room, only darker."""
     b, g, r = _off(given, room, gain, x)
-    due_b, due_g, due_r = given[x, 0] - b, given[x, 1] - g, given[x, 2] - r
+    # without the casts numba would go on in doubles
+    due_b, due_g = np.float32(given[x, 0]) - b, np.float32(given[x, 1]) - g
+    due_r = np.float32(given[x, 2]) - r
     luma = BLUE * b + GREEN * g + RED * r
     total = luma * luma * weight[x, 0] + _square(b - luma, g - luma, r - luma) * weight[x, 1]
     part = luma / max(BLUE * due_b + GREEN * due_g + RED * due_r, ONE)

@@ -1,130 +1,124 @@
-"""Where exactly the outline runs: the share of every pixel on it that is body."""
+"""What tells body from room around the outline of a first guess, and where that was in doubt."""
 
 from typing import Final
 
+import cv2
 import numpy as np
+from numpy.typing import NDArray
 
-from viewer.difference import BLUE, GREEN, INLINE, KERNEL, ONE, RED, SURE, WHITE, Bytes, settle
+from viewer.coverage import FACTS, SHARES, covered, sides_of
+from viewer.difference import KERNEL, Bytes
 from viewer.stacks import Floats, Frame
 
-Colour = tuple[np.float32, np.float32, np.float32, np.float32]
-NEAR: Final = np.exp(-np.arange(9, dtype=np.float32) / np.float32(2 * 1.2**2))
-"""Weight of a neighbour, by its squared distance in strides."""
-DEEP: Final = np.arange(10, dtype=np.float32) ** 2
-"""Weight of a neighbour, by how many of its 3x3 neighbourhood are on its side."""
-OUTLINE_PULL: Final = np.float32(0.15)
-"""The same where the outline is drawn."""
-COVERED: Final = np.float32(0.3)
-"""Share of a pixel that the body must cover."""
-COLOUR: Final = np.float32(0.4)
-"""What colour counts beside brightness at an outline: cameras and codecs blur colour twofold."""
-GREY_LEVELS: Final = np.float32(10.0)
-"""Difference at an outline that is worth one unit of evidence."""
-STRANGE: Final = np.float32(8.0)
-"""Grey levels off the line from room to body at which a pixel is a third thing: body too."""
-THIRD: Final = np.float32(0.75)
-"""What a grey level of that counts."""
-NOISE: Final = np.float32(25.0)
-"""Grey levels squared: where body and room differ by no more, the outline stays undecided."""
-DIMMEST, BRIGHTEST = np.float32(0.5), np.float32(1.1)
-"""Shade that is believed of the room beside a body."""
+ROWS: Final = 240
+"""Of a taller picture every other pixel, or every third, is a neighbour, so that as much is seen
+of the body around a pixel."""
+SIDE_SHARE: Final = 1 / 60
+"""How far around a pixel the colours of body and room are asked for, of the picture's height."""
+COUNTED: Final = (3, 7)
+"""How far the neighbourhoods reach whose share of body is a clue."""
+NEAR_SHARE: Final = 1 / 120
+"""How far from the guess's outline pixels are looked at, of the picture's height."""
+CROSS: Final = np.array(
+    [(i, j) for i in range(-2, 3) for j in range(-2, 3) if abs(i) + abs(j) <= 2], np.int64
+)
+"""Neighbours whose coverage is a clue."""
+CLUES: Final = SHARES * len(CROSS) + len(COUNTED) + FACTS
+"""What the network sees of a pixel."""
+
+
+def clues_of(
+    frame: Frame,
+    room: Floats,
+    weight: Floats,
+    gain: Floats,
+    known: Floats,
+    mask: Bytes,
+    doubt: Bytes,
+) -> tuple[NDArray[np.int32], Floats]:
+    """The pixels to look at again, and what is known of them.
+
+    Args:
+        frame: (H, W, 3).
+        room: (H, W, 3) what it shows when empty, grey levels.
+        weight: (H, W, 2) 1 / spread^2 of brightness and colour.
+        gain: (3,) how much brighter than the room the frame is.
+        known: (SHADES,) whose colours are whose.
+        mask: (H, W) 1 where the body is guessed.
+        doubt: (H, W) 1 where the guess was not sure.
+
+    Returns:
+        Row and column (n, 2) of the pixels, and their clues (n, CLUES).
+    """
+    if not mask.any():
+        return np.empty((0, 2), np.int32), np.empty((0, CLUES), np.float32)
+    rows = frame.shape[0]
+    stride, near = max(1, round(rows / ROWS)), max(1, round(NEAR_SHARE * rows))
+    left, top, right, bottom = _window(cv2.bitwise_or(mask, doubt), near + 2 * stride)
+    window = slice(top, bottom), slice(left, right)
+    own = mask[window].copy()
+    band = cv2.morphologyEx(own, cv2.MORPH_GRADIENT, _square(near)) | doubt[window]
+    reach = cv2.dilate(band, _square(2 * stride)) + band
+    sides = sides_of(frame, room, gain, counts_3x3(own), top, left)
+    size = (2 * round(SIDE_SHARE * rows) + 1,) * 2
+    means = cv2.boxFilter(sides, cv2.CV_32F, size, borderType=cv2.BORDER_REPLICATE)
+    shares, places, facts = covered(frame, room, weight, gain, known, means, reach, (top, left))
+    own *= np.uint8(255)
+    counts = [_mean(own, 2 * far * stride + 1) for far in COUNTED]
+    clues = _gathered(places, shares, facts, *counts, stride, (top, left))
+    return places, clues
+
+
+def _square(far: int) -> Bytes:
+    return np.ones((2 * far + 1,) * 2, np.uint8)
+
+
+def counts_3x3(mask: Bytes) -> Bytes:
+    """How many pixels of every 3x3 neighbourhood are in the mask."""
+    border = cv2.BORDER_REPLICATE
+    return np.asarray(cv2.boxFilter(mask, -1, (3, 3), normalize=False, borderType=border))
+
+
+def _window(mask: Bytes, margin: int) -> tuple[int, int, int, int]:
+    """Left, top, right and bottom of what is around the mask."""
+    left, top, width, height = cv2.boundingRect(mask)
+    right, bottom = left + width + margin, top + height + margin
+    return (
+        max(left - margin, 0),
+        max(top - margin, 0),
+        min(right, mask.shape[1]),
+        min(bottom, mask.shape[0]),
+    )
+
+
+def _mean(shares: Bytes, size: int) -> Bytes:
+    return np.asarray(cv2.blur(shares, (size, size), borderType=cv2.BORDER_REPLICATE))
 
 
 @KERNEL
-def redraw(
-    mask: Bytes, inside: Bytes, frame: Frame, room: Floats, gain: Floats, cells: Bytes, cell: int
-) -> None:
-    """Draw the outline where the colours around say: what share of a pixel is body?
-
-    `inside` counts the mask in every pixel's 3x3 neighbourhood.
-    """
-    height, width = mask.shape
-    evidence = np.zeros((height, width), np.float32)
-    for i, j in np.argwhere(cells):
-        for y in range(i * cell, min((i + 1) * cell, height)):
-            for x in range(j * cell, min((j + 1) * cell, width)):
-                if 0 < inside[y, x] < 9:
-                    stride = max(1, cell // 2)
-                    evidence[y, x] = _covered(mask, inside, frame, room, gain, y, x, stride)
-                else:
-                    evidence[y, x] = ONE if mask[y, x] else -ONE
-    settle(mask, evidence, cells, cell, OUTLINE_PULL)
-
-
-@INLINE
-def _covered(
-    mask: Bytes,
-    inside: Bytes,
-    frame: Frame,
-    room: Floats,
-    gain: Floats,
-    y: int,
-    x: int,
+def _gathered(
+    places: NDArray[np.int32],
+    shares: Floats,
+    facts: Floats,
+    around: Bytes,
+    wide: Bytes,
     stride: int,
-) -> np.float32:
-    """Evidence that the body covers a pixel of the outline.
-
-    The pixel mixes the body's colour nearby with its own room, in the shade of the room nearby.
-    """
-    body, shade = _around(mask, inside, frame, room, gain, y, x, stride)
-    if body[3] == 0:
-        return -SURE
-    part = ONE / body[3]
-    due_b = min(room[y, x, 0] * gain[0], WHITE) * shade
-    due_g = min(room[y, x, 1] * gain[1], WHITE) * shade
-    due_r = min(room[y, x, 2] * gain[2], WHITE) * shade
-    off = _opponent(frame[y, x, 0] - due_b, frame[y, x, 1] - due_g, frame[y, x, 2] - due_r)
-    full = _opponent(body[0] * part - due_b, body[1] * part - due_g, body[2] * part - due_r)
-    square = _dot(full, full)
-    share = _dot(off, full) / (square + NOISE)
-    third = np.sqrt(max(_dot(off, off) - share * share * square, np.float32(0)))
-    levels = (share - COVERED) * np.sqrt(square) + THIRD * max(third - STRANGE, np.float32(0))
-    return min(max(levels / GREY_LEVELS, -SURE), SURE)
-
-
-@INLINE
-def _around(
-    mask: Bytes,
-    inside: Bytes,
-    frame: Frame,
-    room: Floats,
-    gain: Floats,
-    y: int,
-    x: int,
-    stride: int,
-) -> tuple[Colour, np.float32]:
-    """Sum of the body's colours near a pixel with the sum of their weights, and the room's shade.
-
-    Pixels deep inside or outside weigh most: the mask is surest there.
-    """
-    height, width = mask.shape
-    body_b = body_g = body_r = body = np.float32(0)
-    bright = due = np.float32(1e-3)
-    for i in range(-2, 3):
-        v = min(max(y + i * stride, 0), height - 1)
-        given, empty, sides, counts = frame[v], room[v], mask[v], inside[v]
-        for j in range(-2 + (i & 1), 3, 2):
-            u = min(max(x + j * stride, 0), width - 1)
-            b, g, r = np.float32(given[u, 0]), np.float32(given[u, 1]), np.float32(given[u, 2])
-            if sides[u]:
-                w = NEAR[i * i + j * j] * DEEP[counts[u]]
-                body_b, body_g, body_r = body_b + w * b, body_g + w * g, body_r + w * r
-                body += w
-            else:
-                w = NEAR[i * i + j * j] * DEEP[9 - counts[u]]
-                bright += w * (b + g + r)
-                due += w * (empty[u, 0] * gain[0] + empty[u, 1] * gain[1] + empty[u, 2] * gain[2])
-    shade = min(max(bright / due, DIMMEST), BRIGHTEST)
-    return (body_b, body_g, body_r, body), shade
-
-
-@INLINE
-def _opponent(b: np.float32, g: np.float32, r: np.float32) -> Colour:
-    """A difference as brightness and what is left of the three channels."""
-    luma = BLUE * b + GREEN * g + RED * r
-    return luma, COLOUR * (b - luma), COLOUR * (g - luma), COLOUR * (r - luma)
-
-
-@INLINE
-def _dot(a: Colour, b: Colour) -> np.float32:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+    corner: tuple[int, int],
+) -> Floats:
+    """The clues (n, CLUES); moves the places from the window to the frame, whose corner it is."""
+    height, width = wide.shape
+    out = np.empty((len(places), CLUES), np.float32)
+    unit = np.float32(1 / 255)
+    for n in range(len(places)):
+        y, x, at, k = places[n, 0], places[n, 1], out[n], 0
+        for m in range(len(CROSS)):
+            v = min(max(y + CROSS[m, 0] * stride, 0), height - 1)
+            u = min(max(x + CROSS[m, 1] * stride, 0), width - 1)
+            for s in range(SHARES):
+                at[k + s] = shares[v, u, s]
+            k += SHARES
+        at[k], at[k + 1] = unit * np.float32(around[y, x]), unit * np.float32(wide[y, x])
+        for s in range(FACTS):
+            at[k + 2 + s] = facts[n, s]
+        places[n, 0], places[n, 1] = y + corner[0], x + corner[1]
+    return out

@@ -12,11 +12,10 @@ from common.similarity import Mask
 from viewer.appearance import counted, familiar, fresh
 from viewer.background import Background, learn, light_gain
 from viewer.difference import Bytes, followed, label, seeds
-from viewer.outline import redraw
+from viewer.judge import judged, redraw, shipped
+from viewer.outline import clues_of, counts_3x3
 from viewer.stacks import Floats, Frame
 
-ROUNDS: Final = 2
-"""How often the outline is drawn again, a pixel further each time; once where pixels are large."""
 CELLS: Final = 60
 """Rows of the coarse picture on which regions are told apart."""
 HOLE_SHARE: Final = 0.001
@@ -25,6 +24,8 @@ PART_SHARE: Final = 0.0002
 """Specks below this share of the picture are dropped."""
 APART_SHARE: Final = 0.2
 """Regions this share of the picture's height apart can still be one body."""
+ALONE: Final = np.array([False, True])
+"""Which regions are the person's where there is one (row 0: none)."""
 FOLLOW_EVERY: Final = 8
 """Frames between two looks at the slow light."""
 
@@ -55,6 +56,24 @@ class State(NamedTuple):
     frames: int
 
 
+class Guess(NamedTuple):
+    """What subtraction and known colours make of a frame."""
+
+    gain: Floats
+    """(3,) how much brighter than the room the frame is."""
+    cells: Bytes
+    """(rows, columns) 1 around the person."""
+    cell: int
+    """Pixels in a cell's side."""
+    blobs: int
+    mask: Bytes
+    """(H, W) 1 where the person is."""
+    places: NDArray[np.int32]
+    """Row and column (n, 2) of the pixels to look at again."""
+    clues: Floats
+    """(n, CLUES) what is known of them."""
+
+
 def init(background: Background, settings: SilhouetteSettings) -> State:
     """Begin with the room as it was learnt."""
     return State(settings, background.centre, np.float32(1) / background.spread**2, fresh(), 0)
@@ -75,17 +94,12 @@ def step(state: State, frame: Frame, near_px: tuple[float, float] | None) -> tup
     """
     if frame.shape != state.room.shape:
         raise ValueError(f"a frame of {frame.shape}, the background has {state.room.shape}")
-    gain = light_gain(frame, state.room)
-    cell = max(1, round(frame.shape[0] / CELLS))
-    found = seeds(frame, state.room, state.weight, gain, cell)
-    cells, blobs = _choose(found, cell, state.settings.min_height_share, near_px)
-    mask = np.zeros(frame.shape[:2], np.uint8)
-    if blobs:
-        _cut_out(mask, state, frame, gain, cells, cell)
-    seen = _seen(mask, blobs, state.settings.min_height_share)
+    first = guess(state, frame, near_px)
+    mask = _outlined(first)
+    seen = _seen(mask, first.blobs, state.settings.min_height_share)
     if seen.box is not None:
-        state = _learn_colours(state, mask, frame, gain, cells, cell)
-    return _follow(state, frame, gain, seen.box), seen
+        state = learn_colours(state, mask, frame, first)
+    return _follow(state, frame, first.gain, seen.box), seen
 
 
 def warm() -> None:
@@ -97,30 +111,35 @@ def warm() -> None:
         state, _ = step(state, person, None)
 
 
-def _cut_out(
-    mask: Bytes, state: State, frame: Frame, gain: Floats, cells: Bytes, cell: int
-) -> None:
-    """Draw the person into an empty mask: subtraction, outline, cleaning."""
-    known = familiar(state.colours)
-    label(mask, frame, state.room, state.weight, gain, known, cells, cell)
-    for _ in range(ROUNDS if cell > 2 else 1):
-        _tidy(mask)
-        redraw(mask, _inside(mask), frame, state.room, gain, cells, cell)
-    _tidy(mask)
+def guess(state: State, frame: Frame, near_px: tuple[float, float] | None) -> Guess:
+    """Find the person by subtraction and known colours, and what tells the outline better."""
+    room, weight, known = state.room, state.weight, familiar(state.colours)
+    gain = light_gain(frame, room)
+    cell = max(1, round(frame.shape[0] / CELLS))
+    found = seeds(frame, room, weight, gain, cell)
+    cells, blobs = _choose(found, cell, state.settings.min_height_share, near_px)
+    mask, doubt = np.zeros(frame.shape[:2], np.uint8), np.zeros(frame.shape[:2], np.uint8)
+    if blobs:
+        label(mask, doubt, frame, room, weight, gain, known, cells, cell)
+    return Guess(
+        gain, cells, cell, blobs, mask, *clues_of(frame, room, weight, gain, known, mask, doubt)
+    )
 
 
-def _learn_colours(
-    state: State, mask: Bytes, frame: Frame, gain: Floats, cells: Bytes, cell: int
-) -> State:
-    room, weight = state.room, state.weight
-    colours = counted(state.colours, _inside(mask), frame, room, weight, gain, cells, cell)
+def learn_colours(state: State, mask: Bytes, frame: Frame, first: Guess) -> State:
+    """Count whose colours are whose, by a mask of the body."""
+    room, weight, (gain, cells, cell) = state.room, state.weight, first[:3]
+    inside = counts_3x3(mask)
+    colours = counted(state.colours, inside, frame, room, weight, gain, cells, cell)
     return state._replace(colours=colours)
 
 
-def _inside(mask: Bytes) -> Bytes:
-    """How many pixels of every 3x3 neighbourhood are in the mask."""
-    border = cv2.BORDER_REPLICATE
-    return np.asarray(cv2.boxFilter(mask, -1, (3, 3), normalize=False, borderType=border))
+def _outlined(first: Guess) -> Bytes:
+    """The mask with its outline drawn again, and cleaned."""
+    mask = first.mask.copy()
+    redraw(mask, first.places, judged(shipped(), first.clues))
+    _tidy(mask)
+    return mask
 
 
 def _choose(
@@ -142,7 +161,7 @@ def _choose(
     else:
         off = (centres[large] + 0.5) * cell - near_px
         best = large[np.argmin(np.hypot(off[:, 0], off[:, 1]))]
-    own = _same_body(stats, int(best), found.shape[0])
+    own = _same_body(stats, int(best), found.shape[0]) if len(stats) > 2 else ALONE
     return own[labels].astype(np.uint8), int(np.count_nonzero(~own[large])) + 1
 
 
