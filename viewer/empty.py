@@ -4,11 +4,10 @@ import math
 from itertools import islice
 from pathlib import Path
 
-import cv2
 import numpy as np
 
 from common.clips import View
-from common.config import SilhouetteSettings, working_size
+from common.config import SilhouetteSettings
 from common.decoding import Decoder
 from common.reel import Reader
 from common.replacing import replacing
@@ -18,9 +17,6 @@ from viewer.uncovered import is_still, learn_uncovered
 
 SAMPLE = 40
 """How many frames at most, spread over a clip, tell whether its opening is empty."""
-
-COARSE = (160, 120)
-"""How finely, at most: as finely as the paper looks; every other frame is enough."""
 
 LOOKED_AT = 1500
 """How many frames of a clip are looked at for that: a long recording is judged by its start."""
@@ -48,8 +44,7 @@ def empty_room(view: View, settings: SilhouetteSettings, decoder: Reader) -> tup
         plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
         return learn(plate), ""
     opening, sample = _looked_at(view, settings.empty_frames, decoder)
-    coarse = _reduced(opening)
-    if is_still(coarse) and is_empty_opening(coarse, _reduced(sample[::2])):
+    if is_still(opening) and is_empty_opening(opening, sample):
         return learn(opening), ""
     return learn_uncovered(sample), (
         f"{view.source} does not open with an empty room: the background is estimated from the "
@@ -92,15 +87,6 @@ def room_of_clip(
     _, sample = _looked_at(view, settings.empty_frames, decoder)
     learnt = learn_uncovered(sample)
     return (learnt if learnt.uncertain.mean() < LEFT_HIDDEN else room), ""
-
-
-def _reduced(frames: list[Frame]) -> list[Frame]:
-    """The frames, no larger than COARSE."""
-    size = (frames[0].shape[1], frames[0].shape[0])
-    coarse = working_size(size, COARSE)
-    if coarse == size:
-        return frames
-    return [cv2.resize(frame, coarse, interpolation=cv2.INTER_AREA) for frame in frames]
 
 
 def _now(view: View, due: int, decoder: Reader) -> list[Frame]:
