@@ -27,7 +27,7 @@ from common.messages import (
 from common.notes import ORIENTATIONS, Orientation
 from common.stickman import BREADTH, GIRTH, POSE_SIZE, STATURE, Stickman
 from common.strokes import ALL_SEGMENTS, draw_segments
-from integrator import insight, propose, signs, smoothing
+from integrator import insight, limits, propose, signs, smoothing
 from integrator.lifting import SWAPPED, Lifted, lift
 from integrator.limbs import PLACES, pose_of
 from integrator.two_outlines import packed
@@ -114,8 +114,12 @@ def lifted_body(state: State, report: Report, told: Inputs) -> tuple[State, Hypo
     for name, place in told.joints_px.items():
         pixels[JOINT_NAMES.index(name)] = place
     joints_m = in_room(state, pixels, lifted, px_per_m)
-    pose = _pose(state, joints_m)
-    score = fit.score if state.printed else _score(state, pixels, report)
+    pose, joints_m = _posed(state, joints_m, told)
+    score = (
+        fit.score
+        if state.printed
+        else _score(state, project(state.camera, joints_m), report)
+    )
     depth = tuple(float(sure) for sure in choice.confidence)
     settled = Settled(choice.orientation, choice.orientation_confidence, depth)
     return state, Hypothesis(joints_m, pose, score, _sure(fit, lifted, choice), settled)
@@ -141,7 +145,7 @@ def proposed_body(
     for name, place in told.joints_px.items():
         at = JOINT_NAMES.index(name)
         joints_m[at] = _at_depth(state.camera, place, joints_m[at])
-    pose = _pose(state, joints_m)
+    pose, joints_m = _posed(state, joints_m, told)
     depth = tuple(float(sure) for sure in known.sure[LIMB_ENDS[:, 1]])
     settled = Settled(_faces(state, joints_m), float(known.sure[PELVIS]), depth)
     score = _score(state, project(state.camera, joints_m), report)
@@ -150,9 +154,18 @@ def proposed_body(
     )
 
 
-def _pose(state: State, joints_m: NDArray[np.float64]) -> Vector:
-    before = rest_pose() if state.pose is None else state.pose
-    return pose_of(joints_m[TWELVE], body_vector(state.bdp), before)
+def _posed(
+    state: State, joints_m: NDArray[np.float64], told: Inputs
+) -> tuple[Vector, NDArray[np.float64]]:
+    """The pose of joints, within the limits that joints have unless the user said where they are.
+
+    The print has limits in the picture's plane alone.
+    """
+    before, body = rest_pose() if state.pose is None else state.pose, body_vector(state.bdp)
+    pose: Vector = pose_of(joints_m[TWELVE], body, before)
+    if state.printed or told.joints_px:
+        return pose, joints_m
+    return limits.within(body, pose, before, joints_m)
 
 
 def _score(state: State, joints_px: NDArray[np.float64], report: Report) -> float:

@@ -21,7 +21,7 @@ from common.messages import (
     ViewerNumber,
 )
 from common.stickman import Stickman
-from integrator import signs, smoothing
+from integrator import limits, signs, smoothing
 from integrator.belief import LOST_SCORE, status_of
 from integrator.one_outline import Hypothesis, Inputs, Settled, State, lifted_body, proposed_body
 
@@ -59,8 +59,9 @@ def step(state: State, report: Report, told: Inputs) -> tuple[State, Body, Settl
             found = other
     fits = found.score >= LOST_SCORE
     raw = found.pose[list(ANGLES_IN_POSE)]
-    believed = raw if fits or state.smooth.P is None else None
-    smooth, angles, _ = smoothing.step(state.smooth, believed, dt_s)
+    smooth, angles, _ = smoothing.step(state.smooth, raw, dt_s)
+    if not state.printed:
+        angles = limits.clipped(angles)
     badly = 0 if fits else state.badly + 1
     state = state._replace(smooth=smooth, pose=found.pose, last_s=report.captured_s, badly=badly)
     return state, _body(state, report, found, angles), found.settled
