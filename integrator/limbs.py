@@ -100,7 +100,7 @@ def bend(pose: Any, at: int, at_bend: int, lower: Any) -> None:
     Args:
         pose: theta_X and theta_Z of the upper limb, pose[at] and pose[at + 2], are set.
         at: Where its angles begin.
-        at_bend: Where the bend stands. Knees bend backwards.
+        at_bend: Where the bend stands: knees bend backwards, elbows forwards.
         lower: Unit vector in the trunk's axes.
     """
     across, along, front = _framed(lower, pose[at], pose[at + 2])
@@ -134,6 +134,7 @@ def _cross(a: Any, b: Any) -> Any:
 
 @numba.njit(cache=True)
 def cosine(value: float) -> float:
+    """The value, were it not for rounding."""
     return min(max(value, -1.0), 1.0)
 
 
@@ -162,6 +163,7 @@ def _cost(at: int, turn_deg: float, before: Any) -> float:
 
 @numba.njit(cache=True)
 def apart(one_deg: float, other_deg: float) -> float:
+    """How far an angle is beyond another, in [-180, 180)."""
     return (one_deg - other_deg + 180.0) % 360.0 - 180.0
 
 

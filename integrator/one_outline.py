@@ -7,7 +7,6 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bits import count, count_both
 from common.body import (
     JOINT_NAMES,
     LIMB_ENDS,
@@ -17,20 +16,17 @@ from common.body import (
     body_vector,
     rest_pose,
 )
-from common.camera import Camera, Rig, centre, project, ray
-from common.kernel import score as similarity_of
+from common.camera import Camera, Rig, centre, ray
 from common.messages import (
     Fit,
     Report,
     ViewerNumber,
 )
 from common.notes import ORIENTATIONS, Orientation
-from common.stickman import BREADTH, GIRTH, POSE_SIZE, STATURE, Stickman
-from common.strokes import ALL_SEGMENTS, draw_segments
-from integrator import insight, limits, propose, signs, smoothing
+from common.stickman import Stickman
+from integrator import insight, limits, matching, propose, signs, smoothing
 from integrator.lifting import SWAPPED, Lifted, lift
 from integrator.limbs import PLACES, pose_of
-from integrator.two_outlines import packed
 from integrator.window import Floats
 
 UNSEEN: Final = 0.25
@@ -40,12 +36,6 @@ TILTED_DEG: Final = 15.0
 SIDEWAYS_DEG: Final = 20.0
 """Somebody who is turned so near to a right angle is seen from the side."""
 TWELVE: Final = [JOINT_NAMES.index(name) for name in PLACES]
-ACROSS: Final = [
-    [JOINT_NAMES.index(f"{side}_{name}") for side in "rl"] for name in ("shoulder", "hip")
-]
-"""The lines of the shoulders and of the hips."""
-GIRTHS: Final = (1.0, 1.15, 1.3)
-"""How thick clothed limbs may be over those of the proportions."""
 PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
 
 
@@ -115,11 +105,9 @@ def lifted_body(state: State, report: Report, told: Inputs) -> tuple[State, Hypo
         pixels[JOINT_NAMES.index(name)] = place
     joints_m = in_room(state, pixels, lifted, px_per_m)
     pose, joints_m = _posed(state, joints_m, told)
-    score = (
-        fit.score
-        if state.printed
-        else _score(state, project(state.camera, joints_m), report)
-    )
+    score = fit.score
+    if not state.printed:
+        score = _match(state, pose, joints_m, report, turning=False).score
     depth = tuple(float(sure) for sure in choice.confidence)
     settled = Settled(choice.orientation, choice.orientation_confidence, depth)
     return state, Hypothesis(joints_m, pose, score, _sure(fit, lifted, choice), settled)
@@ -146,11 +134,11 @@ def proposed_body(
         at = JOINT_NAMES.index(name)
         joints_m[at] = _at_depth(state.camera, place, joints_m[at])
     pose, joints_m = _posed(state, joints_m, told)
+    found = _match(state, pose, joints_m, report, turning=not told.joints_px)
     depth = tuple(float(sure) for sure in known.sure[LIMB_ENDS[:, 1]])
-    settled = Settled(_faces(state, joints_m), float(known.sure[PELVIS]), depth)
-    score = _score(state, project(state.camera, joints_m), report)
+    settled = Settled(_faces(state, found.joints_m), float(known.sure[PELVIS]), depth)
     return state._replace(recall=known.memory), Hypothesis(
-        joints_m, pose, score, known.sure, settled
+        found.joints_m, found.pose, found.score, known.sure, settled
     )
 
 
@@ -168,27 +156,11 @@ def _posed(
     return limits.within(body, pose, before, joints_m)
 
 
-def _score(state: State, joints_px: NDArray[np.float64], report: Report) -> float:
-    """S of a body with these joints, drawn as the stick body is, as thick as fits best."""
-    fit = report.fit
-    assert fit is not None
-    ends = np.empty((12, 4))
-    ends[: len(LIMBS)] = joints_px[LIMB_ENDS].reshape(-1, 4)
-    lines = joints_px[ACROSS]
-    ends[len(LIMBS) :] = lines.reshape(-1, 4)
-    stick = np.ones(POSE_SIZE)
-    stick[STATURE] = fit.stature_px
-    broad = 2 * state.man.lengths[10] * fit.stature_px
-    stick[BREADTH] = min(1.0, float(np.linalg.norm(lines[0, 1] - lines[0, 0])) / broad)
-    seen, found = packed(report), 0.0
-    for girth in GIRTHS:
-        stick[GIRTH] = girth
-        bits = np.zeros_like(seen)
-        draw_segments(
-            ends, stick, state.man.parts, state.man.depth, ALL_SEGMENTS, report.width, bits
-        )
-        found = max(found, float(similarity_of(count_both(bits, seen), count(bits), count(seen))))
-    return found
+def _match(
+    state: State, pose: Vector, joints_m: NDArray[np.float64], report: Report, turning: bool
+) -> matching.Match:
+    body = body_vector(state.bdp)
+    return matching.matched(state.camera, body, state.man, report, pose, joints_m, turning)
 
 
 def in_room(
