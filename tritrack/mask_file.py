@@ -7,7 +7,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from tritrack.one_camera import Outline, outline_of
+from tritrack.outlining import Outline, outline_of
 
 MAX_PIXELS: Final = 1 << 30
 """No sequence is larger: 50,000 frames at 160x120."""
