@@ -15,6 +15,7 @@ from common.similarity import Mask
 from viewer import silhouette
 from viewer.background import Background
 from viewer.capture import recorded
+from viewer.cast import without_cast
 from viewer.stacks import LUMA
 from viewer.steady import Anchor, back, laid, place_of
 
@@ -25,6 +26,8 @@ MOST_COVERED: Final = 0.5
 SURELY_SOMEBODY: Final = 0.5
 """Share of the tallest box so far below which a region may be a shadow: the next frame's is then
 looked for everywhere."""
+STANDS: Final = 0.75
+"""Share of the tallest box above which somebody stands, near the floor with the feet alone."""
 
 
 class Outline(NamedTuple):
@@ -83,10 +86,20 @@ def outlines_of(
         tall = 0 if seen.box is None else seen.box.bottom + 1 - seen.box.top
         tallest = max(tallest, tall)
         near = _middle(seen.box) if tall > SURELY_SOMEBODY * tallest else None
-        mask = seen.mask if place is None else back(seen.mask, place)
-        found.append(outline_of(frame.index, frame.captured_s, mask, seen.cut))
+        mask, cut = seen.mask, seen.cut
+        if tall > STANDS * tallest:
+            mask = without_cast(mask, picture, state.room)
+            cut = cut and touches_border(mask)
+        if place is not None:
+            mask = back(mask, place)
+        found.append(outline_of(frame.index, frame.captured_s, mask, cut))
     _refuse_a_moving_camera(found, view.size, str(view.source))
     return found
+
+
+def touches_border(mask: Mask) -> bool:
+    """Whether a silhouette may be cut by the picture's border."""
+    return bool(mask[[0, -1]].any() or mask[:, [0, -1]].any())
 
 
 def _middle(box: Box | None) -> tuple[float, float] | None:

@@ -80,7 +80,8 @@ def place_of(anchor: Anchor, luma: Floats) -> Place:
             weighed = slopes / (1.0 + (off / CLEAR) ** 2) ** 2
             step = np.linalg.solve(weighed @ slopes.T + STIFF * np.eye(2), weighed @ off)
             shift = np.clip(shift + step, -limit, limit)
-    return Place(*shift.tolist(), *_light(anchor.luma, _moved(luma, *shift)))
+    gain, offset = _light(anchor.luma, _moved(luma, *shift))
+    return Place(float(shift[0]), float(shift[1]), gain, offset)
 
 
 def laid(frame: Frame, place: Place) -> Frame:
