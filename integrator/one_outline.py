@@ -1,7 +1,7 @@
 """Bodies that one silhouette may show: the stick body lifted, and what the outline proposes."""
 
 from collections.abc import Mapping
-from typing import Final, Literal, NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
@@ -22,19 +22,18 @@ from common.messages import (
     Report,
     ViewerNumber,
 )
-from common.notes import ORIENTATIONS, Orientation
+from common.notes import Orientation
 from common.stickman import Stickman
-from integrator import insight, limits, matching, propose, signs, smoothing
+from integrator import insight, limits, matching, mirroring, propose, signs, smoothing
 from integrator.lifting import SWAPPED, Lifted, lift
 from integrator.limbs import PLACES, pose_of
+from integrator.mirroring import Front
 from integrator.window import Floats
 
 UNSEEN: Final = 0.25
 """Share of its confidence that the end of a hidden segment keeps."""
 TILTED_DEG: Final = 15.0
 """A segment that leans less hardly moves with its sign."""
-SIDEWAYS_DEG: Final = 20.0
-"""Somebody who is turned so near to a right angle is seen from the side."""
 TWELVE: Final = [JOINT_NAMES.index(name) for name in PLACES]
 PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
 
@@ -63,6 +62,7 @@ class State(NamedTuple):
     memory: signs.Memory
     recall: Floats | None = None
     """What the proposals remember."""
+    front: Front = Front()
     pose: Vector | None = None
     last_s: float | None = None
     badly: int = 0
@@ -116,30 +116,47 @@ def lifted_body(state: State, report: Report, told: Inputs) -> tuple[State, Hypo
 def proposed_body(
     state: State, report: Report, told: Inputs, dt_s: float
 ) -> tuple[State, Hypothesis | None]:
-    """What the outline proposes, the crown where the stick body has it."""
-    assert report.fit is not None
+    """What the outline proposes, or what has the same outline and agrees with all else.
+
+    None where nothing is proposed, or something that faces another side than the user says.
+    """
     seen = (report, None) if state.number == 1 else (None, report)
     rig = Rig(report.width, report.height, (state.camera, state.camera))
     known = insight.step(state.recall, state.bdp, rig, seen, dt_s)
-    if known is None or told.orientation or told.depth:
-        return state._replace(recall=None if known is None else known.memory), None
-    joints_m = np.empty((len(JOINT_NAMES), 3))
-    joints_m[insight.AT] = known.joints_m
-    joints_m[PELVIS] = known.joints_m[propose.HIPS].mean(axis=0)
-    middle = known.joints_m[propose.SHOULDERS].mean(axis=0)
-    up = (middle - joints_m[PELVIS]) / max(float(np.linalg.norm(middle - joints_m[PELVIS])), 1e-9)
-    joints_m[NECK] = middle + up * state.man.lengths[11] * state.stature_m
-    joints_m[HEAD] = _at_depth(state.camera, report.fit.joints_px[HEAD], joints_m[NECK])
+    if known is None:
+        return state._replace(recall=None), None
+    joints_m = _with_trunk(state, report, known.joints_m)
+    yaw = mirroring.yaw_deg(state.camera, joints_m)
+    front, behind = mirroring.front_of(state.front, yaw, told.orientation, dt_s)
+    state = state._replace(recall=known.memory, front=front)
+    if behind:
+        joints_m = mirroring.seen_from_behind(state.camera, joints_m)
+        yaw = mirroring.yaw_deg(state.camera, joints_m)
+    if told.orientation and not mirroring.agrees(yaw, told.orientation):
+        return state, None
+    joints_m = mirroring.leaning(state.camera, joints_m, told.depth)
     for name, place in told.joints_px.items():
         at = JOINT_NAMES.index(name)
         joints_m[at] = _at_depth(state.camera, place, joints_m[at])
     pose, joints_m = _posed(state, joints_m, told)
     found = _match(state, pose, joints_m, report, turning=not told.joints_px)
     depth = tuple(float(sure) for sure in known.sure[LIMB_ENDS[:, 1]])
-    settled = Settled(_faces(state, found.joints_m), float(known.sure[PELVIS]), depth)
-    return state._replace(recall=known.memory), Hypothesis(
-        found.joints_m, found.pose, found.score, known.sure, settled
-    )
+    facing = told.orientation or mirroring.faces(mirroring.yaw_deg(state.camera, found.joints_m))
+    settled = Settled(facing, 1.0 if told.orientation else float(known.sure[PELVIS]), depth)
+    return state, Hypothesis(found.joints_m, found.pose, found.score, known.sure, settled)
+
+
+def _with_trunk(state: State, report: Report, found: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The 15 joints of 12 that are proposed, the crown where the stick body has it."""
+    assert report.fit is not None
+    joints_m = np.empty((len(JOINT_NAMES), 3))
+    joints_m[insight.AT] = found
+    joints_m[PELVIS] = found[propose.HIPS].mean(axis=0)
+    middle = found[propose.SHOULDERS].mean(axis=0)
+    up = (middle - joints_m[PELVIS]) / max(float(np.linalg.norm(middle - joints_m[PELVIS])), 1e-9)
+    joints_m[NECK] = middle + up * state.man.lengths[11] * state.stature_m
+    joints_m[HEAD] = _at_depth(state.camera, report.fit.joints_px[HEAD], joints_m[NECK])
+    return joints_m
 
 
 def _posed(
@@ -203,15 +220,3 @@ def _sure(fit: Fit, lifted: Lifted, choice: signs.Choice) -> Vector:
             own *= float(choice.confidence[limb])
         sure[far] = (sure[near] if limb > 1 else sure[far]) * own
     return sure
-
-
-def _faces(state: State, joints_m: NDArray[np.float64]) -> Orientation:
-    """Which of the six ways the body faces, from the line across its shoulders and hips."""
-    at = {name: joints_m[i] for i, name in enumerate(JOINT_NAMES)}
-    across = at["l_shoulder"] - at["r_shoulder"] + at["l_hip"] - at["r_hip"]
-    right, _, away = np.array(state.camera.R) @ across
-    forward = np.degrees(np.arctan2(away, right))
-    side: Literal["left", "right"] = "right" if forward >= 0 else "left"
-    if abs(abs(forward) - 90.0) <= SIDEWAYS_DEG:
-        return side
-    return ORIENTATIONS[ORIENTATIONS.index(side) + (4 if abs(forward) < 90.0 else 2)]

@@ -23,6 +23,7 @@ from common.messages import (
 from common.stickman import Stickman
 from integrator import limits, signs, smoothing
 from integrator.belief import LOST_SCORE, status_of
+from integrator.mirroring import Front
 from integrator.one_outline import Hypothesis, Inputs, Settled, State, lifted_body, proposed_body
 
 SURELY: Final = 1.15
@@ -70,7 +71,9 @@ def step(state: State, report: Report, told: Inputs) -> tuple[State, Body, Settl
 def nobody(state: State, frame: int, captured_s: float) -> tuple[State, Body, Settled]:
     """A frame without anybody: what was learnt of the body is kept, its pose is not."""
     fresh = smoothing.init(len(ANGLE_NAMES), state.smooth.period_s)
-    state = state._replace(smooth=fresh, memory=signs.init(), recall=None, pose=None, badly=0)
+    state = state._replace(
+        smooth=fresh, memory=signs.init(), recall=None, front=Front(), pose=None, badly=0
+    )
     body = Body(
         frame=frame, captured_s=captured_s, clock_s=captured_s, status="empty", views="none"
     )
@@ -81,24 +84,34 @@ def _body(state: State, report: Report, found: Hypothesis, angles_deg: Vector) -
     pose = found.pose.copy()
     pose[list(ANGLES_IN_POSE)] = angles_deg
     facing: Facing = "flank" if found.settled.orientation in ("left", "right") else "facade"
-    pixels = _pixels(project(state.camera, found.joints_m))
+    places_px = project(state.camera, found.joints_m)
+    outside = _outside(report, places_px)
+    pixels = _pixels(places_px)
     fit = report.fit
     return Body(
         frame=report.frame,
         captured_s=report.captured_s,
         clock_s=report.clock_s,
-        status=status_of(state.badly, "tracking"),
+        status=status_of(state.badly, "predicted" if outside.any() else "tracking"),
         views="1" if state.number == 1 else "2",
         joints_m=tuple(_point(place) for place in found.joints_m),
         joints_px=(pixels, pixels),
         pose=tuple(pose.tolist()),
         angles_raw_deg=tuple(found.pose[list(ANGLES_IN_POSE)].tolist()),
-        confidence=tuple(float(sure) for sure in found.confidence),
+        confidence=tuple(np.where(outside, 0.0, found.confidence).tolist()),
         score=(found.score, 0.0) if state.number == 1 else (0.0, found.score),
         facing=(facing, facing),
         bdp=state.bdp,
         matches=2 + (0 if fit is None else fit.matches),
     )
+
+
+def _outside(report: Report, places_px: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which joints the picture does not show, (15,): what is said of them is a guess."""
+    if not report.cut:
+        return np.zeros(len(places_px), np.bool_)
+    inside = (places_px >= 0).all(axis=1) & (places_px <= (report.width, report.height)).all(axis=1)
+    return ~inside
 
 
 def _point(place: Vector) -> Point:
