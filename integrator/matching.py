@@ -23,9 +23,9 @@ GIRTHS: Final = (1.0, 1.15, 1.3)
 """How thick clothed limbs may be over those of the proportions."""
 GOOD: Final = 0.7
 """A body whose S is higher is left as it is: its joints are better known than its outline."""
-LEAST_GAIN: Final = 0.002
+LEAST_GAIN: Final = 0.001
 """A turn that gains less in S is not made: it may be noise of the outline."""
-SHARES: Final = (1.0, 0.5, 0.25)
+SHARES: Final = (1.0, 0.5, 1.0, 0.5, 0.25)
 """Of the steps, round by round."""
 
 _TURNED: Final = (
