@@ -24,7 +24,8 @@ from common.messages import (
 )
 from common.notes import Orientation
 from common.stickman import Stickman
-from integrator import insight, limits, matching, mirroring, propose, signs, smoothing
+from integrator import crossing, insight, limits, matching, mirroring, propose, signs, smoothing
+from integrator.crossing import Strides
 from integrator.lifting import SWAPPED, Lifted, lift
 from integrator.limbs import PLACES, pose_of
 from integrator.mirroring import Front
@@ -63,6 +64,7 @@ class State(NamedTuple):
     recall: Floats | None = None
     """What the proposals remember."""
     front: Front = Front()
+    strides: Strides | None = None
     pose: Vector | None = None
     last_s: float | None = None
     badly: int = 0
@@ -133,7 +135,9 @@ def proposed_body(
         joints_m = mirroring.seen_from_behind(state.camera, joints_m)
         yaw = mirroring.yaw_deg(state.camera, joints_m)
     if told.orientation and not mirroring.agrees(yaw, told.orientation):
-        return state, None
+        return state._replace(strides=None), None
+    strides, joints_m = crossing.kept_apart(state.strides, joints_m)
+    state = state._replace(strides=strides)
     joints_m = mirroring.leaning(state.camera, joints_m, told.depth)
     for name, place in told.joints_px.items():
         at = JOINT_NAMES.index(name)
