@@ -31,6 +31,8 @@ class Front(NamedTuple):
 
     away: bool = False
     """Whether the person faces away from the camera: filmed people mostly do not at first."""
+    aside: bool = False
+    """Whether the person was seen from the side just before."""
     doubted_s: float = 0.0
     """For how long proposals have said otherwise."""
 
@@ -69,11 +71,12 @@ def front_of(
     if told is not None and told not in ("left", "right"):
         due = told.startswith("backward")
         return Front(due), due != away
+    if told is not None or abs(abs(yaw) - 90.0) <= SIDEWAYS_DEG:
+        return Front(before.away, aside=True), False
     doubted_s = before.doubted_s + dt_s
-    sideways = abs(abs(yaw) - 90.0) <= SIDEWAYS_DEG
-    if told is not None or sideways or away == before.away or doubted_s > INSISTS_S:
+    if before.aside or away == before.away or doubted_s > INSISTS_S:
         return Front(away), False
-    return Front(before.away, doubted_s), True
+    return Front(before.away, doubted_s=doubted_s), True
 
 
 def agrees(yaw: float, told: Orientation) -> bool:

@@ -24,8 +24,7 @@ from common.messages import (
 )
 from common.notes import Orientation
 from common.stickman import Stickman
-from integrator import crossing, insight, limits, matching, mirroring, propose, signs, smoothing
-from integrator.crossing import Strides
+from integrator import insight, limits, matching, mirroring, propose, signs, smoothing
 from integrator.lifting import SWAPPED, Lifted, lift
 from integrator.limbs import PLACES, pose_of
 from integrator.mirroring import Front
@@ -64,7 +63,6 @@ class State(NamedTuple):
     recall: Floats | None = None
     """What the proposals remember."""
     front: Front = Front()
-    strides: Strides | None = None
     pose: Vector | None = None
     last_s: float | None = None
     badly: int = 0
@@ -135,19 +133,24 @@ def proposed_body(
         joints_m = mirroring.seen_from_behind(state.camera, joints_m)
         yaw = mirroring.yaw_deg(state.camera, joints_m)
     if told.orientation and not mirroring.agrees(yaw, told.orientation):
-        return state._replace(strides=None), None
-    strides, joints_m = crossing.kept_apart(state.strides, joints_m)
-    state = state._replace(strides=strides)
+        return state, None
     joints_m = mirroring.leaning(state.camera, joints_m, told.depth)
     for name, place in told.joints_px.items():
         at = JOINT_NAMES.index(name)
         joints_m[at] = _at_depth(state.camera, place, joints_m[at])
     pose, joints_m = _posed(state, joints_m, told)
-    found = _match(state, pose, joints_m, report, turning=not told.joints_px)
+    found = _match(state, pose, joints_m, report, turning=False)
     depth = tuple(float(sure) for sure in known.sure[LIMB_ENDS[:, 1]])
     facing = told.orientation or mirroring.faces(mirroring.yaw_deg(state.camera, found.joints_m))
     settled = Settled(facing, 1.0 if told.orientation else float(known.sure[PELVIS]), depth)
     return state, Hypothesis(found.joints_m, found.pose, found.score, known.sure, settled)
+
+
+def settled_body(state: State, report: Report, found: Hypothesis, told: Inputs) -> Hypothesis:
+    """The hypothesis that was taken, its parts turned to where the outline has them."""
+    turning = not told.joints_px
+    match = _match(state, found.pose, found.joints_m, report, turning)
+    return found._replace(joints_m=match.joints_m, pose=match.pose, score=match.score)
 
 
 def _with_trunk(state: State, report: Report, found: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -24,7 +24,15 @@ from common.stickman import Stickman
 from integrator import limits, signs, smoothing
 from integrator.belief import LOST_SCORE, status_of
 from integrator.mirroring import Front
-from integrator.one_outline import Hypothesis, Inputs, Settled, State, lifted_body, proposed_body
+from integrator.one_outline import (
+    Hypothesis,
+    Inputs,
+    Settled,
+    State,
+    lifted_body,
+    proposed_body,
+    settled_body,
+)
 
 SURELY: Final = 1.15
 """The lifted body goes before the proposed one where its S is higher by this factor."""
@@ -58,6 +66,7 @@ def step(state: State, report: Report, told: Inputs) -> tuple[State, Body, Settl
         state, other = proposed_body(state, report, told, dt_s)
         if other is not None and found.score < SURELY * other.score:
             found = other
+        found = settled_body(state, report, found, told)
     fits = found.score >= LOST_SCORE
     raw = found.pose[list(ANGLES_IN_POSE)]
     smooth, angles, _ = smoothing.step(state.smooth, raw, dt_s)
@@ -108,10 +117,9 @@ def _body(state: State, report: Report, found: Hypothesis, angles_deg: Vector) -
 
 def _outside(report: Report, places_px: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which joints the picture does not show, (15,): what is said of them is a guess."""
-    if not report.cut:
-        return np.zeros(len(places_px), np.bool_)
-    inside = (places_px >= 0).all(axis=1) & (places_px <= (report.width, report.height)).all(axis=1)
-    return ~inside
+    shown = (places_px >= 0) & (places_px <= (report.width, report.height))
+    outside: NDArray[np.bool_] = np.logical_not(shown.all(axis=1)) & report.cut
+    return outside
 
 
 def _point(place: Vector) -> Point:

@@ -56,8 +56,9 @@ def test_front_turns_to_back_through_the_side_alone() -> None:
     """A proposal that jumps from front to back is seen from behind; through the side it is not."""
     front, behind = front_of(Front(), 150.0, None, 0.1)
     assert (front.away, behind) == (False, True)
-    assert front_of(front, 100.0, None, 0.1) == (Front(away=True), False)
-    assert front_of(Front(away=True), 150.0, None, 0.1) == (Front(away=True), False)
+    front, behind = front_of(front, 100.0, None, 0.1)
+    assert (front.away, behind) == (False, False)
+    assert front_of(front, 150.0, None, 0.1) == (Front(away=True), False)
 
 
 def test_who_insists_is_believed_and_the_user_at_once() -> None:
