@@ -38,15 +38,15 @@ def test_a_camera_that_stands_still_is_left_alone() -> None:
     assert anchored([shot(walker(n), 2.0, n) for n in range(24)]) is None
 
 
-@pytest.mark.parametrize(("right", "down"), [(1.0, 0.0), (-1.0, 1.5), (0.4, -2.5)])
+@pytest.mark.parametrize(("right", "down"), [(1.0, 0.0), (-1.5, 1.5), (0.4, -2.5)])
 def test_a_shift_is_found_whoever_stands_in_the_picture(
     anchor: Anchor, right: float, down: float
 ) -> None:
-    """Within a third of a pixel, light of its own beside it."""
+    """Within a quarter of a pixel, light of its own beside it."""
     at = place_of(anchor, luma_of(shot(walker(3), 2.0, 1)))
     off = place_of(anchor, luma_of(trembled(shot(walker(3), 2.0, 1), right, down, 12.0)))
-    assert at.right_px - off.right_px == pytest.approx(right, abs=0.3)
-    assert at.down_px - off.down_px == pytest.approx(down, abs=0.3)
+    assert at.right_px - off.right_px == pytest.approx(right, abs=0.25)
+    assert at.down_px - off.down_px == pytest.approx(down, abs=0.25)
     assert off.offset + 128 * off.gain - at.offset - 128 * at.gain == pytest.approx(12.0, abs=2.0)
 
 

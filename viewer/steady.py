@@ -16,8 +16,10 @@ COARSE_PX, FINE_PX = 2.0, 1.0
 WIDE_PX: Final = 6.0
 """What changes over more than this is light, not edges."""
 ROUNDS: Final = 4
+UNLIKE: Final = 15.0
+"""Grey levels of difference beyond which an edge is not the room's."""
 CLEAR: Final = 6.0
-"""Grey levels of difference beyond which a pixel shows something else than the room."""
+"""The same of a pixel's light."""
 STIFF: Final = 500.0
 """How much a pixel's shift weighs against the edges: where there are none, none is found."""
 FARTHEST: Final = 0.05
@@ -77,7 +79,7 @@ def place_of(anchor: Anchor, luma: Floats) -> Place:
         for _ in range(ROUNDS):
             now = _edges(_moved(luma, *shift), blur)
             off = (now - due).ravel()[anchor.steep]
-            weighed = slopes / (1.0 + (off / CLEAR) ** 2) ** 2
+            weighed = slopes / (1.0 + (off / UNLIKE) ** 2) ** 2
             step = np.linalg.solve(weighed @ slopes.T + STIFF * np.eye(2), weighed @ off)
             shift = np.clip(shift + step, -limit, limit)
     gain, offset = _light(anchor.luma, _moved(luma, *shift))
