@@ -59,18 +59,3 @@ def between(keys: Frames, motion: Motion, frames: Frames) -> Motion:
             exact == 0.0, motion.turns[early], np.where(exact == 1.0, motion.turns[late], turns)
         ),
     )
-
-
-def angles_between(keys: Frames, angles_deg: Vector, frames: Frames) -> NDArray[np.float64]:
-    """Joint angles (k, a) at the key frames, at `frames`: linear, the shorter way round (T23).
-
-    Angles that differ by full circles mean the same; what is returned goes on from the first key
-    without a jump.
-    """
-    steps = np.diff(angles_deg, axis=0)
-    steps = steps - 360.0 * np.rint(steps / 360.0)
-    straight = np.concatenate([angles_deg[:1], angles_deg[:1] + np.cumsum(steps, axis=0)])
-    found: NDArray[np.float64] = np.stack(
-        [np.interp(frames, keys, column) for column in straight.T], axis=1
-    )
-    return found

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animator.turns import quaternions
-from common.body import JOINT_NAMES, LIMBS, Bdp, Elliptic, Round, Vector, body_vector
+from common.body import JOINT_NAMES, LIMBS, Bdp, Elliptic, Round, Vector
 from common.camera import Camera, Rig, centre
 from common.kinematics import HEAD, TORSO, limb_frames
 from common.messages import Body, Performance, Picture, Posture, Pulse, Report
+from common.proportions import body_vector
 
 Colour = tuple[int, int, int]
 Colours = NDArray[np.uint8]

@@ -20,10 +20,11 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 import numpy as np
 
 from common.bits import count, pack_words
-from common.body import POSE_INDEX, body_vector, rest_pose, thesis_bdp
+from common.body import POSE_INDEX, rest_pose
 from common.config import Settings
 from common.kernel import draw_body, view_of
 from common.kinematics import ARM_LIMBS
+from common.proportions import body_vector, thesis_bdp
 from integrator.hypotheses import products
 from synth.exposure import default_rig
 from synth.write import write_set

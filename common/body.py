@@ -1,7 +1,6 @@
 """The ten-cylinder body: definition parameters (BDPs), joints, angles (BAPs) and their limits."""
 
 import math
-from functools import lru_cache
 from typing import Final
 
 import msgspec
@@ -82,36 +81,25 @@ LIMBS: Final = (
 )
 """The ten cylinders, in the order of Bdp's fields and of every array of limbs."""
 
-SPHERICAL_JOINTS: Final = ("navel", "neck", "r_shoulder", "l_shoulder", "r_hip", "l_hip")
-FLEXION_JOINTS: Final = ("r_elbow", "l_elbow", "r_knee", "l_knee")
+JOINT_AXES: Final = {
+    "torso": "xyz",
+    "neck": "xyz",
+    "r_shoulder": "xyz",
+    "l_shoulder": "xyz",
+    "r_elbow": "x",
+    "l_elbow": "x",
+    "r_hip": "xyz",
+    "l_hip": "xyz",
+    "r_knee": "x",
+    "l_knee": "x",
+}
+"""The ten joints and the axes they turn about: six are spherical, four only bend (P6). The torso
+turns at the navel."""
 
 POSITION_NAMES: Final = ("x", "y", "z")
 """Place of the navel in the world: the first three entries of a pose."""
 
-DOF_NAMES: Final = (
-    "torso_x",
-    "torso_y",
-    "torso_z",
-    "neck_x",
-    "neck_y",
-    "neck_z",
-    "r_shoulder_x",
-    "r_shoulder_y",
-    "r_shoulder_z",
-    "l_shoulder_x",
-    "l_shoulder_y",
-    "l_shoulder_z",
-    "r_elbow_x",
-    "l_elbow_x",
-    "r_hip_x",
-    "r_hip_y",
-    "r_hip_z",
-    "l_hip_x",
-    "l_hip_y",
-    "l_hip_z",
-    "r_knee_x",
-    "l_knee_x",
-)
+DOF_NAMES: Final = tuple(f"{joint}_{axis}" for joint, axes in JOINT_AXES.items() for axis in axes)
 """The 22 angles of a pose, degrees (P7, M17)."""
 
 POSE_NAMES: Final = POSITION_NAMES + DOF_NAMES
@@ -197,31 +185,6 @@ REST_DEG: Final[dict[str, float]] = {
 """The angles of a body that stands with hanging arms, where they are not zero (C3). The sign of
 theta_Y makes positive elbow flexion point outwards and up (C5)."""
 
-THESIS_RATIOS: Final = {
-    "stature": 175.0,
-    "head": 25.0,
-    "torso": 52.0,
-    "upper_arm": 25.0,
-    "lower_arm": 35.0,
-    "upper_leg": 46.0,
-    "lower_leg": 52.0,
-}
-"""Lengths of the model of Demir 2006, table 3.1 (T4)."""
-
-THESIS_DIAMETERS: Final = {
-    "head": 20.0,
-    "torso": 40.0,
-    "upper_arm": 10.0,
-    "lower_arm": 10.0,
-    "upper_leg": 20.0,
-    "lower_leg": 20.0,
-}
-"""Widths of the model of Demir 2006, table 3.2, whose "radii" are diameters (T5, M18)."""
-
-TORSO_DEPTH_SHARE: Final = 0.6
-"""Depth of a trunk over its width: an assumption, the documents give none (M10)."""
-
-
 YAW_DEG: Final = (0.0, -90.0)
 """Yaw of the trunk while viewer 1, or viewer 2, sees the facade (P49): the person faces that
 camera. Silhouettes cannot tell this from its opposite (limitation L4)."""
@@ -233,101 +196,6 @@ def rest_pose() -> Vector:
     for name, angle_deg in REST_DEG.items():
         pose[POSE_INDEX[name]] = angle_deg
     return pose
-
-
-def thesis_bdp(stature: float) -> Bdp:
-    """The thesis's proportions at a stature: what is known of a body before it is measured.
-
-    Args:
-        stature: Height from sole to crown, in the unit that the lengths shall have.
-
-    Source: Demir 2006, tables 3.1 and 3.2 (T4, T5, M18); trunk depth: TORSO_DEPTH_SHARE.
-    """
-    unit = stature / THESIS_RATIOS["stature"]
-
-    def elliptic(name: str, depth_share: float) -> Elliptic:
-        radius = THESIS_DIAMETERS[name] / 2 * unit
-        return Elliptic(radius, radius * depth_share, THESIS_RATIOS[name] * unit)
-
-    def round_(name: str) -> Round:
-        return Round(THESIS_DIAMETERS[name] / 2 * unit, THESIS_RATIOS[name] * unit)
-
-    upper_leg, lower_leg = elliptic("upper_leg", 1.0), elliptic("lower_leg", 1.0)
-    upper_arm, lower_arm = round_("upper_arm"), round_("lower_arm")
-    return Bdp(
-        torso=elliptic("torso", TORSO_DEPTH_SHARE),
-        head=elliptic("head", 1.0),
-        r_upper_leg=upper_leg,
-        l_upper_leg=upper_leg,
-        r_lower_leg=lower_leg,
-        l_lower_leg=lower_leg,
-        r_upper_arm=upper_arm,
-        l_upper_arm=upper_arm,
-        r_lower_arm=lower_arm,
-        l_lower_arm=lower_arm,
-    )
-
-
-SHOULDER_DROP: Final = 0.45
-"""How far a shoulder lies below the top of the trunk, in long radii of the trunk (P18)."""
-
-SHOULDERS_APART: Final = 0.20
-"""Between the joint centres of the shoulders, in statures: acromia are 0.23 apart (ANSUR II), the
-centres some 15 mm a side further in."""
-ELBOW_SHARE, WRIST_SHARE = 0.186 / 0.415, 0.332 / 0.415
-"""Where elbow and wrist lie between the shoulder's joint centre and the tip of a straight arm. The
-cylinders end where the paper cuts the silhouette (arms in halves, trunk to legs 4 : 6), joints
-where bodies bend: the published landmarks lie on the cylinders at mean adult lengths (upper arm
-0.186 statures, forearm 0.146, hand 0.108, of which the outer quarter is too thin to be seen)."""
-HIP_SHARE, KNEE_SHARE, ANKLE_SHARE = 0.530, 0.285, 0.039
-"""Heights of hip, knee and ankle above the sole, in statures."""
-
-
-def body_vector(bdp: Bdp) -> Vector:
-    """The body as the kernel wants it, shape (BODY_SIZE,): 26 lengths, attachments, landmarks.
-
-    Entries 0-25 are the BDPs in the order of LIMBS. 26-28: shoulder_x, shoulder_y, hip_x from the
-    navel, in body axes, both sides alike. 29-36: how far elbow, wrist, knee and ankle lie from
-    the shoulder or hip along the straight limb, right then left each. 37: how far the anatomical
-    hips lie above the navel. 38: how far the joint centres of the shoulders, and with them the
-    arms' landmarks, lie within the cylinders'.
-    """
-    return np.array(_body_numbers(bdp))
-
-
-@lru_cache(maxsize=64)
-def _body_numbers(bdp: Bdp) -> tuple[float, ...]:
-    """The same numbers: a body hardly changes from frame to frame."""
-    torso, leg, height = bdp.torso, bdp.r_upper_leg, stature(bdp)
-    inset = torso.long_radius - SHOULDERS_APART / 2 * height
-    arms = [
-        bdp.r_upper_arm.height + bdp.r_lower_arm.height,
-        bdp.l_upper_arm.height + bdp.l_lower_arm.height,
-    ]
-    legs = [
-        bdp.r_upper_leg.height + bdp.r_lower_leg.height,
-        bdp.l_upper_leg.height + bdp.l_lower_leg.height,
-    ]
-    return (
-        *bdp.lengths(),
-        torso.long_radius,
-        torso.height - SHOULDER_DROP * torso.long_radius,
-        torso.long_radius - leg.long_radius,
-        *(ELBOW_SHARE * (inset + arm) for arm in arms),
-        *(WRIST_SHARE * (inset + arm) for arm in arms),
-        *(length - KNEE_SHARE * height for length in legs),
-        *(length - ANKLE_SHARE * height for length in legs),
-        HIP_SHARE * height - legs[0],
-        inset,
-    )
-
-
-BODY_SIZE: Final = 39
-
-
-def stature(bdp: Bdp) -> float:
-    """Height of the standing body from sole to crown."""
-    return bdp.head.height + bdp.torso.height + bdp.r_upper_leg.height + bdp.r_lower_leg.height
 
 
 def wrapped_deg(angle_deg: float) -> float:

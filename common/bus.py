@@ -13,7 +13,8 @@ from common.config import BusSettings
 from common.inbox import Alive, Inbox
 from common.live_bus import LiveBus
 from common.mailbox import Mailbox
-from common.messages import MAX_BYTES, Message, Said
+from common.messages import Message
+from common.wire import MAX_BYTES, Said
 
 LEASE_MS: Final = 1000
 """A process that hangs counts as gone after this; Zenoh's own 10 s would be 150 frames."""

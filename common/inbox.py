@@ -5,22 +5,17 @@ from collections.abc import Callable
 from typing import Final, Generic, NamedTuple
 
 from common.mailbox import Mailbox
-from common.messages import (
-    TOPICS,
-    ClockQuestion,
-    MalformedMessage,
-    Message,
-    Said,
-    decode,
-    key_of,
-    pattern_of,
-)
+from common.messages import ClockQuestion, Message
+from common.wire import TOPICS, MalformedMessage, Said, decode, key_of, pattern_of
 
 QUESTIONS: Final[dict[type[Message], str]] = {ClockQuestion: "tritrack/{room}/clock"}
 """Where each kind of question is answered."""
 
 BOUND: Final = 64
 """Messages that wait for a reader: four seconds at 15 Hz; older ones are of no use to anyone."""
+
+MOST_GAP: Final = 100_000
+"""Messages that a link may lose at once, two hours of them; a larger gap is nobody of ours."""
 
 log = logging.getLogger(__name__)
 
@@ -41,12 +36,14 @@ class Inbox(Generic[Said]):
         """How many payloads were refused."""
         self._kind = kind
         self._room = room
+        self._missed = 0
+        self._numbers: dict[str, int] = {}
         self._mailbox: Mailbox[Said] = Mailbox(BOUND)
 
     @property
     def dropped(self) -> int:
-        """How many messages gave way to later ones although each one counts."""
-        return self._mailbox.dropped
+        """How many messages gave way to later ones, here or on the way, although each counts."""
+        return self._mailbox.dropped + self._missed
 
     def take(self, timeout_s: float) -> Said | None:
         """The oldest message; None when none came in time, or the bus is closed."""
@@ -70,6 +67,18 @@ class Inbox(Generic[Said]):
             self.refuse(key, error)
             return
         self._mailbox.put(message, slot=key if TOPICS[self._kind].newest_only else None)
+
+    def count(self, key: str, number: int) -> None:
+        """Note the number of a message on its key: what is missing before it was lost on the way.
+
+        A lower one than the last is that of a speaker who was started again.
+        """
+        if key not in self._numbers and len(self._numbers) == BOUND:
+            return
+        gap = number - self._numbers.get(key, number) - 1
+        if not TOPICS[self._kind].newest_only and 0 < gap <= MOST_GAP:
+            self._missed += gap
+        self._numbers[key] = number
 
     def refuse(self, key: str, why: MalformedMessage) -> None:
         """Count what came on a key and is no such message; the first is logged."""

@@ -13,9 +13,10 @@ import numba
 import numpy as np
 
 from common.bits import count, count_both, unpack_words
-from common.body import LIMBS, Vector, body_vector, rest_pose, thesis_bdp
+from common.body import LIMBS, Vector, rest_pose
 from common.camera import Camera
 from common.kinematics import ALL_LIMBS, FRAME, place_limbs
+from common.proportions import body_vector, thesis_bdp
 from common.similarity import Mask
 from common.spans import PRIMITIVE, draw, spans
 

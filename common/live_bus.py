@@ -2,6 +2,7 @@
 
 import logging
 import threading
+from collections import Counter
 from collections.abc import Callable
 from typing import Any, Final
 
@@ -9,21 +10,16 @@ import zenoh
 
 from common.inbox import BOUND, QUESTIONS, Alive, Inbox, answered, checked
 from common.mailbox import Mailbox
-from common.messages import (
-    TOPICS,
-    MalformedMessage,
-    Message,
-    Picture,
-    Said,
-    encode,
-    key_of,
-    pattern_of,
-    refuse_size,
-)
+from common.messages import Message, Picture
+from common.wire import TOPICS, MalformedMessage, Said, encode, key_of, pattern_of, refuse_size
 
 AT_ONCE: Final = 4
 """Newest-only samples that may wait for our own thread: two viewers speak at the same moment.
 Zenoh's default queue would serve ever older ones to a slow reader."""
+
+NUMBER_BYTES: Final = 8
+"""Every message goes with its number on its key, so that who hears it can count what is lost on the
+way: under congestion Zenoh drops, and tells nobody."""
 
 log = logging.getLogger(__name__)
 
@@ -37,6 +33,7 @@ class LiveBus:
         self._room = room
         self._lock = threading.Lock()
         self._publishers: dict[str, Any] = {}
+        self._said: Counter[str] = Counter()
         self._newest: dict[type[Message], dict[str, bytes]] = {}
         self._tokens: list[Any] = []
         self._heard: list[tuple[Any, threading.Thread, Inbox[Any] | Mailbox[Alive]]] = []
@@ -50,7 +47,9 @@ class LiveBus:
                 self._publishers[key] = self._declare_publisher(key, type(message))
             if type(message) in self._newest:
                 self._newest[type(message)][key] = payload
-        self._publishers[key].put(payload)
+            self._said[key] += 1
+            number = self._said[key].to_bytes(NUMBER_BYTES, "big")
+        self._publishers[key].put(payload, attachment=number)
 
     def subscribe(self, kind: type[Said]) -> Inbox[Said]:
         """Hear a kind of message; see Bus."""
@@ -70,6 +69,8 @@ class LiveBus:
                 inbox.refuse(key, error)
             else:
                 inbox.offer(key, sample.payload.to_bytes())
+                if sample.attachment is not None and len(sample.attachment) == NUMBER_BYTES:
+                    inbox.count(key, int.from_bytes(sample.attachment.to_bytes(), "big"))
 
         self._listen(subscriber, hear, inbox)
         return inbox

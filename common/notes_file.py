@@ -24,13 +24,14 @@ CURES: Final = {
 }
 """What to write instead, by key."""
 
-HEAD: Final = """\
+HEAD: Final = f"""\
 # What the pictures of a video do not tell: read by `tritrack single`, edited by `tritrack retouch`
-# (which keeps no comments but these). A note holds from its frame on, until another changes it.
-#   orientation  {orientations}
+# (which keeps what you write beside). A note holds from its frame on, until another changes it.
+#   orientation  {", ".join(ORIENTATIONS)}
 #   depth        of a segment's far end: toward or away from the camera
 #   joints_px    column and row of a joint that is hidden
 # "auto" gives a decision back to the program.
+
 """
 
 
@@ -75,42 +76,28 @@ def load_notes(path: Path) -> Notes:
 
 
 def save_notes(path: Path, notes: Notes) -> None:
-    """Write notes, whole or not at all.
+    """Write notes, whole or not at all; comments that are in the file stay.
 
     Raises:
-        NotesError: When they cannot be written: no space, no right. The old ones are untouched.
+        NotesError: When they cannot be written: no space, no right, or somebody has spoilt the
+            file meanwhile. It is untouched then.
     """
+    from tomlkit.exceptions import TOMLKitError
+
+    from common.notes_text import notes_text
+
     try:
+        before = path.read_text("utf-8") if path.exists() else HEAD
+        text = notes_text(notes, before)
         with replacing(path) as new:
-            new.write_text(notes_text(notes), "utf-8")
+            new.write_text(text, "utf-8")
+    except (TOMLKitError, UnicodeDecodeError) as error:
+        raise NotesError(f"{path} was changed and is no TOML: {error}; mend that line") from error
     except OSError as error:
         raise NotesError(
             f"cannot write {path}: {error.strerror}; the old notes are untouched: free some "
             "space, or see that you may write there"
         ) from error
-
-
-def notes_text(notes: Notes) -> str:
-    """Notes as their file holds them."""
-    lines = [HEAD.format(orientations=", ".join(ORIENTATIONS))]
-    if notes.video:
-        lines.append(f"video = {_quoted(notes.video)}\n")
-    for note in notes.note:
-        lines.append(f"[[note]]\nframe = {note.frame}")
-        if note.orientation:
-            lines.append(f'orientation = "{note.orientation}"')
-        for name, way in note.depth.items():
-            lines.append(f'depth.{name} = "{way}"')
-        for name, place in note.joints_px.items():
-            shown = '"auto"' if place == "auto" else f"[{place[0]!r}, {place[1]!r}]"
-            lines.append(f"joints_px.{name} = {shown}")
-        lines.append("")
-    return "\n".join(lines)
-
-
-def _quoted(text: str) -> str:
-    """A TOML string: JSON's escapes are among TOML's, which wants DEL escaped too."""
-    return msgspec.json.encode(text).decode().replace("\x7f", "\\u007f")
 
 
 def _explained(error: str, text: str) -> str:

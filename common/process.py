@@ -30,6 +30,9 @@ class Place(NamedTuple):
     """Started by a supervisor, which alone hears Ctrl-C and ends it with SIGTERM."""
     log: Path | None = None
     """The run's log; None: the terminal."""
+    kept: Path | None = None
+    """Folder of this run alone, for what a process leaves to the one that is started in its place;
+    None: nobody would be."""
 
 
 @contextmanager

@@ -197,3 +197,11 @@ def gain(first: Any, last: Any, top: int, bottom: int, base: Any, seen: Any) -> 
             drawn += popcount(new)
             hit += popcount(new & seen[row, end])
     return drawn, hit
+
+
+@numba.njit(cache=True)
+def undraw(top: int, bottom: int, base: Any, bits: Any) -> None:
+    """Bring packed rows from top to bottom - 1 back to what they were before limbs were drawn."""
+    for row in range(top, bottom):
+        for word in range(base.shape[1]):
+            bits[row, word] = base[row, word]

@@ -6,7 +6,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import LIMBS, THESIS_DIAMETERS, THESIS_RATIOS, Vector
+from common.body import LIMBS, Vector
+from common.proportions import THESIS_DIAMETERS, THESIS_RATIOS
 
 SIDES: Final = ("r", "l")
 """r is on the left of the picture: where the right is of somebody who faces the camera (T10)."""

@@ -10,7 +10,7 @@ from common.bits import Bits, count, count_both, unpack_words
 from common.body import Vector
 from common.kernel import THINNEST, score
 from common.similarity import Mask
-from common.spans import PRIMITIVE, draw, gain, spans
+from common.spans import PRIMITIVE, draw, gain, spans, undraw
 from common.stickman import BREADTH, GIRTH, STATURE, Stickman, place_segments
 
 ALL_SEGMENTS: Final = 0xFFF
@@ -95,9 +95,7 @@ def added(
             drawn, hit = drawn + more_drawn, hit + more_hit
             draw(first, last, top, bottom, scratch)
             highest, lowest = min(highest, top), max(lowest, bottom)
-    for row in range(highest, lowest):
-        for word in range(rest.shape[1]):
-            scratch[row, word] = rest[row, word]
+    undraw(highest, lowest, rest, scratch)
     return drawn, hit
 
 

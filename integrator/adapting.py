@@ -6,10 +6,11 @@ import msgspec
 import numba
 import numpy as np
 
-from common.body import LIMBS, Bdp, Vector, body_vector
+from common.body import LIMBS, Bdp, Vector
 from common.camera import Rig
 from common.kernel import match
 from common.kinematics import ALL_LIMBS
+from common.proportions import body_vector
 from integrator.opening import Opening, Sample
 from integrator.pairing import Seen
 from integrator.two_outlines import outlines_of

@@ -5,10 +5,12 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import JOINT_NAMES, Bdp, Vector, stature
+from common.body import JOINT_NAMES, Bdp, Vector
 from common.camera import Rig
 from common.kinematics import TORSO, joints, limb_frames
-from common.messages import Report, unpack
+from common.messages import Report
+from common.proportions import stature
+from common.wire import unpack
 from integrator import propose
 from integrator.limbs import pose_of, trunk_of
 from integrator.window import Floats, look

@@ -3,20 +3,13 @@
 from typing import Literal
 
 from common.bits import count
-from common.body import (
-    ANGLE_NAMES,
-    ANGLES_IN_POSE,
-    POSE_INDEX,
-    YAW_DEG,
-    Vector,
-    body_vector,
-    rest_pose,
-)
+from common.body import ANGLE_NAMES, ANGLES_IN_POSE, POSE_INDEX, YAW_DEG, Vector, rest_pose
 from common.camera import Rig
 from common.config import Settings
 from common.kernel import match, view_of
 from common.kinematics import ALL_LIMBS
 from common.messages import Body, Facing, Guide, Report
+from common.proportions import body_vector
 from integrator import adapting, insight, opening, smoothing, telling
 from integrator.arbiter import Sight, arbitrate
 from integrator.assumed import assumed_rig

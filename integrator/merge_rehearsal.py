@@ -4,11 +4,13 @@ from typing import Final
 
 import numpy as np
 
-from common.body import POSE_INDEX, body_vector, rest_pose, thesis_bdp
+from common.body import POSE_INDEX, rest_pose
 from common.camera import Rig, paper_rig
 from common.config import Settings
 from common.kernel import draw_body, view_of
-from common.messages import Box, Report, ViewerNumber, pack
+from common.messages import Box, Report, ViewerNumber
+from common.proportions import body_vector, thesis_bdp
+from common.wire import pack
 from integrator import merge
 from integrator.pairing import Pair
 

@@ -1,5 +1,6 @@
 """Bodies that one silhouette may show: the stick body lifted, and what the outline proposes."""
 
+import math
 from collections.abc import Mapping
 from typing import Final, NamedTuple
 
@@ -7,15 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import (
-    JOINT_NAMES,
-    LIMB_ENDS,
-    LIMBS,
-    Bdp,
-    Vector,
-    body_vector,
-    rest_pose,
-)
+from common.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Bdp, Vector, rest_pose
 from common.camera import Camera, Rig, centre, ray
 from common.messages import (
     Fit,
@@ -23,6 +16,7 @@ from common.messages import (
     ViewerNumber,
 )
 from common.notes import Orientation
+from common.proportions import body_vector
 from common.stickman import Stickman
 from integrator import insight, limits, matching, mirroring, propose, signs, smoothing
 from integrator.lifting import SWAPPED, Lifted, lift
@@ -74,6 +68,9 @@ class Settled(NamedTuple):
     orientation: str = ""
     orientation_confidence: float = 1.0
     depth_confidence: tuple[float, ...] = (1.0,) * len(LIMBS)
+    depth_error_deg: tuple[float, ...] = (math.nan,) * len(LIMBS)
+    """How far a segment's angle out of the picture changes with a pixel of its length (T19); NaN
+    where the pose was not lifted from its segments."""
 
 
 class Hypothesis(NamedTuple):
@@ -109,7 +106,8 @@ def lifted_body(state: State, report: Report, told: Inputs) -> tuple[State, Hypo
     if not state.printed:
         score = _match(state, pose, joints_m, report, turning=False).score
     depth = tuple(float(sure) for sure in choice.confidence)
-    settled = Settled(choice.orientation, choice.orientation_confidence, depth)
+    errors = tuple(float(error) for error in lifted.error_deg)
+    settled = Settled(choice.orientation, choice.orientation_confidence, depth, errors)
     return state, Hypothesis(joints_m, pose, score, _sure(fit, lifted, choice), settled)
 
 

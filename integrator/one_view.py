@@ -5,12 +5,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import (
-    ANGLE_NAMES,
-    ANGLES_IN_POSE,
-    Vector,
-    thesis_bdp,
-)
+from common.body import ANGLE_NAMES, ANGLES_IN_POSE, Vector
 from common.camera import Camera, project
 from common.messages import (
     Body,
@@ -20,6 +15,7 @@ from common.messages import (
     Report,
     ViewerNumber,
 )
+from common.proportions import thesis_bdp
 from common.stickman import Stickman
 from integrator import limits, signs, smoothing
 from integrator.belief import LOST_SCORE, status_of

@@ -5,9 +5,11 @@ from typing import Final, NamedTuple
 import msgspec
 import numpy as np
 
-from common.body import Bdp, Vector, body_of_lengths, thesis_bdp
+from common.body import Bdp, Vector, body_of_lengths
 from common.camera import Camera, Rig, project
-from common.messages import Report, unpack
+from common.messages import Report
+from common.proportions import thesis_bdp
+from common.wire import unpack
 from integrator.pairing import Seen
 from integrator.perspective import px_per_m, universal_bdp
 from integrator.place import place_of, roots_of, scales_at

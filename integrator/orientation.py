@@ -40,23 +40,6 @@ class Bearing(NamedTuple):
     at: tuple[float, float] | None = None
     """Column of the pelvis and length of the trunk in the frame before, px."""
 
-    @classmethod
-    def known(cls, yaw_deg: float) -> "Bearing":
-        """As two views settled it: 0 faces the camera, 90 the right of the picture."""
-        turn = (yaw_deg + 180.0) % 360.0 - 180.0
-        breadth = abs(math.cos(math.radians(turn)))
-        side = "right" if turn >= 0.0 else "left"
-        evidence = SURE_AT * 2.0 * math.sin(math.radians(turn))
-        if breadth < PROFILE:
-            return cls("right" if turn >= 0.0 else "left", 1.0, breadth, evidence)
-        names: dict[tuple[bool, str], Orientation] = {
-            (True, "right"): "forward_right",
-            (True, "left"): "forward_left",
-            (False, "right"): "backward_right",
-            (False, "left"): "backward_left",
-        }
-        return cls(names[abs(turn) < 90.0, side], 1.0, breadth, evidence)
-
 
 def faced(bearing: Bearing, joints_px: NDArray[np.float64], breadth: float) -> Bearing:
     """What is known after one more frame.

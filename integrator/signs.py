@@ -74,7 +74,7 @@ def choose(
     """Signs and orientation: the user's where given, else the least cost of motion and limits.
 
     Args:
-        memory: Of the frame before, or of the last pose that two views settled.
+        memory: Of the frame before.
         joints_px: As for `lift`, likewise `breadth`, `lengths_m`, `px_per_m`.
         depth: The user's: names of LIMBS to `toward` or `away`.
         orientation: The user's.
@@ -116,22 +116,6 @@ def remembered(
     bearing = faced(memory.bearing, joints_px, breadth)._replace(
         orientation=choice.orientation, sure=choice.orientation_confidence
     )
-    return _after(memory, joints_m, bearing)
-
-
-def recalled(memory: Memory, joints_m: NDArray[np.float64]) -> Memory:
-    """The memory after a frame that two views settled: depth and facing are known.
-
-    Args:
-        memory: Before it.
-        joints_m: (15, 3): x to the right of the picture, y up, z to the camera.
-    """
-    across = joints_m[3] - joints_m[9] + joints_m[6] - joints_m[12]  # left less right
-    yaw_deg = math.degrees(math.atan2(-across[2], across[0]))
-    return _after(memory, joints_m, Bearing.known(yaw_deg))
-
-
-def _after(memory: Memory, joints_m: NDArray[np.float64], bearing: Bearing) -> Memory:
     now = directions_of(joints_m)
     before = now if memory.directions is None else memory.directions
     return Memory(now, now - before, bearing)

@@ -5,10 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from common.body import ANGLES_IN_POSE, JOINT_NAMES, Vector, body_vector, rest_pose
+from common.body import ANGLES_IN_POSE, JOINT_NAMES, Vector, rest_pose
 from common.camera import Rig, project
 from common.kinematics import joints
 from common.messages import Body, Guide, Pixel, Point, Status, Views
+from common.proportions import body_vector
 from integrator import insight
 from integrator.belief import status_of
 from integrator.memory import State

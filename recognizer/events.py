@@ -28,9 +28,9 @@ RIVAL: Final = 9.0
 DRIFT, DRIFT_SHARE = 0.09, 0.3
 """By how much travel may differ from the posture's over a performance, leg lengths in five frames
 times its weight, and as a share of it: people walk slower or faster. Steps back are no walk."""
-AGAIN_FRAMES: Final = 15
-"""The same posture within a second of its event is the same performance going on, not another: some
-pause between two kicks."""
+AGAIN_FRAMES: Final = 9
+"""The same posture within 0.6 s of where the last one ended is that performance going on: some
+pause between two kicks. Whoever rests for longer performs again."""
 SPEED_FRAMES: Final = 3
 """Limbs' speed is the change of their directions within so many frames."""
 KEPT_FRAMES: Final = 150

@@ -70,6 +70,30 @@ def emissions(
 
 
 @numba.njit(cache=True)
+def _way_into(k: int, score: Any, log_transition: Any, enter: float) -> tuple[float, int]:
+    """The best way into a state of a posture: its score, and from which of that posture's states;
+    -1 from outside, at the score of `enter`."""
+    states = log_transition.shape[1]
+    p, s = k // states, k % states
+    best, origin = enter, -1
+    for i in range(states):
+        value = score[p * states + i] + log_transition[p, i, s]
+        if value > best:
+            best, origin = value, p * states + i
+    return best, origin
+
+
+@numba.njit(cache=True)
+def _turned(s: int, turn: Any, own: Any) -> None:
+    """Count a repetition where a path comes to the far turn after the near one."""
+    if s == turn[1] and own[PHASE] == 0:
+        own[COUNT] += 1
+        own[PHASE] = 1
+    elif s == turn[0]:
+        own[PHASE] = 0
+
+
+@numba.njit(cache=True)
 def advance(
     score: Any, record: Any, over: Any, emission: Any, log_transition: Any, turn: Any, frame: int,
     open_: bool,
@@ -99,12 +123,7 @@ def advance(
     enter = score[source] - ENTER if open_ else -math.inf
     leaver = int(np.argmax(score[:count]))
     for k in range(count):
-        p, s = k // states, k % states
-        best, origin = enter, -1
-        for i in range(states):
-            value = score[p * states + i] + log_transition[p, i, s]
-            if value > best:
-                best, origin = value, p * states + i
+        best, origin = _way_into(k, score, log_transition, enter)
         new_score[k] = best + emission[k]
         own = new_record[k]
         if origin < 0:
@@ -113,13 +132,8 @@ def advance(
         else:
             new_over[k] = over[origin]
             own[:] = record[origin]
-        if s == turn[p, 1] and own[PHASE] == 0:
-            own[COUNT] += 1
-            own[PHASE] = 1
-        elif s == turn[p, 0]:
-            own[PHASE] = 0
-    for k in (still, filler):
-        other = filler if k == still else still
+        _turned(k % states, turn[k // states], own)
+    for k, other in ((still, filler), (filler, still)):
         values = (score[k], score[other] - CHANGE, score[leaver] - EXIT)
         best = max(values)
         new_score[k] = best + emission[k]

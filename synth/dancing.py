@@ -3,13 +3,14 @@
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common.body import Vector
 from synth.footing import posed
 from synth.motions import MOTION, Motion
 from synth.moves import smooth
 from synth.people import Person, take_style
-from synth.skeleton import ANGLES
+from synth.skeleton import ANGLES, JOINTS
 
 FRAMES: Final = 200
 """As many as the thesis's dancing video has (4.1)."""
@@ -18,6 +19,8 @@ FACING_DEG: Final = (-40.0, -90.0, -140.0, 140.0, 90.0, 40.0, -35.0, -90.0)
 the thesis's six words each differs from the one before, which makes its 7 changes (4.3)."""
 TURN_S: Final = 0.5
 """How long a turn takes."""
+SIDE_DEG: Final = 20.0
+"""So near to the side nobody faces the camera, or away from it."""
 BEAT_HZ: Final = 0.9
 SWAY_M, SWAY_S = 0.9, 6.0
 """How far the dancer goes to either side, and how long to and fro takes: no part of the room is
@@ -65,6 +68,17 @@ def dance(someone: Person, seed: int, fps: float = 15.0) -> Motion:
         phase=np.full(FRAMES, MOTION, np.uint8),
         style=style,
     )
+
+
+def faced(motion: Motion) -> NDArray[np.str_]:
+    """Which way a body faces in each frame, in the thesis's six words (T22); within SIDE_DEG of the
+    side, left or right."""
+    left, right = (motion.joints_m[:, JOINTS.index(f"{side}_shoulder")] for side in "lr")
+    forward = np.cross(left - right, (0.0, 1.0, 0.0))
+    yaw_deg = np.degrees(np.arctan2(forward[:, 0], forward[:, 2]))
+    off_deg = np.abs(yaw_deg) - 90.0
+    depth = np.where(off_deg < -SIDE_DEG, "forward_", np.where(off_deg > SIDE_DEG, "backward_", ""))
+    return np.char.add(depth, np.where(yaw_deg < 0, "left", "right"))
 
 
 def _facing(time_s: Vector) -> Vector:

@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from common.body import POSE_INDEX, Vector, body_vector, rest_pose, thesis_bdp
+from common.body import POSE_INDEX, Vector, rest_pose
 from common.kernel import draw_body
 from common.messages import Box, ViewerNumber
+from common.proportions import body_vector, thesis_bdp
 from common.similarity import Mask
 from viewer.figure import Figure, figure_of, rotation_of, view_at
 

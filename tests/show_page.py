@@ -11,9 +11,11 @@ import numpy as np
 from animator.page.inset import limb_ends, limb_outlines
 from animator.page.live import LivePage
 from animator.scene import Figure, Snapshot
-from common.body import POSE_INDEX, Vector, rest_pose, thesis_bdp
+from common.body import POSE_INDEX, Vector, rest_pose
 from common.camera import Camera, paper_rig
-from common.messages import Body, Posture, Pulse, Report, pack
+from common.messages import Body, Posture, Pulse, Report
+from common.proportions import thesis_bdp
+from common.wire import pack
 
 RATE_HZ = 15
 BDP = thesis_bdp(1.72)

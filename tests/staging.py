@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 from posing import box_of, posed
 
-from common.body import Bdp, Vector, body_vector, thesis_bdp
+from common.body import Bdp, Vector
 from common.camera import Rig, paper_rig
 from common.config import Settings
 from common.kernel import draw_body, view_of
-from common.messages import Body, Box, Guide, Report, ViewerNumber, pack
+from common.messages import Body, Box, Guide, Report, ViewerNumber
+from common.proportions import body_vector, thesis_bdp
 from common.similarity import Mask
+from common.wire import pack
 from integrator import merge
 from integrator.pairing import Pair
 from viewer import track
@@ -129,8 +131,8 @@ def report(viewer: ViewerNumber, mask: Mask | None = None, **said: object) -> Re
     given = {"frame": 0, "captured_s": 0.0, "clock_s": 0.0, "box": box, **said}
     return Report(
         viewer=viewer,
-        width=WIDTH,
-        height=HEIGHT,
+        width=seen.shape[1],
+        height=seen.shape[0],
         silhouette=pack(seen),
         **given,  # type: ignore[arg-type]
     )

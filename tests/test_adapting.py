@@ -4,18 +4,18 @@ import msgspec
 import numpy as np
 import pytest
 from posing import posed
+from staging import report, silhouettes
 
-from common.body import Bdp, Vector, body_vector, stature, thesis_bdp
+from common.body import Bdp, Vector
 from common.camera import paper_rig
-from common.kernel import draw_body, view_of
-from common.messages import Report, ViewerNumber, pack
+from common.messages import Report
+from common.proportions import stature, thesis_bdp
 from integrator import adapting
 from integrator.opening import Opening, Sample
 
 SIZE = (320, 240)
 RIG = paper_rig(SIZE, (400.0, 400.0), (4.5, 4.5))
 PRIOR = thesis_bdp(1.75)
-VIEWERS: tuple[ViewerNumber, ...] = (1, 2)
 
 
 def slim() -> Bdp:
@@ -30,21 +30,8 @@ def slim() -> Bdp:
 
 
 def seen_as(body: Bdp, pose: Vector, cut: bool = False) -> tuple[Report, Report]:
-    first, second = (
-        Report(
-            frame=0,
-            captured_s=0.0,
-            clock_s=0.0,
-            viewer=viewer,
-            width=SIZE[0],
-            height=SIZE[1],
-            silhouette=pack(draw_body(body_vector(body), pose, view_of(camera), SIZE)),
-            box=None,
-            cut=cut,
-        )
-        for viewer, camera in zip(VIEWERS, RIG.cameras, strict=True)
-    )
-    return first, second
+    first, second = silhouettes(pose, body, RIG)
+    return report(1, first, cut=cut), report(2, second, cut=cut)
 
 
 def standing() -> Vector:

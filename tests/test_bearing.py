@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.body import ANGLES_IN_POSE, LIMBS, POSE_NAMES, body_vector, rest_pose, thesis_bdp
+from common.body import ANGLES_IN_POSE, LIMBS, POSE_NAMES, rest_pose
 from common.kinematics import limb_frames
+from common.proportions import body_vector, thesis_bdp
 from recognizer.bearing import BEARING_NAMES, bearings
 
 BODY = body_vector(thesis_bdp(1.75))

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from common.bits import pack_words, unpack_words, words_of_rows
-from common.messages import pack
+from common.wire import pack
 
 
 @settings(deadline=None)

@@ -11,27 +11,21 @@ from hypothesis import strategies as st
 from common.body import (
     ANGLE_NAMES,
     ANGLES_IN_POSE,
-    BODY_SIZE,
     DOF_NAMES,
     FIXED_ANGLES,
-    FLEXION_JOINTS,
+    JOINT_AXES,
     LIMBS,
     LIMITS_DEG,
     POSE_NAMES,
     REST_DEG,
-    SPHERICAL_JOINTS,
-    THESIS_DIAMETERS,
-    THESIS_RATIOS,
     Bdp,
     Elliptic,
     Round,
     body_of_lengths,
-    body_vector,
     rest_pose,
-    stature,
-    thesis_bdp,
     wrapped_deg,
 )
+from common.proportions import body_vector, stature, thesis_bdp
 
 lengths_26 = st.lists(st.floats(1e-3, 1e3), min_size=26, max_size=26)
 
@@ -49,7 +43,7 @@ def test_ten_cylinders_have_26_numbers() -> None:
 def test_ten_joints_have_22_degrees_of_freedom_and_17_angles_are_estimated() -> None:
     """P6, P7, M17: six spherical and four flexion joints, three for the place; the head's three
     angles and two of the trunk stay fixed (P22)."""
-    assert (len(SPHERICAL_JOINTS), len(FLEXION_JOINTS)) == (6, 4)
+    assert sorted(len(axes) for axes in JOINT_AXES.values()) == [1] * 4 + [3] * 6
     assert len(DOF_NAMES) == 3 * 6 + 4 == 22
     assert len(POSE_NAMES) == 25
     assert len(FIXED_ANGLES) == 5
@@ -58,24 +52,6 @@ def test_ten_joints_have_22_degrees_of_freedom_and_17_angles_are_estimated() -> 
     counts = {part: parts.count(part) for part in parts}
     assert counts == {"torso": 1, "shoulder": 6, "elbow": 2, "hip": 6, "knee": 2}
     assert tuple(POSE_NAMES[at] for at in ANGLES_IN_POSE) == ANGLE_NAMES
-
-
-def test_the_thesis_lengths_add_up_to_the_stature() -> None:
-    """T4: head + torso + legs = 175."""
-    table = THESIS_RATIOS
-    assert table["head"] + table["torso"] + table["upper_leg"] + table["lower_leg"] == 175.0
-    assert (table["upper_arm"], table["lower_arm"], table["stature"]) == (25.0, 35.0, 175.0)
-    assert stature(thesis_bdp(1.75)) == pytest.approx(1.75)
-
-
-def test_the_thesis_widths_are_diameters() -> None:
-    """T5, M18: as diameters the torso is 40 of 175 wide, as radii it would be 80."""
-    bdp = thesis_bdp(175.0)
-    assert 2 * bdp.torso.long_radius == pytest.approx(40.0)
-    assert 2 * bdp.head.long_radius == pytest.approx(20.0)
-    assert 2 * bdp.r_upper_arm.radius == 2 * bdp.l_lower_arm.radius == pytest.approx(10.0)
-    assert 2 * bdp.r_lower_leg.long_radius == pytest.approx(20.0)
-    assert set(THESIS_DIAMETERS) == set(THESIS_RATIOS) - {"stature"}
 
 
 def test_neck_and_waist_bend_by_what_the_thesis_allows() -> None:
@@ -135,19 +111,6 @@ def test_a_scaled_body_is_similar(lengths: list[float], factor: float) -> None:
     assert scaled.lengths() == pytest.approx([length * factor for length in lengths])
     assert stature(scaled) == pytest.approx(stature(bdp) * factor)
     assert body_vector(scaled) == pytest.approx(body_vector(bdp) * factor)
-
-
-def test_shoulders_and_hips_are_where_the_paper_puts_them() -> None:
-    """P18: the shoulder is a long radius aside of the trunk's axis and 0.45 of it below the top;
-    legs stand within the trunk's width."""
-    bdp = thesis_bdp(1.75)
-    body = body_vector(bdp)
-    radius = bdp.torso.long_radius
-    assert len(body) == BODY_SIZE
-    assert body[:26].tolist() == bdp.lengths()
-    assert body[26] == pytest.approx(radius)
-    assert body[27] == pytest.approx(bdp.torso.height - 0.45 * radius)
-    assert body[28] + bdp.r_upper_leg.long_radius == pytest.approx(radius)
 
 
 @given(st.floats(-1e4, 1e4), st.integers(-5, 5))

@@ -12,23 +12,14 @@ from typing import NamedTuple
 import msgspec
 import pytest
 import zenoh
+from local_bus import LocalBus
 
 from common.bus import Bus, BusError, open_client, open_hub
 from common.config import BusSettings
 from common.inbox import BOUND, Alive, Inbox
-from common.local_bus import LocalBus
 from common.mailbox import Mailbox
-from common.messages import (
-    MAX_BYTES,
-    ClockAnswer,
-    ClockQuestion,
-    Guide,
-    Picture,
-    Posture,
-    Pulse,
-    Report,
-    encode,
-)
+from common.messages import ClockAnswer, ClockQuestion, Guide, Picture, Posture, Pulse, Report
+from common.wire import MAX_BYTES, encode
 
 ROOM = "hall"
 SOON_S = 5.0
@@ -176,6 +167,25 @@ def test_a_reader_that_sleeps_keeps_the_latest_and_counts_the_rest(place: Place)
             time.sleep(0.01)
         assert inbox.dropped == spoken - BOUND
         assert [report.frame for report in inbox.drain()] == list(range(spoken - BOUND, spoken))
+
+
+def test_what_is_lost_on_the_way_is_counted_by_who_should_have_heard_it(place: Place) -> None:
+    """Messages are numbered; a speaker who is started again begins with the first."""
+    key, inbox = f"tritrack/{ROOM}/viewer/1/report", place.hub.subscribe(Report)
+    with ExitStack() as doors:
+        session = doors.enter_context(foreigner(place))
+        heard = session.declare_subscriber(key)
+        for frame in range(3):
+            place.hub.publish(a_report(1, frame))
+        numbers = [heard.recv().attachment.to_bytes() for _ in range(3)]
+        assert [int.from_bytes(number, "big") for number in numbers] == [1, 2, 3]
+        for number in (4, 7, 8, 1, 2, 5, 2**64 - 1):
+            session.put(key, encode(a_report(1, number % 9)), attachment=number.to_bytes(8, "big"))
+        session.put(key, encode(a_report(1, 9)), attachment=b"none of ours")
+        heard_there = [inbox.take(SOON_S) for _ in range(11)]
+    frames = [message.frame for message in heard_there if message]
+    assert frames == [0, 1, 2, 4, 7, 8, 1, 2, 5, 6, 9]
+    assert (inbox.dropped, inbox.malformed) == (4, 0)
 
 
 def test_of_guides_a_slow_reader_gets_the_newest_alone(place: Place) -> None:

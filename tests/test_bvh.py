@@ -7,16 +7,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from animator.bvh import NoMotion, bvh_text, steady
-from common.body import (
-    DOF_NAMES,
-    JOINT_NAMES,
-    LIMITS_DEG,
-    POSE_INDEX,
-    body_vector,
-    rest_pose,
-    thesis_bdp,
-)
+from common.body import DOF_NAMES, JOINT_NAMES, LIMITS_DEG, POSE_INDEX, rest_pose
 from common.kinematics import joints
+from common.proportions import body_vector, thesis_bdp
 
 
 def rigid_body() -> np.ndarray:

@@ -159,12 +159,12 @@ def test_a_killed_child_is_reported_with_how_far_it_came(tmp_path: Path) -> None
 
 def test_a_stuck_child_is_waited_for_in_bounded_time(tmp_path: Path) -> None:
     video = written(tmp_path / "cam1.avi", frames=400, size=(320, 240))
-    with Decoder(stall_s=0.3) as own:
+    with Decoder(stall_s=3.0) as own:  # a busy machine takes a second to start it
         frames = own.frames(video, (320, 240))
         next(frames)
         assert own.pid is not None
         os.kill(own.pid, signal.SIGSTOP)
-        with pytest.raises(DecoderDied, match=r"gave nothing for 0\.3 s"):
+        with pytest.raises(DecoderDied, match="gave nothing for 3 s"):
             list(frames)
 
 

@@ -8,7 +8,7 @@ import pytest
 from animator.take import Take, depth_of, take_of
 from common.body import JOINT_NAMES, LIMBS
 from common.notes import Notes
-from synth.dancing import FRAMES, dance
+from synth.dancing import FRAMES, dance, faced
 from synth.motions import Motion
 from synth.people import person
 from synth.skeleton import JOINTS
@@ -22,22 +22,6 @@ def danced() -> Motion:
     return dance(person(900), 0)
 
 
-def yaw_deg(motion: Motion) -> np.ndarray:
-    """Which way the chest faces: 0 to camera 1, 90 to the right of its picture."""
-    left, right = (motion.joints_m[:, JOINTS.index(f"{side}_shoulder")] for side in "lr")
-    forward = np.cross(left - right, (0.0, 1.0, 0.0))
-    return np.degrees(np.arctan2(forward[:, 0], forward[:, 2]))
-
-
-def six_words(motion: Motion) -> np.ndarray:
-    """The orientation of each frame in the thesis's words (T22); within 20 degrees of the side,
-    left or right."""
-    yaw = yaw_deg(motion)
-    side = np.where(yaw < 0, "left", "right")
-    depth = np.where(np.abs(yaw) < 70, "forward_", np.where(np.abs(yaw) > 110, "backward_", ""))
-    return np.char.add(depth, side)
-
-
 def true_take(motion: Motion) -> Take:
     """A run without an error, that was sure of all."""
     n = len(motion.phase)
@@ -48,7 +32,7 @@ def true_take(motion: Motion) -> Take:
             "joints_px": np.zeros((n, 2, 15, 2)),
             "joints_m": joints_m,
             "confidence": np.ones((n, 15)),
-            "orientation": six_words(motion),
+            "orientation": faced(motion),
         }
     )
 
@@ -60,7 +44,7 @@ def test_the_dance_is_as_long_as_the_thesis_video(danced: Motion) -> None:
 
 def test_the_orientation_changes_seven_times(danced: Motion) -> None:
     """ "The orientation of the body changes 7 times along the 200 frames" (4.3)."""
-    words = six_words(danced)
+    words = faced(danced)
     changes = np.flatnonzero(words[1:] != words[:-1])
     rests = [words[at] for at in np.linspace(12, 187, 8).astype(int)]
     assert sum(a != b for a, b in pairwise(rests)) == 7

@@ -32,6 +32,11 @@ def test_a_missing_package_is_named_with_its_cure(monkeypatch: pytest.MonkeyPatc
     assert (missing.ok, missing.cure) == (False, "pip install no-such-package")
 
 
+def test_every_extra_that_a_command_needs_is_looked_at(findings: dict[str, Finding]) -> None:
+    told = {name.rpartition("(")[2].rstrip(")") for name, one in findings.items() if not one.needed}
+    assert {"viser", "tomlkit", "scikit-image", "matplotlib"} <= told
+
+
 def test_a_look_that_fails_does_not_keep_the_others_from_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

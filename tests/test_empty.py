@@ -13,7 +13,7 @@ from common.clips import View, open_clip
 from common.config import CameraSettings, Settings, SilhouetteSettings
 from common.decoding import Decoded, Decoder
 from viewer.background import Background
-from viewer.empty import empty_room
+from viewer.empty import empty_room, room_of_run
 
 GREY_LEVELS = 5
 """T7's bound of what a learnt background may be off."""
@@ -96,3 +96,18 @@ def test_a_cameras_room_is_what_it_shows_first(clip: Path, decoder: Decoder) -> 
     assert odd == ""
     assert camera.given <= 8
     assert share_off(room, room_of(clip)) < 0.001
+
+
+def test_a_viewer_that_is_started_again_knows_its_cameras_room(clip: Path, tmp_path: Path) -> None:
+    """Somebody stands before the camera by then; a run after that learns its room anew."""
+    film = film_of(clip / "cam1.avi")
+    view = View(1, 0, (160, 120), (160, 120), 15.0, 0)
+    first, again, other = tmp_path / "first", FakeCamera(film[40:48]), tmp_path / "other"
+    first.mkdir()
+    other.mkdir()
+    learnt, _ = room_of_run(view, SilhouetteSettings(), FakeCamera(film), first)
+    room, odd = room_of_run(view, SilhouetteSettings(), again, first)
+    assert all(np.array_equal(*pair) for pair in zip(room, learnt, strict=True))
+    assert (odd, again.given) == ("", 0)
+    room, _ = room_of_run(view, SilhouetteSettings(), again, other)
+    assert share_off(room, room_of(clip)) > 0.02

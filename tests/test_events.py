@@ -67,6 +67,31 @@ def test_a_performance_is_one_event_with_its_beginning_and_end(
     assert event.posterior > 0.9
 
 
+def rests(model: DensityModel, posture: str, frames: int) -> list[tuple[Event, int]]:
+    """What is told of a posture that is performed five times with so many frames of standing after
+    each."""
+    once = np.concatenate([perform(posture, performer=9), still(frames)])
+    return told(model, still(30), *[once] * 5, still(30))
+
+
+@pytest.mark.parametrize("posture", ["squat", "raise_right_lateral"])
+def test_five_performances_with_a_rest_between_them_are_five_events(
+    model: DensityModel, posture: str
+) -> None:
+    """Twelve frames, 0.8 s."""
+    events = [event for event, _ in rests(model, posture, 12)]
+    assert [event.name for event in events] == [posture] * 5
+    onsets = 30 + 52 * np.arange(5)
+    assert [event.first for event in events] == pytest.approx(onsets, abs=6)
+    assert [event.last for event in events] == pytest.approx(onsets + 39, abs=6)
+
+
+def test_a_performance_that_pauses_is_one_event(model: DensityModel) -> None:
+    """A third of a second, four times: it is over, and judged, after each of its five parts."""
+    events = rests(model, "kick_right_forward", 5)
+    assert [event.name for event, _ in events] == ["kick_right_forward"]
+
+
 def test_standing_is_no_event(model: DensityModel) -> None:
     assert told(model, still(200)) == []
 

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from common.body import JOINT_NAMES, body_vector, rest_pose, thesis_bdp
+from common.body import JOINT_NAMES, rest_pose
 from common.kinematics import joints
 from common.messages import Body
+from common.proportions import body_vector, thesis_bdp
 from tritrack.exporting import ExportError, export_run
 from tritrack.past_run import PastRunError, open_run
 from tritrack.runs import poses

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from posing import ROOT_PX, picture, posed, stretched
 
-from common.body import thesis_bdp
 from common.messages import Facing
+from common.proportions import thesis_bdp
 from viewer.facing import thresholds_px, trunk_width, upper_body_px, vote
 
 BDP = thesis_bdp(1.0)

@@ -238,6 +238,34 @@ def test_a_viewer_that_stays_frozen_is_killed_and_started_again(watched_run: Run
     assert any("viewer 2: it has said nothing for" in told for told in facts["warnings"])
 
 
+def test_a_killed_integrator_is_started_again_and_poses_go_on(
+    long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is the hub that all others meet at: they find the new one, and it learns the body anew."""
+
+    def harm(witness: Witness) -> None:
+        witness.until_tracked()
+        os.kill(pid_of("integrator"), signal.SIGKILL)
+        before = len(witness.bodies)
+        witness.until(
+            "poses of both views from the new integrator",
+            lambda: (
+                len(witness.bodies) >= before + 10
+                and all(body.joints_m and body.views == "both" for body in witness.bodies[-5:])
+            ),
+        )
+
+    settings = settings_of(long_clip)
+    with Witness(settings.bus, harm) as witness:
+        monkeypatch.setattr(session, "_stopped_by_signals", lambda: nullcontext(witness.over))
+        facts = live(settings, tmp_path, Console(quiet=True))
+    killed = "integrator: killed by signal 9; it is started again"
+    assert any(killed in told for told in facts["warnings"])
+    found = rows(tmp_path)
+    again = found["frame"] > witness.lost_at
+    assert np.isfinite(found["joints_m"][again][-5:]).all()
+
+
 class Cable:
     """A TCP link between a viewer and the hub that can be cut and mended."""
 

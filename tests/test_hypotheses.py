@@ -3,18 +3,19 @@
 import numpy as np
 import pytest
 from posing import posed
+from staging import report
 
 from common.bits import count, pack_words
-from common.body import POSE_INDEX, POSE_NAMES, Vector, body_vector, thesis_bdp
+from common.body import POSE_INDEX, POSE_NAMES, Vector
 from common.camera import paper_rig
 from common.kernel import draw_body, view_of
 from common.kinematics import limb_frames
-from common.messages import Report, ViewerNumber, pack
+from common.messages import Report
+from common.proportions import body_vector, thesis_bdp
 from common.similarity import Mask, similarity
 from integrator.hypotheses import moving, products, settled, turned
 
 BODY = body_vector(thesis_bdp(1.75))
-VIEWERS: tuple[ViewerNumber, ...] = (1, 2)
 UPRIGHT_M = 0.95
 SIZE = (160, 120)
 RIG = paper_rig(SIZE, (200.0, 200.0), (4.5, 4.5))
@@ -26,20 +27,8 @@ def pictures(pose: Vector) -> list[Mask]:
 
 
 def reports(pose: Vector) -> tuple[Report, Report]:
-    first, second = (
-        Report(
-            frame=0,
-            captured_s=0.0,
-            clock_s=0.0,
-            viewer=viewer,
-            width=SIZE[0],
-            height=SIZE[1],
-            silhouette=pack(mask),
-            box=None,
-        )
-        for viewer, mask in zip(VIEWERS, pictures(pose), strict=True)
-    )
-    return first, second
+    first, second = pictures(pose)
+    return report(1, first), report(2, second)
 
 
 def standing(**angles_deg: float) -> Vector:

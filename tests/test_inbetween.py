@@ -2,12 +2,10 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation, Slerp
 
 from animator.bones import BONES, Motion
-from animator.inbetween import angles_between, between, key_frames
+from animator.inbetween import between, key_frames
 
 
 @pytest.mark.parametrize(("frames", "thesis"), [(82, 17), (200, 33)], ids=["walking", "dancing"])
@@ -60,22 +58,3 @@ def test_before_the_first_key_and_after_the_last_the_pose_is_held() -> None:
     found = between(np.array([5, 7]), given_motion, np.array([0, 5, 7, 30]))
     assert np.allclose(found.turns[[0, 3]], given_motion.turns)
     assert np.allclose(between(np.array([5]), motion(1), np.arange(9)).root_m, motion(1).root_m)
-
-
-def test_angles_go_the_shorter_way_round() -> None:
-    """170 to -170 degrees is 20 degrees, not 340: linear interpolation as the thesis has it."""
-    found = angles_between(
-        np.array([0, 4]), np.array([[170.0, 10.0], [-170.0, 50.0]]), np.arange(5)
-    )
-    assert np.allclose(found[:, 0], [170.0, 175.0, 180.0, 185.0, 190.0])
-    assert np.allclose(found[:, 1], [10.0, 20.0, 30.0, 40.0, 50.0])
-
-
-@given(st.lists(st.floats(-720.0, 720.0), min_size=2, max_size=6))
-def test_angles_are_exact_at_the_key_frames(values: list[float]) -> None:
-    """But for full circles."""
-    keys = 3 * np.arange(len(values))
-    found = angles_between(keys, np.array(values)[:, None], keys)[:, 0]
-    off = (found - values + 180.0) % 360.0 - 180.0
-    assert np.abs(off).max() < 1e-6
-    assert np.abs(np.diff(found)).max() <= 180.0 + 1e-6

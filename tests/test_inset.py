@@ -16,11 +16,13 @@ from animator.page.inset import (
     limb_outlines,
 )
 from animator.scene import Figure
-from common.body import LIMBS, POSE_INDEX, Vector, body_vector, rest_pose, stature, thesis_bdp
+from common.body import LIMBS, POSE_INDEX, Vector, rest_pose
 from common.camera import Camera, paper_rig, project
 from common.kernel import draw_body, view_of
 from common.kinematics import segments
-from common.messages import Picture, Report, pack
+from common.messages import Picture, Report
+from common.proportions import body_vector, stature, thesis_bdp
+from common.wire import pack
 
 BDP = thesis_bdp(1.75)
 FOCAL_PX, DISTANCE_M = 401.0, 4.5

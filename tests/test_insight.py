@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 from staging import HEIGHT, RIG, WIDTH, Stage, Told, exact
 
-from common.body import JOINT_NAMES, POSE_INDEX, Vector, stature
+from common.body import JOINT_NAMES, POSE_INDEX, Vector
 from common.config import Settings
-from common.messages import decode, encode
+from common.proportions import stature
 from common.similarity import Mask
+from common.wire import decode, encode
 from integrator.insight import AT, SURENESS, probability
 from synth.footing import posed
 from synth.mesh import body_mesh

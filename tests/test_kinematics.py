@@ -8,17 +8,9 @@ from hypothesis import strategies as st
 from posing import BODY, posed
 from scipy.spatial.transform import Rotation
 
-from common.body import (
-    JOINT_NAMES,
-    LIMBS,
-    POSE_INDEX,
-    Elliptic,
-    Vector,
-    body_vector,
-    rest_pose,
-    thesis_bdp,
-)
+from common.body import JOINT_NAMES, LIMBS, POSE_INDEX, Elliptic, Vector, rest_pose
 from common.kinematics import joints, limb_frames, segments
+from common.proportions import body_vector, thesis_bdp
 
 degrees = st.floats(-360.0, 360.0)
 poses = st.lists(degrees, min_size=22, max_size=22).map(

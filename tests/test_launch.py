@@ -16,7 +16,7 @@ from rich.console import Console
 
 from common.config import BusSettings, PageSettings, Settings
 from common.messages import Body
-from tritrack.launch import Heard, run
+from tritrack.launch import Heard, nothing_heard, run
 from tritrack.offline import Decoders, track_clip
 from tritrack.parts import Part
 from tritrack.runs import poses
@@ -138,7 +138,7 @@ def babble(bus: BusSettings, room: str, over: threading.Event) -> None:
 def test_a_part_that_fails_is_named_with_its_reason(tmp_path: Path) -> None:
     parts = [Part("integrator", fails, ("the roof leaks",))]
     with pytest.raises(PartFailed, match="integrator: the roof leaks"):
-        run(parts, settings_of(tmp_path), threading.Event(), ignore, Heard([], [], {}, [], []))
+        run(parts, settings_of(tmp_path), threading.Event(), ignore, nothing_heard())
 
 
 def test_an_endpoint_in_use_is_refused_in_one_line(clip: Path, tmp_path: Path) -> None:

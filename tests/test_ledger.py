@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from animator.take import Take, depth_of, take_of
-from common.body import JOINT_NAMES, LIMBS, POSE_INDEX, body_vector, rest_pose, thesis_bdp
+from common.body import JOINT_NAMES, LIMBS, POSE_INDEX, rest_pose
 from common.kinematics import joints
 from common.notes import Note, Notes
+from common.proportions import body_vector, thesis_bdp
 from tritrack.ledger import (
     PRINTED,
     Count,

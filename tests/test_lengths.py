@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from test_accuracy import PERSON
 
-from common.body import thesis_bdp
+from common.proportions import thesis_bdp
 from tritrack.accuracy import INDEX, Compared
 from tritrack.lengths import SEGMENTS, body_joints_m, length_errors, segments_m
 

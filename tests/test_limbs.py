@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from common.body import JOINT_NAMES, POSE_INDEX, Vector, body_vector, rest_pose, thesis_bdp
+from common.body import JOINT_NAMES, POSE_INDEX, Vector, rest_pose
 from common.kinematics import joints
+from common.proportions import body_vector, thesis_bdp
 from integrator.insight import AT, pose_and_rest, trunk_axes
 from integrator.limbs import PLACES, pose_of
 from integrator.propose import JOINTS

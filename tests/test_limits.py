@@ -5,17 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from common.body import (
-    ANGLE_NAMES,
-    ANGLES_IN_POSE,
-    LIMITS_DEG,
-    POSE_INDEX,
-    Vector,
-    body_vector,
-    rest_pose,
-    thesis_bdp,
-)
+from common.body import ANGLE_NAMES, ANGLES_IN_POSE, LIMITS_DEG, POSE_INDEX, Vector, rest_pose
 from common.kinematics import joints
+from common.proportions import body_vector, thesis_bdp
 from integrator.limits import clipped, held, within
 
 BODY = body_vector(thesis_bdp(1.75))

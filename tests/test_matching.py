@@ -6,20 +6,14 @@ import pytest
 from test_one_view import CAMERA, HEIGHT, WIDTH, report_of
 
 from common.bits import unpack_words
-from common.body import (
-    JOINT_NAMES,
-    LIMB_ENDS,
-    POSE_INDEX,
-    Vector,
-    body_vector,
-    rest_pose,
-    thesis_bdp,
-)
+from common.body import JOINT_NAMES, LIMB_ENDS, POSE_INDEX, Vector, rest_pose
 from common.camera import project
 from common.kinematics import joints
-from common.messages import Report, pack
+from common.messages import Report
+from common.proportions import body_vector, thesis_bdp
 from common.stickman import ADULT, POSE_SIZE, STATURE
 from common.strokes import ALL_SEGMENTS, draw_segments
+from common.wire import pack
 from integrator.matching import GOOD, Match, matched
 
 BODY = body_vector(thesis_bdp(1.75))

@@ -10,9 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from posing import BODY, ROOT_PX, box_of, picture, posed, stretched
 
-from common.body import LIMBS, Bdp, Elliptic, Vector, body_vector, thesis_bdp
+from common.body import LIMBS, Bdp, Elliptic, Vector
 from common.kinematics import segments
 from common.messages import Box
+from common.proportions import body_vector, thesis_bdp
 from common.similarity import Mask, similarity
 from viewer.measure import (
     arm_angle_deg,

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from local_bus import LocalBus
 from staging import report
 
 from common.bus import Bus, open_client, open_hub
@@ -14,7 +15,6 @@ from common.clips import View
 from common.config import BusSettings, PageSettings, Settings
 from common.decoding import DecoderDied
 from common.inbox import BOUND
-from common.local_bus import LocalBus
 from common.messages import (
     Body,
     Cameras,
@@ -27,7 +27,7 @@ from common.messages import (
 )
 from integrator import __main__ as integrator
 from integrator import merge
-from tritrack.launch import Ears, Heard
+from tritrack.launch import Ears, nothing_heard
 from tritrack.session import free_settings
 from viewer import __main__ as viewer
 from viewer import track
@@ -177,7 +177,7 @@ def test_nobody_waits_for_a_viewer_whose_video_broke() -> None:
 
 
 def test_the_supervisor_learns_the_cameras_that_were_told_before_it_listened() -> None:
-    bus, heard = LocalBus(), Heard([], [], {}, [], [])
+    bus, heard = LocalBus(), nothing_heard()
     bus.keep(Cameras)
     bus.publish(Cameras(rig=RIG, scale_source="calibrated"))
     Ears(bus, heard).catch_up()

@@ -21,11 +21,13 @@ from staging import (
     standing,
 )
 
-from common.body import JOINT_NAMES, POSE_INDEX, Vector, body_vector, stature
+from common.body import JOINT_NAMES, POSE_INDEX, Vector
 from common.camera import project
 from common.config import Mode, Settings
 from common.kinematics import joints
-from common.messages import Guide, decode, encode
+from common.messages import Guide
+from common.proportions import body_vector, stature
+from common.wire import decode, encode
 from integrator import merge
 from integrator.belief import LOST_FRAMES
 from integrator.pairing import Pair

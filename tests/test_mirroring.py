@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from common.body import JOINT_NAMES, POSE_INDEX, body_vector, rest_pose, thesis_bdp
+from common.body import JOINT_NAMES, POSE_INDEX, rest_pose
 from common.camera import paper_rig, project
 from common.kinematics import joints
+from common.proportions import body_vector, thesis_bdp
 from integrator.mirroring import Front, agrees, faces, front_of, leaning, seen_from_behind, yaw_deg
 
 CAMERA = paper_rig((160, 120), (200.0, 200.0), (4.375, 4.375)).cameras[0]

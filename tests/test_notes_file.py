@@ -16,7 +16,6 @@ from common.notes_file import (
     NotesError,
     load_notes,
     notes_path,
-    notes_text,
     save_notes,
 )
 
@@ -43,6 +42,72 @@ def test_a_file_as_people_write_it_is_read(tmp_path: Path) -> None:
     )
     first = Note(0, "left", {}, {"l_wrist": (10.0, 20.5)})
     assert load_notes(path).note == (first, Note(40, None, {"l_upper_arm": "away"}))
+
+
+WRITTEN = """# my dance
+
+video = "dance.avi"  # the second take
+
+# she turns here
+[[note]]
+frame = 40
+orientation = "left"  # or so it seems
+[note.depth]
+l_upper_arm = 'away'  # the arm swings back
+
+[[note]]
+frame = 0
+depth.torso = "toward"
+depth.head = "away"
+"""
+
+
+def test_what_people_write_beside_their_notes_stays(tmp_path: Path) -> None:
+    """A comment, an order, a style: the page changes what it was told to, and nothing else."""
+    path = tmp_path / "notes.toml"
+    path.write_text(WRITTEN)
+    notes = load_notes(path)
+    save_notes(path, notes)
+    assert path.read_text() == WRITTEN
+    for new in (
+        Note(40, "right", {"r_upper_arm": "toward"}),
+        Note(0, depth={"torso": "away"}),
+        Note(20, None, {}, {"l_wrist": (10.0, 20.5)}),
+    ):
+        notes = noted(notes, new)
+        save_notes(path, notes)
+        assert load_notes(path) == notes
+    for kept in (
+        "# my dance",
+        "# the second take",
+        "# she turns here",
+        "# or so it seems",
+        "# the arm swings back",
+        'depth.head = "away"',
+    ):
+        assert kept in path.read_text()
+
+
+@settings(max_examples=30)
+@given(st.lists(inputs, max_size=6))
+def test_whatever_is_said_to_a_written_file_is_read_again(
+    tmp_path_factory: pytest.TempPathFactory, given_notes: list[Note]
+) -> None:
+    path = tmp_path_factory.getbasetemp() / "notes.toml"
+    path.write_text(WRITTEN)
+    notes = load_notes(path)
+    for each in given_notes:
+        notes = noted(notes, each)
+        save_notes(path, notes)
+        assert load_notes(path) == notes
+
+
+def test_a_file_that_was_spoilt_meanwhile_is_not_overwritten(tmp_path: Path) -> None:
+    path = tmp_path / "notes.toml"
+    path.write_text("[[note]]\nframe 1")
+    with pytest.raises(NotesError, match=r"was changed and is no TOML: .*mend that line"):
+        save_notes(path, Notes(note=(Note(2, "right"),)))
+    assert path.read_text() == "[[note]]\nframe 1"
 
 
 @pytest.mark.parametrize(
@@ -109,5 +174,5 @@ def test_videos_of_one_folder_do_not_share_their_notes(tmp_path: Path) -> None:
 
 
 def test_notes_without_a_videos_name_are_of_any_video_beside_them(tmp_path: Path) -> None:
-    (tmp_path / "notes.toml").write_text(notes_text(Notes()))
+    save_notes(tmp_path / "notes.toml", Notes())
     assert notes_path(tmp_path / "dance.avi") == tmp_path / "notes.toml"

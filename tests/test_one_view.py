@@ -4,10 +4,12 @@ import msgspec
 import numpy as np
 import pytest
 
-from common.body import JOINT_NAMES, THESIS_RATIOS
+from common.body import JOINT_NAMES, LIMBS
 from common.camera import paper_rig, project
-from common.messages import Body, Box, Fit, Report, pack
+from common.messages import Body, Box, Fit, Report
+from common.proportions import THESIS_RATIOS
 from common.stickman import ADULT, ANGLE, THESIS, Stickman, joints_px, standing
+from common.wire import pack
 from integrator import one_view
 from integrator.one_outline import Inputs, State, lifted_body
 
@@ -110,6 +112,14 @@ def test_a_segment_leans_as_the_user_says() -> None:
         lean = joints[AT["r_elbow"], 2] - joints[AT["r_shoulder"], 2]
         expected = sign * np.sin(np.radians(60)) * 1.75 * THESIS_RATIOS["upper_arm"] / 175
         assert lean == pytest.approx(expected, rel=0.02)
+
+
+def test_what_a_pixel_does_to_a_limbs_angle_is_told() -> None:
+    """T19: an upper arm of 11.4 px in the plane, one shorter, is 24 degrees out of it."""
+    _, _, own = one_view.step(begun(printed=True), report_of(THESIS), Inputs())
+    length_px = THESIS_RATIOS["upper_arm"] / THESIS_RATIOS["stature"] * TALL_PX
+    error_deg = np.degrees(np.arccos(1.0 - 1.0 / length_px))
+    assert own.depth_error_deg[LIMBS.index("l_upper_arm")] == pytest.approx(error_deg, rel=0.02)
 
 
 def test_nobody_has_no_pose() -> None:

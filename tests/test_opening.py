@@ -6,9 +6,10 @@ import pytest
 from posing import box_of
 from staging import PERSON, RIG, opening, report, silhouettes, standing
 
-from common.body import Bdp, stature, thesis_bdp
+from common.body import Bdp
 from common.camera import Rig, paper_rig
 from common.messages import Measure, Report
+from common.proportions import stature, thesis_bdp
 from integrator import opening as stage
 from integrator.opening import Opening, prior
 from viewer.measure import measure_front, measure_side

@@ -49,19 +49,3 @@ def test_a_frame_of_a_thin_trunk_is_no_profile() -> None:
     thin = in_profile(stick_pose({}))
     bearing = faced(bearing, joints_px(ADULT, thin), float(thin[BREADTH]))
     assert bearing.orientation.startswith("forward")
-
-
-@pytest.mark.parametrize(
-    ("yaw_deg", "orientation"),
-    [
-        (10.0, "forward_right"),
-        (-30.0, "forward_left"),
-        (80.0, "right"),
-        (-100.0, "left"),
-        (170.0, "backward_right"),
-        (200.0, "backward_left"),
-    ],
-)
-def test_a_known_yaw_is_one_of_six(yaw_deg: float, orientation: str) -> None:
-    assert Bearing.known(yaw_deg).orientation == orientation
-    assert Bearing.known(yaw_deg).sure == 1.0

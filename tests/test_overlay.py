@@ -5,8 +5,9 @@ import pytest
 
 from animator.overlay import LEAST_HEIGHT_PX, draw_stick, overlay, side_view
 from animator.scene import LEFT, RIGHT
-from common.body import JOINT_NAMES, POSE_INDEX, body_vector, rest_pose, thesis_bdp
+from common.body import JOINT_NAMES, POSE_INDEX, rest_pose
 from common.kinematics import joints
+from common.proportions import body_vector, thesis_bdp
 
 SURE = np.ones(15)
 NOBODY_PX, NOBODY_M = np.full((15, 2), np.nan), np.full((15, 3), np.nan)

@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.body import Elliptic, Vector, thesis_bdp
+from common.body import Elliptic, Vector
 from common.camera import PAPER_ROTATIONS, Camera, PaperRig, Rig, as_paper_rig, paper_rig, project
 from common.messages import Measure
+from common.proportions import thesis_bdp
 from integrator.perspective import (
     ground_position,
     px_per_m,

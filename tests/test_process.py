@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from local_bus import LocalBus
 
-from common.local_bus import LocalBus
 from common.messages import Pulse
 from common.process import BEAT_S, Heart, Place, process, start_log
 from common.rate import Pace

@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.messages import TOPICS, Ended, Pulse, Report
+from common.messages import Ended, Pulse, Report
 from common.rate import WINDOW, Pace, silent, wait_until
+from common.wire import TOPICS
 
 PERIOD_S = 1 / 15
 

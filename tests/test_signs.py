@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from common.body import JOINT_NAMES, LIMBS
+from common.body import LIMBS
 from common.notes import Orientation
 from common.stickman import ADULT, BREADTH, joints_px
 from integrator import signs
@@ -27,9 +27,12 @@ def chosen(
     return signs.choose(memory, seen, breadth, LENGTHS_M, PX_PER_M, depth, orientation)
 
 
-def lifted(pose: np.ndarray, way: float) -> np.ndarray:
+def after(memory: signs.Memory, pose: np.ndarray, way: float) -> signs.Memory:
+    """What is remembered of a body all of whose segments lean one way, as the user said."""
     seen = joints_px(ADULT, pose)
-    return lift(seen, 1.0, LENGTHS_M, PX_PER_M, np.full(10, way), "forward_right").joints_m
+    body = lift(seen, 1.0, LENGTHS_M, PX_PER_M, np.full(10, way), "forward_right")
+    choice = signs.Choice(np.full(10, way), np.ones(10), "forward_right", 1.0)
+    return signs.remembered(memory, body.joints_m, choice, seen, 1.0)
 
 
 def test_thighs_bend_forwards_and_knees_backwards() -> None:
@@ -53,7 +56,7 @@ def test_a_limb_goes_on_where_it_was(way: float) -> None:
     """T21: signs rarely change: an arm that points out of the plane keeps its side."""
     arm = {"l_upper_arm": 0.7, "l_lower_arm": 0.7}
     pose = stick_pose({"l_upper_arm": 300.0, "l_lower_arm": 300.0}, arm)
-    memory = signs.recalled(signs.init(), lifted(pose, way))
+    memory = after(signs.init(), pose, way)
     assert chosen(pose, memory).signs[AT["l_upper_arm"]] == way
 
 
@@ -63,10 +66,10 @@ def test_a_limb_that_swung_through_the_plane_goes_on_through() -> None:
     for tilt_deg in (40.0, 10.0):
         ratio = float(np.cos(np.radians(tilt_deg)))
         arm = {"l_upper_arm": ratio, "l_lower_arm": ratio}
-        memory = signs.recalled(memory, lifted(stick_pose({}, arm), 1.0))
+        memory = after(memory, stick_pose({}, arm), 1.0)
     ratio = float(np.cos(np.radians(20.0)))
-    after = stick_pose({}, {"l_upper_arm": ratio, "l_lower_arm": ratio})
-    assert chosen(after, memory).signs[AT["l_upper_arm"]] == -1.0
+    beyond = stick_pose({}, {"l_upper_arm": ratio, "l_lower_arm": ratio})
+    assert chosen(beyond, memory).signs[AT["l_upper_arm"]] == -1.0
 
 
 def test_the_user_is_right() -> None:
@@ -92,13 +95,3 @@ def test_confidences_are_shares() -> None:
 def test_what_does_not_lean_is_not_sure() -> None:
     """A limb in the plane has no sign: its confidence says so."""
     assert chosen(stick_pose({})).confidence.max() < 0.75
-
-
-def test_two_views_settle_the_facing() -> None:
-    """T22: memory of the last two-view pose."""
-    joints = lifted(stick_pose({}), 1.0)
-    turned = joints * [-1.0, 1.0, -1.0]
-    found = chosen(stick_pose({}), signs.recalled(signs.init(), turned))
-    assert found.orientation.startswith("backward")
-    assert found.orientation_confidence == 1.0
-    assert JOINT_NAMES[3] == "l_shoulder"

@@ -126,6 +126,12 @@ def test_a_speck_among_silhouettes_is_nobody(tmp_path: Path) -> None:
 
 @pytest.mark.filterwarnings("error")
 def test_where_nobody_is_seen_that_is_said(tmp_path: Path) -> None:
+    """It is a failure, but what the video shows is written all the same."""
     np.savez(tmp_path / "empty.npz", masks=np.zeros((3, 120, 160), np.bool_))
-    facts = single_all([tmp_path / "empty.npz"], tmp_path / "runs", None, SMALL, QUIET)
-    assert "nobody was seen" in facts["clips"]["empty"]["warnings"][0]
+    with pytest.raises(ClipsFailed, match="nobody was found in 1 of 1 videos: look for an outline"):
+        single_all([tmp_path / "empty.npz"], tmp_path / "runs", None, SMALL, QUIET)
+    written = tmp_path / "runs" / "empty"
+    facts = json.loads((written / "summary.json").read_text())
+    assert "nobody was seen" in facts["warnings"][0]
+    assert (facts["frames"], facts["frames_with_pose"]) == (3, 0)
+    assert (written / "overlay.avi").is_file()

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from common.body import LIMBS
-from common.messages import Fit, Report, decode, encode, pack
+from common.messages import Fit, Report
 from common.stickman import ANGLE, THESIS, joints_px
+from common.wire import decode, encode, pack
 from tests.stick_posing import STATURE_PX, drawn, in_profile, larger, stick_pose
 from viewer.stick import Mode, Stick, fit, told
 

@@ -4,17 +4,10 @@ import numpy as np
 import pytest
 
 from animator.take import Take, doubts_at, leaned, next_unsure, take_of, with_notes
-from common.body import (
-    JOINT_NAMES,
-    LIMB_ENDS,
-    LIMBS,
-    POSE_INDEX,
-    body_vector,
-    rest_pose,
-    thesis_bdp,
-)
+from common.body import JOINT_NAMES, LIMB_ENDS, LIMBS, POSE_INDEX, rest_pose
 from common.kinematics import joints
 from common.notes import Note, Notes, held
+from common.proportions import body_vector, thesis_bdp
 
 ARM = LIMBS.index("l_upper_arm")
 WRIST = JOINT_NAMES.index("l_wrist")

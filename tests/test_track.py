@@ -23,10 +23,12 @@ from staging import (
     standing,
 )
 
-from common.body import ANGLE_NAMES, POSE_INDEX, Vector, stature
+from common.body import ANGLE_NAMES, POSE_INDEX, Vector
 from common.camera import project
-from common.messages import Guide, Report, ViewerNumber, decode, encode, unpack
+from common.messages import Guide, Report, ViewerNumber
+from common.proportions import stature
 from common.similarity import Mask
+from common.wire import decode, encode, unpack
 from viewer import track
 from viewer.capture import Frame
 

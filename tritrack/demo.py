@@ -19,8 +19,9 @@ PERFORMER_SEED: Final = 90_001
 POSTURE: Final = "raise_right_lateral"
 TAKE: Final = 1
 SIZE: Final = (320, 240)
-MOTION_S: Final = 12.0
-"""Long enough to open the page and see it move."""
+MOTION_S: Final = 14.0
+"""Long enough to open the page and see it move: five times, and the moment in which the fifth is
+told."""
 
 
 class DemoFailed(RuntimeError):

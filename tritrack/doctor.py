@@ -9,7 +9,7 @@ from collections.abc import Callable
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from rich.table import Table
 
@@ -23,6 +23,14 @@ REQUIRED = {
     "numba": "numba",
 }
 """Distribution and the module that it brings."""
+
+EXTRAS: Final = (
+    ("live page", "viser", "page"),
+    ("notes of the retouching page", "tomlkit", "page"),
+    ("rooms of busy clips", "scikit-image", "single"),
+    ("plots of reports", "matplotlib", "report"),
+)
+"""What only some commands need: its use, the distribution, and the extra that brings it."""
 
 
 class Finding(NamedTuple):
@@ -49,7 +57,7 @@ def examine() -> list[Finding]:
         _decoder,
         _bus,
         _model,
-        _page,
+        *(lambda row=row: _extra(*row) for row in EXTRAS),
         _browser,
         _cores,
     ]
@@ -155,21 +163,12 @@ def _model() -> Finding:
     return Finding("posture model", True, f"{len(model.names)} postures")
 
 
-def _page() -> Finding:
+def _extra(use: str, package: str, extra: str) -> Finding:
+    what = f"{use} ({package})"
     try:
-        return Finding("live page (viser)", True, version("viser"), needed=False)
+        return Finding(what, True, version(package), needed=False)
     except PackageNotFoundError:
-        return Finding(
-            "live page (viser)", False, "not installed", "pip install 'tritrack[page]'", False
-        )
-
-
-def _segments() -> Finding:
-    name, cure = "rooms of busy clips (scikit-image)", "pip install 'tritrack[single]'"
-    try:
-        return Finding(name, True, version("scikit-image"), needed=False)
-    except PackageNotFoundError:
-        return Finding(name, False, "not installed", cure, False)
+        return Finding(what, False, "not installed", f"pip install 'tritrack[{extra}]'", False)
 
 
 def _browser() -> Finding:

@@ -11,6 +11,7 @@ from common.bus import Bus, BusError, open_client
 from common.config import Settings
 from common.messages import Body, Cameras, Posture, Pulse
 from common.process import READY_S
+from tritrack.kept import Kept
 from tritrack.parts import Part
 from tritrack.supervise import Watched, watched
 
@@ -24,12 +25,17 @@ log = logging.getLogger(__name__)
 class Heard(NamedTuple):
     """What a run said, as its supervisor heard it."""
 
-    bodies: list[Body]
-    postures: list[Posture]
+    bodies: Kept[Body]
+    postures: Kept[Posture]
     pulses: dict[str, Pulse]
     cameras: list[Cameras]
     notes: list[str]
     """What the supervisor says itself: which part died, and what becomes of it."""
+
+
+def nothing_heard() -> Heard:
+    """Of a run that begins."""
+    return Heard(Kept(Body), Kept(Posture), {}, [], [])
 
 
 def run(
@@ -73,6 +79,10 @@ def run(
             for one in reversed(crew):
                 one.end()
             listening.catch_up()
+            if listening.dropped:
+                heard.notes.append(
+                    f"{listening.dropped} poses or postures were lost on the way to the run folder"
+                )
             show(heard)
         if not stop.is_set():
             for one in crew:
@@ -108,10 +118,15 @@ class Ears:
         told = bus.latest(Cameras, LAST_WORDS_S)
         heard.cameras.extend([] if told is None else [told])
 
+    @property
+    def dropped(self) -> int:
+        """How many bodies and postures never came here."""
+        return self._bodies.dropped + self._postures.dropped
+
     def catch_up(self) -> None:
         """Take in all that was said since."""
-        self._heard.bodies.extend(self._bodies.drain())
-        self._heard.postures.extend(self._postures.drain())
+        self._heard.bodies.add(self._bodies.drain())
+        self._heard.postures.add(self._postures.drain())
         self._heard.cameras.extend(self._cameras.drain())
         for pulse in self._pulses.drain():
             self._heard.pulses[pulse.process] = pulse

@@ -5,8 +5,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from common.body import JOINT_NAMES, Bdp, body_vector, rest_pose
+from common.body import JOINT_NAMES, Bdp, rest_pose
 from common.kinematics import joints
+from common.proportions import body_vector
 from tritrack.accuracy import JOINTS, Compared, Floats, picked
 
 SEGMENTS: Final[dict[str, tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]]] = {

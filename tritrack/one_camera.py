@@ -12,10 +12,11 @@ from common.camera import PAPER_ROTATIONS, Camera
 from common.clips import Clip, shortfall
 from common.config import Settings
 from common.decoding import Decoder
-from common.messages import Body, Box, Fit, Report, ViewerNumber, pack
+from common.messages import Body, Box, Fit, Report, ViewerNumber
 from common.notes import Notes, held
 from common.similarity import Mask
 from common.stickman import ADULT, THESIS
+from common.wire import pack
 from integrator import one_view
 from integrator.assumed import assumed_camera
 from integrator.one_outline import Inputs, Settled
@@ -170,12 +171,14 @@ def poses_of(
 
 def extras_of(settled: Sequence[Settled]) -> dict[str, Any]:
     """What `poses.npz` of a single view has beside the arrays of every run."""
+    limbs = {
+        name: np.array([getattr(own, name) for own in settled]).reshape(-1, len(LIMBS))
+        for name in ("depth_confidence", "depth_error_deg")
+    }
     return {
         "orientation": np.array([own.orientation for own in settled], "U14"),
         "orientation_confidence": np.array([own.orientation_confidence for own in settled]),
-        "depth_confidence": np.array([own.depth_confidence for own in settled]).reshape(
-            -1, len(LIMBS)
-        ),
+        **limbs,
     }
 
 

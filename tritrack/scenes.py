@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bits import Bits, pack_words, unpack_words
-from common.body import POSE_INDEX, Vector, body_vector, rest_pose, thesis_bdp
+from common.body import POSE_INDEX, Vector, rest_pose
 from common.camera import PAPER_ROTATIONS
 from common.kernel import draw_body, draw_limbs, limb_outline, score
 from common.kinematics import ALL_LIMBS, FRAME, hang_limbs, limb_frames, place_limbs
+from common.proportions import body_vector, thesis_bdp
 from common.spans import PRIMITIVE, gain, spans
 from viewer.figure import Figure, figure_of, view_at
 

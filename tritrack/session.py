@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import FrameType
 from typing import Any, Final
 
@@ -19,7 +20,7 @@ from common.config import BusSettings, PageSettings, Settings
 from common.messages import Posture, Pulse
 from common.process import Place, logged
 from recognizer.__main__ import model_of
-from tritrack.launch import Heard, run
+from tritrack.launch import Heard, nothing_heard, run
 from tritrack.offline import both_cameras
 from tritrack.parts import live_parts
 from tritrack.runs import write_postures, write_run
@@ -57,18 +58,21 @@ def live(settings: Settings, out: Path, console: Console, name: str = "") -> dic
     clip = msgspec.structs.replace(clip, name=name or clip.name, rig=both_cameras(clip))
     _refuse_what_would_fail(settings, clip)
     began = time.monotonic()
-    heard = Heard([], [], {}, [], [])
+    heard = nothing_heard()
     screen = _Screen(clip, settings, console)
     with _stopped_by_signals() as stop:
         path = _new_log(out)
-        parts = live_parts(settings, clip, Place(supervised=True, log=path))
         try:
-            with screen.shown([part.name for part in parts]) as show, logged("supervisor", path):
-                run(parts, settings, stop, show, heard)
+            with TemporaryDirectory(prefix=".kept-", dir=out) as kept:
+                parts = live_parts(settings, clip, Place(True, path, Path(kept)))
+                names = [part.name for part in parts]
+                with screen.shown(names) as show, logged("supervisor", path):
+                    run(parts, settings, stop, show, heard)
         finally:
-            facts = _facts(heard, clip, time.monotonic() - began)
-            write_run(out, heard.bodies, settings, facts)
-            write_postures(out, heard.postures, performed(heard.postures))
+            postures = heard.postures.all()
+            facts = _facts(heard, performed(postures), clip, time.monotonic() - began)
+            write_run(out, heard.bodies.all(), settings, facts)
+            write_postures(out, postures, facts["posture"])
     return facts
 
 
@@ -181,16 +185,22 @@ def free_settings(settings: Settings) -> Settings:
     )
 
 
-def _facts(heard: Heard, clip: Clip, seconds: float) -> dict[str, Any]:
+def _facts(heard: Heard, posture: str, clip: Clip, seconds: float) -> dict[str, Any]:
     source = heard.cameras[-1].scale_source if heard.cameras else None
+    warnings = [*clip.warnings, *warnings_of(heard.pulses), *heard.notes]
+    if heard.bodies.let_go:
+        warnings.append(
+            f"the first {heard.bodies.let_go} frames of a long run are not in poses.npz: write "
+            "shorter runs, or follow recordings with: tritrack track"
+        )
     return {
         "clip": clip.name,
         "performer": clip.meta.performer,
         "posture_meant": clip.meta.posture,
         "seconds": {"all": round(seconds, 3)},
         "scale_source": source,
-        "posture": performed(heard.postures),
-        "warnings": list(dict.fromkeys([*clip.warnings, *warnings_of(heard.pulses), *heard.notes])),
+        "posture": posture,
+        "warnings": list(dict.fromkeys(warnings)),
         "processes": {
             name: {
                 key: round(value, 3) if isinstance(value, float) else value

@@ -64,7 +64,8 @@ def single_all(
         console: For progress, warnings and errors.
 
     Raises:
-        ClipsFailed: At the end, when any video could not be used.
+        ClipsFailed: At the end, when any video could not be used, or shows nobody: what it shows
+            is written all the same.
         RunError, FilmError: When the results cannot be written.
     """
     done: dict[str, Any] = {}
@@ -86,7 +87,17 @@ def single_all(
         raise ClipsFailed(
             f"{len(videos) - len(done)} of {len(videos)} videos could not be followed"
         )
+    _refuse_the_empty(done, out)
     return {"clips": done}
+
+
+def _refuse_the_empty(done: dict[str, Any], out: Path) -> None:
+    empty = [name for name, facts in done.items() if not facts["frames_with_pose"]]
+    if empty:
+        raise ClipsFailed(
+            f"nobody was found in {len(empty)} of {len(done)} videos: look for an outline in "
+            f"{out / empty[0] / 'overlay.avi'}; without one, they stand still or are too small"
+        )
 
 
 def name_of(path: Path) -> str:
@@ -132,6 +143,7 @@ def follow(job: Job, folder: Path, decoder: Decoder, console: Console) -> dict[s
     arrays = {**poses(found.bodies), **extras_of(found.settled)}
     facts = {
         **found.facts,
+        "frames_with_pose": sum(bool(body.joints_m) for body in found.bodies),
         "effort": facts_of(ledger(take_of(arrays), job.notes)),
         "notes": msgspec.to_builtins(job.notes),
     }

@@ -7,8 +7,9 @@ from typing import Final, Literal
 
 import msgspec
 
-from common.messages import TOPICS, Pulse
+from common.messages import Pulse
 from common.rate import silent
+from common.wire import TOPICS
 from tritrack.parts import Part, end, last_words, started
 
 TRIES: Final = 5

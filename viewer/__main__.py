@@ -24,7 +24,7 @@ from common.process import READY_S, Heart, Place, process
 from common.rate import Pace
 from viewer import track
 from viewer.capture import Frame, Live, RoomClock
-from viewer.empty import empty_room
+from viewer.empty import room_of_run
 from viewer.jpeg import jpeg_of
 from viewer.view_rehearsal import rehearse
 
@@ -137,7 +137,7 @@ def main(settings: Settings, viewer: ViewerNumber, place: Place = Place()) -> No
         with Decoder() as decoder:
             clip = open_clip(settings, decoder, (viewer,))
             view = clip.views[0]
-            room, odd = empty_room(view, settings.silhouette, decoder)
+            room, odd = room_of_run(view, settings.silhouette, decoder, place.kept)
         warnings = (*clip.warnings, *([odd] if odd else []))
         for warning in warnings:
             log.warning(warning)

@@ -2,12 +2,14 @@
 
 import math
 from itertools import islice
+from pathlib import Path
 
 import numpy as np
 
 from common.clips import View
 from common.config import SilhouetteSettings
 from common.decoding import Decoder
+from common.replacing import replacing
 from viewer.background import Background, is_empty_opening, learn
 from viewer.stacks import LUMA, Frame
 from viewer.steady import Anchor, anchored, laid, place_of
@@ -50,6 +52,27 @@ def empty_room(
         f"{view.source} does not open with an empty room: the background is estimated from the "
         f"clip (name an empty picture with camera_{view.number}.background)"
     )
+
+
+def room_of_run(
+    view: View, settings: SilhouetteSettings, decoder: Decoder, kept: Path | None
+) -> tuple[Background, str]:
+    """The same in a live run, where a viewer may be started again with somebody before its camera.
+
+    Args:
+        view: As above; likewise `settings`, `decoder`.
+        kept: The run's folder for what was learnt of a camera's room; None: it keeps nothing.
+    """
+    if kept is None or not isinstance(view.source, int) or view.background:
+        return empty_room(view, settings, decoder)
+    path = kept / f"room_{view.number}.npz"
+    if path.exists():
+        with np.load(path, allow_pickle=False) as found:
+            return Background(**found), ""
+    room, odd = empty_room(view, settings, decoder)
+    with replacing(path) as new, new.open("wb") as file:
+        np.savez(file, allow_pickle=False, **room._asdict())
+    return room, odd
 
 
 def room_of_clip(

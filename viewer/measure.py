@@ -6,15 +6,9 @@ from typing import Final, NamedTuple
 import cv2
 import numpy as np
 
-from common.body import (
-    SHOULDER_DROP,
-    THESIS_RATIOS,
-    TORSO_DEPTH_SHARE,
-    Bdp,
-    Elliptic,
-    Round,
-)
+from common.body import Bdp, Elliptic, Round
 from common.messages import Box, Measure
+from common.proportions import SHOULDER_DROP, THESIS_RATIOS, TORSO_DEPTH_SHARE
 from common.similarity import Mask
 from viewer.tuning import fine_tuned
 

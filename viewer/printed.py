@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bits import Bits, count, count_both, pack_words
-from common.body import LIMBS, THESIS_RATIOS, Vector
+from common.body import LIMBS, Vector
 from common.kernel import score
+from common.proportions import THESIS_RATIOS
 from common.similarity import Mask
 from common.stickman import (
     ANGLE,

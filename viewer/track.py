@@ -6,10 +6,12 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import POSE_INDEX, body_vector, rest_pose, stature, thesis_bdp
+from common.body import POSE_INDEX, rest_pose
 from common.camera import Camera
 from common.config import Settings
-from common.messages import CameraFault, Facing, Guide, Measure, Report, ViewerNumber, pack
+from common.messages import CameraFault, Facing, Guide, Measure, Report, ViewerNumber
+from common.proportions import body_vector, stature, thesis_bdp
+from common.wire import pack
 from viewer import lens, silhouette
 from viewer.arms import facade_arms, flank_arms
 from viewer.background import Background

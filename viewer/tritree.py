@@ -9,7 +9,7 @@ import numpy as np
 from common.bits import count, count_both
 from common.kernel import draw_placed, limb_outline, score
 from common.kinematics import ALL_LIMBS, FRAME, hang_limbs, place_limbs
-from common.spans import PRIMITIVE, draw, gain, spans
+from common.spans import PRIMITIVE, draw, gain, spans, undraw
 
 MOST_STAGES = 16
 """A window of 2^16 stops would still end: the guard that M14 asks for."""
@@ -126,9 +126,7 @@ def added(
             if moving >> (limb + 1):
                 draw(first, last, top, bottom, scratch)
                 highest, lowest = min(highest, top), max(lowest, bottom)
-    for row in range(highest, lowest):
-        for word in range(rest.shape[1]):
-            scratch[row, word] = rest[row, word]
+    undraw(highest, lowest, rest, scratch)
     return drawn, hit
 
 

@@ -8,9 +8,10 @@ import msgspec
 import numpy as np
 
 from common.bits import count, pack_words
-from common.body import POSE_INDEX, Bdp, Round, body_vector, rest_pose
+from common.body import POSE_INDEX, Bdp, Round, rest_pose
 from common.camera import PAPER_ROTATIONS
 from common.kernel import match
+from common.proportions import body_vector
 from common.similarity import Mask
 from viewer.figure import view_at
 from viewer.tritree import tritree
@@ -55,25 +56,30 @@ def fine_tuned(
         pose[POSE_INDEX["r_shoulder_z"]], pose[POSE_INDEX["l_shoulder_z"]] = trial[4], trial[5]
         return float(match(body, pose, view, ABOVE_CENTRE, mask.shape[1], seen, seen_px))
 
+    best = _climbed(score_of, values, spans)
+    return _tuned(bdp, best), (best[4], best[5])
+
+
+def _climbed(
+    score_of: Callable[[list[float]], float], values: list[float], spans: list[float]
+) -> list[float]:
+    """Values set in turn to what scores best, each within its span, until a round gains little."""
+    values, best = list(values), score_of(values)
+
     def score_along(i: int) -> Callable[[float], float]:
         return lambda eighths: score_of([*values[:i], eighths / GRID, *values[i + 1 :]])
 
-    best = score_of(values)
     for _ in range(MOST_ROUNDS):
         before = best
         for i, span in enumerate(spans):
             reach = 2 ** round(math.log2(span * GRID))
-            middle = round(values[i] * GRID)
-            found = tritree(
-                score_along(i),
-                (max(1, middle - reach), max(1, middle - reach) + 2 * reach),
-                2,
-            )
+            low = max(1, round(values[i] * GRID) - reach)
+            found = tritree(score_along(i), (low, low + 2 * reach), 2)
             if found.score > best:
                 best, values[i] = found.score, found.angle_deg / GRID
         if best - before < ENOUGH:
             break
-    return _tuned(bdp, values), (values[4], values[5])
+    return values
 
 
 def _tuned(bdp: Bdp, values: list[float]) -> Bdp:

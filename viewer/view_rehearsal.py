@@ -3,9 +3,10 @@
 import msgspec
 import numpy as np
 
-from common.body import POSE_INDEX, body_vector, rest_pose, thesis_bdp
+from common.body import POSE_INDEX, rest_pose
 from common.kernel import draw_body
 from common.messages import Guide
+from common.proportions import body_vector, thesis_bdp
 from viewer import silhouette, track
 from viewer.capture import Frame
 from viewer.figure import view_at

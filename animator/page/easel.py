@@ -9,8 +9,9 @@ import viser
 from numpy.typing import NDArray
 
 from animator.overlay import STROKES
-from animator.scene import LEFT, RIGHT, TRUNK, UNSURE, Colour
-from animator.solids import Mesh, unit_ball, unit_cylinder
+from animator.page.shapes import add_shapes, place_shapes
+from animator.scene import LEFT, RIGHT, TRUNK, UNSURE, Colour, Shapes
+from animator.solids import unit_ball, unit_cylinder
 from animator.turns import arc
 from common.body import JOINT_NAMES, LIMBS, Vector
 
@@ -73,8 +74,8 @@ class Easel:
         self._lines = self._scene.add_line_segments(
             "/stick", np.zeros((len(STROKES), 2, 3)), _line_colours(), thickness=0.018
         )
-        self._balls = self._add_shapes("/joints", unit_ball(), len(JOINT_NAMES))
-        self._body = self._add_shapes("/body", unit_cylinder(), len(STROKES))
+        self._balls = add_shapes(self._scene, "/joints", unit_ball(), len(JOINT_NAMES))
+        self._body = add_shapes(self._scene, "/body", unit_cylinder(), len(STROKES))
         self._balls.on_drag("left")(self._dragged)
         self._body.on_click(self._hit)
         self._scene.add_label(
@@ -108,10 +109,8 @@ class Easel:
         radii = np.array([stroke.thick for stroke in STROKES]) * tall_m
         colours = _line_colours()[:, 0]
         colours[[LIMBS.index(limb) for limb in unsure]] = UNSURE
-        self._body.batched_positions = ends[:, 0]
-        self._body.batched_wxyzs = arc(UP, along)
-        self._body.batched_scales = np.stack([radii, np.linalg.norm(along, axis=1), radii], axis=1)
-        self._body.batched_colors = colours
+        scales = np.stack([radii, np.linalg.norm(along, axis=1), radii], axis=1)
+        place_shapes(self._body, Shapes(ends[:, 0], arc(UP, along), scales, colours))
 
     def _build_light(self, server: viser.ViserServer) -> None:
         scene = self._scene
@@ -126,20 +125,6 @@ class Easel:
         scene.configure_environment_map(None)
         scene.add_light_hemisphere("/sky", ground_color=(170, 178, 188), intensity=SKY_LIGHT)
         scene.add_light_directional("/sun", intensity=SUN_LIGHT, position=(1.0, 4.0, 5.0))
-
-    def _add_shapes(self, name: str, mesh: Mesh, count: int) -> viser.BatchedMeshHandle:
-        return self._scene.add_batched_meshes_simple(
-            name,
-            mesh.vertices,
-            mesh.faces,
-            batched_wxyzs=np.tile((1.0, 0.0, 0.0, 0.0), (count, 1)),
-            batched_positions=np.zeros((count, 3)),
-            batched_scales=np.ones((count, 3)),
-            batched_colors=np.zeros((count, 3), np.uint8),
-            lod="off",
-            cast_shadow=False,
-            receive_shadow=False,
-        )
 
     def _hit(self, event: Any) -> None:
         if event.instance_index is not None and event.instance_index < len(LIMBS):

@@ -4,14 +4,13 @@ import math
 from typing import Final
 
 import numpy as np
-import viser
 
 from animator.page import panel
 from animator.page.door import HOST, close_server, open_server
 from animator.page.inset import draw_outlines, inset, limb_ends, limb_outlines
+from animator.page.shapes import add_shapes, place_shapes
 from animator.scene import (
     BALLS,
-    Shapes,
     Snapshot,
     figure,
     frustum,
@@ -20,7 +19,7 @@ from animator.scene import (
     rows_of,
     viewpoint,
 )
-from animator.solids import Mesh, unit_ball, unit_cylinder
+from animator.solids import unit_ball, unit_cylinder
 from common.body import LIMBS
 from common.camera import Rig
 from common.kinematics import HEAD
@@ -117,21 +116,9 @@ class LivePage:
         )
 
     def _build_body(self) -> None:
-        self._cylinders = self._add_shapes("/body/cylinders", unit_cylinder(), len(CYLINDERS))
-        self._balls = self._add_shapes("/body/balls", unit_ball(), BALLS)
-
-    def _add_shapes(self, name: str, mesh: Mesh, count: int) -> viser.BatchedMeshHandle:
-        return self._server.scene.add_batched_meshes_simple(
-            name,
-            mesh.vertices,
-            mesh.faces,
-            batched_wxyzs=np.tile((1.0, 0.0, 0.0, 0.0), (count, 1)),
-            batched_positions=np.zeros((count, 3)),
-            batched_scales=np.ones((count, 3)),
-            batched_colors=np.zeros((count, 3), np.uint8),
-            lod="off",
-            visible=False,
-        )
+        scene = self._server.scene
+        self._cylinders = add_shapes(scene, "/body/cylinders", unit_cylinder(), len(CYLINDERS))
+        self._balls = add_shapes(scene, "/body/balls", unit_ball(), BALLS)
 
     def _build_cameras(self) -> None:
         self._frustums = []
@@ -173,8 +160,8 @@ class LivePage:
         self._cylinders.visible = self._balls.visible = standing is not None
         if standing is not None:
             limbs = limb_shapes(standing)
-            _move(self._cylinders, rows_of(limbs, CYLINDERS))
-            _move(self._balls, round_shapes(limbs))
+            place_shapes(self._cylinders, rows_of(limbs, CYLINDERS))
+            place_shapes(self._balls, round_shapes(limbs))
 
     def _show_cameras(self, snapshot: Snapshot) -> None:
         standing = figure(snapshot.body)
@@ -194,10 +181,3 @@ class LivePage:
         self._views.content = panel.views_table(body, snapshot.reports, len(self._rig.cameras))
         self._bars.content = panel.likelihood_bars(snapshot.posture)
         self._pulses.content = panel.pulse_table(pulses)
-
-
-def _move(handle: viser.BatchedMeshHandle, shapes: Shapes) -> None:
-    handle.batched_positions = shapes.positions
-    handle.batched_wxyzs = shapes.wxyzs
-    handle.batched_scales = shapes.scales
-    handle.batched_colors = shapes.colours

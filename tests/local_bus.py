@@ -5,7 +5,8 @@ from typing import Any
 
 from common.inbox import BOUND, QUESTIONS, Alive, Inbox, answered, checked
 from common.mailbox import Mailbox
-from common.messages import Message, Said, encode, key_of
+from common.messages import Message
+from common.wire import Said, encode, key_of
 
 
 class LocalBus:
@@ -39,7 +40,7 @@ class LocalBus:
         """Hold the newest message of a kind; see Bus."""
         self._kept.add(kind)
 
-    def latest(self, kind: type[Said], timeout_s: float) -> Said | None:  # noqa: ARG002
+    def latest(self, kind: type[Said], timeout_s: float) -> Said | None:
         """The newest message of a kind; see Bus. The answer is there at once or never."""
         payload = self._newest.get(kind)
         return None if payload is None else checked(payload, kind, kind.__name__)
@@ -49,7 +50,7 @@ class LocalBus:
         key = QUESTIONS[kind]
         self._answers[key] = lambda payload: answered(reply, kind, payload, key)
 
-    def ask(self, question: Message, kind: type[Said], timeout_s: float) -> Said | None:  # noqa: ARG002
+    def ask(self, question: Message, kind: type[Said], timeout_s: float) -> Said | None:
         """The answer to a question; see Bus. It is there at once or never."""
         key = QUESTIONS[type(question)]
         reply = self._answers[key](encode(question)) if key in self._answers else None
