@@ -32,11 +32,11 @@ import msgspec
 import numpy as np
 
 from common import config
-from integrator import adapting, hypotheses, insight, merge, telling
+from integrator import adapting, hypotheses, insight, matched, merge, telling
 from tritrack.accuracy import compare, summary
 from tritrack.offline import Decoders, overridden, track_clip
 from tritrack.runs import poses
-from viewer import silhouette
+from viewer import silhouette, track
 
 PLAIN_LEVELS = 25
 """Grey levels by which a pixel of a plain silhouette differs from the room."""
@@ -99,7 +99,13 @@ SILHOUETTES = (
 POSES = (
     Step(
         "facing by sizes at the same distance",
-        ((merge, "arbitrate", lambda one, other, _, real=merge.arbitrate: real(one, other, 1.0)),),
+        (
+            (
+                matched,
+                "arbitrate",
+                lambda one, other, _, real=matched.arbitrate: real(one, other, 1.0),
+            ),
+        ),
     ),
     Step(
         "views start where both have the body",
@@ -113,7 +119,10 @@ POSES = (
         tuple((hypotheses, n, only) for n in ("swung", "regained")),
     ),
     Step("S1 S2: joint by joint, unmeasured bodies", ((hypotheses, "turned", only),)),
-    Step("joints proposed by the network", ((insight, "step", lambda *_: None),)),
+    Step(
+        "joints proposed by the network, not searched for",
+        tuple((module, "proposes", lambda *_: False) for module in (track, merge)),
+    ),
     Step(
         "joints beside the cylinders",
         ((insight, "pose_and_rest", partial(on_the_cylinders, insight.pose_and_rest)),),

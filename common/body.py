@@ -219,6 +219,9 @@ def body_of_lengths(lengths: list[float]) -> Bdp:
 
 
 def _refuse_unless_positive(part: Elliptic | Round) -> None:
-    for name, length in zip(part.__struct_fields__, msgspec.structs.astuple(part), strict=True):
+    lengths = msgspec.structs.astuple(part)
+    if min(lengths) > 0 and math.isfinite(sum(lengths)):  # a NaN makes the sum one
+        return
+    for name, length in zip(part.__struct_fields__, lengths, strict=True):
         if not (math.isfinite(length) and length > 0):
             raise ValueError(f"{name} must be a positive length, got {length}")

@@ -198,13 +198,17 @@ class Arrays(NamedTuple):
     t: Vector
     centre: Vector
     """(3,) world, metres."""
+    focal_px: Vector
+    """(2,) across and down."""
+    middle_px: Vector
+    """(2,) the principal point."""
 
 
 @lru_cache(maxsize=16)
 def arrays_of(camera: Camera) -> Arrays:
     """A camera's numbers, made into arrays once."""
     K, R, t = np.array(camera.K), np.array(camera.R), np.array(camera.t)
-    arrays = Arrays(K, R, t, -R.T @ t)
+    arrays = Arrays(K, R, t, -R.T @ t, np.array([K[0, 0], K[1, 1]]), K[:2, 2].copy())
     for array in arrays:
         array.setflags(write=False)
     return arrays
@@ -220,7 +224,7 @@ def project(camera: Camera, points_m: Vector) -> Vector:
 
     A point on or behind the camera's plane gives NaN.
     """
-    K, R, t, _ = arrays_of(camera)
+    K, R, t, _, focal_px, middle_px = arrays_of(camera)
     seen = np.asarray(points_m, float) @ R.T + t
     plane = seen[:, :2] / np.where(seen[:, 2:] > 1e-9, seen[:, 2:], np.nan)
     if any(camera.distortion):
@@ -230,17 +234,18 @@ def project(camera: Camera, points_m: Vector) -> Vector:
         )
         pixels: Vector = np.where(np.isnan(plane), np.nan, bent[:, 0].astype(np.float64))
         return pixels
-    pixels = plane * np.array([K[0, 0], K[1, 1]]) + K[:2, 2]
+    pixels = plane * focal_px + middle_px
     return pixels
 
 
 def ray(camera: Camera, pixel: tuple[float, float]) -> Vector:
     """Direction in the world, shape (3,), unit length, of what a pixel shows."""
-    K, R, _, _ = arrays_of(camera)
-    straight = cv2.undistortPoints(
-        np.array([[pixel]], float), K, np.array(camera.distortion or (0.0,) * 5)
-    )[0, 0]
-    direction: Vector = R.T @ np.array([straight[0], straight[1], 1.0])
+    K, R, _, _, focal_px, middle_px = arrays_of(camera)
+    if any(camera.distortion):
+        x, y = cv2.undistortPoints(np.array([[pixel]], float), K, np.array(camera.distortion))[0, 0]
+    else:
+        x, y = (np.array(pixel) - middle_px) * (1 / focal_px)
+    direction: Vector = R.T @ np.array([x, y, 1.0])
     return direction / float(np.linalg.norm(direction))
 
 

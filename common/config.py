@@ -151,6 +151,14 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         _within("fps", self.fps, 0.0, 1000.0)
 
 
+def proposes(settings: Settings, calibrated: bool) -> bool:
+    """Whether the silhouettes alone tell the pose; otherwise angles are searched for in each view.
+
+    The network that reads them was taught in rooms that are known.
+    """
+    return settings.mode == "default" and calibrated
+
+
 def load(path: Path) -> Settings:
     """Read a settings file, or take a clip folder as one with nothing else set.
 

@@ -7,6 +7,7 @@ Source: Huang & Chung 2004, section 2.3.
 
 import math
 import time
+from functools import lru_cache
 from typing import Any, Final
 
 import numba
@@ -157,6 +158,7 @@ def match_over(
     return score(count_both(drawn, seen), count(drawn), seen_px)
 
 
+@lru_cache(maxsize=16)
 def view_of(camera: Camera, depth_m: float = 0.0) -> Vector:
     """A camera as the kernel wants it; with a depth: scaled orthography at that depth (T19)."""
     K = camera.K

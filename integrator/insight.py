@@ -19,12 +19,22 @@ AT: Final = [JOINT_NAMES.index(name) for name in propose.JOINTS]
 """Where the proposed joints stand among the landmarks."""
 PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
 
-HIPS_OFF: Final = (0.0, 0.008, 0.016)
-"""How far left, up and before the true hips of r01 and r04 the network finds them, in statures:
-made-up people have their hips nearer to the front of their outline."""
-
-
-SURENESS: Final = (1.12, -1.67)
+OFF: Final = {
+    "wrist": (0.010, 0.0, 0.0),
+    "hip": (0.0, 0.008, 0.016),
+    "knee": (0.0, 0.011, 0.007),
+    "ankle": (0.0, 0.012, 0.0),
+}
+"""How far inwards, up and before the true joints of r01 and r04 the network finds them, in
+statures: made-up people have theirs elsewhere in their outline."""
+JOINTS_OFF: Final = np.array(
+    [
+        np.multiply(OFF.get(name[2:], (0.0, 0.0, 0.0)), (-1.0 if name[0] == "l" else 1.0, 1.0, 1.0))
+        for name in propose.JOINTS
+    ]
+)
+"""(12, 3) the same, to the left, up and before."""
+SURENESS: Final = (0.92, -0.53)
 """Slope and offset of the logit by which the network's sureness, learnt with made-up people,
 becomes how often a joint of r01 and r04 was less than 50 mm off."""
 
@@ -45,8 +55,10 @@ def step(
     rig: Rig,
     seen: tuple[Report | None, Report | None],
     since_s: float,
-) -> Insight | None:
-    """The joints that silhouettes propose, whole ones where there are any; None without a place.
+) -> Insight:
+    """The joints that silhouettes propose, whole ones where there are any.
+
+    Two that no one person can cast are two things: the larger is believed to be the person.
 
     Args:
         memory: Of the instant before; None at the first.
@@ -62,9 +74,12 @@ def step(
     height_m = stature(bdp)
     shown = look((first, second), rig, height_m, since_s)
     if shown is None:
-        return None
+        areas_px = [0 if report is None else report.area_px for report in seen]
+        larger = (first, None) if areas_px[0] >= areas_px[1] else (None, second)
+        shown = look(larger, rig, height_m, since_s)
+    assert shown is not None  # one alone stands somewhere
     memory, found = propose.step(propose.shipped(), memory, shown, height_m)
-    found.joints_m[propose.HIPS] -= height_m * trunk_of(found.joints_m) @ HIPS_OFF
+    found.joints_m[:] -= height_m * JOINTS_OFF @ trunk_of(found.joints_m).T
     sure, own = np.zeros(len(JOINT_NAMES)), probability(found.sure)
     sure[AT] = own
     sure[PELVIS] = own[propose.HIPS].mean()

@@ -3,22 +3,19 @@
 from typing import Literal
 
 from common.bits import count
-from common.body import ANGLE_NAMES, ANGLES_IN_POSE, POSE_INDEX, YAW_DEG, Vector, rest_pose
+from common.body import ANGLE_NAMES, ANGLES_IN_POSE, Vector, rest_pose
 from common.camera import Rig
-from common.config import Settings
+from common.config import Settings, proposes
 from common.kernel import match, view_of
 from common.kinematics import ALL_LIMBS
-from common.messages import Body, Facing, Guide, Report
+from common.messages import Body, Guide, Report
 from common.proportions import body_vector
-from integrator import adapting, insight, opening, smoothing, telling
-from integrator.arbiter import Sight, arbitrate
+from integrator import adapting, insight, matched, opening, smoothing, telling
+from integrator.arbiter import facing_of
 from integrator.assumed import assumed_rig
 from integrator.belief import LOST_SCORE
-from integrator.fusion import fused
-from integrator.hypotheses import settled
 from integrator.memory import State
 from integrator.pairing import Pair, Seen
-from integrator.place import place_of, roots_of, scales_at
 from integrator.two_outlines import packed
 
 
@@ -52,12 +49,16 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
         state = _without_pose(state)
         return (state, *telling.nobody(state, pair))
     opened, settled_at = opening.step(state.opening, rig, seen, state.settings.body.opening_frames)
-    state = _faced(state._replace(opening=opened), seen)
-    pose = _posed(state, rig, seen, settled_at)
-    state, pose = _believed(state, rig, seen, pose, dt_s)
+    state = state._replace(opening=opened)
+    calibrated = state.scale_source == "calibrated"
+    if proposes(state.settings, calibrated):
+        state = _proposed(state, rig, seen, dt_s)
+    else:
+        state = matched.step(state, rig, seen, settled_at)
     if state.settings.mode == "default":
-        state = state._replace(opening=adapting.step(state.opening, rig, seen, pose))
-    state, angles, scores = _smoothed(state._replace(pose=pose), rig, pair, dt_s)
+        assert state.pose is not None
+        state = state._replace(opening=adapting.step(state.opening, rig, seen, state.pose))
+    state, angles, scores = _smoothed(state, rig, pair, dt_s)
     body = telling.body_of(state, rig, pair, angles, scores)
     return state, body, telling.guide_of(state, rig, pair, settled_at is not None)
 
@@ -78,82 +79,15 @@ def _with_rig(state: State, seen: Seen) -> State:
     return state._replace(rig=assumed_rig(whole[0], whole[-1], state.settings.body.stature_m))
 
 
-def _faced(state: State, seen: Seen) -> State:
-    """Facade and flank, settled between the views' votes (P48); one view alone decides itself.
-
-    Of a body that both views have measured, the one that is left decides nothing in `default`:
-    arms that are raised narrow the upper body as a turn would, and nobody is left to say no.
-    """
-    first, second = seen
-    if first is None or second is None:
-        own = first or second
-        assert own is not None
-        other: Facing = "flank" if own.vote == "facade" else "facade"
-        facing = (own.vote, other) if second is None else (other, own.vote)
-        held = state.settings.mode == "default" and state.opening.measured
-        return state if held else state._replace(facing=facing)
-    sights = [
-        Sight(before, report.vote, report.upper_body_px, *report.thresholds_px)
-        for before, report in zip(state.facing, (first, second), strict=True)
-    ]
-    ratio = 1.0
-    if state.settings.mode == "default" and state.pose is not None and state.rig is not None:
-        scales = scales_at(state.rig, state.pose[:3])
-        ratio = scales[0] / scales[1]
-    return state._replace(facing=arbitrate(sights[0], sights[1], ratio))
-
-
-def _posed(state: State, rig: Rig, seen: Seen, settled_at: Vector | None) -> Vector:
-    """Position and angles of this instant, not yet smoothed (P50-P54)."""
-    front = 0 if state.facing[0] == "facade" else 1
-    before = rest_pose() if state.pose is None else state.pose
-    pose = fused(before, seen[front], seen[1 - front])
-    if settled_at is None:
-        pose[:3] = place_of(rig, roots_of(seen), before[:3], front)
-    else:
-        pose[:3] = settled_at
-    pose[POSE_INDEX["torso_y"]] = YAW_DEG[front]
-    return pose
-
-
-def _believed(
-    state: State, rig: Rig, seen: Seen, pose: Vector, dt_s: float
-) -> tuple[State, Vector]:
-    """The pose that the silhouettes propose, else the fused one with its doubts settled.
-
-    Both are departures from the paper. An assumed rig's places are not those that the network was
-    taught in: there the doubts are settled by matching.
-    """
-    if state.settings.mode != "default":
-        return state, pose
+def _proposed(state: State, rig: Rig, seen: Seen, dt_s: float) -> State:
+    """The pose that the silhouettes propose, and who sees its facade: beyond the paper."""
     bdp = state.opening.bdp
     assert bdp is not None
     memory = None if state.insight is None else state.insight.memory
-    calibrated = state.scale_source == "calibrated"
-    known = insight.step(memory, bdp, rig, seen, dt_s) if calibrated else None
-    if known is None:
-        state = state._replace(insight=None, beside_m=None)
-        return state, _settled(state, rig, seen, pose)
+    known = insight.step(memory, bdp, rig, seen, dt_s)
     before = rest_pose() if state.pose is None else state.pose
-    body = body_vector(bdp)
-    pose, beside_m = insight.pose_and_rest(body, before, known.joints_m)
-    return state._replace(insight=known, beside_m=beside_m), pose
-
-
-def _settled(state: State, rig: Rig, seen: Seen, pose: Vector) -> Vector:
-    """What one view alone cannot tell, by both silhouettes: a departure from the paper (L2, L3)."""
-    first, second = seen
-    if first is None or second is None:
-        return pose
-    if (first.width, first.height) != (second.width, second.height):
-        return pose
-    assert state.opening.bdp is not None
-    before = rest_pose() if state.pose is None else state.pose
-    known, body = state.opening, body_vector(state.opening.bdp)
-    upright_m = known.measured_at_m[1] if known.measured else float(body[8] + body[14])
-    pose[POSE_INDEX["torso_x"]] = 0.0
-    fitted = bool(known.samples) and not known.measured
-    return settled(pose, before, body, rig, (first, second), upright_m, fitted)
+    pose, beside_m = insight.pose_and_rest(body_vector(bdp), before, known.joints_m)
+    return state._replace(insight=known, beside_m=beside_m, pose=pose, facing=facing_of(rig, pose))
 
 
 def _smoothed(

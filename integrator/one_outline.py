@@ -95,7 +95,7 @@ def lifted_body(state: State, report: Report, told: Inputs) -> tuple[State, Hypo
     picture = (np.array(fit.joints_px), fit.breadth, lengths_m, px_per_m)
     choice = signs.choose(state.memory, *picture, told.depth, told.orientation)
     lifted = lift(*picture, choice.signs, choice.orientation)
-    memory = signs.remembered(state.memory, lifted.joints_m, choice, picture[0], fit.breadth)
+    memory = signs.remembered(state.memory, lifted.joints_m, choice)
     state = state._replace(memory=memory)
     pixels = _own_sides(picture[0], choice)
     for name, place in told.joints_px.items():

@@ -59,17 +59,20 @@ def scaling_factors(
 def triangulate(cameras: tuple[Camera, Camera], pixels: tuple[Pixel, Pixel]) -> Vector:
     """The point nearest to both rays (least squares), shape (3,), world metres.
 
-    It is eq. (3) for cameras that stand anywhere. NaN where the rays are parallel.
+    It is eq. (3) for cameras that stand anywhere: the middle of the shortest line between the
+    rays. NaN where these are parallel.
     """
     first, second = (ray(camera, pixel) for camera, pixel in zip(cameras, pixels, strict=True))
-    if 1.0 - float(first @ second) ** 2 < PARALLEL:
+    one, other = (centre(camera) for camera in cameras)
+    cosine = float(first @ second)
+    sine_squared = 1.0 - cosine**2
+    if sine_squared < PARALLEL:
         return np.full(3, np.nan)
-    normal, pull = np.zeros((3, 3)), np.zeros(3)
-    for camera, direction in zip(cameras, (first, second), strict=True):
-        across = np.eye(3) - np.outer(direction, direction)
-        normal += across
-        pull += across @ centre(camera)
-    return np.asarray(np.linalg.solve(normal, pull), np.float64)
+    along, across = float(first @ (one - other)), float(second @ (one - other))
+    near_first = one + first * ((cosine * across - along) / sine_squared)
+    near_second = other + second * ((across - cosine * along) / sine_squared)
+    middle: Vector = (near_first + near_second) / 2
+    return middle
 
 
 def px_per_m(camera: Camera, point_m: Vector) -> float:

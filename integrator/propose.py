@@ -5,6 +5,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,33 +20,44 @@ JOINTS: Final = tuple(
 """What is proposed."""
 SHOULDERS, HIPS = slice(0, 2), slice(6, 8)
 
+SEES: Final = (0, 5)
+"""Where a look says beside the windows whether each view sees."""
+Halves = NDArray[np.uint16]
+"""Upper halves of float32 numbers."""
+
 SHIPPED: Final = Path(__file__).with_name("proposals.npz")
-VERSION: Final = 2
+VERSION: Final = 3
 SAYS: Final = 4 * len(JOINTS)
 """What the network says: three coordinates of each joint, and how sure it is of each."""
 
 
 class Network(NamedTuple):
-    """Principal components of a window; then a layer, a gated recurrent unit, and two layers.
+    """Principal components of a window; then two layers, a gated recurrent unit, and two layers.
 
-    Weights are (inputs, outputs). The unit is that of Cho et al. 2014 with the reset gate on the
-    hidden product; its gates are in the order reset, update, new.
+    The second layer adds to what the first found. Weights are (inputs, outputs), and halves: a
+    product waits for its weights to come from memory. The unit is that of Cho et al. 2014 with the
+    reset gate on the hidden product; its gates are in the order reset, update, new.
     """
 
-    mean: Floats
-    """(CELLS,)"""
-    components: Floats
-    """(CELLS, n)"""
-    think: Floats
+    see: Halves
+    """(CELLS, n) components."""
+    see_bias: Floats
+    """(n,) less those of the mean window."""
+    think: Halves
     think_bias: Floats
-    take: Floats
+    deepen: Halves
+    deepen_bias: Floats
+    take: Halves
     take_bias: Floats
-    keep: Floats
+    keep: Halves
     keep_bias: Floats
-    join: Floats
+    join: Halves
     join_bias: Floats
-    say: Floats
+    say: Halves
     say_bias: Floats
+
+
+PARTS: Final = ("see", "think", "deepen", "take", "keep", "join", "say")
 
 
 class Proposal(NamedTuple):
@@ -68,34 +80,87 @@ def step(
         seen: The views of this instant.
         stature_m: Of the person.
     """
-    n = network
-    shown = inputs(n.mean, n.components, seen.windows, seen.beside)
-    thought = (shown @ n.think + n.think_bias).clip(min=0.0)
-    memory = np.zeros(len(n.keep), np.float32) if memory is None else memory
-    taken, kept = thought @ n.take + n.take_bias, memory @ n.keep + n.keep_bias
-    own = len(memory)
-    reset, update = np.split(_gate(taken[: 2 * own] + kept[: 2 * own]), 2)
-    new = np.tanh(taken[2 * own :] + reset * kept[2 * own :])
-    memory = (1.0 - update) * new + update * memory
-    joined = (np.concatenate([thought, memory]) @ n.join + n.join_bias).clip(min=0.0)
-    said = (joined @ n.say + n.say_bias).astype(np.float64)
+    memory = np.zeros(len(network.keep), np.float32) if memory is None else memory
+    memory, said = _remembered(network, memory, seen.windows, seen.beside)
+    said = said.astype(np.float64)
     places = said[: 3 * len(JOINTS)].reshape(-1, 3)
     joints_m = seen.middle_m + stature_m * places @ seen.turn
     return memory, Proposal(joints_m, _gate(said[3 * len(JOINTS) :]))
 
 
-def inputs(mean: Floats, components: Floats, windows: Floats, beside: Floats) -> Floats:
-    """The components of both windows, and what is said beside them.
+@numba.njit(cache=True)
+def _remembered(network: Any, memory: Any, windows: Any, beside: Any) -> tuple[Any, Any]:
+    """What is remembered now, and what is said."""
+    n, own, one = network, len(memory), np.float32(1.0)
+    thought = _positive(_product(_shown(n, windows, beside), n.think, n.think_bias))
+    thought = _positive(_product(thought, n.deepen, n.deepen_bias) + thought)
+    taken, kept = _product(thought, n.take, n.take_bias), _product(memory, n.keep, n.keep_bias)
+    gates = one / (one + np.exp(-(taken[: 2 * own] + kept[: 2 * own])))
+    new = np.tanh(taken[2 * own :] + gates[:own] * kept[2 * own :])
+    memory = (one - gates[own:]) * new + gates[own:] * memory
+    joined = _positive(_product(np.concatenate((thought, memory)), n.join, n.join_bias))
+    return memory, _product(joined, n.say, n.say_bias)
 
-    Args:
-        mean: Of the windows, (CELLS,).
-        components: (CELLS, n).
-        windows: (..., 2, CELLS).
-        beside: (..., BESIDE).
+
+@numba.njit(cache=True)
+def _shown(network: Any, windows: Any, beside: Any) -> Any:
+    """Components of both windows, 0 of a view that does not see, and what is said beside them."""
+    size = len(network.see_bias)
+    shown = np.zeros(2 * size + len(beside), np.float32)
+    for view in range(2):
+        if beside[SEES[view]] > 0.0:
+            components = _product(windows[view], network.see, network.see_bias)
+            shown[view * size : (view + 1) * size] = components
+    shown[2 * size :] = beside
+    return shown
+
+
+@numba.njit(cache=True)
+def _product(values: Any, weights: Any, bias: Any) -> Any:
+    """values (n,) @ weights (n, m) + bias (m,).
+
+    Weights that meet a zero, as half of what is thought is and most of a window, are left in
+    memory. Four rows at a time halve what is left of the work.
     """
-    sees = beside[..., [0, 5]][..., None]
-    parts = ((windows - mean) @ components) * sees
-    return np.concatenate([parts.reshape(*parts.shape[:-2], -1), beside], axis=-1)
+    total = bias.copy()
+    rows = np.flatnonzero(values)
+    fours = len(rows) - len(rows) % 4
+    for k in range(0, fours, 4):
+        a, b, c, d = rows[k], rows[k + 1], rows[k + 2], rows[k + 3]
+        at_a, at_b, at_c, at_d = weights[a], weights[b], weights[c], weights[d]
+        for j in range(len(total)):
+            total[j] += (
+                values[a] * _whole(at_a[j])
+                + values[b] * _whole(at_b[j])
+                + values[c] * _whole(at_c[j])
+                + values[d] * _whole(at_d[j])
+            )
+    for row in rows[fours:]:
+        for j in range(len(total)):
+            total[j] += values[row] * _whole(weights[row, j])
+    return total
+
+
+@numba.njit(cache=True, inline="always")
+def _whole(half: Any) -> Any:
+    """The number that a half stands for."""
+    return np.uint32(np.uint32(half) << np.uint32(16)).view(np.float32)
+
+
+@numba.njit(cache=True)
+def _positive(values: Any) -> Any:
+    return np.maximum(values, np.float32(0.0))
+
+
+def halves(values: Floats) -> Halves:
+    """The upper halves of numbers (bfloat16), to the nearest: three digits, whole range."""
+    bits = np.ascontiguousarray(values, np.float32).view(np.uint32).astype(np.uint64)
+    return ((bits + 0x7FFF + (bits >> 16 & 1)) >> 16).astype(np.uint16)
+
+
+def wholes(values: Halves) -> Floats:
+    """The numbers that halves stand for."""
+    return (values.astype(np.uint32) << 16).view(np.float32)
 
 
 def _gate(values: Any) -> Any:
@@ -124,7 +189,7 @@ def load(path: Path) -> Network:
         with np.load(path, allow_pickle=False) as file:
             if int(file["version"]) != VERSION:
                 raise ValueError(f"it has version {int(file['version'])}, not {VERSION}")
-            found = Network(*(file[name].astype(np.float32) for name in Network._fields))
+            found = Network(*(file[name] for name in Network._fields))
     except (OSError, KeyError, EOFError, ValueError, zipfile.BadZipFile) as error:
         raise ValueError(
             f"no usable proposals in {path}: {error}; install tritrack again"
@@ -135,32 +200,29 @@ def load(path: Path) -> Network:
 
 def _refuse_misfits(network: Network, path: Path) -> None:
     n = network
-    sees, thinks, keeps, joins = (
-        part.shape[-1] for part in (n.components, n.think, n.keep, n.join)
-    )
+    sees, thinks, keeps, joins = (part.shape[-1] for part in (n.see, n.think, n.keep, n.join))
     keeps //= 3
     due = {
-        "mean": (CELLS,),
-        "components": (CELLS, sees),
+        "see": (CELLS, sees),
         "think": (2 * sees + BESIDE, thinks),
+        "deepen": (thinks, thinks),
         "take": (thinks, 3 * keeps),
         "keep": (keeps, 3 * keeps),
         "join": (thinks + keeps, joins),
         "say": (joins, SAYS),
     }
-    due |= {f"{name}_bias": due[name][1:] for name in ("think", "take", "keep", "join", "say")}
-    for name, shape in due.items():
-        part = getattr(n, name)
-        if part.shape != shape:
-            raise ValueError(f"{path}: {name} is {part.shape}, not {shape}")
-        if not np.isfinite(part).all():
+    for name in PARTS:
+        weights, bias = getattr(n, name), getattr(n, f"{name}_bias")
+        if weights.shape != due[name] or bias.shape != due[name][1:]:
+            raise ValueError(f"{path}: {name} is {weights.shape}, not {due[name]}")
+        if weights.dtype != np.uint16 or bias.dtype != np.float32:
+            raise ValueError(f"{path}: {name} is not of halves and single floats")
+        if not (np.isfinite(wholes(weights)).all() and np.isfinite(bias).all()):
             raise ValueError(f"{path}: {name} holds a number that is not finite")
 
 
 def save(network: Network, path: Path) -> None:
-    """Write a network, in half precision: finer than it was learnt."""
-    halves: dict[str, Any] = {
-        name: part.astype(np.float16) for name, part in network._asdict().items()
-    }
+    """Write a network."""
+    parts: dict[str, Any] = network._asdict()
     with path.open("wb") as file:
-        np.savez(file, version=np.array(VERSION), **halves)
+        np.savez(file, version=np.array(VERSION), **parts)

@@ -48,6 +48,8 @@ class Choice(NamedTuple):
     """(10,) in [0, 1]; 1 where the user said so."""
     orientation: Orientation
     orientation_confidence: float
+    bearing: Bearing
+    """What is known of the orientation after this frame, whatever the user says."""
 
 
 def init() -> Memory:
@@ -95,25 +97,18 @@ def choose(
         signs[chain] = WAYS[best[n]]
         same = WAYS[best[n]] == WAYS
         confidence[chain] = (odds[:, n, None] * same).sum(axis=0) / odds[:, n].sum()
-    return Choice(signs, confidence, facing, 1.0 if orientation else bearing.sure)
+    return Choice(signs, confidence, facing, 1.0 if orientation else bearing.sure, bearing)
 
 
-def remembered(
-    memory: Memory,
-    joints_m: NDArray[np.float64],
-    choice: Choice,
-    joints_px: NDArray[np.float64],
-    breadth: float,
-) -> Memory:
+def remembered(memory: Memory, joints_m: NDArray[np.float64], choice: Choice) -> Memory:
     """The memory after a frame that one view settled.
 
     Args:
         memory: Before it.
         joints_m: (15, 3), as lifted.
         choice: What was chosen for it.
-        joints_px: (15, 2), as for `choose`; likewise `breadth`.
     """
-    bearing = faced(memory.bearing, joints_px, breadth)._replace(
+    bearing = choice.bearing._replace(
         orientation=choice.orientation, sure=choice.orientation_confidence
     )
     now = directions_of(joints_m)

@@ -8,7 +8,7 @@ import numpy as np
 from common.body import ANGLES_IN_POSE, JOINT_NAMES, Vector, rest_pose
 from common.camera import Rig, project
 from common.kinematics import joints
-from common.messages import Body, Guide, Pixel, Point, Status, Views
+from common.messages import Body, Guide, Pixel, Status, Views
 from common.proportions import body_vector
 from integrator import insight
 from integrator.belief import status_of
@@ -42,7 +42,7 @@ def body_of(
         **_moment(state, pair),
         status=_status(state),
         views=_views(pair),
-        joints_m=tuple(_point(place) for place in places),
+        joints_m=tuple((x, y, z) for x, y, z in places.tolist()),
         joints_px=tuple(_pixels(project(camera, places)) for camera in rig.cameras),
         pose=tuple(pose.tolist()),
         angles_raw_deg=tuple(state.pose[in_pose].tolist()),
@@ -145,11 +145,6 @@ def _or_unseen(scales: tuple[float, float]) -> tuple[float, float]:
     """Scales with 0 for a camera that has the body behind it."""
     first, second = (scale if math.isfinite(scale) and scale > 0 else 0.0 for scale in scales)
     return first, second
-
-
-def _point(place: Vector) -> Point:
-    x, y, z = (float(value) for value in place)
-    return (x, y, z)
 
 
 def _pixels(pixels: Vector) -> tuple[Pixel, ...]:

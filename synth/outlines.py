@@ -1,38 +1,35 @@
 """Outlines of made-up people in two cameras, without light: what a network is taught on."""
 
 from collections.abc import Iterator
-from typing import Final, Literal, NamedTuple
+from typing import Final, NamedTuple
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body import Vector
-from common.camera import Camera, Rig, as_matrix, as_row, paper_rig, project
+from common.camera import Camera, Rig, project
+from synth.flaws import Flaw, flaw, spoilt
 from synth.footing import Posed, posed
+from synth.made_up_rig import made_up_rig
 from synth.mesh import Mesh, body_mesh
 from synth.motions import MOTION, POSTURES, performance
 from synth.people import Person, person
 from synth.raster import cover, skin
-from synth.skeleton import ANGLES, turned
+from synth.skeleton import ANGLES
 
 FPS: Final = 15.0
 PEOPLE: Final = (100_000, 1_000_000)
 """Numbers of those who are taught on; whoever is made up for a test has a lower one."""
 LONGEST: Final = 90
 """Instants of one performance that are drawn."""
-FREE_SHARE, TURNED_SHARE = 0.3, 0.25
-"""Of the performances: how many are no posture; how many postures face anywhere and turn."""
+TURNED_SHARE: Final = 0.25
+"""Of the performances: how many postures face anywhere and turn."""
 OTHER_ARMS: Final = 0.3
 """Share of the performances with the arms of another one."""
-LATE_SHARE: Final = 0.4
-"""Share of the performances that are joined after their opening."""
 FAST_SHARE: Final = 0.2
 SPEEDS, FAST = (0.7, 1.3), (1.3, 2.3)
 ARM_DEG, REST_DEG = (0.0, 3.0, 8.0, 20.0), (0.0, 2.0, 4.0, 6.0)
 """Standard deviations that arms, and all else, are turned by; one of them for a performance."""
-LEANING_SHARE, LEAN_DEG = 0.15, 14.0
-"""Of the performances: how many lean over with the whole body; the standard deviation of that."""
 YAW_DEG: Final = (4.0, 4.0, 15.0)
 """The same for the whole body about the vertical."""
 TURNING_DEG: Final = 180.0
@@ -40,12 +37,6 @@ TURNING_DEG: Final = 180.0
 THICKER, LONGER, LOOSER = 0.06, 0.02, (0.5, 2.0)
 """How bodies differ beyond those of `person`: standard deviations of what a thickness and a length
 are multiplied by, and the range of what the room in their clothes is."""
-WIDTHS_PX: Final = (160, 320)
-DISTANCES_M, HEIGHTS_M, FOCALS = (3.4, 5.6), (0.8, 1.4), (1.0, 1.4)
-"""Ranges of cameras; focal lengths in widths of the picture at 4.5 m."""
-SLANTED_SHARE: Final = 0.25
-"""Of the rigs: how many stand anywhere, look down, are rolled."""
-APART_DEG, RISE_M, ROLL_DEG = (50.0, 130.0), (0.5, 2.6), 6.0
 ROOM_M: Final = 0.6
 """How far from the middle somebody stands."""
 JITTER_PX: Final = 0.25
@@ -53,11 +44,6 @@ JITTER_PX: Final = 0.25
 ALONE_SHARE, GAP_SHARE, DROP_SHARE = 0.15, 0.15, 0.03
 """Of the performances: how many one camera sees alone, or for a while; of the instants: how many
 are missing."""
-SHADOW_SHARE, THICK_SHARE, THIN_SHARE, ROUND_SHARE = 0.5, 0.3, 0.1, 0.15
-"""Of the silhouettes of a camera: how many keep a shadow at the feet, are a pixel too thick or too
-thin somewhere, or have their thin parts rounded off."""
-HOLE_SHARE: Final = 0.3
-"""Of the cameras: in how many pieces of the silhouette are missing for a while."""
 
 ARMS: Final = np.array(["_sh_" in name or "elbow" in name for name in ANGLES])
 BENT: Final = [i for i, name in enumerate(ANGLES) if "elbow" in name or "knee" in name]
@@ -67,6 +53,9 @@ LEANS: Final = [
     ANGLES.index(f"{part}_{way}") for part in ("root", "torso") for way in ("pitch", "roll")
 ]
 YAW: Final = ANGLES.index("root_yaw")
+FARTHER: Final = {"hip_abd": 2.0, "torso_roll": 1.6, "root_roll": 5.0, "root_pitch": 2.0}
+WIDER: Final = np.array([FARTHER.get(name.split("_", name[1] == "_")[-1], 1.0) for name in ANGLES])
+"""What the angles of those who go farther are multiplied by."""
 
 Mask = NDArray[np.bool_]
 
@@ -84,29 +73,40 @@ class Outline(NamedTuple):
     """Time since the instant before."""
 
 
-class Flaw(NamedTuple):
-    """How the silhouettes of one camera are wrong, all through a performance."""
+class Manner(NamedTuple):
+    """What kind of performances are made up."""
 
-    kind: Literal["thick", "thin", "round", "none"]
-    kernel: tuple[int, int]
-    shadow: tuple[float, float, float, float] | None
-    """The blot at the feet: where between them, how low, how wide, how high, in heights."""
-    holes: NDArray[np.bool_]
-    """(n,) whether a piece is missing."""
-    hole: tuple[float, float, float, float]
-    """Its place (right, down) and half sizes, as shares of the silhouette's box."""
+    free: float
+    """Share of those that are no posture."""
+    late: float
+    """Share of those that are joined after their opening."""
+    leaning: float
+    """Share of those who lean over with the whole body."""
+    lean_deg: float
+    """Standard deviation of that."""
+    wider: float
+    """Share of those who lean and lift their legs farther aside than anybody in a free motion."""
+    slanted: float
+    """Share of the rigs that stand anywhere, look down, are rolled."""
+    distances_m: tuple[float, float]
+    """Range of the cameras."""
 
 
-def outlines(seed: int) -> Iterator[Outline]:
+ORDINARY: Final = Manner(0.3, 0.4, 0.15, 14.0, 0.0, 0.25, (3.4, 5.6))
+AT_LARGE: Final = Manner(0.65, 0.8, 0.3, 20.0, 0.25, 0.4, (2.3, 5.6))
+"""People who move as they like, also close to cameras that stand anywhere."""
+
+
+def outlines(seed: int, manner: Manner = ORDINARY) -> Iterator[Outline]:
     """The instants of one performance by one person before two cameras; a seed is a performance."""
     rng = np.random.default_rng([seed, 77])
     someone = _differing(person(int(rng.integers(*PEOPLE))), rng)
-    angles = _angles(someone, rng)
+    angles = _angles(someone, manner, rng)
     leash = rng.uniform(-ROOM_M, ROOM_M, 2)
     body = posed(someone.measures, angles, leash, np.tile(leash, (len(angles), 1)))
-    mesh, rig = body_mesh(someone), _rig(rng)
+    mesh, rig = body_mesh(someone), made_up_rig(rng, manner.slanted, manner.distances_m)
     present = _present(len(angles), rng)
-    flaws = (_flaw(len(angles), rng), _flaw(len(angles), rng))
+    flaws = (flaw(len(angles), rng), flaw(len(angles), rng))
     since_s = 1.0 / FPS
     for i in range(len(angles)):
         if i and rng.random() < DROP_SHARE:
@@ -136,10 +136,10 @@ def _differing(someone: Person, rng: np.random.Generator) -> Person:
     return someone._replace(measures=measures, look=look)
 
 
-def _angles(someone: Person, rng: np.random.Generator) -> NDArray[np.float64]:
+def _angles(someone: Person, manner: Manner, rng: np.random.Generator) -> NDArray[np.float64]:
     """(n, 27) of a performance, made more various."""
     chance = rng.random()
-    name = "free" if chance < FREE_SHARE else POSTURES[int(rng.integers(len(POSTURES)))]
+    name = "free" if chance < manner.free else POSTURES[int(rng.integers(len(POSTURES)))]
     speed = rng.uniform(*(FAST if rng.random() < FAST_SHARE else SPEEDS))
     motion = performance(someone, name, int(rng.integers(1_000_000)), FPS / speed)
     angles = motion.angles_deg[motion.present].copy()
@@ -147,11 +147,13 @@ def _angles(someone: Person, rng: np.random.Generator) -> NDArray[np.float64]:
     if rng.random() < OTHER_ARMS:
         angles[opening:, ARMS] = _others_arms(someone, speed, len(angles) - opening, rng)
     t = np.arange(len(angles)) / FPS
-    angles += _swaying(t, rng)
+    if manner.wider and rng.random() < manner.wider:
+        angles[opening:] *= WIDER
+    angles += _swaying(t, manner, rng)
     angles[:, BENT] = np.abs(angles[:, BENT])
     if name != "free":
-        angles[:, YAW] += _yaw(t, chance < FREE_SHARE + TURNED_SHARE, rng)
-    start = int(rng.integers(len(angles) // 2)) if rng.random() < LATE_SHARE else 0
+        angles[:, YAW] += _yaw(t, chance < manner.free + TURNED_SHARE, rng)
+    start = int(rng.integers(len(angles) // 2)) if rng.random() < manner.late else 0
     return angles[start : start + LONGEST]
 
 
@@ -166,12 +168,12 @@ def _others_arms(
     return np.asarray(theirs[np.minimum(at, 2 * len(theirs) - 2 - at)])
 
 
-def _swaying(t: Vector, rng: np.random.Generator) -> NDArray[np.float64]:
+def _swaying(t: Vector, manner: Manner, rng: np.random.Generator) -> NDArray[np.float64]:
     """(n, 27) to add: each joint is held otherwise, and wanders."""
     spread = np.where(ARMS, rng.choice(ARM_DEG), rng.choice(REST_DEG))
     spread[ROOT], spread[FEET], spread[YAW] = np.minimum(spread[ROOT], REST_DEG[2]), 0.0, 0.0
-    if rng.random() < LEANING_SHARE:
-        spread[LEANS] = LEAN_DEG
+    if rng.random() < manner.leaning:
+        spread[LEANS] = manner.lean_deg
     held, size = rng.normal(0.0, 0.7, (2, len(ANGLES)))
     waves = np.sin(2 * np.pi * (np.outer(t, rng.uniform(0.2, 1.5, len(ANGLES))) + rng.random()))
     return np.asarray(spread * (held + size * waves))
@@ -188,43 +190,6 @@ def _yaw(t: Vector, turning: bool, rng: np.random.Generator) -> Vector:
     return np.asarray(starts + rng.uniform(-TURNING_DEG, TURNING_DEG) * way * way * (3 - 2 * way))
 
 
-def _rig(rng: np.random.Generator) -> Rig:
-    width = int(rng.choice(WIDTHS_PX))
-    size = (width, width * 3 // 4)
-    far, high = rng.uniform(*DISTANCES_M, 2), rng.uniform(*HEIGHTS_M, 2)
-    focal = width * rng.uniform(*FOCALS) * far / 4.5
-    if rng.random() >= SLANTED_SHARE:
-        return paper_rig(size, (focal[0], focal[1]), (far[0], far[1]), (high[0], high[1]))
-    apart = rng.uniform(*APART_DEG) * rng.choice([1.0, 1.0, -1.0])
-    rises = rng.uniform(*RISE_M, 2)
-    return Rig(
-        *size,
-        tuple(_slanted(n, size, far[n], rises[n], focal[n], -apart * n, rng) for n in (0, 1)),
-    )
-
-
-def _slanted(
-    n: int,
-    size: tuple[int, int],
-    far_m: float,
-    high_m: float,
-    focal_px: float,
-    at_deg: float,
-    rng: np.random.Generator,
-) -> Camera:
-    """A camera somewhere on the circle that looks at the middle of a body, rolled a little."""
-    way = np.radians(at_deg)
-    place = np.array([far_m * np.sin(way), high_m, far_m * np.cos(way)])
-    forward = np.array([0.0, rng.uniform(0.8, 1.1), 0.0]) - place
-    forward /= np.linalg.norm(forward)
-    right = np.cross(forward, [0.0, 1.0, 0.0])
-    right /= np.linalg.norm(right)
-    level = np.stack([right, np.cross(forward, right), forward])
-    R = turned("z", np.array([rng.normal(0.0, ROLL_DEG)]))[0] @ level
-    K = ((focal_px, 0.0, size[0] / 2), (0.0, focal_px, size[1] / 2), (0.0, 0.0, 1.0))
-    return Camera(f"cam{n + 1}", K, as_matrix(R), as_row(-R @ place))
-
-
 def _present(n: int, rng: np.random.Generator) -> NDArray[np.bool_]:
     """(n, 2) which cameras see each instant; always one."""
     present, chance = np.ones((n, 2), np.bool_), rng.random()
@@ -237,22 +202,6 @@ def _present(n: int, rng: np.random.Generator) -> NDArray[np.bool_]:
     return present
 
 
-def _flaw(n: int, rng: np.random.Generator) -> Flaw:
-    shares = (THICK_SHARE, THIN_SHARE, ROUND_SHARE)
-    at = int(np.searchsorted(np.cumsum(shares), rng.random()))
-    kinds: tuple[Literal["thick", "thin", "round", "none"], ...]
-    kinds = ("thick", "thin", "round", "none")
-    shadow = None
-    if rng.random() < SHADOW_SHARE:
-        shadow = (rng.random(), *rng.uniform((0.0, 0.03, 0.005), (0.02, 0.14, 0.02)))
-    holes = np.zeros(n, np.bool_)
-    if rng.random() < HOLE_SHARE:
-        start = int(rng.integers(n))
-        holes[start : start + int(rng.integers(2, 12))] = True
-    hole = (rng.random(), rng.random(), *rng.uniform(0.02, 0.08, 2))
-    return Flaw(kinds[at], (int(rng.integers(1, 3)), int(rng.integers(1, 3))), shadow, holes, hole)
-
-
 def _seen(
     mesh: Mesh,
     body: Posed,
@@ -263,10 +212,10 @@ def _seen(
 ) -> list[Mask]:
     """Both silhouettes of an instant, as they are cut out of a film."""
     masks = []
-    for camera, flaw in zip(rig.cameras, flaws, strict=True):
+    for camera, wrong in zip(rig.cameras, flaws, strict=True):
         jitter_px = rng.normal(0.0, JITTER_PX, 2)
         mask = cast(mesh, body.bones[i], camera, (rig.width, rig.height), jitter_px)
-        masks.append(_spoilt(mask, flaw, i).astype(bool))
+        masks.append(spoilt(mask, wrong, i).astype(bool))
     return masks
 
 
@@ -290,35 +239,4 @@ def cast(
     skin(mesh.vertices_m, mesh.origins_m, mesh.bones, mesh.shares, bones, places)
     mask = np.zeros((size[1], size[0]), np.uint8)
     cover(project(camera, places) + jitter_px, mesh.faces, mask)
-    return mask
-
-
-def _spoilt(mask: NDArray[np.uint8], flaw: Flaw, i: int) -> NDArray[np.uint8]:
-    """A silhouette as one that was cut out of a film: with a shadow, too thick, too thin."""
-    if not mask.any():
-        return mask
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    tall, wide = int(rows[-1] - rows[0]), int(columns[-1] - columns[0])
-    if flaw.shadow is not None:
-        share, low, across, high = flaw.shadow
-        feet = np.flatnonzero(mask[rows[-1] - tall // 40])
-        at = (
-            (int(feet[int(share * (len(feet) - 1))]), int(rows[-1] - low * tall))
-            if len(feet)
-            else (0, 0)
-        )
-        size = (int(across * tall), int(high * tall))
-        mask = np.asarray(cv2.ellipse(mask.copy(), at, size, 0, 0, 360, 1, -1), np.uint8)
-    if flaw.holes[i]:
-        right, down, half_wide, half_tall = flaw.hole
-        at = (int(columns[0] + right * wide), int(rows[0] + down * tall))
-        size = (int(half_wide * tall), int(half_tall * tall))
-        mask = np.asarray(cv2.ellipse(mask.copy(), at, size, 0, 0, 360, 0, -1), np.uint8)
-    kernel = np.ones(flaw.kernel, np.uint8)
-    if flaw.kind == "thick":
-        return np.asarray(cv2.dilate(mask, kernel), np.uint8)
-    if flaw.kind == "thin":
-        return np.asarray(cv2.erode(mask, kernel), np.uint8)
-    if flaw.kind == "round":
-        return np.asarray(cv2.medianBlur(mask, 3), np.uint8)
     return mask

@@ -17,7 +17,8 @@ from rich.console import Console
 import tritrack.__main__ as door
 from tritrack.accuracy import compare, summary
 from tritrack.against_truth import EvaluationError, evaluate_tracking
-from tritrack.offline import ClipsFailed, track_all
+from tritrack.clip_paths import ClipsFailed
+from tritrack.offline import track_all
 from tritrack.worst import TRACKED, TRUE
 
 QUIET = Console(quiet=True)

@@ -3,7 +3,8 @@
 import numpy as np
 
 from common.camera import project
-from synth.outlines import FPS, LONGEST, PEOPLE, outlines
+from synth.outlines import AT_LARGE, FPS, LONGEST, ORDINARY, PEOPLE, Manner, outlines
+from synth.skeleton import JOINTS
 
 
 def test_outlines_hold_the_pelvis_and_repeat() -> None:
@@ -47,3 +48,19 @@ def test_joints_move_as_bodies_do_from_frame_to_frame() -> None:
 def test_nobody_who_is_taught_on_has_a_small_number() -> None:
     """Clips for tests are made with performers below: seeds of `tritrack synth` times ten."""
     assert PEOPLE[0] >= 100_000
+
+
+def test_people_at_large_lean_farther_and_lift_their_legs_higher() -> None:
+    """Measured on the joints: the trunk from the vertical, an ankle above the other."""
+
+    def reached(manner: Manner) -> tuple[float, float]:
+        poses = np.array([each.joints_m for seed in range(24) for each in outlines(seed, manner)])
+        at = {name: poses[:, JOINTS.index(name)] for name in JOINTS}
+        trunk = at["neck"] - at["pelvis"]
+        lean_deg = np.degrees(np.arccos(trunk[:, 1] / np.linalg.norm(trunk, axis=1)))
+        lifted_m = np.abs(at["l_ankle"][:, 1] - at["r_ankle"][:, 1])
+        return float(np.percentile(lean_deg, 95)), float(np.percentile(lifted_m, 95))
+
+    (lean_deg, lifted_m), (usual_deg, usual_m) = reached(AT_LARGE), reached(ORDINARY)
+    assert lean_deg > usual_deg + 5.0
+    assert lifted_m > usual_m + 0.05

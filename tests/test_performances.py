@@ -11,8 +11,9 @@ from spoiling import copied, edit_json
 
 from recognizer.evaluation import Recording
 from tritrack import performances
+from tritrack.clip_paths import ClipsFailed
 from tritrack.making import make_clips
-from tritrack.offline import ClipsFailed, track_all
+from tritrack.offline import track_all
 from tritrack.performances import RecordingError, recordings
 from tritrack.runs import RunError
 

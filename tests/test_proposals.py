@@ -9,7 +9,7 @@ from rich.console import Console
 
 from integrator import propose
 from integrator.window import Look
-from synth.outlines import outlines
+from synth.outlines import AT_LARGE, ORDINARY, outlines
 from tritrack.proposals import Example, example, example_of, learnt, train_proposals
 from tritrack.training import TrainingError
 
@@ -36,7 +36,7 @@ def test_a_wrong_stature_moves_what_is_due_by_as_much() -> None:
 
 
 def test_a_seed_is_one_lesson() -> None:
-    one, again = example_of(11), example_of(11)
+    one, again = example_of((11, AT_LARGE)), example_of((11, AT_LARGE))
     assert all(np.array_equal(a, b) for a, b in zip(one, again, strict=True))
 
 
@@ -52,9 +52,9 @@ def test_learning_without_pytorch_says_what_to_install(
 def test_what_is_learnt_beats_the_mean_pose() -> None:
     """Also: PyTorch's unit and ours agree, or the memory would say something else."""
     pytest.importorskip("torch", reason="learning needs the extra `train`")
-    taught = [example_of(seed) for seed in range(64)]
-    network = learnt(taught, 3, QUIET, epochs=40, batch=8)
-    new = [example_of(seed) for seed in range(800_000, 800_006)]
+    taught = [example_of((seed, ORDINARY)) for seed in range(64)]
+    network = learnt(taught, 3, QUIET, rounds=((40, 1.5e-3),), batch=8)
+    new = [example_of((seed, ORDINARY)) for seed in range(800_000, 800_006)]
 
     def missed(told: list[np.ndarray]) -> float:
         off = [(a - b.due).reshape(-1, 3) for a, b in zip(told, new, strict=True)]

@@ -5,6 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from integrator import propose
 from integrator.propose import JOINTS, Network
@@ -20,18 +23,18 @@ UNTAUGHT = range(900_000, 900_012)
 def network(fill: float = 0.0) -> Network:
     """Three components, four units of each layer, all weights alike."""
     sizes = {
+        "see": (CELLS, 3),
         "think": (6 + BESIDE, 4),
+        "deepen": (4, 4),
         "take": (4, 12),
         "keep": (4, 12),
         "join": (8, 4),
         "say": (4, 48),
     }
-    parts = {"mean": np.zeros(CELLS, np.float32), "components": np.zeros((CELLS, 3), np.float32)}
+    parts = {}
     for name, size in sizes.items():
-        parts |= {
-            name: np.full(size, fill, np.float32),
-            f"{name}_bias": np.zeros(size[1], np.float32),
-        }
+        parts[name] = propose.halves(np.full(size, fill, np.float32))
+        parts[f"{name}_bias"] = np.zeros(size[1], np.float32)
     return Network(**parts)
 
 
@@ -73,6 +76,17 @@ def test_a_shut_gate_keeps_the_memory() -> None:
     assert memory == pytest.approx(np.arange(4))
 
 
+def test_the_second_layer_adds_to_the_first() -> None:
+    """Thought 3, deepened by half of it, 4.5; a sum of four says 18."""
+    told = network()
+    told.think_bias[:] = 3.0
+    told.deepen[:] = propose.halves(0.5 * np.eye(4, dtype=np.float32))
+    told.join[:4] = propose.halves(np.eye(4, dtype=np.float32))
+    told.say[:, 0] = propose.halves(np.ones(4, np.float32))
+    _, found = propose.step(told, None, SEEN._replace(middle_m=np.zeros(3)), 1.0)
+    assert found.joints_m[0] == pytest.approx([18.0, 0.0, 0.0])
+
+
 def test_a_silent_network_says_the_middle_and_is_undecided() -> None:
     _, found = propose.step(network(), None, SEEN, 1.75)
     assert found.joints_m == pytest.approx(np.tile([1.0, 2.0, 3.0], (12, 1)))
@@ -92,13 +106,38 @@ def test_what_is_said_is_statures_in_the_frame_of_the_proposal() -> None:
 
 def test_a_view_that_does_not_see_adds_nothing() -> None:
     """Its window is no silhouette of somebody who is not there."""
-    rng = np.random.default_rng(2)
-    mean, components = rng.random(CELLS, np.float32), rng.random((CELLS, 3), np.float32)
-    beside = np.zeros(BESIDE, np.float32)
-    beside[0] = 1.0
-    shown = propose.inputs(mean, components, rng.random((2, CELLS), np.float32), beside)
-    assert (shown[:3] != 0).all()
-    assert (shown[3:6] == 0).all()
+    told, rng = network(0.01), np.random.default_rng(2)
+    windows, beside = rng.random((2, CELLS)).astype(np.float32), np.zeros(BESIDE, np.float32)
+    beside[propose.SEES[0]] = 1.0
+    _, one = propose.step(told, None, SEEN._replace(windows=windows, beside=beside), 1.75)
+    windows[1] = 0.0
+    _, alone = propose.step(told, None, SEEN._replace(windows=windows, beside=beside), 1.75)
+    windows[0] = 0.0
+    _, none = propose.step(told, None, SEEN._replace(windows=windows, beside=beside), 1.75)
+    assert np.array_equal(one.joints_m, alone.joints_m)
+    assert not np.allclose(alone.joints_m, none.joints_m)
+
+
+@given(arrays(np.float32, 40, elements=st.floats(-(2.0**99), 2.0**99, width=32)))
+def test_a_half_is_off_by_a_256th_at_most(values: np.ndarray) -> None:
+    """Seven digits behind the leading one, the last of them rounded (IEEE 754 single, cut)."""
+    off = np.abs(propose.wholes(propose.halves(values)) - values)
+    assert (off <= np.abs(values) / 256 + 1e-38).all()
+
+
+def test_halves_multiply_as_numbers_do() -> None:
+    """A layer by hand: what is said is the sum of what is seen times the weights."""
+    rng = np.random.default_rng(3)
+    told, beside = network(), rng.normal(size=BESIDE).astype(np.float32)
+    beside[list(propose.SEES)] = 0.0
+    weights = rng.normal(size=(BESIDE, 4)).astype(np.float32)
+    told.think[6:] = propose.halves(weights)
+    told.join[:4] = propose.halves(np.eye(4, dtype=np.float32))
+    told.say[:, :4] = propose.halves(np.eye(4, dtype=np.float32))
+    seen = SEEN._replace(beside=beside, middle_m=np.zeros(3))
+    _, found = propose.step(told, None, seen, 1.0)
+    due = np.maximum(beside @ propose.wholes(propose.halves(weights)), 0.0)
+    assert found.joints_m.ravel()[:4] == pytest.approx(due, rel=1e-5)
 
 
 def test_a_network_survives_its_file(tmp_path: Path) -> None:
@@ -112,9 +151,9 @@ def test_a_network_survives_its_file(tmp_path: Path) -> None:
 def test_a_damaged_file_is_refused(tmp_path: Path, spoilt: str) -> None:
     path, made = tmp_path / "n.npz", network()
     if spoilt == "misfit":
-        made = made._replace(join=np.zeros((7, 4), np.float32))
+        made = made._replace(join=np.zeros((7, 4), np.uint16))
     if spoilt == "endless":
-        made.say[0, 0] = np.inf
+        made.say[0, 0] = propose.halves(np.array([np.inf], np.float32))[0]
     propose.save(made, path)
     if spoilt == "cut":
         path.write_bytes(path.read_bytes()[:-300])
@@ -123,7 +162,7 @@ def test_a_damaged_file_is_refused(tmp_path: Path, spoilt: str) -> None:
     if spoilt == "absent":
         path.unlink()
     if spoilt == "old":
-        np.savez(path, version=np.array(1), mean=made.mean)
+        np.savez(path, version=np.array(1), mean=np.zeros(CELLS))
     with pytest.raises(ValueError, match=r"n\.npz"):
         propose.load(path)
 

@@ -8,6 +8,7 @@ from common.notes import Orientation
 from common.stickman import ADULT, BREADTH, joints_px
 from integrator import signs
 from integrator.lifting import lift
+from integrator.orientation import faced
 from tests.stick_posing import STATURE_PX, stick_pose
 
 LENGTHS_M = ADULT.lengths * 1.75
@@ -31,8 +32,9 @@ def after(memory: signs.Memory, pose: np.ndarray, way: float) -> signs.Memory:
     """What is remembered of a body all of whose segments lean one way, as the user said."""
     seen = joints_px(ADULT, pose)
     body = lift(seen, 1.0, LENGTHS_M, PX_PER_M, np.full(10, way), "forward_right")
-    choice = signs.Choice(np.full(10, way), np.ones(10), "forward_right", 1.0)
-    return signs.remembered(memory, body.joints_m, choice, seen, 1.0)
+    bearing = faced(memory.bearing, seen, 1.0)
+    choice = signs.Choice(np.full(10, way), np.ones(10), "forward_right", 1.0, bearing)
+    return signs.remembered(memory, body.joints_m, choice)
 
 
 def test_thighs_bend_forwards_and_knees_backwards() -> None:

@@ -12,7 +12,8 @@ from spoiling import film_of, write_film
 from common.config import Settings
 from common.notes import Note, Notes
 from common.notes_file import save_notes
-from tritrack.offline import ClipsFailed, track_all
+from tritrack.clip_paths import ClipsFailed
+from tritrack.offline import track_all
 from tritrack.single import name_of, single_all
 
 QUIET = Console(quiet=True)

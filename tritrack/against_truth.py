@@ -15,8 +15,9 @@ from common.body import Bdp
 from common.config import Mode, Settings
 from tritrack import accuracy_plots, accuracy_report, worst
 from tritrack.accuracy import Arrays, Compared, compare, per_joint, summary
+from tritrack.clip_paths import run_names, without_plain_files
 from tritrack.lengths import length_errors
-from tritrack.offline import Decoders, run_names, track_all, without_plain_files
+from tritrack.offline import Decoders, track_all
 from tritrack.overlap import Overlap, overlaps
 from tritrack.reliability import trust
 from tritrack.terminal import bar, json_text, warn

@@ -25,7 +25,9 @@ KEPT: Final = ("frame", "angles_deg", "joints_m", "joints_px", "confidence", "st
 """Arrays of `poses.npz` that recognisers and pictures are made of."""
 
 TRACKERS: Final = ("common", "viewer", "integrator")
-"""Packages whose code and models decide what is tracked; with `tritrack/offline.py`."""
+"""Packages whose code and models decide what is tracked; with SHELLS."""
+SHELLS: Final = ("offline.py", "instants.py")
+"""Files of `tritrack` that do."""
 
 LIBRARIES: Final = ("numpy", "opencv-python-headless", "numba")
 
@@ -48,7 +50,7 @@ class Kept(NamedTuple):
 def tracker_id() -> str:
     """A word for the tracker itself: another after any change of its code, models or libraries."""
     root = Path(__file__).parents[1]
-    files = [root / "tritrack" / "offline.py"]
+    files = [root / "tritrack" / name for name in SHELLS]
     for package in TRACKERS:
         files += sorted((root / package).rglob("*.py")) + sorted((root / package).rglob("*.npz"))
     digest = hashlib.sha256()

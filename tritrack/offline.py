@@ -1,8 +1,7 @@
 """The same steps as live, in one process and in lock-step: deterministic, as fast as it goes."""
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import MappingProxyType
@@ -19,19 +18,16 @@ from common.decoding import Decoder, DecoderDied, Undecodable
 from common.footage import ClipError
 from common.messages import Body, Guide, Report, ViewerNumber
 from common.notes import Notes
-from integrator import merge, noticing
+from common.reel import Reel
+from integrator import memory, merge, noticing
 from integrator.pairing import Pair
+from tritrack.clip_paths import ClipsFailed, run_names, without_plain_files
+from tritrack.instants import instants, rooms
 from tritrack.one_camera import extras_of, follow_clip
 from tritrack.runs import write_run
 from tritrack.terminal import bar, complain, warn
 from viewer import track
-from viewer.background import Background
-from viewer.capture import Frame, recorded
-from viewer.empty import empty_room
-
-
-class ClipsFailed(RuntimeError):
-    """Some clips could not be tracked; what was wrong with each was said before."""
+from viewer.capture import Frame
 
 
 class Tracked(NamedTuple):
@@ -66,6 +62,29 @@ class Decoders:
         self._doors.close()
 
 
+class Prepared(NamedTuple):
+    """A clip that can be followed."""
+
+    clip: Clip
+    reels: dict[ViewerNumber, Reel]
+    viewers: dict[ViewerNumber, track.State]
+    integrator: memory.State
+    odd: list[str]
+    """What is odd about its rooms."""
+    seconds: float
+    """What that took."""
+
+
+class Performance(NamedTuple):
+    """What following a clip gave."""
+
+    bodies: list[Body]
+    integrator: memory.State
+    noticed: noticing.State
+    seconds: dict[str, float]
+    """Of each stage."""
+
+
 def track_clip(
     settings: Settings,
     decoders: Decoders,
@@ -86,15 +105,34 @@ def track_clip(
         return Tracked(clip, followed.bodies, followed.facts, extras_of(followed.settled))
     if settings.mode == "thesis":
         raise ClipError(f"{clip.name}: the thesis's mode is for one camera: add --views 1")
+    ready = _prepared(clip, settings, decoders, began)
+    done = _performed(ready, watch)
+    return Tracked(clip, done.bodies, _facts(ready, done))
+
+
+def _prepared(clip: Clip, settings: Settings, decoders: Decoders, began: float) -> Prepared:
+    """Viewers that know their rooms and an integrator that knows the rig."""
     rig = both_cameras(clip)
-    viewers, odd_rooms = _viewers(clip, rig, settings, decoders)
-    prepared = time.perf_counter()
-    state = merge.init(rig, clip.every / clip.views[0].fps, settings)
-    noticed = noticing.State()
+    reels = {view.number: Reel(decoders.of[view.number]) for view in clip.views}
+    viewers: dict[ViewerNumber, track.State] = {}
+    odd_rooms = []
+    learnt = rooms(clip, settings.silhouette, reels)
+    for view, (room, odd) in zip(clip.views, learnt, strict=True):
+        odd_rooms += [odd] if odd else []
+        camera = None if rig is None else rig.cameras[view.number - 1]
+        viewers[view.number] = track.init(view.number, room, camera, settings)
+    integrator = merge.init(rig, clip.every / clip.views[0].fps, settings)
+    return Prepared(clip, reels, viewers, integrator, odd_rooms, time.perf_counter() - began)
+
+
+def _performed(ready: Prepared, watch: Watch | None) -> Performance:
+    """Every instant of a clip, its viewers and the integrator in lock-step."""
+    viewers, state, noticed = dict(ready.viewers), ready.integrator, noticing.State()
     guide: Guide | None = None
     bodies: list[Body] = []
     spent = {"viewers": 0.0, "integrator": 0.0}
-    for frames in _instants(clip, decoders):
+    began = time.perf_counter()
+    for frames in instants(ready.clip, ready.reels):
         start = time.perf_counter()
         reports: dict[int, Report] = {}
         for number, frame in frames.items():
@@ -108,21 +146,27 @@ def track_clip(
             watch(frames, reports, body)
         spent["viewers"] += middle - start
         spent["integrator"] += time.perf_counter() - middle
-    cut_off = [shortfall(view, decoders.of[view.number].came) for view in clip.views]
-    noticed_odd = noticing.warnings(noticed, state)
-    done = time.perf_counter()
-    seconds = {"preparation": prepared - began, **spent, "all": done - began}
-    facts = {
+    spent["following"] = time.perf_counter() - began
+    return Performance(bodies, state, noticed, spent)
+
+
+def _facts(ready: Prepared, done: Performance) -> dict[str, Any]:
+    """For the summary: what was tracked, how long it took, what was odd."""
+    clip, acts = ready.clip, ready.clip.meta.acts
+    cut_off = [shortfall(view, ready.reels[view.number].came) for view in clip.views]
+    odd = [*clip.warnings, *ready.odd, *filter(None, cut_off)]
+    followed_s = done.seconds["following"]
+    seconds = {"preparation": ready.seconds, **done.seconds, "all": ready.seconds + followed_s}
+    return {
         "clip": clip.name,
         "performer": clip.meta.performer,
         "posture_meant": clip.meta.posture,
-        **({"acts": msgspec.to_builtins(clip.meta.acts)} if clip.meta.acts else {}),
+        **({"acts": msgspec.to_builtins(acts)} if acts else {}),
         "seconds": {name: round(value, 4) for name, value in seconds.items()},
-        "frames_a_second": round(len(bodies) / (done - prepared), 1),
-        "scale_source": state.scale_source,
-        "warnings": [*clip.warnings, *odd_rooms, *filter(None, cut_off), *noticed_odd],
+        "frames_a_second": round(len(done.bodies) / followed_s, 1),
+        "scale_source": done.integrator.scale_source,
+        "warnings": [*odd, *noticing.warnings(done.noticed, done.integrator)],
     }
-    return Tracked(clip, bodies, facts)
 
 
 def overridden(settings: Settings, mode: Mode | None, size: str | None) -> Settings:
@@ -139,30 +183,6 @@ def overridden(settings: Settings, mode: Mode | None, size: str | None) -> Setti
         raise SettingsError(str(error)) from error
 
 
-def _viewers(
-    clip: Clip, rig: Rig | None, settings: Settings, decoders: Decoders
-) -> tuple[dict[ViewerNumber, track.State], list[str]]:
-    """Viewers that know their rooms, and what is odd about these."""
-    viewers: dict[ViewerNumber, track.State] = {}
-    odd_rooms = []
-    for view, (room, odd) in zip(clip.views, _rooms(clip, settings, decoders), strict=True):
-        odd_rooms += [odd] if odd else []
-        camera = None if rig is None else rig.cameras[view.number - 1]
-        viewers[view.number] = track.init(view.number, room, camera, settings)
-    return viewers, odd_rooms
-
-
-def _rooms(clip: Clip, settings: Settings, decoders: Decoders) -> list[tuple[Background, str]]:
-    """The empty room of every view, learnt side by side: mostly it is waiting for the decoders."""
-    with ThreadPoolExecutor(len(clip.views)) as pool:
-        return list(
-            pool.map(
-                lambda view: empty_room(view, settings.silhouette, decoders.of[view.number]),
-                clip.views,
-            )
-        )
-
-
 def both_cameras(clip: Clip) -> Rig | None:
     """The clip's rig with a camera for each viewer; a viewer that is not there gets the other's."""
     if clip.rig is None:
@@ -171,23 +191,6 @@ def both_cameras(clip: Clip) -> Rig | None:
     any_camera = clip.rig.cameras[0]
     cameras = (own.get(1, any_camera), own.get(2, any_camera))
     return msgspec.structs.replace(clip.rig, cameras=cameras)
-
-
-def _instants(clip: Clip, decoders: Decoders) -> Iterator[dict[ViewerNumber, Frame]]:
-    """The frames of all views, those of one instant together, in the order of time."""
-    streams = {
-        view.number: recorded(view, clip.every, decoders.of[view.number]) for view in clip.views
-    }
-    waiting = {number: next(stream, None) for number, stream in streams.items()}
-    tolerance_s = 0.5 * clip.every / clip.views[0].fps
-    while any(waiting.values()):
-        first_s = min(frame.captured_s for frame in waiting.values() if frame is not None)
-        now: dict[ViewerNumber, Frame] = {}
-        for number, frame in waiting.items():
-            if frame is not None and frame.captured_s - first_s <= tolerance_s:
-                now[number] = frame
-                waiting[number] = next(streams[number], None)
-        yield now
 
 
 def track_all(
@@ -232,38 +235,3 @@ def track_all(
     if len(done) < len(runs):
         raise ClipsFailed(f"{len(runs) - len(done)} of {len(runs)} clips could not be tracked")
     return {"clips": done}
-
-
-def run_names(paths: Sequence[Path]) -> dict[str, Path]:
-    """What to track, by the name of its run folder: the clip folder's, or the settings file's.
-
-    Raises:
-        ClipsFailed: When two would have one name.
-    """
-    runs: dict[str, Path] = {}
-    for path in paths:
-        name = path.stem if path.is_file() else path.resolve().name
-        if name in runs:
-            raise ClipsFailed(
-                f"{runs[name]} and {path} would both be written to {name}: "
-                "track one, then the other with another --out"
-            )
-        runs[name] = path
-    return runs
-
-
-def without_plain_files(paths: Sequence[Path], console: Console) -> list[Path]:
-    """The paths without what a pattern like clips/* catches too, such as calibration.json.
-
-    Raises:
-        ClipsFailed: When nothing is left.
-    """
-    kept = []
-    for path in paths:
-        if path.is_file() and path.suffix != ".toml":
-            warn(console, f"{path} is neither a clip folder nor a settings file: left out")
-        else:
-            kept.append(path)
-    if not kept:
-        raise ClipsFailed("no clip is left: name a folder with cam1.*, cam2.* or a settings file")
-    return kept

@@ -14,6 +14,7 @@ from common.config import Settings
 from common.decoding import Decoder
 from common.messages import Body, Box, Fit, Report, ViewerNumber
 from common.notes import Notes, held
+from common.reel import Reel
 from common.similarity import Mask
 from common.stickman import ADULT, THESIS
 from common.wire import pack
@@ -57,10 +58,11 @@ def follow_clip(clip: Clip, settings: Settings, decoder: Decoder, notes: Notes) 
     """
     began = time.perf_counter()
     view = clip.views[0]
-    room, anchor, odd = room_of_clip(view, settings.silhouette, decoder)
+    reel = Reel(decoder)
+    room, anchor, odd = room_of_clip(view, settings.silhouette, reel)
     ready = time.perf_counter()
-    outlines = outlines_of(clip, room, anchor, settings.silhouette, decoder)
-    cut_off = shortfall(view, decoder.came)
+    outlines = outlines_of(clip, room, anchor, settings.silhouette, reel)
+    cut_off = shortfall(view, reel.came)
     camera = clip.rig.cameras[0] if clip.rig is not None else None
     period_s = clip.every / view.fps
     scale = view.size[0] / view.source_size[0]

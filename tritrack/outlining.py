@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from common.clips import Clip
 from common.config import SilhouetteSettings
-from common.decoding import Decoder
 from common.footage import ClipError
 from common.messages import Box
+from common.reel import Reader
 from common.similarity import Mask
 from viewer import silhouette
 from viewer.background import Background
@@ -55,7 +55,7 @@ def outlines_of(
     room: Background,
     anchor: Anchor | None,
     settings: SilhouetteSettings,
-    decoder: Decoder,
+    decoder: Reader,
 ) -> list[Outline]:
     """The silhouette of every frame of a clip's first view, in the frame's own pixels.
 

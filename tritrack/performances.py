@@ -20,8 +20,9 @@ from recognizer.features import rows
 from recognizer.spotting import motion_of
 from tritrack import clip_cache
 from tritrack.clip_cache import Kept
+from tritrack.clip_paths import ClipsFailed, without_plain_files
 from tritrack.cores import made
-from tritrack.offline import ClipsFailed, Decoders, overridden, track_clip, without_plain_files
+from tritrack.offline import Decoders, overridden, track_clip
 from tritrack.runs import RunError
 from tritrack.terminal import bar, complain, warn
 

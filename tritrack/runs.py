@@ -2,6 +2,7 @@
 
 import platform
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from types import MappingProxyType
@@ -127,10 +128,16 @@ def _summary(bodies: Sequence[Body], settings: Settings, facts: dict[str, Any]) 
         else 0.0,
         **facts,
         "bdp_m": msgspec.to_builtins(bodies[-1].bdp) if bodies else None,
-        "versions": {name: version(name) for name in VERSIONS_OF}
-        | {"python": platform.python_version()},
+        "versions": versions(),
         "settings": msgspec.to_builtins(settings),
     }
+
+
+@cache
+def versions() -> dict[str, str]:
+    """Of what a run depends on; looking them up takes as long as ten frames."""
+    told = {name: version(name) for name in VERSIONS_OF}
+    return told | {"python": platform.python_version()}
 
 
 def _unwritable(folder: Path, error: OSError) -> RunError:

@@ -24,9 +24,9 @@ from common.notes import Notes
 from common.notes_file import NotesError, load_notes, notes_path
 from common.replacing import replacing
 from tritrack.angle_plot import angle_plot
+from tritrack.clip_paths import ClipsFailed
 from tritrack.ledger import facts_of, ledger
 from tritrack.mask_file import MaskFileError, MaskSequence, is_mask_file, read_masks
-from tritrack.offline import ClipsFailed
 from tritrack.one_camera import Followed, extras_of, follow_clip, follow_masks
 from tritrack.runs import RunError, poses, write_run
 from tritrack.terminal import bar, complain, json_text, warn

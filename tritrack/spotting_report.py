@@ -18,7 +18,8 @@ from recognizer.features import Rows, rows
 from recognizer.model_file import load
 from recognizer.postures import DensityModel
 from recognizer.streams import Act, Found, Stream, found, joined
-from tritrack.offline import Decoders, overridden, track_clip, without_plain_files
+from tritrack.clip_paths import without_plain_files
+from tritrack.offline import Decoders, overridden, track_clip
 from tritrack.runs import poses
 from tritrack.terminal import bar, json_text
 from tritrack.training import TrainingError

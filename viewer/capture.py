@@ -11,6 +11,7 @@ from common.clips import View
 from common.decoding import Decoded, Decoder, Picture
 from common.mailbox import Mailbox
 from common.rate import Clock, wait_until
+from common.reel import Reader
 
 WAITING: Final = 2
 """Frames that may wait for a late viewer: one hides a short delay, more would only be stale."""
@@ -31,7 +32,7 @@ class Frame(msgspec.Struct, frozen=True):
     """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
 
 
-def recorded(view: View, every: int, decoder: Decoder) -> Iterator[Frame]:
+def recorded(view: View, every: int, decoder: Reader) -> Iterator[Frame]:
     """Every n-th frame of a video, as fast as they come.
 
     Raises:

@@ -4,11 +4,13 @@ import math
 from itertools import islice
 from pathlib import Path
 
+import cv2
 import numpy as np
 
 from common.clips import View
-from common.config import SilhouetteSettings
+from common.config import SilhouetteSettings, working_size
 from common.decoding import Decoder
+from common.reel import Reader
 from common.replacing import replacing
 from viewer.background import Background, is_empty_opening, learn
 from viewer.stacks import LUMA, Frame
@@ -18,6 +20,9 @@ from viewer.uncovered import is_still, learn_uncovered
 SAMPLE = 40
 """How many frames at most, spread over a clip, tell whether its opening is empty."""
 
+COARSE = (160, 120)
+"""How finely, at most: as finely as the paper looks; every other frame is enough."""
+
 LOOKED_AT = 1500
 """How many frames of a clip are looked at for that: a long recording is judged by its start."""
 
@@ -26,9 +31,7 @@ LEFT_HIDDEN = 0.01
 """Who stays on a spot hides 2 to 20 % of the picture all through a clip, who roams up to 0.4 %."""
 
 
-def empty_room(
-    view: View, settings: SilhouetteSettings, decoder: Decoder
-) -> tuple[Background, str]:
+def empty_room(view: View, settings: SilhouetteSettings, decoder: Reader) -> tuple[Background, str]:
     """What the room looks like without the person, and what is odd about how that is known.
 
     Args:
@@ -46,7 +49,8 @@ def empty_room(
         plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
         return learn(plate), ""
     opening, sample = _looked_at(view, settings.empty_frames, decoder)
-    if is_still(opening) and is_empty_opening(opening, sample):
+    coarse = _reduced(opening)
+    if is_still(coarse) and is_empty_opening(coarse, _reduced(sample[::2])):
         return learn(opening), ""
     return learn_uncovered(sample), (
         f"{view.source} does not open with an empty room: the background is estimated from the "
@@ -76,7 +80,7 @@ def room_of_run(
 
 
 def room_of_clip(
-    view: View, settings: SilhouetteSettings, decoder: Decoder
+    view: View, settings: SilhouetteSettings, decoder: Reader
 ) -> tuple[Background, Anchor | None, str]:
     """The same, but from all over a clip where that shows all but a little of the room.
 
@@ -98,12 +102,21 @@ def room_of_clip(
     return (learnt if learnt.uncertain.mean() < LEFT_HIDDEN else room), None, ""
 
 
-def _now(view: View, due: int, decoder: Decoder) -> list[Frame]:
+def _reduced(frames: list[Frame]) -> list[Frame]:
+    """The frames, no larger than COARSE."""
+    size = (frames[0].shape[1], frames[0].shape[0])
+    coarse = working_size(size, COARSE)
+    if coarse == size:
+        return frames
+    return [cv2.resize(frame, coarse, interpolation=cv2.INTER_AREA) for frame in frames]
+
+
+def _now(view: View, due: int, decoder: Reader) -> list[Frame]:
     """The first frames that a camera gives."""
     return [got.picture for got in islice(decoder.frames(view.source, view.size), due)]
 
 
-def _looked_at(view: View, due: int, decoder: Decoder) -> tuple[list[Frame], list[Frame]]:
+def _looked_at(view: View, due: int, decoder: Reader) -> tuple[list[Frame], list[Frame]]:
     """The opening frames, and frames from everywhere in the clip."""
     stride = max(1, math.ceil(min(view.frames, LOOKED_AT) / SAMPLE))
     opening: list[Frame] = []

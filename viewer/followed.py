@@ -1,5 +1,6 @@
 """The stick body fitted by search: from the frame before, limbs found afresh, all refined."""
 
+from collections.abc import Iterable
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -75,7 +76,20 @@ def _moves() -> Moves:
     rows = np.zeros((len(moves), POSE_SIZE))
     for row, (_, factors) in zip(rows, moves, strict=True):
         row[list(factors)] = list(factors.values())
-    return Moves(rows, np.array([unit for unit, _ in moves]), *_bounds())
+    moving = np.array([_moving(factors) for _, factors in moves])
+    return Moves(rows, np.array([unit for unit, _ in moves]), moving, *_bounds())
+
+
+def _moving(factors: Iterable[int]) -> int:
+    """The segments, as bits, that move when some numbers of a pose do."""
+    found = 0
+    hanging = {HEAD: 1 << HEAD}
+    for upper, lower in CHAINS:
+        hanging |= {upper: 1 << upper | 1 << lower, lower: 1 << lower}
+    for at in factors:
+        limb = at - (ANGLE if at < RATIO else RATIO)
+        found |= hanging.get(limb, ALL_SEGMENTS) if ANGLE <= at < GIRTH else ALL_SEGMENTS
+    return found
 
 
 def _bounds() -> tuple[Vector, Vector]:

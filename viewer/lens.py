@@ -2,6 +2,7 @@
 
 from typing import Final, NamedTuple
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -45,7 +46,7 @@ def step(state: State, picture: Frame) -> tuple[State, CameraFault]:
     A sensor's noise makes every picture of its own, so one that is the same, bit for bit, for
     more than FROZEN_AFTER frames is the camera's memory and not the room.
     """
-    same = state.last is not None and np.array_equal(picture, state.last)
+    same = state.last is not None and _same(picture, state.last)
     state = State(state.room, picture, state.repeats + 1 if same else 0)
     if state.repeats > FROZEN_AFTER:
         return state, "frozen"
@@ -66,10 +67,32 @@ def _blank(room: NDArray[np.float32], picture: Frame) -> CameraFault:
 
 def _contrast(grey: NDArray[np.float32]) -> float:
     """Grey levels between the darkest and the brightest tenth."""
-    ranked = np.sort(grey, axis=None)
-    tenth = len(ranked) // 10
+    tenth = grey.size // 10
+    ranked = np.partition(grey, (tenth, grey.size - 1 - tenth), axis=None)
     return float(ranked[-1 - tenth] - ranked[tenth])
 
 
+@numba.njit(cache=True)
 def _grey(picture: NDArray[np.float32] | Frame) -> NDArray[np.float32]:
-    return picture[::STRIDE, ::STRIDE].mean(axis=2, dtype=np.float32)
+    height, width = picture.shape[:2]
+    rows, columns = (height + STRIDE - 1) // STRIDE, (width + STRIDE - 1) // STRIDE
+    grey = np.empty((rows, columns), np.float32)
+    for i in range(rows):
+        for j in range(columns):
+            pixel = picture[i * STRIDE, j * STRIDE]
+            total = np.float32(pixel[0]) + np.float32(pixel[1]) + np.float32(pixel[2])
+            grey[i, j] = total / np.float32(3)
+    return grey
+
+
+@numba.njit(cache=True)
+def _same(one: Frame, other: Frame) -> bool:
+    """Whether pictures are the same, bit for bit; the first pixels tell when they are not."""
+    if one.shape != other.shape:
+        return False
+    for y in range(one.shape[0]):
+        for x in range(one.shape[1]):
+            for c in range(3):
+                if one[y, x, c] != other[y, x, c]:
+                    return False
+    return True

@@ -14,7 +14,7 @@ from common.strokes import added, draw_segments
 from viewer.stick_costs import bend_cost, cross_cost, limb_cost, pose_cost
 from viewer.tritree import MOST_STAGES, narrowed
 
-BEAM: Final = 10
+BEAM: Final = 6
 """Upper limbs that are kept while their lower limbs are tried."""
 UPPER_STEP_DEG, LOWER_STEP_DEG = 15.0, 20.0
 SHORTENINGS: Final = np.array([1.0, 0.8, 0.5, 0.2])
@@ -47,6 +47,8 @@ class Moves(NamedTuple):
     rows: Any
     """(k, POSE_SIZE): what a move adds to the pose, times a whole number of its unit."""
     units: Vector
+    moving: Any
+    """(k,) segments that move, as bits: the others are drawn once."""
     lows: Vector
     highs: Vector
     """(POSE_SIZE,): bounds."""
@@ -82,21 +84,28 @@ def refined(
     """
     ends, bits, trial = np.empty((12, 4)), np.zeros_like(task.seen), pose.copy()
     best, matches = worth(task, pose, which, ends, bits), 1
-    probes = np.empty(3)
+    probes, rest = np.empty(3), np.zeros_like(task.seen)
+    over = (rest, bits, ends, *_rows(task.seen.shape[0]))
     for k in range(how_many):
         start = pose.copy()
         low, high = -half, half
         probes[0], probes[1], probes[2] = np.nan, best, np.nan
+        _moved(trial, start, moves, k, 0.0)
+        place_segments(task.lengths, trial, ends)
+        rest[:] = np.uint64(0)
+        still = which & ~moves.moving[k]
+        draw_segments(ends, trial, task.parts, task.depth, still, task.width, rest)
+        bits[:] = rest
+        drawn, hit = count(rest), count_both(rest, task.seen)
         for _ in range(MOST_STAGES):
             if high - low <= stop:
                 break
             for i in range(3):
                 if np.isnan(probes[i]):
-                    by = (low + i * ((high - low) // 2)) * moves.units[k]
-                    for n in range(POSE_SIZE):
-                        at = start[n] + by * moves.rows[k, n]
-                        trial[n] = min(max(at, moves.lows[n]), moves.highs[n])
-                    probes[i] = worth(task, trial, which, ends, bits)
+                    _moved(trial, start, moves, k, (low + i * ((high - low) // 2)) * moves.units[k])
+                    place_segments(task.lengths, trial, ends)
+                    probes[i] = _similar(task, trial, which & ~still, over, drawn, hit)
+                    probes[i] -= pose_cost(trial, ends, task.expected, task.trust, task.costs)
                     matches += 1
                     if probes[i] > best:
                         best = probes[i]
@@ -105,6 +114,31 @@ def refined(
                 low, high, probes[0], probes[1], probes[2]
             )
     return best, matches
+
+
+@numba.njit(cache=True)
+def _moved(trial: Any, start: Any, moves: Any, k: int, by: float) -> None:
+    """Write where a move leads, kept within the bounds."""
+    for n in range(POSE_SIZE):
+        at = start[n] + by * moves.rows[k, n]
+        trial[n] = min(max(at, moves.lows[n]), moves.highs[n])
+
+
+@numba.njit(cache=True)
+def _rows(height: int) -> Any:
+    """Room for the row intervals of a part, and for the part."""
+    return np.empty(height, np.int32), np.empty(height, np.int32), np.empty(PRIMITIVE)
+
+
+@numba.njit(cache=True)
+def _similar(task: Any, pose: Any, which: int, over: Any, rest_px: int, rest_hit: int) -> float:
+    """S of some placed segments over a drawn rest, of which the pixels and the hits are known."""
+    rest, scratch, ends, first, last, p = over
+    drawn, hit = added(
+        ends, pose, task.parts, task.depth, which, task.width, rest, task.seen, scratch,
+        first, last, p,
+    )  # fmt: skip
+    return score(rest_hit + hit, rest_px + drawn, task.seen_px)
 
 
 @numba.njit(cache=True)
@@ -122,18 +156,14 @@ def _uppers(
     task: Any, pose: Any, was: Any, upper: int, over: Any, low_deg: float, high_deg: float
 ) -> tuple[Any, int]:
     """The best places of an upper limb alone: ((BEAM, 2): worth, number), matches."""
-    rest, scratch, ends, first, last, p = over
+    rest, ends = over[0], over[2]
     rest_px, rest_hit = count(rest), count_both(rest, task.seen)
     kept = np.full((BEAM, 2), NOTHING)
     tries = (int((high_deg - low_deg) / UPPER_STEP_DEG) + 1) * SHORTENINGS.size
     for n in range(-1, tries):
         _limb_of(pose, upper, was, n, low_deg, UPPER_STEP_DEG)
         place_chain(upper, task.lengths, pose, ends)
-        drawn, hit = added(
-            ends, pose, task.parts, task.depth, 1 << upper, task.width, rest, task.seen, scratch,
-            first, last, p,
-        )  # fmt: skip
-        s = score(rest_hit + hit, rest_px + drawn, task.seen_px)
+        s = _similar(task, pose, 1 << upper, over, rest_px, rest_hit)
         s -= limb_cost(pose, task.expected, upper, task.trust, task.costs)
         worst = np.argmin(kept[:, 0])
         if s > kept[worst, 0]:
@@ -159,29 +189,28 @@ def beamed(
     Returns:
         The matches.
     """
-    lower, height, was = upper + 2, task.seen.shape[0], pose.copy()
+    lower, was = upper + 2, pose.copy()
     ends, both = np.empty((12, 4)), 1 << upper | 1 << lower
-    first, last, p = np.empty(height, np.int32), np.empty(height, np.int32), np.empty(PRIMITIVE)
     place_segments(task.lengths, pose, ends)
     rest = np.zeros_like(task.seen)
     draw_segments(ends, pose, task.parts, task.depth, which & ~both, task.width, rest)
-    scratch = rest.copy()
-    rest_px, rest_hit = count(rest), count_both(rest, task.seen)
-    over = (rest, scratch, ends, first, last, p)
+    base, scratch = rest.copy(), rest.copy()
+    over = (base, scratch, ends, *_rows(len(rest)))
     kept, matches = _uppers(task, pose, was, upper, over, low_deg, high_deg)
     best, found = NOTHING, was.copy()
     tries = (int(2.0 * bend_deg / LOWER_STEP_DEG) + 1) * SHORTENINGS.size
     for k in range(BEAM):
         _limb_of(pose, upper, was, int(kept[k, 1]), low_deg, UPPER_STEP_DEG)
         upper_cost = limb_cost(pose, task.expected, upper, task.trust, task.costs)
+        place_chain(upper, task.lengths, pose, ends)
+        base[:] = rest
+        draw_segments(ends, pose, task.parts, task.depth, 1 << upper, task.width, base)
+        scratch[:] = base
+        drawn, hit = count(base), count_both(base, task.seen)
         for n in range(-1, tries):
             _limb_of(pose, lower, was, n, pose[ANGLE + upper] - bend_deg, LOWER_STEP_DEG)
             place_chain(upper, task.lengths, pose, ends)
-            drawn, hit = added(
-                ends, pose, task.parts, task.depth, both, task.width, rest, task.seen, scratch,
-                first, last, p,
-            )  # fmt: skip
-            s = score(rest_hit + hit, rest_px + drawn, task.seen_px) - upper_cost
+            s = _similar(task, pose, 1 << lower, over, drawn, hit) - upper_cost
             s -= limb_cost(pose, task.expected, lower, task.trust, task.costs)
             s -= bend_cost(pose, upper, task.costs)
             if upper < 6:

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from common.body import POSE_INDEX, rest_pose
 from common.camera import Camera
-from common.config import Settings
-from common.messages import CameraFault, Facing, Guide, Measure, Report, ViewerNumber
+from common.config import Settings, proposes
+from common.messages import CameraFault, Facing, Guide, Measure, Pixel, Report, ViewerNumber
 from common.proportions import body_vector, stature, thesis_bdp
 from common.wire import pack
 from viewer import lens, silhouette
@@ -49,6 +49,9 @@ class State(NamedTuple):
     settings: Settings
     lens: lens.State
     silhouette: silhouette.State
+    searches: bool
+    """The pose is looked for here, angle by angle; otherwise the integrator reads it off the
+    silhouettes, and this viewer cuts out and measures only."""
     vote: Facing
     squatting: bool = False
 
@@ -66,6 +69,7 @@ def init(
         settings,
         lens.init(background),
         silhouette.init(background, settings.silhouette),
+        not proposes(settings, camera is not None),
         "facade" if viewer == 1 else "flank",
     )
 
@@ -91,9 +95,20 @@ def step(state: State, frame: Frame, guide: Guide | None) -> tuple[State, Report
     report = _outline_report(state, frame, guide, seen)
     if seen.box is None:
         return state._replace(squatting=False), report
-    figure = _followed(state, seen, known) if known is not None else _found(state, seen, guide)
     facing = guide.facing[state.viewer - 1] if guide is not None else state.vote
     measure, refusal = _opening(seen, guide, facing)
+    report = msgspec.structs.replace(report, measure=measure, refusal=refusal)
+    if state.searches:
+        return _searched(state, report, seen, guide, known)
+    return state, msgspec.structs.replace(report, root_px=near or _middle_px(seen))
+
+
+def _searched(
+    state: State, report: Report, seen: Seen, guide: Guide | None, known: Guide | None
+) -> tuple[State, Report]:
+    """The report with what the search for the pose finds: facing, position, arms, legs."""
+    facing = guide.facing[state.viewer - 1] if guide is not None else state.vote
+    figure = _followed(state, seen, known) if known is not None else _found(state, seen, guide)
     state, width_px, limits_px = _facing(state, seen, figure, known)
     figure = located(figure)
     figure, squatting = _limbs(state, figure, known, facing)
@@ -103,8 +118,6 @@ def step(state: State, frame: Frame, guide: Guide | None) -> tuple[State, Report
         upper_body_px=width_px,
         vote=state.vote,
         thresholds_px=limits_px,
-        measure=measure,
-        refusal=refusal,
         root_px=(float(figure.view[14]), float(figure.view[15])),
         angles_deg={name: float(figure.pose[POSE_INDEX[name]]) for name in names},
         squatting=squatting,
@@ -172,11 +185,18 @@ def _found(state: State, seen: Seen, guide: Guide | None) -> Figure:
     scale = (seen.box.bottom + 1 - seen.box.top) / stature(bdp)
     pose = rest_pose()
     pose[POSE_INDEX["torso_y"]] = yaw_of(facing, state.viewer)
-    columns = np.arange(seen.mask.shape[1]) + 0.5
-    middle = float(np.average(columns, weights=seen.mask.sum(axis=0)))
+    middle, _ = _middle_px(seen)
     legs_px = (bdp.r_upper_leg.height + bdp.r_lower_leg.height) * scale
     view = view_at(state.rotation, scale, (middle, seen.box.bottom + 1 - legs_px))
     return figure_of(seen.mask, body_vector(bdp), pose, view)
+
+
+def _middle_px(seen: Seen) -> Pixel:
+    """Mean column of a silhouette, and the middle of its rows."""
+    assert seen.box is not None
+    columns = np.arange(seen.mask.shape[1]) + 0.5
+    middle = float(np.average(columns, weights=seen.mask.sum(axis=0)))
+    return middle, (seen.box.top + seen.box.bottom + 1) / 2
 
 
 def _opening(seen: Seen, guide: Guide | None, facing: Facing) -> tuple[Measure | None, str]:

@@ -40,7 +40,7 @@ def fine_tuned(
     upper[round(centre_px[1]) :] = False
     seen = pack_words(upper)
     seen_px = count(seen)
-    view = view_at(np.array(PAPER_ROTATIONS[0]), 1.0, centre_px)
+    view, pose = view_at(np.array(PAPER_ROTATIONS[0]), 1.0, centre_px), rest_pose()
     # trunk radius, arm radius, arm lengths right and left (px), angles right and left (deg)
     values = [
         bdp.torso.long_radius,
@@ -52,7 +52,7 @@ def fine_tuned(
     spans = [max(1.0, values[0] / 4), max(1.0, values[1]), TIP_PX, TIP_PX, 8.0, 8.0]
 
     def score_of(trial: list[float]) -> float:
-        body, pose = body_vector(_tuned(bdp, trial)), rest_pose()
+        body = body_vector(_tuned(bdp, trial))
         pose[POSE_INDEX["r_shoulder_z"]], pose[POSE_INDEX["l_shoulder_z"]] = trial[4], trial[5]
         return float(match(body, pose, view, ABOVE_CENTRE, mask.shape[1], seen, seen_px))
 
