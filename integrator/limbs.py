@@ -20,10 +20,10 @@ STRAIGHT_DEG: Final = 12.0
 ASTRAY: Final = 3.0
 """How much worse a degree beyond a joint's limits is than a degree from the pose before."""
 
-_LOW_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[0] for name in POSE_NAMES])
-_HIGH_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[1] for name in POSE_NAMES])
+LOW_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[0] for name in POSE_NAMES])
+HIGH_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[1] for name in POSE_NAMES])
 """Limits of each parameter of a pose."""
-_SHOULDER, _ELBOW, _HIP, _KNEE = 9, 15, 17, 23
+SHOULDER, ELBOW, HIP, KNEE = 9, 15, 17, 23
 """Where the right limbs' angles begin in a pose; the left's follow each joint's."""
 
 
@@ -41,7 +41,7 @@ def pose_of(joints_m: Any, body: Any, before: Any) -> Any:
     for i in range(3):
         pose[i] = (joints_m[6, i] + joints_m[7, i]) / 2 - body[37] * trunk[i, 1]
     # theta_X, theta_Y, theta_Z of R_y R_x R_z
-    pose[3] = -math.degrees(math.asin(_cosine(trunk[1, 2])))
+    pose[3] = -math.degrees(math.asin(cosine(trunk[1, 2])))
     pose[4] = math.degrees(math.atan2(trunk[0, 2], trunk[2, 2]))
     pose[5] = math.degrees(math.atan2(trunk[1, 0], trunk[1, 1]))
     own = np.empty((12, 3))
@@ -76,16 +76,10 @@ def trunk_of(joints_m: Any) -> Any:
 def _set_arm(pose: Any, own: Any, body: Any, side: int) -> None:
     """Shoulder and elbow of one arm (0 right, 1 left), from joints in the trunk's axes."""
     shoulder, elbow, wrist = own[1 - side], own[3 - side], own[5 - side]
-    at, bend = _SHOULDER + 3 * side, _ELBOW + side
+    at = SHOULDER + 3 * side
     upper = _unit(elbow - shoulder)
-    x, z = _aim(upper, at, pose)
-    across, along, front = _framed(_unit(wrist - shoulder - body[19 + 2 * side] * upper), x, z)
-    bent = math.degrees(math.acos(_cosine(along)))
-    if bent > STRAIGHT_DEG:
-        pose[at + 1], pose[bend] = math.degrees(math.atan2(across, front)), bent
-    else:
-        pose[bend] = _turn_deg(across, along, front, pose[at + 1])
-    pose[at], pose[at + 2] = x, z
+    pose[at], pose[at + 2] = _aim(upper, at, pose)
+    bend(pose, at, ELBOW + side, _unit(wrist - shoulder - body[19 + 2 * side] * upper))
 
 
 @numba.njit(cache=True)
@@ -93,22 +87,37 @@ def _set_leg(pose: Any, own: Any, body: Any, side: int) -> None:
     """Hip and knee of one leg; the knee bends about the hip's twisted axis."""
     start, knee, ankle = own[7 - side].copy(), own[9 - side], own[11 - side]
     start[1] -= body[37]
-    at, bend = _HIP + 3 * side, _KNEE + side
+    at = HIP + 3 * side
     upper = _unit(knee - start)
-    x, z = _aim(upper, at, pose)
-    across, along, front = _framed(_unit(ankle - start - body[8 + 3 * side] * upper), x, z)
-    bent = math.degrees(math.acos(_cosine(along)))
-    if bent > STRAIGHT_DEG:
-        pose[at + 1], pose[bend] = math.degrees(math.atan2(-across, -front)), -bent
-    else:
-        pose[bend] = min(0.0, _turn_deg(across, along, front, pose[at + 1]))
-    pose[at], pose[at + 2] = x, z
+    pose[at], pose[at + 2] = _aim(upper, at, pose)
+    bend(pose, at, KNEE + side, _unit(ankle - start - body[8 + 3 * side] * upper))
 
 
 @numba.njit(cache=True)
-def _turn_deg(across: float, along: float, front: float, twist_deg: float) -> float:
+def bend(pose: Any, at: int, at_bend: int, lower: Any) -> None:
+    """Set the twist of an upper limb and the bend of the lower one, so that this points as told.
+
+    Args:
+        pose: theta_X and theta_Z of the upper limb, pose[at] and pose[at + 2], are set.
+        at: Where its angles begin.
+        at_bend: Where the bend stands: knees bend backwards, elbows forwards.
+        lower: Unit vector in the trunk's axes.
+    """
+    across, along, front = _framed(lower, pose[at], pose[at + 2])
+    bent, way = math.degrees(math.acos(cosine(along))), 1.0 if at_bend < HIP else -1.0
+    if bent > STRAIGHT_DEG:
+        pose[at + 1] = math.degrees(math.atan2(way * across, way * front))
+        pose[at_bend] = way * bent
+    else:
+        turn = turn_deg(lower, pose, at)
+        pose[at_bend] = turn if way > 0.0 else min(0.0, turn)
+
+
+@numba.njit(cache=True)
+def turn_deg(lower: Any, pose: Any, at: int) -> float:
     """How far a lower limb is turned against its upper one, about that one's twisted axis."""
-    twist = math.radians(twist_deg)
+    across, along, front = _framed(lower, pose[at], pose[at + 2])
+    twist = math.radians(pose[at + 1])
     return math.degrees(math.atan2(across * math.sin(twist) + front * math.cos(twist), along))
 
 
@@ -124,14 +133,15 @@ def _cross(a: Any, b: Any) -> Any:
 
 
 @numba.njit(cache=True)
-def _cosine(value: float) -> float:
+def cosine(value: float) -> float:
+    """The value, were it not for rounding."""
     return min(max(value, -1.0), 1.0)
 
 
 @numba.njit(cache=True)
 def _aim(axis: Any, at: int, before: Any) -> tuple[float, float]:
     """theta_X and theta_Z, degrees, that lead a limb along an axis: of two ways the likelier."""
-    x = math.degrees(math.asin(_cosine(axis[2])))
+    x = math.degrees(math.asin(cosine(axis[2])))
     z = math.degrees(math.atan2(-axis[0], axis[1]))
     one, other = (x, z % 360.0), ((180.0 - x + 180.0) % 360.0 - 180.0, (z + 180.0) % 360.0)
     if _cost(at, one[0], before) + _cost(at + 2, one[1], before) <= (
@@ -144,15 +154,16 @@ def _aim(axis: Any, at: int, before: Any) -> tuple[float, float]:
 @numba.njit(cache=True)
 def _cost(at: int, turn_deg: float, before: Any) -> float:
     """How far a parameter would turn, and how far beyond its limits."""
-    low, high = _LOW_DEG[at], _HIGH_DEG[at]
-    total = abs(_apart(turn_deg, before[at]))
+    low, high = LOW_DEG[at], HIGH_DEG[at]
+    total = abs(apart(turn_deg, before[at]))
     if not low <= turn_deg <= high:
-        total += ASTRAY * min(abs(_apart(turn_deg, low)), abs(_apart(turn_deg, high)))
+        total += ASTRAY * min(abs(apart(turn_deg, low)), abs(apart(turn_deg, high)))
     return total
 
 
 @numba.njit(cache=True)
-def _apart(one_deg: float, other_deg: float) -> float:
+def apart(one_deg: float, other_deg: float) -> float:
+    """How far an angle is beyond another, in [-180, 180)."""
     return (one_deg - other_deg + 180.0) % 360.0 - 180.0
 
 

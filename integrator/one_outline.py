@@ -2,44 +2,33 @@
 
 import math
 from collections.abc import Mapping
-from typing import Final, Literal, NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bits import count, count_both
 from common.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Bdp, Vector, rest_pose
-from common.camera import Camera, Rig, centre, project, ray
-from common.kernel import score as similarity_of
+from common.camera import Camera, Rig, centre, ray
 from common.messages import (
     Fit,
     Report,
     ViewerNumber,
 )
-from common.notes import ORIENTATIONS, Orientation
+from common.notes import Orientation
 from common.proportions import body_vector
-from common.stickman import BREADTH, GIRTH, POSE_SIZE, STATURE, Stickman
-from common.strokes import ALL_SEGMENTS, draw_segments
-from integrator import insight, propose, signs, smoothing
+from common.stickman import Stickman
+from integrator import insight, limits, matching, mirroring, propose, signs, smoothing
 from integrator.lifting import SWAPPED, Lifted, lift
 from integrator.limbs import PLACES, pose_of
-from integrator.two_outlines import packed
+from integrator.mirroring import Front
 from integrator.window import Floats
 
 UNSEEN: Final = 0.25
 """Share of its confidence that the end of a hidden segment keeps."""
 TILTED_DEG: Final = 15.0
 """A segment that leans less hardly moves with its sign."""
-SIDEWAYS_DEG: Final = 20.0
-"""Somebody who is turned so near to a right angle is seen from the side."""
 TWELVE: Final = [JOINT_NAMES.index(name) for name in PLACES]
-ACROSS: Final = [
-    [JOINT_NAMES.index(f"{side}_{name}") for side in "rl"] for name in ("shoulder", "hip")
-]
-"""The lines of the shoulders and of the hips."""
-GIRTHS: Final = (1.0, 1.15, 1.3)
-"""How thick clothed limbs may be over those of the proportions."""
 PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
 
 
@@ -67,6 +56,7 @@ class State(NamedTuple):
     memory: signs.Memory
     recall: Floats | None = None
     """What the proposals remember."""
+    front: Front = Front()
     pose: Vector | None = None
     last_s: float | None = None
     badly: int = 0
@@ -111,8 +101,10 @@ def lifted_body(state: State, report: Report, told: Inputs) -> tuple[State, Hypo
     for name, place in told.joints_px.items():
         pixels[JOINT_NAMES.index(name)] = place
     joints_m = in_room(state, pixels, lifted, px_per_m)
-    pose = _pose(state, joints_m)
-    score = fit.score if state.printed else _score(state, pixels, report)
+    pose, joints_m = _posed(state, joints_m, told)
+    score = fit.score
+    if not state.printed:
+        score = _match(state, pose, joints_m, report, turning=False).score
     depth = tuple(float(sure) for sure in choice.confidence)
     errors = tuple(float(error) for error in lifted.error_deg)
     settled = Settled(choice.orientation, choice.orientation_confidence, depth, errors)
@@ -122,58 +114,75 @@ def lifted_body(state: State, report: Report, told: Inputs) -> tuple[State, Hypo
 def proposed_body(
     state: State, report: Report, told: Inputs, dt_s: float
 ) -> tuple[State, Hypothesis | None]:
-    """What the outline proposes, the crown where the stick body has it."""
-    assert report.fit is not None
+    """What the outline proposes, or what has the same outline and agrees with all else.
+
+    None where nothing is proposed, or something that faces another side than the user says.
+    """
     seen = (report, None) if state.number == 1 else (None, report)
     rig = Rig(report.width, report.height, (state.camera, state.camera))
     known = insight.step(state.recall, state.bdp, rig, seen, dt_s)
-    if known is None or told.orientation or told.depth:
-        return state._replace(recall=None if known is None else known.memory), None
-    joints_m = np.empty((len(JOINT_NAMES), 3))
-    joints_m[insight.AT] = known.joints_m
-    joints_m[PELVIS] = known.joints_m[propose.HIPS].mean(axis=0)
-    middle = known.joints_m[propose.SHOULDERS].mean(axis=0)
-    up = (middle - joints_m[PELVIS]) / max(float(np.linalg.norm(middle - joints_m[PELVIS])), 1e-9)
-    joints_m[NECK] = middle + up * state.man.lengths[11] * state.stature_m
-    joints_m[HEAD] = _at_depth(state.camera, report.fit.joints_px[HEAD], joints_m[NECK])
+    if known is None:
+        return state._replace(recall=None), None
+    joints_m = _with_trunk(state, report, known.joints_m)
+    yaw = mirroring.yaw_deg(state.camera, joints_m)
+    front, behind = mirroring.front_of(state.front, yaw, told.orientation, dt_s)
+    state = state._replace(recall=known.memory, front=front)
+    if behind:
+        joints_m = mirroring.seen_from_behind(state.camera, joints_m)
+        yaw = mirroring.yaw_deg(state.camera, joints_m)
+    if told.orientation and not mirroring.agrees(yaw, told.orientation):
+        return state, None
+    joints_m = mirroring.leaning(state.camera, joints_m, told.depth)
     for name, place in told.joints_px.items():
         at = JOINT_NAMES.index(name)
         joints_m[at] = _at_depth(state.camera, place, joints_m[at])
-    pose = _pose(state, joints_m)
+    pose, joints_m = _posed(state, joints_m, told)
+    found = _match(state, pose, joints_m, report, turning=False)
     depth = tuple(float(sure) for sure in known.sure[LIMB_ENDS[:, 1]])
-    settled = Settled(_faces(state, joints_m), float(known.sure[PELVIS]), depth)
-    score = _score(state, project(state.camera, joints_m), report)
-    return state._replace(recall=known.memory), Hypothesis(
-        joints_m, pose, score, known.sure, settled
-    )
+    facing = told.orientation or mirroring.faces(mirroring.yaw_deg(state.camera, found.joints_m))
+    settled = Settled(facing, 1.0 if told.orientation else float(known.sure[PELVIS]), depth)
+    return state, Hypothesis(found.joints_m, found.pose, found.score, known.sure, settled)
 
 
-def _pose(state: State, joints_m: NDArray[np.float64]) -> Vector:
-    before = rest_pose() if state.pose is None else state.pose
-    return pose_of(joints_m[TWELVE], body_vector(state.bdp), before)
+def settled_body(state: State, report: Report, found: Hypothesis, told: Inputs) -> Hypothesis:
+    """The hypothesis that was taken, its parts turned to where the outline has them."""
+    turning = not told.joints_px
+    match = _match(state, found.pose, found.joints_m, report, turning)
+    return found._replace(joints_m=match.joints_m, pose=match.pose, score=match.score)
 
 
-def _score(state: State, joints_px: NDArray[np.float64], report: Report) -> float:
-    """S of a body with these joints, drawn as the stick body is, as thick as fits best."""
-    fit = report.fit
-    assert fit is not None
-    ends = np.empty((12, 4))
-    ends[: len(LIMBS)] = joints_px[LIMB_ENDS].reshape(-1, 4)
-    lines = joints_px[ACROSS]
-    ends[len(LIMBS) :] = lines.reshape(-1, 4)
-    stick = np.ones(POSE_SIZE)
-    stick[STATURE] = fit.stature_px
-    broad = 2 * state.man.lengths[10] * fit.stature_px
-    stick[BREADTH] = min(1.0, float(np.linalg.norm(lines[0, 1] - lines[0, 0])) / broad)
-    seen, found = packed(report), 0.0
-    for girth in GIRTHS:
-        stick[GIRTH] = girth
-        bits = np.zeros_like(seen)
-        draw_segments(
-            ends, stick, state.man.parts, state.man.depth, ALL_SEGMENTS, report.width, bits
-        )
-        found = max(found, float(similarity_of(count_both(bits, seen), count(bits), count(seen))))
-    return found
+def _with_trunk(state: State, report: Report, found: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The 15 joints of 12 that are proposed, the crown where the stick body has it."""
+    assert report.fit is not None
+    joints_m = np.empty((len(JOINT_NAMES), 3))
+    joints_m[insight.AT] = found
+    joints_m[PELVIS] = found[propose.HIPS].mean(axis=0)
+    middle = found[propose.SHOULDERS].mean(axis=0)
+    up = (middle - joints_m[PELVIS]) / max(float(np.linalg.norm(middle - joints_m[PELVIS])), 1e-9)
+    joints_m[NECK] = middle + up * state.man.lengths[11] * state.stature_m
+    joints_m[HEAD] = _at_depth(state.camera, report.fit.joints_px[HEAD], joints_m[NECK])
+    return joints_m
+
+
+def _posed(
+    state: State, joints_m: NDArray[np.float64], told: Inputs
+) -> tuple[Vector, NDArray[np.float64]]:
+    """The pose of joints, within the limits that joints have unless the user said where they are.
+
+    The print has limits in the picture's plane alone.
+    """
+    before, body = rest_pose() if state.pose is None else state.pose, body_vector(state.bdp)
+    pose: Vector = pose_of(joints_m[TWELVE], body, before)
+    if state.printed or told.joints_px:
+        return pose, joints_m
+    return limits.within(body, pose, before, joints_m)
+
+
+def _match(
+    state: State, pose: Vector, joints_m: NDArray[np.float64], report: Report, turning: bool
+) -> matching.Match:
+    body = body_vector(state.bdp)
+    return matching.matched(state.camera, body, state.man, report, pose, joints_m, turning)
 
 
 def in_room(
@@ -216,15 +225,3 @@ def _sure(fit: Fit, lifted: Lifted, choice: signs.Choice) -> Vector:
             own *= float(choice.confidence[limb])
         sure[far] = (sure[near] if limb > 1 else sure[far]) * own
     return sure
-
-
-def _faces(state: State, joints_m: NDArray[np.float64]) -> Orientation:
-    """Which of the six ways the body faces, from the line across its shoulders and hips."""
-    at = {name: joints_m[i] for i, name in enumerate(JOINT_NAMES)}
-    across = at["l_shoulder"] - at["r_shoulder"] + at["l_hip"] - at["r_hip"]
-    right, _, away = np.array(state.camera.R) @ across
-    forward = np.degrees(np.arctan2(away, right))
-    side: Literal["left", "right"] = "right" if forward >= 0 else "left"
-    if abs(abs(forward) - 90.0) <= SIDEWAYS_DEG:
-        return side
-    return ORIENTATIONS[ORIENTATIONS.index(side) + (4 if abs(forward) < 90.0 else 2)]

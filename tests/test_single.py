@@ -38,7 +38,7 @@ def run(video: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_run_has_all_that_the_thesis_shows(run: Path) -> None:
     """T1: background, silhouettes, poses, key frames, animation."""
     assert {path.name for path in run.iterdir()} == {
-        *("poses.npz", "summary.json", "background.png", "overlay.avi"),
+        *("poses.npz", "summary.json", "background.png", "overlay.avi", "angles.png"),
         *("body.bvh", "keyframes.bvh", "keyframes.json"),
     }
     summary = json.loads((run / "summary.json").read_text())

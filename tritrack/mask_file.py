@@ -7,7 +7,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from tritrack.one_camera import Outline, outline_of
+from tritrack.first_pass import Outline, outline_of, touches_border
 
 MAX_PIXELS: Final = 1 << 30
 """No sequence is larger: 50,000 frames at 160x120."""
@@ -66,10 +66,8 @@ def read_masks(path: Path, rate_hz: float = RATE_HZ) -> MaskSequence:
         raise MaskFileError(
             f"cannot read the masks {file_name}: {reason}; name an .npz of packed masks"
         ) from error
-    edge = np.ones(masks.shape[1:], np.bool_)
-    edge[1:-1, 1:-1] = False
     outlines = [
-        outline_of(i, i / rate_hz, mask, bool((mask & edge).any())) for i, mask in enumerate(masks)
+        outline_of(i, i / rate_hz, mask, touches_border(mask)) for i, mask in enumerate(masks)
     ]
     return MaskSequence(wanted or Path(file_name).stem, masks.shape[:0:-1], outlines)
 

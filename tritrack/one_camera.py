@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Sequence
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,41 +12,20 @@ from common.camera import PAPER_ROTATIONS, Camera
 from common.clips import Clip, shortfall
 from common.config import Settings
 from common.decoding import Decoder
-from common.footage import ClipError
 from common.messages import Body, Box, Fit, Report, ViewerNumber
 from common.notes import Notes, held
-from common.reel import Reader, Reel
+from common.reel import Reel
 from common.similarity import Mask
 from common.stickman import ADULT, THESIS
 from common.wire import pack
 from integrator import one_view
 from integrator.assumed import assumed_camera
 from integrator.one_outline import Inputs, Settled
-from viewer import silhouette, stick
+from tritrack.first_pass import Outline, outlines_of
+from viewer import stick
 from viewer.background import Background
-from viewer.capture import recorded
 from viewer.empty import room_of_clip
 from viewer.standing import standing_rows, statures_px
-
-MOST_FRAMES: Final = 50_000
-"""Outlines are kept until the standing height is known, some 10 kB each."""
-MOST_COVERED: Final = 0.5
-"""Share of the picture that no person covers in most frames; a camera that moves does."""
-
-
-class Outline(NamedTuple):
-    """The silhouette of one frame."""
-
-    frame: int
-    captured_s: float
-    bits: NDArray[np.uint8]
-    """Packed rows."""
-    somebody: bool
-    cut: bool
-
-    def mask(self, width: int) -> Mask:
-        """(H, W) True inside the person."""
-        return np.unpackbits(self.bits, axis=1, count=width).astype(np.bool_)
 
 
 class Followed(NamedTuple):
@@ -70,11 +49,6 @@ class Followed(NamedTuple):
         return joints_m @ self.turn.T * (1.0, -1.0, -1.0)
 
 
-def outline_of(frame: int, captured_s: float, mask: Mask, cut: bool) -> Outline:
-    """A silhouette, packed."""
-    return Outline(frame, captured_s, np.packbits(mask, axis=1), bool(mask.any()), cut)
-
-
 def follow_clip(clip: Clip, settings: Settings, decoder: Decoder, notes: Notes) -> Followed:
     """Track a clip of one view.
 
@@ -85,10 +59,9 @@ def follow_clip(clip: Clip, settings: Settings, decoder: Decoder, notes: Notes) 
     began = time.perf_counter()
     view = clip.views[0]
     reel = Reel(decoder)
-    room, odd = room_of_clip(view, settings.silhouette, reel)
+    room, anchor, odd = room_of_clip(view, settings.silhouette, reel)
     ready = time.perf_counter()
-    outlines = _outlines(clip, room, settings, reel)
-    _refuse_a_moving_camera(outlines, view.size, str(view.source))
+    outlines = outlines_of(clip, room, anchor, settings.silhouette, reel)
     cut_off = shortfall(view, reel.came)
     camera = clip.rig.cameras[0] if clip.rig is not None else None
     period_s = clip.every / view.fps
@@ -111,6 +84,7 @@ def follow_clip(clip: Clip, settings: Settings, decoder: Decoder, notes: Notes) 
         "frames_a_second": round(len(bodies) / max(done - ready, 1e-9), 1),
         "scale_source": "assumed" if camera is None else "calibrated",
         "stature_m": round(stature_m, 3),
+        "trembles": anchor is not None,
         "never_uncovered": round(float(room.uncertain.mean()), 4),
         "warnings": [*clip.warnings, *filter(None, (odd, cut_off, _nobody_in(bodies)))],
     }
@@ -252,31 +226,3 @@ def _inputs(notes: Notes, frame: int, scale: float) -> Inputs:
     told = held(notes, frame)
     places = {name: (u * scale, v * scale) for name, (u, v) in told.joints_px.items()}
     return Inputs(told.orientation, told.depth, places)
-
-
-def _outlines(clip: Clip, room: Background, settings: Settings, decoder: Reader) -> list[Outline]:
-    view = clip.views[0]
-    state = silhouette.init(room, settings.silhouette)
-    near: tuple[float, float] | None = None
-    found: list[Outline] = []
-    for frame in recorded(view, clip.every, decoder):
-        if len(found) >= MOST_FRAMES:
-            raise ClipError(f"{view.source} has more than {MOST_FRAMES} frames: track parts of it")
-        state, seen = silhouette.step(state, frame.picture, near)
-        near = None
-        if seen.box is not None:
-            box = seen.box
-            near = ((box.left + box.right + 1) / 2, (box.top + box.bottom + 1) / 2)
-        found.append(outline_of(frame.index, frame.captured_s, seen.mask, seen.cut))
-    return found
-
-
-def _refuse_a_moving_camera(
-    outlines: Sequence[Outline], size: tuple[int, int], source: str
-) -> None:
-    areas = [int(np.bitwise_count(o.bits).sum()) for o in outlines if o.somebody]
-    if areas and np.median(areas) > MOST_COVERED * size[0] * size[1]:
-        raise ClipError(
-            f"{source}: most of the picture changes, so its camera moves or its light does: only "
-            "videos of a camera that stands still can be tracked"
-        )

@@ -23,6 +23,7 @@ from common.footage import ClipError
 from common.notes import Notes
 from common.notes_file import NotesError, load_notes, notes_path
 from common.replacing import replacing
+from tritrack.angle_plot import angle_plot
 from tritrack.clip_paths import ClipsFailed
 from tritrack.ledger import facts_of, ledger
 from tritrack.mask_file import MaskFileError, MaskSequence, is_mask_file, read_masks
@@ -147,6 +148,7 @@ def follow(job: Job, folder: Path, decoder: Decoder, console: Console) -> dict[s
         "notes": msgspec.to_builtins(job.notes),
     }
     write_run(folder, found.bodies, job.settings, facts, extras_of(found.settled))
+    _write_bytes(folder / "angles.png", angle_plot(arrays))
     if found.room is not None:
         _write_picture(folder / "background.png", marked(found.room))
     odd = _animate(folder, arrays)
@@ -226,9 +228,12 @@ def _write_text(path: Path, text: str) -> None:
 
 
 def _write_picture(path: Path, picture: NDArray[np.uint8]) -> None:
-    _, encoded = cv2.imencode(".png", picture)
+    _write_bytes(path, cv2.imencode(".png", picture)[1].tobytes())
+
+
+def _write_bytes(path: Path, content: bytes) -> None:
     try:
         with replacing(path) as new:
-            new.write_bytes(encoded.tobytes())
+            new.write_bytes(content)
     except OSError as error:
         raise RunError(f"cannot write {path}: {error.strerror}; free some space") from error

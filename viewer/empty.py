@@ -12,7 +12,8 @@ from common.decoding import Decoder
 from common.reel import Reader
 from common.replacing import replacing
 from viewer.background import Background, is_empty_opening, learn
-from viewer.stacks import Frame
+from viewer.stacks import LUMA, Frame
+from viewer.steady import Anchor, anchored, laid, place_of
 from viewer.uncovered import is_still, learn_uncovered
 
 SAMPLE = 40
@@ -75,18 +76,25 @@ def room_of_run(
 
 def room_of_clip(
     view: View, settings: SilhouetteSettings, decoder: Reader
-) -> tuple[Background, str]:
+) -> tuple[Background, Anchor | None, str]:
     """The same, but from all over a clip where that shows all but a little of the room.
 
     Light changes through a clip, and with it more than a gain can follow; an empty opening knows
-    nothing of that. It is kept where somebody stays on the spot.
+    nothing of that. It is kept where somebody stays on the spot. The frames of a camera that
+    trembles are laid over each other first, and are to be laid over the anchor later.
     """
     room, odd = empty_room(view, settings, decoder)
-    if odd or view.background or isinstance(view.source, int):
-        return room, odd
+    if view.background or isinstance(view.source, int):
+        return room, None, odd
     _, sample = _looked_at(view, settings.empty_frames, decoder)
+    anchor = anchored(sample)
+    if anchor is not None:
+        places = [place_of(anchor, np.asarray(frame @ LUMA, np.float32)) for frame in sample]
+        return learn_uncovered(list(map(laid, sample, places))), anchor, odd
+    if odd:
+        return room, None, odd
     learnt = learn_uncovered(sample)
-    return (learnt if learnt.uncertain.mean() < LEFT_HIDDEN else room), ""
+    return (learnt if learnt.uncertain.mean() < LEFT_HIDDEN else room), None, ""
 
 
 def _now(view: View, due: int, decoder: Reader) -> list[Frame]:

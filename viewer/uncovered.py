@@ -33,6 +33,9 @@ QUIET: Final = 0.25
 ROAMS: Final = 0.55
 """Somebody whose middle moves sideways by this share of the height of where they are leaves every
 pixel for most of the clip: 0.5 to 2.0 for who crosses a picture, up to 0.5 on the spot."""
+RARELY: Final = 0.1
+"""Who is in the median picture and roams leaves the spot for more of the frames than this; what
+changes less often there is room that arms pass, whose own edges are taken for outlines."""
 LEAST_BLOB: Final = 0.2
 """Less than this share of the largest change at a place does not tell where the middle is."""
 AROUND: Final = 0.25
@@ -169,7 +172,7 @@ def _occupied(even: Floats, centre: Floats, away: Floats, stays: bool) -> Mask:
     """
     flicker = np.minimum(NOISES * np.quantile(away, QUIET, axis=0), MOST_FLICKER)
     changed = np.stack([large_regions(off > CHANGES + flicker) for off in away])
-    hidden = _in_median(even, centre, changed)
+    hidden, often = _in_median(even, centre, changed), changed.mean(axis=0) > RARELY
     gap = 2 * (centre.shape[0] // 60) + 1
     joined = cv2.dilate(changed.max(axis=0), np.ones((gap, gap), np.uint8))
     count, labels, stats, _ = cv2.connectedComponentsWithStats(joined)
@@ -177,7 +180,8 @@ def _occupied(even: Floats, centre: Floats, away: Floats, stays: bool) -> Mask:
     for number in range(1, count):
         own = labels == number
         roams = _travelled(changed, own) > ROAMS * stats[number, cv2.CC_STAT_HEIGHT]
-        places |= own & (hidden | (stays and not roams))
+        there = hidden & often if roams else hidden | stays
+        places |= own & there
     return _hulls(places)
 
 

@@ -1,0 +1,164 @@
+"""A body of one view turned joint by joint until its picture fits the outline best (3.1.4)."""
+
+import math
+from typing import Any, Final, NamedTuple
+
+import msgspec
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from common.bits import Bits, count, count_both
+from common.body import JOINT_NAMES, LIMB_ENDS, POSE_INDEX, Vector
+from common.camera import Camera, project
+from common.kernel import NEAREST_M, score, view_of
+from common.kinematics import joints
+from common.messages import Report
+from common.stickman import BREADTH, GIRTH, POSE_SIZE, STATURE, Stickman
+from common.strokes import ALL_SEGMENTS, draw_segments
+from integrator.limbs import HIGH_DEG, LOW_DEG
+from integrator.two_outlines import packed
+
+GIRTHS: Final = (1.0, 1.15, 1.3)
+"""How thick clothed limbs may be over those of the proportions."""
+GOOD: Final = 0.7
+"""A body whose S is higher is left as it is: its joints are better known than its outline."""
+LEAST_GAIN: Final = 0.001
+"""A turn that gains less in S is not made: it may be noise of the outline."""
+SHARES: Final = (1.0, 0.5, 1.0, 0.5, 0.25)
+"""Of the steps, round by round."""
+
+_TURNED: Final = (
+    *((name, 0.06) for name in "xy"),
+    *((name, 8.0) for name in ("torso_z", "torso_x")),
+    *((f"{side}_{name}", 16.0) for side in "rl" for name in ("hip_x", "hip_z", "knee_x")),
+    *((f"{side}_{name}", 16.0) for side in "rl" for name in ("shoulder_x", "shoulder_z")),
+    *((f"{side}_elbow_x", 16.0) for side in "rl"),
+)
+"""What is moved or turned, in this order, by how much at first: metres or degrees."""
+_AT: Final = np.array([POSE_INDEX[name] for name, _ in _TURNED])
+_STEPS: Final = np.array([step for _, step in _TURNED])
+_ENDS: Final = np.concatenate(
+    [LIMB_ENDS]
+    + [[[JOINT_NAMES.index(f"{side}_{name}") for side in "rl"]] for name in ("shoulder", "hip")]
+)
+"""(12, 2): joints at the ends of LIMBS, of the line of the shoulders and of that of the hips."""
+
+
+class Task(NamedTuple):
+    """What is matched with what; its members are also what the compiled functions read."""
+
+    body: Vector
+    """Body vector."""
+    lens: Vector
+    """(VIEW,)"""
+    bent_px: NDArray[np.float64]
+    """(15, 2): how far the lens moves each joint in the picture."""
+    parts: Vector
+    depth: float
+    """The Stickman's."""
+    broad_px: float
+    """The line of the shoulders of somebody who faces the camera."""
+    seen: Bits
+    seen_px: int
+    width: int
+    """The silhouette, its pixels, and the width of the picture."""
+
+
+class Match(NamedTuple):
+    """A body, and how well its picture fits."""
+
+    pose: Vector
+    joints_m: NDArray[np.float64]
+    score: float
+
+
+def matched(
+    camera: Camera,
+    body: Vector,
+    man: Stickman,
+    report: Report,
+    pose: Vector,
+    joints_m: NDArray[np.float64],
+    turning: bool,
+) -> Match:
+    """S of a body drawn as the stick body is, as thick as fits best; turned where that is low.
+
+    Args:
+        camera: Calibrated at the size of the report's picture.
+        body: Body vector.
+        man: How thick its parts are.
+        report: With a fit, which tells the stature.
+        pose: Within the limits, and stays there.
+        joints_m: (15, 3) world; they need not be where the pose's cylinders have them.
+        turning: Whether the pose may be turned.
+    """
+    assert report.fit is not None
+    task = _task(camera, body, man, report, joints_m)
+    stick = np.ones(POSE_SIZE)
+    stick[STATURE] = report.fit.stature_px
+    best, girth = 0.0, GIRTHS[0]
+    for thickness in GIRTHS:
+        stick[GIRTH] = thickness
+        value = float(_worth(task, stick, joints_m))
+        if value > best:
+            best, girth = value, thickness
+    if best >= GOOD or not turning:
+        return Match(pose, joints_m, best)
+    stick[GIRTH] = girth
+    turned, best = _climbed(task, stick, pose, joints_m)
+    return Match(turned, joints_m + joints(body, turned) - joints(body, pose), float(best))
+
+
+def _task(
+    camera: Camera, body: Vector, man: Stickman, report: Report, joints_m: NDArray[np.float64]
+) -> Task:
+    assert report.fit is not None
+    seen, view = packed(report), view_of(camera)
+    bent_px = np.zeros((len(JOINT_NAMES), 2))
+    if any(camera.distortion):
+        straight = msgspec.structs.replace(camera, distortion=())
+        bent_px = np.nan_to_num(project(camera, joints_m) - project(straight, joints_m))
+    broad_px = 2 * man.lengths[10] * report.fit.stature_px
+    return Task(
+        body, view, bent_px, man.parts, man.depth, broad_px, seen, count(seen), report.width
+    )
+
+
+@numba.njit(cache=True)
+def _climbed(task: Any, stick: Any, pose: Any, joints_m: Any) -> tuple[Any, float]:
+    """(pose, S): each parameter in turn, up and down, by smaller and smaller steps."""
+    best_pose, trial = pose.copy(), pose.copy()
+    rest = joints_m - joints(task.body, pose)
+    best = _worth(task, stick, joints_m)
+    for share in SHARES:
+        for k in range(_AT.size):
+            at = _AT[k]
+            for step in (-share * _STEPS[k], share * _STEPS[k]):
+                trial[:] = best_pose
+                trial[at] = min(max(best_pose[at] + step, LOW_DEG[at]), HIGH_DEG[at])
+                value = _worth(task, stick, rest + joints(task.body, trial))
+                if value > best + LEAST_GAIN:
+                    best = value
+                    best_pose[:] = trial
+    return best_pose, best
+
+
+@numba.njit(cache=True)
+def _worth(task: Any, stick: Any, joints_m: Any) -> float:
+    """S of the body with these joints; `stick` gets the breadth that it shows."""
+    view, ends = task.lens, np.empty((12, 4))
+    for row in range(12):
+        for end in range(2):
+            joint = _ENDS[row, end]
+            x, y, z = joints_m[joint]
+            deep = max(view[11] + view[6] * x + view[7] * y + view[8] * z, NEAREST_M)
+            right = view[9] + view[0] * x + view[1] * y + view[2] * z
+            down = view[10] + view[3] * x + view[4] * y + view[5] * z
+            ends[row, 2 * end] = right / deep * view[12] + view[14] + task.bent_px[joint, 0]
+            ends[row, 2 * end + 1] = down / deep * view[13] + view[15] + task.bent_px[joint, 1]
+    across_px = math.hypot(ends[10, 2] - ends[10, 0], ends[10, 3] - ends[10, 1])
+    stick[BREADTH] = min(1.0, across_px / task.broad_px)
+    bits = np.zeros_like(task.seen)
+    draw_segments(ends, stick, task.parts, task.depth, ALL_SEGMENTS, task.width, bits)
+    return score(count_both(bits, task.seen), count(bits), task.seen_px)

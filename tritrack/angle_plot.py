@@ -1,0 +1,46 @@
+"""The angles of a run over time, drawn: a walk shows its steps (T26)."""
+
+import io
+from collections.abc import Mapping
+from typing import Any, Final
+
+import numpy as np
+
+SHOWN: Final = {
+    "hip, forwards": "hip_x",
+    "knee": "knee_x",
+    "shoulder, forwards": "shoulder_x",
+    "elbow": "elbow_x",
+}
+"""What each row of the plot shows of both sides."""
+SIDES: Final = {"left": "tab:blue", "right": "tab:orange"}
+
+
+def angle_plot(poses: Mapping[str, Any]) -> bytes:
+    """A PNG of the joints' angles.
+
+    Args:
+        poses: The arrays of `poses.npz`: `time_s`, `angles_deg`, `angle_names`.
+    """
+    from matplotlib.figure import Figure
+
+    names = [str(name) for name in poses["angle_names"]]
+    figure = Figure(figsize=(9.0, 8.0), layout="constrained")
+    rows = figure.subplots(len(SHOWN), sharex=True)
+    for axes, (title, joint) in zip(rows, SHOWN.items(), strict=True):
+        for side, colour in SIDES.items():
+            angle_deg = poses["angles_deg"][:, names.index(f"{side[0]}_{joint}")]
+            axes.plot(poses["time_s"], angle_deg, color=colour, label=side)
+        axes.set(ylabel=f"{title}, deg")
+        axes.grid(alpha=0.3)
+    rows[0].legend(loc="upper right")
+    rows[-1].set(xlabel="time, s", xlim=_span(np.asarray(poses["time_s"])))
+    drawn = io.BytesIO()
+    figure.savefig(drawn, format="png", dpi=100)
+    return drawn.getvalue()
+
+
+def _span(time_s: Any) -> tuple[float, float]:
+    """From the first to the last moment; something to draw on where that is one."""
+    first, last = (float(time_s[0]), float(time_s[-1])) if len(time_s) else (0.0, 0.0)
+    return first, max(last, first + 0.1)
