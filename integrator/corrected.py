@@ -19,6 +19,9 @@ from integrator.two_outlines import Outlines, outlines_of
 
 POOR: Final = 0.6
 """A proposal of less S in either view is matched: of r01's and r04's every twentieth is."""
+SURE: Final = 0.75
+"""A proposal whose landmarks are surer than this on average is left as it is: cylinders that match
+better than it stand farther from the true joints of r01 and r04."""
 BETTER: Final = 1.25
 """How many times better S1 S2 must be for a matched pose to go on."""
 DOUBT: Final = 6.0
@@ -106,10 +109,11 @@ def instead(
         seen: Both views' reports.
 
     Returns:
-        None where the proposed pose matches well, and where one view alone shows somebody.
+        None where the proposed pose is sure or matches well, and where one view alone shows
+        somebody.
     """
     first, second = seen
-    if first is None or second is None:
+    if first is None or second is None or sure.mean() >= SURE:
         return None
     outlines = outlines_of(rig, (first, second))
     wanted = Wanted(body, outlines, joints(body, proposed), 0.5 / spread_m(sure) ** 2)

@@ -125,7 +125,7 @@ def test_the_summary_tells_what_the_contract_names(run: Path) -> None:
     assert told["scale_source"] == "calibrated"
     assert {"preparation", "viewers", "integrator", "all"} <= set(told["seconds"])
     assert sum(told["status"].values()) == N
-    assert told["matches_a_frame"] > 10
+    assert told["matches_a_frame"] == 0  # joints are proposed: no view searches for them
     assert told["warnings"] == []
     assert {"tritrack", "numpy", "opencv-python-headless", "python"} <= set(told["versions"])
     assert told["settings"]["size"] == "160x120"
