@@ -41,16 +41,12 @@ def joint(body: Body, name: str) -> Vector:
     return np.array(body.joints_m[JOINT_NAMES.index(name)])
 
 
-@pytest.mark.parametrize(
-    ("name", "limb"),
-    [("r_hip_x", ("r_hip", "r_knee")), ("l_shoulder_x", ("l_shoulder", "l_elbow"))],
-)
-def test_a_limb_that_points_to_the_camera_keeps_doing_so(name: str, limb: tuple[str, str]) -> None:
+def test_a_leg_that_points_to_the_camera_keeps_doing_so() -> None:
     """Its outline would be the same if it pointed away: the sign of its depth is remembered."""
-    lifted = standing(**{name: 60.0})
+    lifted = standing(r_hip_x=60.0)
     stage = met(*between(standing(), lifted, 6), lifted)
     for body in lone(stage, [lifted] * 12):
-        assert (joint(body, limb[1]) - joint(body, limb[0]))[2] > 0.0
+        assert (joint(body, "r_knee") - joint(body, "r_hip"))[2] > 0.0
 
 
 def test_who_walks_towards_the_only_camera_left_is_followed_by_the_feet() -> None:

@@ -137,6 +137,21 @@ def test_two_views_resume_with_the_body_that_was_measured() -> None:
     assert np.allclose(after.joints_m, before.joints_m, atol=0.05)
 
 
+def test_arms_that_point_to_the_only_camera_left_keep_doing_so() -> None:
+    """Their outline would be the same if they pointed away: the sign of their depth is kept."""
+    did, stage = shown("squat_arms_forward"), default()
+    reach_m = did.joints_m[:, [2, 3], 2] - did.joints_m[:, [0, 1], 2]
+    lost = int(np.argmax(reach_m.min(axis=1) > 0.2))
+    for pair in did.masks[: lost + 2]:
+        stage.see(pair)
+    alone = [stage.see((first, None)) for first, _ in did.masks[lost + 2 : lost + 14]]
+    found = np.array([joints(told) for told in alone])
+    kept = found[:, [2, 3], 2] - found[:, [0, 1], 2]
+    held = reach_m[lost + 2 : lost + 14] > 0.15
+    assert held.sum() > 12
+    assert (kept[held] > 0.0).all()
+
+
 def test_a_turn_to_camera_2_exchanges_facade_and_flank() -> None:
     """P47-P49: exactly one facade at any time; theta_Y^T follows to -90."""
     turn = np.array([[0.0, 0.4, 0.8, 1.0], [0.0, 0.0, -90.0, -90.0]])
