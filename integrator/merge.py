@@ -41,16 +41,20 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
     position and angles are fused (P50-P54) and smoothed; the viewers are told BDPs, positions
     and facing for their next frame (P2).
 
-    In `default` mode outlines that fit badly are looked at again, without what is no part of the
-    person, and so are those after them.
+    In `default` mode outlines of which no pose is sure and that fit badly are looked at again,
+    without what is no part of the person, and so are those after them.
     """
     clean, strays = _of_one_piece(state, pair) if state.doubted else (pair, False)
     after, body, guide = _merged(state, clean)
-    if min(body.score) < corrected.POOR and not state.doubted:
+    if not state.doubted and _is_doubtful(after, body):
         clean, strays = _of_one_piece(state, pair)
         after, body, guide = _merged(state, clean) if strays else (after, body, guide)
-    doubted = strays or min(body.score) < corrected.POOR
-    return after._replace(doubted=doubted), body, guide
+    return after._replace(doubted=strays or _is_doubtful(after, body)), body, guide
+
+
+def _is_doubtful(state: State, body: Body) -> bool:
+    known = state.insight
+    return min(body.score) < corrected.POOR and not (known and known.sure.mean() >= corrected.SURE)
 
 
 def _merged(state: State, pair: Pair) -> tuple[State, Body, Guide]:
