@@ -6,7 +6,7 @@ from posing import posed
 from rolling import BODY, ROLLED, on_one_leg, outlines, told
 from scipy.stats import maxwell
 
-from common.body import LIMITS_DEG, POSE_INDEX, Vector
+from common.body import JOINT_NAMES, LIMITS_DEG, POSE_INDEX, Vector
 from common.kernel import match, view_of
 from common.kinematics import ALL_LIMBS, joints
 from common.proportions import body_vector
@@ -83,17 +83,33 @@ def test_one_view_alone_matches_nothing() -> None:
 
 
 def test_joints_that_are_sure_stay_where_they_are() -> None:
-    """An arm that the outlines lost is not looked for where it is surely not."""
-    truth = on_one_leg()
-    proposed = truth.copy()
-    proposed[POSE_INDEX["torso_z"]] += 12.0
-    seen = seen_as(truth)
-    sure = np.full(15, 0.999)
+    """A leg that the outlines lost is not looked for where it is surely not."""
+    proposed, seen = _bent_over(), seen_as(on_one_leg())
+    legs = np.array(["knee" in name or "ankle" in name for name in JOINT_NAMES])
+    sure = np.where(legs, 0.999, UNSURE)
+    assert sure.mean() < corrected.SURE
     held = corrected.instead(proposed, sure, proposed, False, VECTOR, ROLLED, seen)
     free = corrected.instead(proposed, UNSURE, proposed, False, VECTOR, ROLLED, seen)
     assert held is not None
     assert free is not None
-    assert error_m(held, proposed) < error_m(free, proposed)
+    moved_m = [
+        np.linalg.norm(joints(VECTOR, pose)[legs] - joints(VECTOR, proposed)[legs], axis=1).mean()
+        for pose in (held, free)
+    ]
+    assert moved_m[0] < moved_m[1]
+
+
+def test_a_proposal_that_is_sure_is_left_as_it_is() -> None:
+    """However badly it matches: cylinders are no people."""
+    proposed, seen = _bent_over(), seen_as(on_one_leg())
+    sure = np.full(15, corrected.SURE)
+    assert corrected.instead(proposed, sure, proposed, True, VECTOR, ROLLED, seen) is None
+
+
+def _bent_over() -> Vector:
+    proposed = on_one_leg()
+    proposed[POSE_INDEX["torso_z"]] += 12.0
+    return proposed
 
 
 def test_the_same_instant_gives_the_same_pose() -> None:
