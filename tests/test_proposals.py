@@ -10,7 +10,8 @@ from rich.console import Console
 from integrator import propose
 from integrator.window import Look
 from synth.outlines import AT_LARGE, ORDINARY, outlines
-from tritrack.proposals import Example, example, example_of, learnt, train_proposals
+from tritrack.lessons import Example, example, example_of
+from tritrack.proposals import learnt, train_proposals
 from tritrack.training import TrainingError
 
 QUIET = Console(quiet=True)
