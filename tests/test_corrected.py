@@ -1,5 +1,8 @@
 """Poses matched where the proposed one fits badly, held against outlines of a known pose (L1)."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from posing import posed
@@ -14,6 +17,14 @@ from integrator import corrected
 from integrator.two_outlines import outlines_of
 
 VECTOR = body_vector(BODY)
+REHEARSED = """
+from common.config import Settings
+from integrator import corrected, hull
+from integrator.merge_rehearsal import rehearse
+rehearse(Settings(), (160, 120))
+for compiled in (hull._carve, hull._largest, corrected._astray):
+    print(len(compiled.signatures))
+"""
 UNSURE = np.full(15, 0.05)
 
 
@@ -148,3 +159,11 @@ def test_pictures_of_two_sizes_are_matched_as_those_of_one() -> None:
     assert np.array_equal(whole.seen, other.seen)
     assert whole.seen_px.tolist() == other.seen_px.tolist()
     assert whole.width == other.width
+
+
+def test_a_rehearsal_compiles_what_a_doubtful_pose_needs() -> None:
+    """In a process of its own: nothing is left to compile in the middle of a live run."""
+    told = subprocess.run(
+        [sys.executable, "-c", REHEARSED], capture_output=True, text=True, check=True, timeout=300
+    )
+    assert told.stdout.split() == ["1", "1", "1"]
