@@ -12,7 +12,8 @@ from animator.scene import Snapshot
 from common.bus import Bus, open_client
 from common.camera import Rig
 from common.config import Settings
-from common.messages import Body, Cameras, Picture, Posture, Pulse, Report
+from common.housekeeping import Cameras, Pulse
+from common.messages import Body, Picture, Posture, Report
 from common.process import READY_S, Heart, Place, process
 from common.rate import Pace
 

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from animator.turns import quaternions
 from common.body import JOINT_NAMES, LIMBS, Bdp, Elliptic, Round, Vector
 from common.camera import Camera, Rig, centre
+from common.housekeeping import Pulse
 from common.kinematics import HEAD, TORSO, limb_frames
-from common.messages import Body, Performance, Picture, Posture, Pulse, Report
+from common.messages import Body, Performance, Picture, Posture, Report
 from common.proportions import body_vector
 
 Colour = tuple[int, int, int]

@@ -4,8 +4,9 @@ import logging
 from collections.abc import Callable
 from typing import Final, Generic, NamedTuple
 
+from common.housekeeping import ClockQuestion
 from common.mailbox import Mailbox
-from common.messages import ClockQuestion, Message
+from common.messages import Message
 from common.wire import TOPICS, MalformedMessage, Said, decode, key_of, pattern_of
 
 QUESTIONS: Final[dict[type[Message], str]] = {ClockQuestion: "tritrack/{room}/clock"}

@@ -15,7 +15,7 @@ import cv2
 import psutil
 
 from common.bus import Bus
-from common.messages import Pulse
+from common.housekeeping import Pulse
 from common.rate import Pace
 
 BEAT_S: Final = 1.0

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from common.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES, Bdp, Elliptic, Round
 from common.camera import Camera, Rig
+from common.housekeeping import Cameras, Ended, Pulse
 from common.messages import (
     PROTOCOL,
     Body,
-    Cameras,
-    Ended,
     Fit,
     Guide,
     Measure,
@@ -22,7 +21,6 @@ from common.messages import (
     Performance,
     Picture,
     Posture,
-    Pulse,
     Report,
 )
 

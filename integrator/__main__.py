@@ -7,17 +7,10 @@ import time
 from typing import Final
 
 from common.bus import Bus, open_hub
-from common.clips import Clip
+from common.clip_facts import Clip
 from common.config import Settings
-from common.messages import (
-    Cameras,
-    ClockAnswer,
-    ClockQuestion,
-    Ended,
-    Guide,
-    Report,
-    ViewerNumber,
-)
+from common.housekeeping import Cameras, ClockAnswer, ClockQuestion, Ended
+from common.messages import Guide, Report, ViewerNumber
 from common.process import Heart, Place, process
 from common.rate import Pace
 from integrator import merge, noticing, pairing, presence

@@ -6,7 +6,8 @@ from typing import TypeVar
 
 import msgspec
 
-from common.camera import CalibrationError, Rig
+from common.camera import Rig
+from common.rig_file import CalibrationError
 from integrator.markers import Aim, Markers, line_markers
 from integrator.poles import Poles, Quality, poles
 

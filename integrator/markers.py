@@ -8,8 +8,8 @@ import msgspec
 import numpy as np
 
 from common.body import Vector
-from common.camera import CalibrationError
 from common.messages import Pixel
+from common.rig_file import CalibrationError
 
 Positive = Annotated[float, msgspec.Meta(gt=0)]
 PositiveCount = Annotated[int, msgspec.Meta(gt=0)]

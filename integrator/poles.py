@@ -6,8 +6,9 @@ import msgspec
 import numpy as np
 
 from common.body import Vector
-from common.camera import CalibrationError, Rig, paper_rig
+from common.camera import Rig, paper_rig
 from common.messages import Pixel
+from common.rig_file import CalibrationError
 
 Positive = Annotated[float, msgspec.Meta(gt=0)]
 PositiveCount = Annotated[int, msgspec.Meta(gt=0)]

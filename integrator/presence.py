@@ -2,7 +2,8 @@
 
 from typing import Final, NamedTuple, TypeVar
 
-from common.messages import CameraFault, Ended, Report, ViewerNumber
+from common.housekeeping import Ended
+from common.messages import CameraFault, Report, ViewerNumber
 from common.rate import silent
 
 Item = TypeVar("Item")

@@ -13,7 +13,8 @@ from animator.page.live import LivePage
 from animator.scene import Figure, Snapshot
 from common.body import POSE_INDEX, Vector, rest_pose
 from common.camera import Camera, paper_rig
-from common.messages import Body, Posture, Pulse, Report
+from common.housekeeping import Pulse
+from common.messages import Body, Posture, Report
 from common.proportions import thesis_bdp
 from common.wire import pack
 

@@ -16,9 +16,10 @@ from local_bus import LocalBus
 
 from common.bus import Bus, BusError, open_client, open_hub
 from common.config import BusSettings
+from common.housekeeping import ClockAnswer, ClockQuestion, Pulse
 from common.inbox import BOUND, Alive, Inbox
 from common.mailbox import Mailbox
-from common.messages import ClockAnswer, ClockQuestion, Guide, Picture, Posture, Pulse, Report
+from common.messages import Guide, Picture, Posture, Report
 from common.wire import MAX_BYTES, encode
 
 ROOM = "hall"

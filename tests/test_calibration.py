@@ -5,7 +5,8 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from common.camera import CalibrationError, as_paper_rig, load_rig
+from common.camera import as_paper_rig
+from common.rig_file import CalibrationError, load_rig
 from integrator.calibration import run_markers, run_poles
 from integrator.poles import Quality
 

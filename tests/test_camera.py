@@ -14,20 +14,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from common.camera import (
-    CalibrationError,
     Camera,
     Rig,
     as_matrix,
     as_paper_rig,
     as_row,
     centre,
-    check_rig,
-    fitted,
-    load_rig,
     paper_rig,
     project,
     ray,
 )
+from common.rig_file import CalibrationError, check_rig, fitted, load_rig
 
 LENS = (-0.2, 0.06, 0.001, -0.002, 0.0)
 places = st.tuples(st.floats(-1.5, 1.5), st.floats(0.0, 2.0), st.floats(-1.5, 1.5))

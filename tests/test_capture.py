@@ -13,7 +13,7 @@ import numpy as np
 import psutil
 import pytest
 
-from common.clips import View
+from common.clip_facts import View
 from common.decoding import (
     FRAME,
     HEADER,

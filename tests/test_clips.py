@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from common.camera import paper_rig, project
-from common.clips import Clip, ClipError, View, open_clip, shortfall
+from common.clip_facts import Clip, View, shortfall
+from common.clips import ClipError, open_clip
 from common.config import CameraSettings, Settings
 from common.decoding import Decoder
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from spoiling import Film, copied, film_of, refilmed, write_film
 
-from common.clips import View, open_clip
+from common.clip_facts import View
+from common.clips import open_clip
 from common.config import CameraSettings, Settings, SilhouetteSettings
 from common.decoding import Decoded, Decoder
 from viewer.background import Background

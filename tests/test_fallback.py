@@ -21,7 +21,8 @@ from spoiling import Film, copied, edit_json, refilmed
 
 from common.bus import BusError, open_client
 from common.config import BusSettings, PageSettings, Settings
-from common.messages import Body, Pulse, Views
+from common.housekeeping import Pulse
+from common.messages import Body, Views
 from tritrack import session
 from tritrack.offline import Decoders, track_clip
 from tritrack.parts import Part, live_parts

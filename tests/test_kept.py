@@ -1,6 +1,6 @@
 """What a live run keeps of what was said: the newest, as it was said."""
 
-from common.messages import Pulse
+from common.housekeeping import Pulse
 from tritrack.kept import Kept
 
 

@@ -9,8 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from common.body import Vector
-from common.camera import CalibrationError, Camera, as_matrix, as_row, centre, paper_rig, project
+from common.camera import Camera, as_matrix, as_row, centre, paper_rig, project
 from common.messages import Pixel
+from common.rig_file import CalibrationError
 from integrator.markers import MarkerView, line_markers
 
 SIZE = (160, 120)

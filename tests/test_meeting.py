@@ -11,20 +11,12 @@ from staging import report
 
 from common.bus import Bus, open_client, open_hub
 from common.camera import paper_rig
-from common.clips import View
+from common.clip_facts import View
 from common.config import BusSettings, PageSettings, Settings
 from common.decoding import DecoderDied
+from common.housekeeping import Cameras, ClockAnswer, ClockQuestion, Ended, Pulse
 from common.inbox import BOUND
-from common.messages import (
-    Body,
-    Cameras,
-    ClockAnswer,
-    ClockQuestion,
-    Ended,
-    Guide,
-    Message,
-    Pulse,
-)
+from common.messages import Body, Guide, Message
 from integrator import __main__ as integrator
 from integrator import merge
 from tritrack.launch import Ears, nothing_heard

@@ -17,7 +17,8 @@ from animator.page.panel import (
     views_table,
 )
 from common.body import rest_pose
-from common.messages import Body, Performance, Posture, Pulse, Report, Status
+from common.housekeeping import Pulse
+from common.messages import Body, Performance, Posture, Report, Status
 
 LIKELIHOODS = {"squat": -90.5, "walk_in_place": -61.25, "kick_left_side": -140.0}
 

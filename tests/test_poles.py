@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.camera import CalibrationError, Rig, as_paper_rig, paper_rig, project
+from common.camera import Rig, as_paper_rig, paper_rig, project
+from common.rig_file import CalibrationError
 from integrator.poles import Pole, Poles, Quality, poles
 
 SIZE = (160, 120)

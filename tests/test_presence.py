@@ -3,7 +3,8 @@
 import pytest
 from staging import report
 
-from common.messages import CameraFault, Ended, ViewerNumber
+from common.housekeeping import Ended
+from common.messages import CameraFault, ViewerNumber
 from integrator.presence import (
     GONE_S,
     MOST_NEWS,

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from local_bus import LocalBus
 
-from common.messages import Pulse
+from common.housekeeping import Pulse
 from common.process import BEAT_S, Heart, Place, process, start_log
 from common.rate import Pace
 

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.messages import Ended, Pulse, Report
+from common.housekeeping import Ended, Pulse
+from common.messages import Report
 from common.rate import WINDOW, Pace, silent, wait_until
 from common.wire import TOPICS
 

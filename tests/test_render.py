@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from common.camera import Rig, load_rig, project
+from common.camera import Rig, project
+from common.rig_file import load_rig
 from synth.exposure import default_rig, exposures
 from synth.mesh import body_mesh
 from synth.motions import EMPTY, MOTION, POSTURES, Motion, performance

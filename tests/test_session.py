@@ -16,7 +16,8 @@ from rich.console import Console
 from spoiling import copied, cut_off, uncalibrated
 
 from common.config import PageSettings, Settings
-from common.messages import Posture, Pulse
+from common.housekeeping import Pulse
+from common.messages import Posture
 from tritrack.session import LiveRefused, free_settings, live, performed, warnings_of
 
 

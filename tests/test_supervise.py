@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from common.messages import Pulse
+from common.housekeeping import Pulse
 from tritrack.parts import Part
 from tritrack.supervise import BACK_OFF_S, TRIES, PartFailed, Watched, watched
 

@@ -5,7 +5,7 @@ import io
 import pytest
 from rich.console import Console
 
-from common.messages import Pulse
+from common.housekeeping import Pulse
 from tritrack.table import table_of, table_of_rows
 from tritrack.terminal import bar, complain, json_text, warn
 

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from common.camera import Camera, Rig, as_matrix, as_row, centre, fitted, paper_rig, project
+from common.camera import Camera, Rig, as_matrix, as_row, centre, paper_rig, project
+from common.rig_file import fitted
 from integrator.window import BESIDE, CELLS, axes_of, look
 
 RIG = paper_rig((640, 480), (800.0, 800.0), (4.5, 4.5))

@@ -12,14 +12,11 @@ from hypothesis.extra import numpy as shapes
 from common import messages
 from common.body import ANGLE_NAMES, JOINT_NAMES, POSE_NAMES, rest_pose
 from common.camera import paper_rig
+from common.housekeeping import Cameras, ClockAnswer, ClockQuestion, Ended, Pulse
 from common.messages import (
     PROTOCOL,
     Body,
     Box,
-    Cameras,
-    ClockAnswer,
-    ClockQuestion,
-    Ended,
     Fit,
     Guide,
     Measure,
@@ -27,7 +24,6 @@ from common.messages import (
     Moment,
     Picture,
     Posture,
-    Pulse,
     Report,
 )
 from common.proportions import thesis_bdp

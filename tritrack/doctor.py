@@ -143,7 +143,7 @@ def _decoder() -> Finding:
 def _bus() -> Finding:
     from common.bus import open_client, open_hub
     from common.config import BusSettings
-    from common.messages import ClockAnswer, ClockQuestion
+    from common.housekeeping import ClockAnswer, ClockQuestion
 
     with socket.socket() as door:
         door.bind(("127.0.0.1", 0))

@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.clips import Clip
+from common.clip_facts import Clip
 from common.config import SilhouetteSettings
 from common.footage import ClipError
 from common.messages import Box

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 
-from common.clips import Clip
+from common.clip_facts import Clip
 from common.config import SilhouetteSettings
 from common.messages import ViewerNumber
 from common.reel import Reader

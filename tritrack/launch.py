@@ -9,7 +9,8 @@ from typing import Final, NamedTuple
 
 from common.bus import Bus, BusError, open_client
 from common.config import Settings
-from common.messages import Body, Cameras, Posture, Pulse
+from common.housekeeping import Cameras, Pulse
+from common.messages import Body, Posture
 from common.process import READY_S
 from tritrack.kept import Kept
 from tritrack.parts import Part

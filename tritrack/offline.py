@@ -13,7 +13,8 @@ from rich.console import Console
 from common import config
 from common.body import Bdp
 from common.camera import Rig
-from common.clips import Clip, open_clip, shortfall
+from common.clip_facts import Clip, shortfall
+from common.clips import open_clip
 from common.config import Mode, Settings, SettingsError
 from common.decoding import Decoder, DecoderDied, Undecodable
 from common.footage import ClipError

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from common.body import LIMBS
 from common.camera import PAPER_ROTATIONS, Camera
-from common.clips import Clip, shortfall
+from common.clip_facts import Clip, shortfall
 from common.config import Settings
 from common.decoding import Decoder
 from common.messages import Body, Box, Fit, Report, ViewerNumber

@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from common.clips import View, open_clip
+from common.clip_facts import View
+from common.clips import open_clip
 from common.config import Settings
 from common.similarity import Mask
 from tritrack.accuracy import Arrays, Floats

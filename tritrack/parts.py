@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any, Final, NamedTuple
 
-from common.clips import Clip
+from common.clip_facts import Clip
 from common.config import Settings
 from common.process import Place
 

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from rich.console import Console
 
 from animator.take import Take, take_of
-from common.clips import Clip, open_clip
+from common.clip_facts import Clip
+from common.clips import open_clip
 from common.config import CameraSettings, Settings, working_size
 from common.decoding import Decoder
 from common.footage import ClipError

@@ -15,9 +15,11 @@ import msgspec
 from rich.console import Console
 from rich.live import Live as LiveDisplay
 
-from common.clips import Clip, open_clip
+from common.clip_facts import Clip
+from common.clips import open_clip
 from common.config import BusSettings, PageSettings, Settings
-from common.messages import Posture, Pulse
+from common.housekeeping import Pulse
+from common.messages import Posture
 from common.process import Place, logged
 from recognizer.__main__ import model_of
 from tritrack.launch import Heard, nothing_heard, run

@@ -7,7 +7,7 @@ from typing import Final, Literal
 
 import msgspec
 
-from common.messages import Pulse
+from common.housekeeping import Pulse
 from common.rate import silent
 from common.wire import TOPICS
 from tritrack.parts import Part, end, last_words, started

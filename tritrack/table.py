@@ -6,7 +6,7 @@ from typing import Final
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
-from common.messages import Pulse
+from common.housekeeping import Pulse
 
 COLUMNS: Final = (
     ("process", "left"),

@@ -9,7 +9,8 @@ import msgspec
 import numpy as np
 
 from common.camera import project
-from common.clips import View, open_clip
+from common.clip_facts import View
+from common.clips import open_clip
 from common.config import Settings
 from common.decoding import Picture
 from tritrack.accuracy import INDEX, JOINTS, Arrays, Compared, Floats

@@ -8,18 +8,13 @@ from typing import Final
 
 from common import clock
 from common.bus import Bus, open_client
-from common.clips import View, open_clip, shortfall
+from common.clip_facts import View, shortfall
+from common.clips import open_clip
 from common.config import Settings
 from common.decoding import Decoder, DecoderDied
+from common.housekeeping import ClockAnswer, ClockQuestion, Ended
 from common.inbox import Inbox
-from common.messages import (
-    ClockAnswer,
-    ClockQuestion,
-    Ended,
-    Guide,
-    Picture,
-    ViewerNumber,
-)
+from common.messages import Guide, Picture, ViewerNumber
 from common.process import READY_S, Heart, Place, process
 from common.rate import Pace
 from viewer import track

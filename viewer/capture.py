@@ -7,7 +7,7 @@ from typing import Final, NamedTuple, Self
 
 import msgspec
 
-from common.clips import View
+from common.clip_facts import View
 from common.decoding import Decoded, Decoder, Picture
 from common.mailbox import Mailbox
 from common.rate import Clock, wait_until

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common.clips import View
+from common.clip_facts import View
 from common.config import SilhouetteSettings
 from common.decoding import Decoder
 from common.reel import Reader
