@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as shapes
 
-from common import messages
+from common import housekeeping, messages
 from common.body import ANGLE_NAMES, JOINT_NAMES, POSE_NAMES, rest_pose
 from common.camera import paper_rig
 from common.housekeeping import Cameras, ClockAnswer, ClockQuestion, Ended, Pulse
@@ -107,7 +107,8 @@ SAID: list[Message] = [
 
 def kinds() -> list[type[Message]]:
     """Every class of message that can be said: those that no other message is made from."""
-    found = [kind for kind in vars(messages).values() if isinstance(kind, type)]
+    said = {**vars(messages), **vars(housekeeping)}.values()
+    found = [kind for kind in said if isinstance(kind, type)]
     return [kind for kind in found if issubclass(kind, Message) and kind not in (Message, Moment)]
 
 
