@@ -32,7 +32,7 @@ import msgspec
 import numpy as np
 
 from common import config
-from integrator import adapting, hypotheses, insight, matched, merge, telling
+from integrator import adapting, hypotheses, insight, merge, searched, telling
 from tritrack.accuracy import compare, summary
 from tritrack.offline import Decoders, overridden, track_clip
 from tritrack.runs import poses
@@ -101,9 +101,9 @@ POSES = (
         "facing by sizes at the same distance",
         (
             (
-                matched,
+                searched,
                 "arbitrate",
-                lambda one, other, _, real=matched.arbitrate: real(one, other, 1.0),
+                lambda one, other, _, real=searched.arbitrate: real(one, other, 1.0),
             ),
         ),
     ),

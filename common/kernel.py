@@ -31,6 +31,19 @@ VIEW: Final = 17
 
 
 @numba.njit(cache=True)
+def seen_at(view: Any, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """(u, v, depth): where a view without distortion shows a place of the world, pixels, metres.
+
+    What is nearer than NEAREST_M, or behind the camera, is shown as if it were so near.
+    """
+    depth = view[6] * x + view[7] * y + view[8] * z + view[11]
+    across = view[0] * x + view[1] * y + view[2] * z + view[9]
+    down = view[3] * x + view[4] * y + view[5] * z + view[10]
+    share = 1.0 / max(depth, NEAREST_M)
+    return across * share * view[12] + view[14], down * share * view[13] + view[15], depth
+
+
+@numba.njit(cache=True)
 def score(hit: int, drawn: int, seen: int) -> float:
     """S of eq. (1) from counts of pixels: in both, in the model, in the silhouette (P9)."""
     union = drawn + seen - hit

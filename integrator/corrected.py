@@ -9,11 +9,12 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import LIMITS_DEG, POSE_INDEX, POSE_NAMES, Vector, rest_pose
+from common.body import POSE_INDEX, POSE_NAMES, Vector, rest_pose
 from common.camera import Rig
 from common.kernel import match
 from common.kinematics import ALL_LIMBS, joints
 from integrator.hypotheses import products
+from integrator.limbs import HIGH_DEG, LOW_DEG
 from integrator.pairing import Seen
 from integrator.two_outlines import Outlines, outlines_of
 
@@ -66,8 +67,6 @@ _WITHIN: Final = (
     ),
 )
 """Radii in standard deviations, and how probably a point of a round normal cloud is within."""
-_LOW: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[0] for name in POSE_NAMES])
-_HIGH: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[1] for name in POSE_NAMES])
 _DRAWS: Final = np.random.default_rng(1).standard_normal((ROUNDS, SAMPLES, len(POSE_NAMES)))
 """The same at every instant, so that a run can be repeated."""
 
@@ -113,7 +112,7 @@ def instead(
         somebody.
     """
     first, second = seen
-    if first is None or second is None or sure.mean() >= SURE:
+    if first is None or second is None or is_sure(sure):
         return None
     outlines = outlines_of(rig, (first, second))
     wanted = Wanted(body, outlines, joints(body, proposed), 0.5 / spread_m(sure) ** 2)
@@ -126,6 +125,11 @@ def instead(
         return pose
     refuted = wanted._replace(tightness=np.zeros(len(sure)))
     return _searched(pose, before, refuted)
+
+
+def is_sure(sure: Vector) -> bool:
+    """Whether a proposal, by its (15,) landmarks' sureness, is left as it is."""
+    return bool(sure.mean() >= SURE)
 
 
 def _held(proposed: Vector, before: Vector, wanted: Wanted) -> Vector | None:
@@ -159,7 +163,7 @@ def climbed(start: Vector, wider: float, wanted: Wanted) -> tuple[Vector, float]
     middle, spread = start, wider * SPREAD
     best, likely = start, float(likelihoods(start[None], wanted)[0])
     for draws in _DRAWS:
-        poses: NDArray[np.float64] = np.clip(middle + draws * spread, _LOW, _HIGH)
+        poses: NDArray[np.float64] = np.clip(middle + draws * spread, LOW_DEG, HIGH_DEG)
         poses[0] = best
         found = likelihoods(poses, wanted)
         order = np.argsort(-found, kind="stable")[:BEST]

@@ -12,13 +12,14 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from common.camera import Camera, Rig
-from common.kernel import NEAREST_M, view_of
-from common.messages import Box, Report
+from common.bounds import box_of, is_cut
+from common.camera import Camera, Rig, project
+from common.kernel import NEAREST_M, seen_at, view_of
+from common.messages import Report
 from common.similarity import Mask
 from common.wire import pack, unpack
 from integrator.pairing import Pair
-from integrator.perspective import triangulate
+from integrator.perspective import px_per_m, triangulate
 
 CELL_M: Final = 0.05
 """Thinner than an arm, so that it stays in one piece with its hand."""
@@ -106,15 +107,9 @@ def _carve(full: Any, corner_m: Any, view: Any, mask: Any) -> None:
                 x = corner_m[0] + (i + 0.5) * CELL_M
                 y = corner_m[1] + (j + 0.5) * CELL_M
                 z = corner_m[2] + (k + 0.5) * CELL_M
-                depth = view[6] * x + view[7] * y + view[8] * z + view[11]
-                if depth < NEAREST_M:
-                    continue
-                across = view[0] * x + view[1] * y + view[2] * z + view[9]
-                down = view[3] * x + view[4] * y + view[5] * z + view[10]
-                u = int(np.floor(across / depth * view[12] + view[14]))
-                v = int(np.floor(down / depth * view[13] + view[15]))
-                if 0 <= u < width and 0 <= v < height:
-                    if not mask[v, u]:
+                u, v, depth = seen_at(view, x, y, z)
+                if depth >= NEAREST_M and 0.0 <= u < width and 0.0 <= v < height:
+                    if not mask[int(v), int(u)]:
                         full[i, j, k] = -1
                     elif full[i, j, k] >= 0:
                         full[i, j, k] += 1
@@ -188,25 +183,24 @@ def _around(full: Any, value: int, piece: Any, at: int, end: int) -> int:
 
 def _shown(places_m: NDArray[np.float64], camera: Camera, mask: Mask) -> Mask:
     """Where a view shows places, each as large as a cell is there."""
-    seen = places_m @ np.array(camera.R).T + camera.t
-    K, depth = np.array(camera.K), seen[:, 2]
-    u, v = (np.floor(seen[:, :2] / depth[:, None] * [K[0, 0], K[1, 1]] + K[:2, 2])).astype(int).T
-    inside = (depth > NEAREST_M) & (u >= 0) & (v >= 0) & (u < mask.shape[1]) & (v < mask.shape[0])
+    height, width = mask.shape
+    u, v = project(camera, places_m).T  # nan behind the camera, which is in no picture
+    inside = (u >= 0) & (v >= 0) & (u < width) & (v < height)
     dots = np.zeros(mask.shape, np.uint8)
-    dots[v[inside], u[inside]] = 1
-    reach = int(np.ceil(CELL_M * K[0, 0] / np.median(depth)))
+    dots[v[inside].astype(int), u[inside].astype(int)] = 1
+    reach = int(np.ceil(CELL_M * px_per_m(camera, places_m.mean(axis=0))))
     around = np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
     return np.asarray(cv2.dilate(dots, around) > 0)
 
 
 def _told(report: Report, mask: Mask) -> Report:
     """The report with another outline."""
-    left, top, width, height = cv2.boundingRect(mask.view(np.uint8))
-    cut = not (left and top) or left + width == mask.shape[1] or top + height == mask.shape[0]
+    box = box_of(mask)
+    assert box is not None
     return msgspec.structs.replace(
         report,
         silhouette=pack(mask),
-        box=Box(left=left, right=left + width - 1, top=top, bottom=top + height - 1),
+        box=box,
         area_px=int(mask.sum()),
-        cut=cut,
+        cut=is_cut(box, mask.shape),
     )

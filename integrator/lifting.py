@@ -23,8 +23,6 @@ class Lifted(NamedTuple):
     joints_m: NDArray[np.float64]
     """(15, 3), JOINT_NAMES, sides as the person's own; z is 0 at the pelvis, x and y are 0 at the
     corner of the picture."""
-    depth_m: Vector
-    """(10,) of LIMBS: how much nearer the far end is to the camera than the near end."""
     tilt_deg: Vector
     """(10,): out of the picture's plane, positive towards the camera."""
     error_deg: Vector
@@ -110,4 +108,4 @@ def lift(
     tilt_deg = np.degrees(np.arcsin(np.clip(depth_m / lengths_m[:10], -1.0, 1.0)))
     errors_deg = tilt_errors_deg(lengths_m[:10], lengths_px, px_per_m)
     joints_m = np.concatenate([flat_m, z_m[:, None]], axis=1)
-    return Lifted(joints_m, depth_m, tilt_deg, errors_deg, yaw_deg)
+    return Lifted(joints_m, tilt_deg, errors_deg, yaw_deg)

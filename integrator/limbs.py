@@ -53,8 +53,12 @@ def pose_of(joints_m: Any, body: Any, before: Any) -> Any:
                 + joints_m[place, 2] * trunk[2, i]
             )
     for side in range(2):
-        _set_arm(pose, own, body, side)
-        _set_leg(pose, own, body, side)
+        shoulder, elbow, wrist = own[1 - side], own[3 - side], own[5 - side]
+        upper_arm, arm, leg = body[19 + 2 * side], SHOULDER + 3 * side, HIP + 3 * side
+        _set_limb(pose, shoulder, elbow, wrist, upper_arm, arm, ELBOW + side)
+        hip, knee, ankle = own[7 - side].copy(), own[9 - side], own[11 - side]
+        hip[1] -= body[37]
+        _set_limb(pose, hip, knee, ankle, body[8 + 3 * side], leg, KNEE + side)
     return pose
 
 
@@ -73,24 +77,21 @@ def trunk_of(joints_m: Any) -> Any:
 
 
 @numba.njit(cache=True)
-def _set_arm(pose: Any, own: Any, body: Any, side: int) -> None:
-    """Shoulder and elbow of one arm (0 right, 1 left), from joints in the trunk's axes."""
-    shoulder, elbow, wrist = own[1 - side], own[3 - side], own[5 - side]
-    at = SHOULDER + 3 * side
-    upper = _unit(elbow - shoulder)
-    pose[at], pose[at + 2] = _aim(upper, at, pose)
-    bend(pose, at, ELBOW + side, _unit(wrist - shoulder - body[19 + 2 * side] * upper))
+def _set_limb(
+    pose: Any, start: Any, middle: Any, end: Any, length: float, at: int, at_bend: int
+) -> None:
+    """Shoulder and elbow, or hip and knee, from joints in the trunk's axes.
 
-
-@numba.njit(cache=True)
-def _set_leg(pose: Any, own: Any, body: Any, side: int) -> None:
-    """Hip and knee of one leg; the knee bends about the hip's twisted axis."""
-    start, knee, ankle = own[7 - side].copy(), own[9 - side], own[11 - side]
-    start[1] -= body[37]
-    at = HIP + 3 * side
-    upper = _unit(knee - start)
+    Args:
+        pose: Its angles of this limb are set.
+        start: (3,) and where the limb bends and where it ends.
+        length: Of its upper part in the body that is posed.
+        at: Where its angles begin.
+        at_bend: Where its bend stands: about the twisted axis of the upper part.
+    """
+    upper = _unit(middle - start)
     pose[at], pose[at + 2] = _aim(upper, at, pose)
-    bend(pose, at, KNEE + side, _unit(ankle - start - body[8 + 3 * side] * upper))
+    bend(pose, at, at_bend, _unit(end - start - length * upper))
 
 
 @numba.njit(cache=True)

@@ -10,7 +10,7 @@ from common.kernel import match, view_of
 from common.kinematics import ALL_LIMBS
 from common.messages import Body, Guide, Report
 from common.proportions import body_vector
-from integrator import adapting, corrected, hull, insight, matched, opening, smoothing, telling
+from integrator import adapting, corrected, hull, insight, opening, searched, smoothing, telling
 from integrator.arbiter import facing_of
 from integrator.assumed import assumed_rig
 from integrator.belief import LOST_SCORE
@@ -54,7 +54,7 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
 
 def _is_doubtful(state: State, body: Body) -> bool:
     known = state.insight
-    return min(body.score) < corrected.POOR and not (known and known.sure.mean() >= corrected.SURE)
+    return min(body.score) < corrected.POOR and not (known and corrected.is_sure(known.sure))
 
 
 def _merged(state: State, pair: Pair) -> tuple[State, Body, Guide]:
@@ -70,11 +70,10 @@ def _merged(state: State, pair: Pair) -> tuple[State, Body, Guide]:
         return (state, *telling.nobody(state, pair))
     opened, settled_at = opening.step(state.opening, rig, seen, state.settings.body.opening_frames)
     state = state._replace(opening=opened)
-    calibrated = state.scale_source == "calibrated"
-    if proposes(state.settings, calibrated):
+    if _is_proposed(state):
         state = _proposed(state, rig, seen, dt_s)
     else:
-        state = matched.step(state, rig, seen, settled_at)
+        state = searched.step(state, rig, seen, settled_at)
     if state.settings.mode == "default":
         assert state.pose is not None
         state = state._replace(opening=adapting.step(state.opening, rig, seen, state.pose))
@@ -85,10 +84,13 @@ def _merged(state: State, pair: Pair) -> tuple[State, Body, Guide]:
 
 def _of_one_piece(state: State, pair: Pair) -> hull.Cleaned:
     """The reports without what is no part of the person: a departure from the paper."""
-    rig, known = state.rig, state.scale_source == "calibrated"
-    if rig is None or not known or state.settings.mode != "default":
+    if state.rig is None or not _is_proposed(state):
         return hull.Cleaned(pair, False)
-    return hull.cleaned(rig, pair)
+    return hull.cleaned(state.rig, pair)
+
+
+def _is_proposed(state: State) -> bool:
+    return proposes(state.settings, state.scale_source == "calibrated")
 
 
 def _heard(frames: tuple[int, int], pair: Pair) -> tuple[int, int]:

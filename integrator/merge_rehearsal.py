@@ -6,10 +6,11 @@ import msgspec
 import numpy as np
 
 from common.body import JOINT_NAMES, POSE_INDEX, rest_pose
+from common.bounds import box_of
 from common.camera import Rig, paper_rig
 from common.config import Settings
 from common.kernel import draw_body, view_of
-from common.messages import Box, Report, ViewerNumber
+from common.messages import Report, ViewerNumber
 from common.proportions import body_vector, thesis_bdp
 from common.wire import pack, unpack
 from integrator import corrected, hull, merge
@@ -54,7 +55,6 @@ def _report(viewer: ViewerNumber, index: int, size: tuple[int, int], rig: Rig) -
     pose[POSE_INDEX["y"]] = 1.0
     view = view_of(rig.cameras[viewer - 1])
     mask = draw_body(body_vector(thesis_bdp(1.75)), pose, view, size)
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     return Report(
         frame=index,
         captured_s=float(index),
@@ -63,6 +63,6 @@ def _report(viewer: ViewerNumber, index: int, size: tuple[int, int], rig: Rig) -
         width=width,
         height=height,
         silhouette=pack(mask),
-        box=Box(int(columns[0]), int(columns[-1]), int(rows[0]), int(rows[-1])),
+        box=box_of(mask),
         root_px=(width / 2, height / 2),
     )

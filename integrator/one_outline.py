@@ -18,7 +18,7 @@ from common.messages import (
 from common.notes import Orientation
 from common.proportions import body_vector
 from common.stickman import Stickman
-from integrator import insight, limits, matching, mirroring, propose, signs, smoothing
+from integrator import insight, limits, mirroring, propose, signs, smoothing, turned
 from integrator.lifting import SWAPPED, Lifted, lift
 from integrator.limbs import PLACES, pose_of
 from integrator.mirroring import Front
@@ -180,9 +180,9 @@ def _posed(
 
 def _match(
     state: State, pose: Vector, joints_m: NDArray[np.float64], report: Report, turning: bool
-) -> matching.Match:
+) -> turned.Match:
     body = body_vector(state.bdp)
-    return matching.matched(state.camera, body, state.man, report, pose, joints_m, turning)
+    return turned.matched(state.camera, body, state.man, report, pose, joints_m, turning)
 
 
 def in_room(

@@ -1,10 +1,8 @@
 """What the tests of the tracking stages share: bodies, and how a viewer sees them."""
 
-import numpy as np
-
 from common.body import POSE_INDEX, Vector, rest_pose
 from common.kernel import draw_body
-from common.messages import Box, ViewerNumber
+from common.messages import ViewerNumber
 from common.proportions import body_vector, thesis_bdp
 from common.similarity import Mask
 from viewer.figure import Figure, figure_of, rotation_of, view_at
@@ -52,8 +50,3 @@ def picture(
 def laid_over(mask: Mask, pose: Vector, viewer: ViewerNumber = 1, body: Vector = BODY) -> Figure:
     """A model in a pose, where `picture` puts it, laid over a silhouette."""
     return figure_of(mask, body, pose, view(viewer))
-
-
-def box_of(mask: Mask) -> Box:
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    return Box(int(columns[0]), int(columns[-1]), int(rows[0]), int(rows[-1]))

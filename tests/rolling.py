@@ -3,9 +3,10 @@
 import math
 
 import numpy as np
-from posing import box_of, posed
+from posing import posed
 
 from common.body import Vector
+from common.bounds import box_of
 from common.camera import Camera, Rig, as_matrix, as_row
 from common.kernel import draw_body, view_of
 from common.messages import Report, ViewerNumber

@@ -5,9 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from posing import box_of, posed
+from posing import posed
 
 from common.body import Bdp, Vector
+from common.bounds import box_of
 from common.camera import Rig, paper_rig
 from common.config import Settings
 from common.kernel import draw_body, view_of
@@ -127,7 +128,7 @@ def between(first: Vector, last: Vector, frames: int) -> list[Vector]:
 def report(viewer: ViewerNumber, mask: Mask | None = None, **said: object) -> Report:
     """A report of a silhouette, with anything else that it may say."""
     seen = NOBODY if mask is None else mask
-    box: Box | None = box_of(seen) if seen.any() else None
+    box: Box | None = box_of(seen)
     given = {"frame": 0, "captured_s": 0.0, "clock_s": 0.0, "box": box, **said}
     return Report(
         viewer=viewer,

@@ -67,7 +67,7 @@ def test_every_segment_has_its_length_in_space() -> None:
         lifted = lift(joints_px(ADULT, pose), 1.0, LENGTHS_M, PX_PER_M, signs, "forward_left")
         along = lifted.joints_m[LIMB_ENDS[:, 1]] - lifted.joints_m[LIMB_ENDS[:, 0]]
         assert np.linalg.norm(along, axis=1) == pytest.approx(LENGTHS_M[:10])
-        assert np.sign(lifted.depth_m) == pytest.approx(signs)
+        assert np.sign(lifted.tilt_deg) == pytest.approx(signs)
 
 
 def test_the_lifted_body_is_projected_where_it_was_seen() -> None:

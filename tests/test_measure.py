@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from posing import BODY, ROOT_PX, box_of, picture, posed, stretched
+from posing import BODY, ROOT_PX, picture, posed, stretched
 
 from common.body import LIMBS, Bdp, Elliptic, Vector
+from common.bounds import box_of
 from common.kinematics import segments
-from common.messages import Box
 from common.proportions import body_vector, thesis_bdp
 from common.similarity import Mask, similarity
 from viewer.measure import (
@@ -68,13 +68,6 @@ def test_columns_that_are_all_alike_are_the_trunk() -> None:
     mask = np.zeros((20, 30), np.bool_)
     mask[4:15, 7:12] = True
     assert projection_width(mask) == (7.0, 11.0)
-
-
-def test_a_box_is_the_boundary_of_what_was_drawn() -> None:
-    """P11: extremes, first and last column and row."""
-    mask = np.zeros((50, 60), np.bool_)
-    mask[7, 30] = mask[40, 12] = mask[20, 55] = True
-    assert box_of(mask) == Box(left=12, right=55, top=7, bottom=40)
 
 
 @pytest.mark.parametrize("legs_deg", [0.0, 4.0, 8.0])

@@ -3,11 +3,12 @@
 import msgspec
 import numpy as np
 import pytest
-from posing import box_of, posed
+from posing import posed
 from rolling import BODY, ROLLED, outlines, told
 from staging import PERSON, RIG, opening, report, silhouettes, standing
 
 from common.body import Bdp
+from common.bounds import box_of
 from common.camera import Rig, paper_rig
 from common.messages import Measure, Report
 from common.proportions import stature, thesis_bdp

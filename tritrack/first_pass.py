@@ -6,6 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from common.bounds import box_of, is_cut
 from common.clip_facts import Clip
 from common.config import SilhouetteSettings
 from common.footage import ClipError
@@ -86,20 +87,15 @@ def outlines_of(
         tall = 0 if seen.box is None else seen.box.bottom + 1 - seen.box.top
         tallest = max(tallest, tall)
         near = _middle(seen.box) if tall > SURELY_SOMEBODY * tallest else None
-        mask, cut = seen.mask, seen.cut
+        mask = seen.mask
         if tall > STANDS * tallest:
             mask = without_cast(mask, picture, state.room)
-            cut = cut and touches_border(mask)
+        cut = is_cut(box_of(mask), mask.shape)
         if place is not None:
             mask = back(mask, place)
         found.append(outline_of(frame.index, frame.captured_s, mask, cut))
     _refuse_a_moving_camera(found, view.size, str(view.source))
     return found
-
-
-def touches_border(mask: Mask) -> bool:
-    """Whether a silhouette may be cut by the picture's border."""
-    return bool(mask[[0, -1]].any() or mask[:, [0, -1]].any())
 
 
 def _middle(box: Box | None) -> tuple[float, float] | None:

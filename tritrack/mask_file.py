@@ -7,7 +7,8 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from tritrack.first_pass import Outline, outline_of, touches_border
+from common.bounds import box_of, is_cut
+from tritrack.first_pass import Outline, outline_of
 
 MAX_PIXELS: Final = 1 << 30
 """No sequence is larger: 50,000 frames at 160x120."""
@@ -67,7 +68,8 @@ def read_masks(path: Path, rate_hz: float = RATE_HZ) -> MaskSequence:
             f"cannot read the masks {file_name}: {reason}; name an .npz of packed masks"
         ) from error
     outlines = [
-        outline_of(i, i / rate_hz, mask, touches_border(mask)) for i, mask in enumerate(masks)
+        outline_of(i, i / rate_hz, mask, is_cut(box_of(mask), mask.shape))
+        for i, mask in enumerate(masks)
     ]
     return MaskSequence(wanted or Path(file_name).stem, masks.shape[:0:-1], outlines)
 

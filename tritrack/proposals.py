@@ -1,7 +1,7 @@
 """The network that proposes poses, learnt from outlines of made-up people."""
 
 import multiprocessing
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import Progress
 
-from integrator.propose import JOINTS, SAYS, SEES, Network, halves, save
-from integrator.window import BESIDE, CELLS
+from integrator.propose import SEES, Network, save
+from integrator.window import CELLS
 from synth.outlines import AT_LARGE, ORDINARY
+from tritrack import recurrent
 from tritrack.lessons import Example, example_of
 from tritrack.terminal import bar
 from tritrack.training import TrainingError
@@ -26,17 +27,11 @@ SAMPLED: Final = 12
 """Instants of each performance that the components are computed from, at most."""
 LIFTED: Final = 0.02
 """What is added to a component's spread before dividing by it, in those of the first."""
-LAYERS: Final = (512, 512, 384)
-"""Units that think (twice), remember and join."""
 ROUNDS, BATCH, WARM_STEPS = ((24, 2e-3), (20, 1e-3)), 64, 150
 """Epochs and highest rate of each round, in which the rate rises, and falls to nothing."""
 DECAY: Final = 1e-4
 STEEPEST: Final = 1.0
 """Size that a slope is cut to."""
-SURE_SHARE: Final = 0.01
-"""Weight of what the network says of its sureness beside a distance in statures."""
-NEAR_M: Final = 0.05
-"""What it is sure of: a joint is no farther off."""
 SHORTEST: Final = 8
 """Instants that a performance must have."""
 
@@ -96,14 +91,16 @@ def learnt(
     torch.manual_seed(seed)
     rng, (mean, components) = np.random.default_rng(seed), _components(shown)
     lessons = [_lesson(torch, mean, components, each) for each in shown]
-    parts = _parts(torch, np.concatenate([each.due for each in shown]).mean(0))
+    parts = recurrent.parts_of(
+        torch, COMPONENTS, np.concatenate([each.due for each in shown]).mean(0)
+    )
     with bar(console) as progress:
         ends = []
         for epochs, rate in rounds:
             _round(torch, parts, lessons, rng, epochs, rate, batch, progress)
             ends.append([weight.detach().clone() for part in parts for weight in part.parameters()])
     _settle(torch, parts, ends)
-    return _network(mean, components, parts)
+    return recurrent.network_of(mean, components, parts)
 
 
 def _round(
@@ -127,7 +124,7 @@ def _round(
     for _ in progress.track(range(epochs), description="learning"):
         for rows in np.array_split(rng.permutation(len(lessons)), count):
             adam.zero_grad()
-            _missed(torch, parts, [lessons[row] for row in rows]).backward()
+            recurrent.missed(torch, parts, [lessons[row] for row in rows]).backward()
             torch.nn.utils.clip_grad_norm_(weights, STEEPEST)
             adam.step()
             pace.step()
@@ -177,75 +174,3 @@ def _torch() -> Any:
             "learning proposals needs PyTorch: pip install 'tritrack[train]'"
         ) from error
     return torch
-
-
-def _parts(torch: Any, mean_pose: Floats) -> list[Any]:
-    """Think, deepen, remember, join, say; it begins by saying the mean pose."""
-    thinks, keeps, joins = LAYERS
-    say = torch.nn.Linear(joins, SAYS)
-    with torch.no_grad():
-        say.weight *= 0.3
-        say.bias[: len(mean_pose)] = torch.from_numpy(mean_pose)
-    return [
-        torch.nn.Linear(2 * COMPONENTS + BESIDE, thinks),
-        torch.nn.Linear(thinks, thinks),
-        torch.nn.GRU(thinks, keeps, batch_first=True),
-        torch.nn.Linear(thinks + keeps, joins),
-        say,
-    ]
-
-
-def _missed(torch: Any, parts: list[Any], lessons: list[tuple[Any, ...]]) -> Any:
-    """Mean distance of the joints in statures, and how wrong the sureness about it is."""
-    seen, due, real, stature_m = (
-        torch.nn.utils.rnn.pad_sequence(part, batch_first=True)
-        for part in zip(*lessons, strict=True)
-    )
-    with torch.autocast("cpu", dtype=torch.bfloat16):
-        said = _said(torch, parts, seen).float()
-    places, sure = said[..., : -len(JOINTS)], said[..., -len(JOINTS) :]
-    off = (places - due).unflatten(-1, (-1, 3)).square().sum(-1).add(1e-5).sqrt()
-    near = (off.detach() * stature_m[..., None] < NEAR_M).float()
-    unsure = torch.nn.functional.binary_cross_entropy_with_logits(sure, near, reduction="none")
-    return ((off + SURE_SHARE * unsure).mean(-1) * real).sum() / real.sum()
-
-
-def _said(torch: Any, parts: list[Any], seen: Any) -> Any:
-    """What the network says of performances, (performances, instants, SAYS)."""
-    think, deepen, remember, join, say = parts
-    thought = torch.relu(think(seen))
-    thought = torch.relu(deepen(thought) + thought)
-    return say(torch.relu(join(torch.cat([thought, _kept(torch, remember, thought)], -1))))
-
-
-def _kept(torch: Any, unit: Any, thought: Any) -> Any:
-    """What a gated recurrent unit remembers after each instant: in half precision, which the
-    library's own loop has not."""
-    linear, own = torch.nn.functional.linear, unit.hidden_size
-    taken = linear(thought, unit.weight_ih_l0, unit.bias_ih_l0)
-    memory, found = torch.zeros_like(taken[:, 0, :own]), []
-    for take in taken.unbind(1):
-        keep = linear(memory, unit.weight_hh_l0, unit.bias_hh_l0)
-        reset, update = torch.sigmoid(take[:, : 2 * own] + keep[:, : 2 * own]).split(own, 1)
-        new = torch.tanh(take[:, 2 * own :] + reset * keep[:, 2 * own :])
-        memory = new + update * (memory - new)
-        found.append(memory)
-    return torch.stack(found, 1)
-
-
-def _network(mean: Floats, components: Floats, parts: list[Any]) -> Network:
-    def pair(weight: Any, bias: Any) -> Iterator[Any]:
-        yield halves(weight.detach().numpy().T)
-        yield bias.detach().numpy().copy()
-
-    think, deepen, remember, join, say = parts
-    return Network(
-        halves(components),
-        -mean @ components,
-        *pair(think.weight, think.bias),
-        *pair(deepen.weight, deepen.bias),
-        *pair(remember.weight_ih_l0, remember.bias_ih_l0),
-        *pair(remember.weight_hh_l0, remember.bias_hh_l0),
-        *pair(join.weight, join.bias),
-        *pair(say.weight, say.bias),
-    )

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from common.bounds import box_of, is_cut
 from common.config import SilhouetteSettings
 from common.messages import Box
 from common.similarity import Mask
@@ -189,12 +190,10 @@ def _tidy(mask: Bytes) -> None:
 
 
 def _seen(mask: Bytes, blobs: int, least_share: float) -> Seen:
-    left, top, width, height = cv2.boundingRect(mask)
-    if height < least_share * mask.shape[0]:
+    box = box_of(mask)
+    if box is None or box.bottom + 1 - box.top < least_share * mask.shape[0]:
         return Seen(np.zeros(mask.shape, np.bool_), None, 0, 0, cut=False)
-    box = Box(left=left, right=left + width - 1, top=top, bottom=top + height - 1)
-    cut = not (left and top) or left + width == mask.shape[1] or top + height == mask.shape[0]
-    return Seen(mask.view(np.bool_), box, cv2.countNonZero(mask), blobs, cut)
+    return Seen(mask.view(np.bool_), box, cv2.countNonZero(mask), blobs, is_cut(box, mask.shape))
 
 
 def _follow(state: State, frame: Frame, gain: Floats, box: Box | None) -> State:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from common.bits import Bits, count, count_both
 from common.body import JOINT_NAMES, LIMB_ENDS, POSE_INDEX, Vector
 from common.camera import Camera, project
-from common.kernel import NEAREST_M, score, view_of
+from common.kernel import score, seen_at, view_of
 from common.kinematics import joints
 from common.messages import Report
 from common.stickman import BREADTH, GIRTH, POSE_SIZE, STATURE, Stickman
@@ -147,16 +147,14 @@ def _climbed(task: Any, stick: Any, pose: Any, joints_m: Any) -> tuple[Any, floa
 @numba.njit(cache=True)
 def _worth(task: Any, stick: Any, joints_m: Any) -> float:
     """S of the body with these joints; `stick` gets the breadth that it shows."""
-    view, ends = task.lens, np.empty((12, 4))
+    ends = np.empty((12, 4))
     for row in range(12):
         for end in range(2):
             joint = _ENDS[row, end]
             x, y, z = joints_m[joint]
-            deep = max(view[11] + view[6] * x + view[7] * y + view[8] * z, NEAREST_M)
-            right = view[9] + view[0] * x + view[1] * y + view[2] * z
-            down = view[10] + view[3] * x + view[4] * y + view[5] * z
-            ends[row, 2 * end] = right / deep * view[12] + view[14] + task.bent_px[joint, 0]
-            ends[row, 2 * end + 1] = down / deep * view[13] + view[15] + task.bent_px[joint, 1]
+            u, v, _ = seen_at(task.lens, x, y, z)
+            ends[row, 2 * end] = u + task.bent_px[joint, 0]
+            ends[row, 2 * end + 1] = v + task.bent_px[joint, 1]
     across_px = math.hypot(ends[10, 2] - ends[10, 0], ends[10, 3] - ends[10, 1])
     stick[BREADTH] = min(1.0, across_px / task.broad_px)
     bits = np.zeros_like(task.seen)

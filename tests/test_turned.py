@@ -14,7 +14,7 @@ from common.proportions import body_vector, thesis_bdp
 from common.stickman import ADULT, POSE_SIZE, STATURE
 from common.strokes import ALL_SEGMENTS, draw_segments
 from common.wire import pack
-from integrator.matching import GOOD, Match, matched
+from integrator.turned import GOOD, Match, matched
 
 BODY = body_vector(thesis_bdp(1.75))
 TALL_PX = 80.0
