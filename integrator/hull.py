@@ -20,6 +20,7 @@ from common.similarity import Mask
 from common.wire import pack, unpack
 from integrator.pairing import Pair
 from integrator.perspective import px_per_m, triangulate
+from integrator.straight import straight
 
 CELL_M: Final = 0.05
 """Thinner than an arm, so that it stays in one piece with its hand."""
@@ -76,8 +77,8 @@ def one_piece(rig: Rig, masks: tuple[Mask, Mask]) -> tuple[Mask, Mask] | None:
     corner_m[1] = FLOOR_M
     views = np.array([view_of(camera) for camera in rig.cameras])
     full = np.zeros((2 * ASIDE_CELLS, UP_CELLS, 2 * ASIDE_CELLS), np.int32)
-    for view, mask in zip(views, masks, strict=True):
-        _carve(full, corner_m, view, mask)
+    for view, mask, camera in zip(views, masks, rig.cameras, strict=True):
+        _carve(full, corner_m, view, straight(mask, camera))
     piece = _largest(full)
     if not len(piece):
         return None

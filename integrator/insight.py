@@ -13,6 +13,7 @@ from common.proportions import stature
 from common.wire import unpack
 from integrator import propose
 from integrator.limbs import pose_of, trunk_of
+from integrator.straight import straight, straight_rig
 from integrator.window import Floats, look
 
 AT: Final = [JOINT_NAMES.index(name) for name in propose.JOINTS]
@@ -69,8 +70,10 @@ def step(
     """
     any_whole = any(report is not None and not report.cut for report in seen)
     first, second = (
-        None if report is None or (any_whole and report.cut) else unpack(report) for report in seen
+        None if report is None or (any_whole and report.cut) else straight(unpack(report), camera)
+        for report, camera in zip(seen, rig.cameras, strict=True)
     )
+    rig = straight_rig(rig)
     height_m = stature(bdp)
     shown = look((first, second), rig, height_m, since_s)
     if shown is None:

@@ -144,7 +144,7 @@ def _score(body: Vector, pose: Vector, rig: Rig, n: int, report: Report | None) 
     """S of the whole body in one picture, true perspective; 0 where that view has nobody."""
     if report is None or report.root_px is None:
         return 0.0
-    seen, view = packed(report), view_of(rig.cameras[n])
+    seen, view = packed(report, rig.cameras[n]), view_of(rig.cameras[n])
     return float(match(body, pose, view, ALL_LIMBS, report.width, seen, count(seen)))
 
 

@@ -3,14 +3,13 @@
 import math
 from typing import Any, Final, NamedTuple
 
-import msgspec
 import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from common.bits import Bits, count, count_both
 from common.body import JOINT_NAMES, LIMB_ENDS, POSE_INDEX, Vector
-from common.camera import Camera, project
+from common.camera import Camera
 from common.kernel import score, seen_at, view_of
 from common.kinematics import joints
 from common.messages import Report
@@ -52,8 +51,6 @@ class Task(NamedTuple):
     """Body vector."""
     lens: Vector
     """(VIEW,)"""
-    bent_px: NDArray[np.float64]
-    """(15, 2): how far the lens moves each joint in the picture."""
     parts: Vector
     depth: float
     """The Stickman's."""
@@ -94,7 +91,7 @@ def matched(
         turning: Whether the pose may be turned.
     """
     assert report.fit is not None
-    task = _task(camera, body, man, report, joints_m)
+    task = _task(camera, body, man, report)
     stick = np.ones(POSE_SIZE)
     stick[STATURE] = report.fit.stature_px
     best, girth = 0.0, GIRTHS[0]
@@ -110,19 +107,11 @@ def matched(
     return Match(turned, joints_m + joints(body, turned) - joints(body, pose), float(best))
 
 
-def _task(
-    camera: Camera, body: Vector, man: Stickman, report: Report, joints_m: NDArray[np.float64]
-) -> Task:
+def _task(camera: Camera, body: Vector, man: Stickman, report: Report) -> Task:
     assert report.fit is not None
-    seen, view = packed(report), view_of(camera)
-    bent_px = np.zeros((len(JOINT_NAMES), 2))
-    if any(camera.distortion):
-        straight = msgspec.structs.replace(camera, distortion=())
-        bent_px = np.nan_to_num(project(camera, joints_m) - project(straight, joints_m))
+    seen, view = packed(report, camera), view_of(camera)
     broad_px = 2 * man.lengths[10] * report.fit.stature_px
-    return Task(
-        body, view, bent_px, man.parts, man.depth, broad_px, seen, count(seen), report.width
-    )
+    return Task(body, view, man.parts, man.depth, broad_px, seen, count(seen), report.width)
 
 
 @numba.njit(cache=True)
@@ -152,9 +141,7 @@ def _worth(task: Any, stick: Any, joints_m: Any) -> float:
         for end in range(2):
             joint = _ENDS[row, end]
             x, y, z = joints_m[joint]
-            u, v, _ = seen_at(task.lens, x, y, z)
-            ends[row, 2 * end] = u + task.bent_px[joint, 0]
-            ends[row, 2 * end + 1] = v + task.bent_px[joint, 1]
+            ends[row, 2 * end], ends[row, 2 * end + 1], _ = seen_at(task.lens, x, y, z)
     across_px = math.hypot(ends[10, 2] - ends[10, 0], ends[10, 3] - ends[10, 1])
     stick[BREADTH] = min(1.0, across_px / task.broad_px)
     bits = np.zeros_like(task.seen)
