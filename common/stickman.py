@@ -6,7 +6,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import LIMBS, Vector
+from common.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
 from common.proportions import THESIS_DIAMETERS, THESIS_RATIOS
 
 SIDES: Final = ("r", "l")
@@ -25,6 +25,7 @@ CHAINS: Final = ((6, 8), (7, 9), (2, 4), (3, 5))
 """Upper and lower limb: both arms, both legs, r before l."""
 
 _HALF_SHOULDERS, _SHOULDER_DROP, _HALF_HIPS = 10, 11, 12
+_L_SHOULDER, _R_SHOULDER = (JOINT_NAMES.index(f"{side}_shoulder") for side in "lr")
 
 
 class Stickman(NamedTuple):
@@ -146,6 +147,25 @@ def standing(x_px: float, pelvis_y_px: float, stature_px: float) -> Vector:
     pose[[X, Y, STATURE]] = x_px, pelvis_y_px, stature_px
     pose[ANGLE : ANGLE + 2] = 90.0
     pose[ANGLE + 2 : ANGLE + 10] = 270.0
+    return pose
+
+
+def pose_of(man: Stickman, joints: NDArray[np.float64], stature_px: float) -> Vector:
+    """The stick pose, (POSE_SIZE,), of joints as `joints_px` gives them, limbs of usual girth.
+
+    Args:
+        man: Proportions.
+        joints: (15, 2) px, JOINT_NAMES, r on the left of the picture.
+        stature_px: Height that the body would have standing upright.
+    """
+    pose = np.ones(POSE_SIZE)
+    pose[[X, Y, STATURE]] = *joints[0], stature_px
+    along = joints[LIMB_ENDS[:, 1]] - joints[LIMB_ENDS[:, 0]]
+    pose[ANGLE:RATIO] = np.degrees(np.arctan2(-along[:, 1], along[:, 0])) % 360.0
+    lengths_px = man.lengths * stature_px
+    pose[RATIO:GIRTH] = np.minimum(1.0, np.hypot(*along.T) / lengths_px[: len(LIMBS)])
+    across_px = np.hypot(*(joints[_L_SHOULDER] - joints[_R_SHOULDER]))
+    pose[BREADTH] = min(1.0, across_px / (2.0 * lengths_px[_HALF_SHOULDERS]))
     return pose
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Bdp, Vector, rest_pose
-from common.camera import Camera, Rig, centre, ray
+from common.camera import Camera, Rig, arrays_of, centre, ray
 from common.messages import (
     Fit,
     Report,
@@ -28,7 +28,12 @@ UNSEEN: Final = 0.25
 """Share of its confidence that the end of a hidden segment keeps."""
 TILTED_DEG: Final = 15.0
 """A segment that leans less hardly moves with its sign."""
+TOWARDS: Final = (1.0, -1.0, -1.0)
+"""From a camera's axes to those of `Lifted`: up, and to the camera."""
 TWELVE: Final = [JOINT_NAMES.index(name) for name in PLACES]
+CROWN: Final = 0.155
+"""How far the crown lies above the neck, in statures: 0.15 to 0.17 of r01, r04 and made-up people
+whose arms are not raised."""
 PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
 
 
@@ -123,7 +128,7 @@ def proposed_body(
     known = insight.step(state.recall, state.bdp, rig, seen, dt_s)
     if known is None:
         return state._replace(recall=None), None
-    joints_m = _with_trunk(state, report, known.joints_m)
+    joints_m = _with_trunk(state, known.joints_m)
     yaw = mirroring.yaw_deg(state.camera, joints_m)
     front, behind = mirroring.front_of(state.front, yaw, told.orientation, dt_s)
     state = state._replace(recall=known.memory, front=front)
@@ -151,16 +156,23 @@ def settled_body(state: State, report: Report, found: Hypothesis, told: Inputs) 
     return found._replace(joints_m=match.joints_m, pose=match.pose, score=match.score)
 
 
-def _with_trunk(state: State, report: Report, found: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The 15 joints of 12 that are proposed, the crown where the stick body has it."""
-    assert report.fit is not None
+def remembered(state: State, found: Hypothesis) -> State:
+    """Where segments point and the body faces, for the frames whose outline needs a stick body."""
+    seen_m = found.joints_m @ arrays_of(state.camera).R.T * TOWARDS
+    facing = mirroring.faces(mirroring.yaw_deg(state.camera, found.joints_m))
+    sure = found.settled.orientation_confidence
+    return state._replace(memory=signs.witnessed(state.memory, seen_m, facing, sure))
+
+
+def _with_trunk(state: State, found: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The 15 joints of 12 that are proposed, neck and crown in line with the trunk."""
     joints_m = np.empty((len(JOINT_NAMES), 3))
     joints_m[insight.AT] = found
     joints_m[PELVIS] = found[propose.HIPS].mean(axis=0)
     middle = found[propose.SHOULDERS].mean(axis=0)
     up = (middle - joints_m[PELVIS]) / max(float(np.linalg.norm(middle - joints_m[PELVIS])), 1e-9)
     joints_m[NECK] = middle + up * state.man.lengths[11] * state.stature_m
-    joints_m[HEAD] = _at_depth(state.camera, report.fit.joints_px[HEAD], joints_m[NECK])
+    joints_m[HEAD] = joints_m[NECK] + up * CROWN * state.stature_m
     return joints_m
 
 
@@ -181,8 +193,7 @@ def _posed(
 def _match(
     state: State, pose: Vector, joints_m: NDArray[np.float64], report: Report, turning: bool
 ) -> turned.Match:
-    body = body_vector(state.bdp)
-    return turned.matched(state.camera, body, state.man, report, pose, joints_m, turning)
+    return turned.matched(state.camera, state.bdp, state.man, report, pose, joints_m, turning)
 
 
 def in_room(

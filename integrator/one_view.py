@@ -1,6 +1,6 @@
 """One view alone: its stick body lifted into the room, and what its outline proposes (3.1.5)."""
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from common.proportions import thesis_bdp
 from common.stickman import Stickman
 from integrator import limits, signs, smoothing
 from integrator.belief import LOST_SCORE, status_of
+from integrator.matching import GOOD
 from integrator.mirroring import Front
 from integrator.one_outline import (
     Hypothesis,
@@ -27,6 +28,7 @@ from integrator.one_outline import (
     State,
     lifted_body,
     proposed_body,
+    remembered,
     settled_body,
 )
 
@@ -48,21 +50,56 @@ def init(
     return State(number, camera, man, bdp, stature_m, printed, smooth, signs.init())
 
 
-def step(state: State, report: Report, told: Inputs) -> tuple[State, Body, Settled]:
-    """One frame with somebody: the lifted body competes with the proposed one, by S.
+class Glance(NamedTuple):
+    """What the outline alone says of a frame."""
+
+    state: State
+    proposed: Hypothesis | None
+    """None where nothing is proposed, or not what the user says."""
+
+    @property
+    def suffices(self) -> bool:
+        """Whether the proposed body fits so well that no stick body is asked for."""
+        return self.proposed is not None and self.proposed.score >= GOOD
+
+
+def glance(state: State, report: Report, told: Inputs) -> Glance:
+    """What is proposed of a frame with somebody; nothing as the thesis prints it.
 
     Args:
         state: What is remembered.
-        report: With a fit.
+        report: A fit is not needed.
         told: The user's inputs, which go before all else.
     """
-    state, found = lifted_body(state, report, told)
-    dt_s = 0.0 if state.last_s is None else max(0.0, report.captured_s - state.last_s)
+    if state.printed:
+        return Glance(state, None)
+    return Glance(*proposed_body(state, report, told, _since_s(state, report)))
+
+
+def step(seen: Glance, report: Report, told: Inputs) -> tuple[State, Body, Settled]:
+    """One frame with somebody: a lifted body competes with the proposed one, by S.
+
+    Args:
+        seen: What the outline says.
+        report: With a fit, unless what is proposed suffices.
+        told: The user's inputs, which go before all else.
+    """
+    state, found = seen
+    if report.fit is None:
+        assert found is not None
+        state = remembered(state, found)
+    else:
+        state, lifted = lifted_body(state, report, told)
+        if found is None or lifted.score >= SURELY * found.score:
+            found = lifted
     if not state.printed:
-        state, other = proposed_body(state, report, told, dt_s)
-        if other is not None and found.score < SURELY * other.score:
-            found = other
         found = settled_body(state, report, found, told)
+    return _published(state, report, found)
+
+
+def _published(state: State, report: Report, found: Hypothesis) -> tuple[State, Body, Settled]:
+    """What is told of the body that was found, its angles smooth."""
+    dt_s = _since_s(state, report)
     fits = found.score >= LOST_SCORE
     raw = found.pose[list(ANGLES_IN_POSE)]
     smooth, angles, _ = smoothing.step(state.smooth, raw, dt_s)
@@ -71,6 +108,10 @@ def step(state: State, report: Report, told: Inputs) -> tuple[State, Body, Settl
     badly = 0 if fits else state.badly + 1
     state = state._replace(smooth=smooth, pose=found.pose, last_s=report.captured_s, badly=badly)
     return state, _body(state, report, found, angles), found.settled
+
+
+def _since_s(state: State, report: Report) -> float:
+    return 0.0 if state.last_s is None else max(0.0, report.captured_s - state.last_s)
 
 
 def nobody(state: State, frame: int, captured_s: float) -> tuple[State, Body, Settled]:

@@ -111,6 +111,24 @@ def remembered(memory: Memory, joints_m: NDArray[np.float64], choice: Choice) ->
     bearing = choice.bearing._replace(
         orientation=choice.orientation, sure=choice.orientation_confidence
     )
+    return _next(memory, joints_m, bearing)
+
+
+def witnessed(
+    memory: Memory, joints_m: NDArray[np.float64], orientation: Orientation, sure: float
+) -> Memory:
+    """The memory after a frame whose body was not lifted.
+
+    Args:
+        memory: Before it.
+        joints_m: (15, 3), as `Lifted` has them.
+        orientation: Which way the body faces.
+        sure: How sure that is.
+    """
+    return _next(memory, joints_m, Bearing(orientation, sure))
+
+
+def _next(memory: Memory, joints_m: NDArray[np.float64], bearing: Bearing) -> Memory:
     now = directions_of(joints_m)
     before = now if memory.directions is None else memory.directions
     return Memory(now, now - before, bearing)

@@ -8,16 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bits import Bits, count, count_both
-from common.body import JOINT_NAMES, LIMB_ENDS, POSE_INDEX, Vector
-from common.camera import Camera
-from common.kernel import score, seen_at, view_of
+from common.body import JOINT_NAMES, LIMB_ENDS, POSE_INDEX, Bdp, Vector
+from common.camera import Camera, arrays_of
+from common.kernel import NEAREST_M, score, seen_at, view_of
 from common.kinematics import joints
 from common.messages import Report
+from common.proportions import body_vector, stature
 from common.stickman import BREADTH, GIRTH, POSE_SIZE, STATURE, Stickman
 from common.strokes import ALL_SEGMENTS, draw_segments
 from integrator.limbs import HIGH_DEG, LOW_DEG
 from integrator.two_outlines import packed
 
+PELVIS: Final = JOINT_NAMES.index("pelvis")
 GIRTHS: Final = (1.0, 1.15, 1.3)
 """How thick clothed limbs may be over those of the proportions."""
 GOOD: Final = 0.7
@@ -72,7 +74,7 @@ class Match(NamedTuple):
 
 def matched(
     camera: Camera,
-    body: Vector,
+    bdp: Bdp,
     man: Stickman,
     report: Report,
     pose: Vector,
@@ -83,17 +85,18 @@ def matched(
 
     Args:
         camera: Calibrated at the size of the report's picture.
-        body: Body vector.
+        bdp: The body.
         man: How thick its parts are.
-        report: With a fit, which tells the stature.
+        report: Of that camera.
         pose: Within the limits, and stays there.
         joints_m: (15, 3) world; they need not be where the pose's cylinders have them.
         turning: Whether the pose may be turned.
     """
-    assert report.fit is not None
-    task = _task(camera, body, man, report)
+    tall_px = _tall_px(camera, stature(bdp), joints_m)
+    body = body_vector(bdp)
+    task = _task(camera, body, man, report, tall_px)
     stick = np.ones(POSE_SIZE)
-    stick[STATURE] = report.fit.stature_px
+    stick[STATURE] = tall_px
     best, girth = 0.0, GIRTHS[0]
     for thickness in GIRTHS:
         stick[GIRTH] = thickness
@@ -107,10 +110,15 @@ def matched(
     return Match(turned, joints_m + joints(body, turned) - joints(body, pose), float(best))
 
 
-def _task(camera: Camera, body: Vector, man: Stickman, report: Report) -> Task:
-    assert report.fit is not None
+def _tall_px(camera: Camera, stature_m: float, joints_m: NDArray[np.float64]) -> float:
+    """How tall the body would stand in the picture where its pelvis is."""
+    deep_m = float(arrays_of(camera).R[2] @ joints_m[PELVIS] + camera.t[2])
+    return camera.K[1][1] * stature_m / max(deep_m, NEAREST_M)
+
+
+def _task(camera: Camera, body: Vector, man: Stickman, report: Report, tall_px: float) -> Task:
     seen, view = packed(report, camera), view_of(camera)
-    broad_px = 2 * man.lengths[10] * report.fit.stature_px
+    broad_px = 2 * man.lengths[10] * tall_px
     return Task(body, view, man.parts, man.depth, broad_px, seen, count(seen), report.width)
 
 

@@ -65,9 +65,7 @@ def test_a_thin_trunk_is_one_in_profile() -> None:
 def test_an_arm_before_the_trunk_is_hidden_and_stays_where_it_was() -> None:
     """T26: what the silhouette does not show is said, and continuity keeps it."""
     across = {"l_upper_arm": 250.0, "l_lower_arm": 200.0}
-    before = fit(drawn(stick_pose({"l_upper_arm": 265.0})), None, stature_px=STATURE_PX)
-    before = before._replace(pose=stick_pose(across))
-    stick = fit(drawn(stick_pose(across)), before, stature_px=STATURE_PX)
+    stick = fit(drawn(stick_pose(across)), stick_pose(across), stature_px=STATURE_PX)
     assert stick.hidden[LIMBS.index("l_lower_arm")]
     assert not stick.hidden[LIMBS.index("r_lower_leg")]
     assert abs(stick.pose[ANGLE + 9] - 200.0) < 25.0
@@ -122,6 +120,6 @@ def test_joints_of_a_rendered_walk_lie_where_they_are(
     rows = [names.index(name) for name in JOINT_NAMES]
     tall = float(np.flatnonzero(masks[9].any(axis=1)).size)
     for frame in range(9, 49):
-        before = fit(masks[frame], before, mode, tall)
+        before = fit(masks[frame], None if before is None else before.pose, mode, tall)
         off.append(np.linalg.norm(before.joints_px - places[frame][rows], axis=1)[TWELVE])
     assert np.mean(off) / tall <= most

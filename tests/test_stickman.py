@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from common.body import JOINT_NAMES
-from common.stickman import ADULT, ANGLE, BREADTH, RATIO, THESIS, joints_px, standing
+from common.stickman import ADULT, ANGLE, BREADTH, RATIO, THESIS, joints_px, pose_of, standing
 
 AT = {name: i for i, name in enumerate(JOINT_NAMES)}
 
@@ -47,3 +47,13 @@ def test_a_trunk_in_profile_has_its_hips_together() -> None:
     pose[BREADTH] = 0.0
     joints = joints_px(ADULT, pose)
     assert np.allclose(joints[AT["l_hip"]], joints[AT["r_hip"]])
+
+
+@pytest.mark.parametrize("man", [THESIS, ADULT], ids=["thesis", "adult"])
+def test_joints_lead_back_to_the_pose_that_has_them(man: object) -> None:
+    """The stick body of a frame that is found otherwise: drawn from its joints (T10, T18)."""
+    assert isinstance(man, type(ADULT))
+    pose = standing(50.0, 60.0, 100.0)
+    pose[BREADTH] = 0.7
+    pose[ANGLE + 7], pose[ANGLE + 9], pose[RATIO + 9] = 10.0, 80.0, 0.5
+    assert pose_of(man, joints_px(man, pose), 100.0) == pytest.approx(pose)

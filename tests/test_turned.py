@@ -16,7 +16,8 @@ from common.strokes import ALL_SEGMENTS, draw_segments
 from common.wire import pack
 from integrator.turned import GOOD, Match, matched
 
-BODY = body_vector(thesis_bdp(1.75))
+BDP = thesis_bdp(1.75)
+BODY = body_vector(BDP)
 TALL_PX = 80.0
 AT = {name: i for i, name in enumerate(JOINT_NAMES)}
 
@@ -44,7 +45,7 @@ def report_on(pose: Vector) -> Report:
 
 def fitted(seen: Vector, start: Vector, turning: bool = True) -> Match:
     report = report_on(seen)
-    return matched(CAMERA, BODY, ADULT, report, start, joints(BODY, start), turning)
+    return matched(CAMERA, BDP, ADULT, report, start, joints(BODY, start), turning)
 
 
 def test_the_body_that_was_drawn_fits_and_is_left_alone() -> None:

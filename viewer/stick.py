@@ -57,7 +57,7 @@ class NoBody(ValueError):
 
 def fit(
     mask: Mask,
-    before: Stick | None,
+    before: Vector | None,
     mode: Mode = "default",
     stature_px: float = float(STATURE_PX),
 ) -> Stick:
@@ -67,7 +67,7 @@ def fit(
 
     Args:
         mask: (H, W), of any size: it is normalised here (T9).
-        before: The fit of the frame before; None at the start.
+        before: The stick pose of the frame before, in its pixels; None at the start.
         mode: How to fit.
         stature_px: Height of the body standing upright, in pixels of the mask (T20).
 
@@ -82,7 +82,7 @@ def fit(
     if mode == "thesis":
         pose, hidden, evaluations = fit_printed(normal.mask, float(STATURE_PX))
     else:
-        expected = None if before is None else normal.inward(before.pose)
+        expected = None if before is None else normal.inward(before)
         pose, hidden, evaluations = followed(normal.mask, expected)
     seen, width = pack_words(normal.mask), normal.mask.shape[1]
     value = match_stick(man.lengths, man.parts, man.depth, pose, ALL_SEGMENTS, width, seen)
