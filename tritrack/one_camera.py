@@ -17,7 +17,7 @@ from common.notes import Notes
 from common.reel import Reel
 from integrator.one_outline import Settled
 from tritrack.first_pass import Outline, outlines_of
-from tritrack.posing import poses_of
+from tritrack.one_camera_poses import poses_of
 from viewer.background import Background
 from viewer.empty import room_of_clip
 

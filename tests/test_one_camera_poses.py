@@ -9,7 +9,7 @@ from common.body import JOINT_NAMES
 from common.config import Mode, Settings
 from common.notes import Note, Notes
 from tritrack.first_pass import Outline, outline_of
-from tritrack.posing import Poses, poses_of
+from tritrack.one_camera_poses import Poses, poses_of
 
 SIZE = (160, 120)
 FEW = 10
