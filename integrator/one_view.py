@@ -19,7 +19,6 @@ from common.proportions import thesis_bdp
 from common.stickman import Stickman
 from integrator import limits, signs, smoothing
 from integrator.belief import LOST_SCORE, status_of
-from integrator.matching import GOOD
 from integrator.mirroring import Front
 from integrator.one_outline import (
     Hypothesis,
@@ -31,6 +30,7 @@ from integrator.one_outline import (
     remembered,
     settled_body,
 )
+from integrator.turned import GOOD
 
 SURELY: Final = 1.15
 """The lifted body goes before the proposed one where its S is higher by this factor."""
