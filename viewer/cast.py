@@ -29,10 +29,17 @@ def without_cast(mask: Mask, picture: Frame, room: Floats) -> Mask:
         picture: (H, W, 3) under the room's light.
         room: (H, W, 3), empty.
     """
-    rows = np.flatnonzero(mask.any(axis=1))
-    top, bottom = int(rows[0]), int(rows[-1]) + 1
-    tall = bottom - top
-    floor = bottom - max(1, round(FLOOR_SHARE * tall))
+    left, top, width, height = cv2.boundingRect(mask.view(np.uint8))
+    box = slice(top, top + height), slice(left, left + width)
+    found = mask.copy()
+    found[box] = _without_cast(mask[box], picture[box], room[box])
+    return found
+
+
+def _without_cast(mask: Mask, picture: Frame, room: Floats) -> Mask:
+    """The same in the silhouette's own box."""
+    tall = len(mask)
+    floor = tall - max(1, round(FLOOR_SHARE * tall))
     shins = mask[floor - max(1, round(SHINS_SHARE * tall)) : floor].any(axis=0)
     reach = max(1, round(FOOT_SHARE * tall))
     columns = np.flatnonzero(shins)
