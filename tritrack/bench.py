@@ -26,6 +26,7 @@ from tritrack.offline import Decoders, track_clip
 from tritrack.runs import VERSIONS_OF, write_run
 from tritrack.scenes import by_opencv, figure_pairs, match_all, match_placed, scene
 from tritrack.session import free_settings, live
+from tritrack.single_bench import figures
 from viewer import silhouette, track, view_rehearsal
 from viewer.arms import facade_arms, flank_arms
 from viewer.background import learn
@@ -95,6 +96,8 @@ def measured(quick: bool) -> Iterator[Measured]:
             chosen = msgspec.structs.replace(settings, mode=mode, size=size)
             yield from tracking(chosen, Path(folder), 1 if quick else 5, due)
         if not quick:
+            alone = msgspec.structs.replace(settings, size="320x240")
+            yield from (Measured(*row) for row in figures(alone, 5, 200.0))
             yield from memory(settings, Path(folder))
 
 

@@ -1,0 +1,103 @@
+"""How fast one camera's clip is followed, from its video to poses, once its room is known."""
+
+import time
+from collections.abc import Callable, Iterator
+from typing import Final, NamedTuple
+
+import cv2
+
+from common.clips import open_clip
+from common.config import Settings
+from common.decoding import Decoder
+from common.notes import Notes
+from common.reel import Reel
+from tritrack.first_pass import outlines_of
+from tritrack.one_camera_poses import poses_of
+from viewer.empty import room_of_clip
+
+ALONE: Final = (1,)
+"""The view that is followed."""
+
+
+class Followed(NamedTuple):
+    """Least seconds of several runs over all frames; the decoder's by the clock, it is a process
+    of its own, the others' of this process, whatever else the machine does."""
+
+    frames: int
+    decoding_s: float
+    silhouettes_s: float
+    poses_s: float
+
+    @property
+    def frames_a_second(self) -> float:
+        """One stage after the other on one core; learning the room does not count."""
+        return self.frames / (self.decoding_s + self.silhouettes_s + self.poses_s)
+
+
+def figures(
+    settings: Settings, repeats: int, target: float
+) -> Iterator[tuple[str, float, str, float | None]]:
+    """What was measured, its value, unit and, where there is one, its target; then its parts."""
+    at, found = f"{settings.mode}, {settings.size}", followed(settings, repeats)
+    yield f"single, video to poses, {at}", found.frames_a_second, "frames/s", target
+    for what, value_s in {
+        "decoding": found.decoding_s,
+        "silhouettes": found.silhouettes_s,
+        "poses": found.poses_s,
+    }.items():
+        yield f"- {what} of one view, {at}", 1e3 * value_s / found.frames, "ms a frame", None
+
+
+def followed(settings: Settings, repeats: int) -> Followed:
+    """Follow a clip's first camera again and again, as `tritrack single` does without calibration.
+
+    Args:
+        settings: Name the clip, the mode and the size of the working picture.
+        repeats: How often, after a first time that may compile.
+
+    Raises:
+        ClipError: When there is no such clip.
+        Undecodable, DecoderDied: When it has no pictures.
+    """
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        with Decoder() as decoder:
+            return _followed(settings, repeats, decoder)
+    finally:
+        cv2.setNumThreads(threads)
+
+
+def _followed(settings: Settings, repeats: int, decoder: Decoder) -> Followed:
+    clip = open_clip(settings, decoder, ALONE)
+    view, reel = clip.views[0], Reel(decoder)
+    room, anchor, _ = room_of_clip(view, settings.silhouette, reel)
+    period_s = clip.every / view.fps
+
+    def decoded() -> int:
+        return sum(1 for _ in decoder.frames(view.source, view.size))
+
+    def outlined() -> int:
+        return len(outlines_of(clip, room, anchor, settings.silhouette, reel))
+
+    def posed() -> int:
+        return len(poses_of(outlines, view.size, None, settings, period_s, Notes()).bodies)
+
+    outlines = outlines_of(clip, room, anchor, settings.silhouette, reel)
+    return Followed(
+        len(outlines),
+        _least_s(decoded, repeats, time.perf_counter),
+        _least_s(outlined, repeats, time.process_time),
+        _least_s(posed, repeats, time.process_time),
+    )
+
+
+def _least_s(run: Callable[[], object], repeats: int, clock: Callable[[], float]) -> float:
+    """Least time of a call; the first one, which may compile, does not count."""
+    run()
+    least_s = float("inf")
+    for _ in range(repeats):
+        began = clock()
+        run()
+        least_s = min(least_s, clock() - began)
+    return least_s
