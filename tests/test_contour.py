@@ -13,7 +13,7 @@ from viewer.contour import (
     knees_crossed,
     line_angle_deg,
     lower_leg_curves,
-    runs,
+    outer_runs,
     turn_deg,
 )
 
@@ -66,8 +66,20 @@ def test_directions_differ_by_no_more_than_half_a_turn() -> None:
 
 
 def test_a_scan_line_has_a_run_for_each_piece() -> None:
-    row = np.array([1, 1, 0, 0, 1, 0, 1], np.bool_)
-    assert runs(row).tolist() == [[0, 2], [4, 5], [6, 7]]
+    rows = np.array([[1, 1, 0, 0, 1, 0, 1], [0, 0, 1, 1, 1, 0, 0], [0] * 7, [1] * 7], np.bool_)
+    assert outer_runs(rows).tolist() == [
+        *([3, 0, 2, 6, 7], [1, 2, 5, 2, 5]),
+        *([0, 0, 0, 0, 0], [1, 0, 7, 0, 7]),
+    ]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_line_is_that_of_least_squared_distances(seed: int) -> None:
+    """T14, against the singular vectors of the centred curve."""
+    curve = bent(20.0, seed, noise_px=3.0)
+    _, _, axes = np.linalg.svd(curve - curve.mean(axis=0))
+    along_deg = np.degrees(np.arctan2(-axes[0, 1], axes[0, 0]))
+    assert min(turn_deg(line_angle_deg(curve), along_deg + half) for half in (0.0, 180.0)) < 1e-9
 
 
 @pytest.mark.parametrize(

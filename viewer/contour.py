@@ -1,8 +1,9 @@
 """The contour method: curves of arms and lower legs, elbows, crossed legs (algorithms 2 to 5)."""
 
 import math
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,24 +29,48 @@ class ArmAngles(NamedTuple):
     """Which point of the curve is the elbow; -1: none is seen, the arm is straight."""
 
 
-def runs(row: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Where a scan line is inside the silhouette, (n, 2): first pixel and one past the last."""
-    steps = np.flatnonzero(np.diff(row.astype(np.int8), prepend=0, append=0))
-    pairs: NDArray[np.int64] = steps.reshape(-1, 2)
-    return pairs
+@numba.njit(cache=True)
+def outer_runs(mask: Any) -> Any:
+    """Where scan lines are inside a silhouette (H, W): how often, and their outermost runs.
+
+    Returns:
+        (H, 5): number of runs, then first pixel and one past the last of the first and of the last.
+    """
+    height, width = mask.shape
+    found = np.zeros((height, 5), np.int64)
+    for y in range(height):
+        for x in range(width):
+            if mask[y, x] and not (x and mask[y, x - 1]):
+                found[y, 0] += 1
+                found[y, 3] = x
+            if mask[y, x] and not (x + 1 < width and mask[y, x + 1]):
+                found[y, 4] = x + 1
+                if found[y, 0] == 1:
+                    found[y, 1:3] = found[y, 3:5]
+    return found
 
 
-def _line(curve: Curve) -> tuple[float, float]:
+@numba.njit(cache=True)
+def _line(curve: Any) -> tuple[float, float]:
     """The line of least squared distances through a curve: (angle, sum of these squares)."""
-    centred = curve - curve.mean(axis=0)
-    _, sizes, axes = np.linalg.svd(centred, full_matrices=False)
-    dx, dy = axes[0] if (curve[-1] - curve[0]) @ axes[0] >= 0 else -axes[0]
-    return math.degrees(math.atan2(-dy, dx)) % 360.0, float(sizes[1] ** 2)
+    size = len(curve)
+    mean_x, mean_y = curve[:, 0].sum() / size, curve[:, 1].sum() / size
+    across = both = down = 0.0
+    for x, y in curve:
+        across += (x - mean_x) ** 2
+        both += (x - mean_x) * (y - mean_y)
+        down += (y - mean_y) ** 2
+    turn = 0.5 * math.atan2(2.0 * both, across - down)
+    dx, dy = math.cos(turn), math.sin(turn)
+    if (curve[-1, 0] - curve[0, 0]) * dx + (curve[-1, 1] - curve[0, 1]) * dy < 0.0:
+        dx, dy = -dx, -dy
+    off = across * dy * dy - 2.0 * both * dx * dy + down * dx * dx
+    return math.degrees(math.atan2(-dy, dx)) % 360.0, off
 
 
 def line_angle_deg(curve: Curve) -> float:
     """FindAngle: where a curve leads, in [0, 360), by the least squared distances (T14)."""
-    return _line(curve)[0]
+    return float(_line(curve)[0])
 
 
 def arm_curve(mask: Mask, trunk: tuple[int, int, int], reach_px: int, side: int) -> Curve:
@@ -60,15 +85,12 @@ def arm_curve(mask: Mask, trunk: tuple[int, int, int], reach_px: int, side: int)
         side: 0 on the left of the picture, 1 on the right.
     """
     left, right, shoulder = trunk
-    points = []
-    for y in range(max(0, shoulder - reach_px), min(len(mask), shoulder + reach_px + 1)):
-        found = runs(mask[y])
-        if len(found):
-            begin, end = found[0] if side == 0 else found[-1]
-            begin, end = (begin, min(end, left)) if side == 0 else (max(begin, right), end)
-            if end > begin:
-                points.append(((begin + end) / 2, y + 0.5))
-    curve = np.array(points).reshape(-1, 2)
+    rows = np.arange(max(0, shoulder - reach_px), min(len(mask), shoulder + reach_px + 1))
+    found = outer_runs(mask[rows])
+    begin, end = (found[:, 1], found[:, 2]) if side == 0 else (found[:, 3], found[:, 4])
+    begin, end = (begin, np.minimum(end, left)) if side == 0 else (np.maximum(begin, right), end)
+    seen = (found[:, 0] > 0) & (end > begin)
+    curve = np.stack([(begin[seen] + end[seen]) / 2, rows[seen] + 0.5], axis=1)
     upwards = np.count_nonzero(curve[:, 1] < shoulder) > len(curve) / 2
     return curve[::-1] if upwards else curve
 
@@ -81,27 +103,25 @@ def lower_leg_curves(mask: Mask, top: int, bottom: int) -> tuple[Curve, Curve, l
     Returns:
         (left curve, right curve, for each line with a run: whether the legs share it).
     """
-    left, right, merged = [], [], []
-    for y in range(max(0, top), min(len(mask), bottom)):
-        found = runs(mask[y])
-        if not len(found):
-            continue
-        first, last = found[0], found[-1]
-        merged.append(len(found) == 1)
-        if len(found) == 1:
-            half = (first[0] + first[1]) / 2
-            first, last = (first[0], half), (half, last[1])
-        left.append(((first[0] + first[1]) / 2, y + 0.5))
-        right.append(((last[0] + last[1]) / 2, y + 0.5))
-    return np.array(left).reshape(-1, 2), np.array(right).reshape(-1, 2), merged
+    rows = np.arange(max(0, top), min(len(mask), bottom))
+    found = outer_runs(mask[rows])
+    rows, found = rows[found[:, 0] > 0], found[found[:, 0] > 0]
+    merged, ends = found[:, 0] == 1, found[:, 1:].astype(np.float64)
+    ends[merged, 1:3] = ends[merged][:, :2].mean(axis=1)[:, None]
+    left, right = (
+        np.stack([ends[:, at : at + 2].mean(axis=1), rows + 0.5], axis=1) for at in (0, 2)
+    )
+    return left, right, merged.tolist()
 
 
+@numba.njit(cache=True)
 def turn_deg(one_deg: float, other_deg: float) -> float:
     """The angle between two directions, in [0, 180]."""
     return abs((one_deg - other_deg + 180.0) % 360.0 - 180.0)
 
 
-def elbow_corner(curve: Curve) -> int:
+@numba.njit(cache=True)
+def elbow_corner(curve: Any) -> int:
     """Algorithm 4: the point that parts a curve into two lines of different directions; -1: none.
 
     Of the points that do, it is the one at which two lines fit best, away from both ends; printed
@@ -118,7 +138,7 @@ def elbow_corner(curve: Curve) -> int:
 
 def arm_angles(curve: Curve) -> ArmAngles:
     """Algorithm 3: one angle for both halves of a straight arm, else one for each (T15)."""
-    corner = elbow_corner(curve)
+    corner = int(elbow_corner(curve))
     if corner < 0:
         angle = line_angle_deg(curve)
         return ArmAngles(angle, angle, -1)

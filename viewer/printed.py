@@ -6,9 +6,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bits import Bits, count, count_both, pack_words
+from common.bits import Bits, pack_words
 from common.body import LIMBS, Vector
-from common.kernel import score
 from common.proportions import THESIS_RATIOS
 from common.similarity import Mask
 from common.stickman import (
@@ -18,11 +17,10 @@ from common.stickman import (
     STATURE,
     THESIS,
     TORSO,
-    place_segments,
     segments_px,
     standing,
 )
-from common.strokes import draw_segments
+from common.strokes import match_stick
 from viewer.contour import arm_angles, arm_curve, knees_crossed, line_angle_deg, lower_leg_curves
 from viewer.division import angle_found, ratio_found
 
@@ -84,14 +82,14 @@ def fit_printed(mask: Mask, stature_px: float) -> Printed:
 def _turned(fit: _Fit, limbs: Sequence[int], limits_deg: tuple[float, float]) -> None:
     """Algorithm 1 for the first of the limbs; the torso takes the head with it."""
     at = ANGLE + limbs[0]
+    part = _reachable(fit, limbs)
 
     def score_at(angle_deg: float) -> float:
         fit.pose[at] = angle_deg
         if limbs == (TORSO, HEAD):
             fit.pose[ANGLE + HEAD] = angle_deg
-        return _score(fit, limbs, window)
+        return _score(fit, limbs, part)
 
-    window = _reachable(fit, limbs)
     found = angle_found(score_at, limits_deg)
     score_at(found.angle_deg)
     fit.matches.append(found.matches)
@@ -100,12 +98,12 @@ def _turned(fit: _Fit, limbs: Sequence[int], limits_deg: tuple[float, float]) ->
 def _shortened(fit: _Fit, limb: int) -> None:
     """Algorithm 6 for a limb."""
     at = RATIO + limb
+    part = _around(fit, limb)
 
     def score_at(ratio: float) -> float:
         fit.pose[at] = ratio
-        return _score(fit, (limb,), window)
+        return _score(fit, (limb,), part)
 
-    window = _around(fit, limb)
     found = ratio_found(score_at, float(THESIS.lengths[limb] * fit.pose[STATURE]))
     fit.pose[at] = found.angle_deg
     fit.matches.append(found.matches)
@@ -141,18 +139,15 @@ def _lower_legs(fit: _Fit, mask: Mask, bottom: int) -> bool:
     return True
 
 
-def _score(fit: _Fit, limbs: Sequence[int], window: Bits) -> float:
+def _score(fit: _Fit, limbs: Sequence[int], part: Bits) -> float:
     """S of some segments and the part of the silhouette that may contain them (T13)."""
-    ends, bits = np.empty((12, 4)), np.zeros_like(fit.seen)
-    place_segments(THESIS.lengths, fit.pose, ends)
     which = sum(1 << limb for limb in limbs)
-    draw_segments(ends, fit.pose, THESIS.parts, THESIS.depth, which, fit.width, bits)
-    part = fit.seen & window
-    return float(score(count_both(bits, part), count(bits), count(part)))
+    man = THESIS
+    return float(match_stick(man.lengths, man.parts, man.depth, fit.pose, which, fit.width, part))
 
 
 def _reachable(fit: _Fit, limbs: Sequence[int]) -> Bits:
-    """Rows and columns that segments can reach around the joint on which they hang."""
+    """The silhouette where segments can reach around the joint on which they hang."""
     reach = sum(float(THESIS.lengths[limb]) for limb in limbs) * fit.pose[STATURE]
     x, y = segments_px(THESIS, fit.pose)[limbs[0], 0]
     rows = (y - reach, y) if limbs[0] in (TORSO, HEAD) else (y, y + reach)
@@ -160,7 +155,7 @@ def _reachable(fit: _Fit, limbs: Sequence[int]) -> Bits:
 
 
 def _around(fit: _Fit, limb: int) -> Bits:
-    """Rows and columns of a segment at its full length."""
+    """The silhouette in the rows and columns of a segment at its full length."""
     pose = fit.pose.copy()
     pose[RATIO + limb] = 1.0
     ends = segments_px(THESIS, pose)[limb]
@@ -174,4 +169,4 @@ def _box(fit: _Fit, columns: Any, rows: Any) -> Bits:
     first_x, last_x = (max(0, round(value)) for value in columns)
     first_y, last_y = (max(0, round(value)) for value in rows)
     inside[first_y:last_y, first_x:last_x] = True
-    return pack_words(inside)
+    return fit.seen & pack_words(inside)
