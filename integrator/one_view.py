@@ -92,8 +92,8 @@ def step(seen: Glance, report: Report, told: Inputs) -> tuple[State, Body, Settl
         state, lifted = lifted_body(state, report, told)
         if found is None or lifted.score >= SURELY * found.score:
             found = lifted
-    if not state.printed:
-        found = settled_body(state, report, found, told)
+        if not state.printed:
+            found = settled_body(state, report, found, told)
     return _published(state, report, found)
 
 
