@@ -1,9 +1,10 @@
 """A camera that trembles, held still: each frame in the place and the light of one (T2)."""
 
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import cv2
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,13 +34,24 @@ LIGHT_STEP: Final = 7
 """Every so many pixels tell the light."""
 
 
+class Due(NamedTuple):
+    """What a frame that lies where the room does shows at the steep pixels, at one blur."""
+
+    edges: Floats
+    """(n,) grey levels beside the slow light."""
+    slopes: Floats
+    """(n, 2): how they change to the right and downwards, a pixel."""
+
+
 class Anchor(NamedTuple):
     """The room that frames are laid over."""
 
     luma: Floats
     """(H, W) brightness of the room."""
     steep: NDArray[np.intp]
-    """Places of EDGE_POINTS pixels in the flattened picture."""
+    """(n, 2) rows and columns of EDGE_POINTS pixels."""
+    due: tuple[Due, ...]
+    """For COARSE_PX and FINE_PX."""
 
 
 class Place(NamedTuple):
@@ -73,14 +85,9 @@ def place_of(anchor: Anchor, luma: Floats) -> Place:
     """Where a frame lies: least squares over the edges, what does not fit set aside."""
     shift = np.zeros(2)
     limit = FARTHEST * len(luma)
-    for blur in (COARSE_PX, FINE_PX):
-        due = _edges(anchor.luma, blur)
-        slopes = np.stack([np.gradient(due, axis=axis).ravel()[anchor.steep] for axis in (1, 0)])
+    for edges, due in zip(_edges(luma), anchor.due, strict=True):
         for _ in range(ROUNDS):
-            now = _edges(_moved(luma, *shift), blur)
-            off = (now - due).ravel()[anchor.steep]
-            weighed = slopes / (1.0 + (off / UNLIKE) ** 2) ** 2
-            step = np.linalg.solve(weighed @ slopes.T + STIFF * np.eye(2), weighed @ off)
+            step = _nearer(edges, anchor.steep, due.edges, due.slopes, shift)
             shift = np.clip(shift + step, -limit, limit)
     gain, offset = _light(anchor.luma, _moved(luma, *shift))
     return Place(float(shift[0]), float(shift[1]), gain, offset)
@@ -100,15 +107,42 @@ def back(mask: NDArray[np.bool_], place: Place) -> NDArray[np.bool_]:
 
 
 def _anchor(luma: Floats) -> Anchor:
-    edges = _edges(luma, FINE_PX)
-    steepness = np.hypot(*np.gradient(edges)).ravel()
-    return Anchor(luma, np.argsort(steepness)[-EDGE_POINTS:])
+    pictures = _edges(luma)
+    steepness = np.hypot(*np.gradient(pictures[-1])).ravel()
+    steep = np.stack(np.unravel_index(np.argsort(steepness)[-EDGE_POINTS:], luma.shape), axis=1)
+    at = tuple(steep.T)
+    due = tuple(
+        Due(edges[at], np.stack([slope[at] for slope in np.gradient(edges)[::-1]], axis=1))
+        for edges in pictures
+    )
+    return Anchor(luma, steep, due)
 
 
-def _edges(luma: Floats, blur_px: float) -> Floats:
-    """The picture without its slow light."""
-    fine, wide = (cv2.GaussianBlur(luma, (0, 0), px) for px in (blur_px, WIDE_PX))
-    return np.asarray(fine - wide, np.float32)
+def _edges(luma: Floats) -> list[Floats]:
+    """The picture without its slow light, blurred by COARSE_PX and by FINE_PX."""
+    wide, *blurred = (cv2.GaussianBlur(luma, (0, 0), px) for px in (WIDE_PX, COARSE_PX, FINE_PX))
+    return [np.asarray(picture - wide, np.float32) for picture in blurred]
+
+
+@numba.njit(cache=True)
+def _nearer(edges: Any, steep: Any, due: Any, slopes: Any, shift: Any) -> Any:
+    """How much further a picture is to be moved, (2,): a step of reweighted least squares."""
+    height, width = edges.shape
+    matrix, told = STIFF * np.eye(2), np.zeros(2)
+    for n in range(len(steep)):
+        x = min(max(steep[n, 1] - shift[0], 0.0), width - 1.0)
+        y = min(max(steep[n, 0] - shift[1], 0.0), height - 1.0)
+        left, top = min(int(x), width - 2), min(int(y), height - 2)
+        right, down = x - left, y - top
+        above = (1.0 - right) * edges[top, left] + right * edges[top, left + 1]
+        below = (1.0 - right) * edges[top + 1, left] + right * edges[top + 1, left + 1]
+        off = (1.0 - down) * above + down * below - due[n]
+        weight = 1.0 / (1.0 + (off / UNLIKE) ** 2) ** 2
+        for i in range(2):
+            told[i] += weight * slopes[n, i] * off
+            for j in range(2):
+                matrix[i, j] += weight * slopes[n, i] * slopes[n, j]
+    return np.linalg.solve(matrix, told)
 
 
 def _moved(picture: Floats, right_px: float, down_px: float) -> Floats:
