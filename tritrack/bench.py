@@ -96,8 +96,9 @@ def measured(quick: bool) -> Iterator[Measured]:
             chosen = msgspec.structs.replace(settings, mode=mode, size=size)
             yield from tracking(chosen, Path(folder), 1 if quick else 5, due)
         if not quick:
-            alone = msgspec.structs.replace(settings, size="320x240")
-            yield from (Measured(*row) for row in figures(alone, 5, 200.0))
+            for mode in ("default", "thesis"):
+                chosen = msgspec.structs.replace(settings, mode=mode, size="320x240")
+                yield from (Measured(*row) for row in figures(chosen, 5, 200.0))
             yield from memory(settings, Path(folder))
 
 

@@ -40,12 +40,15 @@ def figures(
     """What was measured, its value, unit and, where there is one, its target; then its parts."""
     at, found = f"{settings.mode}, {settings.size}", followed(settings, repeats)
     yield f"single, video to poses, {at}", found.frames_a_second, "frames/s", target
-    for what, value_s in {
-        "decoding": found.decoding_s,
-        "silhouettes": found.silhouettes_s,
-        "poses": found.poses_s,
-    }.items():
-        yield f"- {what} of one view, {at}", 1e3 * value_s / found.frames, "ms a frame", None
+    for what, value_ms in parts_ms(found).items():
+        yield f"- {what}, {at}", value_ms, "ms a frame", None
+
+
+def parts_ms(found: Followed) -> dict[str, float]:
+    """What each stage takes for a frame."""
+    parts_s = (found.decoding_s, found.silhouettes_s, found.poses_s)
+    names = ("decoding of one view", "silhouettes of one view", "poses of one view")
+    return {name: 1e3 * part_s / found.frames for name, part_s in zip(names, parts_s, strict=True)}
 
 
 def followed(settings: Settings, repeats: int) -> Followed:
