@@ -1,13 +1,11 @@
 """The empty room, held against rooms and people that are drawn here."""
 
-from pathlib import Path
-
 import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from viewer.background import is_empty_opening, learn, light_gain
+from viewer.background import learn, light_gain
 from viewer.stacks import Frame
 from viewer.uncovered import learn_uncovered
 
@@ -88,21 +86,3 @@ def test_white_room_keeps_its_gain() -> None:
     frame = shot(white, 0.0, 0)
     frame[30:100, 60:100] = 30
     assert light_gain(frame, white.astype(np.float32)) == pytest.approx([1, 1, 1])
-
-
-def test_opening_is_empty_until_somebody_stands_in_it() -> None:
-    clip = [shot(room(), 2.0, n) for n in range(8)] + [shot(walker(n), 2.0, n) for n in range(40)]
-    assert is_empty_opening(clip[:8], clip[::4])
-    assert not is_empty_opening(clip[8:16], clip[8::4])
-
-
-@pytest.mark.parametrize("name", ["r01_t1_12_squat", "r07_t1_08_raise_both_forward_up"])
-@pytest.mark.parametrize("camera", [1, 2])
-def test_opening_of_the_development_clips(data_dir: Path, name: str, camera: int) -> None:
-    """Frames 0-8 show the empty room; from frame 9 on somebody is there."""
-    video = cv2.VideoCapture(str(data_dir / "dev" / name / f"cam{camera}.avi"))
-    clip: list[Frame] = []
-    while (read := video.read())[0]:
-        clip.append(cv2.resize(read[1], (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA))
-    assert is_empty_opening(clip[:8], clip[::4])
-    assert not is_empty_opening(clip[9:17], clip[9::4])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from viewer.stacks import LUMA, median, squares
+from viewer.stacks import CHANGES, LUMA, median, overlaid, squares
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 8, 9])
@@ -22,3 +22,17 @@ def test_brightness_and_colour_share_the_squares_of_a_deviation() -> None:
     found = squares(deviations)
     np.testing.assert_allclose(found[..., 0], (luma**2).sum(axis=0), rtol=1e-5)
     np.testing.assert_allclose(found[..., 1], (colour**2).sum(axis=(0, 3)) / 2, rtol=1e-5)
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 8])
+def test_pictures_laid_over_each_other_are_numpys_mean_and_median(count: int) -> None:
+    rng = np.random.default_rng(count)
+    frames = rng.integers(0, 256, (count, 5, 7, 3), np.uint8)
+    lights = rng.uniform(0.8, 1.2, (count, 3)).astype(np.float32)
+    even = frames / lights[:, None, None]
+    found = overlaid(frames, lights)
+    np.testing.assert_array_equal(found.mean, even.mean(axis=0))
+    np.testing.assert_array_equal(found.median, np.median(even, axis=0).astype(np.float32))
+    np.testing.assert_allclose(found.squares, squares(even - found.mean), rtol=1e-5, atol=1e-6)
+    off = np.abs((even - found.median) @ LUMA)
+    assert np.array_equal(found.moving, off > CHANGES)

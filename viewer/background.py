@@ -8,18 +8,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from viewer.stacks import LUMA, Floats, Frame, median, squares
+from viewer.stacks import Floats, Frame, Overlaid, median, overlaid
 
 SENSOR_NOISE: Final = 2.0
 """Grey levels; taken for granted where one picture alone shows the room."""
 FLOOR: Final = (1.0, 2.5)
 """Least spread of brightness and of colour, grey levels: rounding, and the colour that compression
 smears around a person, which no empty frame can show."""
-CHANGES: Final = 12.0
-"""Grey levels of brightness that tell a change from noise while no model stands."""
-EDGE_SHARE: Final = 0.45
-"""Of an empty opening the outlines of what differs later keep less than this share of their
-steepness, otherwise more: 0.05-0.41 and 0.49-2.5 on every third development clip."""
 GAIN_SAMPLES: Final = 1500.0
 """About how many pixels, on a grid, are asked for the light: a median of so many is steady."""
 
@@ -38,48 +33,39 @@ class Background(NamedTuple):
 def learn(frames: Sequence[Frame]) -> Background:
     """The room from pictures of it, empty.
 
-    The minimum, maximum and largest step that W4 keeps grow with the number of frames; their place
-    is taken here by mean and standard deviation, after the flicker of the light is taken out, and
-    the deviations are pooled over 5x5 pixels, since eight frames alone say little.
-
     Args:
         frames: One or more pictures of one size.
 
     Raises:
         ValueError: When there is no frame.
+    """
+    return learnt(opened(frames))
+
+
+def learnt(empty: Overlaid) -> Background:
+    """The room from pictures of it, empty, laid over each other.
+
+    The minimum, maximum and largest step that W4 keeps grow with the number of frames; their place
+    is taken here by mean and standard deviation, after the flicker of the light is taken out, and
+    the deviations are pooled over 5x5 pixels, since eight frames alone say little.
 
     Source: Huang & Chung 2004, section 1 (W4); requirement P3.
     """
+    spread = spread_of(empty.squares, len(empty.moving))
+    return Background(empty.mean, spread, np.zeros(spread.shape[:2], np.bool_))
+
+
+def opened(frames: Sequence[Frame]) -> Overlaid:
+    """Pictures laid over each other under the light of their median.
+
+    Raises:
+        ValueError: When there is none.
+    """
     if not frames:
         raise ValueError("a background needs at least 1 frame, got 0")
-    even = even_light(frames)
-    centre = even.mean(axis=0)
-    return Background(centre, spread_of(even - centre), np.zeros(centre.shape[:2], np.bool_))
-
-
-def is_empty_opening(opening: Sequence[Frame], sample: Sequence[Frame]) -> bool:
-    """Whether the opening frames show the room without a person.
-
-    What differs between the opening and a later frame has its outline in the picture that holds
-    the person: only in the later one if the opening is empty, in both if somebody stood there.
-
-    Args:
-        opening: The first frames of a clip.
-        sample: Frames from all over it, of the same size.
-    """
-    room = median(even_light(opening))
-    room_luma = room @ LUMA
-    room_slope = slopes(room_luma)
-    in_room, in_frames = 0.0, 0.0
-    for frame in sample:
-        shares = (LUMA / light_gain(frame, room))[None]
-        luma = cv2.transform(frame.astype(np.float32), shares)
-        differs = large_regions(np.abs(luma - room_luma) > CHANGES)
-        outline = cv2.morphologyEx(differs, cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8)) > 0
-        steeper = slopes(luma) - room_slope
-        in_frames += float(steeper[outline].clip(min=0).sum())
-        in_room -= float(steeper[outline].clip(max=0).sum())
-    return in_room <= EDGE_SHARE * in_frames
+    middle = median(frames)
+    lights = np.stack([light_gain(frame, middle) for frame in frames])
+    return overlaid(np.stack(frames), lights)
 
 
 @njit(cache=True, fastmath=True)
@@ -137,12 +123,11 @@ def even_light(frames: Sequence[Frame]) -> Floats:
     return np.stack(rows).reshape(-1, height, width, 3)
 
 
-def spread_of(deviations: Floats) -> Floats:
-    """Standard deviation of brightness and colour, (H, W, 2), from (n, H, W, 3) deviations."""
-    count = len(deviations)
+def spread_of(squares: Floats, count: int) -> Floats:
+    """Standard deviation of brightness and colour, (H, W, 2), from sums of so many squares."""
     if count == 1:
-        return np.full((*deviations.shape[1:3], 2), np.hypot(SENSOR_NOISE, FLOOR), np.float32)
-    pooled = squares(deviations) / np.float32(count - 1)
+        return np.full(squares.shape, np.hypot(SENSOR_NOISE, FLOOR), np.float32)
+    pooled = squares / np.float32(count - 1)
     return np.asarray(np.sqrt(cv2.blur(pooled, (5, 5)) + np.square(FLOOR)), np.float32)
 
 

@@ -11,10 +11,11 @@ from common.config import SilhouetteSettings
 from common.decoding import Decoder
 from common.reel import Reader
 from common.replacing import replacing
-from viewer.background import Background, is_empty_opening, learn
+from viewer.background import Background, learn, learnt, opened
+from viewer.opened import is_empty_opening, is_still
 from viewer.stacks import LUMA, Frame
 from viewer.steady import Anchor, anchored, laid, place_of
-from viewer.uncovered import is_still, learn_uncovered
+from viewer.uncovered import learn_uncovered
 
 SAMPLE = 40
 """How many frames at most, spread over a clip, tell whether its opening is empty."""
@@ -45,8 +46,9 @@ def empty_room(view: View, settings: SilhouetteSettings, decoder: Reader) -> tup
         plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
         return learn(plate), ""
     opening, sample = _looked_at(view, settings.empty_frames, decoder)
-    if is_still(opening) and is_empty_opening(opening, sample):
-        return learn(opening), ""
+    laid_over = opened(opening)
+    if is_still(laid_over) and is_empty_opening(laid_over, sample):
+        return learnt(laid_over), ""
     return learn_uncovered(sample), (
         f"{view.source} does not open with an empty room: the background is estimated from the "
         f"clip (name an empty picture with camera_{view.number}.background)"

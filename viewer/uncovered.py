@@ -9,15 +9,14 @@ from numpy.typing import NDArray
 
 from common.similarity import Mask
 from viewer.background import (
-    CHANGES,
-    EDGE_SHARE,
     Background,
     even_light,
     large_regions,
     slopes,
     spread_of,
 )
-from viewer.stacks import LUMA, Floats, Frame, median
+from viewer.opened import EDGE_SHARE
+from viewer.stacks import CHANGES, LUMA, Floats, Frame, median, squares
 
 GUESSED: Final = 4.0
 """Spread of a pixel whose room was guessed, grey levels."""
@@ -88,7 +87,7 @@ def learn_uncovered(frames: Sequence[Frame]) -> Background:
         if uncertain.mean() <= MOST_HIDDEN:
             break
     calm = np.where((away < CHANGES)[..., None], even - centre, 0.0).astype(np.float32)
-    spread = spread_of(calm)
+    spread = spread_of(squares(calm), len(frames))
     if held.any() and not held.all():
         spread[held] = np.median(spread[~held], axis=0)
     spread[uncertain] = np.maximum(spread[uncertain], GUESSED)
@@ -104,13 +103,6 @@ def _filled(even: Floats, centre: Floats, held: Mask) -> tuple[Floats, Mask]:
     uncertain = held & (shown == 0)
     room = np.where(held[..., None], np.where(uncertain[..., None], guess, mean), centre)
     return room.astype(np.float32), uncertain
-
-
-def is_still(opening: Sequence[Frame]) -> bool:
-    """Whether nobody moves in the opening frames: who runs through them leaves no outline."""
-    even = even_light(opening)
-    away = np.abs((even - median(even)) @ LUMA)
-    return not any(large_regions(off > CHANGES).any() for off in away)
 
 
 def segments(picture: Floats) -> NDArray[np.int64]:
