@@ -15,6 +15,7 @@ from viewer.background import Background, learn, light_gain
 from viewer.difference import Bytes, followed, label, seeds
 from viewer.judge import judged, redraw, shipped
 from viewer.outline import clues_of, counts_3x3
+from viewer.regions import NOWHERE, chosen
 from viewer.stacks import Floats, Frame
 
 CELLS: Final = 60
@@ -23,10 +24,6 @@ HOLE_SHARE: Final = 0.001
 """Holes up to this share of the picture are closed; between arm and trunk there are larger."""
 PART_SHARE: Final = 0.0002
 """Specks below this share of the picture are dropped."""
-APART_SHARE: Final = 0.2
-"""Regions this share of the picture's height apart can still be one body."""
-ALONE: Final = np.array([False, True])
-"""Which regions are the person's where there is one (row 0: none)."""
 FOLLOW_EVERY: Final = 8
 """Frames between two looks at the slow light."""
 
@@ -118,7 +115,8 @@ def guess(state: State, frame: Frame, near_px: tuple[float, float] | None) -> Gu
     gain = light_gain(frame, room)
     cell = max(1, round(frame.shape[0] / CELLS))
     found = seeds(frame, room, weight, gain, cell)
-    cells, blobs = _choose(found, cell, state.settings.min_height_share, near_px)
+    near = NOWHERE if near_px is None else (near_px[0] / cell, near_px[1] / cell)
+    cells, blobs = chosen(found, state.settings.min_height_share, near)
     mask, doubt = np.zeros(frame.shape[:2], np.uint8), np.zeros(frame.shape[:2], np.uint8)
     if blobs:
         label(mask, doubt, frame, room, weight, gain, known, cells, cell)
@@ -141,42 +139,6 @@ def _outlined(first: Guess) -> Bytes:
     redraw(mask, first.places, judged(shipped(), first.clues))
     _tidy(mask)
     return mask
-
-
-def _choose(
-    found: Bytes, cell: int, least_share: float, near_px: tuple[float, float] | None
-) -> tuple[Bytes, int]:
-    """The cells around the person's region, and how many regions could be a person."""
-    around = np.ones((3, 3), np.uint8)
-    joined = cv2.dilate(found, around)
-    _, labels, stats, centres = cv2.connectedComponentsWithStatsWithAlgorithm(
-        joined, 8, cv2.CV_32S, cv2.CCL_GRANA
-    )
-    # joining made every region two cells taller
-    tall = stats[1:, cv2.CC_STAT_HEIGHT] - 2 >= least_share * found.shape[0]
-    large = 1 + np.flatnonzero(tall)
-    if not large.size:
-        return joined, 0
-    if near_px is None:
-        best = large[np.argmax(stats[large, cv2.CC_STAT_AREA])]
-    else:
-        off = (centres[large] + 0.5) * cell - near_px
-        best = large[np.argmin(np.hypot(off[:, 0], off[:, 1]))]
-    own = _same_body(stats, int(best), found.shape[0]) if len(stats) > 2 else ALONE
-    return own[labels].astype(np.uint8), int(np.count_nonzero(~own[large])) + 1
-
-
-def _same_body(stats: NDArray[np.int32], best: int, rows: int) -> Mask:
-    """Which regions (row 0: none) stand over or under the best one, or all but touch it.
-
-    Clothes of the wall's colour part a body across; people who stand side by side do not overlap.
-    """
-    left, top, width, height, _ = stats.T
-    overlap = np.minimum(left + width, left[best] + width[best]) - np.maximum(left, left[best])
-    gap = np.maximum(top, top[best]) - np.minimum(top + height, top[best] + height[best])
-    own = (overlap > 0.5 * width) & (gap < APART_SHARE * rows)
-    own[0], own[best] = False, True
-    return np.asarray(own, np.bool_)
 
 
 def _tidy(mask: Bytes) -> None:
