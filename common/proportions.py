@@ -1,8 +1,9 @@
 """Proportions of bodies: the thesis's, a standing body's, and where joints lie in its cylinders."""
 
 from functools import lru_cache
-from typing import Final
+from typing import Any, Final
 
+import numba
 import numpy as np
 
 from common.body import Bdp, Elliptic, Round, Vector
@@ -95,28 +96,27 @@ def body_vector(bdp: Bdp) -> Vector:
 @lru_cache(maxsize=64)
 def _body_numbers(bdp: Bdp) -> tuple[float, ...]:
     """The same numbers: a body hardly changes from frame to frame."""
-    torso, leg, height = bdp.torso, bdp.r_upper_leg, stature(bdp)
-    inset = torso.long_radius - SHOULDERS_APART / 2 * height
-    arms = [
-        bdp.r_upper_arm.height + bdp.r_lower_arm.height,
-        bdp.l_upper_arm.height + bdp.l_lower_arm.height,
-    ]
-    legs = [
-        bdp.r_upper_leg.height + bdp.r_lower_leg.height,
-        bdp.l_upper_leg.height + bdp.l_lower_leg.height,
-    ]
-    return (
-        *bdp.lengths(),
-        torso.long_radius,
-        torso.height - SHOULDER_DROP * torso.long_radius,
-        torso.long_radius - leg.long_radius,
-        *(ELBOW_SHARE * (inset + arm) for arm in arms),
-        *(WRIST_SHARE * (inset + arm) for arm in arms),
-        *(length - KNEE_SHARE * height for length in legs),
-        *(length - ANKLE_SHARE * height for length in legs),
-        HIP_SHARE * height - legs[0],
-        inset,
-    )
+    return tuple(attached(np.array(bdp.lengths())).tolist())
+
+
+@numba.njit(cache=True)
+def attached(lengths: Any) -> Any:
+    """The body vector (39,) of 26 lengths."""
+    body = np.empty(39)
+    body[:26] = lengths
+    long_radius, height = lengths[0], lengths[5] + lengths[2] + lengths[8] + lengths[14]
+    inset = long_radius - SHOULDERS_APART / 2 * height
+    body[26] = long_radius
+    body[27] = lengths[2] - SHOULDER_DROP * long_radius
+    body[28] = long_radius - lengths[6]
+    for side in range(2):
+        arm = lengths[19 + 2 * side] + lengths[23 + 2 * side]
+        leg = lengths[8 + 3 * side] + lengths[14 + 3 * side]
+        body[29 + side], body[31 + side] = ELBOW_SHARE * (inset + arm), WRIST_SHARE * (inset + arm)
+        body[33 + side], body[35 + side] = leg - KNEE_SHARE * height, leg - ANKLE_SHARE * height
+    body[37] = HIP_SHARE * height - (lengths[8] + lengths[14])
+    body[38] = inset
+    return body
 
 
 def stature(bdp: Bdp) -> float:

@@ -2,16 +2,17 @@
 
 import math
 from collections.abc import Callable
-from typing import Final
+from typing import Any, Final
 
 import msgspec
+import numba
 import numpy as np
 
 from common.bits import count, pack_words
 from common.body import POSE_INDEX, Bdp, Round, rest_pose
 from common.camera import PAPER_ROTATIONS
 from common.kernel import match
-from common.proportions import body_vector
+from common.proportions import attached
 from common.similarity import Mask
 from viewer.figure import view_at
 from viewer.tritree import tritree
@@ -23,6 +24,7 @@ ENOUGH: Final = 1e-3
 MOST_ROUNDS: Final = 4
 ABOVE_CENTRE: Final = 0b1111000011
 """Limbs that fine tuning matches: trunk, head and arms."""
+R_SHOULDER_Z, L_SHOULDER_Z = POSE_INDEX["r_shoulder_z"], POSE_INDEX["l_shoulder_z"]
 TIP_PX: Final = 1.0
 """How far fine tuning may move an arm's tip from where it was seen: hands are thinner than the
 cylinders, so S alone would cut them off (P20: within 1 px)."""
@@ -40,7 +42,8 @@ def fine_tuned(
     upper[round(centre_px[1]) :] = False
     seen = pack_words(upper)
     seen_px = count(seen)
-    view, pose = view_at(np.array(PAPER_ROTATIONS[0]), 1.0, centre_px), rest_pose()
+    view = view_at(np.array(PAPER_ROTATIONS[0]), 1.0, centre_px)
+    lengths, pose, width = np.array(bdp.lengths()), rest_pose(), mask.shape[1]
     # trunk radius, arm radius, arm lengths right and left (px), angles right and left (deg)
     values = [
         bdp.torso.long_radius,
@@ -52,12 +55,24 @@ def fine_tuned(
     spans = [max(1.0, values[0] / 4), max(1.0, values[1]), TIP_PX, TIP_PX, 8.0, 8.0]
 
     def score_of(trial: list[float]) -> float:
-        body = body_vector(_tuned(bdp, trial))
-        pose[POSE_INDEX["r_shoulder_z"]], pose[POSE_INDEX["l_shoulder_z"]] = trial[4], trial[5]
-        return float(match(body, pose, view, ABOVE_CENTRE, mask.shape[1], seen, seen_px))
+        return float(_score(np.array(trial), lengths, pose, view, width, seen, seen_px))
 
     best = _climbed(score_of, values, spans)
     return _tuned(bdp, best), (best[4], best[5])
+
+
+@numba.njit(cache=True)
+def _score(
+    values: Any, lengths: Any, pose: Any, view: Any, width: int, seen: Any, seen_px: int
+) -> float:
+    """S of the body with other values; its lengths and its pose are set to them."""
+    lengths[0] = values[0]
+    for at in range(18, 26, 2):
+        lengths[at] = values[1]
+    lengths[19] = lengths[23] = values[2] / 2
+    lengths[21] = lengths[25] = values[3] / 2
+    pose[R_SHOULDER_Z], pose[L_SHOULDER_Z] = values[4], values[5]
+    return match(attached(lengths), pose, view, ABOVE_CENTRE, width, seen, seen_px)
 
 
 def _climbed(
