@@ -4,7 +4,7 @@ from typing import Final
 
 import numpy as np
 
-from viewer.difference import KERNEL, Bytes, shade_of, unshaded
+from viewer.difference import KERNEL, Bytes, light_of, shade_of, unshaded
 from viewer.stacks import Floats, Frame
 
 SHADES: Final = 2048
@@ -41,16 +41,16 @@ def counted(
 ) -> Floats:
     """The counts after one more frame; `inside` counts the mask in 3x3 neighbourhoods."""
     height, width = inside.shape
-    out = counts * KEPT
+    out, light = counts * KEPT, light_of(gain)
     for i, j in np.argwhere(cells):
         for y in range(i * cell, min((i + 1) * cell, height)):
             given, empty, sure = frame[y], room[y], weight[y]
             # every other pixel, like a chessboard, says as much
             for x in range(j * cell + (y & 1), min((j + 1) * cell, width), 2):
                 if inside[y, x] == 9:
-                    out[1, shade_of(given, gain, x)] += 1
+                    out[1, shade_of(given, light, x)] += 1
                 elif inside[y, x] == 0:
-                    far = unshaded(given, empty, sure, gain, x)
+                    far = unshaded(given, empty, sure, light, x)
                     if far < SURELY_ROOM * SURELY_ROOM:
-                        out[0, shade_of(given, gain, x)] += 1
+                        out[0, shade_of(given, light, x)] += 1
     return out

@@ -14,8 +14,10 @@ from viewer.difference import (
     RED,
     WHITE,
     Bytes,
+    Triple,
     brightness,
     colour,
+    light_of,
     shade_of,
     unshaded,
 )
@@ -56,7 +58,7 @@ def sides_of(frame: Frame, room: Floats, gain: Floats, inside: Bytes, top: int, 
     `inside` counts the mask in every pixel's 3x3 neighbourhood, from (top, left) of the frame on.
     """
     height, width = inside.shape
-    out = np.zeros((height, width, SIDES), np.uint8)
+    out, light = np.zeros((height, width, SIDES), np.uint8), light_of(gain)
     for y in range(height):
         given, empty, side, row = frame[y + top], room[y + top], inside[y], out[y]
         for x in range(width):
@@ -71,7 +73,7 @@ def sides_of(frame: Frame, room: Floats, gain: Floats, inside: Bytes, top: int, 
                 )
             elif side[x] == 0:
                 row[x, 4] = _level(b, g, r)
-                due_b, due_g, due_r = _due(empty, gain, u, ONE)
+                due_b, due_g, due_r = _due(empty, light, u, ONE)
                 row[x, 5] = _level(due_b, due_g, due_r)
     return out
 
@@ -108,14 +110,14 @@ def covered(
     shares = np.empty((height, width, SHARES), np.float32)
     count = np.count_nonzero(reach == 2)
     places, facts = np.empty((count, 2), np.int32), np.empty((count, FACTS), np.float32)
-    n = 0
+    n, light = 0, light_of(gain)
     for y in range(height):
         given, empty, sure = frame[y + top], room[y + top], weight[y + top]
         for x in range(width):
             if not reach[y, x]:
                 continue
             beside, u = _beside(sides[y, x]), x + left
-            off, full = _against(given, empty, gain, beside, u)
+            off, full = _against(given, empty, light, beside, u)
             share = UNKNOWN
             if beside[3] > 0:
                 share = min(max(_dot(off, full) / (_dot(full, full) + NOISE), LEAST), MOST)
@@ -123,10 +125,10 @@ def covered(
             shares[y, x, 1] = min(abs(off[0]) / LEVELS, np.float32(2))
             if reach[y, x] == 2:
                 _tell(facts[n], off, full, share, beside)
-                facts[n, 4] = _spreads(np.sqrt(unshaded(given, empty, sure, gain, u)))
-                facts[n, 5] = _spreads(brightness(given, empty, sure, gain, u))
-                facts[n, 6] = _spreads(np.sqrt(colour(given, empty, sure, gain, u)))
-                facts[n, 7] = known[shade_of(given, gain, u)]
+                facts[n, 4] = _spreads(np.sqrt(unshaded(given, empty, sure, light, u)))
+                facts[n, 5] = _spreads(brightness(given, empty, sure, light, u))
+                facts[n, 6] = _spreads(np.sqrt(colour(given, empty, sure, light, u)))
+                facts[n, 7] = known[shade_of(given, light, u)]
                 places[n, 0], places[n, 1] = y, x
                 n += 1
     return shares, places, facts
@@ -160,13 +162,13 @@ def _level(b: np.float32, g: np.float32, r: np.float32) -> np.uint8:
 
 @INLINE
 def _due(
-    empty: Floats, gain: Floats, x: int, shade: np.float32
+    empty: Floats, light: Triple, x: int, shade: np.float32
 ) -> tuple[np.float32, np.float32, np.float32]:
     """What a pixel of a row of the room shows in this light and shade."""
     return (
-        min(empty[x, 0] * gain[0], WHITE) * shade,
-        min(empty[x, 1] * gain[1], WHITE) * shade,
-        min(empty[x, 2] * gain[2], WHITE) * shade,
+        min(empty[x, 0] * light[0], WHITE) * shade,
+        min(empty[x, 1] * light[1], WHITE) * shade,
+        min(empty[x, 2] * light[2], WHITE) * shade,
     )
 
 
@@ -183,11 +185,11 @@ def _beside(sides: Floats) -> Beside:
 
 @INLINE
 def _against(
-    given: Bytes, empty: Floats, gain: Floats, beside: Beside, x: int
+    given: Bytes, empty: Floats, light: Triple, beside: Beside, x: int
 ) -> tuple[Colour, Colour]:
     """How a pixel, and how the body, differs from the room in its shade."""
     body_b, body_g, body_r, _, shade = beside
-    b, g, r = _due(empty, gain, x, shade)
+    b, g, r = _due(empty, light, x, shade)
     seen_b, seen_g = np.float32(given[x, 0]), np.float32(given[x, 1])
     off = _opponent(seen_b - b, seen_g - g, np.float32(given[x, 2]) - r)
     return off, _opponent(body_b - b, body_g - g, body_r - r)

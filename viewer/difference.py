@@ -46,6 +46,7 @@ def seeds(frame: Frame, room: Floats, weight: Floats, gain: Floats, cell: int) -
     """(rows, columns) of cells, 1 where one of two pixels of a cell is surely no room."""
     height, width = frame.shape[:2]
     out = np.zeros(((height + cell - 1) // cell, (width + cell - 1) // cell), np.uint8)
+    light = light_of(gain)
     for i in range(out.shape[0]):
         for k in (0, cell // 2):
             y = min(i * cell + k, height - 1)
@@ -53,8 +54,8 @@ def seeds(frame: Frame, room: Floats, weight: Floats, gain: Floats, cell: int) -
             for j in range(out.shape[1]):
                 x = min(j * cell + k, width - 1)
                 # whatever a shadow explains, it is no farther than without: most stop here
-                if _distance(given, empty, sure, gain, x) > SEED * SEED:
-                    out[i, j] |= unshaded(given, empty, sure, gain, x) > SEED * SEED
+                if _distance(given, empty, sure, light, x) > SEED * SEED:
+                    out[i, j] |= unshaded(given, empty, sure, light, x) > SEED * SEED
     return out
 
 
@@ -76,13 +77,13 @@ def label(
     """
     height, width = mask.shape
     evidence = np.zeros((height, width), np.float32)
-    places = np.argwhere(cells)
+    places, light = np.argwhere(cells), light_of(gain)
     for i, j in places:
         for y in range(i * cell, min((i + 1) * cell, height)):
             given, empty, sure = frame[y], room[y], weight[y]
             for x in range(j * cell, min((j + 1) * cell, width)):
-                far = np.sqrt(unshaded(given, empty, sure, gain, x))
-                told = (far - DIFFERS) * STEEP + KNOWN * known[shade_of(given, gain, x)]
+                far = np.sqrt(unshaded(given, empty, sure, light, x))
+                told = (far - DIFFERS) * STEEP + KNOWN * known[shade_of(given, light, x)]
                 evidence[y, x] = min(max(told, -SURE), SURE)
     for i, j in places:
         for y in range(i * cell, min((i + 1) * cell, height)):
@@ -107,57 +108,63 @@ def followed(
     """The room, a little nearer to what a frame shows outside (left, right, top, bottom)."""
     height, width = frame.shape[:2]
     left, right, top, bottom = corners
-    out = room.copy()
+    out, light = room.copy(), light_of(gain)
     for y in range(height):
         given, empty, sure, now = frame[y], room[y], weight[y], out[y]
         for x in range(width):
-            calm = _distance(given, empty, sure, gain, x) < DIFFERS * DIFFERS
+            calm = _distance(given, empty, sure, light, x) < DIFFERS * DIFFERS
             near = (left <= x) & (x <= right) & (top <= y) & (y <= bottom)
             rate = FOLLOW if calm & (not near) else np.float32(0)
-            b, g, r = _off(given, empty, gain, x)
-            now[x, 0] += rate * b / gain[0]
-            now[x, 1] += rate * g / gain[1]
-            now[x, 2] += rate * r / gain[2]
+            b, g, r = _off(given, empty, light, x)
+            now[x, 0] += rate * b / light[0]
+            now[x, 1] += rate * g / light[1]
+            now[x, 2] += rate * r / light[2]
     return out
 
 
 @INLINE
-def _off(given: Bytes, room: Floats, gain: Floats, x: int) -> Triple:
+def light_of(gain: Floats) -> Triple:
+    """A gain that a loop need not read again after each write."""
+    return gain[0], gain[1], gain[2]
+
+
+@INLINE
+def _off(given: Bytes, room: Floats, light: Triple, x: int) -> Triple:
     """How a pixel of a row differs from the room in this light, per channel."""
     return (
-        np.float32(given[x, 0]) - min(room[x, 0] * gain[0], WHITE),
-        np.float32(given[x, 1]) - min(room[x, 1] * gain[1], WHITE),
-        np.float32(given[x, 2]) - min(room[x, 2] * gain[2], WHITE),
+        np.float32(given[x, 0]) - min(room[x, 0] * light[0], WHITE),
+        np.float32(given[x, 1]) - min(room[x, 1] * light[1], WHITE),
+        np.float32(given[x, 2]) - min(room[x, 2] * light[2], WHITE),
     )
 
 
 @INLINE
-def _distance(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> np.float32:
+def _distance(given: Bytes, room: Floats, weight: Floats, light: Triple, x: int) -> np.float32:
     """How far a pixel of a row is from the room, in spreads squared."""
-    b, g, r = _off(given, room, gain, x)
+    b, g, r = _off(given, room, light, x)
     luma = BLUE * b + GREEN * g + RED * r
     return luma * luma * weight[x, 0] + _square(b - luma, g - luma, r - luma) * weight[x, 1]
 
 
 @INLINE
-def brightness(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> np.float32:
+def brightness(given: Bytes, room: Floats, weight: Floats, light: Triple, x: int) -> np.float32:
     """How much brighter than the room a pixel of a row is, in spreads."""
-    b, g, r = _off(given, room, gain, x)
+    b, g, r = _off(given, room, light, x)
     return (BLUE * b + GREEN * g + RED * r) * np.sqrt(weight[x, 0])
 
 
 @INLINE
-def colour(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> np.float32:
+def colour(given: Bytes, room: Floats, weight: Floats, light: Triple, x: int) -> np.float32:
     """How far a pixel of a row is from the room by colour alone, in spreads squared."""
-    b, g, r = _off(given, room, gain, x)
+    b, g, r = _off(given, room, light, x)
     luma = BLUE * b + GREEN * g + RED * r
     return _square(b - luma, g - luma, r - luma) * weight[x, 1]
 
 
 @INLINE
-def unshaded(given: Bytes, room: Floats, weight: Floats, gain: Floats, x: int) -> np.float32:
+def unshaded(given: Bytes, room: Floats, weight: Floats, light: Triple, x: int) -> np.float32:
     """The same, but by colour alone where a soft shadow may lie: the room, only darker."""
-    b, g, r = _off(given, room, gain, x)
+    b, g, r = _off(given, room, light, x)
     # without the casts numba would go on in doubles
     due_b, due_g = np.float32(given[x, 0]) - b, np.float32(given[x, 1]) - g
     due_r = np.float32(given[x, 2]) - r
@@ -175,11 +182,11 @@ def _square(b: np.float32, g: np.float32, r: np.float32) -> np.float32:
 
 
 @INLINE
-def shade_of(given: Bytes, gain: Floats, x: int) -> int:
+def shade_of(given: Bytes, light: Triple, x: int) -> int:
     """Number of a pixel's colour, under the room's light."""
-    b = np.float32(given[x, 0]) / gain[0]
-    g = np.float32(given[x, 1]) / gain[1]
-    r = np.float32(given[x, 2]) / gain[2]
+    b = np.float32(given[x, 0]) / light[0]
+    g = np.float32(given[x, 1]) / light[1]
+    r = np.float32(given[x, 2]) / light[2]
     luma = BLUE * b + GREEN * g + RED * r
     bright = min(int(luma) >> 5, 7)
     blue = min(max((int(b - luma) + 64) >> 3, 0), 15)
