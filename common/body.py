@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Vector = NDArray[np.float64]
 
 
-class Elliptic(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Elliptic(msgspec.Struct, frozen=True, cache_hash=True, forbid_unknown_fields=True):
     """A cylinder of elliptic section: torso, head, legs (table 1)."""
 
     long_radius: float
@@ -24,7 +24,7 @@ class Elliptic(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         _refuse_unless_positive(self)
 
 
-class Round(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Round(msgspec.Struct, frozen=True, cache_hash=True, forbid_unknown_fields=True):
     """A cylinder of circular section: arms (table 1)."""
 
     radius: float
@@ -35,7 +35,7 @@ class Round(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         _refuse_unless_positive(self)
 
 
-class Bdp(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class Bdp(msgspec.Struct, frozen=True, cache_hash=True, forbid_unknown_fields=True, kw_only=True):
     """The body definition parameters: 6 x 3 + 4 x 2 = 26 lengths, all in one unit.
 
     Universal BDPs are in metres; what a viewer measures is in its own pixels until unified.

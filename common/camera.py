@@ -1,10 +1,12 @@
 """Cameras: intrinsics, extrinsics, distortion; the paper's orthogonal rig as a special case."""
 
+import math
 from functools import lru_cache
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import cv2
 import msgspec
+import numba
 import numpy as np
 
 from common.body import Vector
@@ -20,7 +22,7 @@ Row = tuple[float, float, float]
 Matrix = tuple[Row, Row, Row]
 
 
-class Camera(msgspec.Struct, frozen=True):
+class Camera(msgspec.Struct, frozen=True, cache_hash=True):
     """One camera: x_cam = R x_world + t, x right, y down, z forward, metres and pixels.
 
     The centre of the top-left pixel is (0.5, 0.5). Distortion is in OpenCV's order.
@@ -33,7 +35,7 @@ class Camera(msgspec.Struct, frozen=True):
     distortion: tuple[float, ...] = ()
 
 
-class Rig(msgspec.Struct, frozen=True):
+class Rig(msgspec.Struct, frozen=True, cache_hash=True):
     """Cameras that look at one room, and the size of their pictures."""
 
     width: int
@@ -124,8 +126,7 @@ def project(camera: Camera, points_m: Vector) -> Vector:
     A point on or behind the camera's plane gives NaN.
     """
     K, R, t, _, focal_px, middle_px = arrays_of(camera)
-    seen = np.asarray(points_m, float) @ R.T + t
-    plane = seen[:, :2] / np.where(seen[:, 2:] > 1e-9, seen[:, 2:], np.nan)
+    plane: Vector = _on_plane(np.array(points_m, np.float64), R, t)
     if any(camera.distortion):
         rays = np.concatenate([np.nan_to_num(plane), np.ones((len(plane), 1))], axis=1)
         bent, _ = cv2.projectPoints(
@@ -133,8 +134,22 @@ def project(camera: Camera, points_m: Vector) -> Vector:
         )
         pixels: Vector = np.where(np.isnan(plane), np.nan, bent[:, 0].astype(np.float64))
         return pixels
-    pixels = plane * focal_px + middle_px
-    return pixels
+    plane *= focal_px
+    plane += middle_px
+    return plane
+
+
+@numba.njit(cache=True)
+def _on_plane(points_m: Any, R: Any, t: Any) -> Any:
+    """Where the rays from points (n, 3) cross the plane at depth 1, (n, 2); NaN where none does."""
+    plane = np.full((len(points_m), 2), np.nan)
+    for n in range(len(points_m)):
+        x, y, z = points_m[n, 0], points_m[n, 1], points_m[n, 2]
+        depth = R[2, 0] * x + R[2, 1] * y + R[2, 2] * z + t[2]
+        if depth > 1e-9:
+            for i in range(2):
+                plane[n, i] = (R[i, 0] * x + R[i, 1] * y + R[i, 2] * z + t[i]) / depth
+    return plane
 
 
 def ray(camera: Camera, pixel: tuple[float, float]) -> Vector:
@@ -143,9 +158,21 @@ def ray(camera: Camera, pixel: tuple[float, float]) -> Vector:
     if any(camera.distortion):
         x, y = cv2.undistortPoints(np.array([[pixel]], float), K, np.array(camera.distortion))[0, 0]
     else:
-        x, y = (np.array(pixel) - middle_px) * (1 / focal_px)
-    direction: Vector = R.T @ np.array([x, y, 1.0])
-    return direction / float(np.linalg.norm(direction))
+        x = (pixel[0] - middle_px[0]) * (1 / focal_px[0])
+        y = (pixel[1] - middle_px[1]) * (1 / focal_px[1])
+    direction: Vector = _turned_back(R, float(x), float(y))
+    return direction
+
+
+@numba.njit(cache=True)
+def _turned_back(R: Any, x: float, y: float) -> Any:
+    """The direction (3,), unit length, of a point on the plane at depth 1."""
+    direction = np.empty(3)
+    for i in range(3):
+        direction[i] = R[0, i] * x + R[1, i] * y + R[2, i]
+    return direction / math.sqrt(
+        direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]
+    )
 
 
 def as_row(values: Vector) -> Row:

@@ -16,7 +16,7 @@ from integrator.limbs import pose_of, trunk_of
 from integrator.straight import straight, straight_rig
 from integrator.window import Floats, look
 
-AT: Final = [JOINT_NAMES.index(name) for name in propose.JOINTS]
+AT: Final = np.array([JOINT_NAMES.index(name) for name in propose.JOINTS])
 """Where the proposed joints stand among the landmarks."""
 PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
 

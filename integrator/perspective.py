@@ -1,8 +1,9 @@
 """Where the body is and how large it is seen there: two rays, one place (section 4.2)."""
 
-from typing import Final
+from typing import Any, Final
 
 import msgspec
+import numba
 import numpy as np
 
 from common.body import Bdp, Vector
@@ -63,16 +64,24 @@ def triangulate(cameras: tuple[Camera, Camera], pixels: tuple[Pixel, Pixel]) -> 
     rays. NaN where these are parallel.
     """
     first, second = (ray(camera, pixel) for camera, pixel in zip(cameras, pixels, strict=True))
-    one, other = (centre(camera) for camera in cameras)
-    cosine = float(first @ second)
-    sine_squared = 1.0 - cosine**2
+    middle: Vector = _meeting(centre(cameras[0]), first, centre(cameras[1]), second)
+    return middle
+
+
+@numba.njit(cache=True)
+def _meeting(one: Any, first: Any, other: Any, second: Any) -> Any:
+    """The middle of the shortest line between two rays, from their starts and directions (3,)."""
+    cosine = along = across = 0.0
+    for i in range(3):
+        cosine += first[i] * second[i]
+        along += first[i] * (one[i] - other[i])
+        across += second[i] * (one[i] - other[i])
+    sine_squared = 1.0 - cosine * cosine
     if sine_squared < PARALLEL:
         return np.full(3, np.nan)
-    along, across = float(first @ (one - other)), float(second @ (one - other))
-    near_first = one + first * ((cosine * across - along) / sine_squared)
-    near_second = other + second * ((across - cosine * along) / sine_squared)
-    middle: Vector = (near_first + near_second) / 2
-    return middle
+    far_first = (cosine * across - along) / sine_squared
+    far_second = (across - cosine * along) / sine_squared
+    return (one + first * far_first + other + second * far_second) / 2
 
 
 def px_per_m(camera: Camera, point_m: Vector) -> float:

@@ -1,5 +1,6 @@
 """Where the body is, from where each view has its navel; how large a metre is there."""
 
+import math
 from typing import Final
 
 import numpy as np
@@ -92,9 +93,9 @@ def pixels_of(rig: Rig, place_m: Vector) -> tuple[Pixel, Pixel]:
     """Where both views show a place; the picture's centre where one cannot."""
     found: list[Pixel] = []
     for camera in rig.cameras:
-        u, v = project(camera, place_m[None])[0]
-        seen = bool(np.isfinite(u) and np.isfinite(v))
-        found.append((float(u), float(v)) if seen else (rig.width / 2, rig.height / 2))
+        u, v = project(camera, place_m[None])[0].tolist()
+        seen = math.isfinite(u) and math.isfinite(v)
+        found.append((u, v) if seen else (rig.width / 2, rig.height / 2))
     return found[0], found[1]
 
 

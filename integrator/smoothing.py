@@ -1,8 +1,9 @@
 """Calm angles: a constant-velocity Kalman filter over all of them, the seam at 180 included."""
 
 from functools import lru_cache
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
+import numba
 import numpy as np
 from filterpy.common import Q_discrete_white_noise
 
@@ -77,13 +78,36 @@ def step(state: State, angles_deg: Vector | None, dt_s: float) -> tuple[State, V
 
 
 def _stepped(state: State, before: Vector, angles_deg: Vector | None, dt_s: float) -> State:
-    F = np.array([[1.0, dt_s], [0.0, 1.0]])
-    x, P = F @ state.x, F @ before @ F.T + _noise(dt_s, state.settings)
+    x, P = _predicted(state.x, before, dt_s, _noise(dt_s, state.settings))
     if angles_deg is None:
         return state._replace(x=x, P=P)
-    x[0] += 360.0 * np.round((angles_deg - x[0]) / 360.0)
-    K = P[:, :1] / (P[0, 0] + state.settings.noise_deg**2)
-    return state._replace(x=x + K * (angles_deg - x[0]), P=P - K * P[:1])
+    _correct(x, P, angles_deg, state.settings.noise_deg**2)
+    return state._replace(x=x, P=P)
+
+
+@numba.njit(cache=True)
+def _predicted(x: Any, P: Any, dt_s: float, noise: Any) -> tuple[Any, Any]:
+    """What constant speed leads to, (2, n), and its covariance, (2, 2)."""
+    ahead, due = x.copy(), P + noise
+    ahead[0] += dt_s * x[1]
+    due[0, 0] += dt_s * (P[0, 1] + P[1, 0] + dt_s * P[1, 1])
+    due[0, 1] += dt_s * P[1, 1]
+    due[1, 0] += dt_s * P[1, 1]
+    return ahead, due
+
+
+@numba.njit(cache=True)
+def _correct(x: Any, P: Any, angles_deg: Any, noise: float) -> None:
+    """Draw what was predicted, brought to their turn, to what was measured."""
+    gain, speed_gain = P[0, 0] / (P[0, 0] + noise), P[1, 0] / (P[0, 0] + noise)
+    for i in range(len(angles_deg)):
+        x[0, i] += 360.0 * np.round((angles_deg[i] - x[0, i]) / 360.0)
+        off = angles_deg[i] - x[0, i]
+        x[0, i] += gain * off
+        x[1, i] += speed_gain * off
+    top, beside = P[0, 0], P[0, 1]
+    P[0, 0], P[0, 1] = top - gain * top, beside - gain * beside
+    P[1, 0], P[1, 1] = P[1, 0] - speed_gain * top, P[1, 1] - speed_gain * beside
 
 
 def _started(state: State, angles_deg: Vector) -> State:

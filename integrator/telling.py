@@ -34,8 +34,9 @@ def body_of(
     pose, in_pose = state.pose.copy(), list(ANGLES_IN_POSE)
     pose[in_pose] = angles_deg
     body = body_vector(state.opening.bdp)
-    places = joints(body, pose)
-    if state.beside_m is not None:  # a memory has smoothed them: angles would only be late
+    if state.beside_m is None:
+        places = joints(body, pose)
+    else:  # a memory has smoothed them: angles would only be late
         places = joints(body, state.pose)
         places += state.beside_m @ insight.trunk_axes(body, state.pose).T
     return Body(
@@ -148,4 +149,5 @@ def _or_unseen(scales: tuple[float, float]) -> tuple[float, float]:
 
 
 def _pixels(pixels: Vector) -> tuple[Pixel, ...]:
-    return tuple((u, v) for u, v in np.nan_to_num(pixels, nan=-1.0).tolist())
+    pixels[np.isnan(pixels)] = -1.0
+    return tuple((u, v) for u, v in pixels.tolist())

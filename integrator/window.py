@@ -140,19 +140,33 @@ def _depth_m(camera: Camera, place_m: Vector) -> float:
 
 def _cells(mask: Mask, camera: Camera, middle_m: Vector, stature_m: float) -> Floats:
     """How much of each cell is covered, (ROWS, COLUMNS): upright, as large as the person."""
-    at, above = project(camera, np.stack([middle_m, middle_m + UPWARDS_M]))
-    up = above - at
-    up /= max(float(np.linalg.norm(up)), 1e-9)
+    at_and_above = project(camera, np.stack([middle_m, middle_m + UPWARDS_M]))
     size_px = camera.K[0][0] * stature_m / _depth_m(camera, middle_m)
-    right = np.array([-up[1], up[0]]) * size_px * 2 * ASIDE / (FINER * COLUMNS)
-    down = -up * size_px * (UP + DOWN) / (FINER * ROWS)
-    corner = at + up * size_px * UP - right * FINER * COLUMNS / 2
-    start = corner + (right + down) / 2 - 0.5
-    warp = np.stack([right, down, start], axis=1)
     fine = cv2.warpAffine(
         mask.view(np.uint8) * np.uint8(255),
-        warp,
+        _warp(at_and_above, size_px),
         (FINER * COLUMNS, FINER * ROWS),
         flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
     )
-    return cv2.resize(fine, (COLUMNS, ROWS), interpolation=cv2.INTER_AREA).astype(np.float32) / 255
+    cells = cv2.resize(fine, (COLUMNS, ROWS), interpolation=cv2.INTER_AREA)
+    return np.asarray(cells / np.float32(255), np.float32)
+
+
+@numba.njit(cache=True)
+def _warp(at_and_above: Any, size_px: float) -> Any:
+    """From samples of the window to the picture, (2, 3), as OpenCV wants it.
+
+    Args:
+        at_and_above: The middle of the body and a place above it, (2, 2) px.
+        size_px: A stature there.
+    """
+    up = at_and_above[1] - at_and_above[0]
+    up /= max(np.hypot(up[0], up[1]), 1e-9)
+    warp = np.empty((2, 3))
+    for i in range(2):
+        across = -up[1] if i == 0 else up[0]
+        right = across * size_px * 2 * ASIDE / (FINER * COLUMNS)
+        down = -up[i] * size_px * (UP + DOWN) / (FINER * ROWS)
+        corner = at_and_above[0, i] + up[i] * size_px * UP - right * FINER * COLUMNS / 2
+        warp[i, 0], warp[i, 1], warp[i, 2] = right, down, corner + (right + down) / 2 - 0.5
+    return warp
