@@ -1,7 +1,8 @@
 """The empty room of a view: from a plate, from the clip's opening frames, or from the clip."""
 
 import math
-from itertools import islice
+from collections.abc import Iterator
+from itertools import chain, islice
 from pathlib import Path
 
 import numpy as np
@@ -45,11 +46,11 @@ def empty_room(view: View, settings: SilhouetteSettings, decoder: Reader) -> tup
     if view.background:
         plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
         return learn(plate), ""
-    opening, sample = _looked_at(view, settings.empty_frames, decoder)
-    laid_over = opened(opening)
-    if is_still(laid_over) and is_empty_opening(laid_over, sample):
+    opening, coming = _looked_at(view, settings.empty_frames, decoder)
+    laid_over, sample = opened(opening), list[Frame]()
+    if is_still(laid_over) and is_empty_opening(laid_over, _kept(coming, sample)):
         return learnt(laid_over), ""
-    return learn_uncovered(sample), (
+    return learn_uncovered([*sample, *coming]), (
         f"{view.source} does not open with an empty room: the background is estimated from the "
         f"clip (name an empty picture with camera_{view.number}.background)"
     )
@@ -88,7 +89,7 @@ def room_of_clip(
     room, odd = empty_room(view, settings, decoder)
     if view.background or isinstance(view.source, int):
         return room, None, odd
-    _, sample = _looked_at(view, settings.empty_frames, decoder)
+    sample = list(_looked_at(view, settings.empty_frames, decoder)[1])
     anchor = anchored(sample)
     if anchor is not None:
         places = [place_of(anchor, np.asarray(frame @ LUMA, np.float32)) for frame in sample]
@@ -104,16 +105,17 @@ def _now(view: View, due: int, decoder: Reader) -> list[Frame]:
     return [got.picture for got in islice(decoder.frames(view.source, view.size), due)]
 
 
-def _looked_at(view: View, due: int, decoder: Reader) -> tuple[list[Frame], list[Frame]]:
-    """The opening frames, and frames from everywhere in the clip."""
+def _looked_at(view: View, due: int, decoder: Reader) -> tuple[list[Frame], Iterator[Frame]]:
+    """The opening frames, and frames from everywhere in the clip: these as they are decoded."""
     stride = max(1, math.ceil(min(view.frames, LOOKED_AT) / SAMPLE))
-    opening: list[Frame] = []
-    sample: list[Frame] = []
-    for count, got in enumerate(decoder.frames(view.source, view.size)):
-        if count >= LOOKED_AT:
-            break
-        if len(opening) < due:
-            opening.append(got.picture)
-        if count % stride == 0:
-            sample.append(got.picture)
-    return opening, sample
+    frames = islice(decoder.frames(view.source, view.size), LOOKED_AT)
+    pictures = (got.picture for got in frames)
+    opening = list(islice(pictures, due))
+    return opening, islice(chain(opening, pictures), 0, None, stride)
+
+
+def _kept(frames: Iterator[Frame], keeper: list[Frame]) -> Iterator[Frame]:
+    """The same frames, and a list of them."""
+    for frame in frames:
+        keeper.append(frame)
+        yield frame

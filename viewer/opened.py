@@ -1,6 +1,6 @@
 """Whether the opening frames of a clip show the room without a person."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import Final
 
 import cv2
@@ -21,7 +21,7 @@ def is_still(opening: Overlaid) -> bool:
     return not any(large_regions(off).any() for off in opening.moving if off.any())
 
 
-def is_empty_opening(opening: Overlaid, sample: Sequence[Frame]) -> bool:
+def is_empty_opening(opening: Overlaid, sample: Iterable[Frame]) -> bool:
     """Whether the opening frames show the room without a person.
 
     What differs between the opening and a later frame has its outline in the picture that holds
