@@ -61,6 +61,6 @@ def facing_of(rig: Rig, pose: Vector) -> tuple[Facing, Facing]:
     yaw = math.radians(pose[POSE_INDEX["torso_y"]])
     shares = []
     for camera in rig.cameras:
-        x, _, z = centre(camera) - pose[:3]
+        x, _, z = (centre(camera) - pose[:3]).tolist()
         shares.append(abs(math.sin(yaw) * x + math.cos(yaw) * z) / math.hypot(x, z))
     return ("facade", "flank") if shares[0] >= shares[1] else ("flank", "facade")

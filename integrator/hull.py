@@ -105,15 +105,14 @@ def _carve(full: Any, corner_m: Any, view: Any, mask: Any) -> None:
     for i in range(full.shape[0]):
         for j in range(full.shape[1]):
             for k in range(full.shape[2]):
+                if full[i, j, k] < 0:
+                    continue
                 x = corner_m[0] + (i + 0.5) * CELL_M
                 y = corner_m[1] + (j + 0.5) * CELL_M
                 z = corner_m[2] + (k + 0.5) * CELL_M
                 u, v, depth = seen_at(view, x, y, z)
                 if depth >= NEAREST_M and 0.0 <= u < width and 0.0 <= v < height:
-                    if not mask[int(v), int(u)]:
-                        full[i, j, k] = -1
-                    elif full[i, j, k] >= 0:
-                        full[i, j, k] += 1
+                    full[i, j, k] = full[i, j, k] + 1 if mask[int(v), int(u)] else -1
 
 
 @numba.njit(cache=True)

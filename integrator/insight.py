@@ -86,7 +86,7 @@ def step(
     sure, own = np.zeros(len(JOINT_NAMES)), probability(found.sure)
     sure[AT] = own
     sure[PELVIS] = own[propose.HIPS].mean()
-    sure[[NECK, HEAD]] = own[propose.SHOULDERS].mean()
+    sure[NECK] = sure[HEAD] = own[propose.SHOULDERS].mean()
     return Insight(found.joints_m, sure, memory)
 
 

@@ -80,11 +80,18 @@ def look(
         if mask is None:
             continue
         camera = rig.cameras[n]
-        away = turn @ (centre(camera) - middle_m)
-        far = float(np.linalg.norm(away))
-        beside[5 * n : 5 * n + 5] = [1.0, *(away / far), NEARNESS * stature_m / far]
+        _tell(turn, centre(camera) - middle_m, stature_m, beside[5 * n : 5 * n + 5])
         windows[n] = _cells(mask, camera, middle_m, stature_m).ravel()
     return Look(windows, beside, middle_m, turn)
+
+
+@numba.njit(cache=True)
+def _tell(turn: Any, away_m: Any, stature_m: float, out: Any) -> None:
+    """That a view sees, where its camera is and its scale, (5,)."""
+    far = np.sqrt((away_m * away_m).sum())
+    out[0], out[4] = 1.0, NEARNESS * stature_m / far
+    for i in range(3):
+        out[1 + i] = (turn[i] * away_m).sum() / far
 
 
 def _middle_m(masks: tuple[Mask | None, Mask | None], rig: Rig) -> Vector | None:
