@@ -126,7 +126,7 @@ def project(camera: Camera, points_m: Vector) -> Vector:
     A point on or behind the camera's plane gives NaN.
     """
     K, R, t, _, focal_px, middle_px = arrays_of(camera)
-    plane: Vector = _on_plane(np.array(points_m, np.float64), R, t)
+    plane: Vector = _on_plane(np.array(points_m, np.float64, order="C"), R, t)
     if any(camera.distortion):
         rays = np.concatenate([np.nan_to_num(plane), np.ones((len(plane), 1))], axis=1)
         bent, _ = cv2.projectPoints(

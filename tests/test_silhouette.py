@@ -15,6 +15,7 @@ from viewer.background import learn, light_gain
 from viewer.coverage import covered, sides_of
 from viewer.difference import followed, label, seeds
 from viewer.judge import redraw
+from viewer.regions import chosen
 from viewer.silhouette import Seen, State, init, step
 from viewer.stacks import Frame
 from viewer.uncovered import learn_uncovered
@@ -173,7 +174,8 @@ def test_step_leaves_the_state_that_it_was_given() -> None:
 
 
 def test_after_the_rehearsal_no_frame_waits_for_the_compiler() -> None:
-    kernels = [light_gain, seeds, label, sides_of, covered, redraw, familiar, counted, followed]
+    kernels = [light_gain, seeds, chosen, label, sides_of, covered, redraw]
+    kernels += [familiar, counted, followed]
     rehearse(track.init(1, learn([shot(room(), 2.0, 9)]), None, Settings()), (WIDTH, HEIGHT))
     compiled = [list(kernel.signatures) for kernel in kernels]
     assert all(compiled)
