@@ -44,6 +44,7 @@ class Child:
         )
         os.close(write_end)
         self._requests = cast(io.FileIO, self._process.stdin)
+        os.set_blocking(read_end, False)
         self._answers = io.FileIO(read_end)
         self._poll = select.poll()
         self._poll.register(self._answers, select.POLLIN)
@@ -75,13 +76,14 @@ class Child:
         """
         until_s = time.monotonic() + self._stall_s
         while room:
-            if not self._poll.poll(max(0.0, 1000 * (until_s - time.monotonic()))):
+            got = self._answers.readinto(room)
+            if got == 0:
+                raise Broken(self._last_words())
+            if got is not None:
+                room = room[got:]
+            elif not self._poll.poll(max(0.0, 1000 * (until_s - time.monotonic()))):
                 self.kill()
                 raise Broken(f"it gave nothing for {self._stall_s:g} s")
-            got = self._answers.readinto(room)
-            if not got:
-                raise Broken(self._last_words())
-            room = room[got:]
 
     def kill(self) -> None:
         """End it, from any thread; who reads then meets Broken."""

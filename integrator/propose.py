@@ -25,6 +25,9 @@ SEES: Final = (0, 5)
 Halves = NDArray[np.uint16]
 """Upper halves of float32 numbers."""
 
+LINE_BYTES, PAGE_BYTES = 64, 1 << 21
+"""What memory is fetched in, and what a large page of it holds."""
+
 SHIPPED: Final = Path(__file__).with_name("proposals.npz")
 VERSION: Final = 3
 SAYS: Final = 4 * len(JOINTS)
@@ -195,7 +198,24 @@ def load(path: Path) -> Network:
             f"no usable proposals in {path}: {error}; install tritrack again"
         ) from error
     _refuse_misfits(found, path)
-    return found
+    return _in_one_piece(found)
+
+
+def _in_one_piece(network: Network) -> Network:
+    """The same, side by side in memory: a few large pages are found sooner than many small ones.
+
+    NumPy asks the system for large pages for an array of this size.
+    """
+    given: tuple[NDArray[Any], ...] = network
+    sizes = [-(-part.nbytes // LINE_BYTES) * LINE_BYTES for part in given]
+    whole = np.empty(sum(sizes) + PAGE_BYTES, np.uint8)
+    parts, at = [], -whole.ctypes.data % PAGE_BYTES
+    for part, size in zip(given, sizes, strict=True):
+        own = whole[at : at + part.nbytes].view(part.dtype).reshape(part.shape)
+        own[...] = part
+        parts.append(own)
+        at += size
+    return Network(*parts)
 
 
 def _refuse_misfits(network: Network, path: Path) -> None:

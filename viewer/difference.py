@@ -50,12 +50,12 @@ def seeds(frame: Frame, room: Floats, weight: Floats, gain: Floats, cell: int) -
     for i in range(out.shape[0]):
         for k in (0, cell // 2):
             y = min(i * cell + k, height - 1)
-            given, empty, sure = frame[y], room[y], weight[y]
-            for j in range(out.shape[1]):
+            given, empty, sure, row = frame[y], room[y], weight[y], out[i]
+            for j in range(len(row)):
                 x = min(j * cell + k, width - 1)
                 # whatever a shadow explains, it is no farther than without: most stop here
-                if _distance(given, empty, sure, light, x) > SEED * SEED:
-                    out[i, j] |= unshaded(given, empty, sure, light, x) > SEED * SEED
+                if not row[j] and _distance(given, empty, sure, light, x) > SEED * SEED:
+                    row[j] = unshaded(given, empty, sure, light, x) > SEED * SEED
     return out
 
 
