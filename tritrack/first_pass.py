@@ -1,5 +1,6 @@
 """The outlines of a clip of one camera, before anything is made of them (thesis 3.1.3)."""
 
+from collections import deque
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
@@ -14,11 +15,12 @@ from common.messages import Box
 from common.reel import Reader
 from common.similarity import Mask
 from viewer import silhouette
-from viewer.background import Background
 from viewer.capture import recorded
 from viewer.cast import without_cast
+from viewer.empty import Scene
 from viewer.stacks import LUMA
-from viewer.steady import Anchor, back, laid, place_of
+from viewer.steady import back, laid, place_of
+from viewer.things import patched
 
 MOST_FRAMES: Final = 50_000
 """Outlines are kept until the standing height is known, some 10 kB each."""
@@ -53,8 +55,7 @@ def outline_of(frame: int, captured_s: float, mask: Mask, cut: bool) -> Outline:
 
 def outlines_of(
     clip: Clip,
-    room: Background,
-    anchor: Anchor | None,
+    scene: Scene,
     settings: SilhouetteSettings,
     decoder: Reader,
 ) -> list[Outline]:
@@ -62,8 +63,7 @@ def outlines_of(
 
     Args:
         clip: One view.
-        room: Without the person.
-        anchor: What frames of a camera that trembles are laid over, as the room's were.
+        scene: Without the person.
         settings: Of the silhouettes.
         decoder: Reads the clip.
 
@@ -72,7 +72,8 @@ def outlines_of(
         DecoderDied: When the video broke the decoder.
     """
     view = clip.views[0]
-    state = silhouette.init(room, settings)
+    state = silhouette.init(scene.room, settings)
+    coming = deque(scene.patches)
     near: tuple[float, float] | None = None
     found: list[Outline] = []
     tallest = 0
@@ -80,9 +81,12 @@ def outlines_of(
         if len(found) >= MOST_FRAMES:
             raise ClipError(f"{view.source} has more than {MOST_FRAMES} frames: track parts of it")
         picture, place = frame.picture, None
-        if anchor is not None:
-            place = place_of(anchor, np.asarray(picture @ LUMA, np.float32))
+        if scene.anchor is not None:
+            place = place_of(scene.anchor, np.asarray(picture @ LUMA, np.float32))
             picture = laid(picture, place)
+        while coming and coming[0].frame <= frame.index:
+            room, weight = patched(state.room, state.weight, coming.popleft())
+            state = state._replace(room=room, weight=weight)
         state, seen = silhouette.step(state, picture, near)
         tall = 0 if seen.box is None else seen.box.bottom + 1 - seen.box.top
         tallest = max(tallest, tall)

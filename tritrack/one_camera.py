@@ -53,9 +53,10 @@ def follow_clip(clip: Clip, settings: Settings, decoder: Decoder, notes: Notes) 
     began = time.perf_counter()
     view = clip.views[0]
     reel = Reel(decoder)
-    room, anchor, odd = room_of_clip(view, settings.silhouette, reel)
+    scene = room_of_clip(view, settings.silhouette, reel)
+    room = scene.room
     ready = time.perf_counter()
-    outlines = outlines_of(clip, room, anchor, settings.silhouette, reel)
+    outlines = outlines_of(clip, scene, settings.silhouette, reel)
     cut_off = shortfall(view, reel.came)
     camera = clip.rig.cameras[0] if clip.rig is not None else None
     period_s = clip.every / view.fps
@@ -78,9 +79,9 @@ def follow_clip(clip: Clip, settings: Settings, decoder: Decoder, notes: Notes) 
         "frames_a_second": round(len(bodies) / max(done - ready, 1e-9), 1),
         "scale_source": "assumed" if camera is None else "calibrated",
         "stature_m": round(stature_m, 3),
-        "trembles": anchor is not None,
+        "trembles": scene.anchor is not None,
         "never_uncovered": round(float(room.uncertain.mean()), 4),
-        "warnings": [*clip.warnings, *filter(None, (odd, cut_off, _nobody_in(bodies)))],
+        "warnings": [*clip.warnings, *filter(None, (scene.odd, cut_off, _nobody_in(bodies)))],
     }
     turn = np.array(PAPER_ROTATIONS[0] if camera is None else camera.R)
     return Followed(bodies, settled, outlines, view.size, 1 / period_s, turn, clip, room, facts)

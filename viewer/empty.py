@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from itertools import chain, islice
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from viewer.background import Background, learn, learnt, opened
 from viewer.opened import is_empty_opening, is_still
 from viewer.stacks import LUMA, Frame
 from viewer.steady import Anchor, anchored, laid, place_of
+from viewer.things import Patch, patches_of
 from viewer.uncovered import learn_uncovered
 
 SAMPLE = 40
@@ -27,6 +29,18 @@ LOOKED_AT = 1500
 
 LEFT_HIDDEN = 0.01
 """Who stays on a spot hides 2 to 20 % of the picture all through a clip, who roams up to 0.4 %."""
+
+
+class Scene(NamedTuple):
+    """The empty room of a clip of one camera, all through it."""
+
+    room: Background
+    anchor: Anchor | None
+    """What its frames are to be laid over, where the camera trembles."""
+    patches: list[Patch]
+    """What is another from some frame on."""
+    odd: str
+    """What is odd about how that is known; "" if nothing is."""
 
 
 def empty_room(view: View, settings: SilhouetteSettings, decoder: Reader) -> tuple[Background, str]:
@@ -77,9 +91,7 @@ def room_of_run(
     return room, odd
 
 
-def room_of_clip(
-    view: View, settings: SilhouetteSettings, decoder: Reader
-) -> tuple[Background, Anchor | None, str]:
+def room_of_clip(view: View, settings: SilhouetteSettings, decoder: Reader) -> Scene:
     """The same, but from all over a clip where that shows all but a little of the room.
 
     Light changes through a clip, and with it more than a gain can follow; an empty opening knows
@@ -87,17 +99,18 @@ def room_of_clip(
     trembles are laid over each other first, and are to be laid over the anchor later.
     """
     room, odd = empty_room(view, settings, decoder)
-    if view.background or isinstance(view.source, int):
-        return room, None, odd
+    if isinstance(view.source, int):
+        return Scene(room, None, [], odd)
     sample = list(_looked_at(view, settings.empty_frames, decoder)[1])
-    anchor = anchored(sample)
+    anchor = None if view.background else anchored(sample)
     if anchor is not None:
         places = [place_of(anchor, np.asarray(frame @ LUMA, np.float32)) for frame in sample]
-        return learn_uncovered(list(map(laid, sample, places))), anchor, odd
-    if odd:
-        return room, None, odd
-    learnt = learn_uncovered(sample)
-    return (learnt if learnt.uncertain.mean() < LEFT_HIDDEN else room), None, ""
+        sample = list(map(laid, sample, places))
+        room = learn_uncovered(sample)
+    elif not (odd or view.background):
+        busy = learn_uncovered(sample)
+        room = busy if busy.uncertain.mean() < LEFT_HIDDEN else room
+    return Scene(room, anchor, patches_of(room, sample, _stride(view), view.fps), odd)
 
 
 def _now(view: View, due: int, decoder: Reader) -> list[Frame]:
@@ -107,11 +120,10 @@ def _now(view: View, due: int, decoder: Reader) -> list[Frame]:
 
 def _looked_at(view: View, due: int, decoder: Reader) -> tuple[list[Frame], Iterator[Frame]]:
     """The opening frames, and frames from everywhere in the clip: these as they are decoded."""
-    stride = max(1, math.ceil(min(view.frames, LOOKED_AT) / SAMPLE))
     frames = islice(decoder.frames(view.source, view.size), LOOKED_AT)
     pictures = (got.picture for got in frames)
     opening = list(islice(pictures, due))
-    return opening, islice(chain(opening, pictures), 0, None, stride)
+    return opening, islice(chain(opening, pictures), 0, None, _stride(view))
 
 
 def _kept(frames: Iterator[Frame], keeper: list[Frame]) -> Iterator[Frame]:
@@ -119,3 +131,8 @@ def _kept(frames: Iterator[Frame], keeper: list[Frame]) -> Iterator[Frame]:
     for frame in frames:
         keeper.append(frame)
         yield frame
+
+
+def _stride(view: View) -> int:
+    """Frames from one that is looked at to the next."""
+    return max(1, math.ceil(min(view.frames, LOOKED_AT) / SAMPLE))

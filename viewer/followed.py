@@ -99,7 +99,7 @@ def _bounds() -> tuple[Vector, Vector]:
     lows[GIRTH], highs[GIRTH] = 0.7, 1.5
     lows[BREADTH], highs[BREADTH] = 0.0, 1.0
     for segment in (TORSO, HEAD):
-        lows[ANGLE + segment], highs[ANGLE + segment] = 45.0, 135.0  # T6
+        lows[ANGLE + segment], highs[ANGLE + segment] = -30.0, 210.0
     return lows, highs
 
 
@@ -127,7 +127,8 @@ def followed(mask: Mask, before: Vector | None) -> Followed:
 
 
 def _starts(mask: Mask) -> list[Vector]:
-    """Standing bodies whose crown, or whose soles, are where the silhouette ends."""
+    """Standing bodies whose crown, or whose soles, are where the silhouette ends; lying ones too
+    where that is broader than tall."""
     rows = np.flatnonzero(mask.any(axis=1))
     middle = float(np.median(np.nonzero(mask)[1])) + 0.5
     from_crown = rows[0] + PELVIS_SHARE * STATURE_PX
@@ -138,6 +139,25 @@ def _starts(mask: Mask) -> list[Vector]:
             pose = standing(middle, row, STATURE_PX)
             pose[BREADTH] = breadth
             starts.append(pose)
+    return starts + _lying(mask)
+
+
+def _lying(mask: Mask) -> list[Vector]:
+    """Bodies along a silhouette that is broader than tall, the crown at either end."""
+    rows, columns = np.nonzero(mask)
+    if np.ptp(columns) <= np.ptp(rows):
+        return []
+    middle = np.array([columns.mean(), rows.mean()]) + 0.5
+    spread = np.cov(columns, rows)
+    along = np.linalg.eigh(spread)[1][:, -1]
+    reach = (np.stack([columns, rows], axis=1) + 0.5 - middle) @ along
+    starts = []
+    for up, crown in ((along, reach.max()), (-along, -reach.min())):
+        x, y = middle + up * (crown - PELVIS_SHARE * STATURE_PX)
+        pose = standing(float(x), float(y), STATURE_PX)
+        pose[ANGLE:RATIO] += np.degrees(np.arctan2(-up[1], up[0])) - pose[ANGLE + TORSO]
+        pose[BREADTH] = STARTS[-1]
+        starts.append(pose)
     return starts
 
 

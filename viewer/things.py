@@ -1,0 +1,88 @@
+"""Things that come to stay, or go, while a clip runs: doors, chairs, captions (after T7)."""
+
+import math
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+
+from common.similarity import Mask
+from viewer.background import CHANGES, Background, even_light, spread_of
+from viewer.stacks import LUMA, Floats, Frame, median
+
+AT_REST_S: Final = 10.0
+"""No living body holds still for so long, edges and all; the longest of the clips lies for six."""
+FEWEST: Final = 6
+"""So many pictures at least tell that."""
+CALM: Final = 0.9
+"""Share of them in which a pixel shows the same: somebody may pass before it."""
+RESTLESS: Final = 0.35
+"""Less than this share of what is around a thing moves; around a trunk that bends more does."""
+LOOKS: Final = 6
+"""So often within that time the room is looked at."""
+EDGE_PX: Final = 2
+"""How far beyond what differs clearly a thing's edge reaches."""
+
+
+class Patch(NamedTuple):
+    """What of the room is another from a frame on."""
+
+    frame: int
+    where: Mask
+    """(H, W)."""
+    centre: Floats
+    """(n, 3) grey levels of these pixels."""
+    spread: Floats
+    """(n, 2) likewise."""
+
+
+def patches_of(room: Background, frames: Sequence[Frame], spacing: int, fps: float) -> list[Patch]:
+    """What comes to rest in a clip, or leaves where it was at rest, in the order of time.
+
+    Args:
+        room: Learnt from all the clip.
+        frames: Pictures (H, W, 3) from all over it, from its first on.
+        spacing: Frames of the clip from one to the next.
+        fps: Of the clip.
+    """
+    due = max(FEWEST, math.ceil(AT_REST_S * fps / spacing))
+    found: list[Patch] = []
+    if len(frames) < due:
+        return found
+    even, now = even_light([*frames, np.asarray(np.rint(room.centre), np.uint8)])[:-1], room.centre
+    for start in range(0, len(frames) - due + 1, max(1, due // LOOKS)):
+        window = even[start : start + due]
+        shown = median(window)
+        off = window - shown
+        settled = (np.abs(off @ LUMA) < CHANGES).mean(axis=0) >= CALM
+        other = _other_things(shown, now, settled)
+        if other.any():
+            now = np.where(other[..., None], shown, now)
+            frame = start * spacing if start else 0
+            found.append(Patch(frame, other, shown[other], spread_of(off)[other]))
+    return found
+
+
+def patched(room: Floats, weight: Floats, patch: Patch) -> tuple[Floats, Floats]:
+    """The room (H, W, 3) and its weights (H, W, 2) with a patch on it."""
+    room, weight = room.copy(), weight.copy()
+    room[patch.where] = patch.centre
+    weight[patch.where] = np.float32(1) / patch.spread**2
+    return room, weight
+
+
+def _other_things(shown: Floats, now: Floats, settled: Mask) -> Mask:
+    """(H, W) True where what is at rest is not the room as it was.
+
+    A region that differs, with all that moves and touches it, is a thing if little of it moves.
+    """
+    differs = settled & (np.abs((shown - now) @ LUMA) > CHANGES)
+    beyond = np.ones((3, 3), np.uint8)
+    count, labels = cv2.connectedComponents(differs.view(np.uint8))
+    ring = cv2.dilate(labels.astype(np.float32), beyond).astype(np.int32) * ~differs
+    around = np.bincount(ring.ravel(), minlength=count)
+    moving = np.bincount(ring[~settled], minlength=count) / np.maximum(around, 1)
+    thing = differs & (moving[labels] < RESTLESS)
+    reach = np.ones((2 * EDGE_PX + 1,) * 2, np.uint8)
+    return settled & (cv2.dilate(thing.view(np.uint8), reach) > 0)
