@@ -20,7 +20,7 @@ from integrator.limbs import HIGH_DEG, LOW_DEG
 from integrator.two_outlines import packed
 
 PELVIS: Final = JOINT_NAMES.index("pelvis")
-GIRTHS: Final = (1.0, 1.15, 1.3)
+GIRTHS: Final = (1.0, 1.15, 1.3, 1.5)
 """How thick clothed limbs may be over those of the proportions."""
 GOOD: Final = 0.7
 """A body whose S is higher is left as it is: its joints are better known than its outline."""

@@ -3,6 +3,8 @@
 import numpy as np
 from test_background import HEIGHT, WIDTH, passer_by, room, shot, walker
 
+from common.config import SilhouetteSettings
+from viewer import silhouette
 from viewer.background import Background, learn
 from viewer.things import AT_REST_S, Patch, patched, patches_of
 from viewer.uncovered import learn_uncovered
@@ -19,11 +21,11 @@ def with_chair(picture: np.ndarray) -> np.ndarray:
 
 def after(room: Background, patches: list[Patch], frame: int) -> np.ndarray:
     """The room that frame is held against."""
-    centre, weight = room.centre, 1 / room.spread**2
+    state = silhouette.init(room, SilhouetteSettings())
     for patch in patches:
         if patch.frame <= frame:
-            centre, weight = patched(centre, weight, patch)
-    return centre
+            state = patched(state, patch)
+    return state.room
 
 
 def test_a_chair_that_is_brought_is_room_from_then_on() -> None:

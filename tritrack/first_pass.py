@@ -14,7 +14,7 @@ from common.footage import ClipError
 from common.messages import Box
 from common.reel import Reader
 from common.similarity import Mask
-from viewer import silhouette
+from viewer import company, silhouette
 from viewer.capture import recorded
 from viewer.cast import without_cast
 from viewer.empty import Scene
@@ -74,6 +74,7 @@ def outlines_of(
     view = clip.views[0]
     state = silhouette.init(scene.room, settings)
     coming = deque(scene.patches)
+    others = company.init(scene.room.uncertain.shape)
     near: tuple[float, float] | None = None
     found: list[Outline] = []
     tallest = 0
@@ -85,13 +86,14 @@ def outlines_of(
             place = place_of(scene.anchor, np.asarray(picture @ LUMA, np.float32))
             picture = laid(picture, place)
         while coming and coming[0].frame <= frame.index:
-            room, weight = patched(state.room, state.weight, coming.popleft())
-            state = state._replace(room=room, weight=weight)
+            state = patched(state, coming.popleft())
         state, seen = silhouette.step(state, picture, near)
-        tall = 0 if seen.box is None else seen.box.bottom + 1 - seen.box.top
+        others, body = company.step(others, picture, seen.mask, state, clip.every / view.fps)
+        box = box_of(body)
+        tall = 0 if box is None else box.bottom + 1 - box.top
         tallest = max(tallest, tall)
-        near = _middle(seen.box) if tall > SURELY_SOMEBODY * tallest else None
-        mask = seen.mask
+        near = _middle(box) if tall > SURELY_SOMEBODY * tallest else None
+        mask = body
         if tall > STANDS * tallest:
             mask = without_cast(mask, picture, state.room)
         cut = is_cut(box_of(mask), mask.shape)

@@ -9,10 +9,12 @@ import numpy as np
 
 from common.similarity import Mask
 from viewer.background import CHANGES, Background, even_light, spread_of
+from viewer.silhouette import State
 from viewer.stacks import LUMA, Floats, Frame, median
 
 AT_REST_S: Final = 10.0
-"""No living body holds still for so long, edges and all; the longest of the clips lies for six."""
+"""Nobody who stands holds still for so long, edges and all; who lies still for longer is lost until
+they stir."""
 FEWEST: Final = 6
 """So many pictures at least tell that."""
 CALM: Final = 0.9
@@ -21,6 +23,7 @@ RESTLESS: Final = 0.35
 """Less than this share of what is around a thing moves; around a trunk that bends more does."""
 LOOKS: Final = 6
 """So often within that time the room is looked at."""
+SPECKS_PX: Final = 5
 EDGE_PX: Final = 2
 """How far beyond what differs clearly a thing's edge reaches."""
 
@@ -55,7 +58,7 @@ def patches_of(room: Background, frames: Sequence[Frame], spacing: int, fps: flo
         window = even[start : start + due]
         shown = median(window)
         off = window - shown
-        settled = (np.abs(off @ LUMA) < CHANGES).mean(axis=0) >= CALM
+        settled = _smooth((np.abs(off @ LUMA) < CHANGES).mean(axis=0) >= CALM)
         other = _other_things(shown, now, settled)
         if other.any():
             now = np.where(other[..., None], shown, now)
@@ -64,12 +67,17 @@ def patches_of(room: Background, frames: Sequence[Frame], spacing: int, fps: flo
     return found
 
 
-def patched(room: Floats, weight: Floats, patch: Patch) -> tuple[Floats, Floats]:
-    """The room (H, W, 3) and its weights (H, W, 2) with a patch on it."""
-    room, weight = room.copy(), weight.copy()
+def patched(state: State, patch: Patch) -> State:
+    """Silhouettes in a room with a patch on it."""
+    room, weight = state.room.copy(), state.weight.copy()
     room[patch.where] = patch.centre
     weight[patch.where] = np.float32(1) / patch.spread**2
-    return room, weight
+    return state._replace(room=room, weight=weight)
+
+
+def _smooth(mask: Mask) -> Mask:
+    """Without the specks that compression leaves along edges."""
+    return np.asarray(cv2.medianBlur(mask.view(np.uint8), SPECKS_PX) > 0)
 
 
 def _other_things(shown: Floats, now: Floats, settled: Mask) -> Mask:

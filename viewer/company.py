@@ -1,0 +1,115 @@
+"""Who is followed among what a silhouette holds: other people, scraps and things are left out."""
+
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from common.similarity import Mask
+from viewer import silhouette
+from viewer.appearance import familiar
+from viewer.background import CHANGES, light_gain
+from viewer.difference import KERNEL, Bytes, shade_of
+from viewer.stacks import Floats, Frame
+
+SCRAP: Final = 0.03
+"""A region apart of less than this share of the silhouette is a reflection or noise."""
+OWN: Final = 0.3
+"""A region apart that was the body's to this share just before is a part of it."""
+AT_REST_S: Final = 2.0
+"""What shows the same for so long may be a thing that the person moved."""
+ROOMS: Final = np.float32(-0.3)
+"""From -1, only the room has a colour, to 1, only the body has it: things at rest have such."""
+RECALLED_S: Final = 15.0
+"""For how long colours are remembered: things are soon taken for body, and would be for good."""
+
+
+class State(NamedTuple):
+    """What one frame hands to the next."""
+
+    body: Mask
+    """(H, W) whom the frame showed."""
+    grey: Bytes
+    """(H, W) what every pixel showed when it last changed."""
+    at_rest_s: Floats
+    """(H, W) since when."""
+    colours: Floats | None = None
+    """Counts of the colours of room and body, slowly changing; None: nobody came."""
+
+
+def init(size: tuple[int, int]) -> State:
+    """Nobody was there; (H, W) is the size of the pictures."""
+    nothing = np.zeros(size, np.uint8)
+    return State(nothing.view(np.bool_), nothing, np.zeros(size, np.float32))
+
+
+def step(
+    state: State, picture: Frame, mask: Mask, seen: silhouette.State, dt_s: float
+) -> tuple[State, Mask]:
+    """The silhouette without what is not the body followed.
+
+    Args:
+        state: From `init` or the step before.
+        picture: (H, W, 3).
+        mask: (H, W) what differs from the room in it; it may have several regions.
+        seen: State of the silhouettes after that picture.
+        dt_s: Seconds since the picture before.
+    """
+    grey, at_rest_s = state.grey.copy(), state.at_rest_s + np.float32(dt_s)
+    now = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
+    moved = cv2.absdiff(now, grey) > CHANGES
+    grey[moved], at_rest_s[moved] = now[moved], 0.0
+    colours = state.colours
+    if mask.any():
+        colours = _remembered(colours, seen.colours, min(1.0, dt_s / RECALLED_S))
+        mask = _without_things(mask, at_rest_s >= AT_REST_S, picture, seen.room, colours)
+        mask = without_others(mask, state.body)
+    return State(mask, grey, at_rest_s, colours), mask
+
+
+def without_others(mask: Mask, before: Mask) -> Mask:
+    """The silhouette without regions that are somebody else's.
+
+    Args:
+        mask: (H, W) of this frame; it may have several regions.
+        before: (H, W) of the frame before, as this returned it; empty if nobody was there.
+    """
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(mask.view(np.uint8))
+    if count <= 2:
+        return mask
+    areas = stats[:, cv2.CC_STAT_AREA].astype(np.float64)
+    areas[0] = 0.0
+    shared = np.bincount(labels[before], minlength=count).astype(np.float64)
+    shared[0] = 0.0
+    own = areas >= SCRAP * areas.sum()
+    if shared.any():
+        own &= shared >= OWN * areas
+    own[np.argmax(shared if shared.any() else areas)] = True
+    own[0] = False
+    return np.asarray(own[labels])
+
+
+def _remembered(before: Floats | None, now: Floats, share: float) -> Floats:
+    return now if before is None else before + np.float32(share) * (now - before)
+
+
+def _without_things(mask: Mask, still: Mask, picture: Frame, room: Floats, colours: Floats) -> Mask:
+    """The silhouette without what is at rest and has the room's colours: things that were moved."""
+    at_rest = mask & still
+    if not at_rest.any():
+        return mask
+    rooms = at_rest.view(np.uint8).copy()
+    _keep_rooms(rooms, picture, familiar(colours), light_gain(picture, room))
+    kept: NDArray[np.uint8] = cv2.medianBlur((mask & (rooms == 0)).view(np.uint8), 3)
+    return kept > 0
+
+
+@KERNEL
+def _keep_rooms(mask: Bytes, picture: Frame, known: Floats, gain: Floats) -> None:
+    """Leave of a mask only pixels whose colour is the room's, in place."""
+    for y in range(mask.shape[0]):
+        given = picture[y]
+        for x in range(mask.shape[1]):
+            if mask[y, x]:
+                mask[y, x] = known[shade_of(given, gain, x)] < ROOMS
