@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,11 @@ from tritrack.first_pass import Outline, outlines_of
 from tritrack.one_camera_poses import poses_of
 from viewer.background import Background
 from viewer.empty import room_of_clip
+
+FITS: Final = 0.6
+"""S from which a pose fits its outline."""
+MOSTLY: Final = 0.5
+"""Where fewer of the poses fit, that is said."""
 
 
 class Followed(NamedTuple):
@@ -81,7 +86,7 @@ def follow_clip(clip: Clip, settings: Settings, decoder: Decoder, notes: Notes) 
         "stature_m": round(stature_m, 3),
         "trembles": scene.anchor is not None,
         "never_uncovered": round(float(room.uncertain.mean()), 4),
-        "warnings": [*clip.warnings, *filter(None, (scene.odd, cut_off, _nobody_in(bodies)))],
+        "warnings": [*clip.warnings, *filter(None, (scene.odd, cut_off, _doubtful(bodies)))],
     }
     turn = np.array(PAPER_ROTATIONS[0] if camera is None else camera.R)
     return Followed(bodies, settled, outlines, view.size, 1 / period_s, turn, clip, room, facts)
@@ -101,7 +106,7 @@ def follow_masks(
         "frames_a_second": round(len(bodies) / max(spent, 1e-9), 1),
         "scale_source": "assumed",
         "stature_m": round(stature_m, 3),
-        "warnings": list(filter(None, (_nobody_in(bodies),))),
+        "warnings": list(filter(None, (_doubtful(bodies),))),
     }
     turn = np.array(PAPER_ROTATIONS[0])
     return Followed(bodies, settled, outlines, size, 1 / period_s, turn, None, None, facts)
@@ -120,8 +125,15 @@ def extras_of(settled: Sequence[Settled]) -> dict[str, Any]:
     }
 
 
-def _nobody_in(bodies: Sequence[Body]) -> str:
-    """What is odd where no frame shows anybody; "" otherwise."""
-    if any(body.joints_m for body in bodies):
+def _doubtful(bodies: Sequence[Body]) -> str:
+    """What is odd where no frame shows anybody, or few poses fit what they show; "" otherwise."""
+    scores = [max(body.score) for body in bodies if body.joints_m]
+    if not scores:
+        return "nobody was seen: the person must move, and be a sixth of the picture high at least"
+    fit = float(np.mean(np.array(scores) >= FITS))
+    if fit >= MOSTLY:
         return ""
-    return "nobody was seen: the person must move, and be a sixth of the picture high at least"
+    return (
+        f"only {fit:.0%} of the poses fit their outlines: the camera or its light may move, or "
+        "what is outlined in the overlay is not one person"
+    )

@@ -47,6 +47,8 @@ AT_EDGE_PX: Final = 8
 """... and so is one that reaches the picture's border there with so many pixels."""
 INSIDE: Final = 0.3
 """A segment that is not, and lies inside to this share, is person as a whole: legs that stand."""
+SHOWN: Final = 0.1
+"""What frames show in less than this share may as well be clothes of the wall's brightness."""
 ALIKE: Final = 2.5
 """Spreads of a segment's colour within which a pixel of it is believed to be room too."""
 
@@ -95,12 +97,12 @@ def learn_uncovered(frames: Sequence[Frame]) -> Background:
 
 
 def _filled(even: Floats, centre: Floats, held: Mask) -> tuple[Floats, Mask]:
-    """The room (H, W, 3) with what is held filled, and where no frame shows that."""
+    """The room (H, W, 3) with what is held filled, and where hardly a frame shows that."""
     guess = _bridge(centre, held)
     near = np.abs((even - guess) @ LUMA) < CHANGES
     shown = near.sum(axis=0)
     mean = (even * near[..., None]).sum(axis=0) / np.maximum(shown, 1)[..., None]
-    uncertain = held & (shown == 0)
+    uncertain = held & (shown < SHOWN * len(even))
     room = np.where(held[..., None], np.where(uncertain[..., None], guess, mean), centre)
     return room.astype(np.float32), uncertain
 
