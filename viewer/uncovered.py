@@ -64,8 +64,8 @@ def learn_uncovered(frames: Sequence[Frame]) -> Background:
     somebody in the median picture, and so has one where the outlines of what changes belong to
     the median as much as to the frames. There the median is believed only in segments of one
     colour that reach beyond the place. What is left is drawn from both sides, and gives way to
-    what frames show if any come near that; where none do, the pixel was never uncovered and is
-    flagged.
+    what frames show if enough of them come near that; else the pixel was never uncovered and
+    is flagged.
 
     Args:
         frames: Pictures from all over a clip, of one size.
