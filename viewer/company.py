@@ -4,7 +4,6 @@ from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from common.similarity import Mask
 from viewer import silhouette
@@ -56,14 +55,12 @@ def step(
         seen: State of the silhouettes after that picture.
         dt_s: Seconds since the picture before.
     """
-    grey, at_rest_s = state.grey.copy(), state.at_rest_s + np.float32(dt_s)
-    now = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
-    moved = cv2.absdiff(now, grey) > CHANGES
-    grey[moved], at_rest_s[moved] = now[moved], 0.0
+    grey, at_rest_s = state.grey.copy(), state.at_rest_s.copy()
+    _rest(grey, at_rest_s, cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), np.float32(dt_s))
     colours = state.colours
     if mask.any():
         colours = _remembered(colours, seen.colours, min(1.0, dt_s / RECALLED_S))
-        mask = _without_things(mask, at_rest_s >= AT_REST_S, picture, seen.room, colours)
+        mask = _without_things(mask, at_rest_s, picture, seen.room, colours)
         mask = without_others(mask, state.body)
     return State(mask, grey, at_rest_s, colours), mask
 
@@ -75,41 +72,61 @@ def without_others(mask: Mask, before: Mask) -> Mask:
         mask: (H, W) of this frame; it may have several regions.
         before: (H, W) of the frame before, as this returned it; empty if nobody was there.
     """
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(mask.view(np.uint8))
+    left, top, width, height = cv2.boundingRect(mask.view(np.uint8))
+    around = np.s_[top : top + height, left : left + width]
+    count, labels, stats, _ = cv2.connectedComponentsWithStatsWithAlgorithm(
+        mask[around].view(np.uint8), 8, cv2.CV_32S, cv2.CCL_GRANA
+    )
     if count <= 2:
         return mask
     areas = stats[:, cv2.CC_STAT_AREA].astype(np.float64)
     areas[0] = 0.0
-    shared = np.bincount(labels[before], minlength=count).astype(np.float64)
+    shared = np.bincount(labels[before[around]], minlength=count).astype(np.float64)
     shared[0] = 0.0
     own = areas >= SCRAP * areas.sum()
     if shared.any():
         own &= shared >= OWN * areas
     own[np.argmax(shared if shared.any() else areas)] = True
     own[0] = False
-    return np.asarray(own[labels])
+    found = np.zeros_like(mask)
+    found[around] = own[labels]
+    return found
 
 
 def _remembered(before: Floats | None, now: Floats, share: float) -> Floats:
     return now if before is None else before + np.float32(share) * (now - before)
 
 
-def _without_things(mask: Mask, still: Mask, picture: Frame, room: Floats, colours: Floats) -> Mask:
+def _without_things(
+    mask: Mask, at_rest_s: Floats, picture: Frame, room: Floats, colours: Floats
+) -> Mask:
     """The silhouette without what is at rest and has the room's colours: things that were moved."""
-    at_rest = mask & still
-    if not at_rest.any():
+    kept = mask.view(np.uint8).copy()
+    if not _taken(kept, at_rest_s, picture, familiar(colours), light_gain(picture, room)):
         return mask
-    rooms = at_rest.view(np.uint8).copy()
-    _keep_rooms(rooms, picture, familiar(colours), light_gain(picture, room))
-    kept: NDArray[np.uint8] = cv2.medianBlur((mask & (rooms == 0)).view(np.uint8), 3)
-    return kept > 0
+    return cv2.medianBlur(kept, 3) > 0
 
 
 @KERNEL
-def _keep_rooms(mask: Bytes, picture: Frame, known: Floats, gain: Floats) -> None:
-    """Leave of a mask only pixels whose colour is the room's, in place."""
+def _rest(grey: Bytes, at_rest_s: Floats, now: Bytes, dt_s: np.float32) -> None:
+    """Go on with what a picture shows, and for how long, in place."""
+    for y in range(now.shape[0]):
+        for x in range(now.shape[1]):
+            if abs(np.int32(now[y, x]) - np.int32(grey[y, x])) > CHANGES:
+                grey[y, x], at_rest_s[y, x] = now[y, x], 0.0
+            else:
+                at_rest_s[y, x] += dt_s
+
+
+@KERNEL
+def _taken(mask: Bytes, at_rest_s: Floats, picture: Frame, known: Floats, gain: Floats) -> int:
+    """Take what is at rest and has the room's colours out of a mask, in place; how many pixels."""
+    count = 0
     for y in range(mask.shape[0]):
         given = picture[y]
         for x in range(mask.shape[1]):
-            if mask[y, x]:
-                mask[y, x] = known[shade_of(given, gain, x)] < ROOMS
+            still = mask[y, x] and at_rest_s[y, x] >= AT_REST_S
+            if still and known[shade_of(given, gain, x)] < ROOMS:
+                mask[y, x] = 0
+                count += 1
+    return count
