@@ -38,6 +38,17 @@ def joints_px_of(pose: np.ndarray) -> np.ndarray:
     return joints_px(ADULT, pose)
 
 
+@pytest.mark.parametrize("head_deg", [-20.0, 15.0, 160.0])
+def test_who_lies_is_found_along_the_floor(head_deg: float) -> None:
+    """Somebody who fell, met as such: joints within 5 % of the stature."""
+    pose = stick_pose({})
+    pose[ANGLE : ANGLE + 10] += head_deg - 90.0
+    stick = fit(drawn(pose), None, stature_px=STATURE_PX)
+    off = np.linalg.norm(stick.joints_px - joints_px_of(pose), axis=1)[TWELVE] / STATURE_PX
+    assert off.mean() < 0.05
+    assert stick.score > 0.8
+
+
 @pytest.mark.parametrize("mode", ["default", "thesis"])
 def test_the_size_of_the_frame_does_not_change_the_angles(mode: Mode) -> None:
     """T9: the same frame at 1x and 4x, within a degree where the body is bent clearly."""

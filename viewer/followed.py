@@ -46,6 +46,9 @@ UPRIGHT_MOVES: Final = 9
 COARSE, MIDDLE, FINE = (16, 4), (8, 2), (4, 2)
 """Half a window and its width at the end, in units of each move."""
 
+LEAN_DEG: Final = (-30.0, 210.0)
+"""Where trunk and head point. T6 allows 45 to 135, which leaves out whoever fell; who lies may
+have the head lower in the picture than the feet, for cameras look down."""
 ARM_RANGE_DEG, LEG_RANGE_DEG = (0.0, 345.0, 140.0), (180.0, 360.0, 100.0)
 """Where upper limbs can point in the picture, and how far lower ones bend from them."""
 
@@ -99,7 +102,7 @@ def _bounds() -> tuple[Vector, Vector]:
     lows[GIRTH], highs[GIRTH] = 0.7, 1.5
     lows[BREADTH], highs[BREADTH] = 0.0, 1.0
     for segment in (TORSO, HEAD):
-        lows[ANGLE + segment], highs[ANGLE + segment] = -30.0, 210.0
+        lows[ANGLE + segment], highs[ANGLE + segment] = LEAN_DEG
     return lows, highs
 
 
