@@ -16,7 +16,7 @@ SCRAP: Final = 0.03
 """A region apart of less than this share of the silhouette is a reflection or noise."""
 OWN: Final = 0.3
 """A region apart that was the body's to this share just before is a part of it."""
-AT_REST_S: Final = 2.0
+AT_REST_S: Final = 1.0
 """What shows the same for so long may be a thing that the person moved."""
 ROOMS: Final = np.float32(-0.3)
 """From -1, only the room has a colour, to 1, only the body has it: things at rest have such."""

@@ -43,6 +43,8 @@ class Patch(NamedTuple):
 def patches_of(room: Background, frames: Sequence[Frame], spacing: int, fps: float) -> list[Patch]:
     """What comes to rest in a clip, or leaves where it was at rest, in the order of time.
 
+    Where the room was guessed, what is first seen at rest was there from the start.
+
     Args:
         room: Learnt from all the clip.
         frames: Pictures (H, W, 3) from all over it, from its first on.
@@ -53,6 +55,7 @@ def patches_of(room: Background, frames: Sequence[Frame], spacing: int, fps: flo
     found: list[Patch] = []
     if len(frames) < due:
         return found
+    guessed = room.uncertain.copy()
     even, now = even_light([*frames, np.asarray(np.rint(room.centre), np.uint8)])[:-1], room.centre
     for start in range(0, len(frames) - due + 1, max(1, due // LOOKS)):
         window = even[start : start + due]
@@ -60,11 +63,13 @@ def patches_of(room: Background, frames: Sequence[Frame], spacing: int, fps: flo
         off = window - shown
         settled = _smooth((np.abs(off @ LUMA) < CHANGES).mean(axis=0) >= CALM)
         other = _other_things(shown, now, settled)
-        if other.any():
-            now = np.where(other[..., None], shown, now)
-            frame = start * spacing if start else 0
-            found.append(Patch(frame, other, shown[other], spread_of(off)[other]))
-    return found
+        now = np.where(other[..., None], shown, now)
+        spread = spread_of(off)
+        for where, frame in ((other & guessed, 0), (other & ~guessed, start * spacing)):
+            if where.any():
+                found.append(Patch(frame, where, shown[where], spread[where]))
+        guessed &= ~other
+    return sorted(found, key=lambda patch: patch.frame)
 
 
 def patched(state: State, patch: Patch) -> State:
