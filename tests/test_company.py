@@ -51,13 +51,13 @@ def test_a_sheet_that_was_moved_is_no_body_once_it_is_at_rest() -> None:
     bed, edge = np.s_[50:118, 20:70], np.s_[60:90, 80:84]
     white = (250, 250, 250)
     seen = silhouette.init(learn([scene((bed, white))]), SilhouetteSettings())
-    state = company.init((HEIGHT, WIDTH))
+    state = company.init((HEIGHT, WIDTH), things_move=True)
     dt_s = 0.1
     for n in range(20 + int(AT_REST_S / dt_s)):
         things = [(bed, white), (BODY, BLACK)] + ([(edge, white)] if n > 15 else [])
         picture = scene(*things)
         seen, found = silhouette.step(seen, picture, None)
-        state, body = company.step(state, picture, found.mask, seen, dt_s)
+        state, body, seen = company.step(state, picture, found.mask, seen, dt_s)
         if n == 17:
             assert body[edge].mean() > 0.5
     assert body[edge].mean() < 0.1

@@ -74,7 +74,7 @@ def outlines_of(
     view = clip.views[0]
     state = silhouette.init(scene.room, settings)
     coming = deque(scene.patches)
-    others = company.init(scene.room.uncertain.shape)
+    others = company.init(scene.room.uncertain.shape, things_move=bool(scene.patches))
     near: tuple[float, float] | None = None
     found: list[Outline] = []
     tallest = 0
@@ -88,7 +88,7 @@ def outlines_of(
         while coming and coming[0].frame <= frame.index:
             state = patched(state, coming.popleft())
         state, seen = silhouette.step(state, picture, near)
-        others, body = company.step(others, picture, seen.mask, state, clip.every / view.fps)
+        others, body, state = company.step(others, picture, seen.mask, state, clip.every / view.fps)
         box = box_of(body)
         tall = 0 if box is None else box.bottom + 1 - box.top
         tallest = max(tallest, tall)
