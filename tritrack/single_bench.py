@@ -74,19 +74,19 @@ def followed(settings: Settings, repeats: int) -> Followed:
 def _followed(settings: Settings, repeats: int, decoder: Decoder) -> Followed:
     clip = open_clip(settings, decoder, ALONE)
     view, reel = clip.views[0], Reel(decoder)
-    room, anchor, _ = room_of_clip(view, settings.silhouette, reel)
+    scene = room_of_clip(view, settings.silhouette, reel)
     period_s = clip.every / view.fps
 
     def decoded() -> int:
         return sum(1 for _ in decoder.frames(view.source, view.size))
 
     def outlined() -> int:
-        return len(outlines_of(clip, room, anchor, settings.silhouette, reel))
+        return len(outlines_of(clip, scene, settings.silhouette, reel))
 
     def posed() -> int:
         return len(poses_of(outlines, view.size, None, settings, period_s, Notes()).bodies)
 
-    outlines = outlines_of(clip, room, anchor, settings.silhouette, reel)
+    outlines = outlines_of(clip, scene, settings.silhouette, reel)
     return Followed(
         len(outlines),
         _least_s(decoded, repeats, time.perf_counter),

@@ -8,9 +8,9 @@ import numpy as np
 from common.similarity import Mask
 from viewer import silhouette
 from viewer.appearance import familiar
-from viewer.background import CHANGES, light_gain
+from viewer.background import light_gain
 from viewer.difference import KERNEL, Bytes, shade_of
-from viewer.stacks import Floats, Frame
+from viewer.stacks import CHANGES, Floats, Frame
 
 SCRAP: Final = 0.03
 """A region apart of less than this share of the silhouette is a reflection or noise."""

@@ -8,9 +8,9 @@ import cv2
 import numpy as np
 
 from common.similarity import Mask
-from viewer.background import CHANGES, Background, even_light, spread_of
+from viewer.background import Background, even_light, spread_of
 from viewer.silhouette import State
-from viewer.stacks import LUMA, Floats, Frame, median
+from viewer.stacks import CHANGES, LUMA, Floats, Frame, median, squares
 
 AT_REST_S: Final = 10.0
 """Nobody who stands holds still for so long, edges and all; who lies still for longer is lost until
@@ -64,7 +64,7 @@ def patches_of(room: Background, frames: Sequence[Frame], spacing: int, fps: flo
         settled = _smooth((np.abs(off @ LUMA) < CHANGES).mean(axis=0) >= CALM)
         other = _other_things(shown, now, settled)
         now = np.where(other[..., None], shown, now)
-        spread = spread_of(off)
+        spread = spread_of(squares(off), due)
         for where, frame in ((other & guessed, 0), (other & ~guessed, start * spacing)):
             if where.any():
                 found.append(Patch(frame, where, shown[where], spread[where]))
