@@ -70,7 +70,7 @@ def prior(rig: Rig, seen: Seen) -> Bdp:
     """The thesis's proportions at the height that the silhouettes show (T4).
 
     The smallest: what is no part of the person makes an outline larger. The crown of somebody who
-    stands is as high above the floor, wherever their outline ends below.
+    stands is as high above the floor, wherever their outline ends below or beside them.
     """
     place = place_of(rig, roots_of(seen), np.zeros(3), 0)
     heights = [
@@ -80,9 +80,9 @@ def prior(rig: Rig, seen: Seen) -> Bdp:
         and not report.cut
         and np.isfinite(height := _height_m(report, camera, place))
     ]
-    if len(heights) == 2:
-        heights.append(_crown_m(rig, seen, place))
     low, high = STATURES_M
+    if None not in seen and low <= (crown := _crown_m(rig, seen, place)) <= high:
+        heights.append(crown)
     return thesis_bdp(min(high, max(low, min(heights))) if heights else USUAL_M)
 
 
@@ -93,13 +93,18 @@ def _height_m(report: Report, camera: Camera, place: Vector) -> float:
 
 
 def _crown_m(rig: Rig, seen: Seen, place: Vector) -> float:
-    """Height above the floor of what is highest in both outlines; inf where that is nowhere."""
+    """Height above the floor of what is highest in both outlines; inf where that is nowhere.
+
+    What touches the border of a picture may go on beyond it.
+    """
     tops: list[Pixel] = []
     for report, camera in zip(seen, rig.cameras, strict=True):
         assert report is not None
         along, pixels = _upwards(report, camera, place)
-        column, row = pixels[along.argmax()] + 0.5
-        tops.append((float(column), float(row)))
+        column, row = pixels[along.argmax()]
+        if not (0 < column < report.width - 1 and 0 < row < report.height - 1):
+            return np.inf
+        tops.append((float(column) + 0.5, float(row) + 0.5))
     found = triangulate((rig.cameras[0], rig.cameras[1]), (tops[0], tops[1]))
     return float(found[1]) if np.isfinite(found).all() else np.inf
 

@@ -7,7 +7,7 @@ from posing import posed
 from rolling import BODY, ROLLED, outlines, told
 from staging import PERSON, RIG, opening, report, silhouettes, standing
 
-from common.body import Bdp
+from common.body import Bdp, Vector
 from common.bounds import box_of
 from common.camera import Rig, paper_rig
 from common.messages import Measure, Report
@@ -152,15 +152,32 @@ def test_legs_reach_the_floor() -> None:
     assert isinstance(good[0] and good[0].measure, Measure)
 
 
-def test_the_crown_tells_the_stature_where_the_outline_goes_on_below_the_feet() -> None:
+@pytest.mark.parametrize("to_the_border", [(), (0,), (0, 1)], ids=["no view", "1", "both"])
+def test_the_crown_tells_the_stature_where_the_outline_goes_on_below_the_feet(
+    to_the_border: tuple[int, ...],
+) -> None:
     """A slab on the floor before the person, seen from above by rolled cameras."""
-    pose = posed(r_shoulder_z=90.0, l_shoulder_z=270.0)
-    pose[1] = BODY.r_upper_leg.height + BODY.r_lower_leg.height
     spoilt = []
-    for mask in outlines(pose):
+    for n, mask in enumerate(outlines(_stretched())):
         rows, columns = np.nonzero(mask)
         lowest, middle = rows.max(), int(np.median(columns))
-        mask[lowest - 10 : lowest + 14, middle - 15 : middle + 15] = True
+        end = len(mask) if n in to_the_border else lowest + 14
+        mask[lowest - 10 : end, middle - 15 : middle + 15] = True
         spoilt.append(mask)
     found = prior(ROLLED, (told(1, spoilt[0]), told(2, spoilt[1])))
     assert stature(found) == pytest.approx(stature(BODY), abs=0.05)
+
+
+def test_what_goes_on_above_a_picture_is_no_crown() -> None:
+    """A lamp hangs over the person in view 1: view 2 alone tells how high they are."""
+    first, second = outlines(_stretched())
+    columns = np.flatnonzero(first[: first.any(axis=1).argmax() + 5].any(axis=0))
+    first[: first.any(axis=1).argmax() + 5, columns[0] : columns[-1]] = True
+    found = prior(ROLLED, (told(1, first), told(2, second)))
+    assert stature(found) == pytest.approx(stature(BODY), abs=0.08)
+
+
+def _stretched() -> Vector:
+    pose = posed(r_shoulder_z=90.0, l_shoulder_z=270.0)
+    pose[1] = BODY.r_upper_leg.height + BODY.r_lower_leg.height
+    return pose
