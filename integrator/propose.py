@@ -19,6 +19,8 @@ JOINTS: Final = tuple(
 )
 """What is proposed."""
 SHOULDERS, HIPS = slice(0, 2), slice(6, 8)
+OTHER_SIDES: Final = [i ^ 1 for i in range(len(JOINTS))]
+"""Where the same joint of the other side is."""
 
 SEES: Final = (0, 5)
 """Where a look says beside the windows whether each view sees."""
@@ -87,8 +89,9 @@ def step(
     memory, said = _remembered(network, memory, seen.windows, seen.beside)
     said = said.astype(np.float64)
     places = said[: 3 * len(JOINTS)].reshape(-1, 3)
-    joints_m = seen.middle_m + stature_m * places @ seen.turn
-    return memory, Proposal(joints_m, _gate(said[3 * len(JOINTS) :]))
+    own = OTHER_SIDES if seen.mirrored else slice(None)
+    joints_m = seen.middle_m + stature_m * places[own] @ seen.turn
+    return memory, Proposal(joints_m, _gate(said[3 * len(JOINTS) :][own]))
 
 
 @numba.njit(cache=True)
@@ -172,7 +175,8 @@ def _gate(values: Any) -> Any:
 
 def aimed(joints_m: NDArray[np.float64], seen: Look, stature_m: float) -> NDArray[np.float64]:
     """Where the network should say that joints are, (n, 3) statures from the middle."""
-    found: NDArray[np.float64] = (joints_m - seen.middle_m) @ seen.turn.T / stature_m
+    own = OTHER_SIDES if seen.mirrored else slice(None)
+    found: NDArray[np.float64] = (joints_m[own] - seen.middle_m) @ seen.turn.T / stature_m
     return found
 
 

@@ -48,15 +48,23 @@ class Look(NamedTuple):
     middle_m: Vector
     """(3,) of the body, world."""
     turn: Vector
-    """(3, 3) rows: the axes of the frame of the proposal in the world."""
+    """(3, 3) rows: the axes of the frame of the proposal in the world; left-handed in a mirror."""
+    mirrored: bool = False
+    """The windows are in a mirror: right limbs are left ones there."""
 
 
 @lru_cache(maxsize=4)
 def axes_of(rig: Rig) -> Vector:
-    """Axes of the proposals' frame, rows (3, 3): x right in camera 1, y up, z towards it."""
+    """Axes of the proposals' frame, rows (3, 3): y up, z towards camera 1.
+
+    x is right in camera 1, or left in a mirror: there camera 2 always stands where the paper's
+    does, to the left of camera 1, as it does in most of what the network is taught.
+    """
+    first, second = (np.array(camera.R)[2] for camera in rig.cameras[:2])
     right = np.array(rig.cameras[0].R)[0] * [1.0, 0.0, 1.0]
     right /= np.linalg.norm(right)
-    return np.stack([right, [0.0, 1.0, 0.0], np.cross(right, [0.0, 1.0, 0.0])])
+    side = -1.0 if np.cross(first, second)[1] > 0.0 else 1.0
+    return np.stack([side * right, [0.0, 1.0, 0.0], np.cross(right, [0.0, 1.0, 0.0])])
 
 
 def look(
@@ -71,6 +79,7 @@ def look(
         since_s: Time since the look before.
     """
     turn = axes_of(rig)
+    mirrored = bool(np.linalg.det(turn) < 0.0)
     middle_m = _middle_m(masks, rig)
     if middle_m is None:
         return None
@@ -81,8 +90,9 @@ def look(
             continue
         camera = rig.cameras[n]
         _tell(turn, centre(camera) - middle_m, stature_m, beside[5 * n : 5 * n + 5])
-        windows[n] = _cells(mask, camera, middle_m, stature_m).ravel()
-    return Look(windows, beside, middle_m, turn)
+        cells = _cells(mask, camera, middle_m, stature_m)
+        windows[n] = (cells[:, ::-1] if mirrored else cells).ravel()
+    return Look(windows, beside, middle_m, turn, mirrored)
 
 
 @numba.njit(cache=True)

@@ -1,16 +1,17 @@
 """Proposed joints, held against made-up people whom the network was never taught on."""
 
-from itertools import pairwise
+from itertools import islice, pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
+from glass import MIRROR, in_mirror
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from integrator import propose
-from integrator.propose import JOINTS, Network
+from integrator.propose import JOINTS, OTHER_SIDES, Network
 from integrator.window import BESIDE, CELLS, Look, look
 from synth.outlines import outlines
 from synth.skeleton import JOINTS as ALL_JOINTS
@@ -61,6 +62,27 @@ def test_untaught_people_are_found_to_a_few_centimetres() -> None:
             missed.append(np.linalg.norm(found.joints_m - shown.joints_m[PICK], axis=1))
     assert np.median(missed) < 0.05
     assert np.mean(missed) < 0.08
+
+
+def test_somebody_in_a_mirror_is_found_there() -> None:
+    """Where the cameras stand the other way round too: left for right, and nothing else."""
+    memories, seen_m = [None, None], []
+    for shown in islice(outlines(UNTAUGHT[0]), 20):
+        first, second = shown.masks
+        assert first is not None
+        assert second is not None
+        flipped = (np.ascontiguousarray(first[:, ::-1]), np.ascontiguousarray(second[:, ::-1]))
+        found = []
+        for n, (masks, rig) in enumerate(
+            (((first, second), shown.rig), (flipped, in_mirror(shown.rig)))
+        ):
+            seen = look(masks, rig, shown.stature_m, shown.since_s)
+            assert seen is not None
+            memories[n], each = propose.step(propose.shipped(), memories[n], seen, shown.stature_m)
+            found.append(each)
+        seen_m.append(np.abs(found[1].joints_m[OTHER_SIDES] * MIRROR - found[0].joints_m))
+        assert found[1].sure[OTHER_SIDES] == pytest.approx(found[0].sure, abs=0.05)
+    assert np.mean(seen_m) < 0.003  # a window's edge is not where the other's is
 
 
 def test_a_memory_without_weights_fades_by_half() -> None:
