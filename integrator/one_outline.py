@@ -22,7 +22,6 @@ from integrator import insight, limits, mirroring, propose, signs, smoothing, tu
 from integrator.lifting import SWAPPED, Lifted, lift
 from integrator.limbs import PLACES, pose_of
 from integrator.mirroring import Front
-from integrator.window import Floats
 
 UNSEEN: Final = 0.25
 """Share of its confidence that the end of a hidden segment keeps."""
@@ -59,7 +58,7 @@ class State(NamedTuple):
     """As the thesis prints it: scaled orthography (T19), and nothing is proposed."""
     smooth: smoothing.State
     memory: signs.Memory
-    recall: Floats | None = None
+    recall: insight.Memory | None = None
     """What the proposals remember."""
     front: Front = Front()
     pose: Vector | None = None

@@ -53,15 +53,15 @@ class Look(NamedTuple):
     """The windows are in a mirror: right limbs are left ones there."""
 
 
-@lru_cache(maxsize=4)
-def axes_of(rig: Rig) -> Vector:
-    """Axes of the proposals' frame, rows (3, 3): y up, z towards camera 1.
+@lru_cache(maxsize=8)
+def axes_of(one: Camera, other: Camera) -> Vector:
+    """Axes of the proposals' frame, rows (3, 3): y up, z towards one camera.
 
-    x is right in camera 1, or left in a mirror: there camera 2 always stands where the paper's
-    does, to the left of camera 1, as it does in most of what the network is taught.
+    x is right in that camera, or left in a mirror: there the other always stands where the
+    paper's camera 2 does, to the left, as it does in most of what the network is taught.
     """
-    first, second = (np.array(camera.R)[2] for camera in rig.cameras[:2])
-    right = np.array(rig.cameras[0].R)[0] * [1.0, 0.0, 1.0]
+    first, second = np.array(one.R)[2], np.array(other.R)[2]
+    right = np.array(one.R)[0] * [1.0, 0.0, 1.0]
     right /= np.linalg.norm(right)
     side = -1.0 if np.cross(first, second)[1] > 0.0 else 1.0
     return np.stack([side * right, [0.0, 1.0, 0.0], np.cross(right, [0.0, 1.0, 0.0])])
@@ -78,7 +78,7 @@ def look(
         stature_m: Of the person.
         since_s: Time since the look before.
     """
-    turn = axes_of(rig)
+    turn = axes_of(rig.cameras[0], rig.cameras[1])
     mirrored = bool(np.linalg.det(turn) < 0.0)
     middle_m = _middle_m(masks, rig)
     if middle_m is None:
@@ -102,6 +102,21 @@ def _tell(turn: Any, away_m: Any, stature_m: float, out: Any) -> None:
     out[0], out[4] = 1.0, NEARNESS * stature_m / far
     for i in range(3):
         out[1 + i] = (turn[i] * away_m).sum() / far
+
+
+def from_camera_2(seen: Look, rig: Rig) -> Look:
+    """What both views show, as if camera 2 were camera 1."""
+    turn = axes_of(rig.cameras[1], rig.cameras[0])
+    mirrored = bool(np.linalg.det(turn) < 0.0)
+    windows = seen.windows[::-1].reshape(2, ROWS, COLUMNS)
+    if mirrored != seen.mirrored:
+        windows = windows[:, :, ::-1]
+    beside = seen.beside.copy()
+    beside[:5], beside[5:10] = seen.beside[5:10], seen.beside[:5]
+    for away in (beside[1:4], beside[6:9]):
+        away[:] = turn @ seen.turn.T @ away
+    flat = np.ascontiguousarray(windows).reshape(2, CELLS)
+    return Look(flat, beside, seen.middle_m, turn, mirrored)
 
 
 def _middle_m(masks: tuple[Mask | None, Mask | None], rig: Rig) -> Vector | None:
