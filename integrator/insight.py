@@ -19,6 +19,9 @@ from integrator.window import Floats, Look, from_camera_2, look
 
 AT: Final = np.array([JOINT_NAMES.index(name) for name in propose.JOINTS])
 """Where the proposed joints stand among the landmarks."""
+ARMS: Final = [i for i, name in enumerate(JOINT_NAMES) if name.endswith(("elbow", "wrist"))]
+"""How far these lie beside their cylinders depends on how the arm is turned, and says nothing of
+another pose."""
 PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
 
 OFF: Final = {

@@ -119,8 +119,9 @@ def _proposed(state: State, rig: Rig, seen: Seen, dt_s: float) -> State:
     body = body_vector(bdp)
     pose, beside_m = insight.pose_and_rest(body, before, known.joints_m)
     better = corrected.instead(pose, known.sure, state.pose, state.matched, body, rig, seen)
+    if better is not None:
+        pose, beside_m[insight.ARMS] = better, 0.0
     state = state._replace(insight=known, beside_m=beside_m, matched=better is not None)
-    pose = pose if better is None else better
     return state._replace(pose=pose, facing=facing_of(rig, pose))
 
 
