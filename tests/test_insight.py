@@ -3,28 +3,32 @@
 They have feet and faces of their own: cylinders look the same from behind.
 """
 
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 from staging import HEIGHT, RIG, WIDTH, Stage, Told, exact
+from staging import report as reported
 
 from common.body import JOINT_NAMES, POSE_INDEX, Vector
 from common.config import Settings
-from common.proportions import stature
+from common.proportions import stature, thesis_bdp
 from common.similarity import Mask
 from common.wire import decode, encode
-from integrator.insight import AT, SURENESS, probability
+from integrator import insight
+from integrator.insight import AT, SURENESS, TWICE, probability
 from synth.footing import posed
 from synth.mesh import body_mesh
 from synth.motions import MOTION, TPOSE, performance
-from synth.outlines import cast
+from synth.outlines import AT_LARGE, cast, outlines
 from synth.people import person
 from synth.skeleton import ANGLES, JOINTS
 
 SOMEBODY = 31
 """Below all who are taught on."""
+UNTAUGHT = range(900_100, 900_106)
+"""Seeds beyond all that are taught."""
 PICK = [JOINTS.index(JOINT_NAMES[i]) for i in AT]
 YAW = ANGLES.index("root_yaw")
 
@@ -211,6 +215,54 @@ def test_what_is_sure_is_near_and_what_is_not_is_less_often() -> None:
     said = np.array([np.array(each.body.confidence)[AT] for each in told]).ravel()
     assert 0.0 <= said.min() <= said.max() <= 1.0
     assert near[said > 0.8].mean() > near[said < 0.5].mean() + 0.2
+
+
+def test_two_looks_find_what_neither_is_sure_of() -> None:
+    """Made-up people at large: joints are nearer to where both looks have them together."""
+    missed: dict[float, list[float]] = {0.0: [], TWICE: []}
+    for least, found in missed.items():
+        for seed in UNTAUGHT:
+            memory = None
+            for shown in islice(outlines(seed, AT_LARGE), 40):
+                first, second = shown.masks
+                if first is None or second is None or not (first.any() and second.any()):
+                    continue
+                with pytest.MonkeyPatch.context() as patch:
+                    patch.setattr(insight, "TWICE", least)
+                    seen = (reported(1, first), reported(2, second))
+                    bdp = thesis_bdp(shown.stature_m)
+                    told = insight.step(memory, bdp, shown.rig, seen, shown.since_s)
+                memory = told.memory
+                off = np.linalg.norm(told.joints_m - shown.joints_m[PICK], axis=1)
+                found.append(float(off.mean()))
+    assert np.mean(missed[TWICE]) < 0.97 * np.mean(missed[0.0])
+
+
+def test_a_look_that_is_sure_is_enough() -> None:
+    """The second look's memory ends with the doubt."""
+    did, stage = shown("squat"), default()
+    doubts = []
+    for pair in did.masks:
+        stage.see(pair)
+        assert stage.state.insight is not None
+        own = stage.state.insight.sure[AT].mean()
+        doubts.append(stage.state.insight.memory.second is not None)
+        assert doubts[-1] or own >= TWICE
+    assert not all(doubts)
+
+
+def test_elbows_and_wrists_of_a_matched_pose_lie_on_its_own_arms() -> None:
+    """How far they lay beside the arms of the proposed pose says nothing of others."""
+    did, stage = shown("free"), default()
+    matched = 0
+    for pair in did.masks:
+        stage.see(pair)
+        state = stage.state
+        assert state.beside_m is not None
+        aside_m = np.linalg.norm(state.beside_m[insight.ARMS], axis=1)
+        assert (aside_m.max() == 0.0) == state.matched
+        matched += state.matched
+    assert 0 < matched < len(did.masks)
 
 
 def test_the_memory_goes_with_the_person() -> None:
