@@ -49,6 +49,10 @@ TWICE: Final = 0.75
 made-up people by 3 to 8 % less than the first, who is sure of half of the postures."""
 
 
+SURENESS_OF_TWO: Final = (1.21, -0.47)
+"""As SURENESS, of the mean of two looks at people made up anew."""
+
+
 class Memory(NamedTuple):
     """What is remembered of the instants before."""
 
@@ -99,8 +103,9 @@ def step(
         shown = look(larger, rig, height_m, since_s)
     assert shown is not None  # one alone stands somewhere
     memory, found = _looked(memory, shown, rig, height_m)
+    calibrated = SURENESS if memory.second is None else SURENESS_OF_TWO
     found.joints_m[:] -= height_m * JOINTS_OFF @ trunk_of(found.joints_m).T
-    sure, own = np.zeros(len(JOINT_NAMES)), probability(found.sure)
+    sure, own = np.zeros(len(JOINT_NAMES)), probability(found.sure, calibrated)
     sure[AT] = own
     sure[PELVIS] = own[propose.HIPS].mean()
     sure[NECK] = sure[HEAD] = own[propose.SHOULDERS].mean()
@@ -122,9 +127,9 @@ def _looked(
     return Memory(own, other), Proposal(joints_m, sure)
 
 
-def probability(sure: Vector) -> Vector:
+def probability(sure: Vector, calibrated: tuple[float, float] = SURENESS) -> Vector:
     """How probably joints are less than 50 mm off, of the network's own sureness in (0, 1)."""
-    slope, offset = SURENESS
+    slope, offset = calibrated
     found: Vector = 1.0 / (1.0 + np.exp(-offset) * ((1.0 - sure) / sure) ** slope)
     return found
 
