@@ -11,13 +11,14 @@ from common.kinematics import TORSO, joints, limb_frames
 from common.messages import Report
 from common.proportions import stature
 from common.wire import unpack
-from integrator import propose
+from integrator import propose, weights
 from integrator.limbs import pose_of, trunk_of
 from integrator.propose import Proposal
 from integrator.straight import straight, straight_rig
+from integrator.weights import JOINTS
 from integrator.window import Floats, Look, from_camera_2, look
 
-AT: Final = np.array([JOINT_NAMES.index(name) for name in propose.JOINTS])
+AT: Final = np.array([JOINT_NAMES.index(name) for name in JOINTS])
 """Where the proposed joints stand among the landmarks."""
 ARMS: Final = [i for i, name in enumerate(JOINT_NAMES) if name.endswith(("elbow", "wrist"))]
 """How far these lie beside their cylinders depends on how the arm is turned, and says nothing of
@@ -35,7 +36,7 @@ statures: made-up people have theirs elsewhere in their outline."""
 JOINTS_OFF: Final = np.array(
     [
         np.multiply(OFF.get(name[2:], (0.0, 0.0, 0.0)), (-1.0 if name[0] == "l" else 1.0, 1.0, 1.0))
-        for name in propose.JOINTS
+        for name in JOINTS
     ]
 )
 """(12, 3) the same, to the left, up and before."""
@@ -63,7 +64,7 @@ class Insight(NamedTuple):
     """What was proposed of one instant."""
 
     joints_m: NDArray[np.float64]
-    """(12, 3) world, in the order of propose.JOINTS."""
+    """(12, 3) world, in the order of JOINTS."""
     sure: Vector
     """(15,) how probably each landmark is less than 50 mm off."""
     memory: Memory
@@ -114,7 +115,7 @@ def _looked(
     memory: Memory | None, shown: Look, rig: Rig, height_m: float
 ) -> tuple[Memory, Proposal]:
     """What a look proposes, and one from the other camera where that is not sure: their mean."""
-    network = propose.shipped()
+    network = weights.shipped()
     before, other = (None, None) if memory is None else memory
     own, found = propose.step(network, before, shown, height_m)
     if not shown.beside[list(propose.SEES)].all() or probability(found.sure).mean() >= TWICE:

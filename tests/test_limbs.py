@@ -10,7 +10,7 @@ from common.kinematics import joints
 from common.proportions import body_vector, thesis_bdp
 from integrator.insight import AT, pose_and_rest, trunk_axes
 from integrator.limbs import PLACES, pose_of
-from integrator.propose import JOINTS
+from integrator.weights import JOINTS
 
 BODY = body_vector(thesis_bdp(1.75))
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from integrator import propose
+from integrator import propose, weights
 from integrator.window import Look
 from synth.outlines import AT_LARGE, ORDINARY, outlines
 from tritrack.lessons import Example, example, example_of
@@ -17,7 +17,7 @@ from tritrack.training import TrainingError
 QUIET = Console(quiet=True)
 
 
-def said(network: propose.Network, shown: Example) -> np.ndarray:
+def said(network: weights.Network, shown: Example) -> np.ndarray:
     """What a network says of a performance, (n, 36): in statures from the middle."""
     memory, told = None, []
     for cells, beside in zip(shown.cells, shown.beside, strict=True):

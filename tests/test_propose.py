@@ -1,17 +1,15 @@
 """Proposed joints, held against made-up people whom the network was never taught on."""
 
 from itertools import islice, pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 from glass import MIRROR, in_mirror
-from hypothesis import given
-from hypothesis import strategies as st
-from hypothesis.extra.numpy import arrays
+from small_network import network
 
-from integrator import propose
-from integrator.propose import JOINTS, OTHER_SIDES, Network
+from integrator import propose, weights
+from integrator.propose import OTHER_SIDES
+from integrator.weights import JOINTS
 from integrator.window import BESIDE, CELLS, Look, look
 from synth.outlines import outlines
 from synth.skeleton import JOINTS as ALL_JOINTS
@@ -19,24 +17,6 @@ from synth.skeleton import JOINTS as ALL_JOINTS
 PICK = [ALL_JOINTS.index(name) for name in JOINTS]
 UNTAUGHT = range(900_000, 900_012)
 """Seeds beyond all that are taught."""
-
-
-def network(fill: float = 0.0) -> Network:
-    """Three components, four units of each layer, all weights alike."""
-    sizes = {
-        "see": (CELLS, 3),
-        "think": (6 + BESIDE, 4),
-        "deepen": (4, 4),
-        "take": (4, 12),
-        "keep": (4, 12),
-        "join": (8, 4),
-        "say": (4, 48),
-    }
-    parts = {}
-    for name, size in sizes.items():
-        parts[name] = propose.halves(np.full(size, fill, np.float32))
-        parts[f"{name}_bias"] = np.zeros(size[1], np.float32)
-    return Network(**parts)
 
 
 SEEN = Look(
@@ -58,7 +38,7 @@ def test_untaught_people_are_found_to_a_few_centimetres() -> None:
                 continue
             seen = look((masks[0], masks[1]), shown.rig, shown.stature_m, shown.since_s)
             assert seen is not None
-            memory, found = propose.step(propose.shipped(), memory, seen, shown.stature_m)
+            memory, found = propose.step(weights.shipped(), memory, seen, shown.stature_m)
             missed.append(np.linalg.norm(found.joints_m - shown.joints_m[PICK], axis=1))
     assert np.median(missed) < 0.05
     assert np.mean(missed) < 0.08
@@ -78,7 +58,7 @@ def test_somebody_in_a_mirror_is_found_there() -> None:
         ):
             seen = look(masks, rig, shown.stature_m, shown.since_s)
             assert seen is not None
-            memories[n], each = propose.step(propose.shipped(), memories[n], seen, shown.stature_m)
+            memories[n], each = propose.step(weights.shipped(), memories[n], seen, shown.stature_m)
             found.append(each)
         seen_m.append(np.abs(found[1].joints_m[OTHER_SIDES] * MIRROR - found[0].joints_m))
         assert found[1].sure[OTHER_SIDES] == pytest.approx(found[0].sure, abs=0.05)
@@ -102,9 +82,9 @@ def test_the_second_layer_adds_to_the_first() -> None:
     """Thought 3, deepened by half of it, 4.5; a sum of four says 18."""
     told = network()
     told.think_bias[:] = 3.0
-    told.deepen[:] = propose.halves(0.5 * np.eye(4, dtype=np.float32))
-    told.join[:4] = propose.halves(np.eye(4, dtype=np.float32))
-    told.say[:, 0] = propose.halves(np.ones(4, np.float32))
+    told.deepen[:] = weights.halves(0.5 * np.eye(4, dtype=np.float32))
+    told.join[:4] = weights.halves(np.eye(4, dtype=np.float32))
+    told.say[:, 0] = weights.halves(np.ones(4, np.float32))
     _, found = propose.step(told, None, SEEN._replace(middle_m=np.zeros(3)), 1.0)
     assert found.joints_m[0] == pytest.approx([18.0, 0.0, 0.0])
 
@@ -140,53 +120,19 @@ def test_a_view_that_does_not_see_adds_nothing() -> None:
     assert not np.allclose(alone.joints_m, none.joints_m)
 
 
-@given(arrays(np.float32, 40, elements=st.floats(-(2.0**99), 2.0**99, width=32)))
-def test_a_half_is_off_by_a_256th_at_most(values: np.ndarray) -> None:
-    """Seven digits behind the leading one, the last of them rounded (IEEE 754 single, cut)."""
-    off = np.abs(propose.wholes(propose.halves(values)) - values)
-    assert (off <= np.abs(values) / 256 + 1e-38).all()
-
-
 def test_halves_multiply_as_numbers_do() -> None:
     """A layer by hand: what is said is the sum of what is seen times the weights."""
     rng = np.random.default_rng(3)
     told, beside = network(), rng.normal(size=BESIDE).astype(np.float32)
     beside[list(propose.SEES)] = 0.0
-    weights = rng.normal(size=(BESIDE, 4)).astype(np.float32)
-    told.think[6:] = propose.halves(weights)
-    told.join[:4] = propose.halves(np.eye(4, dtype=np.float32))
-    told.say[:, :4] = propose.halves(np.eye(4, dtype=np.float32))
+    thinks = rng.normal(size=(BESIDE, 4)).astype(np.float32)
+    told.think[6:] = weights.halves(thinks)
+    told.join[:4] = weights.halves(np.eye(4, dtype=np.float32))
+    told.say[:, :4] = weights.halves(np.eye(4, dtype=np.float32))
     seen = SEEN._replace(beside=beside, middle_m=np.zeros(3))
     _, found = propose.step(told, None, seen, 1.0)
-    due = np.maximum(beside @ propose.wholes(propose.halves(weights)), 0.0)
+    due = np.maximum(beside @ weights.wholes(weights.halves(thinks)), 0.0)
     assert found.joints_m.ravel()[:4] == pytest.approx(due, rel=1e-5)
-
-
-def test_a_network_survives_its_file(tmp_path: Path) -> None:
-    made = network(0.25)
-    propose.save(made, tmp_path / "n.npz")
-    kept = propose.load(tmp_path / "n.npz")
-    assert all(np.array_equal(a, b) for a, b in zip(kept, made, strict=True))
-
-
-@pytest.mark.parametrize("spoilt", ["cut", "empty", "misfit", "endless", "absent", "old"])
-def test_a_damaged_file_is_refused(tmp_path: Path, spoilt: str) -> None:
-    path, made = tmp_path / "n.npz", network()
-    if spoilt == "misfit":
-        made = made._replace(join=np.zeros((7, 4), np.uint16))
-    if spoilt == "endless":
-        made.say[0, 0] = propose.halves(np.array([np.inf], np.float32))[0]
-    propose.save(made, path)
-    if spoilt == "cut":
-        path.write_bytes(path.read_bytes()[:-300])
-    if spoilt == "empty":
-        path.write_bytes(b"")
-    if spoilt == "absent":
-        path.unlink()
-    if spoilt == "old":
-        np.savez(path, version=np.array(1), mean=np.zeros(CELLS))
-    with pytest.raises(ValueError, match=r"n\.npz"):
-        propose.load(path)
 
 
 def test_parts_are_told_apart_by_pairs() -> None:

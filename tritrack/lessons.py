@@ -6,7 +6,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from integrator.propose import JOINTS, aimed
+from integrator.propose import aimed
+from integrator.weights import JOINTS
 from integrator.window import look
 from synth.outlines import Manner, Outline, outlines
 from synth.skeleton import JOINTS as ALL_JOINTS

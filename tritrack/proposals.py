@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import Progress
 
-from integrator.propose import SEES, Network, save
+from integrator.propose import SEES
+from integrator.weights import Network, save
 from integrator.window import CELLS
 from synth.outlines import AT_LARGE, ORDINARY
 from tritrack import recurrent

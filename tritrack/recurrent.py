@@ -6,7 +6,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from integrator.propose import JOINTS, SAYS, Network, halves
+from integrator.weights import JOINTS, SAYS, Network, halves
 from integrator.window import BESIDE
 
 LAYERS: Final = (512, 512, 384)
@@ -87,7 +87,7 @@ def _kept(torch: Any, unit: Any, thought: Any) -> Any:
 
 
 def network_of(mean: Floats, components: Floats, parts: list[Any]) -> Network:
-    """The weights as `integrator.propose` reads them.
+    """The weights as `integrator.weights` keeps them.
 
     Args:
         mean: (CELLS,) window.
