@@ -56,11 +56,15 @@ def body_of(
 
 
 def _confidence(state: State, scores: tuple[float, float]) -> tuple[float, ...]:
-    """Of each landmark: what the proposal says of itself, or how well the whole body fits."""
+    """Of each landmark: what the proposal says of itself, as far as the pose is still its own, or
+    how well the whole body fits."""
     if state.badly:
         return (0.0,) * len(JOINT_NAMES)
     if state.insight is not None:
-        return tuple(state.insight.sure.tolist())
+        sure = state.insight.sure
+        if state.matched:
+            sure = insight.probability(sure, insight.SURENESS_OF_MATCHED)
+        return tuple(sure.tolist())
     return (max(scores),) * len(JOINT_NAMES)
 
 

@@ -265,6 +265,24 @@ def test_elbows_and_wrists_of_a_matched_pose_lie_on_its_own_arms() -> None:
     assert 0 < matched < len(did.masks)
 
 
+def test_joints_that_were_matched_are_surer_than_what_was_proposed() -> None:
+    """Of those that the proposal doubts more are near, on somebody on whom it was not settled."""
+    did, stage = shown("free"), default()
+    rows = []
+    for pair, joints_m in zip(did.masks, did.joints_m, strict=True):
+        told = stage.see(pair)
+        if stage.state.matched:
+            assert stage.state.insight is not None
+            near = (missed_mm([told], joints_m[None]) < 50).ravel()
+            said = np.array(told.body.confidence)[AT]
+            rows.append(np.stack([stage.state.insight.sure[AT], said, near]))
+    proposed, said, near = np.concatenate(rows, axis=1)
+    doubted = proposed < 0.3
+    due = near[doubted].mean()
+    assert abs(said[doubted].mean() - due) < 0.1
+    assert abs(said[doubted].mean() - due) < abs(proposed[doubted].mean() - due)
+
+
 def test_the_memory_goes_with_the_person() -> None:
     """An empty room forgets the pose; the body that was measured stays."""
     did = shown("squat")
