@@ -172,9 +172,12 @@ def compare(found: dict[str, Followed]) -> None:
         ious = [iou for other in found.values() for iou in elsewhere(own, other)]
         print(f"{name}: IoU {np.mean(ious):.2f} with the outlines of the other cameras")
     for (one, own), (two, other) in combinations(found.items(), 2):
-        places = [np.array([body.joints_m for body in each.bodies]) for each in (own, other)]
+        places = [
+            np.array([body.joints_m or np.full((15, 3), np.nan) for body in each.bodies])
+            for each in (own, other)
+        ]
         off_mm = 1e3 * np.linalg.norm(places[0] - places[1], axis=2)
-        print(f"{one} and {two} have joints {np.median(off_mm):.0f} mm apart (median)")
+        print(f"{one} and {two} have joints {np.nanmedian(off_mm):.0f} mm apart (median)")
 
 
 def main() -> None:

@@ -32,7 +32,7 @@ VIEW: Final = 17
 
 @numba.njit(cache=True)
 def seen_at(view: Any, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """(u, v, depth): where a view without distortion shows a place of the world, pixels, metres.
+    """(u, v, depth): where a view, of true perspective, shows a place of the world; pixels, metres.
 
     What is nearer than NEAREST_M, or behind the camera, is shown as if it were so near.
     """

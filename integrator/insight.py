@@ -14,7 +14,6 @@ from common.wire import unpack
 from integrator import propose, weights
 from integrator.limbs import pose_of, trunk_of
 from integrator.propose import Proposal
-from integrator.straight import straight, straight_rig
 from integrator.weights import JOINTS
 from integrator.window import Floats, Look, from_camera_2, look
 
@@ -87,16 +86,14 @@ def step(
     Args:
         memory: Of the instant before; None at the first.
         bdp: The body: its stature is the measure of all.
-        rig: The cameras.
+        rig: The cameras, without distortion.
         seen: What each view reports; None where it has nobody.
         since_s: Time since the instant before.
     """
     any_whole = any(report is not None and not report.cut for report in seen)
     first, second = (
-        None if report is None or (any_whole and report.cut) else straight(unpack(report), camera)
-        for report, camera in zip(seen, rig.cameras, strict=True)
+        None if report is None or (any_whole and report.cut) else unpack(report) for report in seen
     )
-    rig = straight_rig(rig)
     height_m = stature(bdp)
     shown = look((first, second), rig, height_m, since_s)
     if shown is None:

@@ -16,6 +16,7 @@ from integrator.assumed import assumed_rig
 from integrator.belief import LOST_SCORE
 from integrator.memory import State
 from integrator.pairing import Pair, Seen
+from integrator.straight import straight_pair, straight_rig
 from integrator.two_outlines import packed
 
 
@@ -62,12 +63,13 @@ def _merged(state: State, pair: Pair) -> tuple[State, Body, Guide]:
     now_s, before_s = pair.newest.captured_s, state.last_s
     dt_s = 0.0 if before_s is None else max(0.0, now_s - before_s)
     state = state._replace(frames=_heard(state.frames, pair), last_s=now_s)
-    seen = pair.with_somebody
+    straight = straight_pair(state.rig, pair)
+    seen = straight.with_somebody
     state = _with_rig(state, seen)
-    rig = state.rig
-    if seen == (None, None) or rig is None:
+    if seen == (None, None) or state.rig is None:
         state = _without_pose(state)
         return (state, *telling.nobody(state, pair))
+    rig = straight_rig(state.rig)
     opened, settled_at = opening.step(state.opening, rig, seen, state.settings.body.opening_frames)
     state = state._replace(opening=opened)
     if _is_proposed(state):
@@ -77,9 +79,10 @@ def _merged(state: State, pair: Pair) -> tuple[State, Body, Guide]:
     if state.settings.mode == "default":
         assert state.pose is not None
         state = state._replace(opening=adapting.step(state.opening, rig, seen, state.pose))
-    state, angles, scores = _smoothed(state, rig, pair, dt_s)
-    body = telling.body_of(state, rig, pair, angles, scores)
-    return state, body, telling.guide_of(state, rig, pair, settled_at is not None)
+    state, angles, scores = _smoothed(state, rig, straight, dt_s)
+    assert state.rig is not None
+    body = telling.body_of(state, state.rig, pair, angles, scores)
+    return state, body, telling.guide_of(state, state.rig, pair, settled_at is not None)
 
 
 def _of_one_piece(state: State, pair: Pair) -> hull.Cleaned:
@@ -145,7 +148,7 @@ def _score(body: Vector, pose: Vector, rig: Rig, n: int, report: Report | None) 
     """S of the whole body in one picture, true perspective; 0 where that view has nobody."""
     if report is None or report.root_px is None:
         return 0.0
-    seen, view = packed(report, rig.cameras[n]), view_of(rig.cameras[n])
+    seen, view = packed(report), view_of(rig.cameras[n])
     return float(match(body, pose, view, ALL_LIMBS, report.width, seen, count(seen)))
 
 

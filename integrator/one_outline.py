@@ -22,6 +22,7 @@ from integrator import insight, limits, mirroring, propose, signs, smoothing, tu
 from integrator.lifting import SWAPPED, Lifted, lift
 from integrator.limbs import PLACES, pose_of
 from integrator.mirroring import Front
+from integrator.straight import straight_camera, straight_report, straight_rig
 
 UNSEEN: Final = 0.25
 """Share of its confidence that the end of a hidden segment keeps."""
@@ -120,13 +121,12 @@ def proposed_body(
 ) -> tuple[State, Hypothesis | None]:
     """What the outline proposes, or what has the same outline and agrees with all else.
 
-    None where nothing is proposed, or something that faces another side than the user says.
+    None where that faces another side than the user says.
     """
-    seen = (report, None) if state.number == 1 else (None, report)
-    rig = Rig(report.width, report.height, (state.camera, state.camera))
+    straight = straight_report(report, state.camera)
+    seen = (straight, None) if state.number == 1 else (None, straight)
+    rig = straight_rig(Rig(report.width, report.height, (state.camera, state.camera)))
     known = insight.step(state.recall, state.bdp, rig, seen, dt_s)
-    if known is None:
-        return state._replace(recall=None), None
     joints_m = _with_trunk(state, known.joints_m)
     yaw = mirroring.yaw_deg(state.camera, joints_m)
     front, behind = mirroring.front_of(state.front, yaw, told.orientation, dt_s)
@@ -192,7 +192,8 @@ def _posed(
 def _match(
     state: State, pose: Vector, joints_m: NDArray[np.float64], report: Report, turning: bool
 ) -> turned.Match:
-    return turned.matched(state.camera, state.bdp, state.man, report, pose, joints_m, turning)
+    camera, straight = straight_camera(state.camera), straight_report(report, state.camera)
+    return turned.matched(camera, state.bdp, state.man, straight, pose, joints_m, turning)
 
 
 def in_room(

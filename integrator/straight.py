@@ -7,34 +7,68 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from common.bounds import box_of, is_cut
 from common.camera import Camera, Rig
+from common.messages import Report
 from common.similarity import Mask
-
-
-def straight(mask: Mask, camera: Camera) -> Mask:
-    """A silhouette (H, W) as the camera would show it without distortion.
-
-    What the lens shows beyond the border of that picture is lost; the same mask where it bends
-    nothing.
-    """
-    if not any(camera.distortion):
-        return mask
-    across, down = _maps(camera, mask.shape[1], mask.shape[0])
-    shown = cv2.remap(mask.view(np.uint8), across, down, cv2.INTER_NEAREST)
-    return np.asarray(shown > 0)
-
-
-def straight_camera(camera: Camera) -> Camera:
-    """The camera that takes such pictures."""
-    return msgspec.structs.replace(camera, distortion=())
+from common.wire import pack, unpack
+from integrator.pairing import Pair
 
 
 def straight_rig(rig: Rig) -> Rig:
-    """The cameras that take such pictures."""
+    """The cameras that take pictures without distortion."""
     if not any(any(camera.distortion) for camera in rig.cameras):
         return rig
     cameras = tuple(straight_camera(camera) for camera in rig.cameras)
     return msgspec.structs.replace(rig, cameras=cameras, distortion=())
+
+
+def straight_camera(camera: Camera) -> Camera:
+    """The camera that takes such pictures."""
+    return msgspec.structs.replace(camera, distortion=()) if any(camera.distortion) else camera
+
+
+def straight_pair(rig: Rig | None, pair: Pair) -> Pair:
+    """The reports of an instant as such cameras would give rise to; as they are of unknown ones."""
+    if rig is None:
+        return pair
+    first, second = (
+        None if report is None else straight_report(report, camera)
+        for report, camera in zip(pair, rig.cameras, strict=True)
+    )
+    return Pair(first, second)
+
+
+def straight_report(report: Report, camera: Camera) -> Report:
+    """A report with outline, box, area and navel as without distortion.
+
+    What the lens shows beyond the border of that picture is cut off; somebody of whom nothing
+    would be left stays as they are, as does everything where nothing is bent.
+    """
+    if report.root_px is None or not any(camera.distortion):
+        return report
+    mask = straight(unpack(report), camera)
+    box, K = box_of(mask), np.array(camera.K)
+    if box is None:
+        return report
+    place = np.array([[report.root_px]])
+    root_px = cv2.undistortPoints(place, K, np.array(camera.distortion), P=K)[0, 0].tolist()
+    return msgspec.structs.replace(
+        report,
+        silhouette=pack(mask),
+        box=box,
+        area_px=int(mask.sum()),
+        cut=report.cut or is_cut(box, mask.shape),
+        root_px=(root_px[0], root_px[1]),
+    )
+
+
+def straight(mask: Mask, camera: Camera) -> Mask:
+    """A silhouette (H, W) as the camera would show it without distortion; itself where it is."""
+    if not any(camera.distortion):
+        return mask
+    across, down = _maps(camera, mask.shape[1], mask.shape[0])
+    return np.asarray(cv2.remap(mask.view(np.uint8), across, down, cv2.INTER_NEAREST) > 0)
 
 
 @lru_cache(maxsize=4)

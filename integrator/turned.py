@@ -84,7 +84,7 @@ def matched(
     """S of a body drawn as the stick body is, as thick as fits best; turned where that is low.
 
     Args:
-        camera: Calibrated at the size of the report's picture.
+        camera: Calibrated at the size of the report's picture, without distortion.
         bdp: The body.
         man: How thick its parts are.
         report: Of that camera.
@@ -117,7 +117,7 @@ def _tall_px(camera: Camera, stature_m: float, joints_m: NDArray[np.float64]) ->
 
 
 def _task(camera: Camera, body: Vector, man: Stickman, report: Report, tall_px: float) -> Task:
-    seen, view = packed(report, camera), view_of(camera)
+    seen, view = packed(report), view_of(camera)
     broad_px = 2 * man.lengths[10] * tall_px
     return Task(body, view, man.parts, man.depth, broad_px, seen, count(seen), report.width)
 

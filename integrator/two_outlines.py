@@ -5,13 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bits import Bits, count, pack_words, words_of_rows
+from common.bits import Bits, count, words_of_rows
 from common.body import Vector
-from common.camera import Camera, Rig
+from common.camera import Rig
 from common.kernel import view_of
 from common.messages import Report
-from common.wire import unpack
-from integrator.straight import straight
 
 
 class Outlines(NamedTuple):
@@ -32,7 +30,7 @@ def outlines_of(rig: Rig, seen: tuple[Report, Report]) -> Outlines:
 
     Pictures of two sizes are both taken to be as wide and as high as the larger is.
     """
-    each = [packed(report, camera) for report, camera in zip(seen, rig.cameras, strict=True)]
+    each = [packed(report) for report in seen]
     rows, words = np.max([mask.shape for mask in each], axis=0)
     masks = np.zeros((2, rows, words), np.uint64)
     for whole, mask in zip(masks, each, strict=True):
@@ -45,8 +43,6 @@ def outlines_of(rig: Rig, seen: tuple[Report, Report]) -> Outlines:
     )
 
 
-def packed(report: Report, camera: Camera) -> Bits:
-    """The silhouette of a report, (H, words), as its camera has it without distortion."""
-    if any(camera.distortion):
-        return pack_words(straight(unpack(report), camera))
+def packed(report: Report) -> Bits:
+    """The silhouette of a report, (H, words)."""
     return words_of_rows(report.silhouette, report.width, report.height)

@@ -21,6 +21,8 @@ ROWS, COLUMNS = 48, 40
 UP, DOWN, ASIDE = 0.75, 0.63, 0.56
 """How far the window reaches from the middle of the silhouette, in statures: raised arms above,
 feet below, stretched arms aside."""
+TO_A_SIDE: Final = 1e-6
+"""Sine of the angle from one camera's sight to another's from which it goes to a side."""
 FINER: Final = 2
 """Samples of the silhouette across a cell."""
 
@@ -63,7 +65,7 @@ def axes_of(one: Camera, other: Camera) -> Vector:
     first, second = np.array(one.R)[2], np.array(other.R)[2]
     right = np.array(one.R)[0] * [1.0, 0.0, 1.0]
     right /= np.linalg.norm(right)
-    side = -1.0 if np.cross(first, second)[1] > 0.0 else 1.0
+    side = -1.0 if np.cross(first, second)[1] > TO_A_SIDE else 1.0
     return np.stack([side * right, [0.0, 1.0, 0.0], np.cross(right, [0.0, 1.0, 0.0])])
 
 

@@ -34,6 +34,13 @@ def test_parts_that_a_belt_of_the_walls_colour_divides_stay() -> None:
     assert np.array_equal(without_others(moved[0] | moved[1], block(*parts)), moved[0] | moved[1])
 
 
+def test_a_part_that_was_missed_for_a_frame_comes_back() -> None:
+    """Clothes of the wall's colour hide a trunk, legs alone are left for a moment."""
+    trunk, legs = np.s_[20:55, 60:80], np.s_[60:100, 60:80]
+    assert np.array_equal(without_others(block(trunk, legs), block(legs)), block(trunk, legs))
+    assert np.array_equal(without_others(block(OTHER, legs), block(legs)), block(legs))
+
+
 def test_a_reflection_on_the_floor_is_left_out() -> None:
     nobody = np.zeros((HEIGHT, WIDTH), np.bool_)
     assert np.array_equal(without_others(block(BODY, SPOT), nobody), block(BODY))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from common.body import JOINT_NAMES
+from common.bounds import box_of, is_cut
 from common.config import Mode, Settings
 from common.notes import Note, Notes
 from tritrack.first_pass import Outline, outline_of
@@ -22,7 +23,7 @@ def outlines(clip: Path) -> list[Outline]:
     with np.load(clip / "truth.npz") as truth:
         masks = np.unpackbits(truth["mask_cam1"], axis=2)[:, :, : SIZE[0]].astype(np.bool_)
     return [
-        outline_of(n, n / 15, mask, bool(mask[[0, -1]].any() or mask[:, [0, -1]].any()))
+        outline_of(n, n / 15, mask, is_cut(box_of(mask), mask.shape))
         for n, mask in enumerate(masks)
     ]
 

@@ -6,21 +6,21 @@ import cv2
 import pytest
 from test_background import HEIGHT, WIDTH, passer_by, room, shot, walker
 
-from viewer.background import opened
+from viewer.background import overlaid_opening
 from viewer.opened import is_empty_opening, is_still
 from viewer.stacks import Frame
 
 
 def test_somebody_who_runs_through_the_opening_is_no_empty_room() -> None:
     """Their median is the empty room, and would leave them unseen in those frames."""
-    assert is_still(opened([shot(room(), 2.0, n) for n in range(8)]))
-    assert not is_still(opened([shot(passer_by(n), 2.0, n) for n in range(5, 13)]))
+    assert is_still(overlaid_opening([shot(room(), 2.0, n) for n in range(8)]))
+    assert not is_still(overlaid_opening([shot(passer_by(n), 2.0, n) for n in range(5, 13)]))
 
 
 def test_opening_is_empty_until_somebody_stands_in_it() -> None:
     clip = [shot(room(), 2.0, n) for n in range(8)] + [shot(walker(n), 2.0, n) for n in range(40)]
-    assert is_empty_opening(opened(clip[:8]), clip[::4])
-    assert not is_empty_opening(opened(clip[8:16]), clip[8::4])
+    assert is_empty_opening(overlaid_opening(clip[:8]), clip[::4])
+    assert not is_empty_opening(overlaid_opening(clip[8:16]), clip[8::4])
 
 
 @pytest.mark.parametrize("name", ["r01_t1_12_squat", "r07_t1_08_raise_both_forward_up"])
@@ -31,5 +31,5 @@ def test_opening_of_the_development_clips(data_dir: Path, name: str, camera: int
     clip: list[Frame] = []
     while (read := video.read())[0]:
         clip.append(cv2.resize(read[1], (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA))
-    assert is_empty_opening(opened(clip[:8]), clip[::4])
-    assert not is_empty_opening(opened(clip[9:17]), clip[9::4])
+    assert is_empty_opening(overlaid_opening(clip[:8]), clip[::4])
+    assert not is_empty_opening(overlaid_opening(clip[9:17]), clip[9::4])

@@ -38,15 +38,31 @@ def joints_px_of(pose: np.ndarray) -> np.ndarray:
     return joints_px(ADULT, pose)
 
 
-@pytest.mark.parametrize("head_deg", [-20.0, 15.0, 160.0])
+def turned_by(turn_deg: float) -> np.ndarray:
+    """A stick pose of somebody who stands, turned in the picture."""
+    pose = stick_pose({})
+    pose[ANGLE : ANGLE + 10] += turn_deg
+    return pose
+
+
+@pytest.mark.parametrize("head_deg", [-20.0, 15.0, 160.0, 190.0, 200.0])
 def test_who_lies_is_found_along_the_floor(head_deg: float) -> None:
     """Somebody who fell, met as such: joints within 5 % of the stature."""
-    pose = stick_pose({})
-    pose[ANGLE : ANGLE + 10] += head_deg - 90.0
+    pose = turned_by(head_deg - 90.0)
     stick = fit(drawn(pose), None, stature_px=STATURE_PX)
     off = np.linalg.norm(stick.joints_px - joints_px_of(pose), axis=1)[TWELVE] / STATURE_PX
     assert off.mean() < 0.05
     assert stick.score > 0.8
+
+
+def test_a_whole_turn_more_is_the_same_pose_before() -> None:
+    """Of somebody who lies: what is remembered may count its angles from 0 or from -180."""
+    mask, before = drawn(turned_by(-95.0)), turned_by(-102.0)
+    one, other = fit(mask, before, stature_px=STATURE_PX), before.copy()
+    other[ANGLE : ANGLE + 10] += 360.0
+    assert one.score > 0.9
+    again = fit(mask, other, stature_px=STATURE_PX)
+    assert again.joints_px == pytest.approx(one.joints_px, abs=0.02 * STATURE_PX)
 
 
 @pytest.mark.parametrize("mode", ["default", "thesis"])

@@ -26,7 +26,7 @@ from tritrack.offline import Decoders, track_clip
 from tritrack.runs import VERSIONS_OF, write_run
 from tritrack.scenes import by_opencv, figure_pairs, match_all, match_placed, scene
 from tritrack.session import free_settings, live
-from tritrack.single_bench import figures
+from tritrack.single_bench import FOLLOWED, figures
 from viewer import silhouette, track, view_rehearsal
 from viewer.arms import facade_arms, flank_arms
 from viewer.background import learn
@@ -79,6 +79,8 @@ TRACKED: Final[tuple[tuple[Mode, str, float], ...]] = (
     ("default", "320x240", 200.0),
 )
 """Modes and sizes that a clip is tracked in, and how many frame pairs a second are asked for."""
+REPEATS: Final = 5
+"""A clip is tracked so often; the fastest counts."""
 
 
 def measured(quick: bool) -> Iterator[Measured]:
@@ -94,11 +96,11 @@ def measured(quick: bool) -> Iterator[Measured]:
         settings = Settings(clip=str(clip))
         for mode, size, due in TRACKED[:1] if quick else TRACKED:
             chosen = msgspec.structs.replace(settings, mode=mode, size=size)
-            yield from tracking(chosen, Path(folder), 1 if quick else 5, due)
+            yield from tracking(chosen, Path(folder), 1 if quick else REPEATS, due)
         if not quick:
-            for mode in ("default", "thesis"):
-                chosen = msgspec.structs.replace(settings, mode=mode, size="320x240")
-                yield from (Measured(*row) for row in figures(chosen, 5, 200.0))
+            for mode, size, due in FOLLOWED:
+                chosen = msgspec.structs.replace(settings, mode=mode, size=size)
+                yield from (Measured(*row) for row in figures(chosen, REPEATS, due))
             yield from memory(settings, Path(folder))
 
 

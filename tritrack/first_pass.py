@@ -74,7 +74,9 @@ def outlines_of(
     view = clip.views[0]
     state = silhouette.init(scene.room, settings)
     coming = deque(scene.patches)
-    others = company.init(scene.room.uncertain.shape, things_move=bool(scene.patches))
+    others = company.init(
+        scene.room.uncertain.shape, things_move=any(patch.frame for patch in scene.patches)
+    )
     near: tuple[float, float] | None = None
     found: list[Outline] = []
     tallest = 0

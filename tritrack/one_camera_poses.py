@@ -7,9 +7,10 @@ import msgspec
 import numpy as np
 
 from common.body import Vector
+from common.bounds import box_of
 from common.camera import Camera
 from common.config import Settings
-from common.messages import Body, Box, Report, ViewerNumber
+from common.messages import Body, Report, ViewerNumber
 from common.notes import Notes, held
 from common.similarity import Mask
 from common.stickman import ADULT, THESIS, pose_of
@@ -141,8 +142,8 @@ def _assumed(size: tuple[int, int], soles: Vector, tall_px: Vector, stature_m: f
 
 
 def _report(outline: Outline, mask: Mask, number: ViewerNumber) -> Report:
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    left, right, top, bottom = (int(x) for x in (*columns[[0, -1]], *rows[[0, -1]]))
+    box = box_of(mask)
+    assert box is not None
     return Report(
         frame=outline.frame,
         captured_s=outline.captured_s,
@@ -151,11 +152,11 @@ def _report(outline: Outline, mask: Mask, number: ViewerNumber) -> Report:
         width=mask.shape[1],
         height=mask.shape[0],
         silhouette=pack(mask),
-        box=Box(left=left, right=right, top=top, bottom=bottom),
+        box=box,
         area_px=int(mask.sum()),
         blobs=1,
         cut=outline.cut,
-        root_px=((left + right + 1) / 2, (top + bottom + 1) / 2),
+        root_px=((box.left + box.right + 1) / 2, (box.top + box.bottom + 1) / 2),
     )
 
 

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 import cv2
 
 from common.clips import open_clip
-from common.config import Settings
+from common.config import Mode, Settings
 from common.decoding import Decoder
 from common.notes import Notes
 from common.reel import Reel
@@ -17,9 +17,14 @@ from viewer.empty import room_of_clip
 
 ALONE: Final = (1,)
 """The view that is followed."""
+FOLLOWED: Final[tuple[tuple[Mode, str, float], ...]] = (
+    ("default", "320x240", 200.0),
+    ("thesis", "320x240", 200.0),
+)
+"""Modes and sizes that it is followed in, and how many frames a second are asked for."""
 
 
-class Followed(NamedTuple):
+class Times(NamedTuple):
     """Least seconds of several runs over all frames; the decoder's by the clock, it is a process
     of its own, the others' of this process, whatever else the machine does."""
 
@@ -44,14 +49,14 @@ def figures(
         yield f"- {what}, {at}", value_ms, "ms a frame", None
 
 
-def parts_ms(found: Followed) -> dict[str, float]:
+def parts_ms(found: Times) -> dict[str, float]:
     """What each stage takes for a frame."""
     parts_s = (found.decoding_s, found.silhouettes_s, found.poses_s)
     names = ("decoding of one view", "silhouettes of one view", "poses of one view")
     return {name: 1e3 * part_s / found.frames for name, part_s in zip(names, parts_s, strict=True)}
 
 
-def followed(settings: Settings, repeats: int) -> Followed:
+def followed(settings: Settings, repeats: int) -> Times:
     """Follow a clip's first camera again and again, as `tritrack single` does without calibration.
 
     Args:
@@ -71,7 +76,7 @@ def followed(settings: Settings, repeats: int) -> Followed:
         cv2.setNumThreads(threads)
 
 
-def _followed(settings: Settings, repeats: int, decoder: Decoder) -> Followed:
+def _followed(settings: Settings, repeats: int, decoder: Decoder) -> Times:
     clip = open_clip(settings, decoder, ALONE)
     view, reel = clip.views[0], Reel(decoder)
     scene = room_of_clip(view, settings.silhouette, reel)
@@ -87,7 +92,7 @@ def _followed(settings: Settings, repeats: int, decoder: Decoder) -> Followed:
         return len(poses_of(outlines, view.size, None, settings, period_s, Notes()).bodies)
 
     outlines = outlines_of(clip, scene, settings.silhouette, reel)
-    return Followed(
+    return Times(
         len(outlines),
         _least_s(decoded, repeats, time.perf_counter),
         _least_s(outlined, repeats, time.process_time),

@@ -39,7 +39,7 @@ def learn(frames: Sequence[Frame]) -> Background:
     Raises:
         ValueError: When there is no frame.
     """
-    return learnt(opened(frames))
+    return learnt(overlaid_opening(frames))
 
 
 def learnt(empty: Overlaid) -> Background:
@@ -55,7 +55,7 @@ def learnt(empty: Overlaid) -> Background:
     return Background(empty.mean, spread, np.zeros(spread.shape[:2], np.bool_))
 
 
-def opened(frames: Sequence[Frame]) -> Overlaid:
+def overlaid_opening(frames: Sequence[Frame]) -> Overlaid:
     """Pictures laid over each other under the light of their median.
 
     Raises:

@@ -10,6 +10,7 @@ from viewer import silhouette
 from viewer.appearance import familiar
 from viewer.background import light_gain
 from viewer.difference import KERNEL, Bytes, shade_of
+from viewer.regions import same_body
 from viewer.stacks import CHANGES, Floats, Frame
 
 SCRAP: Final = 0.03
@@ -96,11 +97,13 @@ def without_others(mask: Mask, before: Mask) -> Mask:
     areas[0] = 0.0
     shared = np.bincount(labels[before[around]], minlength=count).astype(np.float64)
     shared[0] = 0.0
-    own = areas >= SCRAP * areas.sum()
-    if shared.any():
-        own &= shared >= OWN * areas
-    own[np.argmax(shared if shared.any() else areas)] = True
-    own[0] = False
+    best = int(np.argmax(shared if shared.any() else areas))
+    boxes = stats[:, :4].copy()
+    boxes[:, 2:] += boxes[:, :2]
+    own = shared >= OWN * areas if shared.any() else np.ones(count, np.bool_)
+    own |= same_body(boxes, best, len(mask))  # a part may have been missed for a frame
+    own &= areas >= SCRAP * areas.sum()
+    own[best], own[0] = True, False
     found = np.zeros_like(mask)
     found[around] = own[labels]
     return found

@@ -13,7 +13,7 @@ from common.config import SilhouetteSettings
 from common.decoding import Decoder
 from common.reel import Reader
 from common.replacing import replacing
-from viewer.background import Background, learn, learnt, opened
+from viewer.background import Background, learn, learnt, overlaid_opening
 from viewer.opened import is_empty_opening, is_still
 from viewer.stacks import LUMA, Frame
 from viewer.steady import Anchor, anchored, laid, place_of
@@ -61,7 +61,7 @@ def empty_room(view: View, settings: SilhouetteSettings, decoder: Reader) -> tup
         plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
         return learn(plate), ""
     opening, coming = _looked_at(view, settings.empty_frames, decoder)
-    laid_over, sample = opened(opening), list[Frame]()
+    laid_over, sample = overlaid_opening(opening), list[Frame]()
     if is_still(laid_over) and is_empty_opening(laid_over, _kept(coming, sample)):
         return learnt(laid_over), ""
     return learn_uncovered([*sample, *coming]), (
@@ -92,11 +92,12 @@ def room_of_run(
 
 
 def room_of_clip(view: View, settings: SilhouetteSettings, decoder: Reader) -> Scene:
-    """The same, but from all over a clip where that shows all but a little of the room.
+    """The room of a clip, from all over it where that shows all but a little, and what changes.
 
     Light changes through a clip, and with it more than a gain can follow; an empty opening knows
     nothing of that. It is kept where somebody stays on the spot. The frames of a camera that
-    trembles are laid over each other first, and are to be laid over the anchor later.
+    trembles are laid over each other first, and are to be laid over the anchor later. Things that
+    come to rest or leave are patches on it, also on a room that was given.
     """
     room, odd = empty_room(view, settings, decoder)
     if isinstance(view.source, int):

@@ -158,14 +158,21 @@ def _lying(mask: Mask) -> list[Vector]:
     for up, crown in ((along, reach.max()), (-along, -reach.min())):
         x, y = middle + up * (crown - PELVIS_SHARE * STATURE_PX)
         pose = standing(float(x), float(y), STATURE_PX)
-        pose[ANGLE:RATIO] += np.degrees(np.arctan2(-up[1], up[0])) - pose[ANGLE + TORSO]
+        pose[ANGLE:RATIO] += _lean_deg(np.degrees(np.arctan2(-up[1], up[0]))) - pose[ANGLE + TORSO]
         pose[BREADTH] = STARTS[-1]
         starts.append(pose)
     return starts
 
 
+def _lean_deg(angle_deg: float) -> float:
+    """The same direction in [-90, 270), where LEAN_DEG lies."""
+    return float((angle_deg + 90.0) % 360.0 - 90.0)
+
+
 def _task(seen: NDArray[np.uint64], mask: Mask, expected: Vector, trust: float) -> Task:
     expected = expected.copy()
+    for segment in (TORSO, HEAD):
+        expected[ANGLE + segment] = _lean_deg(expected[ANGLE + segment])
     expected[STATURE] = STATURE_PX
     man = ADULT
     return Task(

@@ -34,7 +34,7 @@ def chosen(
     large = regions[:, BOTTOM] - regions[:, TOP] - 2 >= least_share * rows
     if not large.any():
         return joined, 0
-    own = _same_body(regions, _best(regions, large, near), rows)
+    own = same_body(regions, _best(regions, large, near), rows)
     for i in range(rows):
         for j in range(found.shape[1]):
             joined[i, j] = labels[i, j] > 0 and own[labels[i, j] - 1]
@@ -109,10 +109,15 @@ def _best(regions: Any, large: Any, near: tuple[float, float]) -> int:
 
 
 @numba.njit(cache=True)
-def _same_body(regions: Any, best: int, rows: int) -> Any:
+def same_body(regions: Any, best: int, rows: int) -> Any:
     """Which regions stand over or under the best one, or all but touch it.
 
     Clothes of the wall's colour part a body across; people who stand side by side do not overlap.
+
+    Args:
+        regions: (n, 4 or more), LEFT to BOTTOM of each.
+        best: Which of them is somebody's.
+        rows: Of the picture.
     """
     own = np.zeros(len(regions), np.bool_)
     one = regions[best]

@@ -88,7 +88,8 @@ def _smooth(mask: Mask) -> Mask:
 def _other_things(shown: Floats, now: Floats, settled: Mask) -> Mask:
     """(H, W) True where what is at rest is not the room as it was.
 
-    A region that differs, with all that moves and touches it, is a thing if little of it moves.
+    A region that differs, with all that moves and touches it, is a thing if little of the ring
+    around it moves.
     """
     differs = settled & (np.abs((shown - now) @ LUMA) > CHANGES)
     beyond = np.ones((3, 3), np.uint8)
