@@ -111,9 +111,9 @@ def side_view(joints_m: Vector, confidence: Vector, height_px: int, caption: str
         where = (8, 18 + 18 * i)
         cv2.putText(view, line, where, cv2.FONT_HERSHEY_SIMPLEX, 0.45, INK, 1, cv2.LINE_AA)
     if np.isfinite(joints_m).all():
-        middle = joints_m[_AT["pelvis"], 2]
+        across_m = joints_m[:, 2] - joints_m[_AT["pelvis"], 2]
         flat = np.stack(
-            [width_px / 2 - px * (joints_m[:, 2] - middle), floor_px - px * joints_m[:, 1]], axis=1
+            [width_px / 2 - px * across_m, floor_px - px * _above_floor_m(joints_m)], axis=1
         )
         tall_px = px * max(0.5, float(np.ptp(joints_m[:, 1])))
         nearest_last = sorted(STROKES, key=lambda s: joints_m[[s.near, s.far], 0].sum())
@@ -123,6 +123,14 @@ def side_view(joints_m: Vector, confidence: Vector, height_px: int, caption: str
             cv2.line(view, near, far, PAPER, thick + 3, cv2.LINE_AA)
             cv2.line(view, near, far, _paint(stroke, confidence), thick, cv2.LINE_AA)
     return view
+
+
+def _above_floor_m(joints_m: Vector) -> Vector:
+    """Heights (15,); of a body that would leave the view, as before a camera that looks down,
+    those above its lowest joint."""
+    up_m: Vector = joints_m[:, 1]
+    shown = up_m.min() >= -BELOW_M and up_m.max() <= TALL_M - BELOW_M
+    return up_m if shown else up_m - up_m.min()
 
 
 def _camera(view: Image, floor_px: int) -> None:
