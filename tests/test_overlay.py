@@ -86,8 +86,9 @@ def test_from_the_side_the_camera_is_at_the_left() -> None:
 @pytest.mark.parametrize("up_m", [-2.0, 3.0])
 def test_who_leaves_the_view_from_the_side_is_shown_on_its_floor(up_m: float) -> None:
     """As before a camera that looks down, whose floor is not where it is taken to be."""
-    gone = body() + [0.0, up_m, 0.0]
-    on_floor = body() - [0.0, body()[:, 1].min(), 0.0]
+    gone, on_floor = body(), body()
+    gone[:, 1] += up_m
+    on_floor[:, 1] -= on_floor[:, 1].min()
     assert np.array_equal(side_view(gone, SURE, 480), side_view(on_floor, SURE, 480))
 
 
