@@ -7,14 +7,17 @@ import threading
 import time
 from typing import Final
 
+from animator.page.inset import limb_ends, limb_outlines
 from animator.page.live import LivePage
-from animator.scene import Snapshot
+from animator.scene import Figure, Snapshot, limb_shapes
+from common.body import rest_pose
 from common.bus import Bus, open_client
 from common.camera import Rig
 from common.config import Settings
 from common.housekeeping import Cameras, Pulse
 from common.messages import Body, Picture, Posture, Report
 from common.process import READY_S, Heart, Place, process
+from common.proportions import thesis_bdp
 from common.rate import Pace
 
 HEAR_S: Final = 0.05
@@ -79,6 +82,14 @@ def run(page: LivePage, ears: Ears, bus: Bus, period_s: float, stop: threading.E
     heart.beat("ended", page.address)
 
 
+def rehearse(rig: Rig) -> None:
+    """Load or compile all that draws a body: the first one that is heard must not wait for it."""
+    standing = Figure(thesis_bdp(1.75), rest_pose(), ())
+    limb_shapes(standing)
+    for camera in rig.cameras:
+        limb_outlines(camera, limb_ends(standing))
+
+
 def known_rig(bus: Bus, given: Rig | None, stop: threading.Event) -> Rig | None:
     """The calibrated rig, or the assumed one once the integrator tells it."""
     told = bus.subscribe(Cameras)
@@ -107,6 +118,7 @@ def main(settings: Settings, rig: Rig | None, period_s: float, place: Place = Pl
         known = known_rig(bus, rig, stop)
         if known is None:
             return
+        rehearse(known)
         page = LivePage(known, settings.page.port)
         log.info("the page is at %s", page.address)
         gc.freeze()

@@ -1,5 +1,8 @@
 """The cameras' pictures on the page: golden pictures of three poses, from geometry (P55)."""
 
+import subprocess
+import sys
+
 import cv2
 import numpy as np
 import pytest
@@ -172,3 +175,21 @@ def test_a_picture_that_is_none_is_left_out(jpeg: bytes) -> None:
 
 def picture(jpeg: bytes) -> Picture:
     return Picture(frame=0, captured_s=0.0, clock_s=0.0, viewer=1, jpeg=jpeg)
+
+
+REHEARSED = """
+from animator.__main__ import rehearse
+from common import camera, kinematics, proportions
+from common.camera import paper_rig
+rehearse(paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5)))
+for compiled in (camera._on_plane, kinematics.place_limbs, proportions.attached):
+    print(len(compiled.signatures))
+"""
+
+
+def test_a_rehearsal_compiles_what_draws_a_body() -> None:
+    """In a process of its own: the first body of a live run is shown in time."""
+    told = subprocess.run(
+        [sys.executable, "-c", REHEARSED], capture_output=True, text=True, check=True, timeout=300
+    )
+    assert told.stdout.split() == ["1", "1", "1"]
