@@ -6,7 +6,7 @@ import numpy as np
 from posing import posed
 
 from common.body import Vector
-from common.bounds import box_of
+from common.bounds import box_of, is_cut
 from common.camera import Camera, Rig, as_matrix, as_row
 from common.kernel import draw_body, view_of
 from common.messages import Report, ViewerNumber
@@ -66,8 +66,6 @@ def outlines(pose: Vector) -> tuple[Mask, Mask]:
 def told(viewer: ViewerNumber, mask: Mask) -> Report:
     """A report of an outline."""
     box = box_of(mask)
-    cut = box.left == 0 or box.top == 0
-    cut = cut or box.right == mask.shape[1] - 1 or box.bottom == mask.shape[0] - 1
     return Report(
         frame=0,
         captured_s=0.0,
@@ -78,6 +76,6 @@ def told(viewer: ViewerNumber, mask: Mask) -> Report:
         silhouette=pack(mask),
         box=box,
         area_px=int(mask.sum()),
-        cut=cut,
+        cut=is_cut(box, mask.shape),
         root_px=(80.0, 120.0),
     )

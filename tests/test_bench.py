@@ -9,7 +9,8 @@ import pytest
 
 from common.bits import unpack_words
 from common.spans import gain, spans
-from tritrack.bench import Measured, bench, machine, table_of
+from tritrack.bench import bench, machine, table_of
+from tritrack.measured import Measured
 from tritrack.scenes import by_opencv, match_placed, scene
 
 SIZES = [(160, 120), (640, 480)]

@@ -7,11 +7,11 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import msgspec
 import numpy as np
@@ -22,6 +22,7 @@ from common.clips import open_clip
 from common.config import Mode, PageSettings, SearchSettings, Settings
 from integrator import merge_rehearsal
 from synth.write import write_set
+from tritrack.measured import Measured, least_s
 from tritrack.offline import Decoders, track_clip
 from tritrack.runs import VERSIONS_OF, write_run
 from tritrack.scenes import by_opencv, figure_pairs, match_all, match_placed, scene
@@ -40,23 +41,6 @@ SMALL, LARGE = (160, 120), (640, 480)
 PERFORMER_SEED: Final = 90_002
 """Of a person that no model was trained on: training uses seeds below 1,000."""
 FILMED: Final = (320, 240)
-
-
-class Measured(NamedTuple):
-    """One figure."""
-
-    what: str
-    value: float
-    unit: str
-    target: float | None = None
-    """What the design asks for: a rate is to reach it, a time is not to exceed it."""
-
-    @property
-    def met(self) -> bool | None:
-        """Whether the target is reached; None where there is none."""
-        if self.target is None:
-            return None
-        return self.value >= self.target if self.unit.endswith("/s") else self.value <= self.target
 
 
 def bench(quick: bool = False) -> dict[str, Any]:
@@ -100,7 +84,7 @@ def measured(quick: bool) -> Iterator[Measured]:
         if not quick:
             for mode, size, due in FOLLOWED:
                 chosen = msgspec.structs.replace(settings, mode=mode, size=size)
-                yield from (Measured(*row) for row in figures(chosen, REPEATS, due))
+                yield from figures(chosen, REPEATS, due)
             yield from memory(settings, Path(folder))
 
 
@@ -109,9 +93,9 @@ def matching(size: tuple[int, int], target_us: float, repeats: int) -> Iterator[
     at = f"{size[0]}x{size[1]}"
     given = scene(size)
     matches = given.outlines.shape[0] * given.outlines.shape[1]
-    match_us = _least_us(lambda: match_all(*given.matched), repeats) / matches
-    placed_us = _least_us(lambda: match_placed(*given.placed), repeats) / matches
-    naive_us = _least_us(by_opencv(given), repeats) / matches
+    match_us = 1e6 * least_s(lambda: match_all(*given.matched), repeats) / matches
+    placed_us = 1e6 * least_s(lambda: match_placed(*given.placed), repeats) / matches
+    naive_us = 1e6 * least_s(by_opencv(given), repeats) / matches
     yield Measured(f"limb match, {at}", match_us, "us", target_us)
     yield Measured(f"limb match with its place, {at}", placed_us, "us")
     yield Measured(f"limb drawn by OpenCV, counted by numpy, {at}", naive_us, "us")
@@ -129,7 +113,7 @@ def searching(size: tuple[int, int], target: float, repeats: int) -> Iterator[Me
         return one.matches + other.matches
 
     matches = sum(both(*pair) for pair in pairs) / len(pairs)
-    pair_us = _least_us(lambda: [both(*pair) for pair in pairs], repeats) / len(pairs)
+    pair_us = 1e6 * least_s(lambda: [both(*pair) for pair in pairs], repeats) / len(pairs)
     yield Measured(f"search of both views, {at}", 1e6 / pair_us, "frames/s", target)
     yield Measured(f"matches of both views, {at}", matches, "a frame")
     yield Measured(f"search for each match, {at}", pair_us / matches, "us")
@@ -238,14 +222,3 @@ def main(json_wanted: bool, quick: bool) -> None:
         print(json.dumps(result, indent=1))
     else:
         Console().print(table_of(result))
-
-
-def _least_us(run: Callable[[], object], repeats: int) -> float:
-    """Least time of a call; the first one, which may compile, does not count."""
-    run()
-    least_s = float("inf")
-    for _ in range(repeats):
-        began = time.perf_counter()
-        run()
-        least_s = min(least_s, time.perf_counter() - began)
-    return 1e6 * least_s

@@ -1,7 +1,7 @@
 """How fast one camera's clip is followed, from its video to poses, once its room is known."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Final, NamedTuple
 
 import cv2
@@ -12,6 +12,7 @@ from common.decoding import Decoder
 from common.notes import Notes
 from common.reel import Reel
 from tritrack.first_pass import outlines_of
+from tritrack.measured import Measured, least_s
 from tritrack.one_camera_poses import poses_of
 from viewer.empty import room_of_clip
 
@@ -39,14 +40,12 @@ class Times(NamedTuple):
         return self.frames / (self.decoding_s + self.silhouettes_s + self.poses_s)
 
 
-def figures(
-    settings: Settings, repeats: int, target: float
-) -> Iterator[tuple[str, float, str, float | None]]:
-    """What was measured, its value, unit and, where there is one, its target; then its parts."""
+def figures(settings: Settings, repeats: int, target: float) -> Iterator[Measured]:
+    """The rate, and what each part takes."""
     at, found = f"{settings.mode}, {settings.size}", followed(settings, repeats)
-    yield f"single, video to poses, {at}", found.frames_a_second, "frames/s", target
+    yield Measured(f"single, video to poses, {at}", found.frames_a_second, "frames/s", target)
     for what, value_ms in parts_ms(found).items():
-        yield f"- {what}, {at}", value_ms, "ms a frame", None
+        yield Measured(f"- {what}, {at}", value_ms, "ms a frame")
 
 
 def parts_ms(found: Times) -> dict[str, float]:
@@ -94,18 +93,7 @@ def _followed(settings: Settings, repeats: int, decoder: Decoder) -> Times:
     outlines = outlines_of(clip, scene, settings.silhouette, reel)
     return Times(
         len(outlines),
-        _least_s(decoded, repeats, time.perf_counter),
-        _least_s(outlined, repeats, time.process_time),
-        _least_s(posed, repeats, time.process_time),
+        least_s(decoded, repeats),
+        least_s(outlined, repeats, time.process_time),
+        least_s(posed, repeats, time.process_time),
     )
-
-
-def _least_s(run: Callable[[], object], repeats: int, clock: Callable[[], float]) -> float:
-    """Least time of a call; the first one, which may compile, does not count."""
-    run()
-    least_s = float("inf")
-    for _ in range(repeats):
-        began = clock()
-        run()
-        least_s = min(least_s, clock() - began)
-    return least_s
