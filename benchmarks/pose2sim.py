@@ -21,13 +21,14 @@ from numpy.typing import NDArray
 
 from common import config
 from common.camera import Rig
+from common.clip_facts import both_cameras
 from common.kernel import draw_body, view_of
 from common.messages import Body, Report
 from common.proportions import body_vector
 from common.similarity import Mask
 from common.wire import unpack
 from integrator.straight import straight
-from tritrack.offline import Decoders, both_cameras, track_clip
+from tritrack.offline import Decoders, track_clip
 from tritrack.runs import write_run
 from viewer.capture import Frame
 

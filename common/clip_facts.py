@@ -78,3 +78,13 @@ def shortfall(view: View, came: int) -> str:
     if came >= view.frames:
         return ""
     return f"{view.source} ends after {came} of {view.frames} frames: it was cut off"
+
+
+def both_cameras(clip: Clip) -> Rig | None:
+    """The clip's rig with a camera for each viewer; a viewer that is not there gets the other's."""
+    if clip.rig is None:
+        return None
+    own = {view.number: camera for view, camera in zip(clip.views, clip.rig.cameras, strict=True)}
+    any_camera = clip.rig.cameras[0]
+    cameras = (own.get(1, any_camera), own.get(2, any_camera))
+    return msgspec.structs.replace(clip.rig, cameras=cameras)

@@ -10,10 +10,11 @@ from animator.page.inset import Image, draw_outlines, inset, limb_ends, limb_out
 from animator.scene import figure
 from common import config
 from common.camera import Rig
+from common.clip_facts import both_cameras
 from common.config import Mode
 from common.messages import Body, Picture, Report, ViewerNumber
 from recognizer.__main__ import MOVING
-from tritrack.offline import Decoders, both_cameras, overridden, track_clip
+from tritrack.offline import Decoders, overridden, track_clip
 from viewer.capture import Frame
 from viewer.jpeg import jpeg_of
 

@@ -112,8 +112,8 @@ def live_settings(path: Path) -> Settings:
 
 def two_camera_clip(settings: Settings) -> Any:
     """The clip that settings name, with a camera for each viewer where it is calibrated."""
+    from common.clip_facts import both_cameras
     from common.clips import open_clip
-    from tritrack.offline import both_cameras
 
     clip = open_clip(settings)
     return msgspec.structs.replace(clip, rig=both_cameras(clip))

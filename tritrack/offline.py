@@ -12,8 +12,7 @@ from rich.console import Console
 
 from common import config
 from common.body import Bdp
-from common.camera import Rig
-from common.clip_facts import Clip, shortfall
+from common.clip_facts import Clip, both_cameras, shortfall
 from common.clips import open_clip
 from common.config import Mode, Settings, SettingsError
 from common.decoding import Decoder, DecoderDied, Undecodable
@@ -195,16 +194,6 @@ def overridden(settings: Settings, mode: Mode | None, size: str | None) -> Setti
         )
     except ValueError as error:
         raise SettingsError(str(error)) from error
-
-
-def both_cameras(clip: Clip) -> Rig | None:
-    """The clip's rig with a camera for each viewer; a viewer that is not there gets the other's."""
-    if clip.rig is None:
-        return None
-    own = {view.number: camera for view, camera in zip(clip.views, clip.rig.cameras, strict=True)}
-    any_camera = clip.rig.cameras[0]
-    cameras = (own.get(1, any_camera), own.get(2, any_camera))
-    return msgspec.structs.replace(clip.rig, cameras=cameras)
 
 
 def track_all(

@@ -15,7 +15,7 @@ import msgspec
 from rich.console import Console
 from rich.live import Live as LiveDisplay
 
-from common.clip_facts import Clip
+from common.clip_facts import Clip, both_cameras
 from common.clips import open_clip
 from common.config import BusSettings, PageSettings, Settings
 from common.housekeeping import Pulse
@@ -23,7 +23,7 @@ from common.messages import Posture
 from common.process import Place, logged
 from recognizer.__main__ import model_of
 from tritrack.launch import Heard, nothing_heard, run
-from tritrack.offline import both_cameras, measured_before
+from tritrack.offline import measured_before
 from tritrack.parts import live_parts
 from tritrack.runs import write_postures, write_run
 from tritrack.table import table_of

@@ -9,12 +9,12 @@ import msgspec
 import numpy as np
 
 from common.camera import project
-from common.clip_facts import View
+from common.clip_facts import View, both_cameras
 from common.clips import open_clip
 from common.config import Settings
 from common.decoding import Picture
 from tritrack.accuracy import INDEX, JOINTS, Arrays, Compared, Floats
-from tritrack.offline import Decoders, both_cameras
+from tritrack.offline import Decoders
 from viewer.capture import recorded
 
 MOST: Final = 10
