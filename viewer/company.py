@@ -9,7 +9,7 @@ from common.similarity import Mask
 from viewer import silhouette
 from viewer.appearance import familiar
 from viewer.background import light_gain
-from viewer.difference import KERNEL, Bytes, shade_of
+from viewer.difference import KERNEL, Bytes, light_of, shade_of
 from viewer.regions import same_body
 from viewer.stacks import CHANGES, Floats, Frame
 
@@ -141,12 +141,12 @@ def _rest(grey: Bytes, at_rest_s: Floats, now: Bytes, dt_s: np.float32) -> None:
 @KERNEL
 def _taken(mask: Bytes, at_rest_s: Floats, picture: Frame, known: Floats, gain: Floats) -> int:
     """Take what is at rest and has the room's colours out of a mask, in place; how many pixels."""
-    count = 0
+    count, light = 0, light_of(gain)
     for y in range(mask.shape[0]):
         given = picture[y]
         for x in range(mask.shape[1]):
             still = mask[y, x] and at_rest_s[y, x] >= AT_REST_S
-            if still and known[shade_of(given, gain, x)] < ROOMS:
+            if still and known[shade_of(given, light, x)] < ROOMS:
                 mask[y, x] = 0
                 count += 1
     return count
