@@ -26,6 +26,7 @@ from common.body import JOINT_NAMES
 from common.clips import open_clip
 from common.config import Settings
 from common.messages import Body
+from tritrack.accuracy import JOINTS
 from tritrack.offline import Decoders, track_clip
 from tritrack.table import table_of_rows
 
@@ -35,11 +36,6 @@ LOST_FROM: Final = 37
 """Half a second into the motion of a development clip, which is left half a second after it."""
 OUT_DEG: Final = 15.0
 """How far a limb must be out of the image plane for its sign to count."""
-JOINTS: Final = [
-    f"{side}_{name}"
-    for side in "lr"
-    for name in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
-]
 LIMBS: Final = [
     (f"{side}_{upper}", f"{side}_{lower}")
     for side in "lr"
