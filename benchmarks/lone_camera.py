@@ -1,6 +1,6 @@
 """How exact a body is that camera 1 of clips with a truth sees alone (T19-T22).
 
-Run from the checkout: .venv/bin/python benchmarks/one_camera.py CLIPS... [--calibrated]
+Run from the checkout: .venv/bin/python benchmarks/lone_camera.py CLIPS... [--calibrated]
 [--mode default|thesis] [--size 320x240]
 
 In the picture: mean distance of 12 joints over the body's height, %; then inner angles, degrees,

@@ -1,6 +1,6 @@
 """How far the room of a clip that is never empty is from the true one, in grey levels (T7).
 
-Run from the checkout: .venv/bin/python benchmarks/background.py CLIPS... [--size 160x120]
+Run from the checkout: .venv/bin/python benchmarks/learnt_rooms.py CLIPS... [--size 160x120]
 
 The first frames of each clip, which show the room, are withheld; both cameras count.
 """
