@@ -1,7 +1,7 @@
 PYTHON ?= python3.11
 VENV := .venv
 BIN := $(VENV)/bin
-SOURCES := $(wildcard animator/*.py common/*.py integrator/*.py synth/*.py tritrack/*.py viewer/*.py)
+SOURCES := $(shell find animator common integrator recognizer synth tritrack viewer -name "*.py")
 
 .PHONY: setup demo test check bench clean
 
@@ -16,7 +16,7 @@ $(VENV)/.installed: pyproject.toml constraints.txt
 # numba renews a compiled function when its own file changed, not when one that it calls did.
 $(VENV)/.compiled: $(VENV)/.installed $(SOURCES)
 	@find animator common integrator recognizer synth tritrack viewer -name '*.nb[ic]' -delete
-	$(BIN)/python -m common.kernel
+	$(BIN)/python -m common.raster.kernel
 	@touch $@
 
 demo: setup

@@ -10,15 +10,15 @@ from typing import Final
 from animator.page.inset import limb_ends, limb_outlines
 from animator.page.live import LivePage
 from animator.scene import Figure, Snapshot, limb_shapes
-from common.body import rest_pose
-from common.bus import Bus, open_client
-from common.camera import Rig
+from common.body.body import rest_pose
+from common.body.proportions import thesis_bdp
+from common.bus.bus import Bus, open_client
+from common.bus.control_messages import Cameras, Pulse
+from common.bus.messages import Body, Picture, Posture, Report
+from common.bus.process import READY_S, Heart, Place, process
+from common.bus.rate import Pace
 from common.config import Settings
-from common.housekeeping import Cameras, Pulse
-from common.messages import Body, Picture, Posture, Report
-from common.process import READY_S, Heart, Place, process
-from common.proportions import thesis_bdp
-from common.rate import Pace
+from common.rig.camera import Rig
 
 HEAR_S: Final = 0.05
 BEHIND: Final = 10

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animator.turns import arc, frame_of, times, turned
-from common.body import JOINT_NAMES, Vector
+from common.body.body import JOINT_NAMES, Vector
 
 Joints = NDArray[np.float64]
 """(n, 15, 3), metres, JOINT_NAMES order; NaN where there is no pose."""

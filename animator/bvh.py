@@ -8,7 +8,7 @@ import numpy as np
 from animator.bones import BONES, Joints, Motion, Skeleton, motion_of, offset_m, skeleton_of
 from animator.inbetween import between
 from animator.turns import euler_zxy_deg
-from common.body import Vector
+from common.body.body import Vector
 
 ROOT_CHANNELS: Final = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
 CHANNELS: Final = "CHANNELS 3 Zrotation Xrotation Yrotation"

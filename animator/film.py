@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from common.replacing import replacing
+from common.atomic_file import replacing
 
 CODEC: Final = "MJPG"
 """Motion JPEG in an AVI, by OpenCV's own writer: it needs no library that may be missing."""

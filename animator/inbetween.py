@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from animator.bones import Motion
 from animator.turns import slerp
-from common.body import Vector
+from common.body.body import Vector
 
 Frames = NDArray[np.int64]
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animator.scene import LEFT, RIGHT, TRUNK, UNSURE, Colour
-from common.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
+from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
 
 Image = NDArray[np.uint8]
 """(H, W, 3), blue, green, red, as OpenCV's films want it."""

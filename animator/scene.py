@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animator.turns import quaternions
-from common.body import JOINT_NAMES, LIMBS, Bdp, Elliptic, Round, Vector
-from common.camera import Camera, Rig, centre
-from common.housekeeping import Pulse
-from common.kinematics import HEAD, TORSO, limb_frames
-from common.messages import Body, Performance, Picture, Posture, Report
-from common.proportions import body_vector
+from common.body.body import JOINT_NAMES, LIMBS, Bdp, Elliptic, Round, Vector
+from common.body.kinematics import HEAD, TORSO, limb_frames
+from common.body.proportions import body_vector
+from common.bus.control_messages import Pulse
+from common.bus.messages import Body, Performance, Picture, Posture, Report
+from common.rig.camera import Camera, Rig, centre
 
 Colour = tuple[int, int, int]
 Colours = NDArray[np.uint8]

@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import Vector
+from common.body.body import Vector
 
 SECTORS: Final = 24
 """Sides of a shape that stands for a round one: no corner is seen at the page's size."""

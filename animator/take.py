@@ -6,8 +6,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
-from common.notes import Depth, Held, Notes, held
+from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
+from common.notes.notes import Depth, Held, Notes, held
 
 SURE: Final = 0.7
 """A decision with less confidence than this is worth a look."""

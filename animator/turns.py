@@ -5,7 +5,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import Vector
+from common.body.body import Vector
 
 Turns = NDArray[np.float64]
 """(..., 4), unit length; q and -q are one turn."""

@@ -32,11 +32,15 @@ import msgspec
 import numpy as np
 
 from common import config
-from integrator import adapting, hypotheses, insight, merge, searched, telling
-from tritrack.accuracy import compare, summary
-from tritrack.offline import Decoders, overridden, track_clip
-from tritrack.runs import poses
-from viewer import silhouette, track
+from integrator import merge, outgoing
+from integrator.fit import shape_fit
+from integrator.paper import fused_pose, silhouette_vote
+from integrator.proposal import pose_proposal
+from tritrack.accuracy.accuracy import compare, summary
+from tritrack.offline.lockstep import Decoders, overridden, track_clip
+from tritrack.store.runs import poses
+from viewer import track
+from viewer.silhouette import silhouette
 
 PLAIN_LEVELS = 25
 """Grey levels by which a pixel of a plain silhouette differs from the room."""
@@ -101,31 +105,31 @@ POSES = (
         "facing by sizes at the same distance",
         (
             (
-                searched,
+                fused_pose,
                 "arbitrate",
-                lambda one, other, _, real=searched.arbitrate: real(one, other, 1.0),
+                lambda one, other, _, real=fused_pose.arbitrate: real(one, other, 1.0),
             ),
         ),
     ),
     Step(
         "views start where both have the body",
-        ((telling, "guide_of", partial(guided_alone, telling.guide_of)),),
+        ((outgoing, "guide_of", partial(guided_alone, outgoing.guide_of)),),
     ),
-    Step("the body fitted to outlines", ((adapting, "step", lambda opening, *_: opening),)),
-    Step("S1 S2: squats with a bowed trunk", ((hypotheses, "squatted", only),)),
-    Step("S1 S2: place", ((hypotheses, "shifted", only),)),
+    Step("the body fitted to outlines", ((shape_fit, "step", lambda opening, *_: opening),)),
+    Step("S1 S2: squats with a bowed trunk", ((silhouette_vote, "squatted", only),)),
+    Step("S1 S2: place", ((silhouette_vote, "shifted", only),)),
     Step(
         "S1 S2: which arm swings, arms regained",
-        tuple((hypotheses, n, only) for n in ("swung", "regained")),
+        tuple((silhouette_vote, n, only) for n in ("swung", "regained")),
     ),
-    Step("S1 S2: joint by joint, unmeasured bodies", ((hypotheses, "turned", only),)),
+    Step("S1 S2: joint by joint, unmeasured bodies", ((silhouette_vote, "turned", only),)),
     Step(
         "joints proposed by the network, not searched for",
         tuple((module, "proposes", lambda *_: False) for module in (track, merge)),
     ),
     Step(
         "joints beside the cylinders",
-        ((insight, "pose_and_rest", partial(on_the_cylinders, insight.pose_and_rest)),),
+        ((pose_proposal, "pose_and_rest", partial(on_the_cylinders, pose_proposal.pose_and_rest)),),
     ),
 )
 """What `default` mode does and `paper` mode does not."""

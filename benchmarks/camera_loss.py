@@ -22,13 +22,13 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from common.body import JOINT_NAMES
-from common.clips import open_clip
+from common.body.body import JOINT_NAMES
+from common.bus.messages import Body
 from common.config import Settings
-from common.messages import Body
-from tritrack.accuracy import JOINTS
-from tritrack.offline import Decoders, track_clip
-from tritrack.table import table_of_rows
+from common.video.clips import open_clip
+from tritrack.accuracy.accuracy import JOINTS
+from tritrack.live.table import table_of_rows
+from tritrack.offline.lockstep import Decoders, track_clip
 
 LOST_S: Final = 1.5
 """How long the camera is away (issue 5, Shows 4)."""

@@ -23,17 +23,17 @@ import numpy as np
 from rich.console import Console
 
 from animator.take import Take, take_of
-from common.body import JOINT_NAMES
-from common.camera import Rig, project
+from common.body.body import JOINT_NAMES
 from common.config import Settings
-from synth.dancing import dance, faced
-from synth.exposure import default_rig
-from synth.motions import Motion
-from synth.people import person
-from synth.skeleton import JOINTS
+from common.rig.camera import Rig, project
+from synth.motion.dancing import dance, faced
+from synth.motion.motions import Motion
+from synth.person.people import person
+from synth.person.skeleton import JOINTS
+from synth.picture.exposure import default_rig
 from synth.write import write_clip
-from tritrack.ledger import PRINTED, mending_inputs
-from tritrack.single import single_all
+from tritrack.single.ledger import PRINTED, mending_inputs
+from tritrack.single.single import single_all
 
 NEAR: Final = 0.06
 """Of the body's height in the picture."""

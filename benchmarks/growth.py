@@ -19,17 +19,17 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
 import numpy as np
 
-from common.bits import count, pack_words
-from common.body import POSE_INDEX, rest_pose
+from common.body.body import POSE_INDEX, rest_pose
+from common.body.kinematics import ARM_LIMBS
+from common.body.proportions import body_vector, thesis_bdp
 from common.config import Settings
-from common.kernel import draw_body, view_of
-from common.kinematics import ARM_LIMBS
-from common.proportions import body_vector, thesis_bdp
-from integrator.hypotheses import products
-from synth.exposure import default_rig
+from common.raster.bits import count, pack_words
+from common.raster.kernel import draw_body, view_of
+from integrator.paper.silhouette_vote import products
+from synth.picture.exposure import default_rig
 from synth.write import write_set
-from tritrack.bench import PERFORMER_SEED, machine
-from tritrack.offline import Decoders, track_clip
+from tritrack.bench.bench import PERFORMER_SEED, machine
+from tritrack.offline.lockstep import Decoders, track_clip
 
 SIZES = ((160, 120), (320, 240), (640, 480))
 HYPOTHESES = (1, 4, 16, 64, 256)

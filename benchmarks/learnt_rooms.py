@@ -17,10 +17,10 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 import cv2
 import numpy as np
 
-from common.clips import open_clip
 from common.config import Settings
-from common.decoding import Decoder
-from viewer.uncovered import learn_uncovered
+from common.video.clips import open_clip
+from common.video.decoding import Decoder
+from viewer.background.occluded_background import learn_uncovered
 
 EMPTY: Final = 8
 """Frames at the start that show the room alone; the one after is left out too."""

@@ -24,16 +24,16 @@ from camera_loss import signs_of
 from plausible import plausible
 from rich.console import Console
 
-from common.camera import Camera
-from common.clips import open_clip
 from common.config import load
-from common.decoding import Decoder
-from common.notes import Notes
-from tritrack.accuracy import compare, picked, summary
-from tritrack.offline import overridden
-from tritrack.one_camera import follow_clip
-from tritrack.runs import poses
-from tritrack.table import table_of_rows
+from common.notes.notes import Notes
+from common.rig.camera import Camera
+from common.video.clips import open_clip
+from common.video.decoding import Decoder
+from tritrack.accuracy.accuracy import compare, picked, summary
+from tritrack.live.table import table_of_rows
+from tritrack.offline.lockstep import overridden
+from tritrack.single.one_camera import follow_clip
+from tritrack.store.runs import poses
 
 
 def row_of(path: Path, camera: Camera, found: dict[str, Any], width: int) -> dict[str, Any]:

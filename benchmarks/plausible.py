@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import ANGLE_NAMES, LIMITS_DEG
+from common.body.body import ANGLE_NAMES, LIMITS_DEG
 
 FITS: Final = 0.6
 ROUNDING_DEG: Final = 0.01

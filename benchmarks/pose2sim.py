@@ -20,16 +20,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common import config
-from common.camera import Rig
-from common.clip_facts import both_cameras
-from common.kernel import draw_body, view_of
-from common.messages import Body, Report
-from common.proportions import body_vector
-from common.similarity import Mask
-from common.wire import unpack
-from integrator.straight import straight
-from tritrack.offline import Decoders, track_clip
-from tritrack.runs import write_run
+from common.body.proportions import body_vector
+from common.bus.message_codec import unpack
+from common.bus.messages import Body, Report
+from common.raster.kernel import draw_body, view_of
+from common.raster.similarity import Mask
+from common.rig.camera import Rig
+from common.video.clip_facts import both_cameras
+from integrator.rig.undistortion import straight
+from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.store.runs import write_run
 from viewer.capture import Frame
 
 PAIRS: Final = (("cam01", "cam04"), ("cam03", "cam04"), ("cam02", "cam03"))

@@ -17,11 +17,11 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 from rich.console import Console
 
 from common.config import SettingsError, load
-from common.decoding import DecoderDied, Undecodable
-from common.footage import ClipError
-from tritrack.offline import overridden
-from tritrack.single_bench import followed, parts_ms
-from tritrack.table import table_of_rows
+from common.video.clip_sources import ClipError
+from common.video.decoding import DecoderDied, Undecodable
+from tritrack.bench.single_bench import followed, parts_ms
+from tritrack.live.table import table_of_rows
+from tritrack.offline.lockstep import overridden
 
 REPEATS: Final = 3
 

@@ -6,16 +6,16 @@ import threading
 import time
 from typing import Final
 
-from common.bus import Bus, open_hub
-from common.clip_facts import Clip
+from common.bus.bus import Bus, open_hub
+from common.bus.control_messages import Cameras, ClockAnswer, ClockQuestion, Ended
+from common.bus.messages import Guide, Report, ViewerNumber
+from common.bus.process import Heart, Place, process
+from common.bus.rate import Pace
 from common.config import Settings
-from common.housekeeping import Cameras, ClockAnswer, ClockQuestion, Ended
-from common.messages import Guide, Report, ViewerNumber
-from common.process import Heart, Place, process
-from common.rate import Pace
-from integrator import merge, noticing, pairing, presence
-from integrator.memory import State
-from integrator.merge_rehearsal import rehearse
+from common.video.clip_facts import Clip
+from integrator import diagnostics, merge, pairing, presence
+from integrator.integrator_warmup import rehearse
+from integrator.merge_state import State
 from integrator.pairing import Pair
 
 LEAD_S: Final = 0.5
@@ -137,13 +137,13 @@ def run(
     pace = Pace(period_s)
     heart = Heart(bus, "integrator", pace)
     ears = Ears(bus, viewers, period_s)
-    noticed, odd = noticing.State(), noticing.assumed(state)
+    noticed, odd = diagnostics.State(), diagnostics.assumed(state)
     told_rig, news = False, ears.news
     heart.beat("ready", "\n".join(odd))
     while ears.going and not stop.is_set():
         for pair in ears.pairs():
             state, body, guide = merge.step(state, pair)
-            noticed = noticing.step(noticed, pair)
+            noticed = diagnostics.step(noticed, pair)
             bus.publish(guide)
             bus.publish(body)
             pace.done(body.clock_s, time.monotonic())
@@ -154,7 +154,7 @@ def run(
             news = ears.news
             heart.hurry()
         heart.beat("running", "\n".join([*odd, *news]), **ears.counts())
-    odd = [*noticing.warnings(noticed, state), *ears.news]
+    odd = [*diagnostics.warnings(noticed, state), *ears.news]
     heart.beat("ended", "\n".join(odd), **ears.counts())
 
 

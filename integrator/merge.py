@@ -2,22 +2,26 @@
 
 from typing import Literal
 
-from common.bits import count
-from common.body import ANGLE_NAMES, ANGLES_IN_POSE, Bdp, Vector, rest_pose
-from common.camera import Rig
+from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, Bdp, Vector, rest_pose
+from common.body.kinematics import ALL_LIMBS
+from common.body.proportions import body_vector
+from common.bus.messages import Body, Guide, Report
 from common.config import Settings, proposes
-from common.kernel import match, view_of
-from common.kinematics import ALL_LIMBS
-from common.messages import Body, Guide, Report
-from common.proportions import body_vector
-from integrator import adapting, corrected, hull, insight, opening, searched, smoothing, telling
-from integrator.arbiter import facing_of
-from integrator.assumed import assumed_rig
-from integrator.belief import LOST_SCORE
-from integrator.memory import State
+from common.raster.bits import count
+from common.raster.kernel import match, view_of
+from common.rig.camera import Rig
+from integrator import opening_posture, outgoing
+from integrator.fit import pose_refinement, shape_fit, visual_hull
+from integrator.fit.silhouette_pair import packed
+from integrator.merge_state import State
 from integrator.pairing import Pair, Seen
-from integrator.straight import straight_pair, straight_rig
-from integrator.two_outlines import packed
+from integrator.paper import fused_pose
+from integrator.paper.arbiter import facing_of
+from integrator.pose import smoothing
+from integrator.proposal import pose_proposal
+from integrator.rig.assumed_rig import assumed_rig
+from integrator.rig.undistortion import straight_pair, straight_rig
+from integrator.track_status import LOST_SCORE
 
 
 def init(rig: Rig | None, period_s: float, settings: Settings, body: Bdp | None = None) -> State:
@@ -32,7 +36,7 @@ def init(rig: Rig | None, period_s: float, settings: Settings, body: Bdp | None 
     """
     source: Literal["calibrated", "assumed"] = "assumed" if rig is None else "calibrated"
     smooth = smoothing.init(len(ANGLE_NAMES), period_s)
-    return State(settings, rig, source, smooth, opening.init(body))
+    return State(settings, rig, source, smooth, opening_posture.init(body))
 
 
 def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
@@ -55,7 +59,9 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
 
 def _is_doubtful(state: State, body: Body) -> bool:
     known = state.insight
-    return min(body.score) < corrected.POOR and not (known and corrected.is_sure(known.sure))
+    return min(body.score) < pose_refinement.POOR and not (
+        known and pose_refinement.is_sure(known.sure)
+    )
 
 
 def _merged(state: State, pair: Pair) -> tuple[State, Body, Guide]:
@@ -68,28 +74,30 @@ def _merged(state: State, pair: Pair) -> tuple[State, Body, Guide]:
     state = _with_rig(state, seen)
     if seen == (None, None) or state.rig is None:
         state = _without_pose(state)
-        return (state, *telling.nobody(state, pair))
+        return (state, *outgoing.nobody(state, pair))
     rig = straight_rig(state.rig)
-    opened, settled_at = opening.step(state.opening, rig, seen, state.settings.body.opening_frames)
+    opened, settled_at = opening_posture.step(
+        state.opening, rig, seen, state.settings.body.opening_frames
+    )
     state = state._replace(opening=opened)
     if _is_proposed(state):
         state = _proposed(state, rig, seen, dt_s)
     else:
-        state = searched.step(state, rig, seen, settled_at)
+        state = fused_pose.step(state, rig, seen, settled_at)
     if state.settings.mode == "default":
         assert state.pose is not None
-        state = state._replace(opening=adapting.step(state.opening, rig, seen, state.pose))
+        state = state._replace(opening=shape_fit.step(state.opening, rig, seen, state.pose))
     state, angles, scores = _smoothed(state, rig, straight, dt_s)
     assert state.rig is not None
-    body = telling.body_of(state, state.rig, pair, angles, scores)
-    return state, body, telling.guide_of(state, state.rig, pair, settled_at is not None)
+    body = outgoing.body_of(state, state.rig, pair, angles, scores)
+    return state, body, outgoing.guide_of(state, state.rig, pair, settled_at is not None)
 
 
-def _of_one_piece(state: State, pair: Pair) -> hull.Cleaned:
+def _of_one_piece(state: State, pair: Pair) -> visual_hull.Cleaned:
     """The reports without what is no part of the person: a departure from the paper."""
     if state.rig is None or not _is_proposed(state):
-        return hull.Cleaned(pair, False)
-    return hull.cleaned(state.rig, pair)
+        return visual_hull.Cleaned(pair, False)
+    return visual_hull.cleaned(state.rig, pair)
 
 
 def _is_proposed(state: State) -> bool:
@@ -117,13 +125,13 @@ def _proposed(state: State, rig: Rig, seen: Seen, dt_s: float) -> State:
     bdp = state.opening.bdp
     assert bdp is not None
     memory = None if state.insight is None else state.insight.memory
-    known = insight.step(memory, bdp, rig, seen, dt_s)
+    known = pose_proposal.step(memory, bdp, rig, seen, dt_s)
     before = rest_pose() if state.pose is None else state.pose
     body = body_vector(bdp)
-    pose, beside_m = insight.pose_and_rest(body, before, known.joints_m)
-    better = corrected.instead(pose, known.sure, state.pose, state.matched, body, rig, seen)
+    pose, beside_m = pose_proposal.pose_and_rest(body, before, known.joints_m)
+    better = pose_refinement.instead(pose, known.sure, state.pose, state.matched, body, rig, seen)
     if better is not None:
-        pose, beside_m[insight.ARMS] = better, 0.0
+        pose, beside_m[pose_proposal.ARMS] = better, 0.0
     state = state._replace(insight=known, beside_m=beside_m, matched=better is not None)
     return state._replace(pose=pose, facing=facing_of(rig, pose))
 

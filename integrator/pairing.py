@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple, TypeVar
 
-from common.messages import Report, ViewerNumber
+from common.bus.messages import Report, ViewerNumber
 
 QUEUE: Final = 32
 """How many reports of one viewer wait for the other: two seconds at 15 frames a second."""

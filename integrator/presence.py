@@ -2,9 +2,9 @@
 
 from typing import Final, NamedTuple, TypeVar
 
-from common.housekeeping import Ended
-from common.messages import CameraFault, Report, ViewerNumber
-from common.rate import silent
+from common.bus.control_messages import Ended
+from common.bus.messages import CameraFault, Report, ViewerNumber
+from common.bus.rate import silent
 
 Item = TypeVar("Item")
 

@@ -9,12 +9,12 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import ANGLES_IN_POSE
-from common.bus import Bus, open_client
+from common.body.body import ANGLES_IN_POSE
+from common.bus.bus import Bus, open_client
+from common.bus.messages import Body, Performance, Posture
+from common.bus.process import READY_S, Heart, Place, process
+from common.bus.rate import Pace
 from common.config import Settings
-from common.messages import Body, Performance, Posture
-from common.process import READY_S, Heart, Place, process
-from common.rate import Pace
 from recognizer import events, spotting
 from recognizer.features import ROW_NAMES, rows
 from recognizer.model_file import ModelError, load

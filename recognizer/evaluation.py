@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from recognizer.codebook import SYMBOLS
 from recognizer.features import Rows, with_pose
-from recognizer.learning import train
 from recognizer.postures import (
     POSTURES,
     STATES,
@@ -19,6 +18,7 @@ from recognizer.postures import (
     likeliest,
     scored,
 )
+from recognizer.training.learning import train
 
 Z_95 = 1.959964
 """Standard normal quantile of a two-sided interval of 95 %."""

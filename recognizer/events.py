@@ -8,10 +8,10 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from recognizer.bearing import TRAVEL_POSES, Bearings, bearings
 from recognizer.features import ROW_NAMES, Rows, with_pose
 from recognizer.forward import forward
-from recognizer.network import COUNT, LAST, ONSET, SCALE, advance, emissions
+from recognizer.limb_directions import TRAVEL_POSES, Bearings, bearings
+from recognizer.path_network import COUNT, LAST, ONSET, SCALE, advance, emissions
 from recognizer.postures import STATES, Array, DensityModel
 
 OVER_FRAMES: Final = 2

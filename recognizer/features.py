@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import ANGLE_INDEX, ANGLE_NAMES, JOINT_NAMES
+from common.body.body import ANGLE_INDEX, ANGLE_NAMES, JOINT_NAMES
 
 Rows = NDArray[np.float64]
 """What was tracked in a stretch of frames: (n, 20), ROW_NAMES order, NaN where there is no pose."""

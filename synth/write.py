@@ -11,13 +11,13 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.camera import Rig, project
-from synth.exposure import blurred, default_rig, exposures
-from synth.motions import POSTURES, Motion, movement, performance
-from synth.people import MEASURE_NAMES, Person, measure_vector, person
-from synth.render import Shot, render
-from synth.skeleton import ANGLES, JOINTS
-from synth.streaming import streamed
+from common.rig.camera import Rig, project
+from synth.motion.motions import POSTURES, Motion, movement, performance
+from synth.motion.streaming import streamed
+from synth.person.people import MEASURE_NAMES, Person, measure_vector, person
+from synth.person.skeleton import ANGLES, JOINTS
+from synth.picture.exposure import blurred, default_rig, exposures
+from synth.picture.render import Shot, render
 
 FPS: Final = 15.0
 """The paper's frame rate (P1)."""
@@ -123,7 +123,7 @@ def write_clip(
 
 
 def write_rig(path: Path, rig: Rig) -> None:
-    """A `calibration.json` that `common.camera.load_rig` reads."""
+    """A `calibration.json` that `common.rig.camera.load_rig` reads."""
     path.write_bytes(msgspec.json.format(msgspec.json.encode(rig), indent=1))
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import ANGLE_INDEX, ANGLE_NAMES, REST_DEG
+from common.body.body import ANGLE_INDEX, ANGLE_NAMES, REST_DEG
 from recognizer.postures import POSTURES
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from typing import Final
 import msgspec
 import numpy as np
 
-from common.camera import Camera, Rig, as_matrix, as_row
+from common.rig.camera import Camera, Rig, as_matrix, as_row
 
 MIRROR: Final = np.array([-1.0, 1.0, 1.0])
 """What a place is multiplied by."""

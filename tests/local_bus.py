@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from typing import Any
 
-from common.inbox import BOUND, QUESTIONS, Alive, Inbox, answered, checked
-from common.mailbox import Mailbox
-from common.messages import Message
-from common.wire import Said, encode, key_of
+from common.bus.inbox import BOUND, QUESTIONS, Alive, Inbox, answered, checked
+from common.bus.mailbox import Mailbox
+from common.bus.message_codec import Said, encode, key_of
+from common.bus.messages import Message
 
 
 class LocalBus:

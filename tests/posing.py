@@ -1,11 +1,11 @@
 """What the tests of the tracking stages share: bodies, and how a viewer sees them."""
 
-from common.body import POSE_INDEX, Vector, rest_pose
-from common.kernel import draw_body
-from common.messages import ViewerNumber
-from common.proportions import body_vector, thesis_bdp
-from common.similarity import Mask
-from viewer.figure import Figure, figure_of, rotation_of, view_at
+from common.body.body import POSE_INDEX, Vector, rest_pose
+from common.body.proportions import body_vector, thesis_bdp
+from common.bus.messages import ViewerNumber
+from common.raster.kernel import draw_body
+from common.raster.similarity import Mask
+from viewer.paper.posed_model import Figure, figure_of, rotation_of, view_at
 
 BODY = body_vector(thesis_bdp(1.0))
 """The thesis's proportions at stature 1: drawn at 100 px a unit, a figure of 100 rows."""

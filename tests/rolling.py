@@ -5,14 +5,14 @@ import math
 import numpy as np
 from posing import posed
 
-from common.body import Vector
-from common.bounds import box_of, is_cut
-from common.camera import Camera, Rig, as_matrix, as_row
-from common.kernel import draw_body, view_of
-from common.messages import Report, ViewerNumber
-from common.proportions import body_vector, thesis_bdp
-from common.similarity import Mask
-from common.wire import pack
+from common.body.body import Vector
+from common.body.proportions import body_vector, thesis_bdp
+from common.bus.message_codec import pack
+from common.bus.messages import Report, ViewerNumber
+from common.raster.bounds import box_of, is_cut
+from common.raster.kernel import draw_body, view_of
+from common.raster.similarity import Mask
+from common.rig.camera import Camera, Rig, as_matrix, as_row
 
 SIZE = (160, 240)
 BODY = thesis_bdp(1.75)

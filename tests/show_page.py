@@ -11,12 +11,12 @@ import numpy as np
 from animator.page.inset import limb_ends, limb_outlines
 from animator.page.live import LivePage
 from animator.scene import Figure, Snapshot
-from common.body import POSE_INDEX, Vector, rest_pose
-from common.camera import Camera, paper_rig
-from common.housekeeping import Pulse
-from common.messages import Body, Posture, Report
-from common.proportions import thesis_bdp
-from common.wire import pack
+from common.body.body import POSE_INDEX, Vector, rest_pose
+from common.body.proportions import thesis_bdp
+from common.bus.control_messages import Pulse
+from common.bus.message_codec import pack
+from common.bus.messages import Body, Posture, Report
+from common.rig.camera import Camera, paper_rig
 
 RATE_HZ = 15
 BDP = thesis_bdp(1.72)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from integrator.weights import Network, halves
-from integrator.window import BESIDE, CELLS
+from integrator.proposal.network_weights import Network, halves
+from integrator.proposal.silhouette_window import BESIDE, CELLS
 
 
 def network(fill: float = 0.0) -> Network:

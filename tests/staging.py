@@ -7,20 +7,20 @@ import numpy as np
 import pytest
 from posing import posed
 
-from common.body import Bdp, Vector
-from common.bounds import box_of
-from common.camera import Rig, paper_rig
+from common.body.body import Bdp, Vector
+from common.body.proportions import body_vector, thesis_bdp
+from common.bus.message_codec import pack
+from common.bus.messages import Body, Box, Guide, Report, ViewerNumber
 from common.config import Settings
-from common.kernel import draw_body, view_of
-from common.messages import Body, Box, Guide, Report, ViewerNumber
-from common.proportions import body_vector, thesis_bdp
-from common.similarity import Mask
-from common.wire import pack
+from common.raster.bounds import box_of
+from common.raster.kernel import draw_body, view_of
+from common.raster.similarity import Mask
+from common.rig.camera import Rig, paper_rig
 from integrator import merge
 from integrator.pairing import Pair
 from viewer import track
 from viewer.capture import Frame
-from viewer.silhouette import Seen
+from viewer.silhouette.silhouette import Seen
 
 WIDTH, HEIGHT = 160, 120
 RIG = paper_rig((WIDTH, HEIGHT), (200.0, 200.0), (4.0, 4.0))
@@ -70,10 +70,10 @@ def exact(monkeypatch: pytest.MonkeyPatch) -> None:
         cut = box.left == 0 or box.top == 0 or box.right == WIDTH - 1 or box.bottom == HEIGHT - 1
         return state, Seen(picture, box, int(picture.sum()), 1, cut)
 
-    monkeypatch.setattr("viewer.lens.init", lambda _: None)
-    monkeypatch.setattr("viewer.lens.step", lambda state, _: (state, ""))
-    monkeypatch.setattr("viewer.silhouette.init", lambda *_: None)
-    monkeypatch.setattr("viewer.silhouette.step", step)
+    monkeypatch.setattr("viewer.camera_fault.init", lambda _: None)
+    monkeypatch.setattr("viewer.camera_fault.step", lambda state, _: (state, ""))
+    monkeypatch.setattr("viewer.silhouette.silhouette.init", lambda *_: None)
+    monkeypatch.setattr("viewer.silhouette.silhouette.step", step)
 
 
 class Told(NamedTuple):

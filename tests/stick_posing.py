@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from common.body import LIMBS, Vector
-from common.similarity import Mask
-from common.stickman import ADULT, ANGLE, BREADTH, RATIO, Stickman, standing
-from common.strokes import draw_stick
+from common.body.body import LIMBS, Vector
+from common.body.stick_body import ADULT, ANGLE, BREADTH, RATIO, Stickman, standing
+from common.raster.similarity import Mask
+from common.raster.stick_raster import draw_stick
 
 SIZE = (320, 240)
 STATURE_PX = 160.0

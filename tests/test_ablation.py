@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from common.config import Mode, Settings
-from tritrack.offline import Decoders, track_clip
-from tritrack.runs import poses
+from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.store.runs import poses
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from rich.console import Console
 from scipy.spatial.transform import Rotation
 
-from tritrack.accuracy import (
+from tritrack.accuracy.accuracy import (
     INDEX,
     JOINTS,
     Arrays,
@@ -22,7 +22,7 @@ from tritrack.accuracy import (
     rooted,
     summary,
 )
-from tritrack.offline import track_all
+from tritrack.offline.lockstep import track_all
 
 PLACES = {"shoulder": (0.2, 1.4), "elbow": (0.5, 1.4), "wrist": (0.5, 1.1)}
 PLACES |= {"hip": (0.1, 0.9), "knee": (0.1, 0.5), "ankle": (0.1, 0.1)}

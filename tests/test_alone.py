@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from staging import Stage, between, exact, opening, silhouettes, standing
 
-from common.body import JOINT_NAMES, Vector
+from common.body.body import JOINT_NAMES, Vector
+from common.bus.messages import Body
 from common.config import Settings
-from common.messages import Body
 
 
 @pytest.fixture(autouse=True, scope="module")

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.messages import Facing
-from integrator.arbiter import Sight, arbitrate
+from common.bus.messages import Facing
+from integrator.paper.arbiter import Sight, arbitrate
 
 FLIPPED: dict[Facing, Facing] = {"facade": "flank", "flank": "facade"}
 LOW, HIGH = 15.0, 20.0

@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from posing import BODY, angle, laid_over, picture, posed
 
-import viewer.figure
-from common.body import LIMBS, POSE_INDEX, Vector
+import viewer.paper.posed_model
+from common.body.body import LIMBS, POSE_INDEX, Vector
+from common.body.kinematics import segments
 from common.config import SearchSettings
-from common.kinematics import segments
-from viewer.arms import facade_arms, flank_arms, inward_limit_deg
+from viewer.paper.arms import facade_arms, flank_arms, inward_limit_deg
 
 PAPERS = SearchSettings()
 FINE = SearchSettings(stop_deg=1)
@@ -154,9 +154,9 @@ def test_the_facades_search_is_the_shoulder_then_the_elbow_right_then_left(
 
     def recorded(figure, how, width, stop, limits, wide=False):  # type: ignore[no-untyped-def]
         calls.append((how.at, width, stop, limits))
-        return viewer.figure.searched(figure, how, width, stop, limits, wide)
+        return viewer.paper.posed_model.searched(figure, how, width, stop, limits, wide)
 
-    monkeypatch.setattr("viewer.arms.searched", recorded)
+    monkeypatch.setattr("viewer.paper.arms.searched", recorded)
     seen = picture(posed(r_shoulder_z=150.0, l_shoulder_z=210.0))
     found = facade_arms(laid_over(seen, posed(r_shoulder_z=150.0)), PAPERS, wide=False)
     order = ["r_shoulder_z", "r_elbow_x", "l_shoulder_z", "l_elbow_x"]

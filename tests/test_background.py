@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from viewer.background import learn, light_gain
-from viewer.stacks import Frame
-from viewer.uncovered import learn_uncovered
+from viewer.background.background import learn, light_gain
+from viewer.background.image_stack import Frame
+from viewer.background.occluded_background import learn_uncovered
 
 HEIGHT, WIDTH = 120, 160
 

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from common.bits import unpack_words
-from common.spans import gain, spans
-from tritrack.bench import bench, machine, table_of
-from tritrack.measured import Measured
-from tritrack.scenes import by_opencv, match_placed, scene
+from common.raster.bits import unpack_words
+from common.raster.row_spans import gain, spans
+from tritrack.bench.bench import bench, machine, table_of
+from tritrack.bench.bench_figure import Measured
+from tritrack.bench.bench_scenes import by_opencv, match_placed, scene
 
 SIZES = [(160, 120), (640, 480)]
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.body import (
+from common.body.body import (
     ANGLE_NAMES,
     ANGLES_IN_POSE,
     DOF_NAMES,
@@ -25,7 +25,7 @@ from common.body import (
     rest_pose,
     wrapped_deg,
 )
-from common.proportions import body_vector, stature, thesis_bdp
+from common.body.proportions import body_vector, stature, thesis_bdp
 
 lengths_26 = st.lists(st.floats(1e-3, 1e3), min_size=26, max_size=26)
 

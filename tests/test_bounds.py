@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.bounds import box_of, is_cut
-from common.messages import Box
+from common.bus.messages import Box
+from common.raster.bounds import box_of, is_cut
 
 
 def test_a_box_is_the_boundary_of_what_was_drawn() -> None:

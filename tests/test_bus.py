@@ -14,13 +14,13 @@ import pytest
 import zenoh
 from local_bus import LocalBus
 
-from common.bus import Bus, BusError, open_client, open_hub
+from common.bus.bus import Bus, BusError, open_client, open_hub
+from common.bus.control_messages import ClockAnswer, ClockQuestion, Pulse
+from common.bus.inbox import BOUND, Alive, Inbox
+from common.bus.mailbox import Mailbox
+from common.bus.message_codec import MAX_BYTES, encode
+from common.bus.messages import Guide, Picture, Posture, Report
 from common.config import BusSettings
-from common.housekeeping import ClockAnswer, ClockQuestion, Pulse
-from common.inbox import BOUND, Alive, Inbox
-from common.mailbox import Mailbox
-from common.messages import Guide, Picture, Posture, Report
-from common.wire import MAX_BYTES, encode
 
 ROOM = "hall"
 SOON_S = 5.0
@@ -248,7 +248,7 @@ def test_the_clock_answers_and_survives_a_bad_question(
 
 PART = """
 import sys, time
-from common.bus import open_client
+from common.bus.bus import open_client
 from common.config import BusSettings
 with open_client(BusSettings(sys.argv[1]), sys.argv[2], 5.0) as bus:
     bus.announce("viewer-1")

@@ -7,16 +7,16 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from animator.bvh import NoMotion, bvh_text, steady
-from common.body import DOF_NAMES, JOINT_NAMES, LIMITS_DEG, POSE_INDEX, rest_pose
-from common.kinematics import joints
-from common.proportions import body_vector, thesis_bdp
+from common.body.body import DOF_NAMES, JOINT_NAMES, LIMITS_DEG, POSE_INDEX, rest_pose
+from common.body.kinematics import joints
+from common.body.proportions import body_vector, thesis_bdp
 
 
 def rigid_body() -> np.ndarray:
     """A body that bends where its cylinders meet, so that its landmarks keep their distances.
 
     The published landmarks lie at mean adult heights beside the bends, and their distances change
-    by centimetres with them (common/body.py, HIP_SHARE and its like).
+    by centimetres with them (common/body/body.py, HIP_SHARE and its like).
     """
     bdp = thesis_bdp(1.75)
     body = body_vector(bdp)

@@ -5,10 +5,10 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from common.camera import as_paper_rig
-from common.rig_file import CalibrationError, load_rig
-from integrator.calibration import run_markers, run_poles
-from integrator.poles import Quality
+from common.rig.camera import as_paper_rig
+from common.rig.rig_file import CalibrationError, load_rig
+from integrator.rig.calibration import run_markers, run_poles
+from integrator.rig.poles import Quality
 
 CONFIGS = Path(__file__).parents[1] / "configs"
 

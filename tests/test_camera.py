@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.camera import (
+from common.rig.camera import (
     Camera,
     Rig,
     as_matrix,
@@ -24,7 +24,7 @@ from common.camera import (
     project,
     ray,
 )
-from common.rig_file import CalibrationError, check_rig, fitted, load_rig
+from common.rig.rig_file import CalibrationError, check_rig, fitted, load_rig
 
 LENS = (-0.2, 0.06, 0.001, -0.002, 0.0)
 places = st.tuples(st.floats(-1.5, 1.5), st.floats(0.0, 2.0), st.floats(-1.5, 1.5))

@@ -13,8 +13,8 @@ import numpy as np
 import psutil
 import pytest
 
-from common.clip_facts import View
-from common.decoding import (
+from common.video.clip_facts import View
+from common.video.decoding import (
     FRAME,
     HEADER,
     INFO,
@@ -209,7 +209,7 @@ def test_what_is_no_answer_ends_the_child(answer: bytes, monkeypatch: pytest.Mon
 
         def close(self) -> None: ...
 
-    monkeypatch.setattr("common.decoding.Child", Babbler)
+    monkeypatch.setattr("common.video.decoding.Child", Babbler)
     own = Decoder()
     with pytest.raises(DecoderDied, match="sent what is no answer"):
         list(own.frames("cam1.avi", SIZE))

@@ -10,9 +10,9 @@ import pytest
 from spoiling import copied, edit_json
 
 from common.config import Settings
-from common.footage import ClipError
-from tritrack import clip_cache
-from tritrack.clip_cache import key_of, read, write
+from common.video.clip_sources import ClipError
+from tritrack.offline import clip_cache
+from tritrack.offline.clip_cache import key_of, read, write
 
 
 @pytest.fixture

@@ -9,11 +9,11 @@ import cv2
 import numpy as np
 import pytest
 
-from common.camera import paper_rig, project
-from common.clip_facts import Clip, View, shortfall
-from common.clips import ClipError, open_clip
 from common.config import CameraSettings, Settings
-from common.decoding import Decoder
+from common.rig.camera import paper_rig, project
+from common.video.clip_facts import Clip, View, shortfall
+from common.video.clips import ClipError, open_clip
+from common.video.decoding import Decoder
 
 SIZE = (320, 240)
 

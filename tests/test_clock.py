@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.clock import HISTORY, Exchange, Offset, init, step
+from common.bus.clock import HISTORY, Exchange, Offset, init, step
 
 delays = st.floats(0.0, 5.0)
 

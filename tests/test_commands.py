@@ -17,7 +17,7 @@ import typer
 from spoiling import REFUSED, WORKED_WITH, copied, edit_json
 
 import tritrack.__main__ as door
-from tritrack import session
+from tritrack.live import session
 
 
 class Ended(NamedTuple):

@@ -7,8 +7,8 @@ import cv2
 import numpy as np
 import pytest
 
-from tritrack.contact_strip import SHOWN, WIDTH_PX, contact_strip
-from tritrack.offline import Decoders
+from tritrack.offline.lockstep import Decoders
+from tritrack.postures.contact_strip import SHOWN, WIDTH_PX, contact_strip
 
 
 @pytest.fixture(scope="module")

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from common.stickman import ANGLE, THESIS, standing
-from common.strokes import draw_stick
-from viewer.contour import (
+from common.body.stick_body import ANGLE, THESIS, standing
+from common.raster.stick_raster import draw_stick
+from viewer.stick.contour import (
     Curve,
     arm_angles,
     arm_curve,

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from animator.take import Take, depth_of, take_of
-from common.body import JOINT_NAMES, LIMBS
-from common.notes import Notes
-from synth.dancing import FRAMES, dance, faced
-from synth.motions import Motion
-from synth.people import person
-from synth.skeleton import JOINTS
-from tritrack.ledger import PRINTED, Count, ledger, mending_inputs
+from common.body.body import JOINT_NAMES, LIMBS
+from common.notes.notes import Notes
+from synth.motion.dancing import FRAMES, dance, faced
+from synth.motion.motions import Motion
+from synth.person.people import person
+from synth.person.skeleton import JOINTS
+from tritrack.single.ledger import PRINTED, Count, ledger, mending_inputs
 
 DANCING = PRINTED[1]
 

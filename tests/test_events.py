@@ -7,9 +7,9 @@ import pytest
 from acting import perform, performances, standing
 
 from recognizer.events import Event, init, step
-from recognizer.learning import taught, train
-from recognizer.network import CHANGE, ENTER, EXIT, LAST, advance
+from recognizer.path_network import CHANGE, ENTER, EXIT, LAST, advance
 from recognizer.postures import DensityModel
+from recognizer.training.learning import taught, train
 
 SHOWN = ("squat", "walk_toward", "raise_right_lateral", "kick_right_forward")
 """Some of the fifteen: a network of few is as good an example, and faster."""

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from common.body import JOINT_NAMES, rest_pose
-from common.kinematics import joints
-from common.messages import Body
-from common.proportions import body_vector, thesis_bdp
+from common.body.body import JOINT_NAMES, rest_pose
+from common.body.kinematics import joints
+from common.body.proportions import body_vector, thesis_bdp
+from common.bus.messages import Body
 from tritrack.exporting import ExportError, export_run
-from tritrack.past_run import PastRunError, open_run
-from tritrack.runs import poses
+from tritrack.store.past_run import PastRunError, open_run
+from tritrack.store.runs import poses
 
 
 @pytest.fixture

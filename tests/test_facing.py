@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from posing import ROOT_PX, picture, posed, stretched
 
-from common.messages import Facing
-from common.proportions import thesis_bdp
-from viewer.facing import thresholds_px, trunk_width, upper_body_px, vote
+from common.body.proportions import thesis_bdp
+from common.bus.messages import Facing
+from viewer.paper.facing import thresholds_px, trunk_width, upper_body_px, vote
 
 BDP = thesis_bdp(1.0)
 TORSO_PX = 100 * BDP.torso.height

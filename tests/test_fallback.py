@@ -19,17 +19,17 @@ import pytest
 from rich.console import Console
 from spoiling import Film, copied, edit_json, refilmed
 
-from common.bus import BusError, open_client
+from common.bus.bus import BusError, open_client
+from common.bus.control_messages import Pulse
+from common.bus.messages import Body, Views
 from common.config import BusSettings, PageSettings, Settings
-from common.housekeeping import Pulse
-from common.messages import Body, Views
-from tritrack import session
-from tritrack.offline import Decoders, track_clip
-from tritrack.parts import Part, live_parts
-from tritrack.runs import poses
-from tritrack.session import free_settings, live
-from tritrack.supervise import PartFailed
-from viewer.lens import FROZEN_AFTER
+from tritrack.live import session
+from tritrack.live.process_table import Part, live_parts
+from tritrack.live.session import free_settings, live
+from tritrack.live.supervise import PartFailed
+from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.store.runs import poses
+from viewer.camera_fault import FROZEN_AFTER
 
 pytestmark = pytest.mark.slow
 
@@ -405,7 +405,7 @@ def test_a_clip_that_ends_early_leaves_the_other_view(short_clip: Path, tmp_path
 def test_what_is_given_up_fails_the_run_after_the_other_view_was_tracked_to_its_end(
     short_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tritrack.supervise.TRIES", 0)
+    monkeypatch.setattr("tritrack.live.supervise.TRIES", 0)
 
     def harm(witness: Witness) -> None:
         witness.until_tracked()

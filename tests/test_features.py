@@ -6,7 +6,7 @@ from acting import standing
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.body import ANGLE_INDEX, JOINT_NAMES
+from common.body.body import ANGLE_INDEX, JOINT_NAMES
 from recognizer.features import ANGLES, FEATURE_NAMES, features, rows, with_pose
 
 degrees = st.floats(-360.0, 360.0)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from animator.film import FilmError, filming
-from common.decoding import Decoder
+from common.video.decoding import Decoder
 
 PICTURES = [np.full((90, 122, 3), 20 * i, np.uint8) for i in range(6)]
 

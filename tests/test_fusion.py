@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 from posing import posed
 from staging import report
 
-from common.body import POSE_INDEX, POSE_NAMES, Vector
-from common.messages import Report
-from integrator.fusion import fused, lifted
+from common.body.body import POSE_INDEX, POSE_NAMES, Vector
+from common.bus.messages import Report
+from integrator.paper.fusion import fused, lifted
 
 FACADE = {
     "r_shoulder_y": -90.0,

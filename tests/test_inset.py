@@ -19,13 +19,13 @@ from animator.page.inset import (
     limb_outlines,
 )
 from animator.scene import Figure
-from common.body import LIMBS, POSE_INDEX, Vector, rest_pose
-from common.camera import Camera, paper_rig, project
-from common.kernel import draw_body, view_of
-from common.kinematics import segments
-from common.messages import Picture, Report
-from common.proportions import body_vector, stature, thesis_bdp
-from common.wire import pack
+from common.body.body import LIMBS, POSE_INDEX, Vector, rest_pose
+from common.body.kinematics import segments
+from common.body.proportions import body_vector, stature, thesis_bdp
+from common.bus.message_codec import pack
+from common.bus.messages import Picture, Report
+from common.raster.kernel import draw_body, view_of
+from common.rig.camera import Camera, paper_rig, project
 
 BDP = thesis_bdp(1.75)
 FOCAL_PX, DISTANCE_M = 401.0, 4.5
@@ -179,8 +179,9 @@ def picture(jpeg: bytes) -> Picture:
 
 REHEARSED = """
 from animator.__main__ import rehearse
-from common import camera, kinematics, proportions
-from common.camera import paper_rig
+from common.body import kinematics, proportions
+from common.rig import camera
+from common.rig.camera import paper_rig
 rehearse(paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5)))
 for compiled in (camera._on_plane, kinematics.place_limbs, proportions.attached):
     print(len(compiled.signatures))

@@ -7,13 +7,21 @@ from hypothesis import strategies as st
 from posing import BODY, SIZE, picture, posed, view
 from scipy.spatial import ConvexHull
 
-from common.bits import count, pack_words, unpack_words
-from common.body import LIMBS, Vector
-from common.camera import paper_rig
-from common.kernel import draw_body, draw_limbs, limb_outline, match, match_over, score, view_of
-from common.kinematics import ALL_LIMBS, limb_frames, segments
-from common.similarity import Mask, similarity
-from common.spans import PRIMITIVE
+from common.body.body import LIMBS, Vector
+from common.body.kinematics import ALL_LIMBS, limb_frames, segments
+from common.raster.bits import count, pack_words, unpack_words
+from common.raster.kernel import (
+    draw_body,
+    draw_limbs,
+    limb_outline,
+    match,
+    match_over,
+    score,
+    view_of,
+)
+from common.raster.row_spans import PRIMITIVE
+from common.raster.similarity import Mask, similarity
+from common.rig.camera import paper_rig
 
 
 @given(st.integers(0, 50), st.integers(0, 50), st.integers(0, 50))

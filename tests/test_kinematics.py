@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from posing import BODY, posed
 from scipy.spatial.transform import Rotation
 
-from common.body import JOINT_NAMES, LIMBS, POSE_INDEX, Elliptic, Vector, rest_pose
-from common.kinematics import joints, limb_frames, segments
-from common.proportions import body_vector, thesis_bdp
+from common.body.body import JOINT_NAMES, LIMBS, POSE_INDEX, Elliptic, Vector, rest_pose
+from common.body.kinematics import joints, limb_frames, segments
+from common.body.proportions import body_vector, thesis_bdp
 
 degrees = st.floats(-360.0, 360.0)
 poses = st.lists(degrees, min_size=22, max_size=22).map(

@@ -14,14 +14,14 @@ import pytest
 import zenoh
 from rich.console import Console
 
+from common.bus.messages import Body
 from common.config import BusSettings, PageSettings, Settings
-from common.messages import Body
-from tritrack.launch import Heard, nothing_heard, run
-from tritrack.offline import Decoders, track_clip
-from tritrack.parts import Part
-from tritrack.runs import poses
-from tritrack.session import free_settings, live
-from tritrack.supervise import PartFailed
+from tritrack.live.launch import Heard, nothing_heard, run
+from tritrack.live.process_table import Part
+from tritrack.live.session import free_settings, live
+from tritrack.live.supervise import PartFailed
+from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.store.runs import poses
 
 QUIET = Console(quiet=True)
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from animator.take import Take, depth_of, take_of
-from common.body import JOINT_NAMES, LIMBS, POSE_INDEX, rest_pose
-from common.kinematics import joints
-from common.notes import Note, Notes
-from common.proportions import body_vector, thesis_bdp
-from tritrack.ledger import (
+from common.body.body import JOINT_NAMES, LIMBS, POSE_INDEX, rest_pose
+from common.body.kinematics import joints
+from common.body.proportions import body_vector, thesis_bdp
+from common.notes.notes import Note, Notes
+from tritrack.single.ledger import (
     PRINTED,
     Count,
     Ledger,

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from posing import BODY, SIZE, angle, laid_over, picture, posed
 
-from common.body import LIMBS, POSE_INDEX
+from common.body.body import LIMBS, POSE_INDEX
+from common.body.kinematics import segments
+from common.body.proportions import body_vector, thesis_bdp
 from common.config import SearchSettings
-from common.kinematics import segments
-from common.proportions import body_vector, thesis_bdp
-from viewer.legs import facade_legs, flank_legs, squats
+from viewer.paper.legs import facade_legs, flank_legs, squats
 
 PAPERS = SearchSettings()
 

@@ -10,12 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from posing import BODY, ROOT_PX, picture, posed, stretched
 
-from common.body import LIMBS, Bdp, Elliptic, Vector
-from common.bounds import box_of
-from common.kinematics import segments
-from common.proportions import body_vector, thesis_bdp
-from common.similarity import Mask, similarity
-from viewer.measure import (
+from common.body.body import LIMBS, Bdp, Elliptic, Vector
+from common.body.kinematics import segments
+from common.body.proportions import body_vector, thesis_bdp
+from common.raster.bounds import box_of
+from common.raster.similarity import Mask, similarity
+from viewer.paper.fine_tuning import fine_tuned
+from viewer.paper.measure import (
     arm_angle_deg,
     measure_front,
     measure_side,
@@ -24,7 +25,6 @@ from viewer.measure import (
     refusal_of,
     without_head,
 )
-from viewer.tuning import fine_tuned
 
 BDP = thesis_bdp(100.0)
 TRUNK_PX = 2 * BDP.torso.long_radius

@@ -9,21 +9,21 @@ import pytest
 from local_bus import LocalBus
 from staging import report
 
-from common.bus import Bus, open_client, open_hub
-from common.camera import paper_rig
-from common.clip_facts import View
+from common.bus.bus import Bus, open_client, open_hub
+from common.bus.control_messages import Cameras, ClockAnswer, ClockQuestion, Ended, Pulse
+from common.bus.inbox import BOUND
+from common.bus.messages import Body, Guide, Message
 from common.config import BusSettings, PageSettings, Settings
-from common.decoding import DecoderDied
-from common.housekeeping import Cameras, ClockAnswer, ClockQuestion, Ended, Pulse
-from common.inbox import BOUND
-from common.messages import Body, Guide, Message
+from common.rig.camera import paper_rig
+from common.video.clip_facts import View
+from common.video.decoding import DecoderDied
 from integrator import __main__ as integrator
 from integrator import merge
-from tritrack.launch import Ears, nothing_heard
-from tritrack.session import free_settings
+from tritrack.live.launch import Ears, nothing_heard
+from tritrack.live.session import free_settings
 from viewer import __main__ as viewer
 from viewer import track
-from viewer.background import learn
+from viewer.background.background import learn
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
 

@@ -21,17 +21,17 @@ from staging import (
     standing,
 )
 
-from common.body import JOINT_NAMES, POSE_INDEX, Vector
-from common.camera import project
+from common.body.body import JOINT_NAMES, POSE_INDEX, Vector
+from common.body.kinematics import joints
+from common.body.proportions import body_vector, stature
+from common.bus.message_codec import decode, encode
+from common.bus.messages import Guide
 from common.config import Mode, Settings
-from common.kinematics import joints
-from common.messages import Guide
-from common.proportions import body_vector, stature
-from common.wire import decode, encode
+from common.rig.camera import project
 from integrator import merge
-from integrator.belief import LOST_FRAMES
 from integrator.pairing import Pair
-from integrator.place import scales_at
+from integrator.rig.body_position import scales_at
+from integrator.track_status import LOST_FRAMES
 
 MODES = pytest.mark.parametrize("mode", ["paper", "default"])
 

@@ -2,7 +2,7 @@
 
 from typing import get_args
 
-from common.messages import Status, Views
+from common.bus.messages import Status, Views
 
 
 def test_statuses_and_views_are_those_of_the_contract() -> None:

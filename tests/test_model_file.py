@@ -11,9 +11,9 @@ from acting import perform, performances
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recognizer.learning import train
 from recognizer.model_file import ModelError, load, save
 from recognizer.postures import POSTURES, PostureModel, Recognizer, log_likelihoods
+from recognizer.training.learning import train
 
 RECOGNIZERS: list[Recognizer] = ["default", "paper"]
 

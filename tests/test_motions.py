@@ -7,11 +7,20 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from synth.footing import posed
-from synth.motions import EMPTY, LOWERING, MOTION, POSTURES, TPOSE, Motion, movement, performance
-from synth.people import person
-from synth.roaming import FREE_RANGES_DEG
-from synth.skeleton import ANGLES, JOINTS
+from synth.motion.footing import posed
+from synth.motion.motions import (
+    EMPTY,
+    LOWERING,
+    MOTION,
+    POSTURES,
+    TPOSE,
+    Motion,
+    movement,
+    performance,
+)
+from synth.motion.roaming import FREE_RANGES_DEG
+from synth.person.people import person
+from synth.person.skeleton import ANGLES, JOINTS
 
 AT = {name: i for i, name in enumerate(JOINTS)}
 PEOPLE = (0, 1, 4, 7)

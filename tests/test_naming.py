@@ -9,8 +9,8 @@ import pytest
 from common.config import Settings
 from recognizer.__main__ import SHIPPED, init, step
 from recognizer.model_file import load
-from tritrack.offline import Decoders, track_clip
-from tritrack.session import performed
+from tritrack.live.session import performed
+from tritrack.offline.lockstep import Decoders, track_clip
 
 
 def named(clip: Path) -> str:

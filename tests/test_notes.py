@@ -3,8 +3,8 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from common.body import JOINT_NAMES, LIMBS
-from common.notes import ORIENTATIONS, Held, Note, Notes, held, noted
+from common.body.body import JOINT_NAMES, LIMBS
+from common.notes.notes import ORIENTATIONS, Held, Note, Notes, held, noted
 
 ways = st.sampled_from(["toward", "away", "auto"])
 places = st.tuples(st.floats(0, 999), st.floats(0, 999)) | st.just("auto")

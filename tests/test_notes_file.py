@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from test_notes import inputs
 
-from common.notes import Note, Notes, noted
-from common.notes_file import (
+from common.notes.notes import Note, Notes, noted
+from common.notes.notes_file import (
     MAX_BYTES,
     NotesError,
     load_notes,

@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from common.body import JOINT_NAMES
-from common.bounds import box_of, is_cut
+from common.body.body import JOINT_NAMES
 from common.config import Mode, Settings
-from common.notes import Note, Notes
-from tritrack.first_pass import Outline, outline_of
-from tritrack.one_camera_poses import Poses, poses_of
+from common.notes.notes import Note, Notes
+from common.raster.bounds import box_of, is_cut
+from tritrack.single.one_camera_poses import Poses, poses_of
+from tritrack.single.single_silhouettes import Outline, outline_of
 
 SIZE = (160, 120)
 FEW = 10

@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 
 from common import config
+from common.body.proportions import thesis_bdp
+from common.bus.messages import Body
 from common.config import Settings, SettingsError
-from common.footage import ClipError
-from common.messages import Body
-from common.proportions import thesis_bdp
-from tritrack.offline import Decoders, measured_before, track_clip
-from tritrack.opening_clip import body_of
+from common.video.clip_sources import ClipError
+from tritrack.offline.lockstep import Decoders, measured_before, track_clip
+from tritrack.offline.opening_clip import body_of
 
 PERSON = thesis_bdp(1.62)
 

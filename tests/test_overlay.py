@@ -5,9 +5,9 @@ import pytest
 
 from animator.overlay import LEAST_HEIGHT_PX, draw_stick, overlay, side_view
 from animator.scene import LEFT, RIGHT
-from common.body import JOINT_NAMES, POSE_INDEX, rest_pose
-from common.kinematics import joints
-from common.proportions import body_vector, thesis_bdp
+from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
+from common.body.kinematics import joints
+from common.body.proportions import body_vector, thesis_bdp
 
 SURE = np.ones(15)
 NOBODY_PX, NOBODY_M = np.full((15, 2), np.nan), np.full((15, 3), np.nan)

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common import clock
-from common.clock import Exchange
-from common.messages import Report, ViewerNumber
+from common.bus import clock
+from common.bus.clock import Exchange
+from common.bus.messages import Report, ViewerNumber
 from integrator.__main__ import OVERDUE_PERIODS
 from integrator.pairing import Pair, State, away, begin, end, init, overdue, step
 

@@ -16,9 +16,9 @@ from animator.page.panel import (
     status_line,
     views_table,
 )
-from common.body import rest_pose
-from common.housekeeping import Pulse
-from common.messages import Body, Performance, Posture, Report, Status
+from common.body.body import rest_pose
+from common.bus.control_messages import Pulse
+from common.bus.messages import Body, Performance, Posture, Report, Status
 
 LIKELIHOODS = {"squat": -90.5, "walk_in_place": -61.25, "kick_left_side": -140.0}
 

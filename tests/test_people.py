@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.people import MEASURE_NAMES, STYLE_RANGES, measure_vector, person, take_style
-from synth.skeleton import JOINTS, rest_origins
+from synth.person.people import MEASURE_NAMES, STYLE_RANGES, measure_vector, person, take_style
+from synth.person.skeleton import JOINTS, rest_origins
 
 DOZEN = [person(seed) for seed in range(12)]
 

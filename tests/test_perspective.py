@@ -9,11 +9,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.body import Elliptic, Vector
-from common.camera import PAPER_ROTATIONS, Camera, PaperRig, Rig, as_paper_rig, paper_rig, project
-from common.messages import Measure
-from common.proportions import thesis_bdp
-from integrator.perspective import (
+from common.body.body import Elliptic, Vector
+from common.body.proportions import thesis_bdp
+from common.bus.messages import Measure
+from common.rig.camera import (
+    PAPER_ROTATIONS,
+    Camera,
+    PaperRig,
+    Rig,
+    as_paper_rig,
+    paper_rig,
+    project,
+)
+from integrator.rig.perspective import (
     ground_position,
     px_per_m,
     scaling_factors,

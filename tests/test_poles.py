@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.camera import Rig, as_paper_rig, paper_rig, project
-from common.rig_file import CalibrationError
-from integrator.poles import Pole, Poles, Quality, poles
+from common.rig.camera import Rig, as_paper_rig, paper_rig, project
+from common.rig.rig_file import CalibrationError
+from integrator.rig.poles import Pole, Poles, Quality, poles
 
 SIZE = (160, 120)
 CORNERS = ((0.0, 0.0), (0.0, 1.0), (1.0, 0.0))

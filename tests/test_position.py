@@ -6,8 +6,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from posing import BODY, ROOT_PX, SIZE, laid_over, picture, posed, stretched, view
 
-from common.bits import pack_words
-from viewer.position import MOST_PASSES, SHIFTS_PX, best_shift, extent, located, shifted_counts
+from common.raster.bits import pack_words
+from viewer.paper.position import (
+    MOST_PASSES,
+    SHIFTS_PX,
+    best_shift,
+    extent,
+    located,
+    shifted_counts,
+)
 
 shifts = st.integers(-10, 10)
 

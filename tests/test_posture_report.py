@@ -3,7 +3,7 @@
 import math
 
 from recognizer.evaluation import Outcome
-from tritrack.posture_report import WORST, postures_of, result_of, worst_of
+from tritrack.postures.posture_report import WORST, postures_of, result_of, worst_of
 
 
 def outcome(truth: str, named: str, margin: float, performer: str = "ann") -> Outcome:

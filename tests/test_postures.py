@@ -11,13 +11,12 @@ import pytest
 from acting import perform, performances, standing
 from hmmlearn.hmm import CategoricalHMM, GaussianHMM
 
-from common.body import ANGLE_INDEX, ANGLE_NAMES
-from recognizer.bearing import bearings
+from common.body.body import ANGLE_INDEX, ANGLE_NAMES
 from recognizer.codebook import symbols
 from recognizer.evaluation import Recording, folds, recognise
 from recognizer.features import features
 from recognizer.forward import forward
-from recognizer.learning import train
+from recognizer.limb_directions import bearings
 from recognizer.postures import (
     POSTURES,
     DensityModel,
@@ -27,6 +26,7 @@ from recognizer.postures import (
     log_likelihoods,
     name,
 )
+from recognizer.training.learning import train
 
 TOPOLOGIES: list[Topology] = ["left-right", "ergodic"]
 RECOGNIZERS: list[Recognizer] = ["default", "paper"]

@@ -3,8 +3,8 @@
 import pytest
 from staging import report
 
-from common.housekeeping import Ended
-from common.messages import CameraFault, ViewerNumber
+from common.bus.control_messages import Ended
+from common.bus.messages import CameraFault, ViewerNumber
 from integrator.presence import (
     GONE_S,
     MOST_NEWS,

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from local_bus import LocalBus
 
-from common.housekeeping import Pulse
-from common.process import BEAT_S, Heart, Place, process, start_log
-from common.rate import Pace
+from common.bus.control_messages import Pulse
+from common.bus.process import BEAT_S, Heart, Place, process, start_log
+from common.bus.rate import Pace
 
 
 @pytest.fixture(autouse=True)
@@ -70,7 +70,7 @@ def test_the_log_level_comes_from_the_command_line(
 
 def test_a_heart_beats_once_a_second_and_at_every_change(monkeypatch: pytest.MonkeyPatch) -> None:
     now_s = [100.0]
-    monkeypatch.setattr("common.process.time.monotonic", lambda: now_s[0])
+    monkeypatch.setattr("common.bus.process.time.monotonic", lambda: now_s[0])
     bus = LocalBus()
     heard = bus.subscribe(Pulse)
     heart = Heart(bus, "viewer 1", Pace(1 / 15))

@@ -2,7 +2,13 @@
 
 import pytest
 
-from common.proportions import THESIS_DIAMETERS, THESIS_RATIOS, body_vector, stature, thesis_bdp
+from common.body.proportions import (
+    THESIS_DIAMETERS,
+    THESIS_RATIOS,
+    body_vector,
+    stature,
+    thesis_bdp,
+)
 
 
 def test_the_thesis_lengths_add_up_to_the_stature() -> None:

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.housekeeping import Ended, Pulse
-from common.messages import Report
-from common.rate import WINDOW, Pace, silent, wait_until
-from common.wire import TOPICS
+from common.bus.control_messages import Ended, Pulse
+from common.bus.message_codec import TOPICS
+from common.bus.messages import Report
+from common.bus.rate import WINDOW, Pace, silent, wait_until
 
 PERIOD_S = 1 / 15
 

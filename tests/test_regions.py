@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from viewer.regions import chosen
+from viewer.silhouette.regions import chosen
 
 LEAST_SHARE = 0.3
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tritrack.reliability import auc, gap, reliability, roc
+from tritrack.accuracy.reliability import auc, gap, reliability, roc
 
 said_and_came = st.lists(
     st.tuples(st.integers(0, 20).map(lambda n: n / 20), st.booleans()), min_size=1, max_size=60

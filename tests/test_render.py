@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from common.camera import Rig, project
-from common.rig_file import load_rig
-from synth.exposure import default_rig, exposures
-from synth.mesh import body_mesh
-from synth.motions import EMPTY, MOTION, POSTURES, Motion, performance
-from synth.people import person
-from synth.raster import skin
-from synth.render import Shot, render
-from synth.skeleton import JOINTS
+from common.rig.camera import Rig, project
+from common.rig.rig_file import load_rig
+from synth.motion.motions import EMPTY, MOTION, POSTURES, Motion, performance
+from synth.person.mesh import body_mesh
+from synth.person.people import person
+from synth.person.skeleton import JOINTS
+from synth.picture.exposure import default_rig, exposures
+from synth.picture.raster import skin
+from synth.picture.render import Shot, render
 from synth.write import SynthError, write_set
 
 RIG = default_rig(160, 120)

@@ -20,9 +20,9 @@ from websockets.sync.client import connect
 from animator.page.easel import GAP_M, TALL_M
 from animator.page.retouch import RetouchPage
 from animator.take import Take
-from common.body import LIMB_ENDS
-from common.notes import Notes, held
-from common.notes_file import load_notes, save_notes
+from common.body.body import LIMB_ENDS
+from common.notes.notes import Notes, held
+from common.notes.notes_file import load_notes, save_notes
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 SIZE = (320, 240)

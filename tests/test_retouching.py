@@ -16,10 +16,10 @@ import pytest
 from rich.console import Console
 from test_exporting import write
 
-from common.body import JOINT_NAMES
-from common.notes import Note, Notes
-from common.notes_file import save_notes
-from tritrack.retouching import RetouchError, retouch
+from common.body.body import JOINT_NAMES
+from common.notes.notes import Note, Notes
+from common.notes.notes_file import save_notes
+from tritrack.single.retouching import RetouchError, retouch
 
 QUIET = Console(quiet=True)
 

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from common.body import ANGLE_NAMES, JOINT_NAMES
+from common.body.body import ANGLE_NAMES, JOINT_NAMES
+from common.bus.messages import Body, Performance, Posture
 from common.config import Settings
-from common.messages import Body, Performance, Posture
-from tritrack.offline import Decoders, track_clip
-from tritrack.runs import RunError, poses, write_postures, write_run
+from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.store.runs import RunError, poses, write_postures, write_run
 
 N = 69
 CONTRACT = {

@@ -22,11 +22,11 @@ from animator.scene import (
     viewpoint,
 )
 from animator.solids import Mesh, unit_ball, unit_cylinder
-from common.body import JOINT_NAMES, LIMBS, POSE_INDEX, POSE_NAMES, Vector, rest_pose
-from common.camera import Camera, Rig, centre, paper_rig, project, ray
-from common.kinematics import segments
-from common.messages import Body
-from common.proportions import body_vector, thesis_bdp
+from common.body.body import JOINT_NAMES, LIMBS, POSE_INDEX, POSE_NAMES, Vector, rest_pose
+from common.body.kinematics import segments
+from common.body.proportions import body_vector, thesis_bdp
+from common.bus.messages import Body
+from common.rig.camera import Camera, Rig, centre, paper_rig, project, ray
 
 BDP = thesis_bdp(1.75)
 RIG = paper_rig((320, 240), (401.0, 401.0), (4.5, 4.5), (1.0, 1.0))

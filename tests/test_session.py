@@ -15,10 +15,10 @@ import pytest
 from rich.console import Console
 from spoiling import copied, cut_off, uncalibrated
 
+from common.bus.control_messages import Pulse
+from common.bus.messages import Posture
 from common.config import PageSettings, Settings
-from common.housekeeping import Pulse
-from common.messages import Posture
-from tritrack.session import LiveRefused, free_settings, live, performed, warnings_of
+from tritrack.live.session import LiveRefused, free_settings, live, performed, warnings_of
 
 
 def settings_of(clip: Path) -> Settings:

@@ -8,18 +8,18 @@ import pytest
 from numpy.typing import NDArray
 
 from common.config import Settings, SilhouetteSettings
-from common.similarity import Mask
+from common.raster.similarity import Mask
 from viewer import track
-from viewer.appearance import counted, familiar
-from viewer.background import learn, light_gain
-from viewer.coverage import covered, sides_of
-from viewer.difference import followed, label, seeds
-from viewer.judge import redraw
-from viewer.regions import chosen
-from viewer.silhouette import Seen, State, init, step
-from viewer.stacks import Frame
-from viewer.uncovered import learn_uncovered
-from viewer.view_rehearsal import rehearse
+from viewer.background.background import learn, light_gain
+from viewer.background.image_stack import Frame
+from viewer.background.occluded_background import learn_uncovered
+from viewer.silhouette.alpha_matte import covered, sides_of
+from viewer.silhouette.colour_model import counted, familiar
+from viewer.silhouette.difference import followed, label, seeds
+from viewer.silhouette.pixel_classifier import redraw
+from viewer.silhouette.regions import chosen
+from viewer.silhouette.silhouette import Seen, State, init, step
+from viewer.viewer_warmup import rehearse
 
 HEIGHT, WIDTH = 240, 320
 SETTINGS = SilhouetteSettings()

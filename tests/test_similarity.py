@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from common.similarity import Mask, similarity
+from common.raster.similarity import Mask, similarity
 
 masks = arrays.arrays(np.bool_, st.just((5, 7)))
 

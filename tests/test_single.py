@@ -10,11 +10,11 @@ from rich.console import Console
 from spoiling import film_of, write_film
 
 from common.config import Settings
-from common.notes import Note, Notes
-from common.notes_file import save_notes
-from tritrack.clip_paths import ClipsFailed
-from tritrack.offline import track_all
-from tritrack.single import name_of, single_all
+from common.notes.notes import Note, Notes
+from common.notes.notes_file import save_notes
+from tritrack.offline.lockstep import track_all
+from tritrack.single.single import name_of, single_all
+from tritrack.store.clip_paths import ClipsFailed
 
 QUIET = Console(quiet=True)
 SMALL = Settings(size="160x120")

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from common.config import Settings
-from tritrack.single_bench import figures
+from tritrack.bench.single_bench import figures
 
 
 @pytest.mark.parametrize("mode", ["default", "thesis"])

@@ -7,8 +7,8 @@ from filterpy.kalman import predict, update
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from common.body import ANGLE_NAMES, Vector, wrapped_deg
-from integrator.smoothing import START_SPEED_DEG_S, Smoothing, State, init, step
+from common.body.body import ANGLE_NAMES, Vector, wrapped_deg
+from integrator.pose.smoothing import START_SPEED_DEG_S, Smoothing, State, init, step
 
 PERIOD_S = 1 / 15
 SWING_DEG_S = 200.0

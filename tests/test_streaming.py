@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from synth.motions import MOTION, POSTURES
-from synth.people import person
-from synth.skeleton import ANGLES
-from synth.streaming import LEFT_DEG, streamed
+from synth.motion.motions import MOTION, POSTURES
+from synth.motion.streaming import LEFT_DEG, streamed
+from synth.person.people import person
+from synth.person.skeleton import ANGLES
 
 
 @pytest.mark.parametrize("seed", [3, 8])

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from acting import perform, performances, standing
 
-from recognizer import streams
 from recognizer.events import Event
-from recognizer.learning import train
 from recognizer.postures import DensityModel
-from recognizer.streams import Act, Stream, found, joined
+from recognizer.training import streams
+from recognizer.training.learning import train
+from recognizer.training.streams import Act, Stream, found, joined
 
 ACTS = (Act("squat", 10, 40), Act("walk_toward", 60, 90), Act("kick_left_side", 120, 150))
 

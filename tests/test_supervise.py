@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from common.housekeeping import Pulse
-from tritrack.parts import Part
-from tritrack.supervise import BACK_OFF_S, TRIES, PartFailed, Watched, watched
+from common.bus.control_messages import Pulse
+from tritrack.live.process_table import Part
+from tritrack.live.supervise import BACK_OFF_S, TRIES, PartFailed, Watched, watched
 
 PATIENCE_S = 60.0
 

@@ -5,8 +5,8 @@ import io
 import pytest
 from rich.console import Console
 
-from common.housekeeping import Pulse
-from tritrack.table import table_of, table_of_rows
+from common.bus.control_messages import Pulse
+from tritrack.live.table import table_of, table_of_rows
 from tritrack.terminal import bar, complain, json_text, warn
 
 

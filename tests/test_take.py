@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from animator.take import Take, doubts_at, leaned, next_unsure, take_of, with_notes
-from common.body import JOINT_NAMES, LIMB_ENDS, LIMBS, POSE_INDEX, rest_pose
-from common.kinematics import joints
-from common.notes import Note, Notes, held
-from common.proportions import body_vector, thesis_bdp
+from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, POSE_INDEX, rest_pose
+from common.body.kinematics import joints
+from common.body.proportions import body_vector, thesis_bdp
+from common.notes.notes import Note, Notes, held
 
 ARM = LIMBS.index("l_upper_arm")
 WRIST = JOINT_NAMES.index("l_wrist")

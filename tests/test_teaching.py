@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from acting import perform, performances
 
-from recognizer.learning import taught, train
 from recognizer.model_file import load, save
 from recognizer.postures import PER_POSTURE, POSTURES, PostureModel, Recognizer, name
+from recognizer.training.learning import taught, train
 
 KNOWN = [posture for posture in POSTURES if posture not in ("raise_right_lateral", "squat")]
 

@@ -23,12 +23,12 @@ from staging import (
     standing,
 )
 
-from common.body import ANGLE_NAMES, POSE_INDEX, Vector
-from common.camera import project
-from common.messages import Guide, Report, ViewerNumber
-from common.proportions import stature
-from common.similarity import Mask
-from common.wire import decode, encode, unpack
+from common.body.body import ANGLE_NAMES, POSE_INDEX, Vector
+from common.body.proportions import stature
+from common.bus.message_codec import decode, encode, unpack
+from common.bus.messages import Guide, Report, ViewerNumber
+from common.raster.similarity import Mask
+from common.rig.camera import project
 from viewer import track
 from viewer.capture import Frame
 

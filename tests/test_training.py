@@ -9,8 +9,8 @@ from rich.console import Console
 
 from recognizer.evaluation import Recording
 from recognizer.model_file import load
-from tritrack import training
-from tritrack.training import TrainingError, train_postures
+from tritrack.training import training
+from tritrack.training.training import TrainingError, train_postures
 
 QUIET = Console(quiet=True)
 POSTURES = ("raise_right_lateral", "squat")

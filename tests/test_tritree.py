@@ -9,12 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from posing import BODY, SIZE, laid_over, picture, posed, view
 
-from common.body import LIMITS_DEG, POSE_INDEX
-from common.kernel import draw_body
-from common.kinematics import ARM_LIMBS
-from common.similarity import similarity
-from viewer.figure import turn
-from viewer.tritree import Found, narrowed, search, tritree, window
+from common.body.body import LIMITS_DEG, POSE_INDEX
+from common.body.kinematics import ARM_LIMBS
+from common.raster.kernel import draw_body
+from common.raster.similarity import similarity
+from viewer.paper.posed_model import turn
+from viewer.paper.tritree import Found, narrowed, search, tritree, window
 
 ARM, LEG, STOP = 64, 32, 4
 WIDTHS = pytest.mark.parametrize("width_deg", [ARM, LEG], ids=["arm", "leg"])

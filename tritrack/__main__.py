@@ -12,11 +12,11 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
 import typer
 
-from tritrack.answers import JsonWanted, console, results
-from tritrack.calibrate import calibrate_app
-from tritrack.clip_commands import export, retouch, single, synth, track
-from tritrack.live_commands import animate, demo, integrate, live, recognize, view
-from tritrack.model_commands import evaluate_app, train
+from tritrack.commands.clip_commands import export, retouch, single, synth, track
+from tritrack.commands.command_output import JsonWanted, console, results
+from tritrack.commands.live_commands import animate, demo, integrate, live, recognize, view
+from tritrack.commands.model_commands import evaluate_app, train
+from tritrack.commands.rig_commands import calibrate_app
 from tritrack.terminal import complain, json_text
 
 OURS = ("animator", "common", "integrator", "recognizer", "synth", "tritrack", "viewer")
@@ -75,7 +75,7 @@ def bench(
 
     Example: tritrack bench
     """
-    from tritrack.bench import main as bench_main
+    from tritrack.bench.bench import main as bench_main
 
     bench_main(json_wanted, quick)
 

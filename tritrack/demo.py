@@ -8,11 +8,11 @@ import msgspec
 from rich.console import Console
 
 from common.config import PageSettings, Settings
-from synth.exposure import default_rig
-from synth.motions import performance
-from synth.people import person
+from synth.motion.motions import performance
+from synth.person.people import person
+from synth.picture.exposure import default_rig
 from synth.write import clip_name, write_clip, write_rig
-from tritrack.session import free_settings, live
+from tritrack.live.session import free_settings, live
 
 PERFORMER_SEED: Final = 90_001
 """Of a person that no model was trained on: the one in the package knows persons 1200 to 1211."""

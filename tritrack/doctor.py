@@ -117,7 +117,7 @@ def _own_names() -> Finding:
 
 
 def _kernel() -> Finding:
-    from common.kernel import warm
+    from common.raster.kernel import warm
 
     return Finding("matching kernel", True, f"compiled or loaded in {warm():.1f} s")
 
@@ -126,7 +126,7 @@ def _decoder() -> Finding:
     import cv2
     import numpy as np
 
-    from common.decoding import Decoder
+    from common.video.decoding import Decoder
 
     with tempfile.TemporaryDirectory() as folder, Decoder() as decoder:
         path = Path(folder) / "try.avi"
@@ -141,9 +141,9 @@ def _decoder() -> Finding:
 
 
 def _bus() -> Finding:
-    from common.bus import open_client, open_hub
+    from common.bus.bus import open_client, open_hub
+    from common.bus.control_messages import ClockAnswer, ClockQuestion
     from common.config import BusSettings
-    from common.housekeeping import ClockAnswer, ClockQuestion
 
     with socket.socket() as door:
         door.bind(("127.0.0.1", 0))

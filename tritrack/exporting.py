@@ -10,9 +10,9 @@ import numpy as np
 
 from animator.bones import joints_of
 from animator.bvh import NoMotion, bvh_text, steady
-from common.body import ANGLE_NAMES, JOINT_NAMES
-from common.replacing import replacing
-from tritrack.past_run import PastRun, open_run
+from common.atomic_file import replacing
+from common.body.body import ANGLE_NAMES, JOINT_NAMES
+from tritrack.store.past_run import PastRun, open_run
 
 Format = Literal["bvh", "csv"]
 OWN_NAMES: Final[dict[Format, str]] = {"bvh": "body.bvh", "csv": "poses.csv"}

@@ -6,7 +6,7 @@ from typing import Literal
 from rich.console import Console
 
 from common.config import SettingsError, size_of
-from synth.motions import POSTURES
+from synth.motion.motions import POSTURES
 from synth.write import SynthError, write_set
 from tritrack.terminal import bar
 

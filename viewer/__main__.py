@@ -6,22 +6,22 @@ import threading
 import time
 from typing import Final
 
-from common import clock
-from common.bus import Bus, open_client
-from common.clip_facts import View, shortfall
-from common.clips import open_clip
+from common.bus import clock
+from common.bus.bus import Bus, open_client
+from common.bus.control_messages import ClockAnswer, ClockQuestion, Ended
+from common.bus.inbox import Inbox
+from common.bus.messages import Guide, Picture, ViewerNumber
+from common.bus.process import READY_S, Heart, Place, process
+from common.bus.rate import Pace
 from common.config import Settings
-from common.decoding import Decoder, DecoderDied
-from common.housekeeping import ClockAnswer, ClockQuestion, Ended
-from common.inbox import Inbox
-from common.messages import Guide, Picture, ViewerNumber
-from common.process import READY_S, Heart, Place, process
-from common.rate import Pace
+from common.video.clip_facts import View, shortfall
+from common.video.clips import open_clip
+from common.video.decoding import Decoder, DecoderDied
 from viewer import track
+from viewer.background.background_source import room_of_run
 from viewer.capture import Frame, Live, RoomClock
-from viewer.empty import room_of_run
 from viewer.jpeg import jpeg_of
-from viewer.view_rehearsal import rehearse
+from viewer.viewer_warmup import rehearse
 
 WAIT_SHARE: Final = 0.5
 """How long a viewer waits for the guide of its last frame, in frame periods."""

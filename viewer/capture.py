@@ -7,11 +7,11 @@ from typing import Final, NamedTuple, Self
 
 import msgspec
 
-from common.clip_facts import View
-from common.decoding import Decoded, Decoder, Picture
-from common.mailbox import Mailbox
-from common.rate import Clock, wait_until
-from common.reel import Reader
+from common.bus.mailbox import Mailbox
+from common.bus.rate import Clock, wait_until
+from common.video.clip_facts import View
+from common.video.decoding import Decoded, Decoder, Picture
+from common.video.frame_cache import Reader
 
 WAITING: Final = 2
 """Frames that may wait for a late viewer: one hides a short delay, more would only be stale."""

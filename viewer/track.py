@@ -6,22 +6,23 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body import POSE_INDEX, rest_pose
-from common.camera import Camera
+from common.body.body import POSE_INDEX, rest_pose
+from common.body.proportions import body_vector, stature, thesis_bdp
+from common.bus.message_codec import pack
+from common.bus.messages import CameraFault, Facing, Guide, Measure, Pixel, Report, ViewerNumber
 from common.config import Settings, proposes
-from common.messages import CameraFault, Facing, Guide, Measure, Pixel, Report, ViewerNumber
-from common.proportions import body_vector, stature, thesis_bdp
-from common.wire import pack
-from viewer import lens, silhouette
-from viewer.arms import facade_arms, flank_arms
-from viewer.background import Background
+from common.rig.camera import Camera
+from viewer import camera_fault
+from viewer.background.background import Background
 from viewer.capture import Frame
-from viewer.facing import thresholds_px, upper_body_px, vote
-from viewer.figure import Figure, figure_of, rotation_of, view_at, yaw_of
-from viewer.legs import facade_legs, flank_legs, squats
-from viewer.measure import measure_front, measure_side, refusal_of
-from viewer.position import located
-from viewer.silhouette import Seen
+from viewer.paper.arms import facade_arms, flank_arms
+from viewer.paper.facing import thresholds_px, upper_body_px, vote
+from viewer.paper.legs import facade_legs, flank_legs, squats
+from viewer.paper.measure import measure_front, measure_side, refusal_of
+from viewer.paper.posed_model import Figure, figure_of, rotation_of, view_at, yaw_of
+from viewer.paper.position import located
+from viewer.silhouette import silhouette
+from viewer.silhouette.silhouette import Seen
 
 FACADE_ANGLES = (
     "r_shoulder_y",
@@ -47,7 +48,7 @@ class State(NamedTuple):
     rotation: NDArray[np.float64]
     """World to camera, (3, 3)."""
     settings: Settings
-    lens: lens.State
+    lens: camera_fault.State
     silhouette: silhouette.State
     searches: bool
     """The pose is looked for here, angle by angle; otherwise the integrator reads it off the
@@ -67,7 +68,7 @@ def init(
         viewer,
         rotation_of(camera, viewer),
         settings,
-        lens.init(background),
+        camera_fault.init(background),
         silhouette.init(background, settings.silhouette),
         not proposes(settings, camera is not None),
         "facade" if viewer == 1 else "flank",
@@ -84,7 +85,7 @@ def step(state: State, frame: Frame, guide: Guide | None) -> tuple[State, Report
         frame: The picture.
         guide: What the integrator made of the frame before; None at the start.
     """
-    watched, fault = lens.step(state.lens, frame.picture)
+    watched, fault = camera_fault.step(state.lens, frame.picture)
     state = state._replace(lens=watched)
     if fault:
         return state, _blind_report(state, frame, guide, fault)

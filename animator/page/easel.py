@@ -13,7 +13,7 @@ from animator.page.shapes import add_shapes, place_shapes
 from animator.scene import LEFT, RIGHT, TRUNK, UNSURE, Colour, Shapes
 from animator.solids import unit_ball, unit_cylinder
 from animator.turns import arc
-from common.body import JOINT_NAMES, LIMBS, Vector
+from common.body.body import JOINT_NAMES, LIMBS, Vector
 
 TALL_M: Final = 2.0
 """Height of the picture in the room: about that of the body beside it."""

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animator.scene import Figure, half_sizes, limb_colours
-from common.body import LIMBS, Vector
-from common.camera import Camera, project
-from common.kinematics import limb_frames
-from common.messages import Picture, Report
-from common.proportions import body_vector
-from common.wire import unpack
+from common.body.body import LIMBS, Vector
+from common.body.kinematics import limb_frames
+from common.body.proportions import body_vector
+from common.bus.message_codec import unpack
+from common.bus.messages import Picture, Report
+from common.rig.camera import Camera, project
 
 Image = NDArray[np.uint8]
 """(H, W, 3), red, green, blue."""

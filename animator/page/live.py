@@ -20,10 +20,10 @@ from animator.scene import (
     viewpoint,
 )
 from animator.solids import unit_ball, unit_cylinder
-from common.body import LIMBS
-from common.camera import Rig
-from common.kinematics import HEAD
-from common.messages import Body
+from common.body.body import LIMBS
+from common.body.kinematics import HEAD
+from common.bus.messages import Body
+from common.rig.camera import Rig
 
 FLOOR_M: Final = 8.0
 """Side of the floor that is drawn round the middle of the room: a person's range and more."""

@@ -5,8 +5,8 @@ from html import escape
 from typing import Final
 
 from animator.scene import LEFT, RIGHT, TRUNK, Colour
-from common.housekeeping import Pulse
-from common.messages import Body, Facing, Performance, Posture, Report, Status
+from common.bus.control_messages import Pulse
+from common.bus.messages import Body, Facing, Performance, Posture, Report, Status
 
 ACCENT: Final[Colour] = (62, 142, 126)
 QUIET: Final = "opacity:.62;font-size:.85em"

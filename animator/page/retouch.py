@@ -12,8 +12,8 @@ from animator.page.door import HOST, close_server, open_server
 from animator.page.easel import Easel, Picture
 from animator.page.panel import ACCENT, QUIET, block
 from animator.take import Take, doubts_at, next_unsure, with_notes
-from common.body import JOINT_NAMES, LIMB_ENDS, LIMBS
-from common.notes import ORIENTATIONS, WAYS, Depth, Note, Notes, held, noted, placed_once
+from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS
+from common.notes.notes import ORIENTATIONS, WAYS, Depth, Note, Notes, held, noted, placed_once
 
 PANEL_PX: Final = 340
 AUTO: Final = "auto"

@@ -1,0 +1,1 @@
+"""The ten cylinders: parameters, kinematics, proportions, and the thesis's stick body."""

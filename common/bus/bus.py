@@ -1,0 +1,170 @@
+"""The bus of a room: what a process may ask of it, and how a live one is opened."""
+
+import json
+import logging
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, Final, Protocol
+
+import zenoh
+
+from common.bus.inbox import Alive, Inbox
+from common.bus.live_bus import LiveBus
+from common.bus.mailbox import Mailbox
+from common.bus.message_codec import MAX_BYTES, Said
+from common.bus.messages import Message
+from common.config import BusSettings
+
+LEASE_MS: Final = 1000
+"""A process that hangs counts as gone after this; Zenoh's own 10 s would be 150 frames."""
+
+HANDSHAKE_MS: Final = 1000
+"""How long a peer that accepts a connection may take to prove that it is one of ours."""
+
+ENVELOPE_BYTES: Final = 1 << 16
+"""What Zenoh's own words around a message may take. What is larger than both is dropped piece by
+piece as it comes: putting together a flood of it would cost a core."""
+
+QUEUED: Final = 16
+"""Messages that may wait for Zenoh's sending thread, its most; its own 2 are soon full."""
+
+PATIENCE_US: Final = 10_000
+"""How long a message may wait for room in a full queue before it is dropped. Zenoh's own 1 ms is
+less than a busy host lets its sending thread sleep; a link that is stuck is waited for once."""
+
+RETRY_S: Final = 0.1
+"""Pause between two tries to reach the hub."""
+
+log = logging.getLogger(__name__)
+
+
+class BusError(RuntimeError):
+    """No bus: the text names the endpoint, the fault and the cure."""
+
+
+class Bus(Protocol):
+    """A room's messages, as one process speaks and hears them.
+
+    A bus is closed by the `with` that opened it; all that it gave out ends with it.
+    """
+
+    def publish(self, message: Message) -> None:
+        """Say a message to all who listen now; under congestion it waits a moment, then drops."""
+
+    def subscribe(self, kind: type[Said]) -> Inbox[Said]:
+        """Hear every message of a kind that is said from now on."""
+
+    def keep(self, kind: type[Message]) -> None:
+        """Hold the newest published message of a kind for those who come late."""
+
+    def latest(self, kind: type[Said], timeout_s: float) -> Said | None:
+        """The newest message of a kind, from whoever keeps it; None when nobody has one.
+
+        Subscribe first, ask then: what is said in between may come both ways.
+        """
+
+    def answer(self, kind: type[Said], reply: Callable[[Said], Message]) -> None:
+        """Answer every question of a kind; `reply` must be quick: the bus's own thread runs it."""
+
+    def ask(self, question: Message, kind: type[Said], timeout_s: float) -> Said | None:
+        """The answer to a question, of the kind named; None when nobody gives one in time."""
+
+    def announce(self, name: str) -> None:
+        """Let others know that the process of this name lives, until it closes its bus or dies."""
+
+    def watch_alive(self) -> Mailbox[Alive]:
+        """Hear who lives already, and who comes and goes."""
+
+
+@contextmanager
+def open_hub(settings: BusSettings, room: str) -> Iterator[LiveBus]:
+    """The bus of the one process that all others connect to.
+
+    Raises:
+        BusError: When the endpoint is taken or is none.
+    """
+    try:
+        session = zenoh.open(_config("router", settings.endpoint))
+    except zenoh.ZError as error:
+        raise BusError(
+            f"cannot listen on {settings.endpoint} ({_first_line(error)}): end the run that holds "
+            "it, or set another [bus] endpoint"
+        ) from error
+    with _bus(session, room) as bus:
+        yield bus
+
+
+@contextmanager
+def open_client(settings: BusSettings, room: str, give_up_s: float) -> Iterator[LiveBus]:
+    """The bus of any other process; waits up to `give_up_s` for the hub.
+
+    Raises:
+        BusError: When nobody answers at the endpoint in time.
+    """
+    session = _reach(settings.endpoint, time.monotonic() + give_up_s)
+    if session is None:
+        raise BusError(
+            f"nobody answers at {settings.endpoint} after {give_up_s:g} s: start the integrator "
+            "first, or set [bus] endpoint to where it listens"
+        )
+    with _bus(session, room) as bus:
+        yield bus
+
+
+@contextmanager
+def _bus(session: Any, room: str) -> Iterator[LiveBus]:
+    # A session that is not closed keeps its process from ending.
+    with session:
+        bus = LiveBus(session, room)
+        try:
+            yield bus
+        finally:
+            bus.close()
+
+
+def _reach(endpoint: str, until_s: float) -> Any | None:
+    config = _config("client", endpoint)
+    while True:
+        try:
+            return zenoh.open(config)
+        except zenoh.ZError as error:
+            log.debug("%s: %s", endpoint, _first_line(error))
+        if time.monotonic() + RETRY_S >= until_s:
+            return None
+        time.sleep(RETRY_S)
+
+
+def _config(mode: str, endpoint: str) -> zenoh.Config:
+    """A session that hears and speaks at one endpoint and nowhere else."""
+    zenoh.init_log_from_env_or("error")
+    own = {
+        "mode": mode,
+        "listen/endpoints": [endpoint] if mode == "router" else [],
+        "connect/endpoints": [endpoint] if mode == "client" else [],
+        "connect/retry": {
+            "period_init_ms": 100,
+            "period_max_ms": 500,
+            "period_increase_factor": 2,
+        },
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": False,
+        "scouting/delay": 0,
+        "transport/shared_memory/enabled": False,
+        "transport/link/tx/lease": LEASE_MS,
+        "transport/link/tx/queue/size/interactive_high": QUEUED,
+        "transport/link/tx/queue/congestion_control/drop/wait_before_drop": PATIENCE_US,
+        "transport/link/rx/max_message_size": MAX_BYTES + ENVELOPE_BYTES,
+        "transport/unicast/open_timeout": HANDSHAKE_MS,
+    }
+    config = zenoh.Config()
+    try:
+        for name, value in own.items():
+            config.insert_json5(name, json.dumps(value))
+    except zenoh.ZError as error:
+        raise BusError(f"{endpoint} is no endpoint: write it like tcp/127.0.0.1:7447") from error
+    return config
+
+
+def _first_line(error: zenoh.ZError) -> str:
+    return str(error).partition(" at /")[0]

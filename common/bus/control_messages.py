@@ -1,0 +1,54 @@
+"""What processes tell each other of themselves and of the run."""
+
+from typing import Literal
+
+from common.bus.messages import Message, ViewerNumber
+from common.rig.camera import Rig
+
+
+class Pulse(Message, frozen=True, kw_only=True):
+    """How a process is doing, once a second and at its end."""
+
+    process: str
+    state: Literal["starting", "ready", "running", "ended", "restarting", "given up"]
+    detail: str = ""
+    frames: int = 0
+    fps: float = 0.0
+    deadline_misses: int = 0
+    dropped: int = 0
+    guide_misses: int = 0
+    malformed: int = 0
+    late: int = 0
+    latency_p50_ms: float = 0.0
+    latency_p99_ms: float = 0.0
+    memory_mb: float = 0.0
+
+
+class Cameras(Message, frozen=True, kw_only=True):
+    """The rig that a run uses, once it is known."""
+
+    rig: Rig
+    scale_source: Literal["calibrated", "assumed"]
+
+
+class Ended(Message, frozen=True, kw_only=True):
+    """A viewer's clip is over, or broke."""
+
+    viewer: ViewerNumber
+    frames: int
+    why: str = ""
+    """What broke; "" where it came to its end or was stopped."""
+
+
+class ClockQuestion(Message, frozen=True, kw_only=True):
+    """A viewer asks what the room's clock says, and whether it may begin."""
+
+    viewer: ViewerNumber
+    ready: bool
+
+
+class ClockAnswer(Message, frozen=True, kw_only=True):
+    """The room's clock at the moment of the answer, and the start if it is fixed."""
+
+    now_s: float
+    start_s: float | None = None

@@ -1,0 +1,115 @@
+"""What a process hears: checked on arrival, bounded, counted."""
+
+import logging
+from collections.abc import Callable
+from typing import Final, Generic, NamedTuple
+
+from common.bus.control_messages import ClockQuestion
+from common.bus.mailbox import Mailbox
+from common.bus.message_codec import TOPICS, MalformedMessage, Said, decode, key_of, pattern_of
+from common.bus.messages import Message
+
+QUESTIONS: Final[dict[type[Message], str]] = {ClockQuestion: "tritrack/{room}/clock"}
+"""Where each kind of question is answered."""
+
+BOUND: Final = 64
+"""Messages that wait for a reader: four seconds at 15 Hz; older ones are of no use to anyone."""
+
+MOST_GAP: Final = 100_000
+"""Messages that a link may lose at once, two hours of them; a larger gap is nobody of ours."""
+
+log = logging.getLogger(__name__)
+
+
+class Alive(NamedTuple):
+    """A process came (it announced itself) or went (it closed, died or fell silent)."""
+
+    name: str
+    alive: bool
+
+
+class Inbox(Generic[Said]):
+    """Heard messages of one kind, oldest first; where only the newest counts, one a key."""
+
+    def __init__(self, kind: type[Said], room: str) -> None:
+        """Empty, for one kind of message in one room."""
+        self.malformed = 0
+        """How many payloads were refused."""
+        self._kind = kind
+        self._room = room
+        self._missed = 0
+        self._numbers: dict[str, int] = {}
+        self._mailbox: Mailbox[Said] = Mailbox(BOUND)
+
+    @property
+    def dropped(self) -> int:
+        """How many messages gave way to later ones, here or on the way, although each counts."""
+        return self._mailbox.dropped + self._missed
+
+    def take(self, timeout_s: float) -> Said | None:
+        """The oldest message; None when none came in time, or the bus is closed."""
+        return self._mailbox.take(timeout_s)
+
+    def drain(self) -> list[Said]:
+        """All messages that wait, oldest first."""
+        return self._mailbox.drain()
+
+    def close(self) -> None:
+        """Hear no more."""
+        self._mailbox.close()
+
+    def offer(self, key: str, payload: bytes) -> None:
+        """Take in what came on a key; what is no such message is counted and logged once."""
+        try:
+            message = decode(payload, self._kind)
+            if key_of(message, self._room) != key:
+                raise MalformedMessage(f"it belongs on {key_of(message, self._room)}")
+        except MalformedMessage as error:
+            self.refuse(key, error)
+            return
+        self._mailbox.put(message, slot=key if TOPICS[self._kind].newest_only else None)
+
+    def count(self, key: str, number: int) -> None:
+        """Note the number of a message on its key: what is missing before it was lost on the way.
+
+        A lower one than the last is that of a speaker who was started again.
+        """
+        if key not in self._numbers and len(self._numbers) == BOUND:
+            return
+        gap = number - self._numbers.get(key, number) - 1
+        if not TOPICS[self._kind].newest_only and 0 < gap <= MOST_GAP:
+            self._missed += gap
+        self._numbers[key] = number
+
+    def refuse(self, key: str, why: MalformedMessage) -> None:
+        """Count what came on a key and is no such message; the first is logged."""
+        self.malformed += 1
+        if self.malformed == 1:
+            pattern = pattern_of(self._kind, self._room)
+            log.warning("%s: dropped a message from %s: %s", pattern, key, why)
+
+
+def checked(payload: bytes, kind: type[Said], where: str) -> Said | None:
+    """A question or an answer that can be trusted, or None after a line in the log."""
+    try:
+        return decode(payload, kind)
+    except MalformedMessage as error:
+        log.warning("%s: dropped what came: %s", where, error)
+        return None
+
+
+def answered(
+    reply: Callable[[Said], Message], kind: type[Said], payload: bytes, where: str
+) -> Message | None:
+    """What `reply` says to a question; None when either of them fails, which is logged.
+
+    The bus's threads swallow exceptions, so a failing `reply` must end here and be seen.
+    """
+    question = checked(payload, kind, where)
+    if question is None:
+        return None
+    try:
+        return reply(question)
+    except Exception:
+        log.exception("%s: no answer to %s", where, question)
+        return None

@@ -1,0 +1,189 @@
+"""A room's messages over a Zenoh session."""
+
+import logging
+import threading
+from collections import Counter
+from collections.abc import Callable
+from typing import Any, Final
+
+import zenoh
+
+from common.bus.inbox import BOUND, QUESTIONS, Alive, Inbox, answered, checked
+from common.bus.mailbox import Mailbox
+from common.bus.message_codec import (
+    TOPICS,
+    MalformedMessage,
+    Said,
+    encode,
+    key_of,
+    pattern_of,
+    refuse_size,
+)
+from common.bus.messages import Message, Picture
+
+AT_ONCE: Final = 4
+"""Newest-only samples that may wait for our own thread: two viewers speak at the same moment.
+Zenoh's default queue would serve ever older ones to a slow reader."""
+
+NUMBER_BYTES: Final = 8
+"""Every message goes with its number on its key, so that who hears it can count what is lost on the
+way: under congestion Zenoh drops, and tells nobody."""
+
+log = logging.getLogger(__name__)
+
+
+class LiveBus:
+    """A Zenoh session in a room; see Bus for what each method promises."""
+
+    def __init__(self, session: Any, room: str) -> None:
+        """Speak and hear in `room` over an open session."""
+        self._session = session
+        self._room = room
+        self._lock = threading.Lock()
+        self._publishers: dict[str, Any] = {}
+        self._said: Counter[str] = Counter()
+        self._newest: dict[type[Message], dict[str, bytes]] = {}
+        self._tokens: list[Any] = []
+        self._heard: list[tuple[Any, threading.Thread, Inbox[Any] | Mailbox[Alive]]] = []
+        self._queryables: list[Any] = []
+
+    def publish(self, message: Message) -> None:
+        """Say a message; see Bus."""
+        key, payload = key_of(message, self._room), encode(message)
+        with self._lock:
+            if key not in self._publishers:
+                self._publishers[key] = self._declare_publisher(key, type(message))
+            if type(message) in self._newest:
+                self._newest[type(message)][key] = payload
+            self._said[key] += 1
+            number = self._said[key].to_bytes(NUMBER_BYTES, "big")
+        self._publishers[key].put(payload, attachment=number)
+
+    def subscribe(self, kind: type[Said]) -> Inbox[Said]:
+        """Hear a kind of message; see Bus."""
+        inbox = Inbox(kind, self._room)
+        channel: Any = (
+            zenoh.handlers.RingChannel(AT_ONCE)
+            if TOPICS[kind].newest_only
+            else zenoh.handlers.FifoChannel(BOUND)
+        )
+        subscriber = self._session.declare_subscriber(pattern_of(kind, self._room), channel)
+
+        def hear(sample: Any) -> None:
+            key = str(sample.key_expr)
+            try:
+                refuse_size(len(sample.payload))  # before it is copied: a flood costs least so
+            except MalformedMessage as error:
+                inbox.refuse(key, error)
+            else:
+                inbox.offer(key, sample.payload.to_bytes())
+                if sample.attachment is not None and len(sample.attachment) == NUMBER_BYTES:
+                    inbox.count(key, int.from_bytes(sample.attachment.to_bytes(), "big"))
+
+        self._listen(subscriber, hear, inbox)
+        return inbox
+
+    def keep(self, kind: type[Message]) -> None:
+        """Hold the newest message of a kind; see Bus."""
+        with self._lock:
+            self._newest.setdefault(kind, {})
+
+        def reply(query: Any) -> None:
+            with self._lock:
+                kept = dict(self._newest[kind])
+            for key, payload in kept.items():
+                query.reply(key, payload)
+
+        self._serve(pattern_of(kind, self._room), reply)
+
+    def latest(self, kind: type[Said], timeout_s: float) -> Said | None:
+        """The newest message of a kind; see Bus."""
+        return self._get(pattern_of(kind, self._room), kind, None, timeout_s)
+
+    def answer(self, kind: type[Said], reply: Callable[[Said], Message]) -> None:
+        """Answer a kind of question; see Bus."""
+        key = QUESTIONS[kind].format(room=self._room)
+
+        def reply_to(query: Any) -> None:
+            payload = query.payload.to_bytes() if query.payload else b""
+            said = answered(reply, kind, payload, key)
+            if said is not None:
+                query.reply(key, encode(said))
+
+        self._serve(key, reply_to)
+
+    def ask(self, question: Message, kind: type[Said], timeout_s: float) -> Said | None:
+        """The answer to a question; see Bus."""
+        key = QUESTIONS[type(question)].format(room=self._room)
+        return self._get(key, kind, encode(question), timeout_s)
+
+    def announce(self, name: str) -> None:
+        """Let others know that this process lives; see Bus."""
+        key = f"tritrack/{self._room}/alive/{name}"
+        self._tokens.append(self._session.liveliness().declare_token(key))
+
+    def watch_alive(self) -> Mailbox[Alive]:
+        """Hear who comes and goes; see Bus."""
+        mailbox: Mailbox[Alive] = Mailbox(BOUND)
+        subscriber = self._session.liveliness().declare_subscriber(
+            f"tritrack/{self._room}/alive/*", zenoh.handlers.FifoChannel(BOUND), history=True
+        )
+
+        def hear(sample: Any) -> None:
+            name = str(sample.key_expr).rpartition("/")[2]
+            mailbox.put(Alive(name, sample.kind == zenoh.SampleKind.PUT))
+
+        self._listen(subscriber, hear, mailbox)
+        return mailbox
+
+    def close(self) -> None:
+        """End the threads, then let go of everything declared."""
+        for subscriber, thread, box in self._heard:
+            box.close()
+            subscriber.undeclare()
+            thread.join()
+        for declared in [*self._queryables, *self._tokens, *self._publishers.values()]:
+            declared.undeclare()
+
+    def _declare_publisher(self, key: str, kind: type[Message]) -> Any:
+        return self._session.declare_publisher(
+            key,
+            congestion_control=zenoh.CongestionControl.DROP,
+            express=True,
+            priority=zenoh.Priority.DATA_LOW
+            if kind is Picture
+            else zenoh.Priority.INTERACTIVE_HIGH,
+        )
+
+    def _listen(
+        self, subscriber: Any, hear: Callable[[Any], None], box: Inbox[Any] | Mailbox[Alive]
+    ) -> None:
+        """Empty a channel into a bounded box of ours, until the subscriber is undeclared."""
+
+        def drain() -> None:
+            for sample in subscriber:
+                hear(sample)
+
+        thread = threading.Thread(target=drain, name=f"bus {subscriber.key_expr}", daemon=True)
+        thread.start()
+        self._heard.append((subscriber, thread, box))
+
+    def _serve(self, key: str, reply: Callable[[Any], None]) -> None:
+        def serve(query: Any) -> None:
+            with query:
+                try:
+                    reply(query)
+                except zenoh.ZError as error:
+                    log.warning("%s: an answer could not be sent: %s", key, error)
+
+        self._queryables.append(self._session.declare_queryable(key, serve))
+
+    def _get(
+        self, key: str, kind: type[Said], payload: bytes | None, timeout_s: float
+    ) -> Said | None:
+        for reply in self._session.get(key, payload=payload, timeout=timeout_s):
+            if reply.ok is not None:
+                said = checked(reply.ok.payload.to_bytes(), kind, key)
+                if said is not None:
+                    return said
+        return None

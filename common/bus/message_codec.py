@@ -1,0 +1,172 @@
+"""Messages on their way: the table of topics, bytes, and the refusal of what no process says."""
+
+import math
+from collections.abc import Iterator
+from typing import Final, NamedTuple, TypeVar
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES, Bdp, Elliptic, Round
+from common.bus.control_messages import Cameras, Ended, Pulse
+from common.bus.messages import (
+    PROTOCOL,
+    Body,
+    Fit,
+    Guide,
+    Measure,
+    Message,
+    Performance,
+    Picture,
+    Posture,
+    Report,
+)
+from common.rig.camera import Camera, Rig
+
+MAX_BYTES: Final = 1_000_000
+"""No message of ours is larger (a 1920x1080 silhouette has 259 kB)."""
+
+
+class MalformedMessage(ValueError):
+    """Bytes that are no message of ours; the text says why."""
+
+
+class Topic(NamedTuple):
+    """Where a message is said and how often to expect it."""
+
+    key: str
+    hz: float
+    """0: not regular."""
+    newest_only: bool
+    """True where only the newest counts; False where every message does."""
+
+
+TOPICS: Final[dict[type[Message], Topic]] = {
+    Report: Topic("tritrack/{room}/viewer/{viewer}/report", 15.0, newest_only=False),
+    Guide: Topic("tritrack/{room}/body/guide", 15.0, newest_only=True),
+    Body: Topic("tritrack/{room}/body/pose", 15.0, newest_only=False),
+    Posture: Topic("tritrack/{room}/posture", 15.0, newest_only=False),
+    Picture: Topic("tritrack/{room}/viewer/{viewer}/picture", 15.0, newest_only=True),
+    Pulse: Topic("tritrack/{room}/pulse/{process}", 1.0, newest_only=False),
+    Cameras: Topic("tritrack/{room}/cameras", 0.0, newest_only=False),
+    Ended: Topic("tritrack/{room}/viewer/{viewer}/ended", 0.0, newest_only=False),
+}
+
+Said = TypeVar("Said", bound=Message)
+
+_LENGTHS: Final[dict[tuple[type[Message], str], tuple[int, ...]]] = {
+    (Guide, "pose"): (0, len(POSE_NAMES)),
+    (Body, "pose"): (0, len(POSE_NAMES)),
+    (Body, "joints_m"): (0, len(JOINT_NAMES)),
+    (Body, "joints_px"): (0, 1, 2),
+    (Body, "angles_raw_deg"): (0, len(ANGLE_NAMES)),
+    (Body, "confidence"): (0, len(JOINT_NAMES)),
+}
+
+
+def key_of(message: Message, room: str) -> str:
+    """The key that a message is said on."""
+    fields = {
+        name: getattr(message, name) for name in ("viewer", "process") if hasattr(message, name)
+    }
+    return TOPICS[type(message)].key.format(room=room, **fields)
+
+
+def pattern_of(kind: type[Message], room: str) -> str:
+    """The key expression that hears every message of a kind."""
+    return TOPICS[kind].key.format(room=room, viewer="*", process="*")
+
+
+def encode(message: Message) -> bytes:
+    """A message as MessagePack."""
+    return msgspec.msgpack.encode(message)
+
+
+def decode(payload: bytes, kind: type[Said]) -> Said:
+    """Bytes from the bus as a message that can be trusted.
+
+    Raises:
+        MalformedMessage: When they are too long, no MessagePack, of another protocol, of the
+            wrong shape, or hold a number that is not finite.
+    """
+    refuse_size(len(payload))
+    try:
+        message = msgspec.msgpack.decode(payload, type=kind)
+    except (msgspec.DecodeError, RecursionError, ValueError) as error:
+        raise MalformedMessage(f"no {kind.__name__}: {error}") from error
+    _refuse_what_no_process_would_say(message)
+    return message
+
+
+def refuse_size(size_bytes: int) -> None:
+    """Say that a payload is too large to be looked at.
+
+    Raises:
+        MalformedMessage: When it is.
+    """
+    if size_bytes > MAX_BYTES:
+        raise MalformedMessage(f"{size_bytes} bytes, at most {MAX_BYTES} are taken")
+
+
+def pack(mask: NDArray[np.bool_]) -> bytes:
+    """A mask (H, W) as the bytes of a report: rows of whole bytes, the first pixel lowest."""
+    return np.packbits(mask, axis=1, bitorder="little").tobytes()
+
+
+def unpack(report: Report) -> NDArray[np.bool_]:
+    """The silhouette of a report, (H, W), True inside the person."""
+    rows = np.frombuffer(report.silhouette, np.uint8).reshape(report.height, -1)
+    return np.unpackbits(rows, axis=1, count=report.width, bitorder="little").astype(np.bool_)
+
+
+def _refuse_what_no_process_would_say(message: Message) -> None:
+    if message.protocol != PROTOCOL:
+        raise MalformedMessage(f"protocol {message.protocol}, this is {PROTOCOL}")
+    for name in message.__struct_fields__:
+        value = getattr(message, name)
+        allowed = _LENGTHS.get((type(message), name))
+        if allowed is not None and len(value) not in allowed:
+            raise MalformedMessage(f"{name} has {len(value)} entries, not {allowed[-1]}")
+        if not all(math.isfinite(number) for number in _numbers(value)):
+            raise MalformedMessage(f"{name} holds a number that is not finite")
+    if isinstance(message, Report):
+        _refuse_a_false_report(message)
+    if isinstance(message, Body) and any(len(own) != len(JOINT_NAMES) for own in message.joints_px):
+        raise MalformedMessage(f"joints_px has no {len(JOINT_NAMES)} joints in a camera")
+
+
+def _refuse_a_false_report(report: Report) -> None:
+    if report.width <= 0 or report.height <= 0:
+        raise MalformedMessage(f"a picture of {report.width}x{report.height}")
+    due = report.height * ((report.width + 7) // 8)
+    if len(report.silhouette) != due:
+        raise MalformedMessage(f"silhouette has {len(report.silhouette)} bytes, not {due}")
+    unknown = [name for name in report.angles_deg if name not in ANGLE_NAMES]
+    if unknown:
+        raise MalformedMessage(f"unknown angle {unknown[0]!r}")
+    if report.fit is not None:
+        _refuse_a_false_fit(report.fit)
+
+
+def _refuse_a_false_fit(fit: Fit) -> None:
+    for name, due in (("joints_px", JOINT_NAMES), ("ratios", LIMBS), ("hidden", LIMBS)):
+        if len(getattr(fit, name)) != len(due):
+            raise MalformedMessage(f"{name} has {len(getattr(fit, name))} entries, not {len(due)}")
+    shares = (*fit.ratios, fit.breadth, fit.score)
+    if not all(0.0 <= share <= 1.0 for share in shares) or fit.stature_px <= 0.0:
+        raise MalformedMessage("a stick body of shares beyond 0 to 1, or of no stature")
+
+
+def _numbers(value: object) -> Iterator[float]:
+    if isinstance(value, float):
+        yield value
+    elif isinstance(value, tuple):
+        for item in value:
+            yield from _numbers(item)
+    elif isinstance(value, dict):
+        for item in value.values():
+            yield from _numbers(item)
+    elif isinstance(value, Measure | Fit | Performance | Bdp | Elliptic | Round | Rig | Camera):
+        for item in msgspec.structs.astuple(value):
+            yield from _numbers(item)

@@ -1,0 +1,204 @@
+"""Everything that is ever said on the bus."""
+
+from typing import Final, Literal
+
+import msgspec
+
+from common.body.body import Bdp
+
+PROTOCOL: Final = 3
+
+ViewerNumber = Literal[1, 2]
+Facing = Literal["facade", "flank"]
+Status = Literal["empty", "measuring", "tracking", "predicted", "lost"]
+Views = Literal["both", "1", "2", "none"]
+CameraFault = Literal["", "frozen", "black", "saturated", "covered"]
+Pixel = tuple[float, float]
+Point = tuple[float, float, float]
+
+
+class Message(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What all messages carry."""
+
+    protocol: int = PROTOCOL
+
+
+class Moment(Message, frozen=True, kw_only=True):
+    """A message that speaks of a frame."""
+
+    frame: int
+    captured_s: float
+    """When it was taken: seconds since the clip began, or by the room's clock for a camera."""
+    clock_s: float
+    """The same moment by the room's clock (the integrator host's monotonic clock): for latency."""
+
+
+class Box(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The boundary of a silhouette, pixels: first and last column, first and last row (P11)."""
+
+    left: int
+    right: int
+    top: int
+    bottom: int
+
+
+class Measure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What one viewer reads off the opening posture, in its own pixels (section 2.4)."""
+
+    height_px: float
+    """t_n: height of the silhouette."""
+    centre_px: Pixel
+    """Where the centre of the body (x_c, y_c) lies in the picture."""
+    depth_px: float
+    """Half width of the trunk as this view shows it: SR_torso where it sees the flank (P21)."""
+    bdp_px: Bdp | None = None
+    """All BDPs but the trunk's depth, where this view sees the facade."""
+    arms_z_deg: tuple[float, float] | None = None
+    """theta_Z of the right and the left shoulder in the opening posture (P19)."""
+
+
+class Fit(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The stick body that one viewer fitted to its silhouette (Demir 2006, 3.1.4)."""
+
+    joints_px: tuple[Pixel, ...]
+    """JOINT_NAMES order; r is on the left of the picture (T10)."""
+    ratios: tuple[float, ...]
+    """LIMBS order: how much of its length each segment shows, in [0, 1]."""
+    breadth: float
+    """How much of its breadth the trunk shows, in [0, 1]."""
+    stature_px: float
+    """Height that the body would have standing upright."""
+    hidden: tuple[bool, ...]
+    """LIMBS order: what the silhouette does not show."""
+    score: float
+    """Similarity of silhouette and stick body, in [0, 1]."""
+    matches: int
+
+
+class Report(Moment, frozen=True, kw_only=True):
+    """What one viewer made of one frame."""
+
+    viewer: ViewerNumber
+    width: int
+    height: int
+    silhouette: bytes
+    """`pack(mask)`: the outline and nothing else of the picture."""
+    box: Box | None
+    """None where nobody is seen."""
+    area_px: int = 0
+    blobs: int = 0
+    """How many regions were large enough to be a person (P4)."""
+    cut: bool = False
+    """The silhouette touches the picture's border: the person is partly outside."""
+    upper_body_px: float = 0.0
+    """W_u-body: width of the upper body, the evidence behind `vote` (P25)."""
+    vote: Facing = "facade"
+    """What this view alone takes itself for (P26)."""
+    thresholds_px: tuple[float, float] = (0.0, 0.0)
+    """th_low and th_high that the vote was held against."""
+    measure: Measure | None = None
+    refusal: str = ""
+    """Why the posture is not the opening posture, where it is not."""
+    root_px: Pixel | None = None
+    """Where the navel lies in the picture."""
+    angles_deg: dict[str, float] = {}
+    """The angles that this view estimates; names as in ANGLE_NAMES."""
+    squatting: bool = False
+    """The navel is lower than in the opening posture (P33)."""
+    score: float = 0.0
+    """Similarity of silhouette and model in that pose, in [0, 1]."""
+    matches: int = 0
+    """How many times a model was matched for this frame."""
+    guide_frame: int = -1
+    """This viewer's frame that the guide in use had heard of; -1: none."""
+    fit: Fit | None = None
+    """The stick body, where this view is alone."""
+    next_s: float | None = None
+    """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
+    fault: CameraFault = ""
+    """What is wrong with the picture; nobody is seen in it then."""
+
+
+class Guide(Moment, frozen=True, kw_only=True):
+    """What the integrator tells the viewers for their next frame."""
+
+    frames: tuple[int, int]
+    """The last frame of each viewer that it has heard of; -1: none."""
+    status: Status = "empty"
+    bdp: Bdp | None = None
+    """Universal BDPs, metres; None until somebody was seen."""
+    measured: bool = False
+    """True once they come from the opening posture, False while they are a prior."""
+    facing: tuple[Facing, Facing] = ("facade", "flank")
+    scale_px_per_m: tuple[float, float] = (0.0, 0.0)
+    """Size of a metre at the body in each picture: reference scale times r_t,n (section 4.2); 0
+    where a camera has the body behind it."""
+    reference_px_per_m: tuple[float, float] = (0.0, 0.0)
+    """The same at the place where the BDPs were taken, where r_t1 = r_t2 = 1."""
+    root_px: tuple[Pixel, Pixel] = ((0.0, 0.0), (0.0, 0.0))
+    """Where to expect the navel in each picture."""
+    rest_row_px: tuple[float, float] = (0.0, 0.0)
+    """Row of each picture where the navel would be if the person stood upright there (P33)."""
+    pose: tuple[float, ...] = ()
+    """Predicted pose, POSE_NAMES order, metres and degrees."""
+
+
+class Body(Moment, frozen=True, kw_only=True):
+    """One body: the universal BAPs and the joints they give."""
+
+    status: Status
+    views: Views
+    joints_m: tuple[Point, ...] = ()
+    """JOINT_NAMES order, world; empty where there is no pose."""
+    joints_px: tuple[tuple[Pixel, ...], ...] = ()
+    """The same joints in the picture of each camera."""
+    pose: tuple[float, ...] = ()
+    """POSE_NAMES order; the angles are the smooth ones."""
+    angles_raw_deg: tuple[float, ...] = ()
+    """ANGLE_NAMES order, before smoothing."""
+    confidence: tuple[float, ...] = ()
+    """JOINT_NAMES order, in [0, 1]."""
+    score: tuple[float, float] = (0.0, 0.0)
+    facing: tuple[Facing, Facing] = ("facade", "flank")
+    bdp: Bdp | None = None
+    matches: int = 0
+
+
+class Performance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One performance of a posture, from standing to standing."""
+
+    name: str
+    onset: int
+    """Its first frame; `end` is its last."""
+    end: int
+    onset_s: float
+    """When these were taken, as `captured_s`."""
+    end_s: float
+    posterior: float
+    """Of this posture among all, in [0, 1]."""
+    times: int = 0
+    """How often its course was gone through: strides, kicks, circles."""
+
+
+class Posture(Moment, frozen=True, kw_only=True):
+    """What the body is doing."""
+
+    name: str
+    """One of the model's posture names, or "" while nothing can be said."""
+    log_likelihoods: dict[str, float] = {}
+    """log P(window | model) of each posture."""
+    segment: tuple[int, int] = (0, 0)
+    """First and last frame of the window that was judged."""
+    doing: str = ""
+    """The posture that is under way; "" while standing or doing something unknown."""
+    times: int = 0
+    """How often its course was gone through so far."""
+    event: Performance | None = None
+    """A performance that is over; told once."""
+
+
+class Picture(Moment, frozen=True, kw_only=True):
+    """A small picture for the page; published only where the settings say so."""
+
+    viewer: ViewerNumber
+    jpeg: bytes

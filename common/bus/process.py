@@ -1,0 +1,125 @@
+"""What every process of a run does alike: end on a signal, say how it is doing, keep a log."""
+
+import logging
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import Any, Final, Literal, NamedTuple
+
+import cv2
+import psutil
+
+from common.bus.bus import Bus
+from common.bus.control_messages import Pulse
+from common.bus.rate import Pace
+
+BEAT_S: Final = 1.0
+READY_S: Final = 60.0
+"""How long processes wait for each other at the start: a first run compiles for some seconds."""
+
+
+class Place(NamedTuple):
+    """Where a process runs."""
+
+    supervised: bool = False
+    """Started by a supervisor, which alone hears Ctrl-C and ends it with SIGTERM."""
+    log: Path | None = None
+    """The run's log; None: the terminal."""
+    kept: Path | None = None
+    """Folder of this run alone, for what a process leaves to the one that is started in its place;
+    None: nobody would be."""
+
+
+@contextmanager
+def process(name: str, place: Place) -> Iterator[threading.Event]:
+    """An event that is set when the process shall end; one thread for every library meanwhile."""
+    stop = threading.Event()
+
+    def end(_number: int, _frame: FrameType | None) -> None:
+        stop.set()
+
+    before = signal.signal(signal.SIGTERM, end)
+    before_int = signal.signal(signal.SIGINT, signal.SIG_IGN if place.supervised else end)
+    cv2.setNumThreads(1)
+    start_log(name, place.log)
+    try:
+        yield stop
+    finally:
+        signal.signal(signal.SIGTERM, before)
+        signal.signal(signal.SIGINT, before_int)
+
+
+def start_log(name: str, path: Path | None, level: int | str | None = None) -> None:
+    """Write this process's log to a file that all processes append to, or to the terminal."""
+    if path is not None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    logging.basicConfig(
+        filename=path,
+        level=level or os.environ.get("TRITRACK_LOG", "INFO").upper(),
+        format=_format(name),
+        force=True,
+    )
+
+
+@contextmanager
+def logged(name: str, path: Path) -> Iterator[None]:
+    """Write what the supervisor logs to the run's log alone: its terminal shows it in words."""
+    handler, own = logging.FileHandler(path), logging.getLogger("tritrack")
+    handler.setFormatter(logging.Formatter(_format(name)))
+    own.addHandler(handler)
+    own.propagate = False
+    try:
+        yield
+    finally:
+        own.propagate = True
+        own.removeHandler(handler)
+        handler.close()
+
+
+def _format(name: str) -> str:
+    return f"%(asctime)s {name:<11} %(levelname)-7s %(message)s"
+
+
+class Heart:
+    """Says once a second how a process is doing."""
+
+    def __init__(self, bus: Bus, name: str, pace: Pace) -> None:
+        """`pace` counts the process's frames."""
+        self._bus, self._name, self._pace = bus, name, pace
+        self._next_s = 0.0
+        self._self = psutil.Process()
+
+    def hurry(self) -> None:
+        """Let the next beat be published, however young the last one is: there is news."""
+        self._next_s = 0.0
+
+    def beat(
+        self,
+        state: Literal["starting", "ready", "running", "ended"],
+        detail: str = "",
+        **counts: Any,
+    ) -> None:
+        """Publish a Pulse, if the last is a second old or this is no ordinary one."""
+        now_s = time.monotonic()
+        if state == "running" and now_s < self._next_s:
+            return
+        self._next_s = now_s + BEAT_S
+        self._bus.publish(
+            Pulse(
+                process=self._name,
+                state=state,
+                detail=detail,
+                frames=self._pace.frames,
+                fps=self._pace.fps,
+                deadline_misses=self._pace.misses,
+                latency_p50_ms=self._pace.latency_ms(0.5),
+                latency_p99_ms=self._pace.latency_ms(0.99),
+                memory_mb=self._self.memory_info().rss / 1e6,
+                **counts,
+            )
+        )

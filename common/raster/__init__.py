@@ -1,0 +1,1 @@
+"""The matching kernel: bit-packed silhouettes, limbs drawn as row spans, similarity."""

@@ -1,0 +1,200 @@
+"""The matching kernel: a posed body's limbs in a view, drawn, and the score of a match.
+
+Masks are packed (`bits`), a limb becomes row intervals (`spans`).
+
+Source: Huang & Chung 2004, section 2.3.
+"""
+
+import math
+import time
+from functools import lru_cache
+from typing import Any, Final
+
+import numba
+import numpy as np
+
+from common.body.body import LIMBS, Vector, rest_pose
+from common.body.kinematics import ALL_LIMBS, FRAME, place_limbs
+from common.body.proportions import body_vector, thesis_bdp
+from common.raster.bits import count, count_both, unpack_words
+from common.raster.row_spans import PRIMITIVE, draw, spans
+from common.raster.similarity import Mask
+from common.rig.camera import Camera
+
+THINNEST: Final = 1e-3
+"""Least height of a section in the picture, as a share of its width: flat ends stay finite."""
+NEAREST_M: Final = 0.05
+"""A limb that reaches nearer to the camera, or behind it, is not drawn."""
+
+VIEW: Final = 17
+"""A view: R (9), t (3), focal x, y (px), centre x, y (px), depth (m; 0: true perspective)."""
+
+
+@numba.njit(cache=True)
+def seen_at(view: Any, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """(u, v, depth): where a view, of true perspective, shows a place of the world; pixels, metres.
+
+    What is nearer than NEAREST_M, or behind the camera, is shown as if it were so near.
+    """
+    depth = view[6] * x + view[7] * y + view[8] * z + view[11]
+    across = view[0] * x + view[1] * y + view[2] * z + view[9]
+    down = view[3] * x + view[4] * y + view[5] * z + view[10]
+    share = 1.0 / max(depth, NEAREST_M)
+    return across * share * view[12] + view[14], down * share * view[13] + view[15], depth
+
+
+@numba.njit(cache=True)
+def score(hit: int, drawn: int, seen: int) -> float:
+    """S of eq. (1) from counts of pixels: in both, in the model, in the silhouette (P9)."""
+    union = drawn + seen - hit
+    if union <= 0:
+        return 0.0
+    p = (seen - hit) / union
+    return math.exp(-p - (drawn - hit) / union) * (1.0 - p)
+
+
+@numba.njit(cache=True)
+def limb_size(body: Any, limb: int) -> tuple[float, float, float]:
+    """Half width, half depth and height of a limb from the body vector."""
+    if limb < 6:
+        return body[3 * limb], body[3 * limb + 1], body[3 * limb + 2]
+    at = 18 + 2 * (limb - 6)
+    return body[at], body[at], body[at + 1]
+
+
+@numba.njit(cache=True)
+def _section(
+    frames: Any, limb: int, long: float, short: float, view: Any
+) -> tuple[float, float, float]:
+    """(shear, stretch, half height at depth 1) of a limb's elliptic section in a view."""
+    sxx = sxy = syy = 0.0
+    for column, radius in ((3, long), (5, short)):
+        px = py = 0.0
+        for j in range(3):
+            px += view[j] * frames[limb, 3 * j + column]
+            py += view[3 + j] * frames[limb, 3 * j + column]
+        px, py = px * radius * view[12], py * radius * view[13]
+        sxx += px * px
+        sxy += px * py
+        syy += py * py
+    half_height = max(math.sqrt(syy), THINNEST * math.sqrt(sxx))
+    shear = sxy / (half_height * half_height)
+    # a limb that lies exactly across the picture has a section of no width at all
+    half_width = math.sqrt(max(sxx - shear * sxy, THINNEST * THINNEST * max(sxx, syy)))
+    return shear, half_width / half_height, half_height
+
+
+@numba.njit(cache=True)
+def limb_outline(frames: Any, body: Any, limb: int, view: Any, out: Any) -> bool:
+    """Outline of a placed limb: arms are round-ended, the others flat-ended cylinders (P5).
+
+    Args:
+        frames: (10, FRAME).
+        body: Body vector.
+        limb: Which one, as in LIMBS.
+        view: (VIEW,).
+        out: (PRIMITIVE,), written.
+
+    Returns:
+        False where it is not before the camera.
+    """
+    long, short, height = limb_size(body, limb)
+    ax, ay, depth_a = view[9], view[10], view[11]
+    bx = by = depth_b = 0.0
+    for j in range(3):
+        origin, axis = frames[limb, j], frames[limb, 4 + 3 * j] * height
+        ax, bx = ax + view[j] * origin, bx + view[j] * axis
+        ay, by = ay + view[3 + j] * origin, by + view[3 + j] * axis
+        depth_a, depth_b = depth_a + view[6 + j] * origin, depth_b + view[6 + j] * axis
+    bx, by, depth_b = ax + bx, ay + by, depth_a + depth_b
+    if view[16] != 0.0:
+        depth_a = depth_b = view[16]
+    elif depth_a < NEAREST_M or depth_b < NEAREST_M:
+        return False
+    shear, stretch, half_height = 0.0, 1.0, long * view[12]
+    if limb < 6:
+        shear, stretch, half_height = _section(frames, limb, long, short, view)
+    share_a, share_b = 1.0 / depth_a, 1.0 / depth_b
+    out[1] = ay * share_a * view[13] + view[15]
+    out[4] = by * share_b * view[13] + view[15]
+    out[0] = (ax * share_a * view[12] + view[14] - shear * out[1]) / stretch
+    out[3] = (bx * share_b * view[12] + view[14] - shear * out[4]) / stretch
+    out[2], out[5] = half_height * share_a, half_height * share_b
+    out[6], out[7] = shear, stretch
+    return True
+
+
+@numba.njit(cache=True)
+def draw_placed(frames: Any, body: Any, view: Any, limbs: int, width: int, bits: Any) -> None:
+    """OR some placed limbs (as bits of LIMBS) into packed rows (H, words)."""
+    height = bits.shape[0]
+    p = np.empty(PRIMITIVE)
+    first, last = np.empty(height, np.int32), np.empty(height, np.int32)
+    for limb in range(10):
+        if limbs >> limb & 1 and limb_outline(frames, body, limb, view, p):
+            top, bottom = spans(p, width, height, first, last)
+            draw(first, last, top, bottom, bits)
+
+
+@numba.njit(cache=True)
+def draw_limbs(body: Any, pose: Any, view: Any, limbs: int, width: int, bits: Any) -> None:
+    """OR some limbs of a posed body into packed rows (H, words)."""
+    frames = np.empty((10, FRAME))
+    place_limbs(body, pose, limbs, frames)
+    draw_placed(frames, body, view, limbs, width, bits)
+
+
+@numba.njit(cache=True)
+def match(
+    body: Any, pose: Any, view: Any, limbs: int, width: int, seen: Any, seen_px: int
+) -> float:
+    """S of a silhouette and some limbs of a posed body.
+
+    Args:
+        body: Body vector.
+        pose: The 25 motion parameters.
+        view: (VIEW,).
+        limbs: As bits of LIMBS.
+        width: Of the picture, pixels.
+        seen: The silhouette, packed (H, words).
+        seen_px: Its number of pixels.
+    """
+    return match_over(np.zeros_like(seen), body, pose, view, limbs, width, seen, seen_px)
+
+
+@numba.njit(cache=True)
+def match_over(
+    rest: Any, body: Any, pose: Any, view: Any, limbs: int, width: int, seen: Any, seen_px: int
+) -> float:
+    """The same where a rest (H, words) of the body is drawn already; it is left as it was."""
+    drawn = rest.copy()
+    draw_limbs(body, pose, view, limbs, width, drawn)
+    return score(count_both(drawn, seen), count(drawn), seen_px)
+
+
+@lru_cache(maxsize=16)
+def view_of(camera: Camera, depth_m: float = 0.0) -> Vector:
+    """A camera as the kernel wants it; with a depth: scaled orthography at that depth (T19)."""
+    K = camera.K
+    tail = [K[0][0], K[1][1], K[0][2], K[1][2], depth_m]
+    return np.concatenate([np.ravel(camera.R), camera.t, tail]).astype(np.float64)
+
+
+def draw_body(body: Vector, pose: Vector, view: Vector, size: tuple[int, int]) -> Mask:
+    """The picture of the body: a mask (H, W) of its ten cylinders."""
+    width, height = size
+    bits = np.zeros((height, (width + 63) // 64), np.uint64)
+    draw_limbs(body, pose, view, ALL_LIMBS, width, bits)
+    return unpack_words(bits, width)
+
+
+def warm() -> float:
+    """Compile the kernel or load it from numba's cache; returns the seconds that it took."""
+    began = time.perf_counter()
+    view = np.concatenate([np.eye(3).ravel(), np.zeros(3), [100.0, 100.0, 80.0, 60.0, 4.0]])
+    draw_body(body_vector(thesis_bdp(1.75)), rest_pose(), view, (160, 120))
+    return time.perf_counter() - began
+
+
+if __name__ == "__main__":
+    print(f"the matching kernel of {len(LIMBS)} limbs is compiled ({warm():.1f} s)")

@@ -1,0 +1,1 @@
+"""Clips and what decodes them, in a process that may die."""

@@ -1,0 +1,90 @@
+"""What a run knows of its clip."""
+
+import msgspec
+
+from common.body.body import Bdp
+from common.bus.messages import ViewerNumber
+from common.rig.camera import Rig
+from common.video.decoding import Source
+
+
+class Act(msgspec.Struct, frozen=True):
+    """One performance within a clip that holds several."""
+
+    name: str
+    first: int
+    """Its first frame; `last` is its last."""
+    last: int
+
+
+class Meta(msgspec.Struct, frozen=True):
+    """What a clip's `meta.json` tells; keys that are not listed here are left alone."""
+
+    performer: str = ""
+    posture: str = ""
+    posture_id: int | None = None
+    """-1: what is shown is no posture, whatever `posture` calls it."""
+    take: int = 0
+    acts: tuple[Act, ...] = ()
+    """What is performed when, where a clip holds more than one posture."""
+    fps: float | None = None
+    capture_s: dict[str, tuple[float, ...]] = {}
+    """When each frame of a camera was taken, where frames are missing."""
+
+
+class View(msgspec.Struct, frozen=True):
+    """One camera of a clip."""
+
+    number: ViewerNumber
+    source: Source
+    source_size: tuple[int, int]
+    size: tuple[int, int]
+    """Width and height to work at."""
+    fps: float
+    frames: int
+    """How many its file claims; 0 for a camera."""
+    capture_s: tuple[float, ...] = ()
+    background: str = ""
+    """A picture or video of the empty room; "" where there is none."""
+
+    def captured_s(self, index: int) -> float:
+        """When a frame of a file was taken, seconds since the clip began.
+
+        Frames beyond the end of `capture_s` follow its last at the frame rate.
+        """
+        beyond = index - len(self.capture_s) + 1
+        if beyond <= 0:
+            return self.capture_s[index]
+        return (self.capture_s[-1] + beyond / self.fps) if self.capture_s else index / self.fps
+
+
+class Clip(msgspec.Struct, frozen=True):
+    """One or two views of one room."""
+
+    name: str
+    views: tuple[View, ...]
+    every: int
+    rig: Rig | None
+    """Calibration at the working size, one camera a view; None where there is none."""
+    meta: Meta
+    warnings: tuple[str, ...] = ()
+    """What is odd but does not stop a run."""
+    body: Bdp | None = None
+    """The person's lengths, metres, where they were measured before."""
+
+
+def shortfall(view: View, came: int) -> str:
+    """What to say of a video that ended before it claimed to; "" where it did not."""
+    if came >= view.frames:
+        return ""
+    return f"{view.source} ends after {came} of {view.frames} frames: it was cut off"
+
+
+def both_cameras(clip: Clip) -> Rig | None:
+    """The clip's rig with a camera for each viewer; a viewer that is not there gets the other's."""
+    if clip.rig is None:
+        return None
+    own = {view.number: camera for view, camera in zip(clip.views, clip.rig.cameras, strict=True)}
+    any_camera = clip.rig.cameras[0]
+    cameras = (own.get(1, any_camera), own.get(2, any_camera))
+    return msgspec.structs.replace(clip.rig, cameras=cameras)

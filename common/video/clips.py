@@ -1,0 +1,192 @@
+"""Clips: where the frames of a run come from, checked before it begins."""
+
+import math
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack
+from itertools import pairwise
+from pathlib import Path
+from typing import Final
+
+import msgspec
+
+from common.bus.messages import ViewerNumber
+from common.config import Settings, size_of, working_size
+from common.rig.camera import Camera, Rig
+from common.rig.rig_file import CalibrationError, fitted, load_rig
+from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_sources import ClipError, Footage, companions_folder, footage_of
+from common.video.decoding import Decoder, DecoderDied, Source, Undecodable, VideoInfo
+
+SAME_RATE: Final = 0.01
+"""Frame rates that differ by less drift apart by less than a frame in a clip of 100."""
+
+AVI_HEAD: Final = b"RIFF"
+
+CAMERA_HZ: Final = 15.0
+"""Taken for the rate of a camera that names none: the paper's (P1)."""
+
+
+def open_clip(
+    settings: Settings,
+    decoder: Decoder | None = None,
+    numbers: Iterable[ViewerNumber] = (1, 2),
+) -> Clip:
+    """Find and check all that a run needs to know of its pictures.
+
+    Args:
+        settings: Name a clip folder, or a file or camera for each view, or both: a view's own
+            source goes before the folder's.
+        decoder: Looks into the files; a new one when None. Pass one to save its start.
+        numbers: The views to look at; the others are not touched, as they may be on other hosts.
+
+    Raises:
+        ClipError: When something is missing, empty, no video, or contradicts the rest.
+    """
+    named = [view for view in footage_of(settings) if view.number in set(numbers)]
+    if not named:
+        raise ClipError("there is nothing to look at: set clip, or camera_1 with source or device")
+    folder = companions_folder(settings, named)
+    meta = _meta(folder)
+    with ExitStack() as doors:
+        reader = decoder or doors.enter_context(Decoder())
+        views = tuple(_view(each, settings, meta, reader) for each in named)
+    _refuse_rates_that_differ(views)
+    return Clip(
+        name=folder.resolve().name if settings.clip else Path(str(named[0].source)).stem,
+        views=views,
+        every=settings.every,
+        rig=_rig(settings, folder, named, views),
+        meta=meta,
+        warnings=tuple(_oddities(views)),
+    )
+
+
+def find_calibration(settings: Settings, folder: Path) -> Path | None:
+    """The calibration that a run uses: the one named, else the clip's, else its parent folder's."""
+    if settings.calibration:
+        return Path(settings.calibration)
+    for place in (folder, folder.resolve().parent):
+        if (place / "calibration.json").is_file():
+            return place / "calibration.json"
+    return None
+
+
+def _meta(folder: Path) -> Meta:
+    path = folder / "meta.json"
+    try:
+        meta = msgspec.json.decode(path.read_bytes(), type=Meta)
+    except FileNotFoundError:
+        return Meta()
+    except (OSError, msgspec.DecodeError, RecursionError) as error:
+        raise ClipError(f"cannot read {path} ({error}): mend it or take it away") from error
+    if meta.fps is not None and not (math.isfinite(meta.fps) and meta.fps > 0):
+        raise ClipError(f"{path} names a rate of {meta.fps} frames a second: mend or remove fps")
+    for name, moments in meta.capture_s.items():
+        if not all(earlier < later for earlier, later in pairwise(moments)):
+            raise ClipError(f"{path}: capture_s of {name} does not increase: mend or remove it")
+    return meta
+
+
+def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> View:
+    info = _probed(named.source, decoder)
+    if named.settings.background:
+        _probed(named.settings.background, decoder)
+    of_a_file = isinstance(named.source, str)
+    fps = (settings.fps or meta.fps or info.fps) if of_a_file else (info.fps or CAMERA_HZ)
+    if fps <= 0:
+        raise ClipError(f"{named.source} has no frame rate: set fps in a meta.json beside it")
+    size = (info.width, info.height)
+    return View(
+        number=named.number,
+        source=named.source,
+        source_size=size,
+        size=working_size(size, size_of(settings.size)),
+        fps=fps,
+        frames=info.frames if of_a_file else 0,
+        capture_s=meta.capture_s.get(f"cam{named.number}", ()) if of_a_file else (),
+        background=named.settings.background,
+    )
+
+
+def _probed(source: Source, decoder: Decoder) -> VideoInfo:
+    if isinstance(source, str):
+        if not Path(source).is_file():
+            raise ClipError(f"there is no file {source}: check the path")
+        if Path(source).stat().st_size == 0:
+            raise ClipError(f"{source} is empty: copy or record it again")
+    try:
+        info = decoder.probe(source)
+    except (Undecodable, DecoderDied) as error:
+        raise ClipError(str(error)) from error
+    if isinstance(source, str):
+        _refuse_a_lost_head(Path(source))
+    return info
+
+
+def _refuse_a_lost_head(path: Path) -> None:
+    """OpenCV finds pictures behind a lost head too, but makes up their rate and number."""
+    with path.open("rb") as file:
+        if path.suffix.lower() == ".avi" and file.read(4) != AVI_HEAD:
+            raise ClipError(f"{path} is no AVI from its first byte on: copy or record it again")
+
+
+def _refuse_rates_that_differ(views: tuple[View, ...]) -> None:
+    files = [view for view in views if isinstance(view.source, str) and not view.capture_s]
+    for first, second in pairwise(files):
+        if abs(first.fps / second.fps - 1) > SAME_RATE:
+            raise ClipError(
+                f"{first.source} has {first.fps:g} frames a second, {second.source} "
+                f"{second.fps:g}: set fps or capture_s in a meta.json beside them"
+            )
+
+
+def _rig(
+    settings: Settings, folder: Path, named: list[Footage], views: tuple[View, ...]
+) -> Rig | None:
+    path = find_calibration(settings, folder)
+    if path is None:
+        return None
+    try:
+        rig = load_rig(path)
+        cameras = tuple(
+            _calibrated(rig, each, view, path, len(views) == 1)
+            for each, view in zip(named, views, strict=True)
+        )
+    except CalibrationError as error:
+        raise ClipError(str(error)) from error
+    width, height = views[0].size
+    return msgspec.structs.replace(rig, width=width, height=height, cameras=cameras)
+
+
+def _calibrated(rig: Rig, named: Footage, view: View, path: Path, alone: bool) -> Camera:
+    """A view's camera, by the name that the settings give or by its place in the file."""
+    names = [camera.name for camera in rig.cameras]
+    wanted = named.settings.calibrated_as
+    if wanted and wanted not in names:
+        raise ClipError(f"{path} has no camera {wanted!r}; it has {', '.join(names)}")
+    place = names.index(wanted) if wanted else view.number - 1
+    if alone and len(names) == 1:
+        place = 0
+    if place >= len(names):
+        raise ClipError(
+            f"{path} has {len(names)} camera, the clip has a view {view.number}: calibrate both, "
+            f"or set camera_{view.number}.calibrated_as"
+        )
+    seen = fitted(rig, view.source_size, str(path))
+    return fitted(seen, view.size, str(path)).cameras[place]
+
+
+def _oddities(views: tuple[View, ...]) -> Iterator[str]:
+    for view in views:
+        if view.capture_s and view.frames and len(view.capture_s) != view.frames:
+            yield (
+                f"meta.json has {len(view.capture_s)} capture times for camera {view.number}, "
+                f"{view.source} has {view.frames} frames"
+            )
+    for first, second in pairwise(views):
+        if first.source_size != second.source_size:
+            sizes = "{}x{} and {}x{}".format(*first.source_size, *second.source_size)
+            yield f"the views differ in size: {sizes}"
+        plain = not (first.capture_s or second.capture_s)
+        if plain and first.frames and second.frames and first.frames != second.frames:
+            yield f"the views differ in length: {first.frames} and {second.frames} frames"

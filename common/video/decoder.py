@@ -1,0 +1,116 @@
+"""The child that decodes: `python -m common.video.decoder PIPE` answers one source a line."""
+
+import itertools
+import json
+import os
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import IO, Any, NamedTuple
+
+import cv2
+
+from common.video.decoding import (
+    END,
+    FRAME,
+    HEADER,
+    INFO,
+    MAGIC,
+    REFUSED,
+    Picture,
+    Source,
+    cure,
+    named,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Grabbed:
+    """A frame of the source; without its picture where that was not asked for or is broken."""
+
+    index: int
+    grabbed_s: float
+    picture: Picture | None
+
+
+class Film(NamedTuple):
+    """An open source."""
+
+    fps: float
+    frames: int
+    grabs: Iterator[Grabbed]
+
+
+def main() -> None:
+    """Answer until the asker is gone."""
+    # Ctrl-C reaches the asker too, who ends this process: it must not look like a broken film.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    cv2.setNumThreads(1)
+    answers = os.fdopen(int(sys.argv[1]), "wb")
+    for line in sys.stdin:
+        serve(json.loads(line), answers)
+        answers.flush()
+
+
+def serve(request: dict[str, Any], answers: IO[bytes]) -> None:
+    """Say what a source is, send its frames if a size is given, say how many came."""
+    source, size = request["source"], request["size"]
+    film = opened(source, request["every"])
+    first = next((grab for grab in film.grabs if grab.picture is not None), None)
+    if first is None or first.picture is None:
+        refusal = f"{named(source)} gives no picture: {cure(source)}"
+        say(answers, REFUSED, payload=refusal.encode())
+        return
+    height, width = first.picture.shape[:2]
+    info = {"width": width, "height": height, "fps": film.fps, "frames": film.frames}
+    say(answers, INFO, payload=json.dumps(info).encode())
+    came = first.index + 1
+    for grab in itertools.chain([first], film.grabs) if size else ():
+        came = grab.index + 1
+        if grab.picture is not None:
+            say(answers, FRAME, grab, reduced(grab.picture, (size[0], size[1])).data)
+    say(answers, END, Grabbed(came, time.monotonic(), None))
+
+
+def opened(source: Source, every: int) -> Film:
+    """A video, a camera, or a still picture as a film of one frame."""
+    if isinstance(source, str) and cv2.haveImageReader(source) and cv2.imcount(source) == 1:
+        return Film(0.0, 1, iter([Grabbed(0, time.monotonic(), cv2.imread(source))]))
+    capture = cv2.VideoCapture(source)
+    fps, frames = capture.get(cv2.CAP_PROP_FPS), capture.get(cv2.CAP_PROP_FRAME_COUNT)
+    return Film(max(0.0, fps), max(0, round(frames)), grabs(capture, every))
+
+
+def grabs(capture: cv2.VideoCapture, every: int) -> Iterator[Grabbed]:
+    """Every frame, decoded to a picture where its index is a multiple of `every`."""
+    for index in itertools.count():
+        if not capture.grab():
+            return
+        now_s = time.monotonic()
+        picture = capture.retrieve()[1] if index % every == 0 else None
+        yield Grabbed(index, now_s, picture)
+
+
+def reduced(picture: Picture, size: tuple[int, int]) -> Picture:
+    """A picture of another size (width, height); each pixel is the mean of what it covers (P1)."""
+    if (picture.shape[1], picture.shape[0]) == size:
+        return picture
+    return cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
+
+
+def say(
+    answers: IO[bytes], kind: bytes, grab: Grabbed | None = None, payload: bytes | memoryview = b""
+) -> None:
+    """Send one answer; a picture at once, so that a live one does not wait."""
+    index, grabbed_s = (grab.index, grab.grabbed_s) if grab else (0, 0.0)
+    length = payload.nbytes if isinstance(payload, memoryview) else len(payload)
+    answers.write(HEADER.pack(MAGIC, kind, index, grabbed_s, length))
+    answers.write(payload)
+    if kind == FRAME:
+        answers.flush()
+
+
+if __name__ == "__main__":
+    main()

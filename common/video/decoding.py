@@ -1,0 +1,197 @@
+"""Frames of a video or a camera, decoded by a child process that may die in our place.
+
+OpenCV aborts the whole process on some uncompressed AVIs. So no process of ours decodes: it asks
+a child (common/video/decoder.py), which reads one source after another, shrinks the pictures and
+sends them through a pipe.
+"""
+
+import json
+import struct
+from collections.abc import Generator
+from typing import Any, Final, Self
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from common.video.child_process import Broken, Child
+
+HEADER: Final = struct.Struct("<4scIdI")
+"""What goes before every answer: magic, kind, index, grabbed_s, bytes that follow."""
+MAGIC: Final = b"ttf1"
+INFO: Final = b"i"
+FRAME: Final = b"f"
+END: Final = b"e"
+REFUSED: Final = b"r"
+
+MAX_TEXT_BYTES: Final = 1 << 16
+"""No answer but a picture is longer."""
+
+STALL_S: Final = 10.0
+"""A child that gives nothing for so long is stuck: opening a slow camera takes 3 s."""
+
+Picture = NDArray[np.uint8]
+"""(height, width, 3), blue, green, red."""
+
+Source = str | int
+"""A file, or the number of a camera of this host."""
+
+
+class Undecodable(ValueError):
+    """A source without a single picture; the text names it and the cure."""
+
+
+class DecoderDied(RuntimeError):
+    """The child broke on a source: the text names it, how far it came, how it died, the cure."""
+
+    def __init__(self, source: Source, frames: int, how: str) -> None:
+        """After `frames` frames of `source`."""
+        super().__init__(source, frames, how)
+        self.source, self.frames, self.how = source, frames, how
+
+    def __str__(self) -> str:
+        """One line."""
+        where = f"after {self.frames} frames ({self.how})"
+        return f"{named(self.source)} broke the decoder {where}: {cure(self.source)}"
+
+
+class VideoInfo(msgspec.Struct, frozen=True):
+    """What a source says of itself; only the size was seen."""
+
+    width: int
+    height: int
+    fps: float
+    """0 where it names none."""
+    frames: int
+    """0 where it names none, as a camera."""
+
+
+class Decoded(msgspec.Struct, frozen=True):
+    """One picture of a source."""
+
+    index: int
+    """Its place in the source, also where only every n-th is taken."""
+    grabbed_s: float
+    """When it was grabbed, by this host's monotonic clock."""
+    picture: Picture
+
+
+class _Answer(msgspec.Struct, frozen=True):
+    kind: bytes
+    index: int
+    grabbed_s: float
+    payload: NDArray[np.uint8]
+
+
+class Decoder:
+    """Reads source after source through one child.
+
+    The child starts with the first source; one that broke, or was left in the middle of a source,
+    is replaced at the next.
+    """
+
+    def __init__(self, stall_s: float = STALL_S) -> None:
+        """No child yet; one that gives nothing for `stall_s` will count as stuck."""
+        self.came = 0
+        """How many frames the source that was last read to its end really had."""
+        self._stall_s = stall_s
+        self._child: Child | None = None
+
+    def __enter__(self) -> Self:
+        """Nothing to do before the first source."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End the child."""
+        self.close()
+
+    @property
+    def pid(self) -> int | None:
+        """The child's process number; None while there is none."""
+        return self._child.pid if self._child else None
+
+    def probe(self, source: Source) -> VideoInfo:
+        """What a source is; its first picture is decoded for that.
+
+        Raises:
+            Undecodable: When it has none.
+            DecoderDied: When the child broke on it.
+        """
+        info, *_ = self._answers(source, None, 1)
+        return msgspec.json.decode(info.payload.tobytes(), type=VideoInfo)
+
+    def frames(
+        self, source: Source, size: tuple[int, int], every: int = 1
+    ) -> Generator[Decoded, None, None]:
+        """Every n-th picture of a source, reduced to `size` (width, height).
+
+        Raises:
+            Undecodable: When it has none.
+            DecoderDied: When the child broke on it; what came before is good.
+        """
+        width, height = size
+        for answer in self._answers(source, size, every):
+            if answer.kind == FRAME:
+                picture = answer.payload.reshape(height, width, 3)
+                yield Decoded(answer.index, answer.grabbed_s, picture)
+            elif answer.kind == END:
+                self.came = answer.index
+
+    def stop(self) -> None:
+        """End the child, from any thread; who reads its frames then meets DecoderDied."""
+        if self._child is not None:
+            self._child.kill()
+
+    def close(self) -> None:
+        """End the child and let go of its pipes; the next source gets a new one."""
+        if self._child is not None:
+            self._child.close()
+            self._child = None
+
+    def _answers(
+        self, source: Source, size: tuple[int, int] | None, every: int
+    ) -> Generator[_Answer, None, None]:
+        """INFO, then FRAMEs if a size is asked for, then END."""
+        if self._child is None:
+            self._child = Child("common.video.decoder", self._stall_s)
+        frames, whole = 0, False
+        try:
+            self._child.ask(json.dumps({"source": source, "size": size, "every": every}).encode())
+            while not whole:
+                answer = _next_answer(self._child, size)
+                whole = answer.kind in (END, REFUSED)
+                if answer.kind == REFUSED:
+                    raise Undecodable(answer.payload.tobytes().decode())
+                frames += answer.kind == FRAME
+                yield answer
+        except Broken as error:
+            raise DecoderDied(source, frames, str(error)) from error
+        finally:
+            if not whole:
+                self.close()
+
+
+def named(source: Source) -> str:
+    """A source as a message names it."""
+    return f"camera {source}" if isinstance(source, int) else source
+
+
+def cure(source: Source) -> str:
+    """What to do about a source that cannot be read."""
+    if isinstance(source, int):
+        return "see that it is plugged in and that no other program holds it"
+    return "convert it, for example to MJPEG: ffmpeg -i IN -c:v mjpeg -q:v 2 OUT.avi"
+
+
+def _next_answer(child: Child, size: tuple[int, int] | None) -> _Answer:
+    head = bytearray(HEADER.size)
+    child.read_into(memoryview(head))
+    magic, kind, index, grabbed_s, length = HEADER.unpack(head)
+    due = length <= MAX_TEXT_BYTES
+    if kind == FRAME:
+        due = size is not None and length == 3 * size[0] * size[1]
+    if magic != MAGIC or not due:
+        raise Broken("it sent what is no answer")
+    payload: Any = np.empty(length, np.uint8)
+    child.read_into(memoryview(payload))
+    return _Answer(kind, index, grabbed_s, payload)

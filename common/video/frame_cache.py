@@ -1,0 +1,65 @@
+"""What was decoded of a source, kept for the next reading of it where it is small enough."""
+
+from collections.abc import Iterator
+from typing import Final, Protocol
+
+from common.video.decoding import Decoded, Source
+
+MOST_BYTES: Final = 1 << 27
+"""What a reel keeps at most: 38 s at 320x240 and 15 frames a second, 2.5 minutes at 160x120."""
+
+
+class Reader(Protocol):
+    """Whatever gives the pictures of a source: a decoder, or a reel before it."""
+
+    @property
+    def came(self) -> int:
+        """How many frames the source that was last read to its end really had."""
+
+    def frames(self, source: Source, size: tuple[int, int], every: int = 1) -> Iterator[Decoded]:
+        """Every n-th picture of a source, reduced to `size` (width, height)."""
+
+
+class Reel:
+    """Reads a clip through a decoder; what was read to its end and is small is decoded once.
+
+    A clip is read to learn its room and again to follow who is in it. A reel is for one clip: it
+    does not notice that a file has changed.
+    """
+
+    def __init__(self, decoder: Reader, most_bytes: int = MOST_BYTES) -> None:
+        """Nothing kept yet."""
+        self._decoder = decoder
+        self._most_bytes = most_bytes
+        self._named: tuple[Source, tuple[int, int]] | None = None
+        self._kept: list[Decoded] = []
+
+    @property
+    def came(self) -> int:
+        """How many frames the source that was last decoded to its end really had."""
+        return self._decoder.came
+
+    def frames(self, source: Source, size: tuple[int, int], every: int = 1) -> Iterator[Decoded]:
+        """Every n-th picture of a source, reduced to `size` (width, height).
+
+        Raises:
+            Undecodable: When it has none.
+            DecoderDied: When the decoder broke on it; what came before is good.
+        """
+        if (source, size) == self._named:
+            return (got for got in self._kept if got.index % every == 0)
+        pictures = self._decoder.frames(source, size, every)
+        return self._keeping(pictures, source, size) if every == 1 else pictures
+
+    def _keeping(
+        self, pictures: Iterator[Decoded], source: Source, size: tuple[int, int]
+    ) -> Iterator[Decoded]:
+        """Hand all pictures on, and keep them once they are known to be all and to fit."""
+        kept: list[Decoded] = []
+        room = self._most_bytes // (3 * size[0] * size[1])
+        for got in pictures:
+            if len(kept) <= room:
+                kept.append(got)
+            yield got
+        if len(kept) <= room:
+            self._named, self._kept = (source, size), kept

@@ -1,0 +1,50 @@
+"""What was odd about a performance, and what was made of it instead: a line each."""
+
+from typing import NamedTuple
+
+from integrator import merge_state
+from integrator.pairing import Pair
+
+
+class State(NamedTuple):
+    """How often each viewer saw somebody, and how often only a part of them."""
+
+    seen: tuple[int, int] = (0, 0)
+    cut: tuple[int, int] = (0, 0)
+
+
+def step(state: State, pair: Pair) -> State:
+    """One instant more."""
+    somebody = [report is not None and report.box is not None for report in pair]
+    partly = [report is not None and report.cut for report in pair]
+    return State(
+        (state.seen[0] + somebody[0], state.seen[1] + somebody[1]),
+        (state.cut[0] + partly[0], state.cut[1] + partly[1]),
+    )
+
+
+def assumed(merged: merge_state.State) -> list[str]:
+    """What is known to be odd from the start: no calibration."""
+    if merged.scale_source == "calibrated":
+        return []
+    return [
+        "no calibration: a rig of the paper's kind is assumed, its scale from a stature of "
+        f"{merged.settings.body.stature_m:g} m (make one: tritrack calibrate poles)"
+    ]
+
+
+def warnings(state: State, merged: merge_state.State) -> list[str]:
+    """All that was odd, once the performance is over."""
+    told = assumed(merged)
+    if any(state.seen) and not merged.opening.measured:
+        told.append(
+            "nobody took the opening posture, upright with stretched arms: the body has the "
+            "thesis's proportions, unmeasured"
+        )
+    for viewer, (seen, cut) in enumerate(zip(state.seen, state.cut, strict=True), 1):
+        if cut:
+            told.append(
+                f"viewer {viewer} saw the person partly outside its picture in {cut} of {seen} "
+                "frames: what is outside is guessed"
+            )
+    return told

@@ -1,0 +1,1 @@
+"""Poses and bodies fitted to both silhouettes."""

@@ -1,0 +1,139 @@
+"""A body fitted to the person's outlines as they move: widths and arms."""
+
+from typing import Any, Final
+
+import msgspec
+import numba
+import numpy as np
+
+from common.body.body import LIMBS, Bdp, Vector
+from common.body.kinematics import ALL_LIMBS
+from common.body.proportions import body_vector, stature, thesis_bdp
+from common.raster.kernel import match
+from common.rig.camera import Rig
+from integrator.fit.silhouette_pair import outlines_of
+from integrator.opening_posture import Opening, Sample
+from integrator.pairing import Seen
+
+GROUPS: Final[tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]] = (
+    (("torso",), ("long_radius",)),
+    (("torso",), ("short_radius",)),
+    (("head",), ("long_radius", "short_radius")),
+    (("r_upper_leg", "l_upper_leg"), ("long_radius", "short_radius")),
+    (("r_lower_leg", "l_lower_leg"), ("long_radius", "short_radius")),
+    (("r_upper_arm", "l_upper_arm"), ("radius",)),
+    (("r_lower_arm", "l_lower_arm"), ("radius",)),
+    (tuple(limb for limb in LIMBS if limb.endswith("arm")), ("height",)),
+)
+"""What is scaled together: limbs and their lengths. The heights of head, trunk and legs stay: they
+make up the stature, which the silhouette tells."""
+
+TELLING: Final = 1.2
+"""Sum of S over both views; an outline that the body fits less is not of it alone."""
+WIDEST: Final = 1.2
+"""Times the thesis's radii at that stature: a limb that would be wider covers something else."""
+FACTORS: Final = (0.85, 0.93, 1.08, 1.18)
+ROUNDS: Final = 3
+
+
+RADII: Final = [*range(0, 18, 3), *range(1, 18, 3), 18, 20, 22, 24]
+"""Where a body vector has the radii of the limbs."""
+MOST_SAMPLES: Final = 6
+APART: Final = 12
+"""Frames between two samples: most of a second, in which a pose changes."""
+
+
+def step(opening: Opening, rig: Rig, seen: Seen, pose: Vector) -> Opening:
+    """One instant more of a person in view.
+
+    The body is fitted to the first instant that shows the whole person in both views, and once
+    more to that and a few later ones together: a prior, or, once it is over, what the opening
+    posture told. An extra of `default` mode: the paper measures once.
+
+    Args:
+        opening: What is known of the body; returned as it is while it is being measured.
+        rig: Two cameras.
+        seen: Both views' reports.
+        pose: As found with the body so far, (25,).
+    """
+    first, second = seen
+    done = opening.under_way or len(opening.samples) == MOST_SAMPLES
+    if done or first is None or second is None or opening.bdp is None:
+        return opening
+    if first.cut or second.cut:
+        return opening
+    if opening.samples and opening.unsampled < APART:
+        return opening._replace(unsampled=opening.unsampled + 1)
+    samples, body = (*opening.samples, Sample(pose, (first, second))), opening.bdp
+    if float(fit(body_vector(body), *_outlines(rig, samples[-1:]))) < TELLING:
+        return opening
+    if len(samples) in (1, MOST_SAMPLES):
+        body = adapted(body, rig, samples)
+    return opening._replace(bdp=body, samples=samples, unsampled=0)
+
+
+def adapted(bdp: Bdp, rig: Rig, samples: tuple[Sample, ...]) -> Bdp:
+    """The body whose outline fits the silhouettes of all samples best, group after group.
+
+    Args:
+        bdp: The body so far.
+        rig: Two cameras.
+        samples: Both views of each, in pictures of one size.
+    """
+    outlines = _outlines(rig, samples)
+    best, body = float(fit(body_vector(bdp), *outlines)), bdp
+    for _ in range(ROUNDS):
+        before = best
+        for limbs, lengths in GROUPS:
+            for trial in [_scaled(body, limbs, lengths, factor) for factor in FACTORS]:
+                found = float(fit(body_vector(trial), *outlines))
+                if found > best and _of_a_person(trial):
+                    best, body = found, trial
+        if best == before:
+            break
+    return body
+
+
+@numba.njit(cache=True)
+def fit(body: Any, poses: Any, views: Any, seen: Any, seen_px: Any, width: int) -> float:
+    """Sum of S over all samples and views.
+
+    Args:
+        body: Body vector.
+        poses: (n, 25).
+        views: (2, VIEW).
+        seen: Silhouettes, packed, (n, 2, H, words).
+        seen_px: Their numbers of pixels, (n, 2).
+        width: Of the pictures.
+    """
+    total = 0.0
+    for i in range(poses.shape[0]):
+        for n in range(2):
+            total += match(body, poses[i], views[n], ALL_LIMBS, width, seen[i, n], seen_px[i, n])
+    return total
+
+
+def _outlines(rig: Rig, samples: tuple[Sample, ...]) -> tuple[Any, Any, Any, Any, int]:
+    """Poses, views, silhouettes, their areas and their width, as `fit` wants them."""
+    each = [outlines_of(rig, sample.seen) for sample in samples]
+    return (
+        np.array([sample.pose for sample in samples]),
+        each[0].views,
+        np.array([both.seen for both in each]),
+        np.array([both.seen_px for both in each]),
+        each[0].width,
+    )
+
+
+def _of_a_person(bdp: Bdp) -> bool:
+    usual = body_vector(thesis_bdp(stature(bdp)))
+    return bool((body_vector(bdp)[RADII] <= WIDEST * usual[RADII]).all())
+
+
+def _scaled(bdp: Bdp, limbs: tuple[str, ...], lengths: tuple[str, ...], factor: float) -> Bdp:
+    parts = {}
+    for limb in limbs:
+        part = getattr(bdp, limb)
+        longer = {name: getattr(part, name) * factor for name in lengths}
+        parts[limb] = msgspec.structs.replace(part, **longer)
+    return msgspec.structs.replace(bdp, **parts)

@@ -1,0 +1,48 @@
+"""Both views' silhouettes of one instant, as the kernel takes them."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Vector
+from common.bus.messages import Report
+from common.raster.bits import Bits, count, words_of_rows
+from common.raster.kernel import view_of
+from common.rig.camera import Rig
+
+
+class Outlines(NamedTuple):
+    """What both views show of a person, in pictures of one size."""
+
+    views: Vector
+    """(2, VIEW), true perspective."""
+    seen: Bits
+    """The silhouettes, packed (2, H, words)."""
+    seen_px: NDArray[np.int64]
+    """Their numbers of pixels, (2,)."""
+    width: int
+    """Of the pictures, pixels."""
+
+
+def outlines_of(rig: Rig, seen: tuple[Report, Report]) -> Outlines:
+    """The silhouettes of two reports, and the views of a rig.
+
+    Pictures of two sizes are both taken to be as wide and as high as the larger is.
+    """
+    each = [packed(report) for report in seen]
+    rows, words = np.max([mask.shape for mask in each], axis=0)
+    masks = np.zeros((2, rows, words), np.uint64)
+    for whole, mask in zip(masks, each, strict=True):
+        whole[: mask.shape[0], : mask.shape[1]] = mask
+    return Outlines(
+        np.array([view_of(camera) for camera in rig.cameras]),
+        masks,
+        np.array([count(mask) for mask in masks]),
+        max(report.width for report in seen),
+    )
+
+
+def packed(report: Report) -> Bits:
+    """The silhouette of a report, (H, words)."""
+    return words_of_rows(report.silhouette, report.width, report.height)

@@ -1,0 +1,206 @@
+"""What two outlines show of one piece of space: a person, without what else differs from the room.
+
+A place that both views show belongs to their common hull (Laurentini 1994); a person is one piece
+of it, and the largest and tallest. Shadows, glare and moved furniture are others, or none.
+"""
+
+from typing import Any, Final, NamedTuple
+
+import cv2
+import msgspec
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from common.bus.message_codec import pack, unpack
+from common.bus.messages import Report
+from common.raster.bounds import box_of, is_cut
+from common.raster.kernel import NEAREST_M, seen_at, view_of
+from common.raster.similarity import Mask
+from common.rig.camera import Camera, Rig, project
+from integrator.pairing import Pair
+from integrator.rig.perspective import px_per_m, triangulate
+from integrator.rig.undistortion import straight
+
+CELL_M: Final = 0.05
+"""Thinner than an arm, so that it stays in one piece with its hand."""
+ASIDE_CELLS: Final = 40
+"""2 m to each side of the middle of the outlines, which strays draw away from the person."""
+UP_CELLS: Final = 48
+FLOOR_M: Final = 0.05
+"""What is lower lies on the floor."""
+REACH_CELLS: Final = 10
+"""How far an arm may reach out of one of the pictures."""
+STRAY_SHARE: Final = 0.03
+"""Less than this of an outline is left as it is: the hull is coarse."""
+
+
+class Cleaned(NamedTuple):
+    """Two reports of one piece, and whether anything else was in them."""
+
+    pair: Pair
+    strays: bool
+
+
+def cleaned(rig: Rig, pair: Pair) -> Cleaned:
+    """The reports of an instant without what is no part of the person.
+
+    Args:
+        rig: Two cameras; their world has y up and its floor at 0.
+        pair: What was seen, left as it is where one view alone shows somebody.
+    """
+    first, second = pair.with_somebody
+    if first is None or second is None:
+        return Cleaned(pair, False)
+    masks = (unpack(first), unpack(second))
+    kept = one_piece(rig, masks)
+    if kept is None or not any(
+        after.sum() < (1.0 - STRAY_SHARE) * before.sum()
+        for after, before in zip(kept, masks, strict=True)
+    ):
+        return Cleaned(pair, False)
+    return Cleaned(Pair(_told(first, kept[0]), _told(second, kept[1])), True)
+
+
+def one_piece(rig: Rig, masks: tuple[Mask, Mask]) -> tuple[Mask, Mask] | None:
+    """Both outlines' parts that show the largest piece of their hull; None where there is none.
+
+    Args:
+        rig: Two cameras.
+        masks: Not empty.
+    """
+    first, second = (_middle_px(mask) for mask in masks)
+    middle_m = triangulate((rig.cameras[0], rig.cameras[1]), (first, second))
+    if not np.isfinite(middle_m).all():
+        return None
+    corner_m = middle_m - ASIDE_CELLS * CELL_M
+    corner_m[1] = FLOOR_M
+    views = np.array([view_of(camera) for camera in rig.cameras])
+    full = np.zeros((2 * ASIDE_CELLS, UP_CELLS, 2 * ASIDE_CELLS), np.int32)
+    for view, mask, camera in zip(views, masks, rig.cameras, strict=True):
+        _carve(full, corner_m, view, straight(mask, camera))
+    piece = _largest(full)
+    if not len(piece):
+        return None
+    places_m = corner_m + (piece + 0.5) * CELL_M
+    kept = [
+        mask & _shown(places_m, camera, mask)
+        for mask, camera in zip(masks, rig.cameras, strict=True)
+    ]
+    return (kept[0], kept[1]) if kept[0].any() and kept[1].any() else None
+
+
+def _middle_px(mask: Mask) -> tuple[float, float]:
+    rows, columns = np.nonzero(mask)
+    return float(np.median(columns)) + 0.5, float(np.median(rows)) + 0.5
+
+
+@numba.njit(cache=True)
+def _carve(full: Any, corner_m: Any, view: Any, mask: Any) -> None:
+    """Count the views that see each cell covered; -1 where one sees the room there.
+
+    What one view covers and the other has outside its picture may be an arm that reaches out.
+    """
+    height, width = mask.shape
+    for i in range(full.shape[0]):
+        for j in range(full.shape[1]):
+            for k in range(full.shape[2]):
+                if full[i, j, k] < 0:
+                    continue
+                x = corner_m[0] + (i + 0.5) * CELL_M
+                y = corner_m[1] + (j + 0.5) * CELL_M
+                z = corner_m[2] + (k + 0.5) * CELL_M
+                u, v, depth = seen_at(view, x, y, z)
+                if depth >= NEAREST_M and 0.0 <= u < width and 0.0 <= v < height:
+                    full[i, j, k] = full[i, j, k] + 1 if mask[int(v), int(u)] else -1
+
+
+@numba.njit(cache=True)
+def _largest(full: Any) -> Any:
+    """Cells, (n, 3), of the piece that both views see with the most volume times height.
+
+    And of what one view sees next to it, an arm that reaches out of the other's picture.
+    """
+    first, last, most, end = 0, 0, 0, 0
+    piece = np.empty((full.size, 3), np.int64)
+    for i in range(full.shape[0]):
+        for j in range(full.shape[1]):
+            for k in range(full.shape[2]):
+                if full[i, j, k] == 2:
+                    piece[end] = i, j, k
+                    full[i, j, k] = -1
+                    begin, end = end, _spread(full, 2, piece, end, end + 1)
+                    rows = piece[begin:end, 1]
+                    worth = (end - begin) * (rows.max() - rows.min() + 1)
+                    if worth > most:
+                        first, last, most = begin, end, worth
+    piece[: last - first] = piece[first:last].copy()
+    begin, end = 0, last - first
+    for _ in range(REACH_CELLS):
+        before = end
+        end = _ring(full, piece, begin, end)
+        begin = before
+    return piece[:end]
+
+
+@numba.njit(cache=True)
+def _spread(full: Any, value: int, piece: Any, done: int, end: int) -> int:
+    """Write all that hangs together with cells of a piece behind them; returns its end."""
+    while done < end:
+        end = _around(full, value, piece, done, end)
+        done += 1
+    return end
+
+
+@numba.njit(cache=True)
+def _ring(full: Any, piece: Any, begin: int, end: int) -> int:
+    """Write what one view alone sees next to some cells of a piece; returns its new end."""
+    stop = end
+    for at in range(begin, stop):
+        end = _around(full, 1, piece, at, end)
+    return end
+
+
+@numba.njit(cache=True)
+def _around(full: Any, value: int, piece: Any, at: int, end: int) -> int:
+    """Write the cells with a value that share a side with a cell behind a piece, and mark them."""
+    for axis in range(3):
+        for step in (-1, 1):
+            i, j, k = piece[at]
+            if axis == 0:
+                i += step
+            elif axis == 1:
+                j += step
+            else:
+                k += step
+            inside = 0 <= i < full.shape[0] and 0 <= j < full.shape[1] and 0 <= k < full.shape[2]
+            if inside and full[i, j, k] == value:
+                full[i, j, k] = -1
+                piece[end] = i, j, k
+                end += 1
+    return end
+
+
+def _shown(places_m: NDArray[np.float64], camera: Camera, mask: Mask) -> Mask:
+    """Where a view shows places, each as large as a cell is there."""
+    height, width = mask.shape
+    u, v = project(camera, places_m).T  # nan behind the camera, which is in no picture
+    inside = (u >= 0) & (v >= 0) & (u < width) & (v < height)
+    dots = np.zeros(mask.shape, np.uint8)
+    dots[v[inside].astype(int), u[inside].astype(int)] = 1
+    reach = int(np.ceil(CELL_M * px_per_m(camera, places_m.mean(axis=0))))
+    around = np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
+    return np.asarray(cv2.dilate(dots, around) > 0)
+
+
+def _told(report: Report, mask: Mask) -> Report:
+    """The report with another outline."""
+    box = box_of(mask)
+    assert box is not None
+    return msgspec.structs.replace(
+        report,
+        silhouette=pack(mask),
+        box=box,
+        area_px=int(mask.sum()),
+        cut=is_cut(box, mask.shape),
+    )

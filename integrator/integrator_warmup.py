@@ -1,0 +1,71 @@
+"""Made-up reports, merged once, so that all is compiled and loaded before the first real ones."""
+
+from typing import Final
+
+import msgspec
+import numpy as np
+
+from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
+from common.body.proportions import body_vector, thesis_bdp
+from common.bus.message_codec import pack, unpack
+from common.bus.messages import Report, ViewerNumber
+from common.config import Settings
+from common.raster.bounds import box_of
+from common.raster.kernel import draw_body, view_of
+from common.rig.camera import Rig, paper_rig
+from integrator import merge
+from integrator.fit import pose_refinement, visual_hull
+from integrator.pairing import Pair
+
+VIEWERS: Final[tuple[ViewerNumber, ...]] = (1, 2)
+
+
+def rehearse(settings: Settings, size: tuple[int, int]) -> None:
+    """Merge three pairs of reports of somebody who stands, in a calibrated room and in another.
+
+    Args:
+        settings: Of the run.
+        size: (width, height) of the working picture.
+    """
+    known = _rig(size)
+    for rig in (known, None):
+        state = merge.init(rig, 1.0, settings)
+        for index in range(3):
+            first, second = (_report(viewer, index, size, known) for viewer in VIEWERS)
+            state, _, _ = merge.step(state, Pair(first, second))
+    _match_elsewhere(known, (_report(1, 0, size, known), _report(2, 0, size, known)))
+
+
+def _match_elsewhere(rig: Rig, seen: tuple[Report, Report]) -> None:
+    """Match a pose that nobody is sure of, beside the outlines, of which one has a stray."""
+    stray = unpack(seen[0])
+    stray[: len(stray) // 20, : len(stray) // 20] = True
+    visual_hull.cleaned(
+        rig, Pair(msgspec.structs.replace(seen[0], silhouette=pack(stray)), seen[1])
+    )
+    aside, body = rest_pose(), body_vector(thesis_bdp(1.75))
+    aside[:2] = 0.5, 1.0
+    pose_refinement.instead(aside, np.full(len(JOINT_NAMES), 0.1), aside, False, body, rig, seen)
+
+
+def _rig(size: tuple[int, int]) -> Rig:
+    return paper_rig(size, (1.25 * size[0],) * 2, (4.5, 4.5))
+
+
+def _report(viewer: ViewerNumber, index: int, size: tuple[int, int], rig: Rig) -> Report:
+    width, height = size
+    pose = rest_pose()
+    pose[POSE_INDEX["y"]] = 1.0
+    view = view_of(rig.cameras[viewer - 1])
+    mask = draw_body(body_vector(thesis_bdp(1.75)), pose, view, size)
+    return Report(
+        frame=index,
+        captured_s=float(index),
+        clock_s=float(index),
+        viewer=viewer,
+        width=width,
+        height=height,
+        silhouette=pack(mask),
+        box=box_of(mask),
+        root_px=(width / 2, height / 2),
+    )

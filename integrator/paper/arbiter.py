@@ -1,0 +1,66 @@
+"""Facade or flank, settled between the two viewers: exactly one sees the facade (section 4.3)."""
+
+import math
+from typing import NamedTuple
+
+from common.body.body import POSE_INDEX, Vector
+from common.bus.messages import Facing
+from common.rig.camera import Rig, centre
+
+
+class Sight(NamedTuple):
+    """What one viewer brings before the arbiter."""
+
+    before: Facing
+    """What it was held to see at the frame before."""
+    vote: Facing
+    """What it takes itself to see now."""
+    width_px: float
+    """W_u-body: the width of the upper body."""
+    th_low_px: float
+    th_high_px: float
+
+
+def arbitrate(first: Sight, second: Sight, scale_ratio: float = 1.0) -> tuple[Facing, Facing]:
+    """What viewers 1 and 2 see, given that one of them sees the facade and the other the flank.
+
+    A viewer that changes alone would leave both seeing the same. It is believed, and the other
+    changed as well, when its width lies farther beyond the threshold that it crossed than the
+    other's lies from the threshold that it would have to cross; otherwise it is changed back. At
+    a tie both stay as they were: the print's > in rules 1 and 2 and >= in rules 3 and 4 come to
+    that. When both change at once, or none does, the votes stand.
+
+    Args:
+        first: Viewer 1; its `before` differs from viewer 2's.
+        second: Viewer 2.
+        scale_ratio: What brings viewer 2's pixels to viewer 1's scale. 1.0 compares raw pixels
+            as printed, which a larger picture in one view biases.
+
+    Source: section 4.3, rules (1)-(4) (P48); the start is (facade, flank) (P47).
+    """
+    if (first.vote == first.before) == (second.vote == second.before):
+        return first.vote, second.vote
+    strength_1 = _strength_px(first)
+    strength_2 = _strength_px(second) * scale_ratio
+    if first.vote != first.before:
+        believed = strength_1 > strength_2
+        return (first.vote, first.before) if believed else (first.before, second.before)
+    believed = strength_2 > strength_1
+    return (second.before, second.vote) if believed else (first.before, second.before)
+
+
+def _strength_px(sight: Sight) -> float:
+    """Distance of the width from the threshold that was, or would have to be, crossed."""
+    changed = sight.vote != sight.before
+    to_facade = (sight.vote == "facade") == changed
+    return abs(sight.width_px - (sight.th_high_px if to_facade else sight.th_low_px))
+
+
+def facing_of(rig: Rig, pose: Vector) -> tuple[Facing, Facing]:
+    """What viewers 1 and 2 see of a pose that is known: who is more before it, or behind it."""
+    yaw = math.radians(pose[POSE_INDEX["torso_y"]])
+    shares = []
+    for camera in rig.cameras:
+        x, _, z = (centre(camera) - pose[:3]).tolist()
+        shares.append(abs(math.sin(yaw) * x + math.cos(yaw) * z) / math.hypot(x, z))
+    return ("facade", "flank") if shares[0] >= shares[1] else ("flank", "facade")

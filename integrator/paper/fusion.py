@@ -1,0 +1,65 @@
+"""Two views' angles, one body's: who is believed about what (section 4.4)."""
+
+from typing import Final
+
+from common.body.body import POSE_INDEX, Vector, wrapped_deg
+from common.bus.messages import Report
+
+LIFT_WITHIN_DEG: Final = 5.0
+"""A leg whose theta_Z is this near to 180 is seen from its flank: it may be lifted (P53, M16)."""
+
+ARM_FROM_FACADE: Final = (
+    "r_shoulder_y",
+    "r_shoulder_z",
+    "l_shoulder_y",
+    "l_shoulder_z",
+    "r_elbow_x",
+    "l_elbow_x",
+)
+ARM_FROM_FLANK: Final = ("r_shoulder_x", "l_shoulder_x")
+
+
+def lifted(hip_z_deg: float) -> bool:
+    """Whether a leg may be lifted, by the facade's theta_Z of its hip (P53, M16).
+
+    The print has 175 < theta_Z < 180 for the right leg; 180 itself is the resting value and on
+    the search's grid, so the range closes there, and the left leg mirrors it.
+    """
+    return abs(wrapped_deg(hip_z_deg - 180.0)) <= LIFT_WITHIN_DEG
+
+
+def fused(before: Vector, facade: Report | None, flank: Report | None) -> Vector:
+    """The universal pose from both views' angles.
+
+    Arms: theta_X of the shoulders from the flank, the rest from the facade (P51). Legs: theta_Z
+    of the hips from the facade; theta_X of hips and knees from the facade where it finds the knees
+    bent, squatting; else from the flank where the leg is lifted, else 0 (P52, P53). What no view
+    tells stays as it was.
+
+    Args:
+        before: Pose of the frame before, (25,); its position and trunk are not touched.
+        facade: Report of the view that sees the facade, if it has a body.
+        flank: Report of the view that sees the flank, if it has a body.
+    """
+    pose = before.copy()
+    if flank is not None:
+        _take(pose, flank, ARM_FROM_FLANK)
+    if facade is not None:
+        _take(pose, facade, ARM_FROM_FACADE)
+    for side in ("r", "l"):
+        hip_x, knee_x = f"{side}_hip_x", f"{side}_knee_x"
+        if facade is not None:
+            _take(pose, facade, (f"{side}_hip_z",))
+        if facade is not None and facade.squatting:
+            _take(pose, facade, (hip_x, knee_x))
+        elif flank is not None and (facade is None or lifted(pose[POSE_INDEX[f"{side}_hip_z"]])):
+            _take(pose, flank, (hip_x, knee_x))
+        elif facade is not None:
+            pose[POSE_INDEX[hip_x]] = pose[POSE_INDEX[knee_x]] = 0.0
+    return pose
+
+
+def _take(pose: Vector, report: Report, names: tuple[str, ...]) -> None:
+    for name in names:
+        if name in report.angles_deg:
+            pose[POSE_INDEX[name]] = report.angles_deg[name]

@@ -1,0 +1,1 @@
+"""Poses of joints: inverse kinematics, limits, smoothing."""

@@ -1,0 +1,178 @@
+"""From twelve joints to the angles of the ten cylinders: the way back through the kinematics."""
+
+import math
+from typing import Any, Final
+
+import numba
+import numpy as np
+
+from common.body.body import LIMITS_DEG, POSE_NAMES
+
+PLACES: Final = {
+    f"{side}_{name}": 2 * i + (side == "r")
+    for i, name in enumerate(("shoulder", "elbow", "wrist", "hip", "knee", "ankle"))
+    for side in "lr"
+}
+"""Where each joint stands among the twelve."""
+
+STRAIGHT_DEG: Final = 12.0
+"""An arm that is bent less does not tell how it is twisted."""
+ASTRAY: Final = 3.0
+"""How much worse a degree beyond a joint's limits is than a degree from the pose before."""
+
+LOW_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[0] for name in POSE_NAMES])
+HIGH_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[1] for name in POSE_NAMES])
+"""Limits of each parameter of a pose."""
+SHOULDER, ELBOW, HIP, KNEE = 9, 15, 17, 23
+"""Where the right limbs' angles begin in a pose; the left's follow each joint's."""
+
+
+@numba.njit(cache=True)
+def pose_of(joints_m: Any, body: Any, before: Any) -> Any:
+    """The pose, (25,), that puts a body's landmarks where joints are, but for their lengths.
+
+    Args:
+        joints_m: (12, 3) world, in the order of PLACES.
+        body: Body vector.
+        before: Pose of the frame before: of two ways to the same place, the nearer one is taken.
+    """
+    pose = before.copy()
+    trunk = trunk_of(joints_m)
+    for i in range(3):
+        pose[i] = (joints_m[6, i] + joints_m[7, i]) / 2 - body[37] * trunk[i, 1]
+    # theta_X, theta_Y, theta_Z of R_y R_x R_z
+    pose[3] = -math.degrees(math.asin(cosine(trunk[1, 2])))
+    pose[4] = math.degrees(math.atan2(trunk[0, 2], trunk[2, 2]))
+    pose[5] = math.degrees(math.atan2(trunk[1, 0], trunk[1, 1]))
+    own = np.empty((12, 3))
+    for place in range(12):
+        for i in range(3):
+            own[place, i] = (
+                joints_m[place, 0] * trunk[0, i]
+                + joints_m[place, 1] * trunk[1, i]
+                + joints_m[place, 2] * trunk[2, i]
+            )
+    for side in range(2):
+        shoulder, elbow, wrist = own[1 - side], own[3 - side], own[5 - side]
+        upper_arm, arm, leg = body[19 + 2 * side], SHOULDER + 3 * side, HIP + 3 * side
+        _set_limb(pose, shoulder, elbow, wrist, upper_arm, arm, ELBOW + side)
+        hip, knee, ankle = own[7 - side].copy(), own[9 - side], own[11 - side]
+        hip[1] -= body[37]
+        _set_limb(pose, hip, knee, ankle, body[8 + 3 * side], leg, KNEE + side)
+    return pose
+
+
+@numba.njit(cache=True)
+def trunk_of(joints_m: Any) -> Any:
+    """Axes of the trunk as columns, (3, 3): left, up, front."""
+    up, across = np.empty(3), np.empty(3)
+    for i in range(3):
+        left, right = joints_m[0, i] - joints_m[7, i], joints_m[1, i] - joints_m[6, i]
+        up[i], across[i] = left + right, left - right
+    trunk = np.empty((3, 3))
+    trunk[:, 1] = _unit(up)
+    trunk[:, 2] = _unit(_cross(across, trunk[:, 1]))
+    trunk[:, 0] = _cross(trunk[:, 1], trunk[:, 2])
+    return trunk
+
+
+@numba.njit(cache=True)
+def _set_limb(
+    pose: Any, start: Any, middle: Any, end: Any, length: float, at: int, at_bend: int
+) -> None:
+    """Shoulder and elbow, or hip and knee, from joints in the trunk's axes.
+
+    Args:
+        pose: Its angles of this limb are set.
+        start: (3,) and where the limb bends and where it ends.
+        length: Of its upper part in the body that is posed.
+        at: Where its angles begin.
+        at_bend: Where its bend stands: about the twisted axis of the upper part.
+    """
+    upper = _unit(middle - start)
+    pose[at], pose[at + 2] = _aim(upper, at, pose)
+    bend(pose, at, at_bend, _unit(end - start - length * upper))
+
+
+@numba.njit(cache=True)
+def bend(pose: Any, at: int, at_bend: int, lower: Any) -> None:
+    """Set the twist of an upper limb and the bend of the lower one, so that this points as told.
+
+    Args:
+        pose: theta_X and theta_Z of the upper limb, pose[at] and pose[at + 2], are set.
+        at: Where its angles begin.
+        at_bend: Where the bend stands: knees bend backwards, elbows forwards.
+        lower: Unit vector in the trunk's axes.
+    """
+    across, along, front = _framed(lower, pose[at], pose[at + 2])
+    bent, way = math.degrees(math.acos(cosine(along))), 1.0 if at_bend < HIP else -1.0
+    if bent > STRAIGHT_DEG:
+        pose[at + 1] = math.degrees(math.atan2(way * across, way * front))
+        pose[at_bend] = way * bent
+    else:
+        turn = turn_deg(lower, pose, at)
+        pose[at_bend] = turn if way > 0.0 else min(0.0, turn)
+
+
+@numba.njit(cache=True)
+def turn_deg(lower: Any, pose: Any, at: int) -> float:
+    """How far a lower limb is turned against its upper one, about that one's twisted axis."""
+    across, along, front = _framed(lower, pose[at], pose[at + 2])
+    twist = math.radians(pose[at + 1])
+    return math.degrees(math.atan2(across * math.sin(twist) + front * math.cos(twist), along))
+
+
+@numba.njit(cache=True)
+def _unit(arrow: Any) -> Any:
+    return arrow / max(math.sqrt(arrow[0] ** 2 + arrow[1] ** 2 + arrow[2] ** 2), 1e-9)
+
+
+@numba.njit(cache=True)
+def _cross(a: Any, b: Any) -> Any:
+    x = a[1] * b[2] - a[2] * b[1]
+    return np.array([x, a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+@numba.njit(cache=True)
+def cosine(value: float) -> float:
+    """The value, were it not for rounding."""
+    return min(max(value, -1.0), 1.0)
+
+
+@numba.njit(cache=True)
+def _aim(axis: Any, at: int, before: Any) -> tuple[float, float]:
+    """theta_X and theta_Z, degrees, that lead a limb along an axis: of two ways the likelier."""
+    x = math.degrees(math.asin(cosine(axis[2])))
+    z = math.degrees(math.atan2(-axis[0], axis[1]))
+    one, other = (x, z % 360.0), ((180.0 - x + 180.0) % 360.0 - 180.0, (z + 180.0) % 360.0)
+    if _cost(at, one[0], before) + _cost(at + 2, one[1], before) <= (
+        _cost(at, other[0], before) + _cost(at + 2, other[1], before)
+    ):
+        return one
+    return other
+
+
+@numba.njit(cache=True)
+def _cost(at: int, turn_deg: float, before: Any) -> float:
+    """How far a parameter would turn, and how far beyond its limits."""
+    low, high = LOW_DEG[at], HIGH_DEG[at]
+    total = abs(apart(turn_deg, before[at]))
+    if not low <= turn_deg <= high:
+        total += ASTRAY * min(abs(apart(turn_deg, low)), abs(apart(turn_deg, high)))
+    return total
+
+
+@numba.njit(cache=True)
+def apart(one_deg: float, other_deg: float) -> float:
+    """How far an angle is beyond another, in [-180, 180)."""
+    return (one_deg - other_deg + 180.0) % 360.0 - 180.0
+
+
+@numba.njit(cache=True)
+def _framed(arrow: Any, x_deg: float, z_deg: float) -> tuple[float, float, float]:
+    """An arrow of the trunk's axes in those of a limb turned by R_z R_x."""
+    a, b = math.radians(z_deg), math.radians(x_deg)
+    across = math.cos(a) * arrow[0] + math.sin(a) * arrow[1]
+    along = math.cos(a) * arrow[1] - math.sin(a) * arrow[0]
+    front = math.cos(b) * arrow[2] - math.sin(b) * along
+    return across, math.cos(b) * along + math.sin(b) * arrow[2], front

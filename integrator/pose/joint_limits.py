@@ -1,0 +1,155 @@
+"""Poses within the limits of joints: limbs turned as little as that takes (P30, P35)."""
+
+import math
+from typing import Any, Final
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, LIMITS_DEG, Vector
+from common.body.kinematics import joints
+from integrator.pose.inverse_kinematics import (
+    ELBOW,
+    HIGH_DEG,
+    HIP,
+    KNEE,
+    LOW_DEG,
+    SHOULDER,
+    apart,
+    bend,
+    cosine,
+    turn_deg,
+)
+
+TWIST_DEG: Final = 60.0
+"""How far a thigh turns about its own axis to either side of where its knee points to the front: a
+knee that bends to the front would take a half turn (T22: knees bend backwards)."""
+
+OFF: Final = 20.0
+"""How much worse a degree off a limb's direction is than a degree from the pose before: 13 to 18
+degrees are given up before an arm is written as raised over the head to the same place."""
+
+_LOWS, _HIGHS = LOW_DEG[list(ANGLES_IN_POSE)], HIGH_DEG[list(ANGLES_IN_POSE)]
+_MIDDLES: Final = np.array([sum(LIMITS_DEG.get(name, (0.0, 0.0))) / 2 for name in ANGLE_NAMES])
+
+
+def clipped(angles_deg: Vector) -> Vector:
+    """The 17 angles, each in the turn of its limits and no further than they go.
+
+    Smooth angles overshoot, where a knee was straight say, and pass through turns.
+    """
+    turned = angles_deg - 360.0 * np.round((angles_deg - _MIDDLES) / 360.0)
+    found: Vector = np.clip(turned, _LOWS, _HIGHS)
+    return found
+
+
+def within(
+    body: Vector, pose: Vector, before: Vector, joints_m: NDArray[np.float64]
+) -> tuple[Vector, NDArray[np.float64]]:
+    """A pose held within the limits, and joints moved as far as its limbs are turned by that.
+
+    Args:
+        body: Body vector.
+        pose: That of the joints.
+        before: Pose of the frame before.
+        joints_m: (15, 3) world.
+    """
+    kept = held(pose, before)
+    if np.array_equal(kept, pose):
+        return pose, joints_m
+    return kept, joints_m + joints(body, kept) - joints(body, pose)
+
+
+@numba.njit(cache=True)
+def held(pose: Any, before: Any) -> Any:
+    """The pose with every limb where its joints let it be, (25,).
+
+    A direction has two pairs of theta_X and theta_Z. Of both, as near as they come to it within
+    the limits, the likelier one is taken: an arm that seems to hang a little inwards hangs
+    straight, and is not raised over the head to come down on that side.
+
+    Args:
+        pose: As `pose_of` gives it.
+        before: Pose of the frame before.
+    """
+    found = pose.copy()
+    for side in range(2):
+        _hold(found, before, SHOULDER + 3 * side, ELBOW + side)
+        _hold(found, before, HIP + 3 * side, KNEE + side)
+    return found
+
+
+@numba.njit(cache=True)
+def _hold(pose: Any, before: Any, at: int, at_bend: int) -> None:
+    """Hold one limb, whose lower half keeps its direction where it can."""
+    x, y, z = pose[at], pose[at + 1], pose[at + 2]
+    lower = _along(x, y, z, pose[at_bend])
+    if not (_is_within(x, at) and _is_within(z, at + 2)):
+        pose[at], pose[at + 2] = _nearest(_along(x, y, z, 0.0), at, before)
+        bend(pose, at, at_bend, lower)
+    if at >= HIP:
+        _untwist(pose, at, at_bend, lower)
+    pose[at_bend] = min(max(pose[at_bend], LOW_DEG[at_bend]), HIGH_DEG[at_bend])
+
+
+@numba.njit(cache=True)
+def _untwist(pose: Any, at: int, at_bend: int, lower: Any) -> None:
+    """Turn a knee back that points too far aside."""
+    x, z = math.radians(pose[at]), math.radians(pose[at + 2])
+    ahead_deg = math.degrees(math.atan2(math.sin(x) * math.sin(z), -math.cos(z)))
+    twist_deg = apart(pose[at + 1], ahead_deg)
+    if abs(twist_deg) > TWIST_DEG:
+        pose[at + 1] = ahead_deg + math.copysign(TWIST_DEG, twist_deg)
+        pose[at_bend] = min(0.0, turn_deg(lower, pose, at))
+
+
+@numba.njit(cache=True)
+def _nearest(axis: Any, at: int, before: Any) -> tuple[float, float]:
+    """theta_X and theta_Z within their limits that lead a limb along an axis, or near it."""
+    straight_deg = math.degrees(math.atan2(-axis[0], axis[1]))
+    best, x, z = math.inf, 0.0, 0.0
+    for half in (0.0, 180.0):
+        own_z = _into(straight_deg + half, at + 2)
+        turn = math.radians(own_z)
+        own_x = _into(
+            math.degrees(math.atan2(axis[2], math.cos(turn) * axis[1] - math.sin(turn) * axis[0])),
+            at,
+        )
+        came = _along(own_x, 0.0, own_z, 0.0)
+        off_deg = math.degrees(
+            math.acos(cosine(came[0] * axis[0] + came[1] * axis[1] + came[2] * axis[2]))
+        )
+        turned_deg = abs(apart(own_x, before[at])) + abs(apart(own_z, before[at + 2]))
+        if OFF * off_deg + turned_deg < best:
+            best, x, z = OFF * off_deg + turned_deg, own_x, own_z
+    return x, z
+
+
+@numba.njit(cache=True)
+def _is_within(angle_deg: float, at: int) -> bool:
+    return LOW_DEG[at] <= angle_deg <= HIGH_DEG[at]
+
+
+@numba.njit(cache=True)
+def _into(angle_deg: float, at: int) -> float:
+    """The angle in the turn of its limits, or the nearer limit."""
+    middle = (LOW_DEG[at] + HIGH_DEG[at]) / 2
+    return min(max(middle + apart(angle_deg, middle), LOW_DEG[at]), HIGH_DEG[at])
+
+
+@numba.njit(cache=True)
+def _along(x_deg: float, y_deg: float, z_deg: float, bend_deg: float) -> Any:
+    """Where a lower limb points, in the trunk's axes: R_z R_x R_y R_x(bend) of the upward axis."""
+    x, y, z, b = (
+        math.radians(x_deg), math.radians(y_deg), math.radians(z_deg), math.radians(bend_deg)
+    )  # fmt: skip
+    across, front = math.sin(b) * math.sin(y), math.sin(b) * math.cos(y)
+    up = math.cos(x) * math.cos(b) - math.sin(x) * front
+    return np.array(
+        [
+            math.cos(z) * across - math.sin(z) * up,
+            math.sin(z) * across + math.cos(z) * up,
+            math.sin(x) * math.cos(b) + math.cos(x) * front,
+        ]
+    )

@@ -1,0 +1,1 @@
+"""The joints that a recurrent network proposes from the silhouettes."""

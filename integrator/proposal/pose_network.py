@@ -1,0 +1,122 @@
+"""Joints proposed from the silhouettes of an instant and a memory of those before it."""
+
+from typing import Any, Final, NamedTuple
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Vector
+from integrator.proposal.network_weights import JOINTS, Network
+from integrator.proposal.silhouette_window import Floats, Look
+
+SHOULDERS, HIPS = slice(0, 2), slice(6, 8)
+OTHER_SIDES: Final = [i ^ 1 for i in range(len(JOINTS))]
+"""Where the same joint of the other side is."""
+
+SEES: Final = (0, 5)
+"""Where a look says beside the windows whether each view sees."""
+
+
+class Proposal(NamedTuple):
+    """The joints of an instant."""
+
+    joints_m: NDArray[np.float64]
+    """(12, 3) world."""
+    sure: Vector
+    """(12,) how probably each is less than 50 mm off."""
+
+
+def step(
+    network: Network, memory: Floats | None, seen: Look, stature_m: float
+) -> tuple[Floats, Proposal]:
+    """One more instant: what is remembered of all, and the joints of this one.
+
+    Args:
+        network: The weights.
+        memory: What was remembered after the instant before; None at the first.
+        seen: The views of this instant.
+        stature_m: Of the person.
+    """
+    memory = np.zeros(len(network.keep), np.float32) if memory is None else memory
+    memory, said = _remembered(network, memory, seen.windows, seen.beside)
+    said = said.astype(np.float64)
+    places = said[: 3 * len(JOINTS)].reshape(-1, 3)
+    own = OTHER_SIDES if seen.mirrored else slice(None)
+    joints_m = seen.middle_m + stature_m * places[own] @ seen.turn
+    return memory, Proposal(joints_m, _gate(said[3 * len(JOINTS) :][own]))
+
+
+@numba.njit(cache=True)
+def _remembered(network: Any, memory: Any, windows: Any, beside: Any) -> tuple[Any, Any]:
+    """What is remembered now, and what is said."""
+    n, own, one = network, len(memory), np.float32(1.0)
+    thought = _positive(_product(_shown(n, windows, beside), n.think, n.think_bias))
+    thought = _positive(_product(thought, n.deepen, n.deepen_bias) + thought)
+    taken, kept = _product(thought, n.take, n.take_bias), _product(memory, n.keep, n.keep_bias)
+    gates = one / (one + np.exp(-(taken[: 2 * own] + kept[: 2 * own])))
+    new = np.tanh(taken[2 * own :] + gates[:own] * kept[2 * own :])
+    memory = (one - gates[own:]) * new + gates[own:] * memory
+    joined = _positive(_product(np.concatenate((thought, memory)), n.join, n.join_bias))
+    return memory, _product(joined, n.say, n.say_bias)
+
+
+@numba.njit(cache=True)
+def _shown(network: Any, windows: Any, beside: Any) -> Any:
+    """Components of both windows, 0 of a view that does not see, and what is said beside them."""
+    size = len(network.see_bias)
+    shown = np.zeros(2 * size + len(beside), np.float32)
+    for view in range(2):
+        if beside[SEES[view]] > 0.0:
+            components = _product(windows[view], network.see, network.see_bias)
+            shown[view * size : (view + 1) * size] = components
+    shown[2 * size :] = beside
+    return shown
+
+
+@numba.njit(cache=True)
+def _product(values: Any, weights: Any, bias: Any) -> Any:
+    """values (n,) @ weights (n, m) + bias (m,).
+
+    Weights that meet a zero, as half of what is thought is and most of a window, are left in
+    memory. Four rows at a time halve what is left of the work.
+    """
+    total = bias.copy()
+    rows = np.flatnonzero(values)
+    fours = len(rows) - len(rows) % 4
+    for k in range(0, fours, 4):
+        a, b, c, d = rows[k], rows[k + 1], rows[k + 2], rows[k + 3]
+        at_a, at_b, at_c, at_d = weights[a], weights[b], weights[c], weights[d]
+        for j in range(len(total)):
+            total[j] += (
+                values[a] * _whole(at_a[j])
+                + values[b] * _whole(at_b[j])
+                + values[c] * _whole(at_c[j])
+                + values[d] * _whole(at_d[j])
+            )
+    for row in rows[fours:]:
+        for j in range(len(total)):
+            total[j] += values[row] * _whole(weights[row, j])
+    return total
+
+
+@numba.njit(cache=True, inline="always")
+def _whole(half: Any) -> Any:
+    """The number that a half stands for."""
+    return np.uint32(np.uint32(half) << np.uint32(16)).view(np.float32)
+
+
+@numba.njit(cache=True)
+def _positive(values: Any) -> Any:
+    return np.maximum(values, np.float32(0.0))
+
+
+def _gate(values: Any) -> Any:
+    return 1.0 / (1.0 + np.exp(-values.clip(-60.0, 60.0)))
+
+
+def aimed(joints_m: NDArray[np.float64], seen: Look, stature_m: float) -> NDArray[np.float64]:
+    """Where the network should say that joints are, (n, 3) statures from the middle."""
+    own = OTHER_SIDES if seen.mirrored else slice(None)
+    found: NDArray[np.float64] = (joints_m[own] - seen.middle_m) @ seen.turn.T / stature_m
+    return found

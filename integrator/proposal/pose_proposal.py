@@ -1,0 +1,155 @@
+"""The pose that the silhouettes propose, and where joints lie beside the cylinders."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import JOINT_NAMES, Bdp, Vector
+from common.body.kinematics import TORSO, joints, limb_frames
+from common.body.proportions import stature
+from common.bus.message_codec import unpack
+from common.bus.messages import Report
+from common.rig.camera import Rig
+from integrator.pose.inverse_kinematics import pose_of, trunk_of
+from integrator.proposal import network_weights, pose_network
+from integrator.proposal.network_weights import JOINTS
+from integrator.proposal.pose_network import Proposal
+from integrator.proposal.silhouette_window import Floats, Look, from_camera_2, look
+
+AT: Final = np.array([JOINT_NAMES.index(name) for name in JOINTS])
+"""Where the proposed joints stand among the landmarks."""
+ARMS: Final = [i for i, name in enumerate(JOINT_NAMES) if name.endswith(("elbow", "wrist"))]
+"""How far these lie beside their cylinders depends on how the arm is turned, and says nothing of
+another pose."""
+PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
+
+OFF: Final = {
+    "wrist": (0.005, 0.0, 0.0),
+    "hip": (0.0, 0.009, 0.016),
+    "knee": (0.0, 0.009, 0.007),
+    "ankle": (0.0, 0.009, 0.0),
+}
+"""How far inwards, up and before the true joints of r01 and r04 the network finds them, in
+statures: made-up people have theirs elsewhere in their outline."""
+JOINTS_OFF: Final = np.array(
+    [
+        np.multiply(OFF.get(name[2:], (0.0, 0.0, 0.0)), (-1.0 if name[0] == "l" else 1.0, 1.0, 1.0))
+        for name in JOINTS
+    ]
+)
+"""(12, 3) the same, to the left, up and before."""
+SURENESS: Final = (0.99, -0.64)
+"""Slope and offset of the logit by which the network's sureness, learnt with made-up people,
+becomes how often a joint of r01, of r04 and of people made up anew was less than 50 mm off."""
+
+
+TWICE: Final = 0.6
+"""Joints less sure than this on average are looked at from camera 2 too: both looks together miss
+made-up people by 5 to 12 % less than the first alone, and by as much where that is surer."""
+SURENESS_OF_TWO: Final = (1.21, -0.47)
+"""As SURENESS, of the mean of two looks at people made up anew."""
+SURENESS_OF_MATCHED: Final = (0.53, 0.60)
+"""As SURENESS, of poses that were matched instead: from how sure what was proposed is, so of six
+other made-up people in free motion."""
+
+
+class Memory(NamedTuple):
+    """What is remembered of the instants before."""
+
+    own: Floats
+    second: Floats | None
+    """Of those that were looked at from camera 2 too; None where the last was not."""
+
+
+class Insight(NamedTuple):
+    """What was proposed of one instant."""
+
+    joints_m: NDArray[np.float64]
+    """(12, 3) world, in the order of JOINTS."""
+    sure: Vector
+    """(15,) how probably each landmark is less than 50 mm off."""
+    memory: Memory
+
+
+def step(
+    memory: Memory | None,
+    bdp: Bdp,
+    rig: Rig,
+    seen: tuple[Report | None, Report | None],
+    since_s: float,
+) -> Insight:
+    """The joints that silhouettes propose, whole ones where there are any.
+
+    Two that no one person can cast are two things: the larger is believed to be the person.
+
+    Args:
+        memory: Of the instant before; None at the first.
+        bdp: The body: its stature is the measure of all.
+        rig: The cameras, without distortion.
+        seen: What each view reports; None where it has nobody.
+        since_s: Time since the instant before.
+    """
+    any_whole = any(report is not None and not report.cut for report in seen)
+    first, second = (
+        None if report is None or (any_whole and report.cut) else unpack(report) for report in seen
+    )
+    height_m = stature(bdp)
+    shown = look((first, second), rig, height_m, since_s)
+    if shown is None:
+        areas_px = [0 if report is None else report.area_px for report in seen]
+        larger = (first, None) if areas_px[0] >= areas_px[1] else (None, second)
+        shown = look(larger, rig, height_m, since_s)
+    assert shown is not None  # one alone stands somewhere
+    memory, found = _looked(memory, shown, rig, height_m)
+    calibrated = SURENESS if memory.second is None else SURENESS_OF_TWO
+    found.joints_m[:] -= height_m * JOINTS_OFF @ trunk_of(found.joints_m).T
+    sure, own = np.zeros(len(JOINT_NAMES)), probability(found.sure, calibrated)
+    sure[AT] = own
+    sure[PELVIS] = own[pose_network.HIPS].mean()
+    sure[NECK] = sure[HEAD] = own[pose_network.SHOULDERS].mean()
+    return Insight(found.joints_m, sure, memory)
+
+
+def _looked(
+    memory: Memory | None, shown: Look, rig: Rig, height_m: float
+) -> tuple[Memory, Proposal]:
+    """What a look proposes, and one from the other camera where that is not sure: their mean."""
+    network = network_weights.shipped()
+    before, other = (None, None) if memory is None else memory
+    own, found = pose_network.step(network, before, shown, height_m)
+    if not shown.beside[list(pose_network.SEES)].all() or probability(found.sure).mean() >= TWICE:
+        return Memory(own, None), found
+    again = from_camera_2(shown, rig)
+    other, second = pose_network.step(network, other, again, height_m)
+    joints_m, sure = (np.mean(pair, axis=0) for pair in zip(found, second, strict=True))
+    return Memory(own, other), Proposal(joints_m, sure)
+
+
+def probability(sure: Vector, calibrated: tuple[float, float] = SURENESS) -> Vector:
+    """How probably joints are less than 50 mm off, of the network's own sureness in (0, 1)."""
+    slope, offset = calibrated
+    found: Vector = 1.0 / (1.0 + np.exp(-offset) * ((1.0 - sure) / sure) ** slope)
+    return found
+
+
+def pose_and_rest(
+    body: Vector, before: Vector, found: NDArray[np.float64]
+) -> tuple[Vector, NDArray[np.float64]]:
+    """The pose of found joints, and what the landmarks still miss, (15, 3) in the trunk's axes.
+
+    Shoulders rise with their arms and people differ: both are more than cylinders can show.
+    """
+    pose = pose_of(found, body, before)
+    rest = np.zeros((len(JOINT_NAMES), 3))
+    landmarks = joints(body, pose)
+    rest[AT] = (found - landmarks[AT]) @ trunk_axes(body, pose)
+    rest[PELVIS] = rest[AT[pose_network.HIPS]].mean(axis=0)
+    rest[NECK] = rest[AT[pose_network.SHOULDERS]].mean(axis=0)
+    return pose, rest
+
+
+def trunk_axes(body: Vector, pose: Vector) -> NDArray[np.float64]:
+    """Left, up and front of the trunk in the world, as columns, (3, 3)."""
+    axes: NDArray[np.float64] = limb_frames(body, pose)[TORSO, 3:].reshape(3, 3)
+    return axes

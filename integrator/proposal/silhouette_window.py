@@ -1,0 +1,206 @@
+"""What each view shows of somebody, in a window as large as the person."""
+
+from functools import lru_cache
+from typing import Any, Final, NamedTuple
+
+import cv2
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Vector
+from common.raster.kernel import NEAREST_M
+from common.rig.camera import Camera, Rig, arrays_of, centre, project, ray
+from integrator.rig.perspective import triangulate
+
+Mask = NDArray[np.bool_]
+Floats = NDArray[np.float32]
+
+ROWS, COLUMNS = 48, 40
+"""Cells of the window that is looked at in each view."""
+UP, DOWN, ASIDE = 0.75, 0.63, 0.56
+"""How far the window reaches from the middle of the silhouette, in statures: raised arms above,
+feet below, stretched arms aside."""
+TO_A_SIDE: Final = 1e-6
+"""Sine of the angle from one camera's sight to another's from which it goes to a side."""
+FINER: Final = 2
+"""Samples of the silhouette across a cell."""
+
+CELLS: Final = ROWS * COLUMNS
+BESIDE: Final = 11
+"""What is said beside the windows: of each view whether it sees, where its camera is and its
+scale; how long it has been since the look before."""
+LONGEST_S, USUAL_S = 0.4, 1 / 15
+"""A longer gap says no more; how time is measured."""
+UPWARDS_M: Final = np.array([0.0, 0.1, 0.0])
+"""Which way is up in a picture is seen over this length."""
+NEARNESS: Final = 4.0
+"""Brings stature over distance to about one."""
+NEAR_M, FAR_M = 1.0, 12.0
+"""Where one camera alone looks for somebody."""
+
+
+class Look(NamedTuple):
+    """What the views show, and where that is."""
+
+    windows: Floats
+    """(2, CELLS) how much of each cell is covered; 0 where a view does not see."""
+    beside: Floats
+    """(BESIDE,)"""
+    middle_m: Vector
+    """(3,) of the body, world."""
+    turn: Vector
+    """(3, 3) rows: the axes of the frame of the proposal in the world; left-handed in a mirror."""
+    mirrored: bool = False
+    """The windows are in a mirror: right limbs are left ones there."""
+
+
+@lru_cache(maxsize=8)
+def axes_of(one: Camera, other: Camera) -> Vector:
+    """Axes of the proposals' frame, rows (3, 3): y up, z towards one camera.
+
+    x is right in that camera, or left in a mirror: there the other always stands where the
+    paper's camera 2 does, to the left, as it does in most of what the network is taught.
+    """
+    first, second = np.array(one.R)[2], np.array(other.R)[2]
+    right = np.array(one.R)[0] * [1.0, 0.0, 1.0]
+    right /= np.linalg.norm(right)
+    side = -1.0 if np.cross(first, second)[1] > TO_A_SIDE else 1.0
+    return np.stack([side * right, [0.0, 1.0, 0.0], np.cross(right, [0.0, 1.0, 0.0])])
+
+
+def look(
+    masks: tuple[Mask | None, Mask | None], rig: Rig, stature_m: float, since_s: float
+) -> Look | None:
+    """The silhouettes as the network wants them; None where their rays do not meet before both.
+
+    Args:
+        masks: Of the views that see somebody, (H, W), not empty; None for the others.
+        rig: The cameras; their world has y up and its floor at 0.
+        stature_m: Of the person.
+        since_s: Time since the look before.
+    """
+    turn = axes_of(rig.cameras[0], rig.cameras[1])
+    mirrored = bool(np.linalg.det(turn) < 0.0)
+    middle_m = _middle_m(masks, rig)
+    if middle_m is None:
+        return None
+    windows, beside = np.zeros((2, CELLS), np.float32), np.zeros(BESIDE, np.float32)
+    beside[-1] = min(since_s, LONGEST_S) / USUAL_S - 1.0
+    for n, mask in enumerate(masks):
+        if mask is None:
+            continue
+        camera = rig.cameras[n]
+        _tell(turn, centre(camera) - middle_m, stature_m, beside[5 * n : 5 * n + 5])
+        cells = _cells(mask, camera, middle_m, stature_m)
+        windows[n] = (cells[:, ::-1] if mirrored else cells).ravel()
+    return Look(windows, beside, middle_m, turn, mirrored)
+
+
+@numba.njit(cache=True)
+def _tell(turn: Any, away_m: Any, stature_m: float, out: Any) -> None:
+    """That a view sees, where its camera is and its scale, (5,)."""
+    far = np.sqrt((away_m * away_m).sum())
+    out[0], out[4] = 1.0, NEARNESS * stature_m / far
+    for i in range(3):
+        out[1 + i] = (turn[i] * away_m).sum() / far
+
+
+def from_camera_2(seen: Look, rig: Rig) -> Look:
+    """What both views show, as if camera 2 were camera 1."""
+    turn = axes_of(rig.cameras[1], rig.cameras[0])
+    mirrored = bool(np.linalg.det(turn) < 0.0)
+    windows = seen.windows[::-1].reshape(2, ROWS, COLUMNS)
+    if mirrored != seen.mirrored:
+        windows = windows[:, :, ::-1]
+    beside = seen.beside.copy()
+    beside[:5], beside[5:10] = seen.beside[5:10], seen.beside[:5]
+    for away in (beside[1:4], beside[6:9]):
+        away[:] = turn @ seen.turn.T @ away
+    flat = np.ascontiguousarray(windows).reshape(2, CELLS)
+    return Look(flat, beside, seen.middle_m, turn, mirrored)
+
+
+def _middle_m(masks: tuple[Mask | None, Mask | None], rig: Rig) -> Vector | None:
+    """Where the middles of the silhouettes meet; of one alone, where its feet stand."""
+    first, second = masks
+    if first is not None and second is not None:
+        found = triangulate(
+            (rig.cameras[0], rig.cameras[1]), (_middle_px(first), _middle_px(second))
+        )
+        if not all(_depth_m(camera, found) >= NEAREST_M for camera in rig.cameras):
+            return None
+    else:
+        n = 0 if first is not None else 1
+        mask = first if first is not None else second
+        assert mask is not None
+        found = _standing_m(mask, rig.cameras[n])
+    return found if np.isfinite(found).all() else None
+
+
+def _standing_m(mask: Mask, camera: Camera) -> Vector:
+    """The middle of a silhouette whose lowest row is on the floor."""
+    column, row = _middle_px(mask)
+    lowest = float(np.flatnonzero(mask.any(axis=1))[-1] + 1)
+    eye = centre(camera)
+    down, middle = ray(camera, (column, lowest)), ray(camera, (column, row))
+    flat = float(np.hypot(down[0], down[2]))
+    steep = -down[1] / max(flat, 1e-9)
+    far_m = eye[1] / steep if steep > eye[1] / FAR_M else FAR_M
+    found: Vector = eye + middle * (
+        max(far_m, NEAR_M) / max(float(np.hypot(middle[0], middle[2])), 1e-9)
+    )
+    return found
+
+
+@numba.njit(cache=True)
+def _middle_px(mask: Any) -> tuple[float, float]:
+    """Mean column and row of what is in a mask."""
+    area = along = down = 0
+    for y in range(mask.shape[0]):
+        here = 0
+        for x in range(mask.shape[1]):
+            here += mask[y, x]
+            along += x * mask[y, x]
+        area += here
+        down += y * here
+    return along / area + 0.5, down / area + 0.5
+
+
+def _depth_m(camera: Camera, place_m: Vector) -> float:
+    """How far before a camera a place is; negative behind it, NaN where there is no place."""
+    return float(arrays_of(camera).R[2] @ place_m + camera.t[2])
+
+
+def _cells(mask: Mask, camera: Camera, middle_m: Vector, stature_m: float) -> Floats:
+    """How much of each cell is covered, (ROWS, COLUMNS): upright, as large as the person."""
+    at_and_above = project(camera, np.stack([middle_m, middle_m + UPWARDS_M]))
+    size_px = camera.K[0][0] * stature_m / _depth_m(camera, middle_m)
+    fine = cv2.warpAffine(
+        mask.view(np.uint8) * np.uint8(255),
+        _warp(at_and_above, size_px),
+        (FINER * COLUMNS, FINER * ROWS),
+        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+    )
+    cells = cv2.resize(fine, (COLUMNS, ROWS), interpolation=cv2.INTER_AREA)
+    return np.asarray(cells / np.float32(255), np.float32)
+
+
+@numba.njit(cache=True)
+def _warp(at_and_above: Any, size_px: float) -> Any:
+    """From samples of the window to the picture, (2, 3), as OpenCV wants it.
+
+    Args:
+        at_and_above: The middle of the body and a place above it, (2, 2) px.
+        size_px: A stature there.
+    """
+    up = at_and_above[1] - at_and_above[0]
+    up /= max(np.hypot(up[0], up[1]), 1e-9)
+    warp = np.empty((2, 3))
+    for i in range(2):
+        across = -up[1] if i == 0 else up[0]
+        right = across * size_px * 2 * ASIDE / (FINER * COLUMNS)
+        down = -up[i] * size_px * (UP + DOWN) / (FINER * ROWS)
+        corner = at_and_above[0, i] + up[i] * size_px * UP - right * FINER * COLUMNS / 2
+        warp[i, 0], warp[i, 1], warp[i, 2] = right, down, corner + (right + down) / 2 - 0.5
+    return warp

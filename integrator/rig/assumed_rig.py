@@ -1,0 +1,59 @@
+"""A rig for pictures that come without a calibration: the paper's kind, sized by the person."""
+
+from typing import Final
+
+from common.bus.messages import Report
+from common.rig.camera import Camera, Rig, paper_rig
+
+FOCAL_SHARE: Final = 1.25
+"""Focal length over the picture's width: a lens of 44 degrees, common for room cameras."""
+
+
+def assumed_rig(first: Report, second: Report, stature_m: float) -> Rig:
+    """Cameras at the distance at which a person of a stature is as high as seen now.
+
+    Both cameras are level and look at the person, who stands at the origin; the floor is where
+    the silhouette ends. Lengths are then right to the share that the stature is wrong.
+
+    Args:
+        first: Viewer 1's report of somebody who stands upright, wholly in view.
+        second: Viewer 2's; the same report for both where only one view shows the whole person.
+        stature_m: What is assumed of the person.
+    """
+    views = []
+    for report in (first, second):
+        assert report.box is not None
+        tall_px = report.box.bottom + 1 - report.box.top
+        size = (report.width, report.height)
+        views.append(_from_a_standing_person(size, report.box.bottom + 1, tall_px, stature_m))
+    (focal_1, distance_1, height_1), (focal_2, distance_2, height_2) = views
+    return paper_rig(
+        (first.width, first.height),
+        (focal_1, focal_2),
+        (distance_1, distance_2),
+        (height_1, height_2),
+    )
+
+
+def assumed_camera(
+    size: tuple[int, int], sole_row: float, tall_px: float, stature_m: float
+) -> Camera:
+    """The same for one view alone: camera 1 of such a rig.
+
+    Args:
+        size: Width and height of the picture.
+        sole_row: Row where the person stands.
+        tall_px: How tall the person is there, upright.
+        stature_m: What is assumed of the person.
+    """
+    focal, distance, height = _from_a_standing_person(size, sole_row, tall_px, stature_m)
+    return paper_rig(size, (focal, focal), (distance, distance), (height, height)).cameras[0]
+
+
+def _from_a_standing_person(
+    size: tuple[int, int], sole_row: float, tall_px: float, stature_m: float
+) -> tuple[float, float, float]:
+    """Focal length (px), distance of the camera and its height above the floor (m)."""
+    focal = FOCAL_SHARE * size[0]
+    distance = focal * stature_m / tall_px
+    return focal, distance, (sole_row - size[1] / 2) * distance / focal

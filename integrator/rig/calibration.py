@@ -1,0 +1,62 @@
+"""From files of measured points to `calibration.json` and its quality (section 4.1)."""
+
+import json
+from pathlib import Path
+from typing import TypeVar
+
+import msgspec
+
+from common.rig.camera import Rig
+from common.rig.rig_file import CalibrationError
+from integrator.rig.markers import Aim, Markers, line_markers
+from integrator.rig.poles import Poles, Quality, poles
+
+Content = TypeVar("Content", Markers, Poles)
+
+
+def run_markers(path: Path) -> tuple[Aim, ...]:
+    """How each camera of a file of line markers points.
+
+    Raises:
+        CalibrationError: When the file cannot be read or a marker is no line.
+    """
+    markers = _read(path, Markers)
+    return tuple(line_markers(view, (markers.width, markers.height)) for view in markers.cameras)
+
+
+def run_poles(path: Path, out: Path) -> Quality:
+    """Calibrate from a file of poles and write `calibration.json`.
+
+    Raises:
+        CalibrationError: When a file cannot be read or written, or the poles do not suffice.
+    """
+    rig, quality = poles(_read(path, Poles))
+    write_rig(out, rig, quality)
+    return quality
+
+
+def write_rig(path: Path, rig: Rig, quality: msgspec.Struct) -> None:
+    """Write a rig as `calibration.json`, its quality beside it.
+
+    Raises:
+        CalibrationError: When the file cannot be written.
+    """
+    content = msgspec.to_builtins(rig) | {"quality": msgspec.to_builtins(quality)}
+    try:
+        path.write_bytes(msgspec.json.format(msgspec.json.encode(content), indent=1))
+    except OSError as error:
+        raise CalibrationError(f"cannot write the calibration {path}: {error.strerror}") from error
+
+
+def _read(path: Path, kind: type[Content]) -> Content:
+    decode = msgspec.json.decode if path.suffix == ".json" else msgspec.toml.decode
+    try:
+        content = decode(path.read_bytes(), type=kind)
+        json.dumps(msgspec.to_builtins(content), allow_nan=False)  # TOML has nan and inf
+    except OSError as error:
+        raise CalibrationError(f"cannot read the points {path}: {error.strerror}") from error
+    except (msgspec.DecodeError, RecursionError) as error:
+        raise CalibrationError(f"{path}: {error}") from error
+    except ValueError as error:
+        raise CalibrationError(f"{path}: no text, or a number that is not finite") from error
+    return content

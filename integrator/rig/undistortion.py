@@ -1,0 +1,84 @@
+"""What a lens bends, straightened: the kernel and the network take pictures without distortion."""
+
+from functools import lru_cache
+
+import cv2
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from common.bus.message_codec import pack, unpack
+from common.bus.messages import Report
+from common.raster.bounds import box_of, is_cut
+from common.raster.similarity import Mask
+from common.rig.camera import Camera, Rig
+from integrator.pairing import Pair
+
+
+def straight_rig(rig: Rig) -> Rig:
+    """The cameras that take pictures without distortion."""
+    if not any(any(camera.distortion) for camera in rig.cameras):
+        return rig
+    cameras = tuple(straight_camera(camera) for camera in rig.cameras)
+    return msgspec.structs.replace(rig, cameras=cameras, distortion=())
+
+
+def straight_camera(camera: Camera) -> Camera:
+    """The camera that takes such pictures."""
+    return msgspec.structs.replace(camera, distortion=()) if any(camera.distortion) else camera
+
+
+def straight_pair(rig: Rig | None, pair: Pair) -> Pair:
+    """The reports of an instant as such cameras would give rise to; as they are of unknown ones."""
+    if rig is None:
+        return pair
+    first, second = (
+        None if report is None else straight_report(report, camera)
+        for report, camera in zip(pair, rig.cameras, strict=True)
+    )
+    return Pair(first, second)
+
+
+def straight_report(report: Report, camera: Camera) -> Report:
+    """A report with outline, box, area and navel as without distortion.
+
+    What the lens shows beyond the border of that picture is cut off; somebody of whom nothing
+    would be left stays as they are, as does everything where nothing is bent.
+    """
+    if report.root_px is None or not any(camera.distortion):
+        return report
+    mask = straight(unpack(report), camera)
+    box, K = box_of(mask), np.array(camera.K)
+    if box is None:
+        return report
+    place = np.array([[report.root_px]])
+    root_px = cv2.undistortPoints(place, K, np.array(camera.distortion), P=K)[0, 0].tolist()
+    return msgspec.structs.replace(
+        report,
+        silhouette=pack(mask),
+        box=box,
+        area_px=int(mask.sum()),
+        cut=report.cut or is_cut(box, mask.shape),
+        root_px=(root_px[0], root_px[1]),
+    )
+
+
+def straight(mask: Mask, camera: Camera) -> Mask:
+    """A silhouette (H, W) as the camera would show it without distortion; itself where it is."""
+    if not any(camera.distortion):
+        return mask
+    across, down = _maps(camera, mask.shape[1], mask.shape[0])
+    return np.asarray(cv2.remap(mask.view(np.uint8), across, down, cv2.INTER_NEAREST) > 0)
+
+
+@lru_cache(maxsize=4)
+def _maps(
+    camera: Camera, width: int, height: int
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Where the bent picture has each pixel of the straight one; OpenCV's begin in their middle."""
+    K = np.array(camera.K)
+    K[:2, 2] -= 0.5
+    across, down = cv2.initUndistortRectifyMap(
+        K, np.array(camera.distortion), np.eye(3), K, (width, height), cv2.CV_32FC1
+    )
+    return np.asarray(across), np.asarray(down)

@@ -1,0 +1,79 @@
+"""Which way a body faces that one camera sees: profile or front, left or right (T22)."""
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import JOINT_NAMES
+from common.notes.notes import Orientation
+
+PROFILE, FRONTAL = 0.65, 0.8
+"""Below and above this mean breadth a body is taken to be in profile, or not."""
+INERTIA: Final = 0.85
+"""How much of the mean breadth a frame keeps: half of it is new after four frames."""
+FADING: Final = 0.95
+"""How much of the evidence for left and right a frame keeps."""
+KNEES, ELBOWS, WALKING = 1.0, 0.5, 20.0
+"""What a bend of 90 degrees, and a step of a stature, say of the side that is faced."""
+SURE_AT: Final = 2.0
+"""Evidence at which the side is sure with odds of e to 1."""
+UNKNOWN_FRONT: Final = 0.7
+"""How sure it is that somebody who is not in profile faces the camera: filmed people mostly do."""
+
+_AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
+_KNEES: Final = [[_AT[f"{s}_{j}"] for j in ("hip", "knee", "ankle")] for s in "lr"]
+_ELBOWS: Final = [[_AT[f"{s}_{j}"] for j in ("shoulder", "elbow", "wrist")] for s in "lr"]
+
+
+class Bearing(NamedTuple):
+    """What is known of the way a body faces."""
+
+    orientation: Orientation = "forward_right"
+    sure: float = UNKNOWN_FRONT
+    """How sure that is, in [0, 1]."""
+    breadth: float | None = None
+    """Mean of the breadth that the trunk showed; None: never seen."""
+    to_right: float = 0.0
+    """Evidence for facing the right of the picture; negative: for the left."""
+    at: tuple[float, float] | None = None
+    """Column of the pelvis and length of the trunk in the frame before, px."""
+
+
+def faced(bearing: Bearing, joints_px: NDArray[np.float64], breadth: float) -> Bearing:
+    """What is known after one more frame.
+
+    Args:
+        bearing: Before it.
+        joints_px: (15, 2), JOINT_NAMES, as fitted.
+        breadth: How much of its breadth the trunk shows.
+    """
+    trunk_px = float(np.linalg.norm(joints_px[1] - joints_px[0]))
+    at = (float(joints_px[0, 0]), max(trunk_px, 1.0))
+    mean = breadth if bearing.breadth is None else bearing.breadth
+    mean = INERTIA * mean + (1.0 - INERTIA) * breadth
+    to_right = FADING * bearing.to_right + (1.0 - FADING) * 10.0 * _bends(joints_px)
+    if bearing.at is not None:
+        to_right += WALKING * (at[0] - bearing.at[0]) / (3.0 * at[1])
+    bearing = bearing._replace(breadth=mean, to_right=to_right, at=at)
+    was_profile = bearing.orientation in ("left", "right")
+    if mean < (FRONTAL if was_profile else PROFILE):
+        sure = 1.0 / (1.0 + math.exp(-abs(to_right) / SURE_AT))
+        return bearing._replace(orientation="right" if to_right >= 0.0 else "left", sure=sure)
+    if not was_profile:
+        return bearing
+    front: Orientation = "forward_right" if to_right >= 0.0 else "forward_left"
+    return bearing._replace(orientation=front, sure=UNKNOWN_FRONT)
+
+
+def _bends(joints_px: NDArray[np.float64]) -> float:
+    """What knees and elbows say: knees bend backwards, elbows forwards."""
+    said = 0.0
+    for chains, weight in ((_KNEES, -KNEES), (_ELBOWS, ELBOWS)):
+        for chain in chains:
+            upper, lower = np.diff(joints_px[chain], axis=0)
+            upper = upper / max(float(np.linalg.norm(upper)), 1e-9)
+            lower = lower / max(float(np.linalg.norm(lower)), 1e-9)
+            said += weight * float(lower[0] - (lower @ upper) * upper[0])
+    return said

@@ -1,0 +1,126 @@
+"""What else has the same outline: the body seen from behind, a limb that leans the other way."""
+
+from collections.abc import Mapping
+from typing import Final, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS
+from common.notes.notes import ORIENTATIONS, Orientation
+from common.rig.camera import Camera, arrays_of, centre
+from integrator.single.lifting import SWAPPED
+
+Joints = NDArray[np.float64]
+SIDEWAYS_DEG: Final = 20.0
+"""Somebody who is turned so near to a right angle is seen from the side."""
+INSISTS_S: Final = 3.0
+"""Proposals that differ for so long from what is remembered of front and back are believed."""
+NEARLY_DEG: Final = 40.0
+"""How far a proposal may face beside the sector that the user named."""
+PELVIS: Final = JOINT_NAMES.index("pelvis")
+_HANGS: Final = [
+    [int(LIMB_ENDS[part, 1]) for part in ((limb, limb + 2) if limb in (2, 3, 6, 7) else (limb,))]
+    for limb in range(len(LIMBS))
+]
+"""The joints that move with the far end of each of LIMBS: a lower limb follows its upper one."""
+
+
+class Front(NamedTuple):
+    """What is remembered of front and back, which one outline hardly tells (L4)."""
+
+    away: bool = False
+    """Whether the person faces away from the camera: filmed people mostly do not at first."""
+    aside: bool = False
+    """Whether the person was seen from the side just before."""
+    doubted_s: float = 0.0
+    """For how long proposals have said otherwise."""
+
+
+def yaw_deg(camera: Camera, joints_m: Joints) -> float:
+    """Which way the lines across shoulders and hips face: 0 the camera, 90 the picture's right."""
+    at = {name: joints_m[i] for i, name in enumerate(JOINT_NAMES)}
+    across = at["l_shoulder"] - at["r_shoulder"] + at["l_hip"] - at["r_hip"]
+    right, _, away = arrays_of(camera).R @ across
+    return float(np.degrees(np.arctan2(away, right)))
+
+
+def faces(yaw: float) -> Orientation:
+    """Which of the six ways that is (T22)."""
+    side: Literal["left", "right"] = "right" if yaw >= 0 else "left"
+    if abs(abs(yaw) - 90.0) <= SIDEWAYS_DEG:
+        return side
+    return ORIENTATIONS[ORIENTATIONS.index(side) + (4 if abs(yaw) < 90.0 else 2)]
+
+
+def front_of(
+    before: Front, yaw: float, told: Orientation | None, dt_s: float
+) -> tuple[Front, bool]:
+    """What is remembered now, and whether a proposal is to be seen from behind for it.
+
+    People turn from front to back through their side, where the outline is theirs alone: there a
+    proposal is believed, elsewhere it goes on as it was.
+
+    Args:
+        before: At the frame before.
+        yaw: Of the proposal, degrees.
+        told: The user's word, which settles it.
+        dt_s: Time since then.
+    """
+    away = abs(yaw) > 90.0
+    if told is not None and told not in ("left", "right"):
+        due = told.startswith("backward")
+        return Front(due), due != away
+    if told is not None or abs(abs(yaw) - 90.0) <= SIDEWAYS_DEG:
+        return Front(before.away, aside=True), False
+    doubted_s = before.doubted_s + dt_s
+    if before.aside or away == before.away or doubted_s > INSISTS_S:
+        return Front(away), False
+    return Front(before.away, doubted_s=doubted_s), True
+
+
+def agrees(yaw: float, told: Orientation) -> bool:
+    """Whether somebody who is turned so can be who the user says faces that way."""
+    middle = {"forward": 35.0, "left": 90.0, "right": 90.0, "backward": 145.0}
+    wide = SIDEWAYS_DEG if told in ("left", "right") else 35.0
+    side = 1.0 if told.endswith("right") else -1.0
+    off = (yaw - side * middle[told.split("_")[0]] + 180.0) % 360.0 - 180.0
+    return abs(off) <= wide + NEARLY_DEG
+
+
+def seen_from_behind(camera: Camera, joints_m: Joints) -> Joints:
+    """The body with the same outline that faces the other way, front for back.
+
+    Each joint stays on its ray, as far before the pelvis as it was behind it, and sides change.
+    """
+    depth = _depths(camera, joints_m)
+    return _at_depths(camera, joints_m, 2 * depth[PELVIS] - depth)[SWAPPED]
+
+
+def leaning(camera: Camera, joints_m: Joints, told: Mapping[str, str]) -> Joints:
+    """The body whose segments lean as told, toward the camera or away, none by more than before.
+
+    Args:
+        camera: The view's.
+        joints_m: (15, 3) world.
+        told: Names of LIMBS to toward or away (T21).
+    """
+    depth = _depths(camera, joints_m)
+    for limb, name in enumerate(LIMBS):
+        near, far = LIMB_ENDS[limb]
+        farther = depth[far] - depth[near]
+        if name in told and (farther > 0) == (told[name] == "toward"):
+            depth[_HANGS[limb]] -= 2 * farther
+    return _at_depths(camera, joints_m, depth)
+
+
+def _depths(camera: Camera, joints_m: Joints) -> Joints:
+    found: Joints = (joints_m - centre(camera)) @ arrays_of(camera).R[2]
+    return found
+
+
+def _at_depths(camera: Camera, joints_m: Joints, depths_m: Joints) -> Joints:
+    """The joints moved along their rays."""
+    eye = centre(camera)
+    found: Joints = eye + (joints_m - eye) * (depths_m / _depths(camera, joints_m))[:, None]
+    return found

@@ -1,0 +1,1 @@
+"""Synthetic people: proportions, skeletons, skinned bodies, clothes."""

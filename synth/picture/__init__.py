@@ -1,0 +1,1 @@
+"""Pictures of synthetic people: rooms, light, rendering, and examples for training."""

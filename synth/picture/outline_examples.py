@@ -1,0 +1,242 @@
+"""Outlines of made-up people in two cameras, without light: what a network is taught on."""
+
+from collections.abc import Iterator
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Vector
+from common.rig.camera import Camera, Rig, project
+from synth.motion.footing import Posed, posed
+from synth.motion.motions import MOTION, POSTURES, performance
+from synth.person.mesh import Mesh, body_mesh
+from synth.person.people import Person, person
+from synth.person.skeleton import ANGLES
+from synth.picture.mask_flaws import Flaw, flaw, spoilt
+from synth.picture.random_rig import made_up_rig
+from synth.picture.raster import cover, skin
+
+FPS: Final = 15.0
+PEOPLE: Final = (100_000, 1_000_000)
+"""Numbers of those who are taught on; whoever is made up for a test has a lower one."""
+LONGEST: Final = 90
+"""Instants of one performance that are drawn."""
+TURNED_SHARE: Final = 0.25
+"""Of the performances: how many postures face anywhere and turn."""
+OTHER_ARMS: Final = 0.3
+"""Share of the performances with the arms of another one."""
+FAST_SHARE: Final = 0.2
+SPEEDS, FAST = (0.7, 1.3), (1.3, 2.3)
+ARM_DEG, REST_DEG = (0.0, 3.0, 8.0, 20.0), (0.0, 2.0, 4.0, 6.0)
+"""Standard deviations that arms, and all else, are turned by; one of them for a performance."""
+YAW_DEG: Final = (4.0, 4.0, 15.0)
+"""The same for the whole body about the vertical."""
+TURNING_DEG: Final = 180.0
+"""How far somebody who turns goes round, to either side."""
+THICKER, LONGER, LOOSER = 0.06, 0.02, (0.5, 2.0)
+"""How bodies differ beyond those of `person`: standard deviations of what a thickness and a length
+are multiplied by, and the range of what the room in their clothes is."""
+ROOM_M: Final = 0.6
+"""How far from the middle somebody stands."""
+JITTER_PX: Final = 0.25
+"""Standard deviation of a silhouette's place."""
+ALONE_SHARE, GAP_SHARE, DROP_SHARE = 0.15, 0.15, 0.03
+"""Of the performances: how many one camera sees alone, or for a while; of the instants: how many
+are missing."""
+
+ARMS: Final = np.array(["_sh_" in name or "elbow" in name for name in ANGLES])
+BENT: Final = [i for i, name in enumerate(ANGLES) if "elbow" in name or "knee" in name]
+FEET: Final = [i for i, name in enumerate(ANGLES) if "foot" in name]
+ROOT: Final = np.array([name.startswith("root") for name in ANGLES])
+LEANS: Final = [
+    ANGLES.index(f"{part}_{way}") for part in ("root", "torso") for way in ("pitch", "roll")
+]
+YAW: Final = ANGLES.index("root_yaw")
+FARTHER: Final = {"hip_abd": 2.0, "torso_roll": 1.6, "root_roll": 5.0, "root_pitch": 2.0}
+WIDER: Final = np.array([FARTHER.get(name.split("_", name[1] == "_")[-1], 1.0) for name in ANGLES])
+"""What the angles of those who go farther are multiplied by."""
+
+Mask = NDArray[np.bool_]
+
+
+class Outline(NamedTuple):
+    """One instant."""
+
+    masks: tuple[Mask | None, Mask | None]
+    """None where that camera does not see it."""
+    joints_m: NDArray[np.float64]
+    """(20, 3), order of the skeleton's joints."""
+    rig: Rig
+    stature_m: float
+    since_s: float
+    """Time since the instant before."""
+
+
+class Manner(NamedTuple):
+    """What kind of performances are made up."""
+
+    free: float
+    """Share of those that are no posture."""
+    late: float
+    """Share of those that are joined after their opening."""
+    leaning: float
+    """Share of those who lean over with the whole body."""
+    lean_deg: float
+    """Standard deviation of that."""
+    wider: float
+    """Share of those who lean and lift their legs farther aside than anybody in a free motion."""
+    slanted: float
+    """Share of the rigs that stand anywhere, look down, are rolled."""
+    distances_m: tuple[float, float]
+    """Range of the cameras."""
+
+
+ORDINARY: Final = Manner(0.3, 0.4, 0.15, 14.0, 0.0, 0.25, (3.4, 5.6))
+AT_LARGE: Final = Manner(0.65, 0.8, 0.3, 20.0, 0.25, 0.4, (2.3, 5.6))
+"""People who move as they like, also close to cameras that stand anywhere."""
+
+
+def outlines(seed: int, manner: Manner = ORDINARY) -> Iterator[Outline]:
+    """The instants of one performance by one person before two cameras; a seed is a performance."""
+    rng = np.random.default_rng([seed, 77])
+    someone = _differing(person(int(rng.integers(*PEOPLE))), rng)
+    angles = _angles(someone, manner, rng)
+    leash = rng.uniform(-ROOM_M, ROOM_M, 2)
+    body = posed(someone.measures, angles, leash, np.tile(leash, (len(angles), 1)))
+    mesh, rig = body_mesh(someone), made_up_rig(rng, manner.slanted, manner.distances_m)
+    present = _present(len(angles), rng)
+    flaws = (flaw(len(angles), rng), flaw(len(angles), rng))
+    since_s = 1.0 / FPS
+    for i in range(len(angles)):
+        if i and rng.random() < DROP_SHARE:
+            since_s += 1.0 / FPS
+            continue
+        masks = _seen(mesh, body, i, rig, flaws, rng)
+        shown = tuple(mask if seen else None for mask, seen in zip(masks, present[i], strict=True))
+        first, second = shown
+        yield Outline(
+            (first, second), body.joints_m[i], rig, someone.measures["stature_m"], since_s
+        )
+        since_s = 1.0 / FPS
+
+
+def _differing(someone: Person, rng: np.random.Generator) -> Person:
+    """The same person with other proportions; the stature stays about the same."""
+    measures = {
+        name: value
+        * (1.0 + rng.normal() * (THICKER if "half" in name or "radius" in name else LONGER))
+        for name, value in someone.measures.items()
+    }
+    measures["stature_m"] = someone.measures["stature_m"]
+    look, room = someone.look, rng.uniform(*LOOSER, 2)
+    look = look._replace(
+        loose_top_m=look.loose_top_m * room[0], loose_legs_m=look.loose_legs_m * room[1]
+    )
+    return someone._replace(measures=measures, look=look)
+
+
+def _angles(someone: Person, manner: Manner, rng: np.random.Generator) -> NDArray[np.float64]:
+    """(n, 27) of a performance, made more various."""
+    chance = rng.random()
+    name = "free" if chance < manner.free else POSTURES[int(rng.integers(len(POSTURES)))]
+    speed = rng.uniform(*(FAST if rng.random() < FAST_SHARE else SPEEDS))
+    motion = performance(someone, name, int(rng.integers(1_000_000)), FPS / speed)
+    angles = motion.angles_deg[motion.present].copy()
+    opening = int((motion.phase[motion.present] < MOTION).sum())
+    if rng.random() < OTHER_ARMS:
+        angles[opening:, ARMS] = _others_arms(someone, speed, len(angles) - opening, rng)
+    t = np.arange(len(angles)) / FPS
+    if manner.wider and rng.random() < manner.wider:
+        angles[opening:] *= WIDER
+    angles += _swaying(t, manner, rng)
+    angles[:, BENT] = np.abs(angles[:, BENT])
+    if name != "free":
+        angles[:, YAW] += _yaw(t, chance < manner.free + TURNED_SHARE, rng)
+    start = int(rng.integers(len(angles) // 2)) if rng.random() < manner.late else 0
+    return angles[start : start + LONGEST]
+
+
+def _others_arms(
+    someone: Person, speed: float, n: int, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """(n, arms) angles of another movement, to and fro."""
+    name = POSTURES[int(rng.integers(len(POSTURES)))]
+    other = performance(someone, name, int(rng.integers(1_000_000)), FPS / speed)
+    theirs = other.angles_deg[other.present][:, ARMS]
+    at = (np.arange(n) + int(rng.integers(len(theirs)))) % (2 * len(theirs) - 2)
+    return np.asarray(theirs[np.minimum(at, 2 * len(theirs) - 2 - at)])
+
+
+def _swaying(t: Vector, manner: Manner, rng: np.random.Generator) -> NDArray[np.float64]:
+    """(n, 27) to add: each joint is held otherwise, and wanders."""
+    spread = np.where(ARMS, rng.choice(ARM_DEG), rng.choice(REST_DEG))
+    spread[ROOT], spread[FEET], spread[YAW] = np.minimum(spread[ROOT], REST_DEG[2]), 0.0, 0.0
+    if rng.random() < manner.leaning:
+        spread[LEANS] = manner.lean_deg
+    held, size = rng.normal(0.0, 0.7, (2, len(ANGLES)))
+    waves = np.sin(2 * np.pi * (np.outer(t, rng.uniform(0.2, 1.5, len(ANGLES))) + rng.random()))
+    return np.asarray(spread * (held + size * waves))
+
+
+def _yaw(t: Vector, turning: bool, rng: np.random.Generator) -> Vector:
+    """Degrees about the vertical."""
+    if not turning:
+        waves = np.sin(2 * np.pi * (t * rng.uniform(0.1, 0.6) + rng.random()))
+        return np.asarray(rng.choice(YAW_DEG) * (rng.normal() + 0.4 * rng.normal() * waves))
+    starts = rng.uniform(-180.0, 180.0) if rng.random() < 0.5 else 0.0
+    begin, lasts = rng.uniform(0.0, t[-1]), rng.uniform(0.5, 3.0)
+    way = np.clip((t - begin) / lasts, 0.0, 1.0)
+    return np.asarray(starts + rng.uniform(-TURNING_DEG, TURNING_DEG) * way * way * (3 - 2 * way))
+
+
+def _present(n: int, rng: np.random.Generator) -> NDArray[np.bool_]:
+    """(n, 2) which cameras see each instant; always one."""
+    present, chance = np.ones((n, 2), np.bool_), rng.random()
+    which = int(rng.integers(2))
+    if chance < ALONE_SHARE:
+        present[:, which] = False
+    elif chance < ALONE_SHARE + GAP_SHARE:
+        start = int(rng.integers(n))
+        present[start : start + int(rng.integers(5, 40)), which] = False
+    return present
+
+
+def _seen(
+    mesh: Mesh,
+    body: Posed,
+    i: int,
+    rig: Rig,
+    flaws: tuple[Flaw, Flaw],
+    rng: np.random.Generator,
+) -> list[Mask]:
+    """Both silhouettes of an instant, as they are cut out of a film."""
+    masks = []
+    for camera, wrong in zip(rig.cameras, flaws, strict=True):
+        jitter_px = rng.normal(0.0, JITTER_PX, 2)
+        mask = cast(mesh, body.bones[i], camera, (rig.width, rig.height), jitter_px)
+        masks.append(spoilt(mask, wrong, i).astype(bool))
+    return masks
+
+
+def cast(
+    mesh: Mesh,
+    bones: NDArray[np.float64],
+    camera: Camera,
+    size: tuple[int, int],
+    jitter_px: Vector | float = 0.0,
+) -> NDArray[np.uint8]:
+    """The exact silhouette of a body, (H, W), 1 inside.
+
+    Args:
+        mesh: At rest.
+        bones: Where they are, (bones, 3, 4).
+        camera: Who looks.
+        size: (width, height) of the picture.
+        jitter_px: How far beside its place it is seen, (2,).
+    """
+    places = np.empty_like(mesh.vertices_m)
+    skin(mesh.vertices_m, mesh.origins_m, mesh.bones, mesh.shares, bones, places)
+    mask = np.zeros((size[1], size[0]), np.uint8)
+    cover(project(camera, places) + jitter_px, mesh.faces, mask)
+    return mask

@@ -1,0 +1,232 @@
+"""A furnished room of a seed, as each camera sees it, and where its lamp throws shadows."""
+
+import math
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Vector
+from common.rig.camera import Camera, Rig, centre
+from synth.picture.textures import Finish, finish, painted
+
+Picture = NDArray[np.float32]
+
+LIGHT_MAP_PX: Final = 128
+"""Size of the picture that a lamp "sees" of the person: 4 cm a pixel, shadows are soft anyway."""
+LIGHT_REACH_M: Final = 2.3
+"""How far from the middle of the room the lamps' pictures reach."""
+MIDDLE_M: Final = (0.0, 0.9, 0.0)
+OVERHEAD_M: Final = 2.3
+"""What is higher gets no shadow: the ceiling is not behind anybody."""
+BESIDE_M: Final = 1.0
+"""What is not that far ahead of a lamp gets no shadow: it is beside or behind it."""
+SELF_SHADE: Final = 0.01
+"""Share of the way to the lamp within which a box hides no lamp from a point: it may lie on it."""
+LAMP_SPREAD_M: Final = 0.25
+"""Half the size of the lamp: what stands in the room throws soft shadows, too."""
+SAMPLES: Final = 2
+"""Rays a pixel, each way."""
+
+
+class Box(NamedTuple):
+    """A thing in the room: a box along the axes with one finish."""
+
+    low: Vector
+    high: Vector
+    finish: Finish
+
+
+class Lamp(NamedTuple):
+    """A pinhole that looks from the lamp at the middle of the room."""
+
+    place_m: Vector
+    rotation: NDArray[np.float64]
+    """World to lamp; z points at the middle."""
+    focal_px: float
+
+
+class Room(NamedTuple):
+    """What a camera sees of an empty room, for both cameras."""
+
+    pictures: tuple[Picture, ...]
+    """(h, w, 3) a camera, 0-255."""
+    lamps: tuple[Lamp, ...]
+    """The key light, and the ceiling, whose shadow lies under the feet."""
+    shadows_px: tuple[tuple[NDArray[np.float32], ...], ...]
+    """[camera][lamp]: (h, w, 2) where in the lamp's picture a pixel's point lies."""
+
+
+def furnished(seed: int, rig: Rig) -> Room:
+    """The room of a seed, for the cameras of a rig."""
+    rng = np.random.default_rng([seed, 1])
+    boxes = _walls(rng, rig)
+    back, side = float(boxes[0].low[2]), float(boxes[0].high[0])
+    boxes += _furniture(rng, back, side)
+    key = np.array([rng.uniform(-2.2, 2.2), rng.uniform(2.8, 3.8), rng.uniform(1.6, 3.0)])
+    lamps = (_lamp(key), _lamp(np.array([0.05, 5.5, 0.05])))
+    pictures, maps = [], []
+    for n in range(len(rig.cameras)):
+        picture, points = _seen(rig, n, boxes, key, rng)
+        pictures.append(picture)
+        maps.append(tuple(_shadow_map(lamp, points) for lamp in lamps))
+    return Room(tuple(pictures), lamps, tuple(maps))
+
+
+def _shadow_map(lamp: Lamp, points_m: NDArray[np.float64]) -> NDArray[np.float32]:
+    """Where in the lamp's picture the points (h, w, 3) lie; outside for high ones."""
+    pixels = lamp_pixels(lamp, points_m)
+    ahead = (points_m - lamp.place_m) @ lamp.rotation[2]
+    pixels[(points_m[..., 1] > OVERHEAD_M) | (ahead < BESIDE_M)] = -LIGHT_MAP_PX
+    return pixels.astype(np.float32)
+
+
+def lamp_pixels(lamp: Lamp, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Where points (..., 3) lie in a lamp's picture; outside of it what is beside the lamp."""
+    seen = (points_m - lamp.place_m) @ lamp.rotation.T
+    pixels: NDArray[np.float64] = seen[..., :2] / np.maximum(seen[..., 2:], 0.1) * lamp.focal_px
+    return pixels + LIGHT_MAP_PX / 2
+
+
+def _lamp(place: Vector) -> Lamp:
+    ahead = np.array(MIDDLE_M) - place
+    distance = float(np.linalg.norm(ahead))
+    z = ahead / distance
+    x = np.cross(z, [0.3, 0.1, 1.0])
+    x /= np.linalg.norm(x)
+    focal = LIGHT_MAP_PX / 2 * distance / LIGHT_REACH_M
+    return Lamp(place, np.stack([x, np.cross(z, x), z]), focal)
+
+
+def _walls(rng: np.random.Generator, rig: Rig) -> list[Box]:
+    """The room itself: a box that is seen from inside, first of all boxes."""
+    far = max(5.0, *(float(np.abs(centre(camera)).max()) for camera in rig.cameras)) + 0.6
+    low = np.array([-far, 0.0, -rng.uniform(1.5, 2.5)])
+    high = np.array([rng.uniform(1.5, 2.5), rng.uniform(2.5, 2.9), far])
+    return [Box(low, high, finish("room", rng))]
+
+
+def _furniture(rng: np.random.Generator, back: float, side: float) -> list[Box]:
+    """Things along the far wall of each camera."""
+    boxes = []
+    for wall in (0, 1):
+        along = -1.9
+        while along < 1.7:
+            kind = str(rng.choice(["shelf", "chest", "picture", "curtain", "door", "none"]))
+            wide = float(rng.uniform(0.45, 0.9))
+            if kind != "none":
+                boxes.append(_against(rng, kind, along, wide, wall, (back, side)[wall]))
+            along += wide + float(rng.uniform(0.15, 0.7))
+    return boxes
+
+
+_HEIGHTS: Final = {
+    "shelf": (0.0, 0.0, 0.9, 1.5, 0.3),
+    "chest": (0.0, 0.0, 0.45, 0.8, 0.4),
+    "picture": (1.1, 1.4, 1.55, 1.8, 0.03),
+    "curtain": (0.1, 0.4, 1.6, 2.0, 0.05),
+    "door": (0.0, 0.0, 1.9, 2.05, 0.04),
+}
+"""Lower edge from, to; upper edge from, to; depth: metres."""
+
+
+def _against(
+    rng: np.random.Generator, kind: str, along: float, wide: float, wall: int, at: float
+) -> Box:
+    bottom_from, bottom_to, top_from, top_to, deep = _HEIGHTS[kind]
+    bottom, top = rng.uniform(bottom_from, bottom_to), rng.uniform(top_from, top_to)
+    if wall == 0:
+        low, high = (along, bottom, at), (along + wide, top, at + deep)
+    else:
+        low, high = (at - deep, bottom, along), (at, top, along + wide)
+    return Box(np.array(low), np.array(high), finish(kind, rng))
+
+
+def _seen(
+    rig: Rig, n: int, boxes: list[Box], key: Vector, rng: np.random.Generator
+) -> tuple[Picture, NDArray[np.float64]]:
+    """The picture (h, w, 3) and the point of the room in each pixel (h, w, 3)."""
+    camera, size = rig.cameras[n], (rig.height * SAMPLES, rig.width * SAMPLES)
+    rays = _rays(camera, size)
+    origin = centre(camera)
+    reach = _leaving(origin, rays, boxes[0])
+    which = np.zeros(len(rays), np.int64)
+    for i, box in enumerate(boxes[1:], 1):
+        near = _entering(origin, rays, box)
+        nearer = near < reach
+        reach[nearer], which[nearer] = near[nearer], i
+    points = origin + reach[:, None] * rays
+    colours = np.empty((len(rays), 3))
+    for i, box in enumerate(boxes):
+        here = which == i
+        colours[here] = painted(box.finish, points[here], box.low, box.high)
+    colours *= _light(points, boxes, key, rng)[:, None]
+    shape = (rig.width, rig.height)
+    picture = cv2.resize(
+        colours.reshape(*size, 3).astype(np.float32), shape, interpolation=cv2.INTER_AREA
+    )
+    centres = points.reshape(*size, 3)[SAMPLES // 2 :: SAMPLES, SAMPLES // 2 :: SAMPLES]
+    return np.clip(picture, 0, 255), centres
+
+
+def _rays(camera: Camera, size: tuple[int, int]) -> NDArray[np.float64]:
+    """Directions in the world of all samples, (h w, 3), row by row."""
+    rows, columns = np.mgrid[0 : size[0], 0 : size[1]]
+    pixels = (np.stack([columns, rows], axis=-1).reshape(-1, 1, 2) + 0.5) / SAMPLES
+    lens = np.array(camera.distortion or (0.0,) * 5)
+    plane = cv2.undistortPoints(pixels, np.array(camera.K), lens)[:, 0]
+    seen: NDArray[np.float64] = np.concatenate([plane, np.ones((len(plane), 1))], axis=1)
+    return seen @ np.array(camera.R)
+
+
+def _leaving(origin: Vector, rays: NDArray[np.float64], box: Box) -> Vector:
+    """How far along each ray the room ends."""
+    with np.errstate(divide="ignore"):
+        ends = np.maximum((box.low - origin) / rays, (box.high - origin) / rays)
+    found: Vector = ends.min(axis=1)
+    return found
+
+
+def _entering(origins: Vector, rays: NDArray[np.float64], box: Box, least: float = 0.0) -> Vector:
+    """How far along each ray a box begins; infinite where it is missed.
+
+    Args:
+        origins: Where the rays start: one place (3,), or one for each (n, 3).
+        rays: (n, 3).
+        box: What they may meet.
+        least: A box that begins nearer than this is no hit: a point on it does not shade itself.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        first, second = (box.low - origins) / rays, (box.high - origins) / rays
+    near = np.minimum(first, second).max(axis=1)
+    far = np.maximum(first, second).min(axis=1)
+    found: Vector = np.where((near < far) & (near > least), near, np.inf)
+    return found
+
+
+def _light(
+    points: NDArray[np.float64], boxes: list[Box], key: Vector, rng: np.random.Generator
+) -> Vector:
+    """Brightness of the points: lamp with the furniture's shadows, and dark corners."""
+    away = np.linalg.norm(points - key, axis=1)
+    lamp = 1.0 / (1.0 + (away / 6.0) ** 2)
+    shaded = np.zeros(len(points))
+    for _ in range(2):
+        place = key + rng.uniform(-LAMP_SPREAD_M, LAMP_SPREAD_M, 3)
+        towards = place - points
+        hit = np.zeros(len(points), bool)
+        for box in boxes[1:]:
+            hit |= _entering(points, towards, box, SELF_SHADE) < 1.0
+        shaded += 0.5 * hit
+    walls = np.minimum(points - boxes[0].low, boxes[0].high - points)
+    corner = np.prod(1.0 - 0.22 * np.exp(-np.sort(walls, axis=1)[:, 1:2] / 0.18), axis=1)
+    found: Vector = (0.45 + 0.75 * lamp * (1.0 - 0.45 * shaded)) * corner
+    return found
+
+
+def lit_from(lamp: Lamp) -> Vector:
+    """Direction from the middle of the room to a lamp, unit length."""
+    towards = lamp.place_m - np.array(MIDDLE_M)
+    found: Vector = towards / math.sqrt(float(towards @ towards))
+    return found

@@ -1,0 +1,162 @@
+"""What walls, floors and furniture are covered with: colours from places."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Vector
+
+Colours = NDArray[np.float64]
+
+
+class Finish(NamedTuple):
+    """How a thing looks; which colours mean what depends on the kind."""
+
+    kind: str
+    walls: str
+    floor: str
+    first: Vector
+    second: Vector
+    third: Vector
+    pitch_m: float
+    salt: float
+    """Makes the grain of this thing its own."""
+
+
+WALLS: Final = ("plaster", "stripes", "bricks", "panels")
+FLOORS: Final = ("boards", "tiles", "carpet")
+
+
+def finish(kind: str, rng: np.random.Generator) -> Finish:
+    """A random finish for a kind of thing: room, shelf, chest, picture, curtain or door."""
+    strong = kind in ("curtain", "picture", "shelf", "chest")
+    tints = [_tint(rng, 0.55 if strong else 0.18) for _ in range(3)]
+    if kind == "room":
+        tints[0] *= 0.75 + 0.25 * rng.random()
+        tints[2] = np.array([0.45, 0.65, 0.9]) * rng.uniform(110, 190)
+        if rng.random() < 0.5:
+            tints[2] = _tint(rng, 0.12) * 0.8
+    walls, floor = str(rng.choice(WALLS)), str(rng.choice(FLOORS))
+    pitch = float(rng.uniform(0.09, 0.2))
+    first, second, third = tints
+    return Finish(kind, walls, floor, first, second, third, pitch, float(rng.uniform(0, 50)))
+
+
+def painted(look: Finish, points_m: NDArray[np.float64], low: Vector, high: Vector) -> Colours:
+    """Colours (n, 3), 0-255, of points on the faces of a box (n, 3)."""
+    x, y, z = points_m.T
+    across = np.where(_on(z, low[2], high[2]), x, z)
+    if look.kind == "room":
+        return _shell(look, x, y, z, across, low, high)
+    u, v = across - (low[0] if high[0] - low[0] > high[2] - low[2] else low[2]), y - low[1]
+    paint = {"shelf": _shelf, "chest": _chest, "picture": _picture, "curtain": _curtain}
+    return paint.get(look.kind, _door)(look, u, v, high - low)
+
+
+def _shell(
+    look: Finish, x: Vector, y: Vector, z: Vector, across: Vector, low: Vector, high: Vector
+) -> Colours:
+    colours = _wall(look, across, y)
+    colours[y < 0.09] = 0.25 * look.first + 150.0
+    ground, roof = _on(y, low[1], low[1]), _on(y, high[1], high[1])
+    colours[ground] = _ground(look, x[ground], z[ground])
+    colours[roof] = 0.2 * look.first + 130.0
+    return colours
+
+
+def _wall(look: Finish, u: Vector, v: Vector) -> Colours:
+    stain = 0.92 + 0.12 * _clouds(2.1 * u, 2.1 * v, look.salt)
+    mix = np.zeros_like(u)
+    if look.walls == "stripes":
+        mix = 1.0 * (np.floor(u / look.pitch_m) % 2)
+    elif look.walls == "bricks":
+        row = np.floor(v / 0.075)
+        joint = ((v % 0.075) < 0.009) | (((u + 0.11 * (row % 2)) % 0.22) < 0.009)
+        mix = (
+            0.25
+            + 0.35 * _hash(np.floor((u + 0.11 * (row % 2)) / 0.22), row, look.salt)
+            + 0.5 * joint
+        )
+    elif look.walls == "panels":
+        mix = np.where(v < 0.9, 1.0, 0.0) + 0.5 * ((u % (4 * look.pitch_m)) < 0.012) * (v < 0.9)
+    second = 0.62 * look.first + 0.22 * look.second
+    return (look.first + mix[:, None] * (second - look.first)) * stain[:, None]
+
+
+def _ground(look: Finish, x: Vector, z: Vector) -> Colours:
+    if look.floor == "boards":
+        board = np.floor(x / 0.11)
+        plank = np.floor((z + 7.0 * _hash(board, board, look.salt)) / 1.1)
+        tone = 0.78 + 0.34 * _hash(board, plank, look.salt) - 0.25 * ((x % 0.11) < 0.006)
+        tone = tone + 0.08 * _clouds(60.0 * x, 3.0 * z, look.salt)
+    elif look.floor == "tiles":
+        tone = 0.95 - 0.3 * (((x % 0.4) < 0.012) | ((z % 0.4) < 0.012))
+        tone = tone + 0.1 * _hash(np.floor(x / 0.4), np.floor(z / 0.4), look.salt)
+    else:
+        tone = 0.7 + 0.12 * _clouds(30 * x, 30 * z, look.salt) + 0.08 * _hash(x * 400, z * 400, 1.0)
+    return look.third * tone[:, None]
+
+
+def _shelf(look: Finish, u: Vector, v: Vector, size: Vector) -> Colours:
+    wide, tall = max(size[0], size[2]), size[1]
+    board = np.floor(v / 0.3)
+    frame = (u < 0.04) | (u > wide - 0.04) | ((v % 0.3) < 0.03) | (v > tall - 0.04)
+    book = np.floor(u / 0.035)
+    height = 0.15 + 0.1 * _hash(book, board, look.salt)
+    books = 0.55 + 0.45 * _hash(book, board, look.salt + 3.0)
+    inside = np.where((v % 0.3) - 0.03 < height, books, 0.15)
+    return np.where(frame[:, None], 0.5 * look.first, inside[:, None] * look.second)
+
+
+def _chest(look: Finish, u: Vector, v: Vector, _size: Vector) -> Colours:
+    tone = 0.75 + 0.15 * _clouds(4 * u, 25 * v, look.salt) - 0.35 * ((v % 0.26) < 0.015)
+    return 0.75 * look.first * tone[:, None]
+
+
+def _picture(look: Finish, u: Vector, v: Vector, size: Vector) -> Colours:
+    wide, tall = max(size[0], size[2]), size[1]
+    frame = (u < 0.03) | (u > wide - 0.03) | (v < 0.03) | (v > tall - 0.03)
+    mix = _clouds(9 * u, 9 * v, look.salt)[:, None]
+    return np.where(frame[:, None], 45.0, look.first * mix + look.second * (1 - mix))
+
+
+def _curtain(look: Finish, u: Vector, v: Vector, _size: Vector) -> Colours:
+    fold = 0.5 + 0.5 * np.sin(2 * np.pi * (u + 0.01 * np.sin(3 * v)) / (0.6 * look.pitch_m))
+    mixed = look.first + fold[:, None] * (look.second - look.first)
+    return mixed * (0.75 + 0.25 * fold[:, None])
+
+
+def _door(look: Finish, u: Vector, v: Vector, _size: Vector) -> Colours:
+    board = np.floor(v / 0.34)
+    tone = 0.7 + 0.25 * _hash(board, np.floor(u / 0.5), look.salt) - 0.3 * ((v % 0.34) < 0.012)
+    return look.first * (tone + 0.06 * _clouds(3 * u, 40 * v, look.salt))[:, None]
+
+
+def _on(value: Vector, low: float, high: float) -> NDArray[np.bool_]:
+    found: NDArray[np.bool_] = (np.abs(value - low) < 1e-6) | (np.abs(value - high) < 1e-6)
+    return found
+
+
+def _tint(rng: np.random.Generator, strength: float) -> Vector:
+    grey, hue = rng.uniform(120.0, 225.0), rng.normal(0.0, 1.0, 3)
+    tint: Vector = np.clip(grey * (1.0 + strength * hue / 2), 25.0, 240.0)
+    return tint
+
+
+def _hash(a: Vector, b: Vector, salt: float) -> Vector:
+    """A number from 0 to 1 that looks random, the same for the same whole numbers."""
+    wild = np.sin(np.floor(a) * 12.9898 + np.floor(b) * 78.233 + salt) * 43758.5453
+    found: Vector = wild - np.floor(wild)
+    return found
+
+
+def _clouds(a: Vector, b: Vector, salt: float) -> Vector:
+    """Smooth noise from 0 to 1 with features of size 1."""
+    i, j = np.floor(a), np.floor(b)
+    x, y = a - i, b - j
+    x, y = x * x * (3 - 2 * x), y * y * (3 - 2 * y)
+    top = _hash(i, j, salt) * (1 - x) + _hash(i + 1, j, salt) * x
+    low = _hash(i, j + 1, salt) * (1 - x) + _hash(i + 1, j + 1, salt) * x
+    found: Vector = top * (1 - y) + low * y
+    return found

@@ -1,0 +1,72 @@
+"""Pictures that show no room: frozen, black, white, covered; and rooms that only look so."""
+
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from viewer.background.background import learn
+from viewer.camera_fault import FROZEN_AFTER, State, init, step
+
+Picture = NDArray[np.uint8]
+RANDOM = np.random.default_rng(5)
+
+
+def noisy(plain: Picture) -> Picture:
+    """As a sensor gives it: two grey levels of noise."""
+    return np.clip(plain + RANDOM.normal(0.0, 2.0, plain.shape), 0, 255).astype(np.uint8)
+
+
+def room(low: int, high: int) -> Picture:
+    """Walls between two grey levels."""
+    column = np.linspace(low, high, 160)
+    return np.broadcast_to(column[None, :, None], (120, 160, 3)).astype(np.uint8)
+
+
+def somebody(picture: Picture) -> Picture:
+    shown = picture.copy()
+    cv2.rectangle(shown, (60, 20), (90, 110), (40, 60, 80), cv2.FILLED)
+    return shown
+
+
+def faults(state: State, pictures: list[Picture]) -> list[str]:
+    found = []
+    for picture in pictures:
+        state, fault = step(state, picture)
+        found.append(fault)
+    return found
+
+
+def knows(plain: Picture) -> State:
+    return init(learn([noisy(plain) for _ in range(8)]))
+
+
+def test_a_picture_that_is_repeated_bit_for_bit_is_frozen_until_it_changes() -> None:
+    view = room(40, 200)
+    still = noisy(view)
+    found = faults(knows(view), [noisy(view), *[still] * 6, noisy(view), still])
+    assert found == [""] * (2 + FROZEN_AFTER) + ["frozen"] * 3 + ["", ""]
+
+
+def test_a_person_who_stands_still_is_no_frozen_picture() -> None:
+    view = room(40, 200)
+    assert faults(knows(view), [noisy(somebody(view)) for _ in range(40)]) == [""] * 40
+
+
+@pytest.mark.parametrize(("level", "fault"), [(3, "black"), (252, "saturated"), (120, "covered")])
+def test_a_lens_that_shows_nothing_is_told_for_what_it_is(level: int, fault: str) -> None:
+    shown = noisy(np.full((120, 160, 3), level, np.uint8))
+    assert faults(knows(room(40, 200)), [shown]) == [fault]
+
+
+@pytest.mark.parametrize("level", [8, 128, 250], ids=["night", "plain wall", "white studio"])
+def test_a_room_that_is_plain_itself_is_no_fault(level: int) -> None:
+    plain = np.full((120, 160, 3), level, np.uint8)
+    assert faults(knows(plain), [noisy(plain), noisy(somebody(plain))]) == ["", ""]
+
+
+@pytest.mark.parametrize("gain", [0.5, 0.8, 1.3], ids=["dusk", "cloud", "sun"])
+def test_other_light_is_no_fault(gain: float) -> None:
+    view = room(40, 200)
+    lit = np.clip(gain * view, 0, 255).astype(np.uint8)
+    assert faults(knows(view), [noisy(lit), noisy(somebody(lit))]) == ["", ""]

@@ -1,0 +1,66 @@
+"""What is odd about a performance, a line each."""
+
+from common.bus.messages import Box, Report
+from common.config import BodySettings, Settings
+from common.rig.camera import paper_rig
+from integrator import diagnostics, merge, merge_state
+from integrator.pairing import Pair
+
+RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
+
+
+def report(viewer: int, seen: bool = True, cut: bool = False) -> Report:
+    return Report(
+        frame=0,
+        captured_s=0.0,
+        clock_s=0.0,
+        viewer=viewer,  # type: ignore[arg-type]
+        width=8,
+        height=1,
+        silhouette=b"\0",
+        box=Box(0, 1, 0, 0) if seen else None,
+        cut=cut,
+    )
+
+
+def noticed(*pairs: Pair) -> diagnostics.State:
+    state = diagnostics.State()
+    for pair in pairs:
+        state = diagnostics.step(state, pair)
+    return state
+
+
+def merged(calibrated: bool = True, measured: bool = True) -> merge_state.State:
+    state = merge.init(
+        RIG if calibrated else None, 1 / 15, Settings(body=BodySettings(stature_m=1.62))
+    )
+    return state._replace(opening=state.opening._replace(measured=measured))
+
+
+def test_a_good_performance_is_not_odd() -> None:
+    assert diagnostics.warnings(noticed(Pair(report(1), report(2))), merged()) == []
+
+
+def test_without_calibration_the_assumed_stature_is_named_from_the_start() -> None:
+    (told,) = diagnostics.assumed(merged(calibrated=False))
+    assert "no calibration" in told
+    assert "1.62 m" in told
+    assert diagnostics.warnings(diagnostics.State(), merged(calibrated=False)) == [told]
+
+
+def test_proportions_that_were_not_measured_are_the_theses() -> None:
+    (told,) = diagnostics.warnings(noticed(Pair(report(1), None)), merged(measured=False))
+    assert "thesis's proportions" in told
+
+
+def test_an_empty_room_misses_no_opening_posture() -> None:
+    nobody = noticed(Pair(report(1, seen=False), report(2, seen=False)))
+    assert diagnostics.warnings(nobody, merged(measured=False)) == []
+
+
+def test_a_person_partly_outside_is_counted_by_viewer() -> None:
+    pairs = [Pair(report(1), report(2, cut=n < 3)) for n in range(10)] + [Pair(report(1), None)]
+    assert diagnostics.warnings(noticed(*pairs), merged()) == [
+        "viewer 2 saw the person partly outside its picture in 3 of 10 frames: "
+        "what is outside is guessed"
+    ]

@@ -1,0 +1,79 @@
+"""A source that is decoded once: what a second reading gives, and when it is decoded again."""
+
+from collections.abc import Iterator
+from itertools import islice
+
+import numpy as np
+
+from common.video.decoding import Decoded, Source
+from common.video.frame_cache import Reel
+
+SIZE = (4, 3)
+BYTES = 3 * SIZE[0] * SIZE[1]
+
+
+class Counting:
+    """A decoder of films of ten pictures that counts its readings."""
+
+    def __init__(self) -> None:
+        self.came, self.readings = 0, 0
+
+    def frames(self, source: Source, size: tuple[int, int], every: int = 1) -> Iterator[Decoded]:
+        self.readings += 1
+        for index in range(0, 10, every):
+            picture = np.full((size[1], size[0], 3), hash(source) % 7 + index, np.uint8)
+            yield Decoded(index, 0.1 * index, picture)
+        self.came = 10
+
+
+def indices(reel: Reel, source: Source = "a.avi", every: int = 1) -> list[int]:
+    return [got.index for got in reel.frames(source, SIZE, every)]
+
+
+def test_a_second_reading_gives_the_same_pictures_without_decoding() -> None:
+    decoder = Counting()
+    reel = Reel(decoder)
+    first, second = list(reel.frames("a.avi", SIZE)), list(reel.frames("a.avi", SIZE))
+    assert all(one is other for one, other in zip(first, second, strict=True))
+    assert decoder.readings == 1
+    assert reel.came == 10
+
+
+def test_every_third_picture_comes_from_a_whole_reading_too() -> None:
+    decoder = Counting()
+    reel = Reel(decoder)
+    indices(reel)
+    assert indices(reel, every=3) == [0, 3, 6, 9]
+    assert decoder.readings == 1
+
+
+def test_a_reading_of_every_third_picture_is_not_taken_for_a_whole_one() -> None:
+    reel = Reel(Counting())
+    assert indices(reel, every=3) == [0, 3, 6, 9]
+    assert indices(reel) == list(range(10))
+
+
+def test_a_film_that_is_too_large_is_decoded_again() -> None:
+    decoder = Counting()
+    small, fitting = Reel(decoder, 9 * BYTES), Reel(decoder, 10 * BYTES)
+    for reel, readings in ((small, 2), (fitting, 1)):
+        decoder.readings = 0
+        assert indices(reel) == indices(reel) == list(range(10))
+        assert decoder.readings == readings
+
+
+def test_a_reading_that_was_broken_off_is_begun_afresh() -> None:
+    decoder = Counting()
+    reel = Reel(decoder)
+    list(islice(reel.frames("a.avi", SIZE), 5))
+    assert indices(reel) == list(range(10))
+    assert decoder.readings == 2
+
+
+def test_another_source_or_size_is_decoded() -> None:
+    decoder = Counting()
+    reel = Reel(decoder)
+    indices(reel, "plate.png")
+    indices(reel, "a.avi")
+    assert next(iter(reel.frames("a.avi", (8, 6)))).picture.shape == (6, 8, 3)
+    assert decoder.readings == 3

@@ -1,0 +1,90 @@
+"""The way back from joints to angles, held against the way there."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from common.body.body import JOINT_NAMES, POSE_INDEX, Vector, rest_pose
+from common.body.kinematics import joints
+from common.body.proportions import body_vector, thesis_bdp
+from integrator.pose.inverse_kinematics import PLACES, pose_of
+from integrator.proposal.network_weights import JOINTS
+from integrator.proposal.pose_proposal import AT, pose_and_rest, trunk_axes
+
+BODY = body_vector(thesis_bdp(1.75))
+
+
+def posed(**angles_deg: float) -> Vector:
+    pose = rest_pose()
+    pose[:3] = 0.3, 0.9, -0.2
+    for name, angle_deg in angles_deg.items():
+        pose[POSE_INDEX[name]] = angle_deg
+    return pose
+
+
+def twelve(pose: Vector) -> Vector:
+    found: Vector = joints(BODY, pose)[AT]
+    return found
+
+
+def test_the_twelve_joints_stand_in_one_order_everywhere() -> None:
+    assert tuple(PLACES) == JOINTS
+    assert [JOINT_NAMES[i] for i in AT] == list(JOINTS)
+
+
+@given(
+    yaw=st.floats(-100.0, 100.0),
+    bow=st.floats(-10.0, 40.0),
+    roll=st.floats(-15.0, 15.0),
+    arms=st.tuples(st.floats(70.0, 150.0), st.floats(210.0, 290.0)),
+    swings=st.tuples(st.floats(-30.0, 30.0), st.floats(-30.0, 30.0)),
+    hip=st.floats(-20.0, 80.0),
+)
+@settings(max_examples=60, deadline=None)
+def test_straight_limbs_come_back_as_they_were(
+    yaw: float,
+    bow: float,
+    roll: float,
+    arms: tuple[float, float],
+    swings: tuple[float, float],
+    hip: float,
+) -> None:
+    pose = posed(
+        torso_y=yaw,
+        torso_x=bow,
+        torso_z=roll,
+        r_shoulder_z=arms[0],
+        l_shoulder_z=arms[1],
+        r_shoulder_x=swings[0],
+        l_shoulder_x=swings[1],
+        r_hip_x=hip,
+    )
+    found = pose_of(twelve(pose), BODY, rest_pose())
+    assert twelve(found) == pytest.approx(twelve(pose), abs=1e-6)
+    for name in ("torso_x", "torso_y", "torso_z", "r_shoulder_z", "l_shoulder_x", "r_hip_x"):
+        assert found[POSE_INDEX[name]] == pytest.approx(pose[POSE_INDEX[name]], abs=1e-3)
+
+
+def test_bent_elbows_and_knees_put_the_hand_and_the_foot_back() -> None:
+    """A cylinder bends beside its landmark, so the angle is found to a few degrees (E, W)."""
+    pose = posed(r_elbow_x=70.0, l_elbow_x=40.0, r_hip_x=60.0, r_knee_x=-80.0, l_shoulder_z=250.0)
+    found = pose_of(twelve(pose), BODY, rest_pose())
+    assert np.linalg.norm(twelve(found) - twelve(pose), axis=1).max() < 0.03
+    assert found[POSE_INDEX["r_elbow_x"]] == pytest.approx(70.0, abs=10.0)
+    assert found[POSE_INDEX["r_knee_x"]] == pytest.approx(-80.0, abs=10.0)
+
+
+def test_of_two_ways_to_one_place_the_nearer_is_taken() -> None:
+    """theta_X 170 at theta_Z 180 is an arm raised forwards past the top, or 10 at 0."""
+    raised = posed(r_shoulder_x=150.0)
+    assert pose_of(twelve(raised), BODY, raised)[POSE_INDEX["r_shoulder_x"]] == pytest.approx(150.0)
+
+
+def test_what_the_cylinders_cannot_show_is_kept_beside_them() -> None:
+    """A raised shoulder: landmarks and the rest together are the joints that were found."""
+    found = twelve(posed(torso_y=-30.0))
+    found[:2, 1] += 0.03
+    pose, rest = pose_and_rest(BODY, rest_pose(), found)
+    assert joints(BODY, pose)[AT] + rest[AT] @ trunk_axes(BODY, pose).T == pytest.approx(found)
+    assert np.abs(rest[AT[:2]]).max() > 0.005

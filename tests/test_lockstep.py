@@ -1,0 +1,133 @@
+"""Offline runs: repeatable to the byte, and honest about frames that are missing."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+from spoiling import copied, cut_off, edit_json, refilmed
+
+from common.config import Settings, SettingsError
+from tritrack.offline.lockstep import Decoders, overridden, track_all, track_clip
+from tritrack.store.runs import poses
+
+QUIET = Console(quiet=True)
+
+
+def tracked(clip: Path) -> tuple[dict[str, np.ndarray], dict]:
+    with Decoders() as decoders:
+        done = track_clip(Settings(clip=str(clip)), decoders)
+    return poses([body for body in done.bodies if body.frame >= 0]), done.facts
+
+
+def test_the_same_clip_gives_the_same_bytes(clip: Path, tmp_path: Path) -> None:
+    for out in ("first", "second"):
+        track_all([clip], tmp_path / out, None, (1, 2), None, QUIET)
+    first, second = ((tmp_path / out / clip.name / "poses.npz") for out in ("first", "second"))
+    assert first.read_bytes() == second.read_bytes()
+
+
+@pytest.mark.slow
+def test_another_process_that_compiles_anew_gives_the_same_bytes(
+    clip: Path, tmp_path: Path
+) -> None:
+    for out in ("first", "second"):
+        subprocess.run(
+            [sys.executable, "-m", "tritrack", "track", str(clip), "--out", str(tmp_path / out)],
+            env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / f"cache {out}")},
+            check=True,
+        )
+    first, second = ((tmp_path / out / clip.name / "poses.npz") for out in ("first", "second"))
+    assert first.read_bytes() == second.read_bytes()
+    assert any((tmp_path / "cache first").rglob("*.nbc"))
+
+
+def test_nothing_is_written_but_the_run_folder(clip: Path, tmp_path: Path) -> None:
+    before = {path: path.stat().st_mtime_ns for path in clip.parent.rglob("*")}
+    track_all([clip], tmp_path, None, (1, 2), None, QUIET)
+    assert {path: path.stat().st_mtime_ns for path in clip.parent.rglob("*")} == before
+    files = {str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*") if path.is_file()}
+    assert files == {f"{clip.name}/poses.npz", f"{clip.name}/summary.json"}
+
+
+def test_the_order_of_clips_does_not_change_one(clip: Path, tmp_path: Path) -> None:
+    """A decoder that was left in the middle of a film, or used before, reads the next as new."""
+    other = copied(clip, tmp_path / "other")
+    cut_off(other)
+    alone, _ = tracked(clip)
+    with Decoders() as decoders:
+        track_clip(Settings(clip=str(other)), decoders)
+        after = poses(track_clip(Settings(clip=str(clip)), decoders).bodies)
+    for name, values in alone.items():
+        np.testing.assert_array_equal(after[name], values, err_msg=name)
+
+
+def test_a_view_that_ends_early_leaves_the_other_to_go_on(clip: Path, tmp_path: Path) -> None:
+    folder = copied(clip, tmp_path / "clip")
+    refilmed(folder, lambda film: film[:40], cameras=(2,))
+    rows, facts = tracked(folder)
+    assert rows["frame"].tolist() == list(range(69))
+    assert set(rows["views"][15:40]) == {"both"}
+    assert set(rows["views"][40:]) == {"1"}
+    assert np.isfinite(rows["joints_m"][40:]).all()
+    assert facts["warnings"] == ["the views differ in length: 69 and 40 frames"]
+
+
+def test_frames_that_one_camera_missed_are_paired_by_their_moments(
+    clip: Path, tmp_path: Path
+) -> None:
+    """Camera 1 misses frames 30 and 31, camera 2 frame 50; `capture_s` says so."""
+    folder = copied(clip, tmp_path / "clip")
+    gone = {1: {30, 31}, 2: {50}}
+    kept = {n: [i for i in range(69) if i not in gone[n]] for n in (1, 2)}
+    for n in (1, 2):
+        refilmed(folder, lambda film, n=n: [film[i] for i in kept[n]], cameras=(n,))
+    moments = {f"cam{n}": [i / 15 for i in kept[n]] for n in (1, 2)}
+    edit_json(folder / "meta.json", lambda meta: meta.update(capture_s=moments))
+    rows, facts = tracked(folder)
+    assert rows["frame"].tolist() == list(range(67))
+    np.testing.assert_allclose(rows["time_s"], moments["cam1"])
+    alone = np.flatnonzero(rows["views"] == "1")
+    assert [kept[1][row] for row in alone if kept[1][row] > 12] == [50]
+    assert facts["warnings"] == []
+
+
+def test_the_stressed_clip_has_a_row_for_each_of_camera_1s_frames(data_dir: Path) -> None:
+    folder = data_dir / "dev_stress" / "frame_drops"
+    rows, facts = tracked(folder)
+    moments = json.loads((folder / "meta.json").read_text())["capture_s"]["cam1"]
+    assert rows["frame"].tolist() == list(range(len(moments)))
+    np.testing.assert_allclose(rows["time_s"], moments)
+    assert facts["warnings"] == []
+
+
+def test_every_nth_frame_keeps_its_number_and_time(clip: Path) -> None:
+    with Decoders() as decoders:
+        rows = poses(track_clip(Settings(clip=str(clip), every=2), decoders).bodies)
+    assert rows["frame"].tolist() == list(range(0, 69, 2))
+    np.testing.assert_allclose(rows["time_s"], np.arange(0, 69, 2) / 15)
+
+
+def test_a_command_line_goes_before_the_settings() -> None:
+    given = Settings(mode="paper", size="80x60")
+    assert overridden(given, None, None) == given
+    assert overridden(given, "default", None) == Settings(mode="default", size="80x60")
+    assert overridden(given, None, "96x96") == Settings(mode="paper", size="96x96")
+    with pytest.raises(SettingsError, match="must be from 32 to 4096, got 5000"):
+        overridden(given, None, "5000x50")
+
+
+def test_a_pair_filmed_without_calibration_is_tracked(data_dir: Path, tmp_path: Path) -> None:
+    """configs/frontside_walk.toml: its run folder bears the file's name, not a video's."""
+    config = Path(__file__).parents[1] / "configs" / "frontside_walk.toml"
+    if "TRITRACK_DATA" not in os.environ:
+        pytest.skip("the settings name the clips by TRITRACK_DATA")
+    done = track_all([config], tmp_path, None, (1, 2), None, QUIET)
+    assert list(done["clips"]) == ["frontside_walk"]
+    assert done["clips"]["frontside_walk"]["scale_source"] == "assumed"
+    with np.load(tmp_path / "frontside_walk" / "poses.npz", allow_pickle=False) as found:
+        assert np.isfinite(found["joints_m"]).all(axis=(1, 2)).mean() > 0.9

@@ -1,0 +1,305 @@
+"""What is said on the bus comes back as it was said, and nothing else is taken for it."""
+
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as shapes
+
+from common.body.body import ANGLE_NAMES, JOINT_NAMES, POSE_NAMES, rest_pose
+from common.body.proportions import thesis_bdp
+from common.bus import control_messages, messages
+from common.bus.control_messages import Cameras, ClockAnswer, ClockQuestion, Ended, Pulse
+from common.bus.message_codec import (
+    MAX_BYTES,
+    TOPICS,
+    MalformedMessage,
+    decode,
+    encode,
+    key_of,
+    pack,
+    pattern_of,
+    unpack,
+)
+from common.bus.messages import (
+    PROTOCOL,
+    Body,
+    Box,
+    Fit,
+    Guide,
+    Measure,
+    Message,
+    Moment,
+    Picture,
+    Posture,
+    Report,
+)
+from common.rig.camera import paper_rig
+
+BDP = thesis_bdp(1.75)
+MEASURE = Measure(
+    height_px=66.0, centre_px=(80.0, 55.5), depth_px=7.5, bdp_px=BDP, arms_z_deg=(91.0, 269.0)
+)
+FIT = Fit(
+    joints_px=((1.5, 2.5),) * len(JOINT_NAMES),
+    ratios=(1.0,) * 9 + (0.5,),
+    breadth=0.9,
+    stature_px=66.0,
+    hidden=(False,) * 9 + (True,),
+    score=0.8,
+    matches=3000,
+)
+REPORT = Report(
+    frame=7,
+    captured_s=0.5,
+    clock_s=1000.5,
+    viewer=2,
+    width=13,
+    height=3,
+    silhouette=bytes(6),
+    box=Box(left=1, right=2, top=0, bottom=2),
+    vote="flank",
+    thresholds_px=(12.0, 19.5),
+    measure=MEASURE,
+    root_px=(6.5, 1.5),
+    angles_deg={"r_shoulder_x": 17.0},
+    score=0.8,
+    fit=FIT,
+)
+GUIDE = Guide(
+    frame=7,
+    captured_s=0.5,
+    clock_s=1000.5,
+    frames=(7, 6),
+    bdp=BDP,
+    pose=tuple(rest_pose().tolist()),
+)
+BODY = Body(
+    frame=7,
+    captured_s=0.5,
+    clock_s=1000.5,
+    status="tracking",
+    views="both",
+    joints_m=((0.0, 1.0, 2.0),) * len(JOINT_NAMES),
+    joints_px=(((1.0, 2.0),) * len(JOINT_NAMES),) * 2,
+    pose=tuple(rest_pose().tolist()),
+    angles_raw_deg=(1.0,) * len(ANGLE_NAMES),
+    confidence=(0.5,) * len(JOINT_NAMES),
+    bdp=BDP,
+)
+SAID: list[Message] = [
+    REPORT,
+    msgspec.structs.replace(REPORT, box=None, measure=None, root_px=None),
+    GUIDE,
+    BODY,
+    Posture(frame=7, captured_s=0.5, clock_s=0.5, name="squat", log_likelihoods={"squat": -9.5}),
+    Picture(frame=7, captured_s=0.5, clock_s=0.5, viewer=1, jpeg=b"\xff\xd8"),
+    Pulse(process="viewer 1", state="running", frames=7, fps=15.0),
+    Cameras(rig=paper_rig((160, 120), (200.0, 200.0), (4.0, 4.0)), scale_source="calibrated"),
+    Ended(viewer=1, frames=69),
+    ClockQuestion(viewer=1, ready=True),
+    ClockAnswer(now_s=1000.0, start_s=None),
+]
+
+
+def kinds() -> list[type[Message]]:
+    """Every class of message that can be said: those that no other message is made from."""
+    said = {**vars(messages), **vars(control_messages)}.values()
+    found = [kind for kind in said if isinstance(kind, type)]
+    return [kind for kind in found if issubclass(kind, Message) and kind not in (Message, Moment)]
+
+
+@pytest.mark.parametrize("message", SAID, ids=lambda message: type(message).__name__)
+def test_a_message_comes_back_as_it_was_said(message: Message) -> None:
+    assert decode(encode(message), type(message)) == message
+
+
+def test_every_kind_of_message_is_in_these_tests_and_has_a_topic() -> None:
+    """Clock questions and answers are asked and given, not published."""
+    assert {type(message) for message in SAID} == set(kinds())
+    assert set(TOPICS) == set(kinds()) - {ClockQuestion, ClockAnswer}
+
+
+@pytest.mark.parametrize("message", SAID, ids=lambda message: type(message).__name__)
+def test_a_listener_of_a_kind_hears_what_is_said_and_nothing_else(message: Message) -> None:
+    kind = type(message)
+    if kind not in TOPICS:
+        return
+    key = key_of(message, "hall")
+    assert key.startswith("tritrack/hall/")
+    assert matches(pattern_of(kind, "hall"), key)
+    assert not any(matches(pattern_of(other, "hall"), key) for other in TOPICS if other is not kind)
+    assert not matches(pattern_of(kind, "attic"), key)
+
+
+def matches(pattern: str, key: str) -> bool:
+    wanted, got = pattern.split("/"), key.split("/")
+    return len(wanted) == len(got) and all(a in ("*", b) for a, b in zip(wanted, got, strict=True))
+
+
+@pytest.mark.parametrize("message", SAID, ids=lambda message: type(message).__name__)
+def test_a_message_cut_short_or_with_something_behind_it_is_refused(message: Message) -> None:
+    payload = encode(message)
+    for cut in (*range(min(len(payload), 40)), len(payload) - 1):
+        with pytest.raises(MalformedMessage):
+            decode(payload[:cut], type(message))
+    with pytest.raises(MalformedMessage):
+        decode(payload + b"\x00", type(message))
+
+
+@pytest.mark.parametrize("message", SAID, ids=lambda message: type(message).__name__)
+def test_a_message_is_taken_for_no_other_kind(message: Message) -> None:
+    for kind in kinds():
+        if kind is not type(message):
+            with pytest.raises(MalformedMessage, match=kind.__name__):
+                decode(encode(message), kind)
+
+
+def test_a_message_of_another_protocol_is_refused() -> None:
+    with pytest.raises(MalformedMessage, match=f"protocol {PROTOCOL + 1}, this is {PROTOCOL}"):
+        decode(encode(msgspec.structs.replace(REPORT, protocol=PROTOCOL + 1)), Report)
+
+
+def test_a_message_of_more_than_a_megabyte_is_refused_unread() -> None:
+    large = Picture(frame=0, captured_s=0.0, clock_s=0.0, viewer=1, jpeg=bytes(MAX_BYTES))
+    with pytest.raises(MalformedMessage, match="bytes, at most"):
+        decode(encode(large), Picture)
+
+
+@pytest.mark.parametrize(
+    "payload",
+    [
+        b"\x91" * 100_000,
+        b"\x81\xa4pose" + b"\x91" * 100_000,
+        b"\x81\xa6nobody" + b"\x81\xa1x" * 100_000,
+        b"\xdd\xff\xff\xff\xff",
+        encode(GUIDE).replace(b"\xa4pose\xdc", b"\xa4pose\xdd\xff\xff"),
+    ],
+    ids=["arrays in arrays", "in a field", "maps in maps", "four billion items", "a long field"],
+)
+def test_nesting_and_lengths_that_only_an_attacker_sends_are_refused(payload: bytes) -> None:
+    with pytest.raises(MalformedMessage):
+        decode(payload, Guide)
+
+
+def floats_of(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """Where floats stand in builtins."""
+    if isinstance(value, float):
+        return [path]
+    if isinstance(value, dict):
+        return [found for key in value for found in floats_of(value[key], (*path, key))]
+    if isinstance(value, list):
+        return [found for n, item in enumerate(value) for found in floats_of(item, (*path, n))]
+    return []
+
+
+@pytest.mark.parametrize("wrong", [float("nan"), float("inf")])
+@pytest.mark.parametrize("message", SAID, ids=lambda message: type(message).__name__)
+def test_a_number_that_is_not_finite_is_refused_wherever_it_stands(
+    message: Message, wrong: float
+) -> None:
+    """MessagePack carries NaN, and one of them would spread through every filter."""
+    for path in floats_of(msgspec.msgpack.decode(encode(message))):
+        told = msgspec.msgpack.decode(encode(message))
+        place = told
+        for step in path[:-1]:
+            place = place[step]
+        place[path[-1]] = wrong
+        with pytest.raises(MalformedMessage):
+            decode(msgspec.msgpack.encode(told), type(message))
+
+
+@pytest.mark.parametrize(
+    ("message", "field", "value", "says"),
+    [
+        (GUIDE, "pose", (0.0,) * (len(POSE_NAMES) - 1), "pose has 24 entries, not 25"),
+        (BODY, "pose", (0.0,) * 26, "pose has 26 entries, not 25"),
+        (BODY, "joints_m", ((0.0, 0.0, 0.0),) * 14, "joints_m has 14 entries, not 15"),
+        (BODY, "joints_px", (((0.0, 0.0),) * 15,) * 3, "joints_px has 3 entries"),
+        (BODY, "joints_px", (((0.0, 0.0),) * 15, ((0.0, 0.0),) * 14), "no 15 joints"),
+        (BODY, "angles_raw_deg", (0.0,) * 16, "angles_raw_deg has 16 entries, not 17"),
+        (BODY, "confidence", (1.0,), "confidence has 1 entries, not 15"),
+        (REPORT, "silhouette", bytes(5), "silhouette has 5 bytes, not 6"),
+        (REPORT, "silhouette", bytes(7), "silhouette has 7 bytes, not 6"),
+        (REPORT, "width", 0, "a picture of 0x3"),
+        (REPORT, "height", -1, "a picture of 13x-1"),
+        (REPORT, "angles_deg", {"tail_x": 1.0}, "unknown angle 'tail_x'"),
+    ],
+)
+def test_a_wrong_length_is_refused_and_named(
+    message: Message, field: str, value: object, says: str
+) -> None:
+    with pytest.raises(MalformedMessage, match=says):
+        decode(encode(msgspec.structs.replace(message, **{field: value})), type(message))
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "says"),
+    [
+        ("joints_px", ((0.0, 0.0),) * 14, "joints_px has 14 entries, not 15"),
+        ("ratios", (1.0,) * 11, "ratios has 11 entries, not 10"),
+        ("hidden", (), "hidden has 0 entries, not 10"),
+        ("ratios", (1.0,) * 9 + (1.1,), "shares beyond 0 to 1"),
+        ("breadth", -0.1, "shares beyond 0 to 1"),
+        ("score", 1.5, "shares beyond 0 to 1"),
+        ("stature_px", 0.0, "of no stature"),
+    ],
+)
+def test_a_stick_body_that_no_viewer_would_fit_is_refused(
+    field: str, value: object, says: str
+) -> None:
+    report = msgspec.structs.replace(REPORT, fit=msgspec.structs.replace(FIT, **{field: value}))
+    with pytest.raises(MalformedMessage, match=says):
+        decode(encode(report), Report)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [("viewer", 3), ("vote", "back"), ("frame", "7"), ("box", [1, 2, 0]), ("nonsense", 1)],
+)
+def test_what_no_viewer_would_say_is_refused(field: str, value: object) -> None:
+    told = msgspec.msgpack.decode(encode(REPORT)) | {field: value}
+    with pytest.raises(MalformedMessage, match="no Report"):
+        decode(msgspec.msgpack.encode(told), Report)
+
+
+@given(st.sampled_from(kinds()), st.binary(max_size=300))
+def test_no_bytes_raise_anything_but_malformed_message(kind: type[Message], payload: bytes) -> None:
+    with pytest.raises(MalformedMessage):
+        decode(payload, kind)
+
+
+@given(st.sampled_from(SAID), st.data())
+def test_a_message_with_bytes_changed_is_refused_or_still_a_message(
+    message: Message, data: st.DataObject
+) -> None:
+    """Whatever happens on the way: the same kind comes out, finite, or MalformedMessage."""
+    payload = bytearray(encode(message))
+    for _ in range(data.draw(st.integers(1, 4))):
+        payload[data.draw(st.integers(0, len(payload) - 1))] = data.draw(st.integers(0, 255))
+    try:
+        got = decode(bytes(payload), type(message))
+    except MalformedMessage:
+        return
+    assert type(got) is type(message)
+    assert decode(encode(got), type(message)) == got
+
+
+@given(shapes.arrays(np.bool_, shapes.array_shapes(min_dims=2, max_dims=2, max_side=70)))
+def test_a_silhouette_comes_back_at_any_width(mask: np.ndarray[Any, np.dtype[np.bool_]]) -> None:
+    height, width = mask.shape
+    packed = pack(mask)
+    assert len(packed) == height * ((width + 7) // 8)
+    report = msgspec.structs.replace(REPORT, width=width, height=height, silhouette=packed)
+    assert np.array_equal(unpack(decode(encode(report), Report)), mask)
+
+
+def test_a_silhouette_of_the_papers_size_has_2400_bytes() -> None:
+    """Section 2 of the design: 2.4 kB, and the whole report not much more."""
+    packed = pack(np.ones((120, 160), np.bool_))
+    assert len(packed) == 2400
+    report = msgspec.structs.replace(REPORT, width=160, height=120, silhouette=packed, fit=None)
+    assert len(encode(report)) < 3500

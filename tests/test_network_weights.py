@@ -1,0 +1,47 @@
+"""The network's weights, held against numbers and against their file."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from small_network import network
+
+from integrator.proposal.network_weights import halves, load, save, wholes
+from integrator.proposal.silhouette_window import CELLS
+
+
+@given(arrays(np.float32, 40, elements=st.floats(-(2.0**99), 2.0**99, width=32)))
+def test_a_half_is_off_by_a_256th_at_most(values: np.ndarray) -> None:
+    """Seven digits behind the leading one, the last of them rounded (IEEE 754 single, cut)."""
+    off = np.abs(wholes(halves(values)) - values)
+    assert (off <= np.abs(values) / 256 + 1e-38).all()
+
+
+def test_a_network_survives_its_file(tmp_path: Path) -> None:
+    made = network(0.25)
+    save(made, tmp_path / "n.npz")
+    kept = load(tmp_path / "n.npz")
+    assert all(np.array_equal(a, b) for a, b in zip(kept, made, strict=True))
+
+
+@pytest.mark.parametrize("spoilt", ["cut", "empty", "misfit", "endless", "absent", "old"])
+def test_a_damaged_file_is_refused(tmp_path: Path, spoilt: str) -> None:
+    path, made = tmp_path / "n.npz", network()
+    if spoilt == "misfit":
+        made = made._replace(join=np.zeros((7, 4), np.uint16))
+    if spoilt == "endless":
+        made.say[0, 0] = halves(np.array([np.inf], np.float32))[0]
+    save(made, path)
+    if spoilt == "cut":
+        path.write_bytes(path.read_bytes()[:-300])
+    if spoilt == "empty":
+        path.write_bytes(b"")
+    if spoilt == "absent":
+        path.unlink()
+    if spoilt == "old":
+        np.savez(path, version=np.array(1), mean=np.zeros(CELLS))
+    with pytest.raises(ValueError, match=r"n\.npz"):
+        load(path)

@@ -1,0 +1,145 @@
+"""Proposed joints, held against made-up people whom the network was never taught on."""
+
+from itertools import islice, pairwise
+
+import numpy as np
+import pytest
+from glass import MIRROR, in_mirror
+from small_network import network
+
+from integrator.proposal import network_weights, pose_network
+from integrator.proposal.network_weights import JOINTS
+from integrator.proposal.pose_network import OTHER_SIDES
+from integrator.proposal.silhouette_window import BESIDE, CELLS, Look, look
+from synth.person.skeleton import JOINTS as ALL_JOINTS
+from synth.picture.outline_examples import outlines
+
+PICK = [ALL_JOINTS.index(name) for name in JOINTS]
+UNTAUGHT = range(900_000, 900_012)
+"""Seeds beyond all that are taught."""
+
+
+SEEN = Look(
+    np.zeros((2, CELLS), np.float32),
+    np.zeros(BESIDE, np.float32),
+    np.array([1.0, 2.0, 3.0]),
+    np.eye(3),
+)
+
+
+def test_untaught_people_are_found_to_a_few_centimetres() -> None:
+    """Twelve performances, half of them joined late, turned, or seen by one camera for a while."""
+    missed = []
+    for seed in UNTAUGHT:
+        memory = None
+        for shown in outlines(seed):
+            masks = tuple(m if m is not None and m.any() else None for m in shown.masks)
+            if masks[0] is None or masks[1] is None:
+                continue
+            seen = look((masks[0], masks[1]), shown.rig, shown.stature_m, shown.since_s)
+            assert seen is not None
+            memory, found = pose_network.step(
+                network_weights.shipped(), memory, seen, shown.stature_m
+            )
+            missed.append(np.linalg.norm(found.joints_m - shown.joints_m[PICK], axis=1))
+    assert np.median(missed) < 0.05
+    assert np.mean(missed) < 0.08
+
+
+def test_somebody_in_a_mirror_is_found_there() -> None:
+    """Where the cameras stand the other way round too: left for right, and nothing else."""
+    memories, seen_m = [None, None], []
+    for shown in islice(outlines(UNTAUGHT[0]), 20):
+        first, second = shown.masks
+        assert first is not None
+        assert second is not None
+        flipped = (np.ascontiguousarray(first[:, ::-1]), np.ascontiguousarray(second[:, ::-1]))
+        found = []
+        for n, (masks, rig) in enumerate(
+            (((first, second), shown.rig), (flipped, in_mirror(shown.rig)))
+        ):
+            seen = look(masks, rig, shown.stature_m, shown.since_s)
+            assert seen is not None
+            memories[n], each = pose_network.step(
+                network_weights.shipped(), memories[n], seen, shown.stature_m
+            )
+            found.append(each)
+        seen_m.append(np.abs(found[1].joints_m[OTHER_SIDES] * MIRROR - found[0].joints_m))
+        assert found[1].sure[OTHER_SIDES] == pytest.approx(found[0].sure, abs=0.05)
+    assert np.mean(seen_m) < 0.003  # a window's edge is not where the other's is
+
+
+def test_a_memory_without_weights_fades_by_half() -> None:
+    """Update gate 1/2, new memory tanh(0): h becomes h / 2 (Cho et al. 2014, eq. 7)."""
+    memory, _ = pose_network.step(network(), np.full(4, 0.8, np.float32), SEEN, 1.75)
+    assert memory == pytest.approx(np.full(4, 0.4))
+
+
+def test_a_shut_gate_keeps_the_memory() -> None:
+    shut = network()
+    shut.take_bias[4:8] = 60.0
+    memory, _ = pose_network.step(shut, np.arange(4, dtype=np.float32), SEEN, 1.75)
+    assert memory == pytest.approx(np.arange(4))
+
+
+def test_the_second_layer_adds_to_the_first() -> None:
+    """Thought 3, deepened by half of it, 4.5; a sum of four says 18."""
+    told = network()
+    told.think_bias[:] = 3.0
+    told.deepen[:] = network_weights.halves(0.5 * np.eye(4, dtype=np.float32))
+    told.join[:4] = network_weights.halves(np.eye(4, dtype=np.float32))
+    told.say[:, 0] = network_weights.halves(np.ones(4, np.float32))
+    _, found = pose_network.step(told, None, SEEN._replace(middle_m=np.zeros(3)), 1.0)
+    assert found.joints_m[0] == pytest.approx([18.0, 0.0, 0.0])
+
+
+def test_a_silent_network_says_the_middle_and_is_undecided() -> None:
+    _, found = pose_network.step(network(), None, SEEN, 1.75)
+    assert found.joints_m == pytest.approx(np.tile([1.0, 2.0, 3.0], (12, 1)))
+    assert found.sure == pytest.approx(np.full(12, 0.5))
+
+
+def test_what_is_said_is_statures_in_the_frame_of_the_proposal() -> None:
+    """What `aimed` asks for, said by the last bias, is placed where the joints were."""
+    turn = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+    seen = SEEN._replace(turn=turn)
+    joints_m = np.random.default_rng(1).normal(size=(12, 3))
+    told = network()
+    told.say_bias[:36] = pose_network.aimed(joints_m, seen, 1.6).ravel()
+    _, found = pose_network.step(told, None, seen, 1.6)
+    assert found.joints_m == pytest.approx(joints_m, abs=1e-6)
+
+
+def test_a_view_that_does_not_see_adds_nothing() -> None:
+    """Its window is no silhouette of somebody who is not there."""
+    told, rng = network(0.01), np.random.default_rng(2)
+    windows, beside = rng.random((2, CELLS)).astype(np.float32), np.zeros(BESIDE, np.float32)
+    beside[pose_network.SEES[0]] = 1.0
+    _, one = pose_network.step(told, None, SEEN._replace(windows=windows, beside=beside), 1.75)
+    windows[1] = 0.0
+    _, alone = pose_network.step(told, None, SEEN._replace(windows=windows, beside=beside), 1.75)
+    windows[0] = 0.0
+    _, none = pose_network.step(told, None, SEEN._replace(windows=windows, beside=beside), 1.75)
+    assert np.array_equal(one.joints_m, alone.joints_m)
+    assert not np.allclose(alone.joints_m, none.joints_m)
+
+
+def test_halves_multiply_as_numbers_do() -> None:
+    """A layer by hand: what is said is the sum of what is seen times the weights."""
+    rng = np.random.default_rng(3)
+    told, beside = network(), rng.normal(size=BESIDE).astype(np.float32)
+    beside[list(pose_network.SEES)] = 0.0
+    thinks = rng.normal(size=(BESIDE, 4)).astype(np.float32)
+    told.think[6:] = network_weights.halves(thinks)
+    told.join[:4] = network_weights.halves(np.eye(4, dtype=np.float32))
+    told.say[:, :4] = network_weights.halves(np.eye(4, dtype=np.float32))
+    seen = SEEN._replace(beside=beside, middle_m=np.zeros(3))
+    _, found = pose_network.step(told, None, seen, 1.0)
+    due = np.maximum(beside @ network_weights.wholes(network_weights.halves(thinks)), 0.0)
+    assert found.joints_m.ravel()[:4] == pytest.approx(due, rel=1e-5)
+
+
+def test_parts_are_told_apart_by_pairs() -> None:
+    """Left before right, joint by joint: what limbs.py and the outlines rely on."""
+    assert all(a[2:] == b[2:] for a, b in list(pairwise(JOINTS))[::2])
+    assert [name[0] for name in JOINTS] == ["l", "r"] * 6

@@ -1,0 +1,86 @@
+"""The model as one viewer sees it: where it lies, what turns, how far a search reaches."""
+
+import numpy as np
+import pytest
+from posing import BODY, SIZE, angle, laid_over, picture, posed, view
+
+from common.body.body import POSE_INDEX
+from common.body.kinematics import ARM_LIMBS, LEG_LIMBS
+from common.bus.messages import Facing, ViewerNumber
+from common.raster.kernel import draw_body
+from common.rig.camera import paper_rig
+from viewer.paper.posed_model import rotation_of, searched, turn, view_at, yaw_of
+
+SHOULDER = turn(ARM_LIMBS[0], r_shoulder_z=1.0)
+
+
+@pytest.mark.parametrize("viewer", [1, 2])
+def test_the_navel_is_drawn_where_the_view_has_it(viewer: ViewerNumber) -> None:
+    """Rows run down: at (80, 64) with 100 px a stature of 1 the feet end at row 120."""
+    mask = picture(posed(), viewer)
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    assert abs(rows[-1] + 1 - (64 + 56)) <= 1
+    assert columns[0] + columns[-1] + 1 == 160
+
+
+@pytest.mark.parametrize(("viewer", "column"), [(1, 40), (2, 120)])
+def test_pictures_run_as_the_conventions_say(viewer: ViewerNumber, column: int) -> None:
+    """C1, C2: the right arm is on the left of picture 1; what is forward on the right of 2."""
+    pose = posed(**({"r_shoulder_z": 90.0} if viewer == 1 else {"r_shoulder_x": 90.0}))
+    with_arm, without = picture(pose, viewer), picture(posed(), viewer)
+    columns = np.flatnonzero((with_arm & ~without).any(axis=0))
+    assert abs(columns - 80.0).max() > 35
+    assert ((columns < 80) == (column < 80)).all()
+
+
+def test_a_calibrated_camera_of_the_papers_kind_turns_the_world_as_the_papers() -> None:
+    """C1."""
+    for viewer, camera in zip((1, 2), paper_rig(SIZE, (9, 9), (4, 4)).cameras, strict=True):
+        assert (rotation_of(camera, viewer) == rotation_of(None, viewer)).all()
+
+
+def test_size_follows_the_scale() -> None:
+    half = draw_body(BODY, posed(), view_at(rotation_of(None, 1), 50.0, (80.0, 64.0)), SIZE)
+    assert half.sum() == pytest.approx(picture(posed()).sum() / 4, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("facing", "viewer", "yaw_deg"),
+    [("facade", 1, 0.0), ("flank", 2, 0.0), ("flank", 1, -90.0), ("facade", 2, -90.0)],
+)
+def test_a_facing_stands_for_one_yaw_of_the_trunk(
+    facing: Facing, viewer: ViewerNumber, yaw_deg: float
+) -> None:
+    """P49, C2: at -90 degrees the person faces camera 2, on -x."""
+    assert yaw_of(facing, viewer) == yaw_deg
+
+
+def test_a_turn_moves_its_angle_and_what_is_coupled_to_it() -> None:
+    """P34."""
+    how = turn(LEG_LIMBS[1], l_hip_x=1.0, l_knee_x=-2.0)
+    moved = {name: how.step[i] for name, i in POSE_INDEX.items() if how.step[i]}
+    assert moved == {"l_hip_x": 1.0, "l_knee_x": -2.0}
+    assert how.at == POSE_INDEX["l_hip_x"]
+    assert how.moving == 1 << 3 | 1 << 5
+
+
+def test_a_search_reaches_half_a_window_and_a_wide_one_everywhere() -> None:
+    """P38, P41: +-32 degrees a frame for an arm; limitation L1 beyond."""
+    seen = picture(posed(r_shoulder_z=20.0))
+    start = laid_over(seen, posed(r_shoulder_z=170.0))
+    near = searched(start, SHOULDER, 64, 4, (0.0, 180.0))
+    assert 116.0 <= angle(near, "r_shoulder_z") <= 180.0
+    assert near.matches <= 9
+    wide = searched(start, SHOULDER, 64, 4, (0.0, 180.0), wide=True)
+    assert angle(wide, "r_shoulder_z") == pytest.approx(20.0, abs=2.0)
+    assert wide.score > near.score
+
+
+def test_a_search_counts_its_matches_and_leaves_the_rest_of_the_pose() -> None:
+    start = laid_over(picture(posed()), posed(l_hip_z=190.0))._replace(matches=5)
+    found = searched(start, SHOULDER, 64, 4, (0.0, 180.0))
+    assert 5 + 6 <= found.matches <= 5 + 9
+    changed = np.flatnonzero(found.pose != start.pose)
+    assert set(changed) <= {POSE_INDEX["r_shoulder_z"]}
+    assert start.matches == 5
+    assert view(1)[16] == 1.0

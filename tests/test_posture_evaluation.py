@@ -1,0 +1,135 @@
+"""The report on unseen people, held against outcomes that are known beforehand."""
+
+import json
+from contextlib import nullcontext
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+from acting import perform
+from rich.console import Console
+
+from recognizer.evaluation import Recording
+from tritrack.postures import posture_evaluation
+from tritrack.postures.posture_evaluation import EACH_IN_TURN, Plan, evaluate_postures
+from tritrack.training.training import TrainingError
+
+QUIET = Console(quiet=True)
+SHOWN = ("squat", "raise_right_lateral", "bow")
+
+
+def of(performer: str, number: int) -> list[Recording]:
+    """Three motions; the bow is one of ours that no list names."""
+    danced = ("squat", "raise_right_lateral", "swing_both_backforth")
+    return [
+        Recording(performer, name, perform(motion, number))
+        for name, motion in zip(SHOWN, danced, strict=True)
+    ]
+
+
+@pytest.fixture
+def people(monkeypatch: pytest.MonkeyPatch) -> list[Recording]:
+    """Ann, bob and cas, of whom cas calls a squat a bow and a bow a squat."""
+    cas = [
+        one._replace(posture={"squat": "bow", "bow": "squat"}.get(one.posture, one.posture))
+        for one in of("cas", 3)
+    ]
+    everybody = [*of("ann", 1), *of("bob", 2), *cas]
+    monkeypatch.setattr(posture_evaluation, "recordings", lambda *_: everybody)
+    monkeypatch.setattr(posture_evaluation, "spread", nullcontext)
+    return everybody
+
+
+def evaluate(out: Path, split: str) -> dict[str, Any]:
+    """The default recogniser's part of the report."""
+    report = evaluate_postures([], out, Plan(split, ("default",)), QUIET)
+    result: dict[str, Any] = report["recognizers"]["default"]
+    return result
+
+
+def test_who_is_tested_is_named_by_a_model_of_the_others(
+    people: list[Recording], tmp_path: Path
+) -> None:
+    """P59: ann's word for a squat is not cas's, so 1 of cas's 3 is right; bob's are all."""
+    report = evaluate(tmp_path, "ann:bob,c*")
+    assert (report["all"]["correct"], report["all"]["tested"]) == (4, 6)
+    assert report["postures"]["squat"]["correct"] == 1
+    assert report["confusion"]["named"] == ["raise_right_lateral", "squat", "bow", ""]
+    assert report["confusion"]["counts"] == [[2, 0, 0, 0], [0, 1, 1, 0], [0, 1, 1, 0]]
+
+
+def test_the_files_hold_what_the_report_says(people: list[Recording], tmp_path: Path) -> None:
+    report = evaluate(tmp_path / "new" / "deep", EACH_IN_TURN)
+    whole = json.loads((tmp_path / "new" / "deep" / "report.json").read_text())
+    written = whole["recognizers"]["default"]
+    assert written == json.loads(json.dumps(report))
+    assert written["all"]["tested"] == 9
+    low, high = written["all"]["interval_95"]
+    assert low < written["all"]["share"] < high
+
+
+def test_a_posture_unseen_in_training_is_rejected_not_named(
+    people: list[Recording], tmp_path: Path
+) -> None:
+    """A model of arm raising alone knows bob's, and neither his squat nor his bow."""
+    people[:] = [*[one for one in of("ann", 1) if "raise" in one.posture], *of("bob", 2)]
+    result = evaluate(tmp_path, "ann:bob")
+    assert (result["all"]["correct"], result["all"]["tested"]) == (1, 1)
+    assert result["rejection"]["known"] == {"tested": 1, "no_name": 0}
+    assert result["rejection"]["unknown"]["squat"] == {"tested": 1, "no_name": 1}
+    assert result["rejection"]["unknown"]["bow"] == {"tested": 1, "no_name": 1}
+
+
+class Cells(HTMLParser):
+    """The texts of a page's table cells, and every address that it would fetch."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.cells: list[str] = []
+        self.fetched: list[str] = []
+        self.pictures: list[str] = []
+        self.inside = False
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.inside = tag == "td"
+        self.pictures += [value or "" for name, value in attrs if name == "alt"]
+        given = [value or "" for name, value in attrs if name in ("src", "href")]
+        self.fetched += [value for value in given if not value.startswith("data:")]
+
+    def handle_data(self, data: str) -> None:
+        if self.inside:
+            self.cells.append(data.strip())
+
+
+def test_the_page_shows_shares_and_pictures_and_fetches_nothing(
+    people: list[Recording], tmp_path: Path
+) -> None:
+    evaluate(tmp_path, "ann:bob,cas")
+    page = Cells()
+    page.feed((tmp_path / "report.html").read_text())
+    assert "4/6" in page.cells
+    assert not page.fetched
+    assert page.pictures == ["confusion matrix of the default recogniser"]
+    assert (tmp_path / "confusion_default.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("split", "reason"),
+    [
+        ("ann", "the split 'ann' must be leave-one-performer-out or name performers"),
+        ("ann:zoe", "must be leave-one-performer-out or name performers that are there"),
+        ("ann,bob:bob", "bob: in training and in test"),
+    ],
+)
+def test_a_split_that_measures_nothing_is_refused(
+    people: list[Recording], tmp_path: Path, split: str, reason: str
+) -> None:
+    with pytest.raises(TrainingError, match=reason):
+        evaluate(tmp_path, split)
+
+
+def test_one_performer_cannot_be_left_out(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(posture_evaluation, "recordings", lambda *_: of("ann", 1))
+    with pytest.raises(TrainingError, match="nobody is left to learn from"):
+        evaluate(tmp_path, EACH_IN_TURN)

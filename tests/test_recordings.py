@@ -1,0 +1,148 @@
+"""What was performed in clips and runs, tracked once and kept."""
+
+from collections.abc import Callable
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+from spoiling import copied, edit_json
+
+from recognizer.evaluation import Recording
+from tritrack.making import make_clips
+from tritrack.offline.lockstep import track_all
+from tritrack.store.clip_paths import ClipsFailed
+from tritrack.store.runs import RunError
+from tritrack.training import recordings as stage
+from tritrack.training.recordings import RecordingError, recordings
+
+QUIET = Console(quiet=True)
+POSTURES = ("raise_right_lateral", "squat")
+
+
+@pytest.fixture(scope="module")
+def clips(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    out = tmp_path_factory.mktemp("clips")
+    return make_clips(out, "postures", 1, 1, 2, "160x120", POSTURES, QUIET)
+
+
+@pytest.fixture(scope="module")
+def runs(clips: list[Path], tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    out = tmp_path_factory.mktemp("runs")
+    return [out / name for name in track_all(clips, out, None, (1, 2), None, QUIET)["clips"]]
+
+
+@pytest.fixture
+def tracked_names(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The clips that are really tracked from here on."""
+    names = []
+    plain: Callable[..., object] = stage._tracked
+
+    def counted(due: stage.Due, *rest: object) -> object:
+        names.append(due.path.name)
+        return plain(due, *rest)
+
+    monkeypatch.setattr(stage, "_tracked", counted)
+    return names
+
+
+def same(first: list[Recording], second: list[Recording]) -> bool:
+    return all(
+        (one.performer, one.posture) == (two.performer, two.posture)
+        and np.array_equal(one.rows, two.rows)
+        for one, two in zip(first, second, strict=True)
+    )
+
+
+def test_clips_their_runs_and_what_was_kept_give_the_same(
+    clips: list[Path], runs: list[Path], tmp_path: Path, tracked_names: list[str]
+) -> None:
+    """A second reading tracks nothing and changes no bit."""
+    first = recordings(clips, None, tmp_path, QUIET)
+    assert tracked_names == [path.name for path in clips]
+    again = recordings(clips, None, tmp_path, QUIET)
+    assert len(tracked_names) == len(clips)
+    assert same(first, again)
+    assert same(first, recordings(runs, None, tmp_path, QUIET))
+    assert [one.clip for one in first] == list(map(str, clips))
+
+
+def test_work_that_was_stopped_goes_on_where_it_was(
+    clips: list[Path],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    tracked_names: list[str],
+) -> None:
+    """Ctrl-C after the first of two: only the second is tracked later, nothing is half-written."""
+    monkeypatch.setattr(stage, "BATCH", 1)
+    plain = stage._keep
+
+    def stopped(*given: object) -> None:
+        plain(*given)  # type: ignore[arg-type]
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(stage, "_keep", stopped)
+        with pytest.raises(KeyboardInterrupt):
+            recordings(clips, None, tmp_path, QUIET)
+    assert len(list(tmp_path.iterdir())) == 1
+    recordings(clips, None, tmp_path, QUIET)
+    assert tracked_names == [path.name for path in clips]
+
+
+def test_the_opening_posture_is_no_part_of_the_motion(runs: list[Path], tmp_path: Path) -> None:
+    """Measuring and empty frames name nothing: a model of a T-pose would know every clip."""
+    (recording,) = recordings(runs[:1], None, tmp_path, QUIET)
+    with np.load(runs[0] / "poses.npz", allow_pickle=False) as found:
+        moving = np.isin(found["status"], ("tracking", "predicted"))
+    assert 0 < np.isfinite(recording.rows).all(axis=1).sum() <= moving.sum()
+    assert (recording.posture, recording.performer) == ("raise_right_lateral", "s02")
+
+
+def test_a_clip_without_a_posture_is_named(clips: list[Path], tmp_path: Path) -> None:
+    folder = copied(clips[0], tmp_path / "clip")
+    edit_json(folder / "meta.json", lambda meta: meta.pop("posture"))
+    with pytest.raises(RecordingError, match=r"clip names no posture: write it into .*meta.json"):
+        recordings([folder], None, tmp_path / "kept", QUIET)
+
+
+@pytest.mark.parametrize("damage", ["no summary", "half the poses", "pickled"])
+def test_a_damaged_run_is_named(runs: list[Path], tmp_path: Path, damage: str) -> None:
+    run = tmp_path / "run"
+    run.mkdir()
+    poses, summary = (runs[0] / "poses.npz").read_bytes(), (runs[0] / "summary.json").read_text()
+    (run / "poses.npz").write_bytes(
+        poses[: len(poses) // 2] if damage == "half the poses" else poses
+    )
+    if damage == "pickled":
+        np.savez(run / "poses.npz", allow_pickle=True, frame=np.array([{}], object))
+    if damage != "no summary":
+        (run / "summary.json").write_text(summary)
+    with pytest.raises(RecordingError, match=r"run is no run folder: .*track the clip again"):
+        recordings([run], None, tmp_path, QUIET)
+
+
+def test_clips_that_cannot_be_used_are_said_after_the_others_were_tracked(
+    clips: list[Path], tmp_path: Path
+) -> None:
+    broken = copied(clips[0], tmp_path / "broken")
+    (broken / "cam2.avi").write_bytes(b"")
+    said = StringIO()
+    with pytest.raises(ClipsFailed, match="1 of 2 clips could not be tracked"):
+        recordings([broken, clips[0]], None, tmp_path / "kept", Console(file=said, width=999))
+    assert "error: " in said.getvalue()
+    assert "cam2.avi" in said.getvalue()
+    assert len(list((tmp_path / "kept").iterdir())) == 1
+
+
+def test_what_is_no_clip_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "calibration.json").write_text("{}")
+    with pytest.raises(ClipsFailed, match="no clip is left"):
+        recordings([tmp_path / "calibration.json"], None, tmp_path, QUIET)
+
+
+def test_a_cache_that_cannot_be_written_is_named(clips: list[Path], tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(RunError, match=r"cannot write .*file: .*--cache"):
+        recordings(clips[:1], None, tmp_path / "file", QUIET)

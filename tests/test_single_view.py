@@ -1,0 +1,129 @@
+"""One view lifted into the room, held against drawn bodies and the user's word (T19 to T22)."""
+
+import msgspec
+import numpy as np
+import pytest
+
+from common.body.body import JOINT_NAMES, LIMBS
+from common.body.proportions import THESIS_RATIOS
+from common.body.stick_body import ADULT, ANGLE, THESIS, Stickman, joints_px, standing
+from common.bus.message_codec import pack
+from common.bus.messages import Body, Box, Fit, Report
+from common.rig.camera import paper_rig, project
+from integrator.single import single_view
+from integrator.single.single_hypotheses import Inputs, State, lifted_body
+
+WIDTH, HEIGHT, TALL_PX = 160, 120, 80.0
+CAMERA = paper_rig((WIDTH, HEIGHT), (200.0, 200.0), (4.375, 4.375)).cameras[0]
+"""Somebody of 1.75 m is 80 pixels tall before it."""
+AT = {name: i for i, name in enumerate(JOINT_NAMES)}
+
+
+def begun(printed: bool) -> State:
+    man = THESIS if printed else ADULT
+    return single_view.init(1, CAMERA, man, 1.75, printed, 1 / 15)
+
+
+def report_of(man: Stickman, arm_deg: float = 270.0) -> Report:
+    """A stick body that stands, its arm at the picture's left at an angle, in its own box."""
+    pose = standing(80.0, 65.0, TALL_PX)
+    pose[ANGLE + 6] = pose[ANGLE + 8] = arm_deg
+    mask = np.zeros((HEIGHT, WIDTH), np.bool_)
+    mask[25:105, 70:90] = True
+    places = tuple((float(x), float(y)) for x, y in joints_px(man, pose))
+    fit = Fit(
+        joints_px=places,
+        ratios=(1.0,) * 10,
+        breadth=1.0,
+        stature_px=TALL_PX,
+        hidden=(False,) * 10,
+        score=0.8,
+        matches=1,
+    )
+    return Report(
+        frame=0,
+        captured_s=0.0,
+        clock_s=0.0,
+        viewer=1,
+        width=WIDTH,
+        height=HEIGHT,
+        silhouette=pack(mask),
+        box=Box(left=70, right=89, top=25, bottom=104),
+        root_px=(80.0, 65.0),
+        fit=fit,
+    )
+
+
+def settled(report: Report, told: Inputs = Inputs(), printed: bool = True) -> Body:
+    state = begun(printed)
+    return single_view.step(single_view.glance(state, report, told), report, told)[1]
+
+
+def test_a_body_in_the_picture_plane_keeps_the_printed_lengths() -> None:
+    """T19, T20: what is parallel to the picture is as long as table 3.1 says."""
+    joints = np.array(settled(report_of(THESIS, 225.0)).joints_m)
+    unit = 1.75 / THESIS_RATIOS["stature"]
+    for near, far, part in (
+        ("r_shoulder", "r_elbow", "upper_arm"),
+        ("r_elbow", "r_wrist", "lower_arm"),
+        ("l_hip", "l_knee", "upper_leg"),
+        ("l_knee", "l_ankle", "lower_leg"),
+    ):
+        length = np.linalg.norm(joints[AT[far]] - joints[AT[near]])
+        assert length == pytest.approx(unit * THESIS_RATIOS[part], rel=0.01)
+
+
+def test_the_lifted_body_is_seen_where_the_stick_was() -> None:
+    report = report_of(ADULT, 200.0)
+    _, lifted = lifted_body(begun(printed=False), report, Inputs(orientation="forward_right"))
+    assert report.fit is not None
+    seen = project(CAMERA, lifted.joints_m)
+    assert seen == pytest.approx(np.array(report.fit.joints_px), abs=1e-6)
+
+
+def test_who_is_told_to_face_away_has_the_sides_swapped() -> None:
+    """T10, T22: left and right of the picture become those of the body by its orientation."""
+    report = report_of(THESIS, 180.0)
+    front = np.array(settled(report, Inputs(orientation="forward_left")).joints_m)
+    back = np.array(settled(report, Inputs(orientation="backward_left")).joints_m)
+    assert front[AT["r_wrist"], 0] == pytest.approx(back[AT["l_wrist"], 0])
+    assert front[AT["l_shoulder"], 0] > 0 > back[AT["l_shoulder"], 0]
+
+
+@pytest.mark.parametrize("printed", [True, False], ids=["thesis", "default"])
+def test_a_joint_is_where_the_user_puts_it(printed: bool) -> None:
+    """T26: a hidden joint is pointed at."""
+    told = Inputs(joints_px={"r_wrist": (40.0, 30.0)})
+    body = settled(report_of(THESIS if printed else ADULT), told, printed)
+    assert body.joints_px[0][AT["r_wrist"]] == pytest.approx((40.0, 30.0), abs=0.5)
+
+
+def test_a_segment_leans_as_the_user_says() -> None:
+    """T21: half a length in the picture is 60 degrees out of it, to the side that is told."""
+    report = report_of(THESIS, 180.0)
+    assert report.fit is not None
+    places = list(report.fit.joints_px)
+    shoulder, elbow = places[AT["r_shoulder"]], places[AT["r_elbow"]]
+    middle = ((shoulder[0] + elbow[0]) / 2, elbow[1])
+    places[AT["r_elbow"]] = middle
+    fit = msgspec.structs.replace(report.fit, joints_px=tuple(places))
+    report = msgspec.structs.replace(report, fit=fit)
+    for way, sign in (("toward", 1.0), ("away", -1.0)):
+        joints = np.array(settled(report, Inputs(depth={"r_upper_arm": way})).joints_m)
+        lean = joints[AT["r_elbow"], 2] - joints[AT["r_shoulder"], 2]
+        expected = sign * np.sin(np.radians(60)) * 1.75 * THESIS_RATIOS["upper_arm"] / 175
+        assert lean == pytest.approx(expected, rel=0.02)
+
+
+def test_what_a_pixel_does_to_a_limbs_angle_is_told() -> None:
+    """T19: an upper arm of 11.4 px in the plane, one shorter, is 24 degrees out of it."""
+    seen = single_view.glance(begun(printed=True), report_of(THESIS), Inputs())
+    _, _, own = single_view.step(seen, report_of(THESIS), Inputs())
+    length_px = THESIS_RATIOS["upper_arm"] / THESIS_RATIOS["stature"] * TALL_PX
+    error_deg = np.degrees(np.arccos(1.0 - 1.0 / length_px))
+    assert own.depth_error_deg[LIMBS.index("l_upper_arm")] == pytest.approx(error_deg, rel=0.02)
+
+
+def test_nobody_has_no_pose() -> None:
+    _, body, _ = single_view.nobody(begun(printed=False), 7, 0.5)
+    assert (body.status, body.views, body.joints_m) == ("empty", "none", ())

@@ -1,0 +1,205 @@
+"""`tritrack evaluate tracking` under a user's hands: one made-up clip from video to report."""
+
+import json
+import shutil
+import sys
+from contextlib import redirect_stdout
+from html.parser import HTMLParser
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+from rich.console import Console
+
+import tritrack.__main__ as door
+from tritrack.accuracy.accuracy import compare, summary
+from tritrack.accuracy.tracking_evaluation import EvaluationError, evaluate_tracking
+from tritrack.accuracy.worst_frames import TRACKED, TRUE
+from tritrack.offline.lockstep import track_all
+from tritrack.store.clip_paths import ClipsFailed
+
+QUIET = Console(quiet=True)
+TERMINAL = Console(file=StringIO(), force_terminal=True)
+"""Somebody looks on: progress is drawn, of one thing at a time."""
+
+
+@pytest.fixture(scope="module")
+def runs(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("stand")
+    track_all([clip], out, None, (1, 2), None, QUIET)
+    return out
+
+
+@pytest.fixture(scope="module")
+def written(clip: Path, runs: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a report that the command wrote; what it printed is in `printed.json`."""
+    out = tmp_path_factory.mktemp("report")
+    words = ["evaluate", "tracking", clip, "--runs", runs, "--out", out, "--json"]
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(StringIO()) as said:
+        patch.setattr(sys, "argv", ["tritrack", *map(str, words)])
+        with pytest.raises(SystemExit) as ended:
+            door.main()
+    assert not ended.value.code
+    (out / "printed.json").write_text(said.getvalue())
+    return out
+
+
+def report_of(folder: Path) -> dict[str, Any]:
+    report: dict[str, Any] = json.loads((folder / "report.json").read_text())
+    return report
+
+
+class Page(HTMLParser):
+    """The addresses that a page would fetch, and its texts."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.fetched: list[str] = []
+        self.texts: list[str] = []
+        self.feed(path.read_text())
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.fetched += [value or "" for name, value in attrs if name in ("src", "href")]
+
+    def handle_data(self, data: str) -> None:
+        self.texts.append(data.strip())
+
+
+def test_the_report_says_what_run_and_truth_say(clip: Path, runs: Path, written: Path) -> None:
+    report = report_of(written)
+    with np.load(runs / clip.name / "poses.npz") as poses, np.load(clip / "truth.npz") as truth:
+        due = summary([compare(poses, truth)])
+    assert report["all"] == json.loads(json.dumps(due))
+    assert report["per_clip"] == {clip.name: report["all"]}
+    assert list(report["per_posture"]) == ["raise_right_lateral"]
+    assert (report["mode"], report["size"]) == (["default"], ["160x120"])
+    assert 0.8 < report["silhouettes"]["mean"] < 1.0
+    joints = 12 * due["frames"] * due["coverage"]
+    assert sum(one["count"] for one in report["confidence"]["bins"]) == joints
+    assert 0.0 < report["lengths"]["body"]["all"]["off_mm"] < 100.0
+
+
+def test_the_page_needs_nothing_but_the_pictures_beside_it(written: Path) -> None:
+    page, report = Page(written / "report.html"), report_of(written)
+    assert set(page.fetched) == {path.name for path in written.glob("*.png")}
+    assert all(cv2.imread(str(written / name)) is not None for name in page.fetched)
+    assert f"{report['all']['abs_mm']['mean']:.1f}" in page.texts
+    assert "nan" not in " ".join(page.texts)
+
+
+def test_the_worst_frames_show_both_cameras_and_both_sticks(written: Path) -> None:
+    shown = report_of(written)["worst"]
+    assert 3 <= len(shown) <= 10
+    picture = cv2.imread(str(written / shown[0]["picture"]))
+    assert picture is not None
+    assert picture.shape == (480, 1280, 3)
+    for half in (picture[:, :640].astype(int), picture[:, 640:].astype(int)):
+        for colours in (TRUE, TRACKED):
+            drawn = [(np.abs(half - colour).max(axis=2) < 8).sum() for colour in colours]
+            assert sum(drawn) > 50  # where sides lie over each other one covers the other
+
+
+@pytest.mark.slow
+def test_a_run_that_stands_is_read_wherever_its_clip_is(
+    clip: Path, runs: Path, written: Path, tmp_path: Path
+) -> None:
+    """Alone a run names its clip; a run whose clip moved is read with the clip that is given."""
+    moved = spoilt(clip, runs, tmp_path, "a clip that is gone")
+    for paths in ([runs / clip.name], [moved, clip]):
+        told = evaluate_tracking(paths, tmp_path / "report", None, None, None, QUIET)
+        assert json.loads(json.dumps(told["all"])) == report_of(written)["all"]
+    assert not (tmp_path / "report" / "runs").exists()
+
+
+@pytest.mark.slow
+def test_a_clip_without_a_run_is_tracked_as_asked(clip: Path, tmp_path: Path) -> None:
+    """What stands in OUT is not taken for the answer: the program may be another now."""
+    stale = tmp_path / "runs" / clip.name
+    stale.mkdir(parents=True)
+    (stale / "poses.npz").write_bytes(b"stale")
+    told = evaluate_tracking([clip], tmp_path, None, "paper", None, TERMINAL)
+    assert told["mode"] == ["paper"]
+    assert (stale / "summary.json").is_file()
+
+
+def copied_run(clip: Path, runs: Path, out: Path) -> Path:
+    return Path(shutil.copytree(runs / clip.name, out / clip.name))
+
+
+def spoilt(clip: Path, runs: Path, out: Path, what: str) -> Path:
+    """A copy of a run, or of its clip, with something wrong."""
+    run = copied_run(clip, runs, out)
+    if what == "no summary":
+        (run / "summary.json").unlink()
+    elif what == "a damaged run":
+        (run / "poses.npz").write_bytes(b"PK\3\4")
+    elif what == "a clip that is gone":
+        facts = json.loads((run / "summary.json").read_text())
+        facts["settings"]["clip"] = "gone"
+        (run / "summary.json").write_text(json.dumps(facts))
+    elif what == "a run of other joints":
+        with np.load(run / "poses.npz") as poses:
+            held = {name: poses[name] for name in poses.files}
+        np.savez(run / "poses.npz", **{**held, "joint_names": held["joint_names"][::-1][:3]})
+    else:
+        with np.load(run / "poses.npz") as poses:
+            held = {name: poses[name] for name in poses.files if name != "confidence"}
+        np.savez(run / "poses.npz", **held)
+    return run
+
+
+@pytest.mark.parametrize(
+    ("what", "reason"),
+    [
+        ("no summary", "is no run folder: .*summary.json.*; track the clip again"),
+        ("a damaged run", "cannot read .*poses.npz: .*; make it again"),
+        ("a clip that is gone", "needs gone/truth.npz, which is not there: name its clip"),
+        ("a run of other joints", "do not fit together: there is no joint 'l_shoulder'"),
+        ("no confidence", "poses.npz has no confidence: make it again"),
+    ],
+)
+def test_a_run_that_cannot_be_scored_is_named(
+    clip: Path, runs: Path, tmp_path: Path, what: str, reason: str
+) -> None:
+    run = spoilt(clip, runs, tmp_path, what)
+    with pytest.raises(EvaluationError, match=reason):
+        evaluate_tracking([run], tmp_path / "report", None, None, None, QUIET)
+
+
+def test_a_run_of_another_mode_is_not_taken_for_what_was_asked(
+    clip: Path, runs: Path, tmp_path: Path
+) -> None:
+    with pytest.raises(EvaluationError, match="tracked with mode default, not paper"):
+        evaluate_tracking([clip], tmp_path, runs, "paper", None, QUIET)
+    with pytest.raises(EvaluationError, match="tracked with size 160x120, not 80x60"):
+        evaluate_tracking([clip], tmp_path, runs, None, "80x60", QUIET)
+
+
+def test_a_clip_without_truth_is_nothing_to_score(clip: Path, runs: Path, tmp_path: Path) -> None:
+    bare = tmp_path / clip.name
+    bare.mkdir()
+    with pytest.raises(EvaluationError, match="no clip has both a truth"):
+        evaluate_tracking([bare], tmp_path / "report", runs, None, None, QUIET)
+
+
+def test_a_report_that_cannot_be_written_is_said(clip: Path, runs: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(EvaluationError, match=r"cannot write into .*file: .*; name another --out"):
+        evaluate_tracking([clip], tmp_path / "file", runs, None, None, QUIET)
+
+
+def test_two_clips_of_one_name_are_not_mixed(clip: Path, tmp_path: Path) -> None:
+    other = tmp_path / clip.name
+    other.mkdir()
+    with pytest.raises(ClipsFailed, match="would both be written to"):
+        evaluate_tracking([clip, other], tmp_path / "report", None, None, None, QUIET)
+
+
+def test_the_command_prints_the_headline(written: Path) -> None:
+    told, report = json.loads((written / "printed.json").read_text()), report_of(written)
+    assert told["abs_mm"] == report["all"]["abs_mm"]
+    assert told["confidence_auc"] == report["confidence"]["auc"]["all"]
+    assert told["silhouettes_iou"] == report["silhouettes"]["mean"]

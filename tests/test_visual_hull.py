@@ -1,0 +1,88 @@
+"""Two outlines of one piece of space: what one view alone shows is no part of the person."""
+
+import numpy as np
+from posing import posed
+from rolling import ROLLED, on_one_leg, outlines, told
+
+from common.bus.message_codec import unpack
+from common.raster.similarity import Mask
+from common.rig.camera import project
+from integrator.fit import visual_hull
+from integrator.pairing import Pair
+
+
+def share(part: Mask, whole: Mask) -> float:
+    return float((part & whole).sum() / whole.sum())
+
+
+def kept(first: Mask, second: Mask) -> tuple[Mask, Mask]:
+    found = visual_hull.one_piece(ROLLED, (first, second))
+    assert found is not None
+    return found
+
+
+def test_a_person_alone_is_kept_and_reported_as_before() -> None:
+    for pose in (on_one_leg(), on_one_leg(20.0)):
+        first, second = outlines(pose)
+        for before, after in zip((first, second), kept(first, second), strict=True):
+            assert share(after, before) > 0.97
+        pair = Pair(told(1, first), told(2, second))
+        assert visual_hull.cleaned(ROLLED, pair) == (pair, False)
+
+
+def test_what_one_view_alone_shows_goes_and_the_border_is_free_again() -> None:
+    """Glare on the floor, as large as a trunk, to the border of the picture."""
+    first, second = outlines(on_one_leg())
+    glare = np.zeros_like(first)
+    glare[200:240, 0:40] = True
+    spoilt = first | glare
+    found = visual_hull.cleaned(ROLLED, Pair(told(1, spoilt), told(2, second)))
+    assert found.strays
+    report = found.pair.first
+    assert report is not None
+    assert told(1, spoilt).cut
+    assert not report.cut
+    assert share(unpack(report), first) > 0.98
+    assert share(unpack(report), glare & ~first) < 0.02
+    assert report.area_px == unpack(report).sum()
+
+
+def test_of_two_pieces_the_taller_is_the_person() -> None:
+    """A box on the floor that both views show, a metre away and more."""
+    first, second = outlines(on_one_leg())
+    side = np.linspace(-0.2, 0.2, 40)
+    box_m = np.stack(np.meshgrid(1.0 + side, 0.2 + side, 1.0 + side), axis=-1).reshape(-1, 3)
+    spoilt = []
+    for mask, camera in zip((first, second), ROLLED.cameras, strict=True):
+        columns, rows = np.floor(project(camera, box_m)).astype(int).T
+        inside = (columns >= 0) & (rows >= 0) & (columns < 160) & (rows < 240)
+        both = mask.copy()
+        both[rows[inside], columns[inside]] = True
+        assert both.sum() > 1.1 * mask.sum()
+        spoilt.append(both)
+    for mask, found in zip((first, second), kept(spoilt[0], spoilt[1]), strict=True):
+        assert share(found, mask) > 0.97
+        assert found.sum() < 1.03 * mask.sum()
+
+
+def test_an_arm_that_leaves_one_picture_stays_in_the_other() -> None:
+    """What the other view has outside its picture is not contradicted by it."""
+    pose = posed(r_shoulder_z=90.0, l_shoulder_z=270.0)
+    pose[1] = 0.95
+    first, second = outlines(pose)
+    reach = np.flatnonzero(first.any(axis=0))
+    narrow = first[:, : reach[-1] - 14]
+    assert narrow.sum() < 0.98 * first.sum()
+    found = visual_hull.one_piece(ROLLED, (narrow, second))
+    assert found is not None
+    assert share(found[1], second) > 0.97
+
+
+def test_outlines_without_a_common_place_are_left_alone() -> None:
+    first, second = outlines(on_one_leg())
+    corner = np.zeros_like(second)
+    corner[:10, :10] = True
+    pair = Pair(told(1, first), told(2, corner))
+    assert visual_hull.cleaned(ROLLED, pair) == (pair, False)
+    alone = Pair(told(1, first), None)
+    assert visual_hull.cleaned(ROLLED, alone) == (alone, False)

@@ -1,0 +1,1 @@
+"""How exact tracking is on clips with a truth."""

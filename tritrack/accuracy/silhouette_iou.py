@@ -1,0 +1,86 @@
+"""How much of the true silhouette is found: intersection over union, frame by frame."""
+
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from common.config import Settings
+from common.raster.similarity import Mask
+from common.video.clip_facts import View
+from common.video.clips import open_clip
+from tritrack.accuracy.accuracy import Arrays, Floats
+from tritrack.offline.lockstep import Decoders
+from viewer.background.background_source import empty_room
+from viewer.capture import recorded
+from viewer.silhouette import silhouette
+
+HALF: Final = 0.5
+"""A pixel of a smaller true mask belongs to the person when at least half of it does."""
+
+
+class Overlap(NamedTuple):
+    """One view of one clip."""
+
+    iou: Floats
+    """(n,) of the frames with a true silhouette."""
+    empty: int
+    """Frames without one."""
+    ghosts: int
+    """Frames without one that got one."""
+
+
+def overlaps(settings: Settings, truth: Arrays, decoders: Decoders) -> dict[str, Overlap]:
+    """The silhouettes of every view that has true masks, as a viewer of these settings finds them.
+
+    Args:
+        settings: Of the run; they name the clip.
+        truth: Its truth: mask_cam1, mask_cam2 packed along their rows, mask_shape;
+            a view without them is left out.
+        decoders: For the videos.
+
+    Raises:
+        ClipError: When the clip cannot be used.
+    """
+    clip = open_clip(settings, decoders.of[1])
+    return {
+        f"cam{view.number}": _of_view(view, clip.every, settings, truth, decoders)
+        for view in clip.views
+        if {f"mask_cam{view.number}", "mask_shape"} <= set(truth)
+    }
+
+
+def _of_view(
+    view: View, every: int, settings: Settings, truth: Arrays, decoders: Decoders
+) -> Overlap:
+    packed, width = truth[f"mask_cam{view.number}"], int(truth["mask_shape"][1])
+    row_of = truth.get(f"frames_cam{view.number}", np.arange(len(packed)))
+    decoder = decoders.of[view.number]
+    state = silhouette.init(empty_room(view, settings.silhouette, decoder)[0], settings.silhouette)
+    shares, empty, ghosts = [], 0, 0
+    for frame in recorded(view, every, decoder):
+        state, seen = silhouette.step(state, frame.picture, None)
+        if frame.index >= len(row_of):
+            break
+        true = shrunk(np.unpackbits(packed[row_of[frame.index]], axis=1, count=width), view.size)
+        if true.any():
+            shares.append(iou(true, seen.mask))
+        else:
+            empty, ghosts = empty + 1, ghosts + bool(seen.mask.any())
+    return Overlap(np.array(shares), empty, ghosts)
+
+
+def shrunk(mask: NDArray[np.uint8], size: tuple[int, int]) -> Mask:
+    """A mask of zeros and ones at another size (width, height): where HALF of a pixel is covered.
+
+    At half the size that is a mean of 2x2 of at least one half.
+    """
+    covered = cv2.resize(mask.astype(np.float32), size, interpolation=cv2.INTER_AREA)
+    return np.asarray(covered >= HALF, np.bool_)
+
+
+def iou(one: Mask, other: Mask) -> float:
+    """Intersection over union; 1 of two empty masks, which agree."""
+    union = int(np.count_nonzero(one | other))
+    return int(np.count_nonzero(one & other)) / union if union else 1.0

@@ -1,0 +1,99 @@
+"""How fast one camera's clip is followed, from its video to poses, once its room is known."""
+
+import time
+from collections.abc import Iterator
+from typing import Final, NamedTuple
+
+import cv2
+
+from common.config import Mode, Settings
+from common.notes.notes import Notes
+from common.video.clips import open_clip
+from common.video.decoding import Decoder
+from common.video.frame_cache import Reel
+from tritrack.bench.bench_figure import Measured, least_s
+from tritrack.single.one_camera_poses import poses_of
+from tritrack.single.single_silhouettes import outlines_of
+from viewer.background.background_source import room_of_clip
+
+ALONE: Final = (1,)
+"""The view that is followed."""
+FOLLOWED: Final[tuple[tuple[Mode, str, float], ...]] = (
+    ("default", "320x240", 200.0),
+    ("thesis", "320x240", 200.0),
+)
+"""Modes and sizes that it is followed in, and how many frames a second are asked for."""
+
+
+class Times(NamedTuple):
+    """Least seconds of several runs over all frames; the decoder's by the clock, it is a process
+    of its own, the others' of this process, whatever else the machine does."""
+
+    frames: int
+    decoding_s: float
+    silhouettes_s: float
+    poses_s: float
+
+    @property
+    def frames_a_second(self) -> float:
+        """One stage after the other on one core; learning the room does not count."""
+        return self.frames / (self.decoding_s + self.silhouettes_s + self.poses_s)
+
+
+def figures(settings: Settings, repeats: int, target: float) -> Iterator[Measured]:
+    """The rate, and what each part takes."""
+    at, found = f"{settings.mode}, {settings.size}", followed(settings, repeats)
+    yield Measured(f"single, video to poses, {at}", found.frames_a_second, "frames/s", target)
+    for what, value_ms in parts_ms(found).items():
+        yield Measured(f"- {what}, {at}", value_ms, "ms a frame")
+
+
+def parts_ms(found: Times) -> dict[str, float]:
+    """What each stage takes for a frame."""
+    parts_s = (found.decoding_s, found.silhouettes_s, found.poses_s)
+    names = ("decoding of one view", "silhouettes of one view", "poses of one view")
+    return {name: 1e3 * part_s / found.frames for name, part_s in zip(names, parts_s, strict=True)}
+
+
+def followed(settings: Settings, repeats: int) -> Times:
+    """Follow a clip's first camera again and again, as `tritrack single` does without calibration.
+
+    Args:
+        settings: Name the clip, the mode and the size of the working picture.
+        repeats: How often, after a first time that may compile.
+
+    Raises:
+        ClipError: When there is no such clip.
+        Undecodable, DecoderDied: When it has no pictures.
+    """
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        with Decoder() as decoder:
+            return _followed(settings, repeats, decoder)
+    finally:
+        cv2.setNumThreads(threads)
+
+
+def _followed(settings: Settings, repeats: int, decoder: Decoder) -> Times:
+    clip = open_clip(settings, decoder, ALONE)
+    view, reel = clip.views[0], Reel(decoder)
+    scene = room_of_clip(view, settings.silhouette, reel)
+    period_s = clip.every / view.fps
+
+    def decoded() -> int:
+        return sum(1 for _ in decoder.frames(view.source, view.size))
+
+    def outlined() -> int:
+        return len(outlines_of(clip, scene, settings.silhouette, reel))
+
+    def posed() -> int:
+        return len(poses_of(outlines, view.size, None, settings, period_s, Notes()).bodies)
+
+    outlines = outlines_of(clip, scene, settings.silhouette, reel)
+    return Times(
+        len(outlines),
+        least_s(decoded, repeats),
+        least_s(outlined, repeats, time.process_time),
+        least_s(posed, repeats, time.process_time),
+    )

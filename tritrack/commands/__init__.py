@@ -1,0 +1,1 @@
+"""The commands, by group: what a user types, and what is answered."""

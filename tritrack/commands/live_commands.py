@@ -1,0 +1,119 @@
+"""The live commands: a whole run on this machine, or one process of a rig spread over hosts."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import msgspec
+import typer
+
+from common import config
+from common.bus.messages import ViewerNumber
+from common.config import Settings
+from tritrack.commands.command_output import JsonWanted, console, tell
+from tritrack.commands.options import ModeName, Out, Size
+
+ConfigPath = Annotated[Path, typer.Argument(help="A settings file (TOML), or a clip folder.")]
+
+
+def demo(
+    out: Out = Path("runs/demo"),
+    page: Annotated[bool, typer.Option(help="Show it on the live page too.")] = True,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Run the whole system on a made-up person: two viewers, integrator, recognizer, page.
+
+    Example: tritrack demo
+    """
+    from tritrack.demo import run_demo
+
+    facts = run_demo(out, page, console)
+    tell(facts, json_wanted, f"posture: {facts['posture']}; written to {out}")
+
+
+def live(
+    settings_file: ConfigPath,
+    out: Out = Path("runs/live"),
+    mode: ModeName = None,
+    size: Size = None,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Track live: on recorded clips at their own pace, or on cameras. Ctrl-C ends it.
+
+    Example: tritrack live configs/live.toml --out runs/monday
+    """
+    from tritrack.live.session import live as run_live
+    from tritrack.offline.lockstep import overridden
+
+    settings = overridden(config.load(settings_file), mode, size)
+    name = settings_file.stem if settings_file.is_file() else ""
+    facts = run_live(settings, out, console, name)
+    tell(facts, json_wanted, f"posture: {facts['posture'] or 'none'}; written to {out}")
+
+
+def view(
+    settings_file: ConfigPath,
+    viewer: Annotated[int, typer.Option(min=1, max=2, help="Which camera this process looks at.")],
+) -> None:
+    """Run one viewer alone, for a rig spread over hosts.
+
+    Example: tritrack view configs/live.toml --viewer 1
+    """
+    from viewer.__main__ import main as viewer_main
+
+    number: ViewerNumber = 1 if viewer == 1 else 2
+    viewer_main(live_settings(settings_file), number)
+
+
+def integrate(settings_file: ConfigPath) -> None:
+    """Run the integrator alone: the others connect to it.
+
+    Example: tritrack integrate configs/live.toml
+    """
+    from integrator.__main__ import main as integrator_main
+    from tritrack.offline.lockstep import measured_before
+
+    settings = live_settings(settings_file)
+    clip = two_camera_clip(settings)
+    integrator_main(settings, msgspec.structs.replace(clip, body=measured_before(settings)))
+
+
+def recognize(settings_file: ConfigPath) -> None:
+    """Run the recognizer alone.
+
+    Example: tritrack recognize configs/live.toml
+    """
+    from recognizer.__main__ import main as recognizer_main
+
+    settings = live_settings(settings_file)
+    clip = two_camera_clip(settings)
+    recognizer_main(settings, clip.every / clip.views[0].fps)
+
+
+def animate(settings_file: ConfigPath) -> None:
+    """Run the live page alone.
+
+    Example: tritrack animate configs/live.toml
+    """
+    from animator.__main__ import main as animator_main
+
+    settings = live_settings(settings_file)
+    clip = two_camera_clip(settings)
+    animator_main(settings, clip.rig, clip.every / clip.views[0].fps)
+
+
+def live_settings(path: Path) -> Settings:
+    """The settings of a process of a live run."""
+    from tritrack.live.session import refuse_mode
+
+    settings = config.load(path)
+    refuse_mode(settings)
+    return settings
+
+
+def two_camera_clip(settings: Settings) -> Any:
+    """The clip that settings name, with a camera for each viewer where it is calibrated."""
+    from common.video.clip_facts import both_cameras
+    from common.video.clips import open_clip
+
+    clip = open_clip(settings)
+    return msgspec.structs.replace(clip, rig=both_cameras(clip))

@@ -1,0 +1,152 @@
+"""The commands for models and figures: learn, and measure what is tracked and recognised."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from tritrack.commands.command_output import JsonWanted, console, tell
+from tritrack.commands.options import CACHE, Cache, ModeName, Out, OwnMode, Size
+
+RecognizerName = Annotated[
+    Literal["default", "paper"], typer.Option(help="The better models, or the paper's.")
+]
+
+evaluate_app = typer.Typer(help="Measure how well people are tracked, and recognised.")
+
+
+def train(
+    out: Annotated[Path, typer.Option(help="The model file to write.")],
+    runs: Annotated[
+        list[Path] | None,
+        typer.Argument(help="Clips that name their posture, or their run folders."),
+    ] = None,
+    what: Annotated[
+        Literal["postures", "proposals", "silhouettes"],
+        typer.Option(help="What is learnt; proposals and silhouettes need no clips."),
+    ] = "postures",
+    recognizer: RecognizerName = "default",
+    mode: OwnMode = None,
+    add_to: Annotated[
+        Path | None,
+        typer.Option(help="A file, or shipped: it learns the postures too, or learns them anew."),
+    ] = None,
+    cache: Cache = CACHE,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Learn postures from clips or runs, or poses and silhouettes from made-up people.
+
+    A new posture needs three takes; with --add-to, the shipped model or another learns it too.
+
+    Example: tritrack train clips/*/ --out postures.npz --add-to shipped
+    """
+    if what == "proposals":
+        from tritrack.training.proposal_training import train_proposals
+
+        facts = train_proposals(out, 0, console)
+        tell(facts, json_wanted, f"{facts['instants']} instants learnt, written to {out}")
+        return
+    if what == "silhouettes":
+        from tritrack.training.silhouette_training import train_silhouettes
+
+        facts = train_silhouettes(out, 0, console)
+        tell(facts, json_wanted, f"{facts['pixels']} pixels learnt, written to {out}")
+        return
+    if not runs:
+        raise typer.BadParameter("name clips or run folders to learn postures from")
+    from tritrack.training.training import train_postures
+
+    facts = train_postures(runs, out, mode, console, recognizer, cache, add_to)
+    line = (
+        f"{len(facts['sequences'])} postures learnt, {len(facts['knows'])} known; written to {out}"
+    )
+    tell(facts, json_wanted, line)
+
+
+@evaluate_app.command("postures")
+def evaluate_postures(
+    clips: Annotated[
+        list[Path], typer.Argument(help="Clips that name their posture, or their run folders.")
+    ],
+    out: Out,
+    split: Annotated[
+        str, typer.Option(help="Or whom to learn from and test on: r01,r04:r07, s1*:s2*")
+    ] = "leave-one-performer-out",
+    recognizer: Annotated[
+        Literal["both", "default", "paper"], typer.Option(help="Which models, side by side.")
+    ] = "both",
+    mode: OwnMode = None,
+    model: Annotated[
+        Path | None, typer.Option(help="A file, or shipped: it names all clips, nothing is learnt.")
+    ] = None,
+    sweep: Annotated[
+        bool, typer.Option(help="The paper's with 16 to 256 symbols and 3 to 8 states too.")
+    ] = False,
+    cache: Cache = CACHE,
+    dask: Annotated[
+        str, typer.Option(help="Address of a Dask scheduler to work on instead, tcp://host:8786.")
+    ] = "",
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Name the postures of people whom the models never saw: the paper's table 2.
+
+    Clips are tracked by all cores, about 450 MB each; what was tracked is kept, so that a run
+    that was stopped goes on where it was.
+
+    Example: tritrack evaluate postures clips/*/ --split 's1*:s2*' --out report
+    """
+    from tritrack.postures import posture_evaluation
+
+    plan = posture_evaluation.Plan(
+        split, posture_evaluation.KINDS[recognizer], mode, model, sweep, cache, dask
+    )
+    report = posture_evaluation.evaluate_postures(clips, out, plan, console)
+    tables = [
+        f"{name} recogniser:\n{result['table']}" for name, result in report["recognizers"].items()
+    ]
+    tell(report, json_wanted, "\n\n".join(tables))
+
+
+@evaluate_app.command("spotting")
+def evaluate_spotting(
+    runs: Annotated[
+        list[Path],
+        typer.Argument(help="Streams, or clips of one posture each, or their run folders."),
+    ],
+    out: Out,
+    model: Annotated[
+        Path | None, typer.Option(help="A model file, instead of the one in the package.")
+    ] = None,
+    mode: ModeName = None,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Find performances in streams that nobody cuts: how many, how soon, how many that are none.
+
+    Example: tritrack evaluate spotting runs/*_stream --out report
+    """
+    from tritrack.postures import spotting_report
+
+    report = spotting_report.evaluate_spotting(runs, out, model, mode, console)
+    tell(report, json_wanted, report["table"])
+
+
+@evaluate_app.command("tracking")
+def evaluate_tracking(
+    clips: Annotated[list[Path], typer.Argument(help="Clips with a truth, or their run folders.")],
+    out: Out,
+    runs: Annotated[
+        Path | None, typer.Option(help="Where runs stand; clips without one are tracked into it.")
+    ] = None,
+    mode: ModeName = None,
+    size: Size = None,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Track clips and hold joints, silhouettes, lengths and confidence against their truth.
+
+    Example: tritrack evaluate tracking clips/*/ --out report
+    """
+    from tritrack.accuracy import accuracy_report, tracking_evaluation
+
+    report = tracking_evaluation.evaluate_tracking(clips, out, runs, mode, size, console)
+    facts = accuracy_report.headline(report)
+    tell(facts, json_wanted, f"{accuracy_report.line(report)}; written to {out}")

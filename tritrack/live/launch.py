@@ -1,0 +1,156 @@
+"""A live run: its processes started, listened to, supervised, and ended in order."""
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from typing import Final, NamedTuple
+
+from common.bus.bus import Bus, BusError, open_client
+from common.bus.control_messages import Cameras, Pulse
+from common.bus.messages import Body, Posture
+from common.bus.process import READY_S
+from common.config import Settings
+from tritrack.live.process_table import Part
+from tritrack.live.recorded import Kept
+from tritrack.live.supervise import Watched, watched
+
+LOOK_S: Final = 0.1
+LAST_WORDS_S: Final = 0.4
+"""What was said last is on its way for no longer than this."""
+
+log = logging.getLogger(__name__)
+
+
+class Heard(NamedTuple):
+    """What a run said, as its supervisor heard it."""
+
+    bodies: Kept[Body]
+    postures: Kept[Posture]
+    pulses: dict[str, Pulse]
+    cameras: list[Cameras]
+    notes: list[str]
+    """What the supervisor says itself: which part died, and what becomes of it."""
+
+
+def nothing_heard() -> Heard:
+    """Of a run that begins."""
+    return Heard(Kept(Body), Kept(Posture), {}, [], [])
+
+
+def run(
+    parts: Sequence[Part],
+    settings: Settings,
+    stop: threading.Event,
+    show: Callable[[Heard], None],
+    heard: Heard,
+) -> None:
+    """Start the parts, listen to them, and end them all when the run is over or stopped.
+
+    A part that dies is started again; the run goes on without a viewer that was given up, as long
+    as another one lives.
+
+    Args:
+        parts: In the order of their start; they are stopped in the reverse order.
+        settings: Of the run.
+        stop: Ends the run early.
+        show: Called ten times a second with what was heard so far.
+        heard: Filled as the run goes, so that a failure loses nothing that was said.
+
+    Raises:
+        PartFailed: When a process fails before it has worked at all, or was given up; the others
+            are stopped first.
+        BusError: When the integrator cannot be reached.
+    """
+    with ExitStack() as doors:
+        hub = doors.enter_context(watched(parts[0]))
+        bus = doors.enter_context(_client(settings, hub, stop))
+        if bus is None:
+            return
+        listening = Ears(bus, heard)
+        crew = [hub, *(doors.enter_context(watched(part)) for part in parts[1:])]
+        try:
+            while not stop.wait(LOOK_S) and not _over(crew):
+                listening.catch_up()
+                _look_after(crew, heard)
+                show(heard)
+            time.sleep(LAST_WORDS_S)
+        finally:
+            for one in reversed(crew):
+                one.end()
+            listening.catch_up()
+            if listening.dropped:
+                heard.notes.append(
+                    f"{listening.dropped} poses or postures were lost on the way to the run folder"
+                )
+            show(heard)
+        if not stop.is_set():
+            for one in crew:
+                one.refuse_failure()
+
+
+def _look_after(crew: Sequence[Watched], heard: Heard) -> None:
+    """Start again what died, and say so."""
+    for one in crew:
+        told = one.look(time.monotonic(), heard.pulses)
+        if told:
+            log.warning(told)
+            heard.notes.append(told)
+
+
+def _over(crew: Sequence[Watched]) -> bool:
+    """Whether every viewer has ended or was given up, or a part that all need was given up."""
+    leads = [one for one in crew if one.part.leads]
+    needed = any(one.given_up for one in crew if not one.part.leads)
+    return needed or all(one.done or one.given_up for one in leads)
+
+
+class Ears:
+    """Gathers what is said into a Heard."""
+
+    def __init__(self, bus: Bus, heard: Heard) -> None:
+        """Listen from now on; the cameras may have been told before."""
+        self._heard = heard
+        self._bodies = bus.subscribe(Body)
+        self._postures = bus.subscribe(Posture)
+        self._pulses = bus.subscribe(Pulse)
+        self._cameras = bus.subscribe(Cameras)
+        told = bus.latest(Cameras, LAST_WORDS_S)
+        heard.cameras.extend([] if told is None else [told])
+
+    @property
+    def dropped(self) -> int:
+        """How many bodies and postures never came here."""
+        return self._bodies.dropped + self._postures.dropped
+
+    def catch_up(self) -> None:
+        """Take in all that was said since."""
+        self._heard.bodies.add(self._bodies.drain())
+        self._heard.postures.add(self._postures.drain())
+        self._heard.cameras.extend(self._cameras.drain())
+        for pulse in self._pulses.drain():
+            self._heard.pulses[pulse.process] = pulse
+
+
+@contextmanager
+def _client(settings: Settings, hub: Watched, stop: threading.Event) -> Iterator[Bus | None]:
+    """The supervisor's own place on the bus, as soon as the hub's process has opened it.
+
+    None when the run was stopped before that.
+
+    Raises:
+        PartFailed: When the hub failed instead.
+        BusError: When it does not open.
+    """
+    until_s = time.monotonic() + READY_S
+    bus: Bus | None = None
+    with ExitStack() as door:
+        while bus is None and not stop.is_set():
+            hub.refuse_failure()
+            try:
+                bus = door.enter_context(open_client(settings.bus, settings.room, 1.0))
+            except BusError:
+                if time.monotonic() > until_s:
+                    raise
+        yield bus

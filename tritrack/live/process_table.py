@@ -1,0 +1,147 @@
+"""The processes of a live run: the table of them, how one is started, and how it is ended."""
+
+import logging
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from multiprocessing import resource_tracker
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from typing import Any, Final, NamedTuple
+
+from common.bus.process import Place
+from common.config import Settings
+from common.video.clip_facts import Clip
+
+SPAWN: Final = multiprocessing.get_context("spawn")
+"""Never fork: Zenoh's threads are not inherited."""
+END_S: Final = 5.0
+"""How long a process may take to close its doors before it is killed."""
+ONE_THREAD: Final = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
+
+
+class Part(NamedTuple):
+    """One process of a run."""
+
+    name: str
+    main: Callable[..., None]
+    arguments: tuple[Any, ...]
+    leads: bool = False
+    """The run is over when all that lead have ended."""
+    beats: bool = False
+    """While it runs it says so once a second, whatever the others do: if it does not, it hangs."""
+
+
+class Running(NamedTuple):
+    """A part that was started."""
+
+    part: Part
+    process: BaseProcess
+    words: Connection
+    """On which it says why it fails."""
+
+
+def live_parts(settings: Settings, clip: Clip, place: Place) -> list[Part]:
+    """The table of a live run: who listens comes before who speaks (P2)."""
+    period_s = clip.every / clip.views[0].fps
+    parts = [
+        Part("integrator", integrator_main, (settings, clip, place), beats=True),
+        Part("recognizer", recognizer_main, (settings, period_s, place)),
+    ]
+    if settings.page.port:
+        parts.append(Part("animator", animator_main, (settings, clip.rig, period_s, place)))
+    for view in clip.views:
+        arguments = (settings, view.number, place)
+        name = f"viewer {view.number}"
+        parts.append(Part(name, viewer_main, arguments, leads=True, beats=True))
+    return parts
+
+
+def integrator_main(*arguments: Any) -> None:
+    """The integrator, imported where it runs."""
+    from integrator.__main__ import main
+
+    main(*arguments)
+
+
+def recognizer_main(*arguments: Any) -> None:
+    """The recognizer, imported where it runs."""
+    from recognizer.__main__ import main
+
+    main(*arguments)
+
+
+def animator_main(*arguments: Any) -> None:
+    """The animator, imported where it runs."""
+    from animator.__main__ import main
+
+    main(*arguments)
+
+
+def viewer_main(*arguments: Any) -> None:
+    """A viewer, imported where it runs."""
+    from viewer.__main__ import main
+
+    main(*arguments)
+
+
+def started(part: Part) -> Running:
+    """A part's process, begun."""
+    ours, theirs = SPAWN.Pipe(duplex=False)
+    process = SPAWN.Process(name=part.name, target=_guarded, args=(part, theirs), daemon=True)
+    with _inherited():
+        process.start()
+    theirs.close()
+    return Running(part, process, ours)
+
+
+def end(one: Running) -> None:
+    """Ask, wait, then kill."""
+    if one.process.is_alive():
+        one.process.terminate()
+        one.process.join(END_S)
+    if one.process.is_alive():
+        one.process.kill()
+        one.process.join()
+
+
+def last_words(one: Running) -> str:
+    """Why a process ended; one that was killed says nothing."""
+    try:
+        if one.words.poll():
+            return str(one.words.recv())
+    except EOFError:
+        pass
+    code = one.process.exitcode or 0
+    return f"killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
+
+
+@contextmanager
+def _inherited() -> Iterator[None]:
+    """What a process takes over from its supervisor: one thread a library, and deaf to Ctrl-C.
+
+    A terminal sends Ctrl-C to all processes; only the supervisor, who ends the others in order,
+    shall hear it, also while they are still importing.
+    """
+    resource_tracker.ensure_running()  # its own start would lift the block again
+    before = dict(os.environ)
+    os.environ.update(ONE_THREAD)
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        os.environ.clear()
+        os.environ.update(before)
+
+
+def _guarded(part: Part, words: Connection) -> None:
+    """Run a part; what it cannot do is said in one line, not in a traceback."""
+    try:
+        part.main(*part.arguments)
+    except Exception as error:
+        logging.getLogger(part.name).debug("failed", exc_info=error)
+        words.send(str(error) or type(error).__name__)
+        raise SystemExit(2) from None

@@ -1,0 +1,240 @@
+"""A live run from its settings to its run folder."""
+
+import signal
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from types import FrameType
+from typing import Any, Final
+
+import msgspec
+from rich.console import Console
+from rich.live import Live as LiveDisplay
+
+from common.bus.control_messages import Pulse
+from common.bus.messages import Posture
+from common.bus.process import Place, logged
+from common.config import BusSettings, PageSettings, Settings
+from common.video.clip_facts import Clip, both_cameras
+from common.video.clips import open_clip
+from recognizer.__main__ import model_of
+from tritrack.live.launch import Heard, nothing_heard, run
+from tritrack.live.process_table import live_parts
+from tritrack.live.table import table_of
+from tritrack.offline.lockstep import measured_before
+from tritrack.store.runs import write_postures, write_run
+from tritrack.terminal import warn
+
+NO_POSTURE: Final = -1
+"""posture_id of a clip that shows none of the postures: free motion, a test of the tracker."""
+
+
+class LiveRefused(ValueError):
+    """A live run that cannot begin; the text says why and what to do."""
+
+
+def live(settings: Settings, out: Path, console: Console, name: str = "") -> dict[str, Any]:
+    """Run the processes on a clip or on cameras until it ends or Ctrl-C; write the run folder.
+
+    Args:
+        settings: Of the run.
+        out: The run folder; nothing is written elsewhere.
+        console: Shows the live table, each warning once, and the page's address.
+        name: Of the run; the clip's when empty.
+
+    Returns:
+        What the run's summary tells.
+
+    Raises:
+        ClipError, ModelError, PageError, LiveRefused: When something cannot be worked with; no
+            process was started.
+        PartFailed, BusError, RunError: When something failed; what was tracked until then is
+            written first.
+    """
+    refuse_mode(settings)
+    clip = open_clip(settings)
+    clip = msgspec.structs.replace(
+        clip,
+        name=name or clip.name,
+        rig=both_cameras(clip),
+        body=measured_before(settings),
+    )
+    _refuse_what_would_fail(settings, clip)
+    began = time.monotonic()
+    heard = nothing_heard()
+    screen = _Screen(clip, settings, console)
+    with _stopped_by_signals() as stop:
+        path = _new_log(out)
+        try:
+            with TemporaryDirectory(prefix=".kept-", dir=out) as kept:
+                parts = live_parts(settings, clip, Place(True, path, Path(kept)))
+                names = [part.name for part in parts]
+                with screen.shown(names) as show, logged("supervisor", path):
+                    run(parts, settings, stop, show, heard)
+        finally:
+            postures = heard.postures.all()
+            facts = _facts(heard, performed(postures), clip, time.monotonic() - began)
+            write_run(out, heard.bodies.all(), settings, facts)
+            write_postures(out, postures, facts["posture"])
+    return facts
+
+
+class _Screen:
+    """What a person sees of a run: the table of processes, and each piece of news once."""
+
+    def __init__(self, clip: Clip, settings: Settings, console: Console) -> None:
+        rate_hz = clip.views[0].fps / clip.every
+        self._title = f"{clip.name}: {settings.mode} mode, {rate_hz:g} frames a second"
+        self._console = console
+        self._told: set[str] = set()
+        for warning in clip.warnings:
+            self._warn(warning)
+
+    @contextmanager
+    def shown(self, names: list[str]) -> Iterator[Callable[[Heard], None]]:
+        """A function that shows the newest pulses and news; the last stay when it is over."""
+        table = table_of(names, {}, self._title)
+        with LiveDisplay(
+            table, console=self._console, refresh_per_second=4, transient=True
+        ) as display:
+
+            def show(heard: Heard) -> None:
+                nonlocal table
+                self._news(heard)
+                table = table_of(names, heard.pulses, self._title)
+                display.update(table)
+
+            yield show
+        self._console.print(table)
+
+    def _news(self, heard: Heard) -> None:
+        for warning in [*warnings_of(heard.pulses), *heard.notes]:
+            self._warn(warning)
+        page = heard.pulses.get("animator")
+        if page is not None and page.detail not in self._told | {""}:
+            self._told.add(page.detail)
+            self._console.print(f"the page: [link]{page.detail}[/link]", highlight=False)
+        posture = heard.pulses.get("recognizer")
+        if posture is not None and posture.detail not in self._told | {""}:
+            self._told.add(posture.detail)
+            self._console.print(posture.detail, highlight=False)
+
+    def _warn(self, text: str) -> None:
+        if text not in self._told:
+            self._told.add(text)
+            warn(self._console, text)
+
+
+def warnings_of(pulses: Mapping[str, Pulse]) -> list[str]:
+    """What the viewers and the integrator find odd: their pulses tell all of it, a line each."""
+    return [
+        line
+        for name, pulse in sorted(pulses.items())
+        if name.startswith("viewer") or name == "integrator"
+        for line in pulse.detail.splitlines()
+    ]
+
+
+def refuse_mode(settings: Settings) -> None:
+    """Say that the thesis's mode has no processes.
+
+    Raises:
+        LiveRefused: When it is asked for.
+    """
+    if settings.mode == "thesis":
+        raise LiveRefused(
+            "the thesis's mode is not for live runs: set mode = 'default' or 'paper', or follow "
+            "a recorded video with: tritrack single VIDEO --mode thesis"
+        )
+
+
+def _refuse_what_would_fail(settings: Settings, clip: Clip) -> None:
+    """Say before any process starts what one of them would fail on."""
+    meant = "" if clip.meta.posture_id == NO_POSTURE else clip.meta.posture
+    model_of(settings, meant)
+    if settings.page.port:
+        try:
+            from animator.page.door import refuse_port
+        except ImportError as error:
+            raise LiveRefused(
+                f"the page needs {error.name}: pip install 'tritrack[page]', or set page.port = 0"
+            ) from error
+        refuse_port(settings.page.port)
+
+
+def _new_log(out: Path) -> Path:
+    """The log of this run alone: a run before it in the same folder is overwritten."""
+    path = out / "log.txt"
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        path.write_text("")
+    except OSError as error:
+        raise LiveRefused(f"cannot write {out}: {error.strerror}; name another --out") from error
+    return path
+
+
+def performed(postures: list[Posture]) -> str:
+    """The posture of a whole clip: the last name given, by a window that saw most of it."""
+    return next((posture.name for posture in reversed(postures) if posture.name), "")
+
+
+def free_settings(settings: Settings) -> Settings:
+    """The same settings with an endpoint and a page on ports that nobody holds."""
+    bus, page = _free_port(), _free_port()
+    return msgspec.structs.replace(
+        settings,
+        bus=BusSettings(endpoint=f"tcp/127.0.0.1:{bus}"),
+        page=PageSettings(port=page) if settings.page.port else settings.page,
+    )
+
+
+def _facts(heard: Heard, posture: str, clip: Clip, seconds: float) -> dict[str, Any]:
+    source = heard.cameras[-1].scale_source if heard.cameras else None
+    warnings = [*clip.warnings, *warnings_of(heard.pulses), *heard.notes]
+    if heard.bodies.let_go:
+        warnings.append(
+            f"the first {heard.bodies.let_go} frames of a long run are not in poses.npz: write "
+            "shorter runs, or follow recordings with: tritrack track"
+        )
+    return {
+        "clip": clip.name,
+        "performer": clip.meta.performer,
+        "posture_meant": clip.meta.posture,
+        "seconds": {"all": round(seconds, 3)},
+        "scale_source": source,
+        "posture": posture,
+        "warnings": list(dict.fromkeys(warnings)),
+        "processes": {
+            name: {
+                key: round(value, 3) if isinstance(value, float) else value
+                for key, value in msgspec.to_builtins(pulse).items()
+                if key not in ("protocol", "process", "detail")
+            }
+            for name, pulse in sorted(heard.pulses.items())
+        },
+    }
+
+
+@contextmanager
+def _stopped_by_signals() -> Iterator[threading.Event]:
+    stop = threading.Event()
+
+    def end(_number: int, _frame: FrameType | None) -> None:
+        stop.set()
+
+    before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield stop
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _free_port() -> int:
+    with socket.socket() as door:
+        door.bind(("127.0.0.1", 0))
+        return int(door.getsockname()[1])

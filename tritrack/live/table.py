@@ -1,0 +1,69 @@
+"""The live table: a line for each process of a run."""
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+
+from common.bus.control_messages import Pulse
+
+COLUMNS: Final = (
+    ("process", "left"),
+    ("state", "left"),
+    ("frames", "right"),
+    ("fps", "right"),
+    ("missed", "right"),
+    ("dropped", "right"),
+    ("p50 ms", "right"),
+    ("p99 ms", "right"),
+    ("MB", "right"),
+)
+COLOURS: Final = {
+    "running": "green",
+    "ended": "dim",
+    "ready": "cyan",
+    "restarting": "yellow",
+    "given up": "red",
+}
+
+
+def table_of(names: Sequence[str], pulses: Mapping[str, Pulse], title: str) -> Table:
+    """How every process is doing; one that was not heard yet is starting.
+
+    Latency is from a frame's capture to the end of the process's work on it. `missed` counts
+    deadlines: work that ended more than a frame later.
+    """
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for column, side in COLUMNS:
+        table.add_column(column, justify="left" if side == "left" else "right", no_wrap=True)
+    for name in names:
+        table.add_row(*_cells(name, pulses.get(name)))
+    return table
+
+
+def _cells(name: str, pulse: Pulse | None) -> list[str]:
+    if pulse is None:
+        return [name, "starting", *[""] * (len(COLUMNS) - 2)]
+    colour = COLOURS.get(pulse.state, "white")
+    return [
+        name,
+        f"[{colour}]{pulse.state}[/]",
+        str(pulse.frames),
+        f"{pulse.fps:.1f}",
+        str(pulse.deadline_misses),
+        str(pulse.dropped + pulse.late),
+        f"{pulse.latency_p50_ms:.1f}",
+        f"{pulse.latency_p99_ms:.1f}",
+        f"{pulse.memory_mb:.0f}",
+    ]
+
+
+def table_of_rows(rows: Sequence[Mapping[str, object]]) -> Table:
+    """A table with a line for each of several things alike; its columns are their names."""
+    table = Table(box=SIMPLE_HEAD)
+    for column in rows[0] if rows else ():
+        table.add_column(column.replace("_", " "), justify="left" if column == "name" else "right")
+    for row in rows:
+        table.add_row(*(f"{v:.2f}" if isinstance(v, float) else str(v) for v in row.values()))
+    return table

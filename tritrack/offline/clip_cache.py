@@ -1,0 +1,136 @@
+"""What tracking made of clips, kept on disk: no clip is tracked twice in the same way."""
+
+import hashlib
+import io
+import json
+import tokenize
+import zipfile
+from collections.abc import Iterator
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from common.atomic_file import replacing
+from common.config import Settings
+from common.video.clip_sources import ClipError, companions_folder, footage_of
+from common.video.clips import find_calibration
+from tritrack.offline.lockstep import Tracked
+from tritrack.store.runs import poses
+
+KEPT: Final = ("frame", "angles_deg", "joints_m", "joints_px", "confidence", "status")
+"""Arrays of `poses.npz` that recognisers and pictures are made of."""
+
+TRACKERS: Final = ("common", "viewer", "integrator")
+"""Packages whose code and models decide what is tracked; with SHELLS."""
+SHELLS: Final = ("offline/lockstep.py", "offline/frame_pairs.py")
+"""Files of `tritrack` that do."""
+
+LIBRARIES: Final = ("numpy", "opencv-python-headless", "numba")
+
+DAMAGE: Final = (
+    *(OSError, ValueError, KeyError, EOFError, NotImplementedError, RuntimeError),
+    *(tokenize.TokenError, zipfile.BadZipFile),
+)
+"""What reading half a file raises; such a clip is tracked again."""
+
+
+class Kept(NamedTuple):
+    """As much of a run as recognition needs."""
+
+    facts: dict[str, Any]
+    """clip, performer, posture_meant, warnings, as in `summary.json`."""
+    arrays: dict[str, NDArray[Any]]
+    """KEPT, as in `poses.npz`."""
+
+
+def tracker_id() -> str:
+    """A word for the tracker itself: another after any change of its code, models or libraries."""
+    root = Path(__file__).parents[2]
+    files = [root / "tritrack" / name for name in SHELLS]
+    for package in TRACKERS:
+        files += sorted((root / package).rglob("*.py")) + sorted((root / package).rglob("*.npz"))
+    digest = hashlib.sha256()
+    for path in files:
+        _add(digest, path.relative_to(root).as_posix(), path.read_bytes())
+    for name in LIBRARIES:
+        _add(digest, name, version(name).encode())
+    return digest.hexdigest()
+
+
+def key_of(settings: Settings, tracker: str) -> str:
+    """A word for a clip tracked in one way: another if any file of it or any setting differs.
+
+    Raises:
+        ClipError: When a file is missing, or the settings name a camera.
+    """
+    plain = msgspec.structs.replace(settings, clip="", calibration="")
+    digest = hashlib.sha256(tracker.encode())
+    _add(digest, "settings", msgspec.json.encode(plain))
+    _add(digest, "clip", Path(settings.clip).resolve().name.encode())
+    for path in _files(settings):
+        try:
+            _add(digest, path.name, path.read_bytes())
+        except OSError as error:
+            raise ClipError(f"cannot read {path}: {error.strerror}; check the path") from error
+    return digest.hexdigest()[:32]
+
+
+def packed(tracked: Tracked) -> bytes:
+    """What is kept of a tracked clip, as an npz without pickle."""
+    arrays = poses(tracked.bodies)
+    facts = json.dumps(tracked.facts).encode()
+    file = io.BytesIO()
+    np.savez_compressed(
+        file,
+        allow_pickle=False,
+        facts=np.frombuffer(facts, np.uint8),
+        **{name: arrays[name] for name in KEPT},
+    )
+    return file.getvalue()
+
+
+def write(folder: Path, key: str, content: bytes) -> None:
+    """Keep what `packed` gave; a file is there whole or not at all.
+
+    Raises:
+        OSError: When it cannot be written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    with replacing(folder / f"{key}.npz") as new:
+        new.write_bytes(content)
+
+
+def read(folder: Path, key: str) -> Kept | None:
+    """What was kept under a key; None where nothing was, or something that is damaged."""
+    try:
+        with np.load(folder / f"{key}.npz", allow_pickle=False) as file:
+            facts = json.loads(file["facts"].tobytes())
+            return Kept(facts, {name: file[name] for name in KEPT})
+    except DAMAGE:
+        return None
+
+
+def _files(settings: Settings) -> Iterator[Path]:
+    """All that is read of a clip, in a fixed order."""
+    named = footage_of(settings)
+    for view in named:
+        if isinstance(view.source, int):
+            raise ClipError(f"camera {view.source} is no recorded clip: name a clip folder")
+        yield Path(view.source)
+        if view.settings.background:
+            yield Path(view.settings.background)
+    folder = companions_folder(settings, named)
+    calibration = find_calibration(settings, folder)
+    notes = folder / "meta.json"
+    yield from (path for path in (calibration, notes) if path is not None and path.is_file())
+
+
+def _add(digest: Any, name: str, content: bytes) -> None:
+    """Name and content, each with its length: two files are never taken for one."""
+    for part in (name.encode(), content):
+        digest.update(len(part).to_bytes(8, "little"))
+        digest.update(part)

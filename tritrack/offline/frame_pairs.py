@@ -1,0 +1,40 @@
+"""The pictures of a clip's views: the empty rooms, then those of one instant together."""
+
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+
+from common.bus.messages import ViewerNumber
+from common.config import SilhouetteSettings
+from common.video.clip_facts import Clip
+from common.video.frame_cache import Reader
+from viewer.background.background import Background
+from viewer.background.background_source import empty_room
+from viewer.capture import Frame, recorded
+
+Readers = Mapping[ViewerNumber, Reader]
+"""What reads each view, by its number."""
+
+
+def rooms(
+    clip: Clip, settings: SilhouetteSettings, readers: Readers
+) -> list[tuple[Background, str]]:
+    """The empty room of every view, learnt side by side: mostly it is waiting for the decoders."""
+    with ThreadPoolExecutor(len(clip.views)) as pool:
+        return list(
+            pool.map(lambda view: empty_room(view, settings, readers[view.number]), clip.views)
+        )
+
+
+def instants(clip: Clip, readers: Readers) -> Iterator[dict[ViewerNumber, Frame]]:
+    """The frames of all views, those of one instant together, in the order of time."""
+    streams = {view.number: recorded(view, clip.every, readers[view.number]) for view in clip.views}
+    waiting = {number: next(stream, None) for number, stream in streams.items()}
+    tolerance_s = 0.5 * clip.every / clip.views[0].fps
+    while any(waiting.values()):
+        first_s = min(frame.captured_s for frame in waiting.values() if frame is not None)
+        now: dict[ViewerNumber, Frame] = {}
+        for number, frame in waiting.items():
+            if frame is not None and frame.captured_s - first_s <= tolerance_s:
+                now[number] = frame
+                waiting[number] = next(streams[number], None)
+        yield now

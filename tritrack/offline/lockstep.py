@@ -1,0 +1,240 @@
+"""The same steps as live, in one process and in lock-step: deterministic, as fast as it goes."""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import msgspec
+from rich.console import Console
+
+from common import config
+from common.body.body import Bdp
+from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.config import Mode, Settings, SettingsError
+from common.notes.notes import Notes
+from common.video.clip_facts import Clip, both_cameras, shortfall
+from common.video.clip_sources import ClipError
+from common.video.clips import open_clip
+from common.video.decoding import Decoder, DecoderDied, Undecodable
+from common.video.frame_cache import Reel
+from integrator import diagnostics, merge, merge_state
+from integrator.pairing import Pair
+from tritrack.offline.frame_pairs import instants, rooms
+from tritrack.offline.opening_clip import body_of
+from tritrack.single.one_camera import extras_of, follow_clip
+from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_files
+from tritrack.store.runs import write_run
+from tritrack.terminal import bar, complain, warn
+from viewer import track
+from viewer.capture import Frame
+
+
+class Tracked(NamedTuple):
+    """What tracking a clip gave."""
+
+    clip: Clip
+    bodies: list[Body]
+    facts: dict[str, Any]
+    """For the summary: seconds of each stage, scale_source, warnings."""
+    extras: Mapping[str, Any] = MappingProxyType({})
+    """Arrays that one view alone adds to `poses.npz`."""
+
+
+Watch = Callable[[dict[ViewerNumber, Frame], dict[int, Report], Body], object]
+"""Looks at the frames of an instant, the reports on them and the body they gave."""
+
+
+class Decoders:
+    """One decoder a view, kept over many clips: a child's start costs more than a clip."""
+
+    def __init__(self) -> None:
+        """None started yet."""
+        self._doors = ExitStack()
+        self.of = {number: self._doors.enter_context(Decoder()) for number in (1, 2)}
+
+    def __enter__(self) -> "Decoders":
+        """Nothing to do before the first clip."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End the children."""
+        self._doors.close()
+
+
+class Prepared(NamedTuple):
+    """A clip that can be followed."""
+
+    clip: Clip
+    reels: dict[ViewerNumber, Reel]
+    viewers: dict[ViewerNumber, track.State]
+    integrator: merge_state.State
+    odd: list[str]
+    """What is odd about its rooms."""
+    seconds: float
+    """What that took."""
+
+
+class Performance(NamedTuple):
+    """What following a clip gave."""
+
+    bodies: list[Body]
+    integrator: merge_state.State
+    noticed: diagnostics.State
+    seconds: dict[str, float]
+    """Of each stage."""
+
+
+def track_clip(
+    settings: Settings,
+    decoders: Decoders,
+    views: tuple[ViewerNumber, ...] = (1, 2),
+    watch: Watch | None = None,
+) -> Tracked:
+    """Track one clip from its videos to its bodies; `watch` is shown every instant.
+
+    Raises:
+        ClipError: When the clip cannot be used.
+        DecoderDied: When a video broke the decoder.
+    """
+    began = time.perf_counter()
+    clip = open_clip(settings, decoders.of[1], views)
+    if len(clip.views) == 1 and settings.mode != "paper":
+        decoder = decoders.of[clip.views[0].number]
+        followed = follow_clip(clip, settings, decoder, Notes())
+        return Tracked(clip, followed.bodies, followed.facts, extras_of(followed.settled))
+    if settings.mode == "thesis":
+        raise ClipError(f"{clip.name}: the thesis's mode is for one camera: add --views 1")
+    ready = _prepared(clip, settings, decoders, began)
+    done = _performed(ready, watch)
+    return Tracked(clip, done.bodies, _facts(ready, done))
+
+
+def _prepared(clip: Clip, settings: Settings, decoders: Decoders, began: float) -> Prepared:
+    """Viewers that know their rooms and an integrator that knows the rig."""
+    rig = both_cameras(clip)
+    known = body_of(settings, lambda own: track_clip(own, decoders).bodies)
+    reels = {view.number: Reel(decoders.of[view.number]) for view in clip.views}
+    viewers: dict[ViewerNumber, track.State] = {}
+    odd_rooms = []
+    learnt = rooms(clip, settings.silhouette, reels)
+    for view, (room, odd) in zip(clip.views, learnt, strict=True):
+        odd_rooms += [odd] if odd else []
+        camera = None if rig is None else rig.cameras[view.number - 1]
+        viewers[view.number] = track.init(view.number, room, camera, settings)
+    integrator = merge.init(rig, clip.every / clip.views[0].fps, settings, known)
+    return Prepared(clip, reels, viewers, integrator, odd_rooms, time.perf_counter() - began)
+
+
+def _performed(ready: Prepared, watch: Watch | None) -> Performance:
+    """Every instant of a clip, its viewers and the integrator in lock-step."""
+    viewers, state, noticed = dict(ready.viewers), ready.integrator, diagnostics.State()
+    guide: Guide | None = None
+    bodies: list[Body] = []
+    spent = {"viewers": 0.0, "integrator": 0.0}
+    began = time.perf_counter()
+    for frames in instants(ready.clip, ready.reels):
+        start = time.perf_counter()
+        reports: dict[int, Report] = {}
+        for number, frame in frames.items():
+            viewers[number], reports[number] = track.step(viewers[number], frame, guide)
+        middle = time.perf_counter()
+        pair = Pair(reports.get(1), reports.get(2))
+        state, body, guide = merge.step(state, pair)
+        noticed = diagnostics.step(noticed, pair)
+        bodies.append(body)
+        if watch is not None:
+            watch(frames, reports, body)
+        spent["viewers"] += middle - start
+        spent["integrator"] += time.perf_counter() - middle
+    spent["following"] = time.perf_counter() - began
+    return Performance(bodies, state, noticed, spent)
+
+
+def _facts(ready: Prepared, done: Performance) -> dict[str, Any]:
+    """For the summary: what was tracked, how long it took, what was odd."""
+    clip, acts = ready.clip, ready.clip.meta.acts
+    cut_off = [shortfall(view, ready.reels[view.number].came) for view in clip.views]
+    odd = [*clip.warnings, *ready.odd, *filter(None, cut_off)]
+    followed_s = done.seconds["following"]
+    seconds = {"preparation": ready.seconds, **done.seconds, "all": ready.seconds + followed_s}
+    return {
+        "clip": clip.name,
+        "performer": clip.meta.performer,
+        "posture_meant": clip.meta.posture,
+        **({"acts": msgspec.to_builtins(acts)} if acts else {}),
+        "seconds": {name: round(value, 4) for name, value in seconds.items()},
+        "frames_a_second": round(len(done.bodies) / followed_s, 1),
+        "scale_source": done.integrator.scale_source,
+        "warnings": [*odd, *diagnostics.warnings(done.noticed, done.integrator)],
+    }
+
+
+def measured_before(settings: Settings) -> Bdp | None:
+    """The person's body as the opening clip that the settings name tells it, if they name one.
+
+    Raises:
+        SettingsError, ClipError, DecoderDied: As `body_of` and `track_clip` do.
+    """
+    with Decoders() as decoders:
+        return body_of(settings, lambda own: track_clip(own, decoders).bodies)
+
+
+def overridden(settings: Settings, mode: Mode | None, size: str | None) -> Settings:
+    """The settings with what a command line names instead; None leaves what they say.
+
+    Raises:
+        SettingsError: When the size is none.
+    """
+    try:
+        return msgspec.structs.replace(
+            settings, mode=mode or settings.mode, size=size or settings.size
+        )
+    except ValueError as error:
+        raise SettingsError(str(error)) from error
+
+
+def track_all(
+    paths: Sequence[Path],
+    out: Path,
+    mode: Mode | None,
+    views: tuple[ViewerNumber, ...],
+    size: str | None,
+    console: Console,
+) -> dict[str, Any]:
+    """Track clip after clip and write a run folder for each.
+
+    A clip that cannot be used is said and left out; the others are tracked.
+
+    Args:
+        paths: Clip folders and settings files; other plain files are said and left out.
+        out: Gets a folder for each, named after the clip or the settings file.
+        mode: Instead of what the settings say; None leaves them.
+        views: The cameras to use.
+        size: As `mode`.
+        console: For progress, warnings and errors.
+
+    Raises:
+        ClipsFailed: When there is nothing to track, when two runs would have one folder, and at
+            the end when any clip could not be used.
+        RunError: When a run folder cannot be written.
+    """
+    runs = run_names(without_plain_files(paths, console))
+    done: dict[str, Any] = {}
+    with Decoders() as decoders, bar(console) as progress:
+        for name, path in progress.track(runs.items(), description="tracking"):
+            try:
+                settings = overridden(config.load(path), mode, size)
+                tracked = track_clip(settings, decoders, views)
+            except (SettingsError, ClipError, DecoderDied, Undecodable) as error:
+                complain(console, str(error))
+                continue
+            for warning in tracked.facts["warnings"]:
+                warn(console, warning)
+            done[name] = {**tracked.facts, "clip": name}
+            write_run(out / name, tracked.bodies, settings, done[name], tracked.extras)
+    if len(done) < len(runs):
+        raise ClipsFailed(f"{len(runs) - len(done)} of {len(runs)} clips could not be tracked")
+    return {"clips": done}

@@ -1,0 +1,35 @@
+"""A body measured before a run: from a clip of its own that shows the person in a T."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import msgspec
+
+from common import config
+from common.body.body import Bdp
+from common.bus.messages import Body
+from common.config import Settings, SettingsError
+from common.video.clip_sources import ClipError
+
+
+def body_of(settings: Settings, track: Callable[[Settings], Sequence[Body]]) -> Bdp | None:
+    """The person's lengths, metres, as the opening clip tells them; None where none is named.
+
+    Args:
+        settings: Of the run; its mode and size hold for the opening clip too.
+        track: Follows the person of a clip.
+
+    Raises:
+        SettingsError: When the opening clip's own settings name another one, or cannot be read.
+        ClipError: When nobody is seen in it, or it cannot be used.
+    """
+    if not settings.opening:
+        return None
+    own = config.load(Path(settings.opening))
+    if own.opening:
+        raise SettingsError(f"{settings.opening}: an opening clip has none itself: remove opening")
+    own = msgspec.structs.replace(own, mode=settings.mode, size=settings.size)
+    told = [body.bdp for body in track(own) if body.bdp is not None]
+    if not told:
+        raise ClipError(f"nobody is seen in the opening clip {settings.opening}: name another")
+    return told[-1]

@@ -1,0 +1,1 @@
+"""How well postures are named: the paper's experiment, and streams."""

@@ -1,0 +1,75 @@
+"""A clip as one picture: some frames of its motion in both views, with the body's outline."""
+
+from pathlib import Path
+from typing import Any, Final
+
+import cv2
+import numpy as np
+
+from animator.page.inset import Image, draw_outlines, inset, limb_ends, limb_outlines
+from animator.scene import figure
+from common import config
+from common.bus.messages import Body, Picture, Report, ViewerNumber
+from common.config import Mode
+from common.rig.camera import Rig
+from common.video.clip_facts import both_cameras
+from recognizer.__main__ import MOVING
+from tritrack.offline.lockstep import Decoders, overridden, track_clip
+from viewer.capture import Frame
+from viewer.jpeg import jpeg_of
+
+SHOWN: Final = 8
+"""Frames of a strip: a motion of two or three seconds is told by so many."""
+WIDTH_PX: Final = 160
+"""Of each frame of the strip."""
+LEVELS: Final = 0xF0
+"""Bits of a colour that are kept: a page of strips with their noise would weigh 12 MB."""
+
+Instant = tuple[dict[ViewerNumber, Frame], dict[int, Report], Body]
+"""What went through the tracker at one time."""
+
+
+def contact_strip(path: Path, mode: Mode | None, decoders: Decoders) -> bytes:
+    """A PNG: a row a view, SHOWN frames spread over the motion, silhouettes and limbs drawn in.
+
+    Args:
+        path: Clip folder or settings file.
+        mode: How it is tracked.
+        decoders: For its videos.
+
+    Raises:
+        ClipError: When the clip cannot be used.
+    """
+    instants: list[Instant] = []
+    settings = overridden(config.load(path), mode, None)
+    tracked = track_clip(settings, decoders, watch=lambda *now: instants.append(now))
+    moving = [now for now in instants if now[2].status in MOVING] or instants
+    moving = moving[-settings.recognizer.window_frames :]
+    chosen = [moving[i] for i in np.linspace(0, len(moving) - 1, SHOWN).round().astype(int)]
+    rig, numbers = both_cameras(tracked.clip), [view.number for view in tracked.clip.views]
+    rows = [np.hstack([_shown(now, number, rig) for now in chosen]) for number in numbers]
+    _, png = cv2.imencode(".png", cv2.cvtColor(np.vstack(rows), cv2.COLOR_RGB2BGR))
+    return bytes(png.tobytes())
+
+
+def _shown(now: Instant, number: ViewerNumber, rig: Rig | None) -> Image:
+    """One view of one instant; black where that camera has no frame then."""
+    frames, reports, body = now
+    if number not in frames:
+        any_picture = next(iter(frames.values())).picture
+        return _fitted(np.zeros_like(any_picture))
+    report = reports[number]
+    jpeg = jpeg_of(frames[number].picture)
+    seen = Picture(frame=0, captured_s=0.0, clock_s=0.0, viewer=number, jpeg=jpeg)
+    image = inset(report, seen)
+    drawn = figure(body)
+    if drawn is not None and rig is not None:
+        outlines = limb_outlines(rig.cameras[number - 1], limb_ends(drawn))
+        draw_outlines(image, outlines, report.width)
+    return _fitted(image)
+
+
+def _fitted(image: Any) -> Image:
+    height = round(image.shape[0] * WIDTH_PX / image.shape[1])
+    fitted: Image = cv2.resize(image, (WIDTH_PX, height), interpolation=cv2.INTER_AREA)
+    return fitted & np.uint8(LEVELS)

@@ -1,0 +1,1 @@
+"""Films of one camera: followed, drawn, retouched."""

@@ -1,0 +1,184 @@
+"""The effort ledger: how many inputs a video took, would gain from, and took the thesis (T24)."""
+
+from collections.abc import Sequence
+from typing import Any, Final, NamedTuple
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from animator.inbetween import key_frames
+from animator.take import SURE, Take, depth_of, hidden_of
+from common.body.body import LIMB_ENDS, LIMBS
+from common.notes.notes import Notes
+
+JOINTS_BY_HAND: Final = 14
+"""Places that earlier methods had the user point at in every key frame (4.3)."""
+
+
+class Count(msgspec.Struct, frozen=True):
+    """Inputs by what they are about."""
+
+    orientation: int = 0
+    depth: int = 0
+    joints: int = 0
+
+    @property
+    def total(self) -> int:
+        """All of them."""
+        return self.orientation + self.depth + self.joints
+
+
+class Printed(NamedTuple):
+    """What the thesis prints of one of its videos."""
+
+    video: str
+    frames: int
+    key_frames: int
+    by_hand: int
+    inputs: Count
+
+
+PRINTED: Final = (
+    Printed("walking", 82, 17, 17 * JOINTS_BY_HAND + 52, Count(1, 52, 7)),
+    Printed("dancing", 200, 33, 33 * JOINTS_BY_HAND + 44, Count(7, 44, 8)),
+)
+"""Demir 2006, 4.3: 290 -> 60 and 506 -> 59 (M23)."""
+
+
+class Ledger(msgspec.Struct, frozen=True):
+    """One video's effort, in the thesis's own terms."""
+
+    frames: int
+    key_frames: int
+    given: Count
+    """What the notes say: every value counts once however long it holds; "auto" gives none."""
+    open: Count
+    """What could still improve the result: inputs that would settle all that is not sure."""
+    thesis: Count
+    """What the thesis's way would take of this video: every orientation, direction and hidden
+    joint given by hand."""
+
+    @property
+    def by_hand(self) -> int:
+        """What the ways before the thesis would take: all joints of key frames, and directions."""
+        return self.key_frames * JOINTS_BY_HAND + self.thesis.depth
+
+
+def ledger(take: Take, notes: Notes) -> Ledger:
+    """Count what was given, what could be, and what the thesis's way would take."""
+    clarity = np.where(take.posed, take.confidence.mean(axis=1), np.nan)
+    return Ledger(
+        frames=len(take.frame),
+        key_frames=len(key_frames(clarity)),
+        given=given_inputs(notes),
+        open=open_inputs(take),
+        thesis=_by_the_thesis(take),
+    )
+
+
+def given_inputs(notes: Notes) -> Count:
+    """The inputs in the notes: values that are not what held before."""
+    count = {"orientation": 0, "depth": 0, "joints": 0}
+    holds: dict[str, Any] = {}
+    for note in notes.note:
+        said: list[tuple[str, str, Any]] = [("orientation", "orientation", note.orientation)]
+        said += [("depth", name, way) for name, way in note.depth.items()]
+        said += [("joints", f"{name} px", place) for name, place in note.joints_px.items()]
+        for kind, name, value in said:
+            count[kind] += value not in (None, "auto", holds.get(name))
+            holds[name] = value or holds.get(name)
+    return Count(**count)
+
+
+def open_inputs(take: Take) -> Count:
+    """The inputs that would settle every doubt, each held as long as it agrees (T21)."""
+    asked = take.posed & (take.orientation_confidence < SURE)
+    unsure = take.posed[:, None] & (take.depth_confidence < SURE)
+    hidden = take.posed[:, None] & hidden_of(take.confidence)
+    depth = depth_of(take.joints_m)
+    return Count(
+        orientation=inputs(take.orientation, asked),
+        depth=sum(inputs(depth[:, i], unsure[:, i]) for i in range(len(LIMBS))),
+        joints=sum(_stretches(hidden[:, i]) for i in range(len(LIMBS))),
+    )
+
+
+def mending_inputs(take: Take, truth: Take, near_px: float) -> Count:
+    """The inputs that would put right what is wrong, where the truth is known.
+
+    A user who knows it says the orientation where another was taken, the direction of a segment
+    that leans the other way or not at all, and the place of the joint at its far end where that
+    is off; each as long as it holds (T21).
+
+    Args:
+        take: The run.
+        truth: The same frames.
+        near_px: A joint that is off by less is where it should be.
+    """
+    posed = take.posed & truth.posed
+    lean, true_lean = depth_of(take.joints_m), depth_of(truth.joints_m)
+    wrong = posed[:, None] & (true_lean != 0) & (lean != true_lean)
+    far = LIMB_ENDS[:, 1]
+    off_px = np.linalg.norm(take.joints_px[:, far] - truth.joints_px[:, far], axis=2)
+    misplaced = posed[:, None] & (off_px > near_px)
+    return Count(
+        orientation=inputs(truth.orientation, posed & (take.orientation != truth.orientation)),
+        depth=sum(inputs(true_lean[:, i], wrong[:, i]) for i in range(len(LIMBS))),
+        joints=sum(_stretches(misplaced[:, i]) for i in range(len(LIMBS))),
+    )
+
+
+def inputs(values: Sequence[Any] | NDArray[Any], wanted: NDArray[np.bool_]) -> int:
+    """How many sticky inputs say `values` in the frames where that is wanted.
+
+    An input holds on while the values agree with it; frames of no value ("" or 0) agree with
+    anything; where a frame disagrees that nobody asked about, the input is given up.
+    """
+    holds: Any = None
+    count = 0
+    for value, asked in zip(values, wanted, strict=True):
+        if value and value != holds:
+            count += bool(asked)
+            holds = value if asked else None
+    return count
+
+
+def _stretches(hidden: NDArray[np.bool_]) -> int:
+    """How often a joint is hidden: one place each time."""
+    return int(np.count_nonzero(np.diff(hidden.astype(int), prepend=0) == 1))
+
+
+def _by_the_thesis(take: Take) -> Count:
+    depth = depth_of(take.joints_m)
+    return Count(
+        orientation=inputs(np.where(take.posed, take.orientation, ""), take.posed),
+        depth=sum(inputs(depth[:, i], take.posed) for i in range(len(LIMBS))),
+        joints=open_inputs(take).joints,
+    )
+
+
+def facts_of(made: Ledger) -> dict[str, Any]:
+    """A ledger for a summary: the video's own counts, and the thesis's beside them."""
+    return {
+        "inputs": msgspec.to_builtins(made.given) | {"all": made.given.total},
+        "inputs_that_could_help": msgspec.to_builtins(made.open) | {"all": made.open.total},
+        "this_video_by_hand": made.by_hand,
+        "this_video_the_thesis_way": made.thesis.total,
+        "thesis": {
+            each.video: {"frames": each.frames, "by_hand": each.by_hand, "all": each.inputs.total}
+            for each in PRINTED
+        },
+    }
+
+
+def line_of(facts: dict[str, Any]) -> str:
+    """The ledger's facts in one line."""
+    thesis = ", ".join(
+        f"{name} {each['by_hand']} -> {each['all']}" for name, each in facts["thesis"].items()
+    )
+    return (
+        f"inputs: {facts['inputs']['all']} given, {facts['inputs_that_could_help']['all']} could "
+        f"help; by hand {facts['this_video_by_hand']}, the thesis's way "
+        f"{facts['this_video_the_thesis_way']} (its own videos: {thesis})"
+    )

@@ -1,0 +1,152 @@
+"""The retouching of a run: its video, its poses and its notes on a page, until Ctrl-C."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import cv2
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+
+from animator.take import Take, take_of
+from common.bus.process import Place, process
+from common.config import CameraSettings, Settings, working_size
+from common.notes.notes import Notes
+from common.notes.notes_file import NotesError, load_notes, notes_path, save_notes
+from common.video.clip_facts import Clip
+from common.video.clip_sources import ClipError
+from common.video.clips import open_clip
+from common.video.decoding import Decoder
+from tritrack.single.ledger import facts_of, ledger
+from tritrack.store.past_run import PastRun, open_run
+from tritrack.terminal import bar
+
+MOST_PICTURES: Final = 20_000
+"""They are kept in memory, some 40 kB each."""
+SHOWN: Final = (640, 480)
+"""Pictures on the page are no larger."""
+JPEG_QUALITY: Final = 88
+
+
+class RetouchError(RuntimeError):
+    """A run that cannot be retouched: the text says why and what to do."""
+
+
+def retouch(
+    folder: Path, video: Path | None, notes_file: Path | None, port: int, console: Console
+) -> dict[str, Any]:
+    """Show a run on a page that edits the notes of its video, until Ctrl-C.
+
+    Args:
+        folder: That of the run.
+        video: Where the run's video is now; None: where its summary says.
+        notes_file: Instead of the notes beside the video.
+        port: Of the page.
+        console: Tells the page's address.
+
+    Returns:
+        The notes' file and the effort ledger at the end.
+
+    Raises:
+        PastRunError, RetouchError, ClipError, DecoderDied, NotesError, PageError: When something
+            cannot be worked with.
+    """
+    try:
+        from animator.page.retouch import RetouchPage
+    except ModuleNotFoundError as error:
+        raise RetouchError(
+            f"there is no page without {error.name}: pip install 'tritrack[page]'"
+        ) from error
+
+    run = open_run(folder)
+    clip = _clip_of(run, video)
+    source = Path(str(clip.views[0].source))
+    path = notes_file or notes_path(source)
+    notes = load_notes(path) if path.exists() else Notes(source.name)
+    take = _take_of(run, clip)
+    pictures = _pictures(clip, take, console)
+
+    def picture_of(row: int) -> NDArray[np.uint8]:
+        return _decoded(pictures[row])
+
+    def keep(new: Notes) -> tuple[str, bool]:
+        try:
+            save_notes(path, new)
+        except NotesError as error:
+            return str(error), False
+        return f"{ledger(take, new).given.total} inputs, kept in {path.name}", True
+
+    with process("retouch", Place()) as stop:
+        page = RetouchPage(take, clip.views[0].source_size, picture_of, notes, keep, port)
+        console.print(f"the page is at {page.address}; Ctrl-C ends it", highlight=False)
+        try:
+            stop.wait()
+        finally:
+            page.close()
+    console.print("then fit the video again with these notes: tritrack single", highlight=False)
+    return {"notes": str(path), **facts_of(ledger(take, page.notes))}
+
+
+def _clip_of(run: PastRun, video: Path | None) -> Clip:
+    """The run's video, through camera 1."""
+    try:
+        settings = msgspec.convert(run.summary.get("settings", {}), Settings)
+    except msgspec.ValidationError as error:
+        raise RetouchError(f"{run.folder}/summary.json: {error}; track the clip again") from error
+    if video is not None:
+        camera = CameraSettings(source=str(video))
+        settings = msgspec.structs.replace(settings, clip="", camera_1=camera)
+    try:
+        clip = open_clip(settings, None, (1,))
+    except ClipError as error:
+        raise RetouchError(f"{error}; name the run's video with --video") from error
+    if not isinstance(clip.views[0].source, str):
+        raise RetouchError(f"{run.folder} is of a camera: name a film of it with --video")
+    return clip
+
+
+def _take_of(run: PastRun, clip: Clip) -> Take:
+    """The run in the video's own pixels, as seen from camera 1."""
+    view = clip.views[0]
+    take = take_of(run.poses, view.source_size[0] / view.size[0])
+    if not len(take.frame):
+        raise RetouchError(f"{run.folder} has no frame: track the clip again")
+    if clip.rig is None:
+        return take
+    turn = np.array(clip.rig.cameras[0].R)
+    return take._replace(joints_m=take.joints_m @ turn.T * (1.0, -1.0, -1.0))
+
+
+def _pictures(clip: Clip, take: Take, console: Console) -> Sequence[bytes]:
+    """The picture of every row of the run as a JPEG; a missing one is that before it."""
+    if len(take.frame) > MOST_PICTURES:
+        raise RetouchError(
+            f"{len(take.frame)} frames are too many for the page: track parts of the video, of at "
+            f"most {MOST_PICTURES} frames each"
+        )
+    view = clip.views[0]
+    size = working_size(view.source_size, SHOWN)
+    wanted = {int(frame) for frame in take.frame}
+    found: dict[int, bytes] = {}
+    with Decoder() as decoder, bar(console) as progress:
+        frames = decoder.frames(view.source, size)
+        for decoded in progress.track(frames, total=view.frames or None, description="reading"):
+            if decoded.index in wanted:
+                found[decoded.index] = _jpeg(decoded.picture)
+    blank = _jpeg(np.zeros((size[1], size[0], 3), np.uint8))
+    kept: list[bytes] = []
+    for frame in take.frame:
+        kept.append(found.get(int(frame), kept[-1] if kept else blank))
+    return kept
+
+
+def _jpeg(picture: NDArray[np.uint8]) -> bytes:
+    _, encoded = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+    return encoded.tobytes()
+
+
+def _decoded(jpeg: bytes) -> NDArray[np.uint8]:
+    picture = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR_RGB)
+    return np.asarray(picture, np.uint8)

@@ -1,0 +1,83 @@
+"""A run that was written before: its poses and its summary, checked while they are read."""
+
+import json
+import zipfile
+import zlib
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS
+
+MAX_BYTES: Final = 1 << 28
+"""No poses of a run are larger: an hour at 30 frames a second."""
+
+ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
+    "frame": ("iu", ()),
+    "time_s": ("f", ()),
+    "joints_m": ("f", (len(JOINT_NAMES), 3)),
+    "joints_px": ("f", (2, len(JOINT_NAMES), 2)),
+    "angles_deg": ("f", (len(ANGLE_NAMES),)),
+    "confidence": ("f", (len(JOINT_NAMES),)),
+    "status": ("U", ()),
+    "views": ("U", ()),
+    "score": ("f", (2,)),
+}
+"""The arrays of `poses.npz` that are read: kind of entries and shape of a row."""
+SINGLE_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
+    "orientation": ("U", ()),
+    "orientation_confidence": ("f", ()),
+    "depth_confidence": ("f", (len(LIMBS),)),
+}
+"""What a run of a single view has beside them."""
+
+
+class PastRunError(ValueError):
+    """A run folder that cannot be read: the text names it and the cure."""
+
+
+class PastRun(NamedTuple):
+    """What a run left behind."""
+
+    folder: Path
+    poses: dict[str, Any]
+    """Arrays by name: those of ROWS, and what else the file holds."""
+    summary: dict[str, Any]
+
+
+def open_run(folder: Path) -> PastRun:
+    """Read a run folder.
+
+    Raises:
+        PastRunError: When it is none, or was damaged.
+    """
+    if not folder.is_dir():
+        raise PastRunError(f"there is no run folder {folder}: name one that `tritrack track` wrote")
+    path = folder / "poses.npz"
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise PastRunError(f"{path} is larger than any run's: name another run")
+        with np.load(path, allow_pickle=False) as arrays:
+            poses = {name: arrays[name] for name in arrays.files}
+        summary = json.loads((folder / "summary.json").read_text())
+    except FileNotFoundError as error:
+        missing = Path(str(error.filename)).name
+        raise PastRunError(f"{folder} has no {missing}: is it a run folder?") from error
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+        raise PastRunError(f"{folder} was damaged ({error}): track the clip again") from error
+    _refuse_other_arrays(path, poses)
+    return PastRun(folder, poses, summary if isinstance(summary, dict) else {})
+
+
+def _refuse_other_arrays(path: Path, poses: dict[str, Any]) -> None:
+    rows = len(poses["frame"]) if np.ndim(poses.get("frame", 0)) == 1 else 0
+    known = ROWS | {name: row for name, row in SINGLE_ROWS.items() if name in poses}
+    for name, (kinds, shape) in known.items():
+        array = np.asarray(poses.get(name))
+        if array.shape != (rows, *shape) or array.dtype.kind not in kinds:
+            found = f"{array.dtype} {array.shape}" if name in poses else "missing"
+            raise PastRunError(f"{path}: {name} is {found}, not {(rows, *shape)}: track it again")
+    names = tuple(str(name) for name in np.ravel(poses.get("joint_names", ())))
+    if names != JOINT_NAMES:
+        raise PastRunError(f"{path}: joint_names are not those of this version: track it again")

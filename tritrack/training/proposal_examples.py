@@ -1,0 +1,66 @@
+"""What the network that proposes poses is taught: outlines of made-up people, and their joints."""
+
+from collections.abc import Iterable
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from integrator.proposal.network_weights import JOINTS
+from integrator.proposal.pose_network import aimed
+from integrator.proposal.silhouette_window import look
+from synth.person.skeleton import JOINTS as ALL_JOINTS
+from synth.picture.outline_examples import Manner, Outline, outlines
+
+BELIEVED: Final = (1.008, 0.02, 0.05)
+"""A measured stature over the true one: mean and standard deviation of a body that was measured,
+and the deviation of one that was not."""
+UNMEASURED_SHARE: Final = 0.15
+ASTRAY_M: Final = 1.5
+"""A silhouette that lies farther from the person teaches nothing."""
+PICK: Final = [ALL_JOINTS.index(name) for name in JOINTS]
+
+Floats = NDArray[np.float32]
+
+
+class Example(NamedTuple):
+    """What is learnt from a performance."""
+
+    cells: NDArray[np.uint8]
+    """(n, 2, CELLS) how much of each is covered, of 255."""
+    beside: Floats
+    """(n, BESIDE)"""
+    due: Floats
+    """(n, 36) what should be said."""
+    stature_m: float
+    """As it is believed."""
+
+
+def example_of(performance: tuple[int, Manner]) -> Example:
+    """What is learnt from a performance: its seed and its manner."""
+    seed, manner = performance
+    return example(outlines(seed, manner), np.random.default_rng([seed, 78]))
+
+
+def example(shown: Iterable[Outline], rng: np.random.Generator) -> Example:
+    """What the network sees of a performance, and what it should say."""
+    cells, beside, due, believed_m = [], [], [], 0.0
+    mean, measured, unmeasured = BELIEVED
+    wrong = mean + rng.normal() * (unmeasured if rng.random() < UNMEASURED_SHARE else measured)
+    for masks, joints_m, rig, stature_m, since_s in shown:
+        first, second = (mask if mask is not None and mask.any() else None for mask in masks)
+        if first is None and second is None:
+            continue
+        believed_m = wrong * stature_m
+        window = look((first, second), rig, believed_m, since_s)
+        if window is None or np.linalg.norm(window.middle_m - joints_m[0]) > ASTRAY_M:
+            continue
+        cells.append(np.rint(255 * window.windows).astype(np.uint8))
+        beside.append(window.beside)
+        due.append(aimed(joints_m[PICK], window, believed_m).ravel())
+    return Example(
+        np.array(cells, np.uint8),
+        np.array(beside, np.float32),
+        np.array(due, np.float32),
+        believed_m,
+    )

@@ -1,0 +1,166 @@
+"""What was performed in clips and runs: the rows that recognisers learn from and are tested on."""
+
+import json
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+from rich.console import Console
+
+from common import config
+from common.config import Mode, RecognizerSettings, Settings
+from common.video.clip_sources import ClipError
+from common.video.decoding import DecoderDied, Undecodable
+from recognizer.__main__ import MOVING
+from recognizer.evaluation import Recording
+from recognizer.features import rows
+from recognizer.spotting import motion_of
+from tritrack.offline import clip_cache
+from tritrack.offline.clip_cache import Kept
+from tritrack.offline.lockstep import Decoders, overridden, track_clip
+from tritrack.store.clip_paths import ClipsFailed, without_plain_files
+from tritrack.store.cores import made
+from tritrack.store.runs import RunError
+from tritrack.terminal import bar, complain, warn
+
+BATCH: Final = 8
+"""Clips that share a pair of decoders, whose start takes as long as a clip or two; as many are
+lost at most on each core when the work is stopped."""
+
+
+class RecordingError(RuntimeError):
+    """A clip or run of which nothing can be told; the text names the folder and the cure."""
+
+
+class Due(NamedTuple):
+    """A clip that is still to be tracked."""
+
+    path: Path
+    settings: Settings
+    key: str
+
+
+class Done(NamedTuple):
+    """What a worker made of one."""
+
+    key: str
+    content: bytes
+    """What `clip_cache.packed` gave; empty where the clip cannot be used."""
+    refusal: str
+
+
+def recordings(
+    paths: Sequence[Path], mode: Mode | None, cache: Path, console: Console
+) -> list[Recording]:
+    """What was performed in each clip or run: the motion after the opening posture.
+
+    Args:
+        paths: Clip folders whose `meta.json` names posture and performer, or their run folders.
+        mode: How clips are tracked; None: as their settings say.
+        cache: Folder that keeps what tracking made of clips.
+        console: For progress and warnings.
+
+    Raises:
+        RecordingError: When a folder is neither, or names no posture.
+        ClipsFailed: When clips cannot be used; which and why was said before.
+    """
+    folders = without_plain_files(paths, console)
+    clips = [path for path in folders if not (path / "poses.npz").is_file()]
+    kept = dict(zip(clips, kept_of(clips, mode, cache, console), strict=True))
+    _tell_what_is_odd(kept, console)
+    return [_recording(path, kept[path] if path in kept else _of_run(path)) for path in folders]
+
+
+def _tell_what_is_odd(kept: dict[Path, Kept], console: Console) -> None:
+    """One line, however many the clips."""
+    odd = {path: one.facts["warnings"] for path, one in kept.items() if one.facts["warnings"]}
+    for path, warnings in list(odd.items())[:1]:
+        others = f", and {len(odd) - 1} more clips have warnings" if len(odd) > 1 else ""
+        warn(console, f"{path}: {warnings[0]}{others}")
+
+
+def kept_of(clips: Sequence[Path], mode: Mode | None, cache: Path, console: Console) -> list[Kept]:
+    """What tracking makes of each clip, tracked by all cores where it is not kept yet.
+
+    Raises:
+        ClipsFailed: When clips cannot be used; which and why was said before.
+        RunError: When the cache cannot be written.
+    """
+    tracker = clip_cache.tracker_id()
+    keys, due = {}, []
+    for path in clips:
+        settings = overridden(config.load(path), mode, None)
+        keys[path] = clip_cache.key_of(settings, tracker)
+        if clip_cache.read(cache, keys[path]) is None:
+            due.append(Due(path, settings, keys[path]))
+    refused = _track_all(due, cache, console)
+    if refused:
+        raise ClipsFailed(f"{refused} of {len(clips)} clips could not be tracked")
+    found = [clip_cache.read(cache, key) for key in keys.values()]
+    return [kept for kept in found if kept is not None]
+
+
+def _track_all(due: Sequence[Due], cache: Path, console: Console) -> int:
+    """Track and keep; gives how many could not be."""
+    batches = [due[at : at + BATCH] for at in range(0, len(due), BATCH)]
+    refused = 0
+    with bar(console) as progress:
+        task = progress.add_task("tracking", total=len(due))
+        for batch in made(_track, batches) if due else ():
+            for done in batch:
+                progress.advance(task)
+                refused += bool(done.refusal)
+                if done.refusal:
+                    complain(console, done.refusal)
+                else:
+                    _keep(cache, done)
+    return refused
+
+
+def _keep(cache: Path, done: Done) -> None:
+    try:
+        clip_cache.write(cache, done.key, done.content)
+    except OSError as error:
+        raise RunError(
+            f"cannot write {cache}: {error.strerror}; free some space or name another --cache"
+        ) from error
+
+
+def _track(batch: Sequence[Due]) -> list[Done]:
+    """What a worker does with its share."""
+    cv2.setNumThreads(1)
+    with Decoders() as decoders:
+        return [_tracked(due, decoders) for due in batch]
+
+
+def _tracked(due: Due, decoders: Decoders) -> Done:
+    content, refusal = b"", ""
+    try:
+        content = clip_cache.packed(track_clip(due.settings, decoders))
+    except (ClipError, DecoderDied, Undecodable) as error:
+        refusal = str(error)
+    return Done(due.key, content, refusal)
+
+
+def _of_run(path: Path) -> Kept:
+    try:
+        facts = json.loads((path / "summary.json").read_text())
+        with np.load(path / "poses.npz", allow_pickle=False) as arrays:
+            return Kept(facts, {name: arrays[name] for name in clip_cache.KEPT})
+    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        raise RecordingError(f"{path} is no run folder: {error}; track the clip again") from error
+
+
+def _recording(path: Path, kept: Kept) -> Recording:
+    posture = kept.facts.get("posture_meant", "")
+    if not posture:
+        raise RecordingError(f"{path} names no posture: write it into the clip's meta.json")
+    arrays = kept.arrays
+    tracked = rows(arrays["angles_deg"], arrays["joints_m"])
+    moving = np.where(np.isin(arrays["status"], MOVING)[:, None], tracked, np.nan)
+    window = RecognizerSettings().window_frames
+    motion = motion_of(moving, window)
+    return Recording(kept.facts.get("performer", ""), posture, motion, str(path))

@@ -1,0 +1,85 @@
+"""Posture models from clips or runs."""
+
+from collections import defaultdict
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from rich.console import Console
+
+from common.config import Mode
+from recognizer.__main__ import SHIPPED, SHIPPED_PAPER
+from recognizer.model_file import load, save
+from recognizer.postures import PostureModel, Recognizer
+from recognizer.training.learning import taught, train
+from tritrack.store.cores import spread
+from tritrack.training.recordings import recordings
+
+SHIPPED_MODELS: Final[dict[Recognizer, Path]] = {"default": SHIPPED, "paper": SHIPPED_PAPER}
+"""What a command line calls `shipped`."""
+
+
+class TrainingError(ValueError):
+    """Nothing can be learnt, or the model cannot be written; the text names the cure."""
+
+
+def train_postures(
+    paths: Sequence[Path],
+    out: Path,
+    mode: Mode | None,
+    console: Console,
+    recognizer: Recognizer,
+    cache: Path,
+    add_to: Path | None = None,
+) -> dict[str, Any]:
+    """Learn a model of each posture and write it.
+
+    Args:
+        paths: Clip folders whose `meta.json` names posture and performer, or their run folders.
+        out: The file to write.
+        mode: How clips are tracked; None: in the recogniser's own mode.
+        console: For progress and warnings.
+        recognizer: Which kind of model.
+        cache: Folder that keeps what tracking made of clips.
+        add_to: A model whose other postures are kept, and whose kind the new ones get; None: the
+            model knows what was learnt here alone.
+
+    Raises:
+        RecordingError: When a folder is neither, or names no posture.
+        ClipsFailed: When clips cannot be used.
+        TrainingError: When nothing can be learnt, or the file cannot be written.
+        ModelError: When the model to add to cannot be read.
+    """
+    known = model_named(add_to, recognizer) if add_to else None
+    kind = known.card.recognizer if known else recognizer
+    learnt: dict[str, list[Any]] = defaultdict(list)
+    performers = set()
+    with spread(""):
+        given = recordings(paths, mode or kind, cache, console)
+    for recording in given:
+        learnt[recording.posture].append(recording.rows)
+        performers.add(recording.performer)
+    try:
+        if known is None:
+            model = train(dict(learnt), kind, performers=sorted(performers))
+        else:
+            model = taught(known, learnt, sorted(performers))
+        out.parent.mkdir(parents=True, exist_ok=True)
+        save(model, out)
+    except (ValueError, OSError) as error:
+        raise TrainingError(f"cannot learn or write {out}: {error}") from error
+    return {
+        "model": str(out),
+        "sequences": {name: len(given) for name, given in sorted(learnt.items())},
+        "performers": sorted(performers),
+        "knows": list(model.names),
+    }
+
+
+def model_named(path: Path, recognizer: Recognizer) -> PostureModel:
+    """The model in a file, or the one in the package where the path is `shipped`.
+
+    Raises:
+        ModelError: When it cannot be read.
+    """
+    return load(SHIPPED_MODELS[recognizer] if path == Path("shipped") else path)

@@ -1,0 +1,151 @@
+"""The empty room: what every pixel shows while nobody is there (section 1; thesis 3.1.2)."""
+
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from viewer.background.image_stack import Floats, Frame, Overlaid, median, overlaid
+
+SENSOR_NOISE: Final = 2.0
+"""Grey levels; taken for granted where one picture alone shows the room."""
+FLOOR: Final = (1.0, 2.5)
+"""Least spread of brightness and of colour, grey levels: rounding, and the colour that compression
+smears around a person, which no empty frame can show."""
+GAIN_SAMPLES: Final = 1500.0
+"""About how many pixels, on a grid, are asked for the light: a median of so many is steady."""
+
+
+class Background(NamedTuple):
+    """The empty room, pixel by pixel."""
+
+    centre: Floats
+    """(H, W, 3) grey levels."""
+    spread: Floats
+    """(H, W, 2) standard deviation of brightness and of colour, grey levels."""
+    uncertain: NDArray[np.bool_]
+    """(H, W) True where the room was never seen and is guessed."""
+
+
+def learn(frames: Sequence[Frame]) -> Background:
+    """The room from pictures of it, empty.
+
+    Args:
+        frames: One or more pictures of one size.
+
+    Raises:
+        ValueError: When there is no frame.
+    """
+    return learnt(overlaid_opening(frames))
+
+
+def learnt(empty: Overlaid) -> Background:
+    """The room from pictures of it, empty, laid over each other.
+
+    The minimum, maximum and largest step that W4 keeps grow with the number of frames; their place
+    is taken here by mean and standard deviation, after the flicker of the light is taken out, and
+    the deviations are pooled over 5x5 pixels, since eight frames alone say little.
+
+    Source: Huang & Chung 2004, section 1 (W4); requirement P3.
+    """
+    spread = spread_of(empty.squares, len(empty.moving))
+    return Background(empty.mean, spread, np.zeros(spread.shape[:2], np.bool_))
+
+
+def overlaid_opening(frames: Sequence[Frame]) -> Overlaid:
+    """Pictures laid over each other under the light of their median.
+
+    Raises:
+        ValueError: When there is none.
+    """
+    if not frames:
+        raise ValueError("a background needs at least 1 frame, got 0")
+    middle = median(frames)
+    lights = np.stack([light_gain(frame, middle) for frame in frames])
+    return overlaid(np.stack(frames), lights)
+
+
+@njit(cache=True, fastmath=True)
+def light_gain(frame: Frame, room: Floats) -> Floats:
+    """How much brighter a frame is than the room, per channel, whoever stands in it.
+
+    The median of the ratio over a grid of pixels, then the mean of the ratios around it, so that
+    neither a person nor a shadow on less than half of the picture counts.
+
+    Args:
+        frame: (H, W, 3).
+        room: (H, W, 3) grey levels.
+
+    Returns:
+        (3,) factors, 1 where the room is too dark to tell.
+    """
+    height, width = frame.shape[:2]
+    stride = max(1, int(np.sqrt(height * width / GAIN_SAMPLES)))
+    bins, unit = 600, 300
+    seen = np.zeros((3, bins), np.float32)
+    due = np.zeros((3, bins), np.float32)
+    for y in range(stride // 2, height, stride):
+        for x in range(stride // 2, width, stride):
+            for c in range(3):
+                given, asked = np.float32(frame[y, x, c]), room[y, x, c]
+                at = int(given / max(asked, np.float32(1)) * unit)
+                # what became white may be brighter than it shows; what was white already counts
+                if asked > 20 and (given < 250 or asked >= 250) and at < bins:
+                    seen[c, at] += given
+                    due[c, at] += asked
+    gain = np.ones(3, np.float32)
+    for c in range(3):
+        half, middle = due[c].sum() / 2, 0
+        if half <= 0:
+            continue
+        run = due[c, 0]
+        while run < half:
+            middle += 1
+            run += due[c, middle]
+        for _ in range(4):
+            low, high = max(0, middle - 18), min(bins, middle + 19)
+            gain[c] = seen[c, low:high].sum() / due[c, low:high].sum()
+            middle = min(int(gain[c] * unit), bins - 1)
+    return gain
+
+
+def even_light(frames: Sequence[Frame]) -> Floats:
+    """All frames under the light of their median: (n, H, W, 3) grey levels."""
+    middle = median(frames)
+    height, width = middle.shape[:2]
+    # long rows divide five times as fast as triples do
+    rows = [
+        frame.reshape(height, -1) / np.tile(light_gain(frame, middle), width) for frame in frames
+    ]
+    return np.stack(rows).reshape(-1, height, width, 3)
+
+
+def spread_of(squares: Floats, count: int) -> Floats:
+    """Standard deviation of brightness and colour, (H, W, 2), from sums of so many squares."""
+    if count == 1:
+        return np.full(squares.shape, np.hypot(SENSOR_NOISE, FLOOR), np.float32)
+    pooled = squares / np.float32(count - 1)
+    return np.asarray(np.sqrt(cv2.blur(pooled, (5, 5)) + np.square(FLOOR)), np.float32)
+
+
+def large_regions(mask: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """Regions as tall as an arm's stroke, 0.1 of the picture; the counter in a corner is none."""
+    closed = cv2.morphologyEx(mask.view(np.uint8), cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
+    contours, tree = cv2.findContours(closed, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+    low = [
+        contour
+        for number, contour in enumerate(contours)
+        if tree[0, number, 3] < 0 and cv2.boundingRect(contour)[3] < 0.1 * mask.shape[0]
+    ]
+    cv2.drawContours(closed, low, -1, 0, cv2.FILLED)
+    return np.asarray(closed, np.uint8)
+
+
+def slopes(luma: Floats) -> Floats:
+    """How steeply brightness changes at every pixel, (H, W)."""
+    across = cv2.Sobel(luma, cv2.CV_32F, 1, 0)
+    down = cv2.Sobel(luma, cv2.CV_32F, 0, 1)
+    return cv2.magnitude(across, down)

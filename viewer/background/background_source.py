@@ -1,0 +1,139 @@
+"""The empty room of a view: from a plate, from the clip's opening frames, or from the clip."""
+
+import math
+from collections.abc import Iterator
+from itertools import chain, islice
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from common.atomic_file import replacing
+from common.config import SilhouetteSettings
+from common.video.clip_facts import View
+from common.video.decoding import Decoder
+from common.video.frame_cache import Reader
+from viewer.background.background import Background, learn, learnt, overlaid_opening
+from viewer.background.empty_opening import is_empty_opening, is_still
+from viewer.background.image_stack import LUMA, Frame
+from viewer.background.moved_objects import Patch, patches_of
+from viewer.background.occluded_background import learn_uncovered
+from viewer.background.stabilization import Anchor, anchored, laid, place_of
+
+SAMPLE = 40
+"""How many frames at most, spread over a clip, tell whether its opening is empty."""
+
+LOOKED_AT = 1500
+"""How many frames of a clip are looked at for that: a long recording is judged by its start."""
+
+
+LEFT_HIDDEN = 0.01
+"""Who stays on a spot hides 2 to 20 % of the picture all through a clip, who roams up to 0.4 %."""
+
+
+class Scene(NamedTuple):
+    """The empty room of a clip of one camera, all through it."""
+
+    room: Background
+    anchor: Anchor | None
+    """What its frames are to be laid over, where the camera trembles."""
+    patches: list[Patch]
+    """What is another from some frame on."""
+    odd: str
+    """What is odd about how that is known; "" if nothing is."""
+
+
+def empty_room(view: View, settings: SilhouetteSettings, decoder: Reader) -> tuple[Background, str]:
+    """What the room looks like without the person, and what is odd about how that is known.
+
+    Args:
+        view: A recorded file's, or a camera's: that one's room is taken to be empty now.
+        settings: How many opening frames show the empty room.
+        decoder: Reads the file; left at its start.
+
+    Raises:
+        Undecodable: When the plate or the file has no picture.
+        DecoderDied: When the decoder broke on it.
+    """
+    if isinstance(view.source, int) and not view.background:
+        return learn(_now(view, settings.empty_frames, decoder)), ""
+    if view.background:
+        plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
+        return learn(plate), ""
+    opening, coming = _looked_at(view, settings.empty_frames, decoder)
+    laid_over, sample = overlaid_opening(opening), list[Frame]()
+    if is_still(laid_over) and is_empty_opening(laid_over, _kept(coming, sample)):
+        return learnt(laid_over), ""
+    return learn_uncovered([*sample, *coming]), (
+        f"{view.source} does not open with an empty room: the background is estimated from the "
+        f"clip (name an empty picture with camera_{view.number}.background)"
+    )
+
+
+def room_of_run(
+    view: View, settings: SilhouetteSettings, decoder: Decoder, kept: Path | None
+) -> tuple[Background, str]:
+    """The same in a live run, where a viewer may be started again with somebody before its camera.
+
+    Args:
+        view: As above; likewise `settings`, `decoder`.
+        kept: The run's folder for what was learnt of a camera's room; None: it keeps nothing.
+    """
+    if kept is None or not isinstance(view.source, int) or view.background:
+        return empty_room(view, settings, decoder)
+    path = kept / f"room_{view.number}.npz"
+    if path.exists():
+        with np.load(path, allow_pickle=False) as found:
+            return Background(**found), ""
+    room, odd = empty_room(view, settings, decoder)
+    with replacing(path) as new, new.open("wb") as file:
+        np.savez(file, allow_pickle=False, **room._asdict())
+    return room, odd
+
+
+def room_of_clip(view: View, settings: SilhouetteSettings, decoder: Reader) -> Scene:
+    """The room of a clip, from all over it where that shows all but a little, and what changes.
+
+    Light changes through a clip, and with it more than a gain can follow; an empty opening knows
+    nothing of that. It is kept where somebody stays on the spot. The frames of a camera that
+    trembles are laid over each other first, and are to be laid over the anchor later. Things that
+    come to rest or leave are patches on it, also on a room that was given.
+    """
+    room, odd = empty_room(view, settings, decoder)
+    if isinstance(view.source, int):
+        return Scene(room, None, [], odd)
+    sample = list(_looked_at(view, settings.empty_frames, decoder)[1])
+    anchor = None if view.background else anchored(sample)
+    if anchor is not None:
+        places = [place_of(anchor, np.asarray(frame @ LUMA, np.float32)) for frame in sample]
+        sample = list(map(laid, sample, places))
+        room = learn_uncovered(sample)
+    elif not (odd or view.background):
+        busy = learn_uncovered(sample)
+        room = busy if busy.uncertain.mean() < LEFT_HIDDEN else room
+    return Scene(room, anchor, patches_of(room, sample, _stride(view), view.fps), odd)
+
+
+def _now(view: View, due: int, decoder: Reader) -> list[Frame]:
+    """The first frames that a camera gives."""
+    return [got.picture for got in islice(decoder.frames(view.source, view.size), due)]
+
+
+def _looked_at(view: View, due: int, decoder: Reader) -> tuple[list[Frame], Iterator[Frame]]:
+    """The opening frames, and frames from everywhere in the clip: these as they are decoded."""
+    frames = islice(decoder.frames(view.source, view.size), LOOKED_AT)
+    pictures = (got.picture for got in frames)
+    opening = list(islice(pictures, due))
+    return opening, islice(chain(opening, pictures), 0, None, _stride(view))
+
+
+def _kept(frames: Iterator[Frame], keeper: list[Frame]) -> Iterator[Frame]:
+    """The same frames, and a list of them."""
+    for frame in frames:
+        keeper.append(frame)
+        yield frame
+
+
+def _stride(view: View) -> int:
+    """Frames from one that is looked at to the next."""
+    return max(1, math.ceil(min(view.frames, LOOKED_AT) / SAMPLE))

@@ -1,0 +1,102 @@
+"""Things that come to stay, or go, while a clip runs: doors, chairs, captions (after T7)."""
+
+import math
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+
+from common.raster.similarity import Mask
+from viewer.background.background import Background, even_light, spread_of
+from viewer.background.image_stack import CHANGES, LUMA, Floats, Frame, median, squares
+from viewer.silhouette.silhouette import State
+
+AT_REST_S: Final = 10.0
+"""Nobody who stands holds still for so long, edges and all; who lies still for longer is lost until
+they stir."""
+FEWEST: Final = 6
+"""So many pictures at least tell that."""
+CALM: Final = 0.9
+"""Share of them in which a pixel shows the same: somebody may pass before it."""
+RESTLESS: Final = 0.35
+"""Less than this share of what is around a thing moves; around a trunk that bends more does."""
+LOOKS: Final = 6
+"""So often within that time the room is looked at."""
+SPECKS_PX: Final = 5
+EDGE_PX: Final = 2
+"""How far beyond what differs clearly a thing's edge reaches."""
+
+
+class Patch(NamedTuple):
+    """What of the room is another from a frame on."""
+
+    frame: int
+    where: Mask
+    """(H, W)."""
+    centre: Floats
+    """(n, 3) grey levels of these pixels."""
+    spread: Floats
+    """(n, 2) likewise."""
+
+
+def patches_of(room: Background, frames: Sequence[Frame], spacing: int, fps: float) -> list[Patch]:
+    """What comes to rest in a clip, or leaves where it was at rest, in the order of time.
+
+    Where the room was guessed, what is first seen at rest was there from the start.
+
+    Args:
+        room: Learnt from all the clip.
+        frames: Pictures (H, W, 3) from all over it, from its first on.
+        spacing: Frames of the clip from one to the next.
+        fps: Of the clip.
+    """
+    due = max(FEWEST, math.ceil(AT_REST_S * fps / spacing))
+    found: list[Patch] = []
+    if len(frames) < due:
+        return found
+    guessed = room.uncertain.copy()
+    even, now = even_light([*frames, np.asarray(np.rint(room.centre), np.uint8)])[:-1], room.centre
+    for start in range(0, len(frames) - due + 1, max(1, due // LOOKS)):
+        window = even[start : start + due]
+        shown = median(window)
+        off = window - shown
+        settled = _smooth((np.abs(off @ LUMA) < CHANGES).mean(axis=0) >= CALM)
+        other = _other_things(shown, now, settled)
+        now = np.where(other[..., None], shown, now)
+        spread = spread_of(squares(off), due)
+        for where, frame in ((other & guessed, 0), (other & ~guessed, start * spacing)):
+            if where.any():
+                found.append(Patch(frame, where, shown[where], spread[where]))
+        guessed &= ~other
+    return sorted(found, key=lambda patch: patch.frame)
+
+
+def patched(state: State, patch: Patch) -> State:
+    """Silhouettes in a room with a patch on it."""
+    room, weight = state.room.copy(), state.weight.copy()
+    room[patch.where] = patch.centre
+    weight[patch.where] = np.float32(1) / patch.spread**2
+    return state._replace(room=room, weight=weight)
+
+
+def _smooth(mask: Mask) -> Mask:
+    """Without the specks that compression leaves along edges."""
+    return np.asarray(cv2.medianBlur(mask.view(np.uint8), SPECKS_PX) > 0)
+
+
+def _other_things(shown: Floats, now: Floats, settled: Mask) -> Mask:
+    """(H, W) True where what is at rest is not the room as it was.
+
+    A region that differs, with all that moves and touches it, is a thing if little of the ring
+    around it moves.
+    """
+    differs = settled & (np.abs((shown - now) @ LUMA) > CHANGES)
+    beyond = np.ones((3, 3), np.uint8)
+    count, labels = cv2.connectedComponents(differs.view(np.uint8))
+    ring = cv2.dilate(labels.astype(np.float32), beyond).astype(np.int32) * ~differs
+    around = np.bincount(ring.ravel(), minlength=count)
+    moving = np.bincount(ring[~settled], minlength=count) / np.maximum(around, 1)
+    thing = differs & (moving[labels] < RESTLESS)
+    reach = np.ones((2 * EDGE_PX + 1,) * 2, np.uint8)
+    return settled & (cv2.dilate(thing.view(np.uint8), reach) > 0)

@@ -1,0 +1,225 @@
+"""The empty room of a busy clip: what nobody hides, and what is never uncovered (3.1.2)."""
+
+from collections.abc import Sequence
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from common.raster.similarity import Mask
+from viewer.background.background import (
+    Background,
+    even_light,
+    large_regions,
+    slopes,
+    spread_of,
+)
+from viewer.background.empty_opening import EDGE_SHARE
+from viewer.background.image_stack import CHANGES, LUMA, Floats, Frame, median, squares
+
+GUESSED: Final = 4.0
+"""Spread of a pixel whose room was guessed, grey levels."""
+SEGMENT_SCALE: Final = 300.0
+SEGMENT_SIGMA: Final = 0.8
+LEAST_SEGMENT_PX: Final = 20
+"""Felzenszwalb and Huttenlocher's own values for pictures of this size (T7)."""
+NOISES: Final = 4.0
+"""Spreads of a pixel's own flicker that a change must pass on top of CHANGES."""
+MOST_FLICKER: Final = 2 * CHANGES
+QUIET: Final = 0.25
+"""A pixel flickers by what it stays within for this share of the frames."""
+ROAMS: Final = 0.55
+"""Somebody whose middle moves sideways by this share of the height of where they are leaves every
+pixel for most of the clip: 0.5 to 2.0 for who crosses a picture, up to 0.5 on the spot."""
+RARELY: Final = 0.1
+"""Who is in the median picture and roams leaves the spot for more of the frames than this; what
+changes less often there is room that arms pass, whose own edges are taken for outlines."""
+LEAST_BLOB: Final = 0.2
+"""Less than this share of the largest change at a place does not tell where the middle is."""
+AROUND: Final = 0.25
+"""Share of the picture's height in which outlines speak for each other: half a person."""
+MOST_HIDDEN: Final = 0.25
+"""Nobody hides more of a picture than this; then several people roam in it."""
+OUTSIDE: Final = 0.5
+"""A segment that lies outside of where people are to this share is room ..."""
+AT_EDGE_PX: Final = 8
+"""... and so is one that reaches the picture's border there with so many pixels."""
+INSIDE: Final = 0.3
+"""A segment that is not, and lies inside to this share, is person as a whole: legs that stand."""
+SHOWN: Final = 0.1
+"""What frames show in less than this share may as well be clothes of the wall's brightness."""
+ALIKE: Final = 2.5
+"""Spreads of a segment's colour within which a pixel of it is believed to be room too."""
+
+
+class NoSegments(RuntimeError):
+    """The library that segments pictures is missing: the text tells the cure."""
+
+
+def learn_uncovered(frames: Sequence[Frame]) -> Background:
+    """The room from pictures in which somebody may be always in view.
+
+    What does not change is room, unless it is hidden: a place where what changes stays put has
+    somebody in the median picture, and so has one where the outlines of what changes belong to
+    the median as much as to the frames. There the median is believed only in segments of one
+    colour that reach beyond the place. What is left is drawn from both sides, and gives way to
+    what frames show if enough of them come near that; else the pixel was never uncovered and
+    is flagged.
+
+    Args:
+        frames: Pictures from all over a clip, of one size.
+
+    Raises:
+        ValueError: When there is no frame.
+        NoSegments: When scikit-image is not installed.
+
+    Source: Demir 2006, section 3.1.2 (T7). The print takes what never changes for room, and with
+    it whoever never moves; hidden places are our addition.
+    """
+    if not frames:
+        raise ValueError("a background needs at least 1 frame, got 0")
+    even = even_light(frames)
+    centre = median(even)
+    away = np.abs(even - centre).max(axis=3)
+    labels = segments(centre)
+    for stays in (True, False):
+        held = _held(centre, labels, _occupied(even, centre, away, stays))
+        room, uncertain = _filled(even, centre, held)
+        if uncertain.mean() <= MOST_HIDDEN:
+            break
+    calm = np.where((away < CHANGES)[..., None], even - centre, 0.0).astype(np.float32)
+    spread = spread_of(squares(calm), len(frames))
+    if held.any() and not held.all():
+        spread[held] = np.median(spread[~held], axis=0)
+    spread[uncertain] = np.maximum(spread[uncertain], GUESSED)
+    return Background(room, spread, uncertain)
+
+
+def _filled(even: Floats, centre: Floats, held: Mask) -> tuple[Floats, Mask]:
+    """The room (H, W, 3) with what is held filled, and where hardly a frame shows that."""
+    guess = _bridge(centre, held)
+    near = np.abs((even - guess) @ LUMA) < CHANGES
+    shown = near.sum(axis=0)
+    mean = (even * near[..., None]).sum(axis=0) / np.maximum(shown, 1)[..., None]
+    uncertain = held & (shown < SHOWN * len(even))
+    room = np.where(held[..., None], np.where(uncertain[..., None], guess, mean), centre)
+    return room.astype(np.float32), uncertain
+
+
+def segments(picture: Floats) -> NDArray[np.int64]:
+    """Segments of one colour, (H, W) numbers from 0 on, by Felzenszwalb and Huttenlocher.
+
+    Raises:
+        NoSegments: When scikit-image is not installed.
+    """
+    try:
+        from skimage.segmentation import felzenszwalb
+    except ImportError as error:
+        raise NoSegments(
+            "the background of a busy clip needs scikit-image: pip install 'tritrack[single]', or "
+            "name an empty picture with camera_1.background"
+        ) from error
+    return np.asarray(
+        felzenszwalb(
+            picture.clip(0, 255) / 255,
+            scale=SEGMENT_SCALE,
+            sigma=SEGMENT_SIGMA,
+            min_size=LEAST_SEGMENT_PX,
+            channel_axis=2,
+        )
+    )
+
+
+def _held(centre: Floats, labels: NDArray[np.int64], hull: Mask) -> Mask:
+    """(H, W) True where the median picture may show a person."""
+    inside = np.bincount(labels.ravel(), hull.ravel()) / np.bincount(labels.ravel())
+    edge = np.ones_like(hull)
+    edge[1:-1, 1:-1] = False
+    at_edge = np.bincount(labels[edge & ~hull], minlength=len(inside)) >= AT_EDGE_PX
+    reaches_out = at_edge | (inside < 1 - OUTSIDE)
+    room = reaches_out[labels] & _alike(centre, labels, ~hull)
+    return np.asarray((hull & ~room) | (~reaches_out & (inside > INSIDE))[labels])
+
+
+def _alike(centre: Floats, labels: NDArray[np.int64], where: Mask) -> Mask:
+    """(H, W) True where a pixel has the colour that its segment has in `where`."""
+    count = np.maximum(np.bincount(labels.ravel(), where.ravel()), 1)
+    off = np.zeros(labels.shape)
+    for c in range(3):
+        own = centre[..., c].astype(np.float64)
+        mean = np.bincount(labels.ravel(), (own * where).ravel()) / count
+        square = np.bincount(labels.ravel(), (own**2 * where).ravel()) / count
+        spread = np.sqrt(np.maximum(square - mean**2, 0)) * ALIKE + CHANGES
+        off = np.maximum(off, np.abs(own - mean[labels]) / spread[labels])
+    return np.asarray(off < 1)
+
+
+def _occupied(even: Floats, centre: Floats, away: Floats, stays: bool) -> Mask:
+    """(H, W) True in the hulls of the places where somebody may stand in the median picture.
+
+    Args:
+        even: (n, H, W, 3) frames under one light.
+        centre: (H, W, 3), their median.
+        away: (n, H, W), how far they are from it.
+        stays: What stays put counts; otherwise only what its outlines tell.
+    """
+    flicker = np.minimum(NOISES * np.quantile(away, QUIET, axis=0), MOST_FLICKER)
+    changed = np.stack([large_regions(off > CHANGES + flicker) for off in away])
+    hidden, often = _in_median(even, centre, changed), changed.mean(axis=0) > RARELY
+    gap = 2 * (centre.shape[0] // 60) + 1
+    joined = cv2.dilate(changed.max(axis=0), np.ones((gap, gap), np.uint8))
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(joined)
+    places = np.zeros(labels.shape, np.uint8)
+    for number in range(1, count):
+        own = labels == number
+        roams = _travelled(changed, own) > ROAMS * stats[number, cv2.CC_STAT_HEIGHT]
+        there = hidden & often if roams else hidden | stays
+        places |= own & there
+    return _hulls(places)
+
+
+def _in_median(even: Floats, centre: Floats, changed: NDArray[np.uint8]) -> Mask:
+    """(H, W) True where outlines of what changes are in the median picture, not in the frames."""
+    slope = slopes(np.asarray(centre @ LUMA, np.float32))
+    in_median, in_frames = np.zeros_like(slope), np.zeros_like(slope)
+    for frame, own in zip(even, changed, strict=True):
+        outline = cv2.morphologyEx(own, cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8)) > 0
+        steeper = np.where(outline, slopes(np.asarray(frame @ LUMA, np.float32)) - slope, 0)
+        in_frames += steeper.clip(min=0)
+        in_median -= steeper.clip(max=0)
+    reach = 2 * round(AROUND * len(slope) / 2) + 1
+    told, due = (cv2.blur(sums, (reach, reach)) for sums in (in_median, in_frames))
+    return np.asarray(told > EDGE_SHARE * due)
+
+
+def _travelled(changed: NDArray[np.uint8], own: Mask) -> float:
+    """How far the middle of what changes in a place moves sideways, pixels."""
+    columns = (changed * own).sum(axis=1)
+    areas = columns.sum(axis=1)
+    seen = areas > LEAST_BLOB * areas.max()
+    middles = columns[seen] @ np.arange(own.shape[1]) / areas[seen]
+    low, high = np.quantile(middles, (0.05, 0.95))
+    return float(high - low)
+
+
+def _hulls(regions: NDArray[np.uint8]) -> Mask:
+    """The convex hull of every region."""
+    reach = max(1, regions.shape[0] // 60)
+    joined = cv2.dilate(regions, np.ones((2 * reach + 1, 2 * reach + 1), np.uint8))
+    contours, _ = cv2.findContours(joined, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    out = np.zeros(regions.shape, np.uint8)
+    for contour in contours:
+        cv2.fillConvexPoly(out, cv2.convexHull(contour), 1)
+    return out > 0
+
+
+def _bridge(picture: Floats, held: Mask) -> Floats:
+    """The picture with the held stretch of every row drawn from its two ends."""
+    out = picture.copy()
+    columns = np.arange(picture.shape[1])
+    for y in np.flatnonzero(held.any(axis=1) & ~held.all(axis=1)):
+        known = ~held[y]
+        for c in range(3):
+            out[y, held[y], c] = np.interp(columns[held[y]], columns[known], picture[y, known, c])
+    return out

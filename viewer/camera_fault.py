@@ -1,0 +1,118 @@
+"""What is wrong with a camera's picture as a whole: it stands still, is black, white or covered."""
+
+from typing import Final, NamedTuple
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from common.bus.messages import CameraFault
+from viewer.background.background import Background
+from viewer.background.image_stack import Frame
+
+FROZEN_AFTER: Final = 2
+"""Repeats that may be no fault: files made for a faster rate hold each picture two or three times,
+and no filmed clip that was looked at held one more than twice."""
+STRIDE: Final = 4
+"""Every so many rows and columns are looked at for brightness."""
+PLAIN: Final = 16.0
+"""Grey levels between the darkest and the brightest tenth of what shows no room at all."""
+VARIED: Final = 2 * PLAIN
+"""The same in a room that is not plain itself."""
+UNLIKE: Final = 25.0
+"""Grey levels by which a picture without a room differs from a room that is plain, too."""
+DARK: Final = 60.0
+BRIGHT: Final = 195.0
+"""Grey levels: below, a plain picture is called black; above, saturated."""
+
+
+class State(NamedTuple):
+    """The picture before, and for how many frames it has been the same."""
+
+    room: NDArray[np.float32]
+    """Grey levels of the empty room, every STRIDE pixels."""
+    last: Frame | None = None
+    repeats: int = 0
+
+
+def init(room: Background) -> State:
+    """Nothing seen yet but the empty room."""
+    return State(_grey(room.centre))
+
+
+def step(state: State, picture: Frame) -> tuple[State, CameraFault]:
+    """One picture (H, W, 3); the fault that makes it useless, or "".
+
+    A sensor's noise makes every picture of its own, so one that is the same, bit for bit, for
+    more than FROZEN_AFTER frames is the camera's memory and not the room.
+    """
+    same = state.last is not None and _same(picture, state.last)
+    state = State(state.room, picture, state.repeats + 1 if same else 0)
+    if state.repeats > FROZEN_AFTER:
+        return state, "frozen"
+    return state, _blank(state.room, picture)
+
+
+def _blank(room: NDArray[np.float32], picture: Frame) -> CameraFault:
+    if _contrast_of(picture) > PLAIN:
+        return ""
+    grey = _grey(picture)
+    if _contrast(room) < VARIED and np.abs(grey - room).mean() < UNLIKE:
+        return ""
+    middle = float(np.median(grey))
+    if middle < DARK:
+        return "black"
+    return "saturated" if middle > BRIGHT else "covered"
+
+
+def _contrast(grey: NDArray[np.float32]) -> float:
+    """Grey levels between the darkest and the brightest tenth."""
+    tenth = grey.size // 10
+    ranked = np.partition(grey, (tenth, grey.size - 1 - tenth), axis=None)
+    return float(ranked[-1 - tenth] - ranked[tenth])
+
+
+@numba.njit(cache=True)
+def _contrast_of(picture: Frame) -> float:
+    """The same of a picture; its brightness, a sum of bytes, is counted and not sorted."""
+    counts = np.zeros(3 * 255 + 1, np.int64)
+    for i in range(0, picture.shape[0], STRIDE):
+        for j in range(0, picture.shape[1], STRIDE):
+            pixel = picture[i, j]
+            counts[int(pixel[0]) + int(pixel[1]) + int(pixel[2])] += 1
+    tenth = counts.sum() // 10
+    low, passed = 0, counts[0]
+    while passed <= tenth:
+        low += 1
+        passed += counts[low]
+    high, passed = len(counts) - 1, counts[-1]
+    while passed <= tenth:
+        high -= 1
+        passed += counts[high]
+    return (high - low) / 3
+
+
+@numba.njit(cache=True)
+def _grey(picture: NDArray[np.float32] | Frame) -> NDArray[np.float32]:
+    height, width = picture.shape[:2]
+    rows, columns = (height + STRIDE - 1) // STRIDE, (width + STRIDE - 1) // STRIDE
+    grey = np.empty((rows, columns), np.float32)
+    for i in range(rows):
+        for j in range(columns):
+            pixel = picture[i * STRIDE, j * STRIDE]
+            total = np.float32(pixel[0]) + np.float32(pixel[1]) + np.float32(pixel[2])
+            grey[i, j] = total / np.float32(3)
+    return grey
+
+
+@numba.njit(cache=True)
+def _same(one: Frame, other: Frame) -> bool:
+    """Whether pictures are the same, bit for bit; the first pixels tell when they are not."""
+    if one.shape != other.shape:
+        return False
+    for y in range(one.shape[0]):
+        for x in range(one.shape[1]):
+            for c in range(3):
+                if one[y, x, c] != other[y, x, c]:
+                    return False
+    return True

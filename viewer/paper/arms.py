@@ -1,0 +1,119 @@
+"""Arm angles: shoulder and elbow in the facade view, shoulder alone in the flank (section 3.3)."""
+
+import math
+from typing import Final
+
+from common.body.body import LIMITS_DEG, POSE_INDEX, wrapped_deg
+from common.body.kinematics import ARM_LIMBS
+from common.config import SearchSettings
+from viewer.paper.posed_model import Figure, matched, searched, turn
+
+SIDES: Final = ("r", "l")
+BEND_MOST_DEG: Final = 140.0
+"""Furthest that an elbow bends (section 3.3, step 2)."""
+
+HIDDEN: Final = 0.004
+"""What an arm alone must gain in S to be moved in the flank, five pixels of a body of 2000: one
+that the trunk or the other arm hides stays where it was."""
+
+_SHOULDER_Z = [turn(ARM_LIMBS[i], **{f"{side}_shoulder_z": 1.0}) for i, side in enumerate(SIDES)]
+_SHOULDER_X = [turn(ARM_LIMBS[i], **{f"{side}_shoulder_x": 1.0}) for i, side in enumerate(SIDES)]
+_ELBOW = [turn(ARM_LIMBS[i][1:], **{f"{side}_elbow_x": 1.0}) for i, side in enumerate(SIDES)]
+_BOTH_X = turn(ARM_LIMBS[0] + ARM_LIMBS[1], r_shoulder_x=1.0, l_shoulder_x=1.0)
+
+
+def half_turn_deg(side: str, shoulder_x_deg: float) -> float:
+    """What theta_Z has to spare where theta_X has swung the arm up past the horizontal.
+
+    There the arm points up at theta_Z = 180, and outwards is beyond it: the ranges of P30 and the
+    inward limit hold for theta_Z less this half turn.
+    """
+    if math.cos(math.radians(shoulder_x_deg)) >= 0.0:
+        return 0.0
+    return 180.0 if side == "r" else -180.0
+
+
+def inward_limit_deg(side: str, shoulder_z_deg: float) -> float:
+    """th_a: how far the elbow may bend inwards before the lower arm meets the trunk.
+
+    At the limit the wrist lies on the vertical line through the shoulder. Left arm mirrored.
+
+    Source: section 3.3, step (2); figure 10b (P31).
+    """
+    hanging = 180.0 - shoulder_z_deg if side == "r" else shoulder_z_deg - 180.0
+    return 2.0 * hanging if hanging < 70.0 else BEND_MOST_DEG
+
+
+def facade_arms(figure: Figure, settings: SearchSettings, wide: bool) -> Figure:
+    """Shoulder theta_Z, then theta_Y and elbow, of the right and then the left arm (P30, P31).
+
+    theta_X keeps its value: the facade view cannot see it. The elbow is searched with the
+    forearm outwards positive, then told with the theta_Y that makes flexion positive (C5).
+    """
+    for i, side in enumerate(SIDES):
+        outward = 90.0 if side == "r" else -90.0
+        figure = _with_elbow_outward(figure, side, outward)
+        low, high = LIMITS_DEG[f"{side}_shoulder_z"]
+        spare = half_turn_deg(side, figure.pose[_SHOULDER_X[i].at])
+        limits = (low + spare, high + spare)
+        width, stop = settings.arm_window_deg, settings.stop_deg
+        figure = searched(figure, _SHOULDER_Z[i], width, stop, limits, wide)
+        inward = inward_limit_deg(side, figure.pose[_SHOULDER_Z[i].at] - spare)
+        figure = searched(figure, _ELBOW[i], width, stop, (-inward, BEND_MOST_DEG))
+        figure = _with_flexion_positive(figure, side, outward)
+    return figure
+
+
+def flank_arms(figure: Figure, settings: SearchSettings, near: int, wide: bool) -> Figure:
+    """theta_X of both shoulders from one silhouette (P32).
+
+    Both arms share it: they are searched together as one swing and one after the other (the near
+    arm first), and the better explanation is kept; a tie goes to the common swing.
+
+    Args:
+        figure: The model so far.
+        settings: Widths of the search.
+        near: 0 where the right arm is nearer to the camera, 1 where the left is.
+        wide: Nothing is known of the angles.
+    """
+    width, stop = settings.arm_window_deg, settings.stop_deg
+    apart = figure = matched(figure)
+    for i in (near, 1 - near):
+        limits = _whole_turn(figure, i)
+        apart = searched(apart, _SHOULDER_X[i], width, stop, limits, wide, HIDDEN)
+    start = figure.pose.copy()
+    start[_SHOULDER_X[1 - near].at] = start[_SHOULDER_X[near].at]
+    limits = _whole_turn(figure, near)
+    together = searched(
+        matched(figure._replace(pose=start)), _BOTH_X, width, stop, limits, wide, HIDDEN
+    )
+    matches = apart.matches + together.matches - figure.matches
+    better = apart if apart.score > together.score else together
+    pose = better.pose.copy()
+    for how in _SHOULDER_X:
+        pose[how.at] = wrapped_deg(pose[how.at])
+    return better._replace(pose=pose, matches=matches)
+
+
+def _whole_turn(figure: Figure, i: int) -> tuple[float, float]:
+    """The range of theta_X around where it is: it has no end, arms swing in circles (P30)."""
+    angle = figure.pose[_SHOULDER_X[i].at]
+    return angle - 180.0, angle + 180.0
+
+
+def _with_elbow_outward(figure: Figure, side: str, outward_deg: float) -> Figure:
+    """theta_Y outwards, the elbow's sign turned with it: the same place of the forearm."""
+    pose = figure.pose.copy()
+    y, elbow = POSE_INDEX[f"{side}_shoulder_y"], POSE_INDEX[f"{side}_elbow_x"]
+    if pose[y] * outward_deg < 0.0:
+        pose[elbow] = -pose[elbow]
+    pose[y] = outward_deg
+    return figure._replace(pose=pose)
+
+
+def _with_flexion_positive(figure: Figure, side: str, outward_deg: float) -> Figure:
+    pose = figure.pose.copy()
+    y, elbow = POSE_INDEX[f"{side}_shoulder_y"], POSE_INDEX[f"{side}_elbow_x"]
+    if pose[elbow] < 0.0:
+        pose[y], pose[elbow] = -outward_deg, -pose[elbow]
+    return figure._replace(pose=pose)

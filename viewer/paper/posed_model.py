@@ -1,0 +1,134 @@
+"""The posed model as one viewer sees it: scaled orthography around the navel."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import POSE_INDEX, POSE_NAMES, YAW_DEG, Vector
+from common.body.kinematics import ALL_LIMBS
+from common.bus.messages import Facing, ViewerNumber
+from common.raster.bits import Bits, count, pack_words
+from common.raster.kernel import VIEW, match
+from common.raster.similarity import Mask
+from common.rig.camera import PAPER_ROTATIONS, Camera
+from viewer.paper.tritree import search, window
+
+
+class Figure(NamedTuple):
+    """A model laid over a silhouette."""
+
+    seen: Bits
+    """The silhouette, packed (H, words)."""
+    seen_px: int
+    width: int
+    """Of the picture, pixels."""
+    body: Vector
+    pose: Vector
+    """Its position is 0: the place in the picture is in `view`."""
+    view: Vector
+    score: float = 0.0
+    matches: int = 0
+
+
+class Turn(NamedTuple):
+    """One angle that a search turns, and what goes along."""
+
+    step: Vector
+    """(25,): how much each pose parameter moves with the angle."""
+    at: int
+    """The pose parameter that holds the angle itself."""
+    moving: int
+    """Limbs that move, as bits."""
+    parts: tuple[tuple[int, float], ...]
+    """What of `step` is not 0: (pose parameter, factor)."""
+
+
+def turn(limbs: tuple[int, ...], **coupled: float) -> Turn:
+    """A search direction: pose parameter names with their factors, the leading one first."""
+    step = np.zeros(len(POSE_NAMES))
+    parts = tuple((POSE_INDEX[name], factor) for name, factor in coupled.items())
+    for at, factor in parts:
+        step[at] = factor
+    return Turn(step, parts[0][0], sum(1 << limb for limb in limbs), parts)
+
+
+def searched(
+    figure: Figure,
+    how: Turn,
+    width_deg: int,
+    stop_deg: int,
+    limits_deg: tuple[float, float],
+    wide: bool = False,
+    least_gain: float = -1.0,
+) -> Figure:
+    """The figure with one angle set to the best that the tritree meets.
+
+    Args:
+        figure: The model so far.
+        how: What turns.
+        width_deg: Width of the window around the present angle (P41).
+        stop_deg: Where the search stops.
+        limits_deg: Of the joint, or of this posture (P31).
+        wide: Nothing is known of the angle: search windows that tile the whole range.
+        least_gain: What must be added to the figure's score for the angle to change.
+    """
+    low, high = limits_deg
+    centres = np.arange(low + width_deg / 2, high, width_deg) if wide else [figure.pose[how.at]]
+    best_angle, best_score, matches = figure.pose[how.at], -1.0, 0
+    for centre in centres:
+        bounds = window(float(centre), width_deg, low, high)
+        angle, score, more = search(
+            figure.seen,
+            figure.seen_px,
+            figure.width,
+            figure.body,
+            figure.pose,
+            figure.view,
+            how.step,
+            how.moving,
+            *bounds,
+            stop_deg,
+        )
+        matches += more
+        if score > best_score:
+            best_angle, best_score = angle, score
+    if best_score < figure.score + least_gain:
+        return figure._replace(matches=figure.matches + matches)
+    pose = figure.pose.copy()
+    for at, factor in how.parts:
+        pose[at] = best_angle * factor
+    return figure._replace(pose=pose, score=best_score, matches=figure.matches + matches)
+
+
+def matched(figure: Figure) -> Figure:
+    """The figure with the score of the whole body as it stands."""
+    body, pose, view = figure.body, figure.pose, figure.view
+    value = match(body, pose, view, ALL_LIMBS, figure.width, figure.seen, figure.seen_px)
+    return figure._replace(score=value, matches=figure.matches + 1)
+
+
+def view_at(rotation: NDArray[np.float64], px_per_m: float, root_px: tuple[float, float]) -> Vector:
+    """Scaled orthography: the kernel's view that shows the navel at a pixel (section 3.2)."""
+    view = np.zeros(VIEW)
+    view[:9] = rotation.ravel()
+    view[12] = view[13] = px_per_m
+    view[14:16] = root_px
+    view[16] = 1.0
+    return view
+
+
+def rotation_of(camera: Camera | None, viewer: ViewerNumber) -> NDArray[np.float64]:
+    """World to camera: the calibrated one, or the paper's for this viewer (C1)."""
+    return np.array(PAPER_ROTATIONS[viewer - 1] if camera is None else camera.R)
+
+
+def yaw_of(facing: Facing, viewer: ViewerNumber) -> float:
+    """Yaw of the trunk, degrees, that a facing of this viewer stands for (P49)."""
+    return YAW_DEG[0 if (facing == "facade") == (viewer == 1) else 1]
+
+
+def figure_of(mask: Mask, body: Vector, pose: Vector, view: Vector) -> Figure:
+    """A model laid over a silhouette, not yet matched."""
+    bits = pack_words(mask)
+    return Figure(bits, count(bits), mask.shape[1], body, pose, view)

@@ -1,0 +1,118 @@
+"""Where the body is in the picture: shifts of the drawn model (section 3.2)."""
+
+from typing import Any, Final
+
+import numba
+import numpy as np
+
+from common.raster.bits import ONES, popcount
+from common.raster.kernel import draw_limbs, score
+from viewer.paper.posed_model import Figure
+
+SHIFTS_PX: Final = (0, -1, 1, -2, 2, -5, 5)
+"""The printed candidates and the incumbent, the least first: ties stay (P27)."""
+
+UPRIGHT: Final = 0b111111
+"""Limbs that are shifted: trunk, head and legs. The arms still have the angles of the frame before,
+and pull the body after them when they move (by 60 mm while they were lowered)."""
+
+MOST_PASSES: Final = 3
+"""One pass leaves a pixel at shifts of 3, 4, 6 and more (P27)."""
+
+
+@numba.njit(cache=True)
+def extent(bits: Any) -> tuple[int, int, int, int]:
+    """Where packed rows have pixels: first row and one past the last, words likewise."""
+    top, bottom, begin, end = bits.shape[0], 0, bits.shape[1], 0
+    for row in range(bits.shape[0]):
+        for word in range(bits.shape[1]):
+            if bits[row, word]:
+                top, bottom = min(top, row), row + 1
+                begin, end = min(begin, word), max(end, word + 1)
+    return top, bottom, begin, end
+
+
+@numba.njit(cache=True)
+def shifted_counts(
+    model: Any, within: tuple[int, int, int, int], seen: Any, width: int, right: int, down: int
+) -> tuple[int, int]:
+    """Pixels of a shifted model inside the picture, and those of them that are seen.
+
+    Args:
+        model: Packed rows (H, words).
+        within: Its extent.
+        seen: The silhouette, packed alike.
+        width: Of the picture, pixels.
+        right: Shift to the right, pixels, less than 64 either way.
+        down: Shift downwards.
+    """
+    height, words = model.shape
+    top, bottom, begin, end = within
+    last_ones = ONES >> np.uint64(64 * words - width)
+    drawn = hit = 0
+    for row in range(max(top, -down), min(bottom, height - down)):
+        for word in range(max(0, begin - (right < 0)), min(words, end + (right > 0))):
+            bits = model[row, word]
+            if right > 0:
+                bits <<= np.uint64(right)
+                if word > 0:
+                    bits |= model[row, word - 1] >> np.uint64(64 - right)
+            elif right < 0:
+                bits >>= np.uint64(-right)
+                if word + 1 < words:
+                    bits |= model[row, word + 1] << np.uint64(64 + right)
+            if word == words - 1:
+                bits &= last_ones
+            drawn += popcount(bits)
+            hit += popcount(bits & seen[row + down, word])
+    return drawn, hit
+
+
+@numba.njit(cache=True)
+def best_shift(
+    seen: Any, seen_px: int, width: int, body: Any, pose: Any, view: Any, shifts: Any, passes: int
+) -> tuple[int, int, float, int]:
+    """(right, down, score, matches) of the best shift of the posed model: x, then y."""
+    model = np.zeros_like(seen)
+    draw_limbs(body, pose, view, UPRIGHT, width, model)
+    within = extent(model)
+    place = np.zeros(2, np.int64)
+    best, matches = -1.0, 0
+    for axis in range(2):
+        for _ in range(passes):
+            start = place[axis]
+            winner = start
+            for shift in shifts:
+                if shift == 0 and best >= 0.0:
+                    continue
+                place[axis] = start + shift
+                drawn, hit = shifted_counts(model, within, seen, width, place[0], place[1])
+                matches += 1
+                value = score(hit, drawn, seen_px)
+                if value > best:
+                    best, winner = value, start + shift
+            place[axis] = winner
+            if winner == start:
+                break
+    return place[0], place[1], best, matches
+
+
+def located(figure: Figure) -> Figure:
+    """The figure shifted to where it fits best: columns first, then rows (P27, P28)."""
+    right, down, value, matches = best_shift(
+        figure.seen,
+        figure.seen_px,
+        figure.width,
+        figure.body,
+        figure.pose,
+        figure.view,
+        _SHIFTS,
+        MOST_PASSES,
+    )
+    view = figure.view.copy()
+    view[14] += right
+    view[15] += down
+    return figure._replace(view=view, score=value, matches=figure.matches + matches)
+
+
+_SHIFTS = np.array(SHIFTS_PX)

@@ -1,0 +1,196 @@
+"""The overlapped tritree: the one-dimensional search behind every joint angle (section 3.5)."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numba
+import numpy as np
+
+from common.body.kinematics import ALL_LIMBS, FRAME, hang_limbs, place_limbs
+from common.raster.bits import count, count_both
+from common.raster.kernel import draw_placed, limb_outline, score
+from common.raster.row_spans import PRIMITIVE, draw, gain, spans, undraw
+
+MOST_STAGES = 16
+"""A window of 2^16 stops would still end: the guard that M14 asks for."""
+
+
+MIDDLE_FIRST = (1, 0, 2)
+"""Order of the probes: what is met first wins a tie, and the middle is the previous angle."""
+
+
+class Found(NamedTuple):
+    """The best angle that a search met."""
+
+    angle_deg: float
+    score: float
+    matches: int
+    """How often the score was computed; the paper's measure of cost."""
+
+
+@numba.njit(cache=True)
+def window(previous_deg: float, width_deg: int, low_deg: float, high_deg: float) -> tuple[int, int]:
+    """Where to search: around the previous angle, pushed inside the joint's range.
+
+    Bounds are whole degrees: with raw float bounds a stage more appears and matches are not
+    found again (P36). A range narrower than the window is searched from its lower end.
+    """
+    half = width_deg // 2
+    low, high = whole(low_deg), whole(high_deg)
+    centre = min(max(whole(previous_deg), low + half), max(high - half, low + half))
+    return centre - half, centre + half
+
+
+@numba.njit(cache=True)
+def whole(value: float) -> int:
+    """The nearest whole number, halves upwards."""
+    return int(np.floor(value + 0.5))
+
+
+@numba.njit(cache=True)
+def narrowed(
+    low: int, high: int, left: float, middle: float, right: float
+) -> tuple[int, int, float, float, float]:
+    """The half window around the winner, with the scores that it inherits (NaN: to be matched).
+
+    A tie goes to the middle, then to the left: deterministic, and close to the previous angle.
+    """
+    quarter = (high - low) // 4
+    if middle >= left and middle >= right:
+        return low + quarter, high - quarter, np.nan, middle, np.nan
+    if left >= right:
+        return low, low + 2 * quarter, left, np.nan, middle
+    return high - 2 * quarter, high, middle, np.nan, right
+
+
+def tritree(
+    score_at: Callable[[float], float], bounds_deg: tuple[int, int], stop_deg: int
+) -> Found:
+    """Best angle in a window, for any score.
+
+    Each round compares the left end, the middle and the right end of the window and keeps the
+    half around the winner. The halves overlap, and the winner is always a point of the next
+    round, so at most two new matches are needed there.
+
+    Args:
+        score_at: Matching score of an angle in degrees; called once per angle.
+        bounds_deg: (low, high) of the range to search: `stop_deg` times a power of two apart.
+        stop_deg: Width at which to stop.
+
+    Source: Huang & Chung 2004, section 3.5, steps (1)-(6) (P36-P41).
+    """
+    low, high = bounds_deg
+    probes = [np.nan, np.nan, np.nan]
+    best = Found((low + high) / 2, -1.0, 0)
+    for _ in range(MOST_STAGES):
+        if high - low <= stop_deg:
+            break
+        for i in MIDDLE_FIRST:
+            if np.isnan(probes[i]):
+                angle = low + i * ((high - low) // 2)
+                probes[i] = score_at(float(angle))
+                best = best._replace(matches=best.matches + 1)
+                if probes[i] > best.score:
+                    best = best._replace(angle_deg=float(angle), score=probes[i])
+        low, high, *probes = narrowed(low, high, *probes)
+    return best
+
+
+@numba.njit(cache=True)
+def added(
+    frames: Any,
+    body: Any,
+    view: Any,
+    moving: int,
+    width: int,
+    rest: Any,
+    seen: Any,
+    scratch: Any,
+    first: Any,
+    last: Any,
+    p: Any,
+) -> tuple[int, int]:
+    """What placed limbs add to the drawn rest: (pixels newly drawn, those that are seen).
+
+    Each limb counts over the rest and the limbs before it, so all but the last are drawn, into
+    `scratch`, which is a copy of the rest before and after.
+    """
+    height = seen.shape[0]
+    highest, lowest = height, 0
+    drawn = hit = 0
+    for limb in range(10):
+        if moving >> limb & 1 and limb_outline(frames, body, limb, view, p):
+            top, bottom = spans(p, width, height, first, last)
+            more_drawn, more_hit = gain(first, last, top, bottom, scratch, seen)
+            drawn, hit = drawn + more_drawn, hit + more_hit
+            if moving >> (limb + 1):
+                draw(first, last, top, bottom, scratch)
+                highest, lowest = min(highest, top), max(lowest, bottom)
+    undraw(highest, lowest, rest, scratch)
+    return drawn, hit
+
+
+@numba.njit(cache=True)
+def search(
+    seen: Any,
+    seen_px: int,
+    width: int,
+    body: Any,
+    pose: Any,
+    view: Any,
+    step: Any,
+    moving: int,
+    low: int,
+    high: int,
+    stop: int,
+) -> tuple[float, float, int]:
+    """`tritree` over one angle of the posed body, compiled: matches of limbs over a drawn rest.
+
+    Args:
+        seen: The silhouette, packed (H, words).
+        seen_px: Its number of pixels.
+        width: Of the picture, pixels.
+        body: Body vector.
+        pose: The 25 motion parameters; left as they were.
+        view: The kernel's view.
+        step: (25,): the angle moves the pose to pose * (step == 0) + angle * step, so that one
+            search can couple joints (knee = -2 hip, P34).
+        moving: Limbs that move, as bits; the rest is drawn once.
+        low: Bounds of the window, whole degrees; `high` likewise.
+        stop: Width at which to stop.
+
+    Returns:
+        (angle, score of the whole figure there, matches).
+    """
+    height = seen.shape[0]
+    frames = np.empty((10, FRAME))
+    place_limbs(body, pose, ALL_LIMBS, frames)
+    rest = np.zeros_like(seen)
+    draw_placed(frames, body, view, ALL_LIMBS & ~moving, width, rest)
+    rest_px, rest_hit = count(rest), count_both(rest, seen)
+    scratch, posed = rest.copy(), pose.copy()
+    first, last, p = np.empty(height, np.int32), np.empty(height, np.int32), np.empty(PRIMITIVE)
+    probes = np.array([np.nan, np.nan, np.nan])
+    best_angle, best_score, matches = 0.5 * (low + high), -1.0, 0
+    for _ in range(MOST_STAGES):
+        if high - low <= stop:
+            break
+        for i in MIDDLE_FIRST:
+            if not np.isnan(probes[i]):
+                continue
+            angle = low + i * ((high - low) // 2)
+            for k in range(posed.size):
+                if step[k] != 0.0:
+                    posed[k] = angle * step[k]
+            hang_limbs(body, posed, moving, frames)
+            drawn, hit = added(
+                frames, body, view, moving, width, rest, seen, scratch, first, last, p
+            )
+            probes[i] = score(rest_hit + hit, rest_px + drawn, seen_px)
+            matches += 1
+            if probes[i] > best_score:
+                best_angle, best_score = float(angle), probes[i]
+        low, high, probes[0], probes[1], probes[2] = narrowed(
+            low, high, probes[0], probes[1], probes[2]
+        )
+    return best_angle, best_score, matches

@@ -1,0 +1,1 @@
+"""The person's silhouette: subtraction, colours, alpha matte, and whose it is."""

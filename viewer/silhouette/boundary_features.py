@@ -1,0 +1,124 @@
+"""What tells body from room around the outline of a first guess, and where that was in doubt."""
+
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from viewer.background.image_stack import Floats, Frame
+from viewer.silhouette.alpha_matte import FACTS, SHARES, covered, sides_of
+from viewer.silhouette.difference import KERNEL, Bytes
+
+ROWS: Final = 240
+"""Of a taller picture every other pixel, or every third, is a neighbour, so that as much is seen
+of the body around a pixel."""
+SIDE_SHARE: Final = 1 / 60
+"""How far around a pixel the colours of body and room are asked for, of the picture's height."""
+COUNTED: Final = (3, 7)
+"""How far the neighbourhoods reach whose share of body is a clue."""
+NEAR_SHARE: Final = 1 / 120
+"""How far from the guess's outline pixels are looked at, of the picture's height."""
+CROSS: Final = np.array(
+    [(i, j) for i in range(-2, 3) for j in range(-2, 3) if abs(i) + abs(j) <= 2], np.int64
+)
+"""Neighbours whose coverage is a clue."""
+CLUES: Final = SHARES * len(CROSS) + len(COUNTED) + FACTS
+"""What the network sees of a pixel."""
+
+
+def clues_of(
+    frame: Frame,
+    room: Floats,
+    weight: Floats,
+    gain: Floats,
+    known: Floats,
+    mask: Bytes,
+    doubt: Bytes,
+) -> tuple[NDArray[np.int32], Floats]:
+    """The pixels to look at again, and what is known of them.
+
+    Args:
+        frame: (H, W, 3).
+        room: (H, W, 3) what it shows when empty, grey levels.
+        weight: (H, W, 2) 1 / spread^2 of brightness and colour.
+        gain: (3,) how much brighter than the room the frame is.
+        known: (SHADES,) whose colours are whose.
+        mask: (H, W) 1 where the body is guessed.
+        doubt: (H, W) 1 where the guess was not sure.
+
+    Returns:
+        Row and column (n, 2) of the pixels, and their clues (n, CLUES).
+    """
+    if not mask.any():
+        return np.empty((0, 2), np.int32), np.empty((0, CLUES), np.float32)
+    rows = frame.shape[0]
+    stride, near = max(1, round(rows / ROWS)), max(1, round(NEAR_SHARE * rows))
+    left, top, right, bottom = _window(cv2.bitwise_or(mask, doubt), near + 2 * stride)
+    window = slice(top, bottom), slice(left, right)
+    own = mask[window].copy()
+    band = cv2.morphologyEx(own, cv2.MORPH_GRADIENT, _square(near)) | doubt[window]
+    reach = cv2.dilate(band, _square(2 * stride)) + band
+    sides = sides_of(frame, room, gain, counts_3x3(own), top, left)
+    size = (2 * round(SIDE_SHARE * rows) + 1,) * 2
+    means = cv2.boxFilter(sides, cv2.CV_32F, size, borderType=cv2.BORDER_REPLICATE)
+    shares, places, facts = covered(frame, room, weight, gain, known, means, reach, (top, left))
+    own *= np.uint8(255)
+    counts = [_mean(own, 2 * far * stride + 1) for far in COUNTED]
+    clues = _gathered(places, shares, facts, *counts, stride, (top, left))
+    return places, clues
+
+
+def _square(far: int) -> Bytes:
+    return np.ones((2 * far + 1,) * 2, np.uint8)
+
+
+def counts_3x3(mask: Bytes) -> Bytes:
+    """How many pixels of every 3x3 neighbourhood are in the mask."""
+    border = cv2.BORDER_REPLICATE
+    return np.asarray(cv2.boxFilter(mask, -1, (3, 3), normalize=False, borderType=border))
+
+
+def _window(mask: Bytes, margin: int) -> tuple[int, int, int, int]:
+    """Left, top, right and bottom of what is around the mask."""
+    left, top, width, height = cv2.boundingRect(mask)
+    right, bottom = left + width + margin, top + height + margin
+    return (
+        max(left - margin, 0),
+        max(top - margin, 0),
+        min(right, mask.shape[1]),
+        min(bottom, mask.shape[0]),
+    )
+
+
+def _mean(shares: Bytes, size: int) -> Bytes:
+    return np.asarray(cv2.blur(shares, (size, size), borderType=cv2.BORDER_REPLICATE))
+
+
+@KERNEL
+def _gathered(
+    places: NDArray[np.int32],
+    shares: Floats,
+    facts: Floats,
+    around: Bytes,
+    wide: Bytes,
+    stride: int,
+    corner: tuple[int, int],
+) -> Floats:
+    """The clues (n, CLUES); moves the places from the window to the frame, whose corner it is."""
+    height, width = wide.shape
+    out = np.empty((len(places), CLUES), np.float32)
+    unit = np.float32(1 / 255)
+    for n in range(len(places)):
+        y, x, at, k = places[n, 0], places[n, 1], out[n], 0
+        for m in range(len(CROSS)):
+            v = min(max(y + CROSS[m, 0] * stride, 0), height - 1)
+            u = min(max(x + CROSS[m, 1] * stride, 0), width - 1)
+            for s in range(SHARES):
+                at[k + s] = shares[v, u, s]
+            k += SHARES
+        at[k], at[k + 1] = unit * np.float32(around[y, x]), unit * np.float32(wide[y, x])
+        for s in range(FACTS):
+            at[k + 2 + s] = facts[n, s]
+        places[n, 0], places[n, 1] = y + corner[0], x + corner[1]
+    return out

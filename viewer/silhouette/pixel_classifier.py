@@ -1,0 +1,88 @@
+"""A small network that tells body from room at a pixel, learnt from clips whose masks are known."""
+
+import zipfile
+from functools import cache
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viewer.background.image_stack import Floats
+from viewer.silhouette.boundary_features import CLUES
+from viewer.silhouette.difference import KERNEL, Bytes
+
+SHIPPED: Final = Path(__file__).with_name("silhouettes.npz")
+"""Learnt from made-up people; docs/models.md says of whom."""
+HIDDEN: Final = 16
+"""Units between the clues and the answer."""
+
+
+LIKELY: Final = np.float32(-0.4)
+"""Log odds from which a pixel is body: chosen on development performers r01 and r04."""
+
+
+class Network(NamedTuple):
+    """One hidden layer of rectified units, and the log odds that a pixel is body."""
+
+    enter: Floats
+    """(CLUES, HIDDEN)."""
+    enter_bias: Floats
+    """(HIDDEN,)."""
+    leave: Floats
+    """(HIDDEN,)."""
+    leave_bias: Floats
+    """(1,)."""
+
+
+SHAPES: Final = ((CLUES, HIDDEN), (HIDDEN,), (HIDDEN,), (1,))
+
+
+class NetworkError(ValueError):
+    """A file that holds no network of silhouettes."""
+
+
+@cache
+def shipped() -> Network:
+    """The network that came with tritrack."""
+    return load(SHIPPED)
+
+
+def load(path: Path) -> Network:
+    """The network in a file that `save` wrote.
+
+    Raises:
+        NetworkError: When the file is missing, damaged or holds something else.
+    """
+    cure = "install tritrack again, or tritrack train --what silhouettes"
+    try:
+        with np.load(path, allow_pickle=False) as held:
+            network = Network(*(held[field] for field in Network._fields))
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise NetworkError(f"{path} holds no network of silhouettes: {cure}") from error
+    sound = all(
+        values.shape == shape and values.dtype == np.float32 and np.isfinite(values).all()
+        for values, shape in zip(network, SHAPES, strict=True)
+    )
+    if not sound:
+        raise NetworkError(f"{path} holds another network than silhouettes ask for: {cure}")
+    return network
+
+
+def save(network: Network, path: Path) -> None:
+    """Write a network."""
+    np.savez_compressed(path, allow_pickle=False, **network._asdict())
+
+
+def judged(network: Network, clues: Floats) -> Floats:
+    """Log odds (n,) that each of n pixels is body, by its clues (n, CLUES)."""
+    seen = clues @ network.enter
+    seen += network.enter_bias
+    return np.asarray(np.maximum(seen, 0, out=seen) @ network.leave + network.leave_bias)
+
+
+@KERNEL
+def redraw(mask: Bytes, places: NDArray[np.int32], odds: Floats) -> None:
+    """Set the mask at row and column (n, 2), where the odds say so."""
+    for n in range(len(odds)):
+        mask[places[n, 0], places[n, 1]] = odds[n] > LIKELY

@@ -1,0 +1,171 @@
+"""The silhouette of the one person in a frame (section 1: subtraction, threshold, cleaning)."""
+
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from common.bus.messages import Box
+from common.config import SilhouetteSettings
+from common.raster.bounds import box_of, is_cut
+from common.raster.similarity import Mask
+from viewer.background.background import Background, learn, light_gain
+from viewer.background.image_stack import Floats, Frame
+from viewer.silhouette.boundary_features import clues_of, counts_3x3
+from viewer.silhouette.colour_model import counted, familiar, fresh
+from viewer.silhouette.difference import Bytes, followed, label, seeds
+from viewer.silhouette.pixel_classifier import judged, redraw, shipped
+from viewer.silhouette.regions import NOWHERE, chosen
+
+CELLS: Final = 60
+"""Rows of the coarse picture on which regions are told apart."""
+HOLE_SHARE: Final = 0.001
+"""Holes up to this share of the picture are closed; between arm and trunk there are larger."""
+PART_SHARE: Final = 0.0002
+"""Specks below this share of the picture are dropped."""
+FOLLOW_EVERY: Final = 8
+"""Frames between two looks at the slow light."""
+
+
+class Seen(NamedTuple):
+    """What of a person a frame shows."""
+
+    mask: Mask
+    box: Box | None
+    """None where nobody is seen; the mask is empty then."""
+    area_px: int
+    blobs: int
+    """How many regions were large enough to be a person (P4)."""
+    cut: bool
+    """The silhouette touches the picture's border."""
+
+
+class State(NamedTuple):
+    """What one frame hands to the next."""
+
+    settings: SilhouetteSettings
+    room: Floats
+    """(H, W, 3) grey levels of the empty room in the slow light of the day."""
+    weight: Floats
+    """(H, W, 2) 1 / spread^2 of brightness and colour."""
+    colours: Floats
+    """Counts of the colours of room and body (see appearance)."""
+    frames: int
+
+
+class Guess(NamedTuple):
+    """What subtraction and known colours make of a frame."""
+
+    gain: Floats
+    """(3,) how much brighter than the room the frame is."""
+    cells: Bytes
+    """(rows, columns) 1 around the person."""
+    cell: int
+    """Pixels in a cell's side."""
+    blobs: int
+    mask: Bytes
+    """(H, W) 1 where the person is."""
+    places: NDArray[np.int32]
+    """Row and column (n, 2) of the pixels to look at again."""
+    clues: Floats
+    """(n, CLUES) what is known of them."""
+
+
+def init(background: Background, settings: SilhouetteSettings) -> State:
+    """Begin with the room as it was learnt."""
+    return State(settings, background.centre, np.float32(1) / background.spread**2, fresh(), 0)
+
+
+def step(state: State, frame: Frame, near_px: tuple[float, float] | None) -> tuple[State, Seen]:
+    """Find the person in a frame.
+
+    Args:
+        state: From `init` or the step before.
+        frame: (H, W, 3) at the background's size.
+        near_px: Where the centre of the body is expected; None: the largest region is taken.
+
+    Raises:
+        ValueError: When the frame is not of the background's size.
+
+    Source: Huang & Chung 2004, section 1; requirements P3, P4, T8.
+    """
+    if frame.shape != state.room.shape:
+        raise ValueError(f"a frame of {frame.shape}, the background has {state.room.shape}")
+    first = guess(state, frame, near_px)
+    mask = _outlined(first)
+    seen = _seen(mask, first.blobs, state.settings.min_height_share)
+    if seen.box is not None:
+        state = learn_colours(state, mask, frame, first)
+    return _follow(state, frame, first.gain, seen.box), seen
+
+
+def warm() -> None:
+    """Compile every kernel (seconds, once on a host), so that no frame has to wait for it."""
+    empty = np.full((120, 160, 3), 128, np.uint8)
+    person = cv2.rectangle(empty.copy(), (60, 30), (100, 90), (0, 0, 0), cv2.FILLED)
+    state = init(learn([empty]), SilhouetteSettings())
+    for _ in range(FOLLOW_EVERY):
+        state, _ = step(state, person, None)
+
+
+def guess(state: State, frame: Frame, near_px: tuple[float, float] | None) -> Guess:
+    """Find the person by subtraction and known colours, and what tells the outline better."""
+    room, weight, known = state.room, state.weight, familiar(state.colours)
+    gain = light_gain(frame, room)
+    cell = max(1, round(frame.shape[0] / CELLS))
+    found = seeds(frame, room, weight, gain, cell)
+    near = NOWHERE if near_px is None else (near_px[0] / cell, near_px[1] / cell)
+    cells, blobs = chosen(found, state.settings.min_height_share, near)
+    mask, doubt = np.zeros(frame.shape[:2], np.uint8), np.zeros(frame.shape[:2], np.uint8)
+    if blobs:
+        label(mask, doubt, frame, room, weight, gain, known, cells, cell)
+    return Guess(
+        gain, cells, cell, blobs, mask, *clues_of(frame, room, weight, gain, known, mask, doubt)
+    )
+
+
+def learn_colours(state: State, mask: Bytes, frame: Frame, first: Guess) -> State:
+    """Count whose colours are whose, by a mask of the body."""
+    room, weight, (gain, cells, cell) = state.room, state.weight, first[:3]
+    inside = counts_3x3(mask)
+    colours = counted(state.colours, inside, frame, room, weight, gain, cells, cell)
+    return state._replace(colours=colours)
+
+
+def _outlined(first: Guess) -> Bytes:
+    """The mask with its outline drawn again, and cleaned."""
+    mask = first.mask.copy()
+    redraw(mask, first.places, judged(shipped(), first.clues))
+    _tidy(mask)
+    return mask
+
+
+def _tidy(mask: Bytes) -> None:
+    """Close small holes and drop specks, in place."""
+    contours, tree = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+    for number, contour in enumerate(contours):
+        hole = tree[0, number, 3] >= 0
+        limit = (HOLE_SHARE if hole else PART_SHARE) * mask.size
+        if len(contour) < 4 * limit and cv2.contourArea(contour) < limit:
+            cv2.drawContours(mask, contours, number, int(hole), cv2.FILLED)
+
+
+def _seen(mask: Bytes, blobs: int, least_share: float) -> Seen:
+    box = box_of(mask)
+    if box is None or box.bottom + 1 - box.top < least_share * mask.shape[0]:
+        return Seen(np.zeros(mask.shape, np.bool_), None, 0, 0, cut=False)
+    return Seen(mask.view(np.bool_), box, cv2.countNonZero(mask), blobs, is_cut(box, mask.shape))
+
+
+def _follow(state: State, frame: Frame, gain: Floats, box: Box | None) -> State:
+    """Let the room take on the slow light, but nothing near the person."""
+    frames = state.frames + 1
+    if frames % FOLLOW_EVERY:
+        return state._replace(frames=frames)
+    margin = frame.shape[0] // 12
+    corners = (1, 0, 1, 0)
+    if box is not None:
+        corners = (box.left - margin, box.right + margin, box.top - margin, box.bottom + margin)
+    room = followed(frame, state.room, state.weight, gain, corners)
+    return state._replace(room=room, frames=frames)

@@ -1,0 +1,86 @@
+"""What a stick pose costs before it is matched: haste, unseen depth, joints bent wrongly."""
+
+from typing import Any, Final
+
+import numba
+import numpy as np
+
+from common.body.stick_body import ANGLE, BREADTH, GIRTH, HEAD, RATIO, STATURE, TORSO
+
+(
+    TIME,
+    TRUNK_TILT,
+    LEG_TILT,
+    ARM_TILT,
+    BREADTH_CHANGE,
+    STATURE_CHANGE,
+    LEAN,
+    BEND,
+    CROSS,
+    GIRTH_CHANGE,
+) = range(10)
+
+COSTS: Final = np.array([0.006, 0.06, 0.02, 0.02, 0.2, 10.0, 0.01, 0.012, 1.0, 0.5])
+"""In S: for a limb to swing by 60 degrees (its vector's change of 1) since it was expected; for
+trunk, legs and arms to leave the plane of the picture; for breadth and for stature to change by all
+they are; for the trunk to lean by 90 degrees; for an elbow to bend in the plane by 90, or a knee
+where the trunk shows its breadth; for a knee or foot seen from the front to cross to the other side
+by a stature. Chosen on r01 and r04, each halved and doubled."""
+
+TILTED: Final = 0.15
+"""1 - ratio^2 at which a limb's leaving the plane has half its full cost (23 degrees): what cannot
+be seen stays in the plane, what can be seen is free to turn further."""
+
+STIFF_NECK: Final = 3.0
+"""How much more it costs a neck to bend in the plane than an elbow."""
+
+
+@numba.njit(cache=True)
+def limb_cost(pose: Any, expected: Any, limb: int, trust: float, costs: Any) -> float:
+    """What a limb's place costs: how far it turned in space since it was expected, and its depth.
+
+    Both signs of its depth are alike here, so that is how far it is from the nearer one.
+    """
+    a, b = np.radians(pose[ANGLE + limb]), np.radians(expected[ANGLE + limb])
+    r, e = min(pose[RATIO + limb], 1.0), min(expected[RATIO + limb], 1.0)
+    dx, dy = r * np.cos(a) - e * np.cos(b), r * np.sin(a) - e * np.sin(b)
+    dz = np.sqrt(1.0 - r * r) - np.sqrt(1.0 - e * e)
+    moved = trust * costs[TIME] * (dx * dx + dy * dy + 0.25 * dz * dz)
+    off = 1.0 - r * r
+    which = TRUNK_TILT if limb == TORSO else LEG_TILT if limb < 6 else ARM_TILT
+    return moved + costs[which] * off / (off + TILTED)
+
+
+@numba.njit(cache=True)
+def bend_cost(pose: Any, upper: int, costs: Any) -> float:
+    """What the bend of an elbow or a knee costs, as far as it lies in the plane."""
+    bend = np.radians(pose[ANGLE + upper + 2] - pose[ANGLE + upper])
+    share = costs[BEND] * pose[RATIO + upper] * pose[RATIO + upper + 2] * (1.0 - np.cos(bend))
+    return share if upper >= 6 else share * pose[BREADTH]
+
+
+@numba.njit(cache=True)
+def cross_cost(ends: Any, pose: Any, costs: Any) -> float:
+    """What knees and feet on the wrong sides cost."""
+    wrong = 0.0
+    for limb in (2, 4):
+        wrong += max(0.0, ends[limb, 2] - ends[limb + 1, 2])
+    return costs[CROSS] * pose[BREADTH] * wrong / pose[STATURE]
+
+
+@numba.njit(cache=True)
+def pose_cost(pose: Any, ends: Any, expected: Any, trust: float, costs: Any) -> float:
+    """What a whole pose costs; `ends` are its segments."""
+    wider, taller = pose[BREADTH] - expected[BREADTH], pose[STATURE] / expected[STATURE] - 1.0
+    total = costs[BREADTH_CHANGE] * wider * wider + costs[STATURE_CHANGE] * taller * taller
+    thicker = pose[GIRTH] - expected[GIRTH]
+    total += costs[GIRTH_CHANGE] * trust * thicker * thicker
+    lean = np.cos(np.radians(pose[ANGLE]))
+    total += costs[LEAN] * lean * lean + cross_cost(ends, pose, costs)
+    for limb in range(10):
+        total += limb_cost(pose, expected, limb, trust, costs)
+    nod = np.radians(pose[ANGLE + HEAD] - pose[ANGLE])
+    total += STIFF_NECK * costs[BEND] * (1.0 - np.cos(nod))
+    for upper in (2, 3, 6, 7):
+        total += bend_cost(pose, upper, costs)
+    return total

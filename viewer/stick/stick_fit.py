@@ -1,0 +1,103 @@
+"""The stick body of one silhouette: joints, foreshortening and what is hidden (T10-T18)."""
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Vector
+from common.body.stick_body import ADULT, BREADTH, GIRTH, RATIO, STATURE, THESIS, joints_px
+from common.bus.messages import Fit
+from common.raster.bits import pack_words
+from common.raster.similarity import Mask
+from common.raster.stick_raster import ALL_SEGMENTS, match_stick
+from viewer.stick.normalization import STATURE_PX, normalised
+from viewer.stick.thesis_fit import fit_printed
+from viewer.stick.tracked_fit import followed
+
+Mode = Literal["default", "thesis"]
+
+MEN = {"default": ADULT, "thesis": THESIS}
+"""The proportions that each mode fits."""
+
+
+class Stick(NamedTuple):
+    """A fitted stick body, in the pixels of the silhouette that was given."""
+
+    pose: Vector
+    """(POSE_SIZE,), see common.body.stick_body."""
+    joints_px: NDArray[np.float64]
+    """(15, 2), JOINT_NAMES; r is on the left of the picture (T10)."""
+    hidden: NDArray[np.bool_]
+    """(10,) of LIMBS: what the silhouette does not show, for it lies over the rest of the body."""
+    score: float
+    """S of the drawn body and the silhouette, at the normalised size (eq. 3.3)."""
+    evaluations: int
+    """How many times a model was matched."""
+
+    @property
+    def ratios(self) -> Vector:
+        """Foreshortening of LIMBS, (10,), in [0, 1]."""
+        return self.pose[RATIO:GIRTH]
+
+    @property
+    def breadth(self) -> float:
+        """How much of its breadth the trunk shows."""
+        return float(self.pose[BREADTH])
+
+    @property
+    def stature_px(self) -> float:
+        """Height that the body would have standing upright."""
+        return float(self.pose[STATURE])
+
+
+class NoBody(ValueError):
+    """A silhouette to which no body can be fitted."""
+
+
+def fit(
+    mask: Mask,
+    before: Vector | None,
+    mode: Mode = "default",
+    stature_px: float = float(STATURE_PX),
+) -> Stick:
+    """The stick body of a silhouette.
+
+    `thesis` looks at every frame by itself, as printed; `default` follows the body.
+
+    Args:
+        mask: (H, W), of any size: it is normalised here (T9).
+        before: The stick pose of the frame before, in its pixels; None at the start.
+        mode: How to fit.
+        stature_px: Height of the body standing upright, in pixels of the mask (T20).
+
+    Raises:
+        NoBody: When the mask is empty, or nothing of its stature, or that is no height.
+    """
+    if not mask.any() or not stature_px > 0.0:
+        raise NoBody(f"no body to fit: {mask.sum()} pixels, a stature of {stature_px}")
+    normal, man = normalised(mask, stature_px), MEN[mode]
+    if not normal.mask.any():
+        raise NoBody(f"no body to fit: {mask.sum()} pixels are nothing of {stature_px}")
+    if mode == "thesis":
+        pose, hidden, evaluations = fit_printed(normal.mask, float(STATURE_PX))
+    else:
+        expected = None if before is None else normal.inward(before)
+        pose, hidden, evaluations = followed(normal.mask, expected)
+    seen, width = pack_words(normal.mask), normal.mask.shape[1]
+    value = match_stick(man.lengths, man.parts, man.depth, pose, ALL_SEGMENTS, width, seen)
+    pose = normal.outward(pose)
+    return Stick(pose, joints_px(man, pose), hidden, float(value), evaluations)
+
+
+def told(stick: Stick) -> Fit:
+    """A fit as a viewer reports it."""
+    return Fit(
+        joints_px=tuple((float(x), float(y)) for x, y in stick.joints_px),
+        ratios=tuple(stick.ratios.tolist()),
+        breadth=stick.breadth,
+        stature_px=stick.stature_px,
+        hidden=tuple(stick.hidden.tolist()),
+        score=stick.score,
+        matches=stick.evaluations,
+    )

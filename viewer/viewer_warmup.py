@@ -1,0 +1,44 @@
+"""Made-up frames, stepped through so that all is compiled and loaded before the first real one."""
+
+import msgspec
+import numpy as np
+
+from common.body.body import POSE_INDEX, rest_pose
+from common.body.proportions import body_vector, thesis_bdp
+from common.bus.messages import Guide
+from common.raster.kernel import draw_body
+from viewer import track
+from viewer.capture import Frame
+from viewer.paper.posed_model import view_at
+from viewer.silhouette import silhouette
+
+
+def rehearse(state: track.State, size: tuple[int, int]) -> None:
+    """Step through three frames of somebody who takes the opening posture.
+
+    Args:
+        state: As it begins; not changed.
+        size: (width, height) of the working picture.
+    """
+    silhouette.warm()
+    width, height = size
+    view = view_at(state.rotation, 0.7 * height, (width / 2, 0.55 * height))
+    pose = rest_pose()
+    pose[POSE_INDEX["r_shoulder_z"]], pose[POSE_INDEX["l_shoulder_z"]] = 90.0, 270.0
+    person = draw_body(body_vector(thesis_bdp(1.0)), pose, view, size)
+    room = np.clip(state.silhouette.room, 0, 255).astype(np.uint8)
+    picture = np.where(person[:, :, None], 255 - room, room).astype(np.uint8)
+    guide = Guide(
+        frame=0,
+        captured_s=0.0,
+        clock_s=0.0,
+        frames=(0, 0),
+        status="tracking",
+        bdp=thesis_bdp(1.0),
+        scale_px_per_m=(0.7 * height,) * 2,
+        reference_px_per_m=(0.7 * height,) * 2,
+        root_px=((width / 2, 0.55 * height),) * 2,
+        pose=tuple(pose.tolist()),
+    )
+    for index, told in enumerate((None, guide, msgspec.structs.replace(guide, measured=True))):
+        state, _ = track.step(state, Frame(index, 0.0, 0.0, picture), told)
