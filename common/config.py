@@ -172,6 +172,8 @@ def load(path: Path) -> Settings:
     """
     if path.is_dir():
         return Settings(clip=str(path))
+    if not path.exists():
+        raise SettingsError(f"there is no clip folder and no settings file {path}: check the path")
     try:
         text = path.read_bytes()
     except OSError as error:

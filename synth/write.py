@@ -60,12 +60,14 @@ def write_set(
         The clips' folders, in order.
 
     Raises:
-        SynthError: When nothing would be written, or a posture or the motion is not known.
+        SynthError: When nothing would be written, a posture or the motion is not known, or the
+            calibration of other cameras would be lost.
     """
     names = (motion,) if motion in ("free", "stream") else postures
     _refuse_what_cannot_be(motion, performers, takes, seed, size, names)
     rig = default_rig(*size)
     out.mkdir(parents=True, exist_ok=True)
+    _refuse_to_lose(out / "calibration.json", rig)
     write_rig(out / "calibration.json", rig)
     folders = []
     jobs = list(itertools.product(range(performers), range(1, takes + 1), names))
@@ -124,7 +126,17 @@ def write_clip(
 
 def write_rig(path: Path, rig: Rig) -> None:
     """A `calibration.json` that `common.rig.camera.load_rig` reads."""
-    path.write_bytes(msgspec.json.format(msgspec.json.encode(rig), indent=1))
+    path.write_bytes(_rig_text(rig))
+
+
+def _rig_text(rig: Rig) -> bytes:
+    return msgspec.json.format(msgspec.json.encode(rig), indent=1)
+
+
+def _refuse_to_lose(path: Path, rig: Rig) -> None:
+    """Other clips beside it may have been filmed by the cameras of a calibration that is there."""
+    if path.exists() and path.read_bytes() != _rig_text(rig):
+        raise SynthError(f"{path} is of other cameras, whose clips it serves: name another --out")
 
 
 def _film(folder: Path, shots: Iterable[Shot], rig: Rig, fps: float) -> tuple[Packed, Packed]:

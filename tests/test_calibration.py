@@ -31,6 +31,12 @@ def test_the_example_of_poles_gives_the_rig_that_it_speaks_of(tmp_path: Path) ->
     assert (rig.width, rig.height) == (640, 480)
 
 
+def test_the_folder_of_a_calibration_is_made(tmp_path: Path) -> None:
+    out = tmp_path / "new" / "deep" / "calibration.json"
+    run_poles(CONFIGS / "poles.toml", out)
+    assert load_rig(out).cameras
+
+
 def test_the_quality_stands_beside_the_rig(tmp_path: Path) -> None:
     out = tmp_path / "calibration.json"
     quality = run_poles(CONFIGS / "poles.toml", out)
@@ -85,8 +91,9 @@ def test_a_file_that_cannot_be_meant_is_refused_at_the_place(
 def test_files_that_cannot_be_read_or_written_are_told(tmp_path: Path) -> None:
     with pytest.raises(CalibrationError, match="cannot read the points"):
         run_markers(tmp_path / "absent.toml")
+    (tmp_path / "file").write_text("")
     with pytest.raises(CalibrationError, match="cannot write the calibration"):
-        run_poles(CONFIGS / "poles.toml", tmp_path / "absent" / "calibration.json")
+        run_poles(CONFIGS / "poles.toml", tmp_path / "file" / "calibration.json")
     (tmp_path / "noise.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(CalibrationError, match=r"noise\.toml"):
         run_markers(tmp_path / "noise.toml")

@@ -8,6 +8,7 @@ import resource
 import socket
 import subprocess
 import sys
+from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
 
@@ -96,8 +97,11 @@ def test_every_command_has_help_with_an_example(tritrack: Commands, words: list[
         (["track", "--views", "3", "x"], "'3' is not one of '12', '1', '2'; see: "),
         (["track", "--nosuch", "x"], "No such option"),
         (["--log-level", "loud", "doctor"], "'loud' is not one of"),
-        (["track", "nosuch"], "nosuch: No such file"),
-        (["live", "nosuch.toml"], "nosuch.toml: No such file"),
+        (
+            ["track", "nosuch"],
+            "no clip folder and no settings file nosuch: check",
+        ),
+        (["live", "nosuch.toml"], "there is no clip folder and no settings file nosuch.toml"),
         (["live"], "Missing argument"),
         (["view", "x", "--viewer", "3"], "--viewer"),
         (["synth"], "Missing option '--out'"),
@@ -112,7 +116,10 @@ def test_every_command_has_help_with_an_example(tritrack: Commands, words: list[
             "free motion is no posture",
         ),
         (["synth", "--out", "/dev/null/o"], "cannot write /dev/null/o: Not a directory"),
-        (["train", "nosuch", "--out", "m.npz"], "nosuch: No such file"),
+        (
+            ["train", "nosuch", "--out", "m.npz"],
+            "there is no clip folder and no settings file nosuch",
+        ),
         (["calibrate", "markers", "nosuch"], "cannot read the points nosuch"),
         (["calibrate", "poles", "nosuch"], "cannot read the points nosuch"),
     ],
@@ -131,6 +138,11 @@ def test_a_users_mistake_is_one_line_and_exit_code_2(
     assert error in said.errors[0]
     assert "Traceback" not in said.err
     assert list(tmp_path.iterdir()) in ([], [tmp_path / "runs"])
+
+
+def test_the_version_is_told(tritrack: Commands) -> None:
+    said = tritrack("--version")
+    assert (said.code, said.out, said.err) == (0, f"tritrack {version('tritrack')}\n", "")
 
 
 @pytest.mark.parametrize("words", [[], ["calibrate"]], ids=["tritrack", "calibrate"])
@@ -208,7 +220,8 @@ def test_what_can_be_worked_with_runs_on_with_one_line(
     told = [line for line in said.warnings if re.search(warning, line)]
     assert len(told) == 1
     summary = json.loads((tmp_path / "out" / "clip" / "summary.json").read_text())
-    assert told[0].removeprefix("warning: ") in [" ".join(w.split()) for w in summary["warnings"]]
+    named = [" ".join(f"warning: clip: {text}".split()) for text in summary["warnings"]]
+    assert told[0] in named
     with np.load(tmp_path / "out" / "clip" / "poses.npz", allow_pickle=False) as found:
         assert np.isfinite(found["joints_m"]).all(axis=(1, 2)).sum() > 30
 
@@ -343,6 +356,21 @@ def test_calibration_is_a_table_and_json(tritrack: Commands, tmp_path: Path) -> 
     poles = tritrack("calibrate", "poles", configs / "poles.toml", "--out", out, "--json")
     assert json.loads(poles.out)[1]["focal_px"] == pytest.approx(640, abs=10)
     assert out.is_file()
+
+
+def test_a_calibration_that_is_there_is_replaced_only_when_asked(
+    tritrack: Commands, tmp_path: Path
+) -> None:
+    points = Path(__file__).parents[1] / "configs" / "poles.toml"
+    out = tmp_path / "calibration.json"
+    out.write_text("an afternoon's work")
+    words = ("calibrate", "poles", points, "--out", out)
+    said = tritrack(*words)
+    assert (said.code, said.out) == (2, "")
+    assert said.errors == [f"error: {out} is there already: name another --out, or add --force"]
+    assert out.read_text() == "an afternoon's work"
+    assert tritrack(*words, "--force").code == 0
+    assert json.loads(out.read_text())["cameras"]
 
 
 def test_made_up_clips_are_told_as_json(tritrack: Commands, tmp_path: Path) -> None:

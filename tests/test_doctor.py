@@ -64,6 +64,14 @@ def test_the_cure_is_shown_only_where_something_is_wrong() -> None:
     assert said.count("missing") == 1
 
 
+def test_the_extra_that_a_cure_names_is_not_taken_for_markup() -> None:
+    paper = io.StringIO()
+    row = Finding("page", False, "not in [here]", "pip install 'tritrack[page]'", needed=False)
+    Console(file=paper, width=100).print(table_of([row]))
+    assert "pip install 'tritrack[page]'" in paper.getvalue()
+    assert "not in [here]" in paper.getvalue()
+
+
 @pytest.mark.parametrize(
     ("findings", "code"),
     [

@@ -63,3 +63,14 @@ def test_a_place_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     with pytest.raises(SynthError, match=r"cannot write .*file: .*name another --out"):
         made(tmp_path / "file")
     assert os.listdir(tmp_path) == ["file"]
+
+
+def test_the_calibration_of_other_cameras_is_never_lost(tmp_path: Path) -> None:
+    """Clips of the same cameras may be added; the calibration serves those that are there."""
+    made(tmp_path)
+    made(tmp_path, seed=4)
+    before = (tmp_path / "calibration.json").read_bytes()
+    with pytest.raises(SynthError, match=r"calibration\.json is of other cameras"):
+        made(tmp_path, seed=5, size="128x96")
+    assert (tmp_path / "calibration.json").read_bytes() == before
+    assert not (tmp_path / "s05_t1_12_squat").exists()

@@ -4,6 +4,7 @@ import errno
 import logging
 import os
 import sys
+from importlib.metadata import version
 from typing import Annotated, Final, Literal
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -39,12 +40,23 @@ app = typer.Typer(
 log = logging.getLogger(__name__)
 
 
+def tell_version(wanted: bool) -> None:
+    """Print the version and end."""
+    if wanted:
+        print(f"tritrack {version('tritrack')}")
+        raise typer.Exit
+
+
 @app.callback()
 def every_command(
     log_level: Annotated[
         Literal["debug", "info", "warning", "error"],
         typer.Option(help="How much of the log is written."),
     ] = "warning",
+    _version: Annotated[
+        bool,
+        typer.Option("--version", callback=tell_version, is_eager=True, help="Print the version."),
+    ] = False,
 ) -> None:
     """Set up what all commands share."""
     os.environ["TRITRACK_LOG"] = "info" if log_level == "warning" else log_level

@@ -11,6 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Final, NamedTuple
 
+from rich.markup import escape
 from rich.table import Table
 
 REQUIRED = {
@@ -75,7 +76,8 @@ def table_of(findings: list[Finding]) -> Table:
             if finding.needed
             else "[yellow]-[/]"
         )
-        table.add_row(mark, finding.what, finding.detail, "" if finding.ok else finding.cure)
+        cure = "" if finding.ok else finding.cure
+        table.add_row(mark, *map(escape, (finding.what, finding.detail, cure)))
     return table
 
 

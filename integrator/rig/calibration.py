@@ -6,6 +6,7 @@ from typing import TypeVar
 
 import msgspec
 
+from common.atomic_file import replacing
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError
 from integrator.rig.markers import Aim, Markers, line_markers
@@ -24,26 +25,36 @@ def run_markers(path: Path) -> tuple[Aim, ...]:
     return tuple(line_markers(view, (markers.width, markers.height)) for view in markers.cameras)
 
 
-def run_poles(path: Path, out: Path) -> Quality:
+def run_poles(path: Path, out: Path, replace: bool = False) -> Quality:
     """Calibrate from a file of poles and write `calibration.json`.
 
+    Args:
+        path: The file of poles.
+        out: The file to write; its folder is made where it is not there.
+        replace: What stands there may be lost; it took somebody poles and an afternoon.
+
     Raises:
-        CalibrationError: When a file cannot be read or written, or the poles do not suffice.
+        CalibrationError: When a file cannot be read or written, or would be lost, or the poles do
+            not suffice.
     """
+    if out.exists() and not replace:
+        raise CalibrationError(f"{out} is there already: name another --out, or add --force")
     rig, quality = poles(_read(path, Poles))
     write_rig(out, rig, quality)
     return quality
 
 
 def write_rig(path: Path, rig: Rig, quality: msgspec.Struct) -> None:
-    """Write a rig as `calibration.json`, its quality beside it.
+    """Write a rig as `calibration.json`, its quality beside it; its folder where there is none.
 
     Raises:
         CalibrationError: When the file cannot be written.
     """
     content = msgspec.to_builtins(rig) | {"quality": msgspec.to_builtins(quality)}
     try:
-        path.write_bytes(msgspec.json.format(msgspec.json.encode(content), indent=1))
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with replacing(path) as new:
+            new.write_bytes(msgspec.json.format(msgspec.json.encode(content), indent=1))
     except OSError as error:
         raise CalibrationError(f"cannot write the calibration {path}: {error.strerror}") from error
 

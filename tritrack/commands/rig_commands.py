@@ -31,6 +31,7 @@ def markers(
 def poles(
     measured: Annotated[Path, typer.Argument(help="Tops of the poles in both pictures (TOML).")],
     out: Annotated[Path, typer.Option(help="The file to write.")] = Path("calibration.json"),
+    force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Find focal lengths and distances from poles at known places, with error bars.
@@ -39,5 +40,5 @@ def poles(
     """
     from integrator.rig.calibration import run_poles
 
-    tell_rows(run_poles(measured, out).cameras, json_wanted)
+    tell_rows(run_poles(measured, out, force).cameras, json_wanted)
     console.print(f"written to {out}", highlight=False, soft_wrap=True)

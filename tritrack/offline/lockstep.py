@@ -232,7 +232,7 @@ def track_all(
                 complain(console, str(error))
                 continue
             for warning in tracked.facts["warnings"]:
-                warn(console, warning)
+                warn(console, f"{name}: {warning}")
             done[name] = {**tracked.facts, "clip": name}
             write_run(out / name, tracked.bodies, settings, done[name], tracked.extras)
     if len(done) < len(runs):

@@ -156,7 +156,7 @@ def follow(job: Job, folder: Path, decoder: Decoder, console: Console) -> dict[s
         for picture in overlaid(found, decoder):
             film.write(picture)
     for warning in (*facts["warnings"], *odd):
-        warn(console, warning)
+        warn(console, f"{folder.name}: {warning}")
     return facts
 
 
