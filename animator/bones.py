@@ -5,8 +5,9 @@ from typing import Final, NamedTuple
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-from animator.turns import arc, frame_of, times, turned
+from animator.turns import arc, frame_of
 from common.body.body import JOINT_NAMES, Vector
 
 Joints = NDArray[np.float64]
@@ -67,8 +68,8 @@ class Motion(NamedTuple):
 
     root_m: Vector
     """(n, 3) where the hips are."""
-    turns: NDArray[np.float64]
-    """(n, 13, 4) unit quaternions (w, x, y, z), each bone in its parent's axes."""
+    turns: tuple[Rotation, ...]
+    """(n,) of each of BONES, in its parent's axes."""
 
 
 def skeleton_of(joints_m: Joints) -> Skeleton:
@@ -87,54 +88,54 @@ def skeleton_of(joints_m: Joints) -> Skeleton:
         length_m = float(np.median(np.linalg.norm(along, axis=1)))
         rest = _REST.get(bone.name)
         if rest is None:
-            rest = np.median(turned(_undone(spine), along), axis=0)
+            rest = np.median(spine.apply(along, inverse=True), axis=0)
             rest = rest / max(float(np.linalg.norm(rest)), 1e-9)
         tips.append(length_m * rest)
     return Skeleton(np.array(tips))
 
 
 def motion_of(skeleton: Skeleton, joints_m: Joints) -> Motion:
-    """The turns that lead a skeleton through joints; a frame without a pose has NaN.
+    """The turns that lead a skeleton through joints.
 
     Every bone is aimed at its landmark from where the bones before it have come to, so that a
     length that differs shifts one landmark and not the rest of the limb.
+
+    Args:
+        skeleton: A body.
+        joints_m: Without NaN.
     """
-    n = len(joints_m)
-    world = np.empty((n, len(BONES), 4))
-    local = np.empty((n, len(BONES), 4))
-    origins = np.empty((n, len(BONES), 3))
+    pelvis_m = joints_m[:, _AT["pelvis"]]
+    world: list[Rotation] = []
+    local: list[Rotation] = []
+    origins: list[NDArray[np.float64]] = []
     for i, bone in enumerate(BONES):
-        origins[:, i] = (
-            joints_m[:, _AT["pelvis"]] if i == 0 else _origin(skeleton, i, origins, world)
-        )
-        above = np.tile((1.0, 0.0, 0.0, 0.0), (n, 1)) if i == 0 else world[:, bone.parent]
+        origins.append(_origin(skeleton, i, origins, world) if i else pelvis_m)
+        above = world[bone.parent] if i else Rotation.identity()
         if bone.name == "Hips":
             across = _between(joints_m, "r_hip", "l_hip")
-            local[:, i] = frame_of(_between(joints_m, "pelvis", "neck"), across, keep="across")
+            turns = frame_of(_between(joints_m, "pelvis", "neck"), across, keep="across")
         elif bone.name == "Spine":
             across = _between(joints_m, "r_shoulder", "l_shoulder")
             spine = frame_of(_between(joints_m, "pelvis", "neck"), across)
-            local[:, i] = times(_undone(above), spine)
+            turns = above.inv() * spine
         else:
-            aim = joints_m[:, _AT[bone.ends]] - origins[:, i]
-            local[:, i] = arc(skeleton.tips_m[i], turned(_undone(above), aim))
-        world[:, i] = times(above, local[:, i])
-    return Motion(joints_m[:, _AT["pelvis"]], local)
+            aim = joints_m[:, _AT[bone.ends]] - origins[i]
+            turns = arc(skeleton.tips_m[i], above.apply(aim, inverse=True))
+        local.append(turns)
+        world.append(above * turns)
+    return Motion(pelvis_m, tuple(local))
 
 
 def joints_of(skeleton: Skeleton, motion: Motion) -> Joints:
     """Where a moving skeleton has the 15 landmarks."""
-    n = len(motion.root_m)
-    found = np.empty((n, len(JOINT_NAMES), 3))
-    world = np.empty((n, len(BONES), 4))
-    origins = np.empty((n, len(BONES), 3))
-    for i, bone in enumerate(BONES):
-        first = i == 0
-        origins[:, i] = motion.root_m if first else _origin(skeleton, i, origins, world)
-        own = motion.turns[:, i]
-        world[:, i] = own if first else times(world[:, bone.parent], own)
-        found[:, _AT[bone.starts]] = origins[:, i]
-        found[:, _AT[bone.ends]] = origins[:, i] + turned(world[:, i], skeleton.tips_m[i])
+    found = np.empty((len(motion.root_m), len(JOINT_NAMES), 3))
+    world: list[Rotation] = []
+    origins: list[NDArray[np.float64]] = []
+    for i, (bone, own) in enumerate(zip(BONES, motion.turns, strict=True)):
+        origins.append(_origin(skeleton, i, origins, world) if i else motion.root_m)
+        world.append(world[bone.parent] * own if i else own)
+        found[:, _AT[bone.starts]] = origins[i]
+        found[:, _AT[bone.ends]] = origins[i] + world[i].apply(skeleton.tips_m[i])
     return found
 
 
@@ -149,21 +150,13 @@ def offset_m(skeleton: Skeleton, bone: int) -> Vector:
 
 
 def _origin(
-    skeleton: Skeleton, bone: int, origins: NDArray[np.float64], world: NDArray[np.float64]
+    skeleton: Skeleton, bone: int, origins: list[NDArray[np.float64]], world: list[Rotation]
 ) -> NDArray[np.float64]:
     parent = BONES[bone].parent
-    there: NDArray[np.float64] = origins[:, parent] + turned(
-        world[:, parent], offset_m(skeleton, bone)
-    )
+    there: NDArray[np.float64] = origins[parent] + world[parent].apply(offset_m(skeleton, bone))
     return there
 
 
 def _between(joints_m: Joints, start: str, end: str) -> NDArray[np.float64]:
     along: NDArray[np.float64] = joints_m[:, _AT[end]] - joints_m[:, _AT[start]]
     return along
-
-
-def _undone(turns: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The opposite turns."""
-    back: NDArray[np.float64] = turns * (1.0, -1.0, -1.0, -1.0)
-    return back

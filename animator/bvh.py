@@ -1,13 +1,14 @@
 """BVH: a run's motion for Blender and other animation programs (T28)."""
 
-from collections.abc import Iterator
-from typing import Final
+from collections.abc import Iterator, Sequence
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from animator.bones import BONES, Joints, Motion, Skeleton, motion_of, offset_m, skeleton_of
-from animator.inbetween import between
-from animator.turns import euler_zxy_deg
+from animator.inbetween import at, between
 from common.body.body import Vector
 
 ROOT_CHANNELS: Final = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
@@ -48,8 +49,7 @@ def steady(joints_m: Joints, time_s: Vector) -> tuple[Skeleton, Motion, float]:
     if places[-1] >= MOST_FRAMES:
         raise NoMotion(f"it would have {places[-1] + 1} frames, at most {MOST_FRAMES} are written")
     keys, first = np.unique(places, return_index=True)
-    known = Motion(motion.root_m[first], motion.turns[first])
-    return skeleton, between(keys, known, np.arange(places[-1] + 1)), step_s
+    return skeleton, between(keys, at(motion, first), np.arange(places[-1] + 1)), step_s
 
 
 def bvh_text(skeleton: Skeleton, motion: Motion, step_s: float) -> str:
@@ -64,6 +64,34 @@ def bvh_text(skeleton: Skeleton, motion: Motion, step_s: float) -> str:
     body = "\n".join(" ".join(f"{value:.6f}" for value in row) for row in rows[:, columns])
     head = "\n".join(_hierarchy(skeleton, 0, ""))
     return f"HIERARCHY\n{head}\nMOTION\nFrames: {len(rows)}\nFrame Time: {step_s:.8f}\n{body}\n"
+
+
+def euler_zxy_deg(turns: Sequence[Rotation]) -> NDArray[np.float64]:
+    """Angles (n, bones, 3) about z, x, y with R = R_z R_x R_y, without jumps along the first axis.
+
+    Of the two triples of a turn, and all that differ by full circles, the one next to the frame
+    before is taken: programs that draw curves between frames would else spin a limb round.
+
+    Args:
+        turns: (n,) of each bone.
+    """
+    angles = np.stack(
+        [own.as_euler("ZXY", degrees=True, suppress_warnings=True) for own in turns], axis=1
+    )
+    for i in range(1, len(angles)):
+        angles[i] = _nearest(angles[i], angles[i - 1])
+    return angles
+
+
+def _nearest(angles_deg: NDArray[np.float64], before_deg: NDArray[np.float64]) -> Any:
+    """Of the triples (..., 3) that mean one turn, those next to others."""
+    flipped = np.stack(
+        [angles_deg[..., 0] + 180.0, 180.0 - angles_deg[..., 1], angles_deg[..., 2] + 180.0], -1
+    )
+    both = np.stack([angles_deg, flipped])
+    both = both + 360.0 * np.rint((before_deg - both) / 360.0)
+    cost = np.abs(both - before_deg).sum(-1)
+    return np.where((cost[0] <= cost[1])[..., None], both[0], both[1])
 
 
 def _hierarchy(skeleton: Skeleton, bone: int, indent: str) -> Iterator[str]:

@@ -4,9 +4,9 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation, Slerp
 
 from animator.bones import Motion
-from animator.turns import slerp
 from common.body.body import Vector
 
 Frames = NDArray[np.int64]
@@ -38,24 +38,24 @@ def key_frames(clarity: Vector, apart: int = APART) -> Frames:
 
 
 def between(keys: Frames, motion: Motion, frames: Frames) -> Motion:
-    """The motion at `frames`: exact at the key frames, the shorter way round between them.
+    """The motion at `frames`: that of the key frames, the shorter way round between them.
 
     Args:
         keys: (k,) increasing frames, at least one.
         motion: At the key frames: k rows.
         frames: Any; before the first key and after the last the pose is held.
     """
-    late = np.clip(np.searchsorted(keys, frames, side="right"), 1, max(1, len(keys) - 1))
-    late = np.minimum(late, len(keys) - 1)
-    early = np.maximum(late - 1, 0)
-    span = np.maximum(keys[late] - keys[early], 1)
-    share = np.clip((frames - keys[early]) / span, 0.0, 1.0)
-    root = motion.root_m[early] + share[:, None] * (motion.root_m[late] - motion.root_m[early])
-    turns = slerp(motion.turns[early], motion.turns[late], share[:, None])
-    exact = share[:, None, None]
-    return Motion(
-        np.where(share[:, None] == 1.0, motion.root_m[late], root),
-        np.where(
-            exact == 0.0, motion.turns[early], np.where(exact == 1.0, motion.turns[late], turns)
-        ),
-    )
+    root_m = np.column_stack([np.interp(frames, keys, column) for column in motion.root_m.T])
+    held = np.clip(frames, keys[0], keys[-1])
+    return Motion(root_m, tuple(_turned(keys, turns, held) for turns in motion.turns))
+
+
+def at(motion: Motion, rows: Frames) -> Motion:
+    """Some rows of a motion."""
+    return Motion(motion.root_m[rows], tuple(turns[rows] for turns in motion.turns))
+
+
+def _turned(keys: Frames, turns: Rotation, frames: Frames) -> Rotation:
+    if len(keys) == 1:
+        return turns[np.zeros(len(frames), np.int64)]
+    return Slerp(keys, turns)(frames)

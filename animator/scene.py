@@ -7,8 +7,8 @@ from typing import Final, NamedTuple
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-from animator.turns import quaternions
 from common.body.body import JOINT_NAMES, LIMBS, Bdp, Elliptic, Round, Vector
 from common.body.kinematics import HEAD, TORSO, limb_frames
 from common.body.proportions import body_vector
@@ -105,12 +105,6 @@ class Viewpoint(NamedTuple):
     look_at: Vector
 
 
-def quaternion(rotation: Vector) -> Vector:
-    """A rotation matrix (3, 3) as a unit quaternion (w, x, y, z)."""
-    found: Vector = quaternions(rotation[None])[0]
-    return found
-
-
 def figure(body: Body | None) -> Figure | None:
     """What can be drawn of a body; None where it has no pose or no measures."""
     if body is None or not body.pose or body.bdp is None:
@@ -121,7 +115,7 @@ def figure(body: Body | None) -> Figure | None:
 def limb_shapes(figure: Figure) -> Shapes:
     """The ten limbs as copies of the unit cylinder, in the order of LIMBS (P55)."""
     frames = limb_frames(body_vector(figure.bdp), figure.pose)
-    wxyzs = quaternions(frames[:, 3:].reshape(-1, 3, 3))
+    wxyzs = Rotation.from_matrix(frames[:, 3:].reshape(-1, 3, 3)).as_quat(scalar_first=True)
     scales = np.array([half_sizes(getattr(figure.bdp, limb)) for limb in LIMBS])
     return Shapes(frames[:, :3], wxyzs, scales, limb_colours(figure.confidence))
 
@@ -132,7 +126,8 @@ def round_shapes(limbs: Shapes) -> Shapes:
 
     The balls close the gap that two cylinders leave at a bent joint; a model's arms end round.
     """
-    far = limbs.positions + limbs.scales[:, 1:2] * _axes(limbs.wxyzs)
+    turns = Rotation.from_quat(limbs.wxyzs, scalar_first=True)
+    far = limbs.positions + turns.apply(limbs.scales * (0.0, 1.0, 0.0))
     shapes = rows_of(limbs, [HEAD, *NEAR_ENDS, *HANDS])
     shapes.scales[:, 1] = np.minimum(shapes.scales[:, 0], shapes.scales[:, 2])
     shapes.scales[0, 1] = limbs.scales[HEAD, 1] / 2
@@ -162,7 +157,7 @@ def frustum(camera: Camera, size: tuple[int, int]) -> Frustum:
     (width, height), K = size, np.array(camera.K)
     return Frustum(
         position=centre(camera),
-        wxyz=quaternion(np.array(camera.R).T),
+        wxyz=Rotation.from_matrix(np.array(camera.R).T).as_quat(scalar_first=True),
         fov_rad=2.0 * math.atan(height / (2.0 * K[1, 1])),
         aspect=float((width / K[0, 0]) / (height / K[1, 1])),
     )
@@ -194,12 +189,3 @@ def half_sizes(part: Elliptic | Round) -> tuple[float, float, float]:
     if isinstance(part, Elliptic):
         return part.long_radius, part.height, part.short_radius
     return part.radius, part.height, part.radius
-
-
-def _axes(wxyzs: Vector) -> Vector:
-    """Where each quaternion (n, 4) turns the y axis to, (n, 3)."""
-    w, x, y, z = wxyzs.T
-    axes: Vector = np.stack(
-        [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)], axis=1
-    )
-    return axes

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from animator.bvh import NoMotion, bvh_text, steady
+from animator.bvh import NoMotion, bvh_text, euler_zxy_deg, steady
 from common.body.body import DOF_NAMES, JOINT_NAMES, LIMITS_DEG, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
@@ -168,6 +168,20 @@ def test_turns_in_the_file_do_not_jump() -> None:
     skeleton, motion, step_s = steady(random_joints(2), np.arange(40) / 15)
     read = read_bvh(bvh_text(skeleton, motion, step_s))
     assert np.abs(np.diff(read.angles, axis=0)).max() < 60.0
+
+
+def test_euler_angles_mean_the_turn_they_are_of() -> None:
+    turns = Rotation.random(500, random_state=4)
+    again = Rotation.from_euler("ZXY", euler_zxy_deg([turns])[:, 0], degrees=True)
+    assert np.allclose(again.as_matrix(), turns.as_matrix(), atol=1e-6)
+
+
+def test_euler_angles_of_an_arm_that_goes_round_do_not_jump() -> None:
+    """Twice round about x, through the tilt of 90 degrees where both triples meet."""
+    degrees = np.arange(0.0, 720.0, 4.0) + 1.0
+    turns = Rotation.from_euler("ZXY", [[20.0, each, 10.0] for each in degrees], degrees=True)
+    angles = euler_zxy_deg([turns])[:, 0]
+    assert np.abs(np.diff(angles, axis=0)).max() < 4.0 + 1e-6
 
 
 @pytest.mark.parametrize(

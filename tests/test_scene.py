@@ -17,7 +17,6 @@ from animator.scene import (
     frustum,
     limb_colours,
     limb_shapes,
-    quaternion,
     round_shapes,
     viewpoint,
 )
@@ -89,14 +88,6 @@ def test_a_ball_closes_the_gap_at_a_bent_elbow() -> None:
     at = int(np.linalg.norm(balls.positions - elbow, axis=1).argmin())
     assert np.allclose(balls.positions[at], elbow)
     assert np.allclose(balls.scales[at], BDP.r_lower_arm.radius)
-
-
-@settings(max_examples=100, deadline=None)
-@given(st.lists(st.floats(-4.0, 4.0), min_size=3, max_size=3))
-def test_a_quaternion_turns_as_its_matrix_does(turn: list[float]) -> None:
-    matrix = Rotation.from_rotvec(turn).as_matrix()
-    again = Rotation.from_quat(quaternion(matrix), scalar_first=True).as_matrix()
-    assert np.allclose(again, matrix, rtol=0.0, atol=1e-14)
 
 
 @pytest.mark.parametrize("camera", RIG.cameras, ids=["camera 1", "camera 2"])

@@ -110,7 +110,8 @@ class Easel:
         colours = _line_colours()[:, 0]
         colours[[LIMBS.index(limb) for limb in unsure]] = UNSURE
         scales = np.stack([radii, np.linalg.norm(along, axis=1), radii], axis=1)
-        place_shapes(self._body, Shapes(ends[:, 0], arc(UP, along), scales, colours))
+        wxyzs = arc(UP, along).as_quat(scalar_first=True)
+        place_shapes(self._body, Shapes(ends[:, 0], wxyzs, scales, colours))
 
     def _build_light(self, server: viser.ViserServer) -> None:
         scene = self._scene

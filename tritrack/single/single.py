@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from animator.bones import Motion
 from animator.bvh import NoMotion, bvh_text, steady
 from animator.film import filming
-from animator.inbetween import between, key_frames
+from animator.inbetween import at, between, key_frames
 from animator.overlay import overlay
 from animator.take import take_of
 from common.atomic_file import replacing
@@ -209,8 +208,7 @@ def _animate(folder: Path, arrays: dict[str, Any]) -> list[str]:
     clarity = np.full(len(motion.root_m), np.nan)
     clarity[rows] = arrays["confidence"][posed].mean(axis=1)
     keys = key_frames(clarity)
-    at_keys = Motion(motion.root_m[keys], motion.turns[keys])
-    drawn = between(keys, at_keys, np.arange(len(clarity)))
+    drawn = between(keys, at(motion, keys), np.arange(len(clarity)))
     frame_of = dict(zip(rows.tolist(), arrays["frame"][posed].tolist(), strict=True))
     told = {"frames": [frame_of[key] for key in keys.tolist()], "of": len(clarity)}
     try:
