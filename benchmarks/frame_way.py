@@ -1,0 +1,126 @@
+"""The files of ours that one frame passes on its way from two cameras to a posture's name."""
+
+import importlib
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from types import CodeType, FrameType
+from typing import Any, NamedTuple
+
+from numba.core.dispatcher import Dispatcher
+
+from common.config import Settings
+from integrator import merge
+from recognizer import __main__ as recognizer
+from synth.write import write_set
+from viewer import track
+
+PERFORMER_SEED = 90_001
+"""Whom the clip shows: a person of no training set."""
+OFFLINE = ("tritrack.offline.lockstep", "tritrack.offline")
+"""Where the lock-step run lies now, and where it lay in version 0.1.0."""
+
+
+class Way(NamedTuple):
+    """What the instants of a clip passed."""
+
+    each: list[set[Path]]
+    """Files of every instant, from the checkout's top."""
+
+    @property
+    def all(self) -> set[Path]:
+        """Files that any instant passed."""
+        return set().union(*self.each)
+
+
+class _Calls:
+    """Notes the code of every function that runs within the steps that it was given to."""
+
+    def __init__(self) -> None:
+        """Nothing called yet."""
+        self.codes: set[CodeType] = set()
+
+    def noted(self, step: Callable[..., Any]) -> Callable[..., Any]:
+        """The same step, its calls noted; numba reports those of compiled functions too."""
+
+        def inner(*given: Any) -> Any:
+            sys.setprofile(self._note)
+            try:
+                return step(*given)
+            finally:
+                sys.setprofile(None)
+
+        return inner
+
+    def _note(self, frame: FrameType, event: str, _: object) -> None:
+        if event == "call":
+            self.codes.add(frame.f_code)
+
+    def taken(self) -> set[CodeType]:
+        """What was called since the last time."""
+        codes, self.codes = self.codes, set()
+        return codes
+
+
+def way(root: Path) -> Way:
+    """Follow a made-up clip in lock-step, default mode and two views.
+
+    A file counts for an instant where one of its functions runs between the pictures and the
+    posture's name: in the steps of both viewers, the integrator or the recognizer, all that these
+    call included. Compiled functions that compiled functions call run unseen: they are found by
+    the names that their callers use.
+    """
+    calls = _Calls()
+    settings = Settings()
+    naming = recognizer.init(recognizer.model_of(settings), settings.recognizer.window_frames)
+    named = calls.noted(recognizer.step)
+    each: list[set[CodeType]] = []
+
+    def watch(_frames: object, _reports: object, body: Any) -> None:
+        nonlocal naming
+        naming, _ = named(naming, body)
+        each.append(calls.taken())
+
+    steps = (track.step, merge.step)
+    try:
+        track.step, merge.step = map(calls.noted, steps)
+        _follow(watch)
+    finally:
+        track.step, merge.step = steps
+    compiled = _compiled()
+    return Way([_files(root, codes, compiled) for codes in each])
+
+
+def _follow(watch: Callable[..., None]) -> None:
+    offline = importlib.import_module(next(filter(_is_there, OFFLINE)))
+    with tempfile.TemporaryDirectory(prefix="tritrack-way-") as folder, offline.Decoders() as doors:
+        posture = ("raise_right_lateral",)
+        clip = write_set(Path(folder), "postures", 1, 1, PERFORMER_SEED, (160, 120), posture)[0]
+        offline.track_clip(Settings(clip=str(clip)), doors, (1, 2), watch)
+
+
+def _is_there(module: str) -> bool:
+    try:
+        return importlib.util.find_spec(module) is not None
+    except ModuleNotFoundError:
+        return False
+
+
+def _compiled() -> dict[CodeType, Dispatcher]:
+    """Every compiled function that is loaded, by its code."""
+    values = [value for module in [*sys.modules.values()] for value in [*vars(module).values()]]
+    return {each.py_func.__code__: each for each in values if isinstance(each, Dispatcher)}
+
+
+def _files(root: Path, codes: set[CodeType], compiled: dict[CodeType, Dispatcher]) -> set[Path]:
+    called, ahead = set(codes), [code for code in codes if code in compiled]
+    while ahead:
+        function = compiled[ahead.pop()].py_func
+        known = (function.__globals__.get(name) for name in function.__code__.co_names)
+        new = {each.py_func.__code__ for each in known if isinstance(each, Dispatcher)} - called
+        called |= new
+        ahead += new
+    paths = {Path(code.co_filename) for code in called}
+    ours = {path.relative_to(root) for path in paths if path.is_relative_to(root)}
+    return {path for path in ours if path.parts[0] != ".venv"}

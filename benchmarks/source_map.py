@@ -1,0 +1,190 @@
+"""What our files are made of, read from their text: lines, functions, imports and their circles."""
+
+import ast
+import io
+import subprocess
+import tokenize
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+NO_CODE = frozenset(
+    {
+        tokenize.COMMENT,
+        tokenize.NL,
+        tokenize.NEWLINE,
+        tokenize.INDENT,
+        tokenize.DEDENT,
+        tokenize.ENDMARKER,
+    }
+)
+BRANCHES = (ast.If, ast.For, ast.While, ast.With, ast.Try, ast.Match)
+Definition = ast.FunctionDef | ast.AsyncFunctionDef
+Graph = Mapping[str, set[str]]
+"""What each node points to."""
+
+
+class Function(NamedTuple):
+    """What can be counted of a function."""
+
+    place: str
+    """File and name, as `viewer/track.py (step)`."""
+    code_lines: int
+    """Of its body, without docstrings, comments and empty lines."""
+    nesting: int
+    parameters: int
+    """Without self and cls."""
+    kind: str
+    """`compiled` by numba, `command` of the command line, or `plain`."""
+
+
+class Source(NamedTuple):
+    """What can be counted of a file."""
+
+    path: Path
+    """From the checkout's top."""
+    code_lines: int
+    functions: list[Function]
+    imports: set[str]
+    """Names of modules, wherever in the file they are imported."""
+
+    @property
+    def package(self) -> str:
+        """The folder at the top that it is in."""
+        return self.path.parts[0]
+
+    @property
+    def folder(self) -> str:
+        """The folder that it is in."""
+        return self.path.parent.as_posix()
+
+
+def packages(root: Path) -> list[str]:
+    """The packages that the wheel holds, as pyproject.toml names them."""
+    told = tomllib.loads((root / "pyproject.toml").read_text())
+    names: list[str] = told["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"]
+    return names
+
+
+def tracked(root: Path) -> list[Path]:
+    """Files under version control; in an unpacked copy, every file that is no by-product."""
+    try:
+        listed = subprocess.run(
+            ["git", "ls-files", "-z"], cwd=root, capture_output=True, check=True, text=True
+        ).stdout.split("\0")
+        return [root / name for name in listed if name and (root / name).is_file()]
+    except (OSError, subprocess.CalledProcessError):
+        made = {".git", ".venv", "runs", "dist", "__pycache__", ".hypothesis"}
+        return [p for p in root.rglob("*") if p.is_file() and not made & set(p.parts)]
+
+
+def sources(root: Path) -> list[Source]:
+    """The Python files of the packages."""
+    names = packages(root)
+    paths = (path.relative_to(root) for path in tracked(root) if path.suffix == ".py")
+    return [_source(root, path) for path in paths if path.parts[0] in names]
+
+
+def _source(root: Path, path: Path) -> Source:
+    text = (root / path).read_text()
+    tree = ast.parse(text)
+    lines = _code_lines(text, tree)
+    functions = [
+        Function(
+            place=f"{path.as_posix()} ({node.name})",
+            code_lines=len(lines & set(range(node.body[0].lineno, (node.end_lineno or 0) + 1))),
+            nesting=_nesting(node),
+            parameters=_parameters(node),
+            kind=_kind(node),
+        )
+        for node in ast.walk(tree)
+        if isinstance(node, Definition)
+    ]
+    return Source(path, len(lines), functions, set(_imports(root, tree)))
+
+
+def _code_lines(text: str, tree: ast.Module) -> set[int]:
+    """Numbers of the lines that hold code."""
+    lines: set[int] = set()
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type not in NO_CODE:
+            lines |= set(range(token.start[0], token.end[0] + 1))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+            lines -= set(range(node.lineno, (node.end_lineno or 0) + 1))
+    return lines
+
+
+def _nesting(node: ast.AST, inside_elif: bool = False) -> int:
+    """How many branches and loops lie within each other; what an `elif` holds is no deeper."""
+    deepest = 0
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, Definition | ast.Lambda):
+            continue
+        chained = isinstance(node, ast.If) and node.orelse == [child] and isinstance(child, ast.If)
+        deepest = max(deepest, _nesting(child, chained))
+    return deepest + (isinstance(node, BRANCHES) and not inside_elif)
+
+
+def _parameters(node: Definition) -> int:
+    given = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+    return sum(each.arg not in {"self", "cls"} for each in given)
+
+
+def _kind(node: Definition) -> str:
+    if any("jit" in ast.unparse(mark) for mark in node.decorator_list):
+        return "compiled"
+    return "command" if "typer." in ast.unparse(node.args) else "plain"
+
+
+def _imports(root: Path, tree: ast.Module) -> Iterator[str]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            for alias in node.names:
+                whole = f"{node.module}.{alias.name}"
+                yield whole if _file_of(root, whole) else str(node.module)
+
+
+def _file_of(root: Path, module: str) -> Path | None:
+    """The file of one of our modules, from the checkout's top; None where it is not ours."""
+    stem = Path(*module.split("."))
+    for path in (stem.with_suffix(".py"), stem / "__init__.py"):
+        if (root / path).is_file():
+            return path
+    return None
+
+
+def arrows(root: Path, found: list[Source]) -> list[tuple[Path, Path]]:
+    """Which file imports which, among ours."""
+    files = [(each.path, _file_of(root, name)) for each in found for name in sorted(each.imports)]
+    ours = {each.path for each in found}
+    return [(importer, file) for importer, file in files if file in ours and file is not None]
+
+
+def room_of(path: Path) -> str:
+    """The folder within a package that a file lies in; at the package's top, the file itself."""
+    return path.as_posix() if len(path.parts) == 2 else path.parent.as_posix()
+
+
+def circles(graph: Graph) -> list[set[str]]:
+    """Sets of nodes that can all be reached from each other."""
+    reached = {node: _reached(graph, node) for node in graph}
+    found: list[set[str]] = []
+    for node in graph:
+        circle = {other for other in reached[node] if node in reached.get(other, set())}
+        if circle and circle not in found:
+            found.append(circle)
+    return found
+
+
+def _reached(graph: Graph, start: str) -> set[str]:
+    found: set[str] = set()
+    ahead = [start]
+    while ahead:
+        new = graph.get(ahead.pop(), set()) - found
+        found |= new
+        ahead += new
+    return found
