@@ -6,7 +6,7 @@ import pytest
 from test_background import room, shot, walker
 
 from viewer.background.image_stack import LUMA, Floats
-from viewer.background.stabilization import Anchor, anchored, back, laid, place_of
+from viewer.background.stabilization import Anchor, aligned, alignment_of, anchored, unaligned
 
 
 def trembled(picture: np.ndarray, right: float, down: float, offset: float = 0.0) -> np.ndarray:
@@ -43,8 +43,8 @@ def test_a_shift_is_found_whoever_stands_in_the_picture(
     anchor: Anchor, right: float, down: float
 ) -> None:
     """Within a quarter of a pixel, light of its own beside it."""
-    at = place_of(anchor, luma_of(shot(walker(3), 2.0, 1)))
-    off = place_of(anchor, luma_of(trembled(shot(walker(3), 2.0, 1), right, down, 12.0)))
+    at = alignment_of(anchor, luma_of(shot(walker(3), 2.0, 1)))
+    off = alignment_of(anchor, luma_of(trembled(shot(walker(3), 2.0, 1), right, down, 12.0)))
     assert at.right_px - off.right_px == pytest.approx(right, abs=0.25)
     assert at.down_px - off.down_px == pytest.approx(down, abs=0.25)
     assert off.offset + 128 * off.gain - at.offset - 128 * at.gain == pytest.approx(12.0, abs=2.0)
@@ -52,12 +52,12 @@ def test_a_shift_is_found_whoever_stands_in_the_picture(
 
 def test_a_frame_is_laid_where_the_room_is_and_its_silhouette_back(anchor: Anchor) -> None:
     empty = trembled(room(), 2.0, -1.0, 15.0)
-    place = place_of(anchor, luma_of(empty))
-    flat = laid(empty, place)[5:-5, 5:-5].astype(float)
-    due = laid(room(), place_of(anchor, luma_of(room())))[5:-5, 5:-5]
+    place = alignment_of(anchor, luma_of(empty))
+    flat = aligned(empty, place)[5:-5, 5:-5].astype(float)
+    due = aligned(room(), alignment_of(anchor, luma_of(room())))[5:-5, 5:-5]
     assert np.abs(flat - due).mean() < 3.0
     assert np.abs(empty[5:-5, 5:-5].astype(float) - due).mean() > 10.0
     mask = np.zeros(empty.shape[:2], np.bool_)
     mask[40:60, 70:90] = True
-    rows, columns = np.nonzero(back(mask, place._replace(right_px=-2.0, down_px=1.0)))
+    rows, columns = np.nonzero(unaligned(mask, place._replace(right_px=-2.0, down_px=1.0)))
     assert (rows.min(), columns.min()) == (39, 72)

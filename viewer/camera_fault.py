@@ -16,11 +16,11 @@ and no filmed clip that was looked at held one more than twice."""
 STRIDE: Final = 4
 """Every so many rows and columns are looked at for brightness."""
 PLAIN: Final = 16.0
-"""Grey levels between the darkest and the brightest tenth of what shows no room at all."""
+"""Grey levels between the darkest and the brightest tenth of what shows no background at all."""
 VARIED: Final = 2 * PLAIN
-"""The same in a room that is not plain itself."""
+"""The same in a background that is not plain itself."""
 UNLIKE: Final = 25.0
-"""Grey levels by which a picture without a room differs from a room that is plain, too."""
+"""Grey levels by which such a picture differs from a background that is plain, too."""
 DARK: Final = 60.0
 BRIGHT: Final = 195.0
 """Grey levels: below, a plain picture is called black; above, saturated."""
@@ -29,15 +29,15 @@ BRIGHT: Final = 195.0
 class State(NamedTuple):
     """The picture before, and for how many frames it has been the same."""
 
-    room: NDArray[np.float32]
-    """Grey levels of the empty room, every STRIDE pixels."""
+    background: NDArray[np.float32]
+    """Grey levels of the background, every STRIDE pixels."""
     last: Frame | None = None
     repeats: int = 0
 
 
-def init(room: Background) -> State:
-    """Nothing seen yet but the empty room."""
-    return State(_grey(room.centre))
+def init(background: Background) -> State:
+    """Nothing seen yet but the background."""
+    return State(_grey(background.centre))
 
 
 def step(state: State, picture: Frame) -> tuple[State, CameraFault]:
@@ -47,17 +47,17 @@ def step(state: State, picture: Frame) -> tuple[State, CameraFault]:
     more than FROZEN_AFTER frames is the camera's memory and not the room.
     """
     same = state.last is not None and _same(picture, state.last)
-    state = State(state.room, picture, state.repeats + 1 if same else 0)
+    state = State(state.background, picture, state.repeats + 1 if same else 0)
     if state.repeats > FROZEN_AFTER:
         return state, "frozen"
-    return state, _blank(state.room, picture)
+    return state, _blank(state.background, picture)
 
 
-def _blank(room: NDArray[np.float32], picture: Frame) -> CameraFault:
+def _blank(background: NDArray[np.float32], picture: Frame) -> CameraFault:
     if _contrast_of(picture) > PLAIN:
         return ""
     grey = _grey(picture)
-    if _contrast(room) < VARIED and np.abs(grey - room).mean() < UNLIKE:
+    if _contrast(background) < VARIED and np.abs(grey - background).mean() < UNLIKE:
         return ""
     middle = float(np.median(grey))
     if middle < DARK:

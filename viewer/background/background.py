@@ -1,4 +1,4 @@
-"""The empty room: what every pixel shows while nobody is there (section 1; thesis 3.1.2)."""
+"""The background: what every pixel shows while nobody is there (section 1; thesis 3.1.2)."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from viewer.background.image_stack import Floats, Frame, Overlaid, median, overlaid
 
 SENSOR_NOISE: Final = 2.0
-"""Grey levels; taken for granted where one picture alone shows the room."""
+"""Grey levels; taken for granted where one picture alone shows the background."""
 FLOOR: Final = (1.0, 2.5)
 """Least spread of brightness and of colour, grey levels: rounding, and the colour that compression
 smears around a person, which no empty frame can show."""
@@ -20,18 +20,18 @@ GAIN_SAMPLES: Final = 1500.0
 
 
 class Background(NamedTuple):
-    """The empty room, pixel by pixel."""
+    """The background, pixel by pixel."""
 
     centre: Floats
     """(H, W, 3) grey levels."""
     spread: Floats
     """(H, W, 2) standard deviation of brightness and of colour, grey levels."""
     uncertain: NDArray[np.bool_]
-    """(H, W) True where the room was never seen and is guessed."""
+    """(H, W) True where the background was never seen and is guessed."""
 
 
 def learn(frames: Sequence[Frame]) -> Background:
-    """The room from pictures of it, empty.
+    """The background from pictures of it.
 
     Args:
         frames: One or more pictures of one size.
@@ -43,7 +43,7 @@ def learn(frames: Sequence[Frame]) -> Background:
 
 
 def learnt(empty: Overlaid) -> Background:
-    """The room from pictures of it, empty, laid over each other.
+    """The background from pictures of it, laid over each other.
 
     The minimum, maximum and largest step that W4 keeps grow with the number of frames; their place
     is taken here by mean and standard deviation, after the flicker of the light is taken out, and
@@ -69,18 +69,18 @@ def overlaid_opening(frames: Sequence[Frame]) -> Overlaid:
 
 
 @njit(cache=True, fastmath=True)
-def light_gain(frame: Frame, room: Floats) -> Floats:
-    """How much brighter a frame is than the room, per channel, whoever stands in it.
+def light_gain(frame: Frame, background: Floats) -> Floats:
+    """How much brighter a frame is than the background, per channel, whoever stands in it.
 
     The median of the ratio over a grid of pixels, then the mean of the ratios around it, so that
     neither a person nor a shadow on less than half of the picture counts.
 
     Args:
         frame: (H, W, 3).
-        room: (H, W, 3) grey levels.
+        background: (H, W, 3) grey levels.
 
     Returns:
-        (3,) factors, 1 where the room is too dark to tell.
+        (3,) factors, 1 where the background is too dark to tell.
     """
     height, width = frame.shape[:2]
     stride = max(1, int(np.sqrt(height * width / GAIN_SAMPLES)))
@@ -90,7 +90,7 @@ def light_gain(frame: Frame, room: Floats) -> Floats:
     for y in range(stride // 2, height, stride):
         for x in range(stride // 2, width, stride):
             for c in range(3):
-                given, asked = np.float32(frame[y, x, c]), room[y, x, c]
+                given, asked = np.float32(frame[y, x, c]), background[y, x, c]
                 at = int(given / max(asked, np.float32(1)) * unit)
                 # what became white may be brighter than it shows; what was white already counts
                 if asked > 20 and (given < 250 or asked >= 250) and at < bins:

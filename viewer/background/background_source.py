@@ -18,7 +18,9 @@ from viewer.background.empty_opening import is_empty_opening, is_still
 from viewer.background.image_stack import LUMA, Frame
 from viewer.background.moved_objects import Patch, patches_of
 from viewer.background.occluded_background import learn_uncovered
-from viewer.background.stabilization import Anchor, anchored, laid, place_of
+from viewer.background.stabilization import Anchor, anchored
+from viewer.background.stabilization import aligned as laid
+from viewer.background.stabilization import alignment_of as place_of
 
 SAMPLE = 40
 """How many frames at most, spread over a clip, tell whether its opening is empty."""

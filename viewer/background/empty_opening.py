@@ -12,68 +12,70 @@ from viewer.background.image_stack import CHANGES, LUMA, Floats, Frame, Overlaid
 from viewer.silhouette.difference import INLINE, KERNEL, Bytes
 
 EDGE_SHARE: Final = 0.45
-"""Of an empty opening the outlines of what differs later keep less than this share of their
+"""Of an empty opening the contours of what differs later keep less than this share of their
 steepness, otherwise more: 0.05-0.41 and 0.49-2.5 on every third development clip."""
 
 
 def is_still(opening: Overlaid) -> bool:
-    """Whether nobody moves in the opening frames: who runs through them leaves no outline."""
+    """Whether nobody moves in the opening frames: who runs through them leaves no contour."""
     return not any(large_regions(off).any() for off in opening.moving if off.any())
 
 
 def is_empty_opening(opening: Overlaid, sample: Iterable[Frame]) -> bool:
     """Whether the opening frames show the room without a person.
 
-    What differs between the opening and a later frame has its outline in the picture that holds
+    What differs between the opening and a later frame has its contour in the picture that holds
     the person: only in the later one if the opening is empty, in both if somebody stood there.
 
     Args:
         opening: The first frames of a clip.
         sample: Frames from all over it, of the same size.
     """
-    room = np.asarray(opening.median @ LUMA, np.float32)
-    in_room, in_frames = 0.0, 0.0
+    background = np.asarray(opening.median @ LUMA, np.float32)
+    in_background, in_frames = 0.0, 0.0
     for frame in sample:
-        luma, differs = _brightness(frame, LUMA / light_gain(frame, opening.median), room)
-        steeper, flatter = _steeper(*_outline(large_regions(differs)), luma, room)
+        luma, differs = _brightness(frame, LUMA / light_gain(frame, opening.median), background)
+        steeper, flatter = _steeper(*_contour(large_regions(differs)), luma, background)
         in_frames += steeper
-        in_room += flatter
-    return in_room <= EDGE_SHARE * in_frames
+        in_background += flatter
+    return in_background <= EDGE_SHARE * in_frames
 
 
 @KERNEL
-def _brightness(frame: Frame, shares: Floats, room: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-    """The brightness of a frame, (H, W), and where it differs from the room's."""
-    luma, differs = np.empty_like(room), np.empty(room.shape, np.bool_)
+def _brightness(
+    frame: Frame, shares: Floats, background: Floats
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """The brightness of a frame, (H, W), and where it differs from the background's."""
+    luma, differs = np.empty_like(background), np.empty(background.shape, np.bool_)
     blue, green, red = shares[0], shares[1], shares[2]
-    for y in range(len(room)):
+    for y in range(len(background)):
         given, own = frame[y], luma[y]
-        for x in range(room.shape[1]):
+        for x in range(background.shape[1]):
             b, g, r = np.float32(given[x, 0]), np.float32(given[x, 1]), np.float32(given[x, 2])
             own[x] = blue * b + green * g + red * r
-            differs[y, x] = abs(own[x] - room[y, x]) > CHANGES
+            differs[y, x] = abs(own[x] - background[y, x]) > CHANGES
     return luma, differs
 
 
-def _outline(regions: Bytes) -> tuple[Bytes, int, int]:
-    """The outline of regions in a window around them all, and the window's first row and column."""
+def _contour(regions: Bytes) -> tuple[Bytes, int, int]:
+    """The contour of regions in a window around them all, and the window's first row and column."""
     left, top, width, height = cv2.boundingRect(regions)
     left, top = max(left - 1, 0), max(top - 1, 0)
     window = regions[top : top + height + 2, left : left + width + 2]
-    outline = cv2.morphologyEx(window, cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8))
-    return np.asarray(outline, np.uint8), top, left
+    contour = cv2.morphologyEx(window, cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8))
+    return np.asarray(contour, np.uint8), top, left
 
 
 @KERNEL
 def _steeper(
-    outline: Bytes, top: int, left: int, luma: Floats, room: Floats
+    contour: Bytes, top: int, left: int, luma: Floats, background: Floats
 ) -> tuple[float, float]:
-    """By how much brightness is steeper, and flatter, than the room's, summed over an outline."""
+    """How much steeper, and flatter, brightness is than the background's, summed over a contour."""
     steeper, flatter = 0.0, 0.0
-    for i in range(len(outline)):
-        for j in range(outline.shape[1]):
-            if outline[i, j]:
-                more = _slope(luma, top + i, left + j) - _slope(room, top + i, left + j)
+    for i in range(len(contour)):
+        for j in range(contour.shape[1]):
+            if contour[i, j]:
+                more = _slope(luma, top + i, left + j) - _slope(background, top + i, left + j)
                 steeper += max(more, np.float32(0))
                 flatter -= min(more, np.float32(0))
     return steeper, flatter

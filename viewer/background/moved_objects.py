@@ -22,14 +22,14 @@ CALM: Final = 0.9
 RESTLESS: Final = 0.35
 """Less than this share of what is around a thing moves; around a trunk that bends more does."""
 LOOKS: Final = 6
-"""So often within that time the room is looked at."""
+"""So often within that time the background is looked at."""
 SPECKS_PX: Final = 5
 EDGE_PX: Final = 2
 """How far beyond what differs clearly a thing's edge reaches."""
 
 
 class Patch(NamedTuple):
-    """What of the room is another from a frame on."""
+    """What of the background is another from a frame on."""
 
     frame: int
     where: Mask
@@ -40,13 +40,15 @@ class Patch(NamedTuple):
     """(n, 2) likewise."""
 
 
-def patches_of(room: Background, frames: Sequence[Frame], spacing: int, fps: float) -> list[Patch]:
+def patches_of(
+    background: Background, frames: Sequence[Frame], spacing: int, fps: float
+) -> list[Patch]:
     """What comes to rest in a clip, or leaves where it was at rest, in the order of time.
 
-    Where the room was guessed, what is first seen at rest was there from the start.
+    Where the background was guessed, what is first seen at rest was there from the start.
 
     Args:
-        room: Learnt from all the clip.
+        background: Learnt from all the clip.
         frames: Pictures (H, W, 3) from all over it, from its first on.
         spacing: Frames of the clip from one to the next.
         fps: Of the clip.
@@ -55,14 +57,17 @@ def patches_of(room: Background, frames: Sequence[Frame], spacing: int, fps: flo
     found: list[Patch] = []
     if len(frames) < due:
         return found
-    guessed = room.uncertain.copy()
-    even, now = even_light([*frames, np.asarray(np.rint(room.centre), np.uint8)])[:-1], room.centre
+    guessed = background.uncertain.copy()
+    even, now = (
+        even_light([*frames, np.asarray(np.rint(background.centre), np.uint8)])[:-1],
+        background.centre,
+    )
     for start in range(0, len(frames) - due + 1, max(1, due // LOOKS)):
         window = even[start : start + due]
         shown = median(window)
         off = window - shown
         settled = _smooth((np.abs(off @ LUMA) < CHANGES).mean(axis=0) >= CALM)
-        other = _other_things(shown, now, settled)
+        other = _moved_objects(shown, now, settled)
         now = np.where(other[..., None], shown, now)
         spread = spread_of(squares(off), due)
         for where, frame in ((other & guessed, 0), (other & ~guessed, start * spacing)):
@@ -73,11 +78,11 @@ def patches_of(room: Background, frames: Sequence[Frame], spacing: int, fps: flo
 
 
 def patched(state: State, patch: Patch) -> State:
-    """Silhouettes in a room with a patch on it."""
-    room, weight = state.room.copy(), state.weight.copy()
-    room[patch.where] = patch.centre
+    """Silhouettes in a background with a patch on it."""
+    background, weight = state.room.copy(), state.weight.copy()
+    background[patch.where] = patch.centre
     weight[patch.where] = np.float32(1) / patch.spread**2
-    return state._replace(room=room, weight=weight)
+    return state._replace(room=background, weight=weight)
 
 
 def _smooth(mask: Mask) -> Mask:
@@ -85,8 +90,8 @@ def _smooth(mask: Mask) -> Mask:
     return np.asarray(cv2.medianBlur(mask.view(np.uint8), SPECKS_PX) > 0)
 
 
-def _other_things(shown: Floats, now: Floats, settled: Mask) -> Mask:
-    """(H, W) True where what is at rest is not the room as it was.
+def _moved_objects(shown: Floats, now: Floats, settled: Mask) -> Mask:
+    """(H, W) True where what is at rest is not the background as it was.
 
     A region that differs, with all that moves and touches it, is a thing if little of the ring
     around it moves.

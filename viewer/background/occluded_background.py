@@ -1,4 +1,4 @@
-"""The empty room of a busy clip: what nobody hides, and what is never uncovered (3.1.2)."""
+"""The background of a busy clip: what nobody hides, and what is never uncovered (3.1.2)."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -19,7 +19,7 @@ from viewer.background.empty_opening import EDGE_SHARE
 from viewer.background.image_stack import CHANGES, LUMA, Floats, Frame, median, squares
 
 GUESSED: Final = 4.0
-"""Spread of a pixel whose room was guessed, grey levels."""
+"""Spread of a pixel whose background was guessed, grey levels."""
 SEGMENT_SCALE: Final = 300.0
 SEGMENT_SIGMA: Final = 0.8
 LEAST_SEGMENT_PX: Final = 20
@@ -34,15 +34,15 @@ ROAMS: Final = 0.55
 pixel for most of the clip: 0.5 to 2.0 for who crosses a picture, up to 0.5 on the spot."""
 RARELY: Final = 0.1
 """Who is in the median picture and roams leaves the spot for more of the frames than this; what
-changes less often there is room that arms pass, whose own edges are taken for outlines."""
+changes less often there is background that arms pass, whose own edges are taken for contours."""
 LEAST_BLOB: Final = 0.2
 """Less than this share of the largest change at a place does not tell where the middle is."""
 AROUND: Final = 0.25
-"""Share of the picture's height in which outlines speak for each other: half a person."""
+"""Share of the picture's height in which contours speak for each other: half a person."""
 MOST_HIDDEN: Final = 0.25
 """Nobody hides more of a picture than this; then several people roam in it."""
 OUTSIDE: Final = 0.5
-"""A segment that lies outside of where people are to this share is room ..."""
+"""A segment that lies outside of where people are to this share is background ..."""
 AT_EDGE_PX: Final = 8
 """... and so is one that reaches the picture's border there with so many pixels."""
 INSIDE: Final = 0.3
@@ -50,7 +50,7 @@ INSIDE: Final = 0.3
 SHOWN: Final = 0.1
 """What frames show in less than this share may as well be clothes of the wall's brightness."""
 ALIKE: Final = 2.5
-"""Spreads of a segment's colour within which a pixel of it is believed to be room too."""
+"""Spreads of a segment's colour within which a pixel of it is believed to be background too."""
 
 
 class NoSegments(RuntimeError):
@@ -58,11 +58,11 @@ class NoSegments(RuntimeError):
 
 
 def learn_uncovered(frames: Sequence[Frame]) -> Background:
-    """The room from pictures in which somebody may be always in view.
+    """The background from pictures in which somebody may be always in view.
 
-    What does not change is room, unless it is hidden: a place where what changes stays put has
-    somebody in the median picture, and so has one where the outlines of what changes belong to
-    the median as much as to the frames. There the median is believed only in segments of one
+    What does not change is background, unless it is hidden: a place where what changes stays put
+    has somebody in the median picture, and so has one where the contours of what changes belong
+    to the median as much as to the frames. There the median is believed only in segments of one
     colour that reach beyond the place. What is left is drawn from both sides, and gives way to
     what frames show if enough of them come near that; else the pixel was never uncovered and
     is flagged.
@@ -74,8 +74,8 @@ def learn_uncovered(frames: Sequence[Frame]) -> Background:
         ValueError: When there is no frame.
         NoSegments: When scikit-image is not installed.
 
-    Source: Demir 2006, section 3.1.2 (T7). The print takes what never changes for room, and with
-    it whoever never moves; hidden places are our addition.
+    Source: Demir 2006, section 3.1.2 (T7). The print takes what never changes for background, and
+    with it whoever never moves; hidden places are our addition.
     """
     if not frames:
         raise ValueError("a background needs at least 1 frame, got 0")
@@ -85,7 +85,7 @@ def learn_uncovered(frames: Sequence[Frame]) -> Background:
     labels = segments(centre)
     for stays in (True, False):
         held = _held(centre, labels, _occupied(even, centre, away, stays))
-        room, uncertain = _filled(even, centre, held)
+        background, uncertain = _filled(even, centre, held)
         if uncertain.mean() <= MOST_HIDDEN:
             break
     calm = np.where((away < CHANGES)[..., None], even - centre, 0.0).astype(np.float32)
@@ -93,18 +93,18 @@ def learn_uncovered(frames: Sequence[Frame]) -> Background:
     if held.any() and not held.all():
         spread[held] = np.median(spread[~held], axis=0)
     spread[uncertain] = np.maximum(spread[uncertain], GUESSED)
-    return Background(room, spread, uncertain)
+    return Background(background, spread, uncertain)
 
 
 def _filled(even: Floats, centre: Floats, held: Mask) -> tuple[Floats, Mask]:
-    """The room (H, W, 3) with what is held filled, and where hardly a frame shows that."""
+    """The background (H, W, 3) with what is held filled, and where hardly a frame shows that."""
     guess = _bridge(centre, held)
     near = np.abs((even - guess) @ LUMA) < CHANGES
     shown = near.sum(axis=0)
     mean = (even * near[..., None]).sum(axis=0) / np.maximum(shown, 1)[..., None]
     uncertain = held & (shown < SHOWN * len(even))
-    room = np.where(held[..., None], np.where(uncertain[..., None], guess, mean), centre)
-    return room.astype(np.float32), uncertain
+    background = np.where(held[..., None], np.where(uncertain[..., None], guess, mean), centre)
+    return background.astype(np.float32), uncertain
 
 
 def segments(picture: Floats) -> NDArray[np.int64]:
@@ -138,8 +138,8 @@ def _held(centre: Floats, labels: NDArray[np.int64], hull: Mask) -> Mask:
     edge[1:-1, 1:-1] = False
     at_edge = np.bincount(labels[edge & ~hull], minlength=len(inside)) >= AT_EDGE_PX
     reaches_out = at_edge | (inside < 1 - OUTSIDE)
-    room = reaches_out[labels] & _alike(centre, labels, ~hull)
-    return np.asarray((hull & ~room) | (~reaches_out & (inside > INSIDE))[labels])
+    background = reaches_out[labels] & _alike(centre, labels, ~hull)
+    return np.asarray((hull & ~background) | (~reaches_out & (inside > INSIDE))[labels])
 
 
 def _alike(centre: Floats, labels: NDArray[np.int64], where: Mask) -> Mask:
@@ -162,7 +162,7 @@ def _occupied(even: Floats, centre: Floats, away: Floats, stays: bool) -> Mask:
         even: (n, H, W, 3) frames under one light.
         centre: (H, W, 3), their median.
         away: (n, H, W), how far they are from it.
-        stays: What stays put counts; otherwise only what its outlines tell.
+        stays: What stays put counts; otherwise only what its contours tell.
     """
     flicker = np.minimum(NOISES * np.quantile(away, QUIET, axis=0), MOST_FLICKER)
     changed = np.stack([large_regions(off > CHANGES + flicker) for off in away])
@@ -180,17 +180,17 @@ def _occupied(even: Floats, centre: Floats, away: Floats, stays: bool) -> Mask:
 
 
 def _in_median(even: Floats, centre: Floats, changed: NDArray[np.uint8]) -> Mask:
-    """(H, W) True where outlines of what changes are in the median picture, not in the frames."""
+    """(H, W) True where contours of what changes are in the median picture, not in the frames."""
     slope = slopes(np.asarray(centre @ LUMA, np.float32))
     in_median, in_frames = np.zeros_like(slope), np.zeros_like(slope)
     for frame, own in zip(even, changed, strict=True):
-        outline = cv2.morphologyEx(own, cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8)) > 0
-        steeper = np.where(outline, slopes(np.asarray(frame @ LUMA, np.float32)) - slope, 0)
+        contour = cv2.morphologyEx(own, cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8)) > 0
+        steeper = np.where(contour, slopes(np.asarray(frame @ LUMA, np.float32)) - slope, 0)
         in_frames += steeper.clip(min=0)
         in_median -= steeper.clip(max=0)
     reach = 2 * round(AROUND * len(slope) / 2) + 1
-    told, due = (cv2.blur(sums, (reach, reach)) for sums in (in_median, in_frames))
-    return np.asarray(told > EDGE_SHARE * due)
+    held, due = (cv2.blur(sums, (reach, reach)) for sums in (in_median, in_frames))
+    return np.asarray(held > EDGE_SHARE * due)
 
 
 def _travelled(changed: NDArray[np.uint8], own: Mask) -> float:

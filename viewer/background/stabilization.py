@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from viewer.background.image_stack import LUMA, Floats, Frame
 
 EDGE_POINTS: Final = 4000
-"""So many pixels, where the room is steepest, tell where a frame lies."""
+"""So many pixels, where the background is steepest, tell where a frame lies."""
 COARSE_PX, FINE_PX = 2.0, 1.0
 """How far pictures are blurred before they are laid over each other, in two rounds."""
 WIDE_PX: Final = 6.0
 """What changes over more than this is light, not edges."""
 ROUNDS: Final = 4
 UNLIKE: Final = 15.0
-"""Grey levels of difference beyond which an edge is not the room's."""
+"""Grey levels of difference beyond which an edge is not the background's."""
 CLEAR: Final = 6.0
 """The same of a pixel's light."""
 STIFF: Final = 500.0
@@ -35,7 +35,7 @@ LIGHT_STEP: Final = 7
 
 
 class Due(NamedTuple):
-    """What a frame that lies where the room does shows at the steep pixels, at one blur."""
+    """What a frame that lies where the background does shows at the steep pixels, at one blur."""
 
     edges: Floats
     """(n,) grey levels beside the slow light."""
@@ -44,17 +44,17 @@ class Due(NamedTuple):
 
 
 class Anchor(NamedTuple):
-    """The room that frames are laid over."""
+    """The background that frames are laid over."""
 
     luma: Floats
-    """(H, W) brightness of the room."""
+    """(H, W) brightness of the background."""
     steep: NDArray[np.intp]
     """(n, 2) rows and columns of EDGE_POINTS pixels."""
     due: tuple[Due, ...]
     """For COARSE_PX and FINE_PX."""
 
 
-class Place(NamedTuple):
+class Alignment(NamedTuple):
     """Where a frame lies, and its light."""
 
     right_px: float
@@ -62,7 +62,7 @@ class Place(NamedTuple):
     """By how much the frame is to be moved."""
     gain: float
     offset: float
-    """Its brightness is gain times the room's and offset, grey levels."""
+    """Its brightness is gain times the background's and offset, grey levels."""
 
 
 def anchored(sample: Sequence[Frame]) -> Anchor | None:
@@ -73,15 +73,15 @@ def anchored(sample: Sequence[Frame]) -> Anchor | None:
     """
     lumas = [np.asarray(frame @ LUMA, np.float32) for frame in sample]
     anchor = _anchor(np.median(lumas, axis=0).astype(np.float32))
-    some = [place_of(anchor, luma)[:2] for luma in lumas[::ASKED]]
+    some = [alignment_of(anchor, luma)[:2] for luma in lumas[::ASKED]]
     if np.quantile(np.abs(some).max(axis=1), 0.9) < TREMBLES_PX:
         return None
-    shifts = [place_of(anchor, luma)[:2] for luma in lumas]
+    shifts = [alignment_of(anchor, luma)[:2] for luma in lumas]
     moved = [_moved(luma, *shift) for luma, shift in zip(lumas, shifts, strict=True)]
     return _anchor(np.median(moved, axis=0).astype(np.float32))
 
 
-def place_of(anchor: Anchor, luma: Floats) -> Place:
+def alignment_of(anchor: Anchor, luma: Floats) -> Alignment:
     """Where a frame lies: least squares over the edges, what does not fit set aside."""
     shift = np.zeros(2)
     limit = FARTHEST * len(luma)
@@ -90,18 +90,20 @@ def place_of(anchor: Anchor, luma: Floats) -> Place:
             step = _nearer(edges, anchor.steep, due.edges, due.slopes, shift)
             shift = np.clip(shift + step, -limit, limit)
     gain, offset = _light(anchor.luma, _moved(luma, *shift))
-    return Place(float(shift[0]), float(shift[1]), gain, offset)
+    return Alignment(float(shift[0]), float(shift[1]), gain, offset)
 
 
-def laid(frame: Frame, place: Place) -> Frame:
-    """The frame where the room is, under its light."""
-    moved = _moved(frame.astype(np.float32), place.right_px, place.down_px)
-    return np.asarray(np.clip(np.rint((moved - place.offset) / place.gain), 0, 255), np.uint8)
+def aligned(frame: Frame, alignment: Alignment) -> Frame:
+    """The frame where the background is, under its light."""
+    moved = _moved(frame.astype(np.float32), alignment.right_px, alignment.down_px)
+    return np.asarray(
+        np.clip(np.rint((moved - alignment.offset) / alignment.gain), 0, 255), np.uint8
+    )
 
 
-def back(mask: NDArray[np.bool_], place: Place) -> NDArray[np.bool_]:
+def unaligned(mask: NDArray[np.bool_], alignment: Alignment) -> NDArray[np.bool_]:
     """A silhouette of a laid frame where the frame itself has it."""
-    turn = np.array([[1.0, 0.0, -place.right_px], [0.0, 1.0, -place.down_px]])
+    turn = np.array([[1.0, 0.0, -alignment.right_px], [0.0, 1.0, -alignment.down_px]])
     size = (mask.shape[1], mask.shape[0])
     return cv2.warpAffine(mask.view(np.uint8), turn, size, flags=cv2.INTER_NEAREST) > 0
 
@@ -128,7 +130,7 @@ def _edges(luma: Floats) -> list[Floats]:
 def _nearer(edges: Any, steep: Any, due: Any, slopes: Any, shift: Any) -> Any:
     """How much further a picture is to be moved, (2,): a step of reweighted least squares."""
     height, width = edges.shape
-    matrix, told = STIFF * np.eye(2), np.zeros(2)
+    matrix, target = STIFF * np.eye(2), np.zeros(2)
     for n in range(len(steep)):
         x = min(max(steep[n, 1] - shift[0], 0.0), width - 1.0)
         y = min(max(steep[n, 0] - shift[1], 0.0), height - 1.0)
@@ -139,10 +141,10 @@ def _nearer(edges: Any, steep: Any, due: Any, slopes: Any, shift: Any) -> Any:
         off = (1.0 - down) * above + down * below - due[n]
         weight = 1.0 / (1.0 + (off / UNLIKE) ** 2) ** 2
         for i in range(2):
-            told[i] += weight * slopes[n, i] * off
+            target[i] += weight * slopes[n, i] * off
             for j in range(2):
                 matrix[i, j] += weight * slopes[n, i] * slopes[n, j]
-    return np.linalg.solve(matrix, told)
+    return np.linalg.solve(matrix, target)
 
 
 def _moved(picture: Floats, right_px: float, down_px: float) -> Floats:
@@ -152,9 +154,9 @@ def _moved(picture: Floats, right_px: float, down_px: float) -> Floats:
     return np.asarray(cv2.warpAffine(picture, turn, size, borderMode=border), np.float32)
 
 
-def _light(room: Floats, luma: Floats) -> tuple[float, float]:
-    """Gain and offset of a frame's brightness, what is not room set aside."""
-    x, y = room.ravel()[::LIGHT_STEP].astype(np.float64), luma.ravel()[::LIGHT_STEP]
+def _light(background: Floats, luma: Floats) -> tuple[float, float]:
+    """Gain and offset of a frame's brightness, what is not background set aside."""
+    x, y = background.ravel()[::LIGHT_STEP].astype(np.float64), luma.ravel()[::LIGHT_STEP]
     weight, gain, offset = np.ones(len(x)), 1.0, 0.0
     for _ in range(2 * ROUNDS):
         total, mean_x, mean_y = weight.sum(), weight @ x, weight @ y

@@ -1,4 +1,4 @@
-"""What share of a pixel the body covers: a mix of its colour nearby and the shaded room."""
+"""What share of a pixel the body covers: a mix of its colour nearby and the shaded background."""
 
 from typing import Final
 
@@ -32,11 +32,11 @@ SHARES: Final = 2
 FACTS: Final = 8
 """What is said of a pixel of the band beside: see `_tell`."""
 COLOUR: Final = np.float32(0.4)
-"""What colour counts beside brightness at an outline: cameras and codecs blur colour twofold."""
+"""What colour counts beside brightness at a contour: cameras and codecs blur colour twofold."""
 NOISE: Final = np.float32(25.0)
-"""Grey levels squared: where body and room differ by no more, coverage says nothing."""
+"""Grey levels squared: where body and background differ by no more, coverage says nothing."""
 DIMMEST, BRIGHTEST = np.float32(0.5), np.float32(1.1)
-"""Shade that is believed of the room beside a body."""
+"""Shade that is believed of the background beside a body."""
 HALF: Final = np.float32(0.5)
 """Rounds."""
 LEAST, MOST = np.float32(-0.5), np.float32(1.5)
@@ -48,19 +48,21 @@ FEW: Final = np.float32(1e-3)
 LEVELS, CONTRAST = np.float32(20.0), np.float32(100.0)
 """Grey levels that are worth a one, and beyond which contrast says no more."""
 SPREADS, FAR = np.float32(8.0), np.float32(20.0)
-"""Spreads from the room that are worth a one, and beyond which distance says no more."""
+"""Spreads from the background that are worth a one, and beyond which distance says no more."""
 
 
 @KERNEL
-def sides_of(frame: Frame, room: Floats, gain: Floats, inside: Bytes, top: int, left: int) -> Bytes:
-    """(h, w, SIDES): colour and a one where the body is sure, light seen and due where the room is.
+def sides_of(
+    frame: Frame, background: Floats, gain: Floats, inside: Bytes, top: int, left: int
+) -> Bytes:
+    """(h, w, SIDES): colour and a one inside the body, light seen and due inside the background.
 
     `inside` counts the mask in every pixel's 3x3 neighbourhood, from (top, left) of the frame on.
     """
     height, width = inside.shape
     out, light = np.zeros((height, width, SIDES), np.uint8), light_of(gain)
     for y in range(height):
-        given, empty, side, row = frame[y + top], room[y + top], inside[y], out[y]
+        given, empty, side, row = frame[y + top], background[y + top], inside[y], out[y]
         for x in range(width):
             u = x + left
             b, g, r = np.float32(given[u, 0]), np.float32(given[u, 1]), np.float32(given[u, 2])
@@ -81,7 +83,7 @@ def sides_of(frame: Frame, room: Floats, gain: Floats, inside: Bytes, top: int, 
 @KERNEL
 def covered(
     frame: Frame,
-    room: Floats,
+    background: Floats,
     weight: Floats,
     gain: Floats,
     known: Floats,
@@ -89,13 +91,13 @@ def covered(
     reach: Bytes,
     corner: tuple[int, int],
 ) -> tuple[Floats, NDArray[np.int32], Floats]:
-    """What share of a pixel the body covers, and how far it is from the shaded room.
+    """What share of a pixel the body covers, and how far it is from the shaded background.
 
     Args:
         frame: (H, W, 3).
-        room: (H, W, 3) what it shows when empty, grey levels.
+        background: (H, W, 3) what it shows when empty, grey levels.
         weight: (H, W, 2) 1 / spread^2 of brightness and colour.
-        gain: (3,) how much brighter than the room the frame is.
+        gain: (3,) how much brighter than the background the frame is.
         known: (SHADES,) whose colours are whose.
         sides: (h, w, SIDES) means of `sides_of` over a neighbourhood.
         reach: (h, w) 1 where to look, 2 in the band, of whose pixels more is said.
@@ -112,7 +114,7 @@ def covered(
     places, facts = np.empty((count, 2), np.int32), np.empty((count, FACTS), np.float32)
     n, light = 0, light_of(gain)
     for y in range(height):
-        given, empty, sure = frame[y + top], room[y + top], weight[y + top]
+        given, empty, weights = frame[y + top], background[y + top], weight[y + top]
         for x in range(width):
             if not reach[y, x]:
                 continue
@@ -125,9 +127,9 @@ def covered(
             shares[y, x, 1] = min(abs(off[0]) / LEVELS, np.float32(2))
             if reach[y, x] == 2:
                 _tell(facts[n], off, full, share, beside)
-                facts[n, 4] = _spreads(np.sqrt(unshaded(given, empty, sure, light, u)))
-                facts[n, 5] = _spreads(brightness(given, empty, sure, light, u))
-                facts[n, 6] = _spreads(np.sqrt(colour(given, empty, sure, light, u)))
+                facts[n, 4] = _spreads(np.sqrt(unshaded(given, empty, weights, light, u)))
+                facts[n, 5] = _spreads(brightness(given, empty, weights, light, u))
+                facts[n, 6] = _spreads(np.sqrt(colour(given, empty, weights, light, u)))
                 facts[n, 7] = known[shade_of(given, light, u)]
                 places[n, 0], places[n, 1] = y, x
                 n += 1
@@ -136,10 +138,10 @@ def covered(
 
 @INLINE
 def _tell(out: Floats, off: Colour, full: Colour, share: np.float32, beside: Beside) -> None:
-    """Contrast of body and room, in brightness alone, what is off the line between, and shade.
+    """Contrast of body and background, in brightness alone, what is off their line, and shade.
 
-    `covered` adds the distance from the room with shadows forgiven, how much brighter and how much
-    another colour that is, and whose colour.
+    `covered` adds the distance from the background with shadows forgiven, how much brighter and
+    how much another colour that is, and whose colour.
     """
     square = _dot(full, full)
     third = max(_dot(off, off) - share * share * square, np.float32(0))
@@ -164,7 +166,7 @@ def _level(b: np.float32, g: np.float32, r: np.float32) -> np.uint8:
 def _due(
     empty: Floats, light: Triple, x: int, shade: np.float32
 ) -> tuple[np.float32, np.float32, np.float32]:
-    """What a pixel of a row of the room shows in this light and shade."""
+    """What a pixel of a row of the background shows in this light and shade."""
     return (
         min(empty[x, 0] * light[0], WHITE) * shade,
         min(empty[x, 1] * light[1], WHITE) * shade,
@@ -174,7 +176,7 @@ def _due(
 
 @INLINE
 def _beside(sides: Floats) -> Beside:
-    """The body's colour in a neighbourhood, whether there is any, and the room's shade there."""
+    """The body's colour in a neighbourhood, whether there is any, and the shade there."""
     shade = ONE
     if sides[5] > FEW:
         shade = min(max(sides[4] / sides[5], DIMMEST), BRIGHTEST)
@@ -187,7 +189,7 @@ def _beside(sides: Floats) -> Beside:
 def _against(
     given: Bytes, empty: Floats, light: Triple, beside: Beside, x: int
 ) -> tuple[Colour, Colour]:
-    """How a pixel, and how the body, differs from the room in its shade."""
+    """How a pixel, and how the body, differs from the background in its shade."""
     body_b, body_g, body_r, _, shade = beside
     b, g, r = _due(empty, light, x, shade)
     seen_b, seen_g = np.float32(given[x, 0]), np.float32(given[x, 1])

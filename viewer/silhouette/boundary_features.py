@@ -1,4 +1,4 @@
-"""What tells body from room around the outline of a first guess, and where that was in doubt."""
+"""What tells body from background around a first guess's contour, and where it was in doubt."""
 
 from typing import Final
 
@@ -14,11 +14,11 @@ ROWS: Final = 240
 """Of a taller picture every other pixel, or every third, is a neighbour, so that as much is seen
 of the body around a pixel."""
 SIDE_SHARE: Final = 1 / 60
-"""How far around a pixel the colours of body and room are asked for, of the picture's height."""
+"""How far around a pixel body and background are asked for colours, of the picture's height."""
 COUNTED: Final = (3, 7)
 """How far the neighbourhoods reach whose share of body is a clue."""
 NEAR_SHARE: Final = 1 / 120
-"""How far from the guess's outline pixels are looked at, of the picture's height."""
+"""How far from the guess's contour pixels are looked at, of the picture's height."""
 CROSS: Final = np.array(
     [(i, j) for i in range(-2, 3) for j in range(-2, 3) if abs(i) + abs(j) <= 2], np.int64
 )
@@ -29,7 +29,7 @@ CLUES: Final = SHARES * len(CROSS) + len(COUNTED) + FACTS
 
 def clues_of(
     frame: Frame,
-    room: Floats,
+    background: Floats,
     weight: Floats,
     gain: Floats,
     known: Floats,
@@ -40,9 +40,9 @@ def clues_of(
 
     Args:
         frame: (H, W, 3).
-        room: (H, W, 3) what it shows when empty, grey levels.
+        background: (H, W, 3) what it shows when empty, grey levels.
         weight: (H, W, 2) 1 / spread^2 of brightness and colour.
-        gain: (3,) how much brighter than the room the frame is.
+        gain: (3,) how much brighter than the background the frame is.
         known: (SHADES,) whose colours are whose.
         mask: (H, W) 1 where the body is guessed.
         doubt: (H, W) 1 where the guess was not sure.
@@ -59,10 +59,12 @@ def clues_of(
     own = mask[window].copy()
     band = cv2.morphologyEx(own, cv2.MORPH_GRADIENT, _square(near)) | doubt[window]
     reach = cv2.dilate(band, _square(2 * stride)) + band
-    sides = sides_of(frame, room, gain, counts_3x3(own), top, left)
+    sides = sides_of(frame, background, gain, counts_3x3(own), top, left)
     size = (2 * round(SIDE_SHARE * rows) + 1,) * 2
     means = cv2.boxFilter(sides, cv2.CV_32F, size, borderType=cv2.BORDER_REPLICATE)
-    shares, places, facts = covered(frame, room, weight, gain, known, means, reach, (top, left))
+    shares, places, facts = covered(
+        frame, background, weight, gain, known, means, reach, (top, left)
+    )
     own *= np.uint8(255)
     counts = [_mean(own, 2 * far * stride + 1) for far in COUNTED]
     clues = _gathered(places, shares, facts, *counts, stride, (top, left))

@@ -1,4 +1,4 @@
-"""Which colours the body wears and which the room around it has, learnt while one looks."""
+"""Which colours the body wears and which the background around it has, learnt while one looks."""
 
 from typing import Final
 
@@ -13,18 +13,18 @@ KEPT: Final = np.float32(0.95)
 """Share of the counts that a frame leaves to the next: 20 frames are remembered."""
 FEW: Final = np.float32(10.0)
 """Pixels of a colour that must have been seen before it says much."""
-SURELY_ROOM: Final = np.float32(2.5)
-"""Spreads from the room, shadows forgiven, below which a pixel's colour counts as the room's."""
+SURELY_BACKGROUND: Final = np.float32(2.5)
+"""Spreads from the background, shadows forgiven, below which a pixel's colour counts as its own."""
 
 
 def fresh() -> Floats:
-    """(2, SHADES) counts of the room's and of the body's colours, before anybody came."""
+    """(2, SHADES) counts of the background's and of the body's colours, before anybody came."""
     return np.zeros((2, SHADES), np.float32)
 
 
 @KERNEL
 def familiar(counts: Floats) -> Floats:
-    """(SHADES,) from -1, only the room has this colour, to 1, only the body has it."""
+    """(SHADES,) from -1, only the background has this colour, to 1, only the body has it."""
     return (counts[1] - counts[0]) / (counts[0] + counts[1] + FEW)
 
 
@@ -33,7 +33,7 @@ def counted(
     counts: Floats,
     inside: Bytes,
     frame: Frame,
-    room: Floats,
+    background: Floats,
     weight: Floats,
     gain: Floats,
     cells: Bytes,
@@ -44,13 +44,13 @@ def counted(
     out, light = counts * KEPT, light_of(gain)
     for i, j in np.argwhere(cells):
         for y in range(i * cell, min((i + 1) * cell, height)):
-            given, empty, sure = frame[y], room[y], weight[y]
+            given, empty, weights = frame[y], background[y], weight[y]
             # every other pixel, like a chessboard, says as much
             for x in range(j * cell + (y & 1), min((j + 1) * cell, width), 2):
                 if inside[y, x] == 9:
                     out[1, shade_of(given, light, x)] += 1
                 elif inside[y, x] == 0:
-                    far = unshaded(given, empty, sure, light, x)
-                    if far < SURELY_ROOM * SURELY_ROOM:
+                    far = unshaded(given, empty, weights, light, x)
+                    if far < SURELY_BACKGROUND * SURELY_BACKGROUND:
                         out[0, shade_of(given, light, x)] += 1
     return out

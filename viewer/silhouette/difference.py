@@ -1,4 +1,4 @@
-"""How far every pixel is from the empty room, shadows forgiven (section 1: subtraction)."""
+"""How far every pixel is from the background, shadows forgiven (section 1: subtraction)."""
 
 from typing import Final
 
@@ -18,7 +18,7 @@ BLUE, GREEN, RED = np.float32(0.114), np.float32(0.587), np.float32(0.299)
 ONE, WHITE = np.float32(1.0), np.float32(255.0)
 
 DIFFERS: Final = np.float32(4.75)
-"""Distance from the room, in spreads, at which a pixel is as likely person as room."""
+"""Distance from the background, in spreads, at which a pixel is as likely person as background."""
 SEED: Final = np.float32(6.0)
 """Distance that only things reach: where it is passed, a region is looked for."""
 DARKEST: Final = np.float32(0.7)
@@ -27,35 +27,35 @@ SHADE: Final = np.float32(3.0)
 """Spreads by which a shadow may change the colour at equal brightness."""
 STEEP: Final = np.float32(0.25)
 """Evidence of one spread."""
-SURE: Final = np.float32(2.0)
+MOST_EVIDENCE: Final = np.float32(2.0)
 """Evidence stops here, so that one pixel cannot outvote its neighbours."""
 KNOWN: Final = np.float32(1.0)
 """Evidence of a colour that only the body has."""
 PULL: Final = np.float32(0.3)
 """What a neighbour at an edge weighs against a pixel's own evidence."""
-UNSURE: Final = np.float32(1.0)
+DOUBTFUL: Final = np.float32(1.0)
 """A pixel and its neighbours that together speak less loudly are looked at again."""
 CORNER: Final = np.float32(0.7)
 """What a neighbour at a corner weighs against one at an edge."""
 FOLLOW: Final = np.float32(0.2)
-"""Share of a difference that the room takes on then: a time constant of 2.4 s at 15 fps."""
+"""Share of a difference that the background takes on then: a time constant of 2.4 s at 15 fps."""
 
 
 @KERNEL
-def seeds(frame: Frame, room: Floats, weight: Floats, gain: Floats, cell: int) -> Bytes:
-    """(rows, columns) of cells, 1 where one of two pixels of a cell is surely no room."""
+def seeds(frame: Frame, background: Floats, weight: Floats, gain: Floats, cell: int) -> Bytes:
+    """(rows, columns) of cells, 1 where one of two pixels of a cell is surely no background."""
     height, width = frame.shape[:2]
     out = np.zeros(((height + cell - 1) // cell, (width + cell - 1) // cell), np.uint8)
     light = light_of(gain)
     for i in range(out.shape[0]):
         for k in (0, cell // 2):
             y = min(i * cell + k, height - 1)
-            given, empty, sure, row = frame[y], room[y], weight[y], out[i]
+            given, empty, weights, row = frame[y], background[y], weight[y], out[i]
             for j in range(len(row)):
                 x = min(j * cell + k, width - 1)
                 # whatever a shadow explains, it is no farther than without: most stop here
-                if not row[j] and _distance(given, empty, sure, light, x) > SEED * SEED:
-                    row[j] = unshaded(given, empty, sure, light, x) > SEED * SEED
+                if not row[j] and _distance(given, empty, weights, light, x) > SEED * SEED:
+                    row[j] = unshaded(given, empty, weights, light, x) > SEED * SEED
     return out
 
 
@@ -64,7 +64,7 @@ def label(
     mask: Bytes,
     doubt: Bytes,
     frame: Frame,
-    room: Floats,
+    background: Floats,
     weight: Floats,
     gain: Floats,
     known: Floats,
@@ -80,11 +80,11 @@ def label(
     places, light = np.argwhere(cells), light_of(gain)
     for i, j in places:
         for y in range(i * cell, min((i + 1) * cell, height)):
-            given, empty, sure = frame[y], room[y], weight[y]
+            given, empty, weights = frame[y], background[y], weight[y]
             for x in range(j * cell, min((j + 1) * cell, width)):
-                far = np.sqrt(unshaded(given, empty, sure, light, x))
-                told = (far - DIFFERS) * STEEP + KNOWN * known[shade_of(given, light, x)]
-                evidence[y, x] = min(max(told, -SURE), SURE)
+                far = np.sqrt(unshaded(given, empty, weights, light, x))
+                total = (far - DIFFERS) * STEEP + KNOWN * known[shade_of(given, light, x)]
+                evidence[y, x] = min(max(total, -MOST_EVIDENCE), MOST_EVIDENCE)
     for i, j in places:
         for y in range(i * cell, min((i + 1) * cell, height)):
             up, down = max(y - 1, 0), min(y + 1, height - 1)
@@ -93,26 +93,26 @@ def label(
                 edges = evidence[up, x] + evidence[down, x] + evidence[y, left] + evidence[y, right]
                 corners = evidence[up, left] + evidence[up, right]
                 corners += evidence[down, left] + evidence[down, right]
-                told = evidence[y, x] + PULL * (edges + CORNER * corners)
-                mask[y, x], doubt[y, x] = told > 0, abs(told) < UNSURE
+                total = evidence[y, x] + PULL * (edges + CORNER * corners)
+                mask[y, x], doubt[y, x] = total > 0, abs(total) < DOUBTFUL
 
 
 @KERNEL
 def followed(
     frame: Frame,
-    room: Floats,
+    background: Floats,
     weight: Floats,
     gain: Floats,
     corners: tuple[int, int, int, int],
 ) -> Floats:
-    """The room, a little nearer to what a frame shows outside (left, right, top, bottom)."""
+    """The background, a little nearer to what a frame shows outside (left, right, top, bottom)."""
     height, width = frame.shape[:2]
     left, right, top, bottom = corners
-    out, light = room.copy(), light_of(gain)
+    out, light = background.copy(), light_of(gain)
     for y in range(height):
-        given, empty, sure, now = frame[y], room[y], weight[y], out[y]
+        given, empty, weights, now = frame[y], background[y], weight[y], out[y]
         for x in range(width):
-            calm = _distance(given, empty, sure, light, x) < DIFFERS * DIFFERS
+            calm = _distance(given, empty, weights, light, x) < DIFFERS * DIFFERS
             near = (left <= x) & (x <= right) & (top <= y) & (y <= bottom)
             rate = FOLLOW if calm & (not near) else np.float32(0)
             b, g, r = _off(given, empty, light, x)
@@ -129,42 +129,46 @@ def light_of(gain: Floats) -> Triple:
 
 
 @INLINE
-def _off(given: Bytes, room: Floats, light: Triple, x: int) -> Triple:
-    """How a pixel of a row differs from the room in this light, per channel."""
+def _off(given: Bytes, background: Floats, light: Triple, x: int) -> Triple:
+    """How a pixel of a row differs from the background in this light, per channel."""
     return (
-        np.float32(given[x, 0]) - min(room[x, 0] * light[0], WHITE),
-        np.float32(given[x, 1]) - min(room[x, 1] * light[1], WHITE),
-        np.float32(given[x, 2]) - min(room[x, 2] * light[2], WHITE),
+        np.float32(given[x, 0]) - min(background[x, 0] * light[0], WHITE),
+        np.float32(given[x, 1]) - min(background[x, 1] * light[1], WHITE),
+        np.float32(given[x, 2]) - min(background[x, 2] * light[2], WHITE),
     )
 
 
 @INLINE
-def _distance(given: Bytes, room: Floats, weight: Floats, light: Triple, x: int) -> np.float32:
-    """How far a pixel of a row is from the room, in spreads squared."""
-    b, g, r = _off(given, room, light, x)
+def _distance(
+    given: Bytes, background: Floats, weight: Floats, light: Triple, x: int
+) -> np.float32:
+    """How far a pixel of a row is from the background, in spreads squared."""
+    b, g, r = _off(given, background, light, x)
     luma = BLUE * b + GREEN * g + RED * r
     return luma * luma * weight[x, 0] + _square(b - luma, g - luma, r - luma) * weight[x, 1]
 
 
 @INLINE
-def brightness(given: Bytes, room: Floats, weight: Floats, light: Triple, x: int) -> np.float32:
-    """How much brighter than the room a pixel of a row is, in spreads."""
-    b, g, r = _off(given, room, light, x)
+def brightness(
+    given: Bytes, background: Floats, weight: Floats, light: Triple, x: int
+) -> np.float32:
+    """How much brighter than the background a pixel of a row is, in spreads."""
+    b, g, r = _off(given, background, light, x)
     return (BLUE * b + GREEN * g + RED * r) * np.sqrt(weight[x, 0])
 
 
 @INLINE
-def colour(given: Bytes, room: Floats, weight: Floats, light: Triple, x: int) -> np.float32:
-    """How far a pixel of a row is from the room by colour alone, in spreads squared."""
-    b, g, r = _off(given, room, light, x)
+def colour(given: Bytes, background: Floats, weight: Floats, light: Triple, x: int) -> np.float32:
+    """How far a pixel of a row is from the background by colour alone, in spreads squared."""
+    b, g, r = _off(given, background, light, x)
     luma = BLUE * b + GREEN * g + RED * r
     return _square(b - luma, g - luma, r - luma) * weight[x, 1]
 
 
 @INLINE
-def unshaded(given: Bytes, room: Floats, weight: Floats, light: Triple, x: int) -> np.float32:
-    """The same, but by colour alone where a soft shadow may lie: the room, only darker."""
-    b, g, r = _off(given, room, light, x)
+def unshaded(given: Bytes, background: Floats, weight: Floats, light: Triple, x: int) -> np.float32:
+    """The same, but by colour alone where a soft shadow may lie: the background, only darker."""
+    b, g, r = _off(given, background, light, x)
     # without the casts numba would go on in doubles
     due_b, due_g = np.float32(given[x, 0]) - b, np.float32(given[x, 1]) - g
     due_r = np.float32(given[x, 2]) - r
@@ -183,7 +187,7 @@ def _square(b: np.float32, g: np.float32, r: np.float32) -> np.float32:
 
 @INLINE
 def shade_of(given: Bytes, light: Triple, x: int) -> int:
-    """Number of a pixel's colour, under the room's light."""
+    """Number of a pixel's colour, under the background's light."""
     b = np.float32(given[x, 0]) / light[0]
     g = np.float32(given[x, 1]) / light[1]
     r = np.float32(given[x, 2]) / light[2]

@@ -1,4 +1,4 @@
-"""A small network that tells body from room at a pixel, learnt from clips whose masks are known."""
+"""A small network that tells body from background at a pixel, trained on clips of known masks."""
 
 import zipfile
 from functools import cache
