@@ -7,7 +7,7 @@ import threading
 import time
 from typing import Final
 
-from animator.page.inset import limb_ends, limb_outlines
+from animator.page.inset import limb_contours, limb_ends
 from animator.page.live import LivePage
 from animator.scene import Figure, Snapshot, limb_shapes
 from common.body.body import rest_pose
@@ -15,7 +15,7 @@ from common.body.proportions import thesis_bdp
 from common.bus.bus import Bus, open_client
 from common.bus.control_messages import Cameras, Pulse
 from common.bus.messages import Body, Picture, Posture, Report
-from common.bus.process import READY_S, Heart, Place, process
+from common.bus.process import READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
 from common.rig.camera import Rig
@@ -31,7 +31,7 @@ MOST_REPORTS: Final = 16
 log = logging.getLogger(__name__)
 
 
-class Ears:
+class Subscriber:
     """All that the page shows, as it comes in."""
 
     def __init__(self, bus: Bus) -> None:
@@ -68,26 +68,28 @@ class Ears:
         return self._snapshot
 
 
-def run(page: LivePage, ears: Ears, bus: Bus, period_s: float, stop: threading.Event) -> None:
+def run(
+    page: LivePage, subscriber: Subscriber, bus: Bus, period_s: float, stop: threading.Event
+) -> None:
     """Show every body that is published; when late, the newest only."""
     pace = Pace(period_s)
     heart = Heart(bus, "animator", pace)
     heart.beat("ready", page.address)
     while not stop.is_set():
-        body = ears.bodies.take(HEAR_S)
+        body = subscriber.bodies.take(HEAR_S)
         if body is not None:
-            page.show(ears.with_body((ears.bodies.drain() or [body])[-1]))
+            page.show(subscriber.with_body((subscriber.bodies.drain() or [body])[-1]))
             pace.done(body.clock_s, time.monotonic())
-            heart.beat("running", page.address, dropped=ears.bodies.dropped)
+            heart.beat("running", page.address, dropped=subscriber.bodies.dropped)
     heart.beat("ended", page.address)
 
 
-def rehearse(rig: Rig) -> None:
+def warm_up(rig: Rig) -> None:
     """Load or compile all that draws a body: the first one that is heard must not wait for it."""
     standing = Figure(thesis_bdp(1.75), rest_pose(), ())
     limb_shapes(standing)
     for camera in rig.cameras:
-        limb_outlines(camera, limb_ends(standing))
+        limb_contours(camera, limb_ends(standing))
 
 
 def known_rig(bus: Bus, given: Rig | None, stop: threading.Event) -> Rig | None:
@@ -101,7 +103,9 @@ def known_rig(bus: Bus, given: Rig | None, stop: threading.Event) -> Rig | None:
     return rig
 
 
-def main(settings: Settings, rig: Rig | None, period_s: float, place: Place = Place()) -> None:
+def main(
+    settings: Settings, rig: Rig | None, period_s: float, context: ProcessContext = ProcessContext()
+) -> None:
     """Open the page, show until stopped, close.
 
     Raises:
@@ -109,20 +113,20 @@ def main(settings: Settings, rig: Rig | None, period_s: float, place: Place = Pl
         BusError: When the integrator does not answer.
     """
     with (
-        process("animator", place) as stop,
+        process("animator", context) as stop,
         open_client(settings.bus, settings.room, READY_S) as bus,
     ):
         os.nice(BEHIND)
         bus.announce("animator")
-        ears = Ears(bus)
+        subscriber = Subscriber(bus)
         known = known_rig(bus, rig, stop)
         if known is None:
             return
-        rehearse(known)
+        warm_up(known)
         page = LivePage(known, settings.page.port)
         log.info("the page is at %s", page.address)
         gc.freeze()
         try:
-            run(page, ears, bus, period_s, stop)
+            run(page, subscriber, bus, period_s, stop)
         finally:
             page.close()

@@ -19,7 +19,7 @@ class FilmError(RuntimeError):
     """A film that cannot be written: the text names it and the cure."""
 
 
-class Film:
+class FilmWriter:
     """A film that grows by pictures of one size; made by `filming`."""
 
     def __init__(self, path: Path, fps: float) -> None:
@@ -65,7 +65,7 @@ class Film:
 
 
 @contextmanager
-def filming(path: Path, fps: float) -> Iterator[Film]:
+def filming(path: Path, fps: float) -> Iterator[FilmWriter]:
     """A film that takes its place at `path`, an .avi, when the block ends well.
 
     Raises:
@@ -74,7 +74,7 @@ def filming(path: Path, fps: float) -> Iterator[Film]:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with replacing(path) as new:
-            film = Film(new, fps)
+            film = FilmWriter(new, fps)
             yield film
             film.close()
     except (OSError, FilmError) as error:

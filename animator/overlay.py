@@ -142,13 +142,13 @@ def _camera(view: Image, floor_px: int) -> None:
 
 
 def _tint(image: Image, silhouette: NDArray[np.bool_]) -> None:
-    """Colour the silhouette and draw its outline, in place."""
+    """Colour the silhouette and draw its contour, in place."""
     size = (image.shape[1], image.shape[0])
     mask = cv2.resize(silhouette.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST)
     inside = mask.astype(np.bool_)
     image[inside] = ((1 - TINT) * image[inside] + TINT * np.array(SEEN)).astype(np.uint8)
-    outlines, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-    cv2.drawContours(image, outlines, -1, SEEN, 1, cv2.LINE_AA)
+    contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    cv2.drawContours(image, contours, -1, SEEN, 1, cv2.LINE_AA)
 
 
 def _paint(stroke: Stroke, confidence: Vector) -> tuple[int, ...]:

@@ -2,7 +2,7 @@
 
 Run from the checkout: .venv/bin/python benchmarks/dancing_effort.py [--performer 900] [--json]
 
-A made-up dance of 200 frames with seven turns, of which `tritrack single` sees camera 1 alone.
+A synthetic dance of 200 frames with seven turns, of which `tritrack single` sees camera 1 alone.
 Inputs that would put it right are counted against the truth: a joint is where it should be within
 6 % of the body's height in the picture (issue 5, Shows 3).
 """

@@ -27,7 +27,7 @@ from common.raster.kernel import draw_body, view_of
 from common.raster.similarity import Mask
 from common.rig.camera import Rig
 from common.video.clip_facts import both_cameras
-from integrator.rig.undistortion import straight
+from integrator.rig.undistortion import undistorted
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.runs import write_run
 from viewer.capture import Frame
@@ -146,7 +146,7 @@ class Followed(NamedTuple):
 def followed(rig: Rig, rows: list[Row]) -> Followed:
     """What a pair has found, of the instants that its rig was shown."""
     outlines = {
-        camera.name: [straight(unpack(reports[n]), camera) for _, reports, _ in rows]
+        camera.name: [undistorted(unpack(reports[n]), camera) for _, reports, _ in rows]
         for n, camera in enumerate(rig.cameras, 1)
     }
     return Followed(rig, outlines, [body for _, _, body in rows])

@@ -9,12 +9,12 @@ from typing import Final
 from common.bus.bus import Bus, open_hub
 from common.bus.control_messages import Cameras, ClockAnswer, ClockQuestion, Ended
 from common.bus.messages import Guide, Report, ViewerNumber
-from common.bus.process import Heart, Place, process
+from common.bus.process import Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
 from common.video.clip_facts import Clip
 from integrator import diagnostics, merge, pairing, presence
-from integrator.integrator_warmup import rehearse
+from integrator.integrator_warmup import warm_up
 from integrator.merge_state import State
 from integrator.pairing import Pair
 
@@ -56,7 +56,7 @@ class Starter:
             self._start_s = report.clock_s - report.captured_s
 
 
-class Ears:
+class Subscriber:
     """What the viewers say, in pairs of one instant, and who of them is there."""
 
     def __init__(self, bus: Bus, viewers: tuple[ViewerNumber, ...], period_s: float) -> None:
@@ -136,12 +136,12 @@ def run(
     """Pair and merge what the viewers report, until each has ended."""
     pace = Pace(period_s)
     heart = Heart(bus, "integrator", pace)
-    ears = Ears(bus, viewers, period_s)
+    subscriber = Subscriber(bus, viewers, period_s)
     noticed, odd = diagnostics.State(), diagnostics.assumed(state)
-    told_rig, news = False, ears.news
+    told_rig, news = False, subscriber.news
     heart.beat("ready", "\n".join(odd))
-    while ears.going and not stop.is_set():
-        for pair in ears.pairs():
+    while subscriber.going and not stop.is_set():
+        for pair in subscriber.pairs():
             state, body, guide = merge.step(state, pair)
             noticed = diagnostics.step(noticed, pair)
             bus.publish(guide)
@@ -150,34 +150,34 @@ def run(
         if not told_rig and state.rig is not None:
             bus.publish(Cameras(rig=state.rig, scale_source=state.scale_source))
             told_rig = True
-        if ears.news != news:
-            news = ears.news
+        if subscriber.news != news:
+            news = subscriber.news
             heart.hurry()
-        heart.beat("running", "\n".join([*odd, *news]), **ears.counts())
-    odd = [*diagnostics.warnings(noticed, state), *ears.news]
-    heart.beat("ended", "\n".join(odd), **ears.counts())
+        heart.beat("running", "\n".join([*odd, *news]), **subscriber.counts())
+    odd = [*diagnostics.warnings(noticed, state), *subscriber.news]
+    heart.beat("ended", "\n".join(odd), **subscriber.counts())
 
 
-def main(settings: Settings, clip: Clip, place: Place = Place()) -> None:
+def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContext()) -> None:
     """Open the room, merge until the viewers end, close.
 
     Args:
         settings: Of the run.
         clip: What the viewers look at: their numbers, the rate, the rig.
-        place: Where this process runs.
+        context: How this process runs.
 
     Raises:
         BusError: When the endpoint is taken.
     """
     period_s = clip.every / clip.views[0].fps
     viewers = tuple(view.number for view in clip.views)
-    with process("integrator", place) as stop, open_hub(settings.bus, settings.room) as bus:
+    with process("integrator", context) as stop, open_hub(settings.bus, settings.room) as bus:
         bus.keep(Guide)
         bus.keep(Cameras)
         bus.announce("integrator")
         state = merge.init(clip.rig, period_s, settings, clip.body)
-        rehearse(settings, clip.views[0].size)
+        warm_up(settings, clip.views[0].size)
         gc.collect()
         gc.freeze()
         run(state, viewers, period_s, bus, stop)
-        stop.wait(SUPERVISED_S if place.supervised else LAST_WORDS_S)
+        stop.wait(SUPERVISED_S if context.supervised else LAST_WORDS_S)

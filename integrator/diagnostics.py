@@ -15,10 +15,10 @@ class State(NamedTuple):
 
 def step(state: State, pair: Pair) -> State:
     """One instant more."""
-    somebody = [report is not None and report.box is not None for report in pair]
+    detected = [report is not None and report.box is not None for report in pair]
     partly = [report is not None and report.cut for report in pair]
     return State(
-        (state.seen[0] + somebody[0], state.seen[1] + somebody[1]),
+        (state.seen[0] + detected[0], state.seen[1] + detected[1]),
         (state.cut[0] + partly[0], state.cut[1] + partly[1]),
     )
 
@@ -35,16 +35,16 @@ def assumed(merged: merge_state.State) -> list[str]:
 
 def warnings(state: State, merged: merge_state.State) -> list[str]:
     """All that was odd, once the performance is over."""
-    told = assumed(merged)
+    lines = assumed(merged)
     if any(state.seen) and not merged.opening.measured:
-        told.append(
+        lines.append(
             "nobody took the opening posture, upright with stretched arms: the body has the "
             "thesis's proportions, unmeasured"
         )
     for viewer, (seen, cut) in enumerate(zip(state.seen, state.cut, strict=True), 1):
         if cut:
-            told.append(
+            lines.append(
                 f"viewer {viewer} saw the person partly outside its picture in {cut} of {seen} "
                 "frames: what is outside is guessed"
             )
-    return told
+    return lines

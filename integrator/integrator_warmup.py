@@ -1,4 +1,4 @@
-"""Made-up reports, merged once, so that all is compiled and loaded before the first real ones."""
+"""Synthetic reports, merged once, so that all is compiled and loaded before the first real ones."""
 
 from typing import Final
 
@@ -20,7 +20,7 @@ from integrator.pairing import Pair
 VIEWERS: Final[tuple[ViewerNumber, ...]] = (1, 2)
 
 
-def rehearse(settings: Settings, size: tuple[int, int]) -> None:
+def warm_up(settings: Settings, size: tuple[int, int]) -> None:
     """Merge three pairs of reports of somebody who stands, in a calibrated room and in another.
 
     Args:
@@ -37,15 +37,15 @@ def rehearse(settings: Settings, size: tuple[int, int]) -> None:
 
 
 def _match_elsewhere(rig: Rig, seen: tuple[Report, Report]) -> None:
-    """Match a pose that nobody is sure of, beside the outlines, of which one has a stray."""
-    stray = unpack(seen[0])
-    stray[: len(stray) // 20, : len(stray) // 20] = True
+    """Match a pose that nobody is sure of, beside the silhouettes, of which one has clutter."""
+    clutter = unpack(seen[0])
+    clutter[: len(clutter) // 20, : len(clutter) // 20] = True
     visual_hull.cleaned(
-        rig, Pair(msgspec.structs.replace(seen[0], silhouette=pack(stray)), seen[1])
+        rig, Pair(msgspec.structs.replace(seen[0], silhouette=pack(clutter)), seen[1])
     )
     aside, body = rest_pose(), body_vector(thesis_bdp(1.75))
     aside[:2] = 0.5, 1.0
-    pose_refinement.instead(aside, np.full(len(JOINT_NAMES), 0.1), aside, False, body, rig, seen)
+    pose_refinement.refined(aside, np.full(len(JOINT_NAMES), 0.1), aside, False, body, rig, seen)
 
 
 def _rig(size: tuple[int, int]) -> Rig:

@@ -20,7 +20,8 @@ from integrator.paper.arbiter import facing_of
 from integrator.pose import smoothing
 from integrator.proposal import pose_proposal
 from integrator.rig.assumed_rig import assumed_rig
-from integrator.rig.undistortion import straight_pair, straight_rig
+from integrator.rig.undistortion import undistorted_pair as straight_pair
+from integrator.rig.undistortion import undistorted_rig as straight_rig
 from integrator.track_status import LOST_SCORE
 
 
@@ -60,7 +61,7 @@ def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
 def _is_doubtful(state: State, body: Body) -> bool:
     known = state.insight
     return min(body.score) < pose_refinement.POOR and not (
-        known and pose_refinement.is_sure(known.sure)
+        known and pose_refinement.is_confident(known.sure)
     )
 
 
@@ -70,7 +71,7 @@ def _merged(state: State, pair: Pair) -> tuple[State, Body, Guide]:
     dt_s = 0.0 if before_s is None else max(0.0, now_s - before_s)
     state = state._replace(frames=_heard(state.frames, pair), last_s=now_s)
     straight = straight_pair(state.rig, pair)
-    seen = straight.with_somebody
+    seen = straight.detections
     state = _with_rig(state, seen)
     if seen == (None, None) or state.rig is None:
         state = _without_pose(state)
@@ -129,7 +130,7 @@ def _proposed(state: State, rig: Rig, seen: Seen, dt_s: float) -> State:
     before = rest_pose() if state.pose is None else state.pose
     body = body_vector(bdp)
     pose, beside_m = pose_proposal.pose_and_rest(body, before, known.joints_m)
-    better = pose_refinement.instead(pose, known.sure, state.pose, state.matched, body, rig, seen)
+    better = pose_refinement.refined(pose, known.sure, state.pose, state.matched, body, rig, seen)
     if better is not None:
         pose, beside_m[pose_proposal.ARMS] = better, 0.0
     state = state._replace(insight=known, beside_m=beside_m, matched=better is not None)

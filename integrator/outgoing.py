@@ -142,7 +142,7 @@ def _status(state: State) -> Status:
 def _views(pair: Pair) -> Views:
     names: dict[tuple[bool, bool], Views] = {(True, True): "both", (True, False): "1"}
     names |= {(False, True): "2", (False, False): "none"}
-    first, second = pair.with_somebody
+    first, second = pair.detections
     return names[first is not None, second is not None]
 
 

@@ -27,7 +27,7 @@ class Pair(NamedTuple):
         return max((r for r in self if r is not None), key=lambda report: report.clock_s)
 
     @property
-    def with_somebody(self) -> Seen:
+    def detections(self) -> Seen:
         """The reports that have found a body."""
         first, second = (None if r is None or r.root_px is None else r for r in self)
         return first, second

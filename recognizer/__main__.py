@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from common.body.body import ANGLES_IN_POSE
 from common.bus.bus import Bus, open_client
 from common.bus.messages import Body, Performance, Posture
-from common.bus.process import READY_S, Heart, Place, process
+from common.bus.process import READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
 from recognizer import events, spotting
@@ -144,7 +144,7 @@ def model_of(settings: Settings, meant: str = "") -> PostureModel:
     return model
 
 
-def rehearse(model: PostureModel, window_frames: int) -> None:
+def warm_up(model: PostureModel, window_frames: int) -> None:
     """Compile or load what a step runs."""
     window = spotting.init(model, window_frames)
     network = events.init(model) if isinstance(model, DensityModel) else None
@@ -155,7 +155,7 @@ def rehearse(model: PostureModel, window_frames: int) -> None:
             network, _ = events.step(network, row)
 
 
-def main(settings: Settings, period_s: float, place: Place = Place()) -> None:
+def main(settings: Settings, period_s: float, context: ProcessContext = ProcessContext()) -> None:
     """Load the model, name postures until stopped, close.
 
     Raises:
@@ -163,9 +163,9 @@ def main(settings: Settings, period_s: float, place: Place = Place()) -> None:
         BusError: When the integrator does not answer.
     """
     model = model_of(settings)
-    rehearse(model, settings.recognizer.window_frames)
+    warm_up(model, settings.recognizer.window_frames)
     with (
-        process("recognizer", place) as stop,
+        process("recognizer", context) as stop,
         open_client(settings.bus, settings.room, READY_S) as bus,
     ):
         bus.announce("recognizer")

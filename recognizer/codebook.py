@@ -19,7 +19,7 @@ SYMBOLS: Final = 64
 WEIGHTS: Final = np.array([3.0 if "_hip" in entry else 1.0 for entry in FEATURE_NAMES])
 """By how much an entry counts in distances. Legs move less than arms, and among 64 symbols too few
 would tell their motions apart: with 1, 2, 3 and 4, and the best width of sharing for each, 352,
-363, 374 and 369 of 420 held-out made-up performances were named rightly."""
+363, 374 and 369 of 420 held-out synthetic performances were named rightly."""
 
 STARTS: Final = 4
 """Runs of k-means from different codewords; the tightest is kept."""

@@ -45,7 +45,7 @@ STATES: Final = 5
 
 LEAST_FIT: Final[dict[Recognizer, float]] = {"default": 23.0, "paper": -3.2}
 """Log-likelihood of a frame, on average over a motion, below which the motion is none that was
-taught. Of 420 held-out made-up performances 2 % lie below; of the same ones, judged by models to
+taught. Of 420 held-out synthetic performances 2 % lie below; of the same ones, judged by models to
 which nobody had taught their posture, 77 % and 35 %: the others have a near relative."""
 
 PER_POSTURE: Final = ("start", "transition", "emission", "mean", "variance", "fit")

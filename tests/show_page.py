@@ -8,7 +8,7 @@ import time
 import cv2
 import numpy as np
 
-from animator.page.inset import limb_ends, limb_outlines
+from animator.page.inset import limb_contours, limb_ends
 from animator.page.live import LivePage
 from animator.scene import Figure, Snapshot
 from common.body.body import POSE_INDEX, Vector, rest_pose
@@ -71,7 +71,7 @@ def pose_at(seconds: float) -> Vector:
 def silhouette(camera: Camera, pose: Vector) -> np.ndarray:
     """The body as a camera would see it, (120, 160)."""
     mask = np.zeros((120, 160), np.uint8)
-    for outline in limb_outlines(camera, limb_ends(Figure(BDP, pose))):
+    for outline in limb_contours(camera, limb_ends(Figure(BDP, pose))):
         cv2.fillConvexPoly(mask, np.rint(outline - 0.5).astype(np.int32), 1)
     return mask.astype(bool)
 

@@ -13,10 +13,10 @@ from animator.page.inset import (
     NIGHT,
     SEEN,
     Image,
-    draw_outlines,
+    draw_contours,
     inset,
+    limb_contours,
     limb_ends,
-    limb_outlines,
 )
 from animator.scene import Figure
 from common.body.body import LIMBS, POSE_INDEX, Vector, rest_pose
@@ -66,7 +66,7 @@ def report(mask: np.ndarray) -> Report:
 def drawn(pose: Vector) -> Image:
     """The fitted outline alone, as camera 1 shows it."""
     image = inset(report(np.zeros((120, 160), bool)), None)
-    draw_outlines(image, limb_outlines(RIG.cameras[0], limb_ends(Figure(BDP, pose))), RIG.width)
+    draw_contours(image, limb_contours(RIG.cameras[0], limb_ends(Figure(BDP, pose))), RIG.width)
     return image
 
 
@@ -109,7 +109,7 @@ def test_what_is_drawn_is_what_was_matched(pose: Vector, camera: Camera) -> None
     """The kernel's own pixels but for 3 at the border: to it a section has one depth."""
     matched = draw_body(body_vector(BDP), pose, view_of(camera), (RIG.width, RIG.height))
     filled = np.zeros(matched.shape, np.uint8)
-    for outline in limb_outlines(camera, limb_ends(Figure(BDP, pose))):
+    for outline in limb_contours(camera, limb_ends(Figure(BDP, pose))):
         cv2.fillConvexPoly(filled, np.rint(outline - 0.5).astype(np.int32), 1)
     square = np.ones((7, 7), np.uint8)
     border = cv2.dilate(filled, square) - cv2.erode(filled, square)
@@ -122,7 +122,7 @@ def test_what_is_drawn_is_what_was_matched(pose: Vector, camera: Camera) -> None
 def test_the_outline_of_a_limb_contains_its_axis(angles_deg: list[float], n: int) -> None:
     pose = np.array([0.2, 0.9, -0.3, *angles_deg])
     camera = RIG.cameras[n]
-    outlines = limb_outlines(camera, limb_ends(Figure(BDP, pose)))
+    outlines = limb_contours(camera, limb_ends(Figure(BDP, pose)))
     for outline, ends in zip(outlines, segments(body_vector(BDP), pose), strict=True):
         axis = project(camera, np.linspace(ends[0], ends[1], 5))
         hull = outline.astype(np.float32)
@@ -132,7 +132,7 @@ def test_the_outline_of_a_limb_contains_its_axis(angles_deg: list[float], n: int
 def test_a_sideways_cylinder_is_drawn_as_wide_as_two_radii() -> None:
     """Worked by hand: a hanging lower arm at the camera's distance, f times 2 r over z."""
     pose = standing()
-    outline = limb_outlines(RIG.cameras[0], limb_ends(Figure(BDP, pose)))[
+    outline = limb_contours(RIG.cameras[0], limb_ends(Figure(BDP, pose)))[
         LIMBS.index("r_lower_arm")
     ]
     expected_px = 2 * BDP.r_lower_arm.radius * PX_PER_M
@@ -141,7 +141,7 @@ def test_a_sideways_cylinder_is_drawn_as_wide_as_two_radii() -> None:
 
 def test_a_limb_behind_the_camera_has_no_outline_and_is_not_drawn() -> None:
     pose = standing(z=DISTANCE_M)
-    outlines = limb_outlines(RIG.cameras[0], limb_ends(Figure(BDP, pose)))
+    outlines = limb_contours(RIG.cameras[0], limb_ends(Figure(BDP, pose)))
     assert all(len(outline) == 0 for outline in outlines)
     assert (drawn(pose) == NIGHT.astype(np.uint8)).all()
 
@@ -178,11 +178,11 @@ def picture(jpeg: bytes) -> Picture:
 
 
 REHEARSED = """
-from animator.__main__ import rehearse
+from animator.__main__ import warm_up
 from common.body import kinematics, proportions
 from common.rig import camera
 from common.rig.camera import paper_rig
-rehearse(paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5)))
+warm_up(paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5)))
 for compiled in (camera._on_plane, kinematics.place_limbs, proportions.attached):
     print(len(compiled.signatures))
 """

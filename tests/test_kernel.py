@@ -13,7 +13,7 @@ from common.raster.bits import count, pack_words, unpack_words
 from common.raster.kernel import (
     draw_body,
     draw_limbs,
-    limb_outline,
+    limb_primitive,
     match,
     match_over,
     score,
@@ -83,7 +83,7 @@ def test_a_limb_behind_the_camera_is_not_drawn() -> None:
     pose = posed()
     pose[2] = 6.0
     out = np.empty(PRIMITIVE)
-    assert not limb_outline(limb_frames(BODY, pose), BODY, 0, view_of(camera), out)
+    assert not limb_primitive(limb_frames(BODY, pose), BODY, 0, view_of(camera), out)
     assert not draw_body(BODY, pose, view_of(camera), SIZE).any()
 
 

@@ -18,9 +18,9 @@ from common.raster.similarity import Mask, similarity
 from viewer.paper.fine_tuning import fine_tuned
 from viewer.paper.measure import (
     arm_angle_deg,
+    facade_shape,
     measure_front,
     measure_side,
-    outline_of,
     projection_width,
     refusal_of,
     without_head,
@@ -77,7 +77,7 @@ def test_the_trunk_is_as_wide_as_it_was_drawn(legs_deg: float) -> None:
     Over all columns legs at 8 degrees would make it 31 of 23 pixels.
     """
     mask = opening(r_hip_z=180.0 - legs_deg, l_hip_z=180.0 + legs_deg)
-    found = outline_of(mask, box_of(mask))
+    found = facade_shape(mask, box_of(mask))
     assert abs(found.right - found.left - TRUNK_PX) <= (1.0 if legs_deg == 0 else 2.0)
     assert found.centre == pytest.approx(ROOT_PX[0], abs=0.5)
     measure = measure_front(mask, box_of(mask))
@@ -108,7 +108,7 @@ def test_lengths_are_the_papers_shares() -> None:
     """P15, P16, M7, rows down: head = y_h - y_top, trunk to legs as 4 to 6, two halves."""
     mask = opening()
     box = box_of(mask)
-    found = outline_of(mask, box)
+    found = facade_shape(mask, box)
     below = box.bottom + 1 - found.shoulder_row
     assert found.head == found.shoulder_row - box.top
     assert found.torso == pytest.approx(0.4 * below)
@@ -121,14 +121,14 @@ def test_the_theses_shares_are_another_prior() -> None:
     """P16, T4: trunk 52, upper leg 46, lower leg 52 of 150: the centre is 8 px higher of 86."""
     below = 52 + 46 + 52
     mask = opening()
-    found = outline_of(mask, box_of(mask))
+    found = facade_shape(mask, box_of(mask))
     assert found.torso - BDP.torso.height == pytest.approx((0.4 - 52 / below) * 86, abs=1.0)
 
 
 def test_widths_are_the_papers_shares_of_the_trunk() -> None:
     """P17, M10: head 0.20 and 0.16, leg 0.20 and (for the printed 0.36) 0.18; LR = W / 2."""
     mask = opening()
-    found = outline_of(mask, box_of(mask))
+    found = facade_shape(mask, box_of(mask))
     body = measure_front(mask, box_of(mask)).bdp_px
     assert body is not None
     width = found.right - found.left
@@ -153,7 +153,7 @@ def test_arms_have_two_equal_halves() -> None:
 def test_the_centre_and_the_shoulders_lie_where_they_were_drawn() -> None:
     """P17, P18, M7: y_c = y_h + torso; shoulders 0.45 LR below the trunk's end."""
     mask = opening()
-    measure, found = measure_front(mask, box_of(mask)), outline_of(mask, box_of(mask))
+    measure, found = measure_front(mask, box_of(mask)), facade_shape(mask, box_of(mask))
     assert measure.centre_px == (found.centre, found.shoulder_row + found.torso)
     radius = (found.right - found.left) / 2
     shoulder_row = found.shoulder_row + 0.45 * radius

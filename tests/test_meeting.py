@@ -19,7 +19,7 @@ from common.video.clip_facts import View
 from common.video.decoding import DecoderDied
 from integrator import __main__ as integrator
 from integrator import merge
-from tritrack.live.launch import Ears, nothing_heard
+from tritrack.live.launch import Subscriber, nothing_heard
 from tritrack.live.session import free_settings
 from viewer import __main__ as viewer
 from viewer import track
@@ -172,7 +172,7 @@ def test_the_supervisor_learns_the_cameras_that_were_told_before_it_listened() -
     bus, heard = LocalBus(), nothing_heard()
     bus.keep(Cameras)
     bus.publish(Cameras(rig=RIG, scale_source="calibrated"))
-    Ears(bus, heard).catch_up()
+    Subscriber(bus, heard).catch_up()
     assert [told.scale_source for told in heard.cameras] == ["calibrated"]
 
 

@@ -14,15 +14,15 @@ from common.body.kinematics import ALL_LIMBS, joints
 from common.body.proportions import body_vector
 from common.raster.kernel import match, view_of
 from integrator.fit import pose_refinement
-from integrator.fit.silhouette_pair import outlines_of
+from integrator.fit.silhouette_pair import silhouettes_of
 
 VECTOR = body_vector(BODY)
 REHEARSED = """
 from common.config import Settings
 from integrator.fit import pose_refinement, visual_hull
-from integrator.integrator_warmup import rehearse
-rehearse(Settings(), (160, 120))
-for compiled in (visual_hull._carve, visual_hull._largest, pose_refinement._astray):
+from integrator.integrator_warmup import warm_up
+warm_up(Settings(), (160, 120))
+for compiled in (visual_hull._carve, visual_hull._largest, pose_refinement._penalties):
     print(len(compiled.signatures))
 """
 UNSURE = np.full(15, 0.05)
@@ -34,7 +34,7 @@ def seen_as(pose: Vector) -> tuple:
 
 
 def scores(pose: Vector, seen: tuple) -> list[float]:
-    both = outlines_of(ROLLED, seen)
+    both = silhouettes_of(ROLLED, seen)
     return [
         match(VECTOR, pose, view_of(camera), ALL_LIMBS, both.width, mask, int(area))
         for camera, mask, area in zip(ROLLED.cameras, both.seen, both.seen_px, strict=True)
@@ -55,7 +55,7 @@ def test_a_pose_is_followed_from_the_one_before_whatever_is_proposed() -> None:
     """Leaning far over on one leg, which the network hardly learnt, before rolled cameras."""
     before, truth = on_one_leg(35.0), on_one_leg(45.0)
     seen = seen_as(truth)
-    found = pose_refinement.instead(standing(), UNSURE, before, False, VECTOR, ROLLED, seen)
+    found = pose_refinement.refined(standing(), UNSURE, before, False, VECTOR, ROLLED, seen)
     assert found is not None
     assert min(scores(standing(), seen)) < 0.4
     assert min(scores(found, seen)) > 0.75
@@ -67,7 +67,7 @@ def test_somebody_is_found_where_nothing_was_known_before() -> None:
     truth = standing()
     truth[POSE_INDEX["r_shoulder_z"]] = 90.0
     seen = seen_as(truth)
-    found = pose_refinement.instead(on_one_leg(), UNSURE, None, False, VECTOR, ROLLED, seen)
+    found = pose_refinement.refined(on_one_leg(), UNSURE, None, False, VECTOR, ROLLED, seen)
     assert found is not None
     assert min(scores(found, seen)) > 0.75
 
@@ -75,7 +75,7 @@ def test_somebody_is_found_where_nothing_was_known_before() -> None:
 def test_a_proposal_that_matches_is_left_alone() -> None:
     truth = on_one_leg()
     assert (
-        pose_refinement.instead(truth, UNSURE, None, False, VECTOR, ROLLED, seen_as(truth)) is None
+        pose_refinement.refined(truth, UNSURE, None, False, VECTOR, ROLLED, seen_as(truth)) is None
     )
 
 
@@ -84,18 +84,18 @@ def test_a_pose_that_was_matched_goes_on_until_a_proposal_matches_as_well() -> N
     seen, proposed = seen_as(truth), truth.copy()
     proposed[POSE_INDEX["l_hip_z"]] -= 10.0
     assert min(scores(proposed, seen)) > pose_refinement.POOR
-    found = pose_refinement.instead(proposed, UNSURE, on_one_leg(42.0), True, VECTOR, ROLLED, seen)
+    found = pose_refinement.refined(proposed, UNSURE, on_one_leg(42.0), True, VECTOR, ROLLED, seen)
     assert found is not None
     assert error_m(found, truth) < error_m(proposed, truth)
     assert (
-        pose_refinement.instead(truth, UNSURE, on_one_leg(42.0), True, VECTOR, ROLLED, seen) is None
+        pose_refinement.refined(truth, UNSURE, on_one_leg(42.0), True, VECTOR, ROLLED, seen) is None
     )
 
 
 def test_one_view_alone_matches_nothing() -> None:
     first, _ = seen_as(on_one_leg())
     assert (
-        pose_refinement.instead(standing(), UNSURE, None, False, VECTOR, ROLLED, (first, None))
+        pose_refinement.refined(standing(), UNSURE, None, False, VECTOR, ROLLED, (first, None))
         is None
     )
 
@@ -105,9 +105,9 @@ def test_joints_that_are_sure_stay_where_they_are() -> None:
     proposed, seen = _bent_over(), seen_as(on_one_leg())
     legs = np.array(["knee" in name or "ankle" in name for name in JOINT_NAMES])
     sure = np.where(legs, 0.999, UNSURE)
-    assert sure.mean() < pose_refinement.SURE
-    held = pose_refinement.instead(proposed, sure, proposed, False, VECTOR, ROLLED, seen)
-    free = pose_refinement.instead(proposed, UNSURE, proposed, False, VECTOR, ROLLED, seen)
+    assert sure.mean() < pose_refinement.CONFIDENT
+    held = pose_refinement.refined(proposed, sure, proposed, False, VECTOR, ROLLED, seen)
+    free = pose_refinement.refined(proposed, UNSURE, proposed, False, VECTOR, ROLLED, seen)
     assert held is not None
     assert free is not None
     moved_m = [
@@ -120,8 +120,8 @@ def test_joints_that_are_sure_stay_where_they_are() -> None:
 def test_a_proposal_that_is_sure_is_left_as_it_is() -> None:
     """However badly it matches: cylinders are no people."""
     proposed, seen = _bent_over(), seen_as(on_one_leg())
-    sure = np.full(15, pose_refinement.SURE)
-    assert pose_refinement.instead(proposed, sure, proposed, True, VECTOR, ROLLED, seen) is None
+    sure = np.full(15, pose_refinement.CONFIDENT)
+    assert pose_refinement.refined(proposed, sure, proposed, True, VECTOR, ROLLED, seen) is None
 
 
 def _bent_over() -> Vector:
@@ -133,14 +133,14 @@ def _bent_over() -> Vector:
 def test_the_same_instant_gives_the_same_pose() -> None:
     seen = seen_as(on_one_leg())
     first, second = (
-        pose_refinement.instead(standing(), UNSURE, on_one_leg(35.0), False, VECTOR, ROLLED, seen)
+        pose_refinement.refined(standing(), UNSURE, on_one_leg(35.0), False, VECTOR, ROLLED, seen)
         for _ in range(2)
     )
     assert np.array_equal(first, second)
 
 
 def test_no_joint_is_turned_beyond_its_limits() -> None:
-    found = pose_refinement.instead(
+    found = pose_refinement.refined(
         standing(), UNSURE, on_one_leg(35.0), False, VECTOR, ROLLED, seen_as(on_one_leg(45.0))
     )
     assert found is not None
@@ -161,8 +161,8 @@ def test_pictures_of_two_sizes_are_matched_as_those_of_one() -> None:
     rows, columns = np.flatnonzero(second.any(axis=1)), np.flatnonzero(second.any(axis=0))
     narrow = second[: rows[-1] + 2, : columns[-1] + 2]
     assert narrow.shape[1] < second.shape[1]
-    whole = outlines_of(ROLLED, (told(1, first), told(2, second)))
-    other = outlines_of(ROLLED, (told(1, first), told(2, narrow)))
+    whole = silhouettes_of(ROLLED, (told(1, first), told(2, second)))
+    other = silhouettes_of(ROLLED, (told(1, first), told(2, narrow)))
     assert np.array_equal(whole.seen, other.seen)
     assert whole.seen_px.tolist() == other.seen_px.tolist()
     assert whole.width == other.width

@@ -10,7 +10,7 @@ import pytest
 from local_bus import LocalBus
 
 from common.bus.control_messages import Pulse
-from common.bus.process import BEAT_S, Heart, Place, process, start_log
+from common.bus.process import BEAT_S, Heart, ProcessContext, process, start_log
 from common.bus.rate import Pace
 
 
@@ -25,13 +25,13 @@ def logs_as_before() -> Iterator[None]:
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT], ids=["SIGTERM", "Ctrl-C"])
 def test_a_signal_ends_a_process_that_runs_alone(number: signal.Signals) -> None:
-    with process("viewer 1", Place()) as stop:
+    with process("viewer 1", ProcessContext()) as stop:
         os.kill(os.getpid(), number)
         assert stop.wait(5.0)
 
 
 def test_ctrl_c_is_the_supervisors_to_hear() -> None:
-    with process("viewer 1", Place(supervised=True)) as stop:
+    with process("viewer 1", ProcessContext(supervised=True)) as stop:
         os.kill(os.getpid(), signal.SIGINT)
         assert not stop.is_set()
         os.kill(os.getpid(), signal.SIGTERM)
@@ -40,7 +40,7 @@ def test_ctrl_c_is_the_supervisors_to_hear() -> None:
 
 def test_signals_mean_afterwards_what_they_meant_before() -> None:
     before = signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGINT)
-    with pytest.raises(RuntimeError), process("viewer 1", Place()):
+    with pytest.raises(RuntimeError), process("viewer 1", ProcessContext()):
         raise RuntimeError
     assert (signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGINT)) == before
 

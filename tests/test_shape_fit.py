@@ -42,7 +42,7 @@ def standing() -> Vector:
 
 def test_widths_come_nearer_to_what_the_outline_shows() -> None:
     pose = standing()
-    found = shape_fit.adapted(PRIOR, RIG, (Sample(pose, seen_as(slim(), pose)),))
+    found = shape_fit.fitted(PRIOR, RIG, (Sample(pose, seen_as(slim(), pose)),))
     assert found.torso.long_radius == pytest.approx(slim().torso.long_radius, rel=0.06)
     assert found.r_lower_leg.long_radius == pytest.approx(slim().r_lower_leg.long_radius, rel=0.15)
 
@@ -50,13 +50,13 @@ def test_widths_come_nearer_to_what_the_outline_shows() -> None:
 def test_the_stature_stays() -> None:
     """It is what the silhouette's height told."""
     pose = standing()
-    found = shape_fit.adapted(PRIOR, RIG, (Sample(pose, seen_as(slim(), pose)),))
+    found = shape_fit.fitted(PRIOR, RIG, (Sample(pose, seen_as(slim(), pose)),))
     assert stature(found) == pytest.approx(stature(PRIOR))
 
 
 def test_a_body_that_fits_is_left_alone() -> None:
     pose = standing()
-    assert shape_fit.adapted(PRIOR, RIG, (Sample(pose, seen_as(PRIOR, pose)),)) == PRIOR
+    assert shape_fit.fitted(PRIOR, RIG, (Sample(pose, seen_as(PRIOR, pose)),)) == PRIOR
 
 
 @pytest.mark.parametrize("known", [Opening(bdp=PRIOR, bodies=(PRIOR,)), Opening(bdp=None)])
@@ -100,6 +100,6 @@ def test_no_limb_becomes_wider_than_a_persons() -> None:
     )
     slab = msgspec.structs.replace(PRIOR, r_lower_leg=thick, l_lower_leg=thick)
     pose = standing()
-    found = shape_fit.adapted(PRIOR, RIG, (Sample(pose, seen_as(slab, pose)),))
+    found = shape_fit.fitted(PRIOR, RIG, (Sample(pose, seen_as(slab, pose)),))
     widest = shape_fit.WIDEST * PRIOR.r_lower_leg.long_radius
     assert PRIOR.r_lower_leg.long_radius < found.r_lower_leg.long_radius <= widest

@@ -19,7 +19,7 @@ from viewer.silhouette.difference import followed, label, seeds
 from viewer.silhouette.pixel_classifier import redraw
 from viewer.silhouette.regions import chosen
 from viewer.silhouette.silhouette import Seen, State, init, step
-from viewer.viewer_warmup import rehearse
+from viewer.viewer_warmup import warm_up
 
 HEIGHT, WIDTH = 240, 320
 SETTINGS = SilhouetteSettings()
@@ -176,7 +176,7 @@ def test_step_leaves_the_state_that_it_was_given() -> None:
 def test_after_the_rehearsal_no_frame_waits_for_the_compiler() -> None:
     kernels = [light_gain, seeds, chosen, label, sides_of, covered, redraw]
     kernels += [familiar, counted, followed]
-    rehearse(track.init(1, learn([shot(room(), 2.0, 9)]), None, Settings()), (WIDTH, HEIGHT))
+    warm_up(track.init(1, learn([shot(room(), 2.0, 9)]), None, Settings()), (WIDTH, HEIGHT))
     compiled = [list(kernel.signatures) for kernel in kernels]
     assert all(compiled)
     still = [shot(dressed(room(), body()), 2.0, seed) for seed in range(5)]

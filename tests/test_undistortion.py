@@ -11,7 +11,12 @@ from common.raster.similarity import Mask, similarity
 from common.rig.camera import project
 from integrator.pairing import Pair
 from integrator.proposal import pose_proposal
-from integrator.rig.undistortion import straight, straight_pair, straight_report, straight_rig
+from integrator.rig.undistortion import (
+    undistorted,
+    undistorted_pair,
+    undistorted_report,
+    undistorted_rig,
+)
 
 LENS = (-0.9, 0.4, 0.002, -0.001, 0.0)
 BENT = msgspec.structs.replace(
@@ -44,14 +49,14 @@ def test_a_bent_silhouette_is_the_straight_one_again() -> None:
     for n, mask in enumerate(outlines(on_one_leg())):
         shown = bent(mask, n)
         assert similarity(mask, shown) < 0.94
-        assert similarity(mask, straight(shown, BENT.cameras[n])) > 0.94
+        assert similarity(mask, undistorted(shown, BENT.cameras[n])) > 0.94
 
 
 def test_a_lens_that_does_not_bend_changes_nothing() -> None:
     pair = Pair(*(told(n + 1, mask) for n, mask in enumerate(outlines(on_one_leg()))))
-    assert straight_pair(ROLLED, pair) == pair
-    assert straight_pair(None, pair) == pair
-    assert straight_rig(ROLLED) is ROLLED
+    assert undistorted_pair(ROLLED, pair) == pair
+    assert undistorted_pair(None, pair) == pair
+    assert undistorted_rig(ROLLED) is ROLLED
 
 
 def test_the_navel_goes_where_a_straight_lens_shows_it() -> None:
@@ -59,14 +64,16 @@ def test_the_navel_goes_where_a_straight_lens_shows_it() -> None:
     bent_px, straight_px = (project(rig.cameras[0], place_m)[0] for rig in (BENT, ROLLED))
     assert np.hypot(*(bent_px - straight_px)) > 1.0
     report = msgspec.structs.replace(told(1, outlines(on_one_leg())[0]), root_px=tuple(bent_px))
-    assert straight_report(report, BENT.cameras[0]).root_px == pytest.approx(straight_px, abs=0.01)
+    assert undistorted_report(report, BENT.cameras[0]).root_px == pytest.approx(
+        straight_px, abs=0.01
+    )
 
 
 def test_what_the_straight_picture_does_not_hold_is_cut() -> None:
     """Four pixels from the side of the bent one somebody is whole, and not in the straight one."""
     report = at(slice(100, 140), slice(4, 30))
     assert not report.cut
-    found = straight_report(report, BENT.cameras[0])
+    found = undistorted_report(report, BENT.cameras[0])
     assert found.cut
     assert found.box is not None
     assert found.box.left == 0
@@ -76,8 +83,8 @@ def test_what_the_straight_picture_does_not_hold_is_cut() -> None:
 def test_somebody_of_whom_nothing_would_be_left_is_still_somebody() -> None:
     """Who enters from a side, seen in the lens's corner alone: a pose is proposed all the same."""
     report = at(slice(0, 6), slice(0, 4))
-    assert not straight(unpack(report), BENT.cameras[0]).any()
-    found = straight_report(report, BENT.cameras[0])
+    assert not undistorted(unpack(report), BENT.cameras[0]).any()
+    found = undistorted_report(report, BENT.cameras[0])
     assert found == report
-    shown = pose_proposal.step(None, BODY, straight_rig(BENT), (found, None), 1 / 15)
+    shown = pose_proposal.step(None, BODY, undistorted_rig(BENT), (found, None), 1 / 15)
     assert np.isfinite(shown.joints_m).all()

@@ -1,4 +1,4 @@
-"""The main job on a made-up person: what `make demo` shows."""
+"""The main job on a synthetic person: what `make demo` shows."""
 
 import tempfile
 from pathlib import Path

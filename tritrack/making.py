@@ -1,4 +1,4 @@
-"""Made-up people as clips."""
+"""Synthetic people as clips."""
 
 from pathlib import Path
 from typing import Literal

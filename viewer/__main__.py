@@ -11,7 +11,7 @@ from common.bus.bus import Bus, open_client
 from common.bus.control_messages import ClockAnswer, ClockQuestion, Ended
 from common.bus.inbox import Inbox
 from common.bus.messages import Guide, Picture, ViewerNumber
-from common.bus.process import READY_S, Heart, Place, process
+from common.bus.process import READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
 from common.video.clip_facts import View, shortfall
@@ -21,7 +21,7 @@ from viewer import track
 from viewer.background.background_source import room_of_run
 from viewer.capture import Frame, Live, RoomClock
 from viewer.jpeg import jpeg_of
-from viewer.viewer_warmup import rehearse
+from viewer.viewer_warmup import warm_up
 
 WAIT_SHARE: Final = 0.5
 """How long a viewer waits for the guide of its last frame, in frame periods."""
@@ -116,7 +116,9 @@ def run(
     heart.beat("ended", odd, **_lost(live, guides))
 
 
-def main(settings: Settings, viewer: ViewerNumber, place: Place = Place()) -> None:
+def main(
+    settings: Settings, viewer: ViewerNumber, context: ProcessContext = ProcessContext()
+) -> None:
     """Learn the room, wait for the others, look at the clip, close the doors in order.
 
     Raises:
@@ -126,18 +128,18 @@ def main(settings: Settings, viewer: ViewerNumber, place: Place = Place()) -> No
         StartError: When the other viewer never got ready.
     """
     name = f"viewer {viewer}"
-    with process(name, place) as stop, open_client(settings.bus, settings.room, READY_S) as bus:
+    with process(name, context) as stop, open_client(settings.bus, settings.room, READY_S) as bus:
         heart = Heart(bus, name, Pace(1.0))
         heart.beat("starting")
         with Decoder() as decoder:
             clip = open_clip(settings, decoder, (viewer,))
             view = clip.views[0]
-            room, odd = room_of_run(view, settings.silhouette, decoder, place.kept)
+            room, odd = room_of_run(view, settings.silhouette, decoder, context.kept)
         warnings = (*clip.warnings, *([odd] if odd else []))
         for warning in warnings:
             log.warning(warning)
         state = track.init(viewer, room, clip.rig.cameras[0] if clip.rig else None, settings)
-        rehearse(state, view.size)
+        warm_up(state, view.size)
         gc.collect()
         gc.freeze()
         bus.announce(name)

@@ -1,4 +1,4 @@
-"""Made-up frames, stepped through so that all is compiled and loaded before the first real one."""
+"""Synthetic frames, stepped through so that all is compiled and loaded before a real one."""
 
 import msgspec
 import numpy as np
@@ -13,7 +13,7 @@ from viewer.paper.posed_model import view_at
 from viewer.silhouette import silhouette
 
 
-def rehearse(state: track.State, size: tuple[int, int]) -> None:
+def warm_up(state: track.State, size: tuple[int, int]) -> None:
     """Step through three frames of somebody who takes the opening posture.
 
     Args:

@@ -1,4 +1,4 @@
-"""What a camera shows on the page: its silhouette or picture, and the fitted body's outline."""
+"""What a camera shows on the page: its silhouette or picture, and the fitted body's contour."""
 
 import math
 from typing import Final
@@ -26,9 +26,9 @@ TINT: Final = 0.35
 """Share of SEEN over a picture: enough to tell the silhouette, the picture stays readable."""
 
 WIDTH_PX: Final = 320
-"""Least width of an inset: at 160x120 an outline would be as thick as an arm."""
+"""Least width of an inset: at 160x120 a contour would be as thick as an arm."""
 END_POINTS: Final = 64
-"""Points on an end of a limb: the outline is within 3 % of the radius."""
+"""Points on an end of a limb: the contour is within 3 % of the radius."""
 GOLDEN_RAD: Final = math.pi * (3.0 - math.sqrt(5.0))
 """Turn from one point to the next that spreads points evenly over a ball."""
 SHIFT: Final = 4
@@ -53,8 +53,8 @@ def limb_ends(figure: Figure) -> NDArray[np.float64]:
     return np.array(ends)
 
 
-def limb_outlines(camera: Camera, ends_m: NDArray[np.float64]) -> list[Vector]:
-    """The outline of each limb in a camera's picture: convex, (k, 2) pixels, in the order of LIMBS.
+def limb_contours(camera: Camera, ends_m: NDArray[np.float64]) -> list[Vector]:
+    """The contour of each limb in a camera's picture: convex, (k, 2) pixels, in the order of LIMBS.
 
     A limb that is not wholly before the camera has none: (0, 2).
     """
@@ -84,17 +84,17 @@ def inset(report: Report, picture: Picture | None) -> Image:
     return image
 
 
-def draw_outlines(image: Image, outlines: list[Vector], width_px: int) -> None:
+def draw_contours(image: Image, contours: list[Vector], width_px: int) -> None:
     """Draw limbs into an inset, in the colours of their sides.
 
     Args:
         image: Changed in place.
-        outlines: From `limb_outlines`.
-        width_px: Width of the picture that the outlines' pixels are of.
+        contours: From `limb_contours`.
+        width_px: Width of the picture that the contours' pixels are of.
     """
     times = image.shape[1] / width_px
-    for outline, colour in zip(outlines, limb_colours(), strict=True):
-        corners = np.rint((outline * times - 0.5) * 2**SHIFT)
+    for contour, colour in zip(contours, limb_colours(), strict=True):
+        corners = np.rint((contour * times - 0.5) * 2**SHIFT)
         if len(corners) and np.abs(corners).max() < FARTHEST:
             cv2.polylines(
                 image, [corners.astype(np.int32)], True, colour.tolist(), 1, cv2.LINE_AA, SHIFT

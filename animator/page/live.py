@@ -7,7 +7,7 @@ import numpy as np
 
 from animator.page import panel
 from animator.page.door import HOST, close_server, open_server
-from animator.page.inset import draw_outlines, inset, limb_ends, limb_outlines
+from animator.page.inset import draw_contours, inset, limb_contours, limb_ends
 from animator.page.shapes import add_shapes, place_shapes
 from animator.scene import (
     BALLS,
@@ -170,7 +170,7 @@ class LivePage:
             report = snapshot.reports.get(n)
             image = None if report is None else inset(report, snapshot.pictures.get(n))
             if image is not None and ends is not None:
-                draw_outlines(image, limb_outlines(camera, ends), self._rig.width)
+                draw_contours(image, limb_contours(camera, ends), self._rig.width)
             self._frustums[n - 1].image = image
 
     def _show_panel(self, snapshot: Snapshot) -> None:

@@ -23,8 +23,8 @@ READY_S: Final = 60.0
 """How long processes wait for each other at the start: a first run compiles for some seconds."""
 
 
-class Place(NamedTuple):
-    """Where a process runs."""
+class ProcessContext(NamedTuple):
+    """How a process was started, and where it leaves what it has to say."""
 
     supervised: bool = False
     """Started by a supervisor, which alone hears Ctrl-C and ends it with SIGTERM."""
@@ -36,7 +36,7 @@ class Place(NamedTuple):
 
 
 @contextmanager
-def process(name: str, place: Place) -> Iterator[threading.Event]:
+def process(name: str, context: ProcessContext) -> Iterator[threading.Event]:
     """An event that is set when the process shall end; one thread for every library meanwhile."""
     stop = threading.Event()
 
@@ -44,9 +44,9 @@ def process(name: str, place: Place) -> Iterator[threading.Event]:
         stop.set()
 
     before = signal.signal(signal.SIGTERM, end)
-    before_int = signal.signal(signal.SIGINT, signal.SIG_IGN if place.supervised else end)
+    before_int = signal.signal(signal.SIGINT, signal.SIG_IGN if context.supervised else end)
     cv2.setNumThreads(1)
-    start_log(name, place.log)
+    start_log(name, context.log)
     try:
         yield stop
     finally:

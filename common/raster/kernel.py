@@ -85,8 +85,8 @@ def _section(
 
 
 @numba.njit(cache=True)
-def limb_outline(frames: Any, body: Any, limb: int, view: Any, out: Any) -> bool:
-    """Outline of a placed limb: arms are round-ended, the others flat-ended cylinders (P5).
+def limb_primitive(frames: Any, body: Any, limb: int, view: Any, out: Any) -> bool:
+    """Contour of a placed limb: arms are round-ended, the others flat-ended cylinders (P5).
 
     Args:
         frames: (10, FRAME).
@@ -131,7 +131,7 @@ def draw_placed(frames: Any, body: Any, view: Any, limbs: int, width: int, bits:
     p = np.empty(PRIMITIVE)
     first, last = np.empty(height, np.int32), np.empty(height, np.int32)
     for limb in range(10):
-        if limbs >> limb & 1 and limb_outline(frames, body, limb, view, p):
+        if limbs >> limb & 1 and limb_primitive(frames, body, limb, view, p):
             top, bottom = spans(p, width, height, first, last)
             draw(first, last, top, bottom, bits)
 

@@ -68,19 +68,19 @@ class Child:
         except BrokenPipeError as error:
             raise Broken(self._last_words()) from error
 
-    def read_into(self, room: memoryview) -> None:
-        """Fill `room`, plain bytes, from what it answers.
+    def read_into(self, buffer: memoryview) -> None:
+        """Fill `buffer`, plain bytes, from what it answers.
 
         Raises:
             Broken: When it died or was stuck before that.
         """
         until_s = time.monotonic() + self._stall_s
-        while room:
-            got = self._answers.readinto(room)
+        while buffer:
+            got = self._answers.readinto(buffer)
             if got == 0:
                 raise Broken(self._last_words())
             if got is not None:
-                room = room[got:]
+                buffer = buffer[got:]
             elif not self._poll.poll(max(0.0, 1000 * (until_s - time.monotonic()))):
                 self.kill()
                 raise Broken(f"it gave nothing for {self._stall_s:g} s")

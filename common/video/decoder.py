@@ -35,7 +35,7 @@ class Grabbed:
     picture: Picture | None
 
 
-class Film(NamedTuple):
+class OpenFilm(NamedTuple):
     """An open source."""
 
     fps: float
@@ -74,13 +74,13 @@ def serve(request: dict[str, Any], answers: IO[bytes]) -> None:
     say(answers, END, Grabbed(came, time.monotonic(), None))
 
 
-def opened(source: Source, every: int) -> Film:
+def opened(source: Source, every: int) -> OpenFilm:
     """A video, a camera, or a still picture as a film of one frame."""
     if isinstance(source, str) and cv2.haveImageReader(source) and cv2.imcount(source) == 1:
-        return Film(0.0, 1, iter([Grabbed(0, time.monotonic(), cv2.imread(source))]))
+        return OpenFilm(0.0, 1, iter([Grabbed(0, time.monotonic(), cv2.imread(source))]))
     capture = cv2.VideoCapture(source)
     fps, frames = capture.get(cv2.CAP_PROP_FPS), capture.get(cv2.CAP_PROP_FRAME_COUNT)
-    return Film(max(0.0, fps), max(0, round(frames)), grabs(capture, every))
+    return OpenFilm(max(0.0, fps), max(0, round(frames)), grabs(capture, every))
 
 
 def grabs(capture: cv2.VideoCapture, every: int) -> Iterator[Grabbed]:

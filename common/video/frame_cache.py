@@ -56,10 +56,10 @@ class Reel:
     ) -> Iterator[Decoded]:
         """Hand all pictures on, and keep them once they are known to be all and to fit."""
         kept: list[Decoded] = []
-        room = self._most_bytes // (3 * size[0] * size[1])
+        fits = self._most_bytes // (3 * size[0] * size[1])
         for got in pictures:
-            if len(kept) <= room:
+            if len(kept) <= fits:
                 kept.append(got)
             yield got
-        if len(kept) <= room:
+        if len(kept) <= fits:
             self._named, self._kept = (source, size), kept

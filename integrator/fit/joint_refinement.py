@@ -1,4 +1,4 @@
-"""A body of one view turned joint by joint until its picture fits the outline best (3.1.4)."""
+"""A body of one view turned joint by joint until its picture fits the silhouette best (3.1.4)."""
 
 import math
 from typing import Any, Final, NamedTuple
@@ -23,13 +23,13 @@ PELVIS: Final = JOINT_NAMES.index("pelvis")
 GIRTHS: Final = (1.0, 1.15, 1.3, 1.5)
 """How thick clothed limbs may be over those of the proportions."""
 GOOD: Final = 0.7
-"""A body whose S is higher is left as it is: its joints are better known than its outline."""
+"""A body whose S is higher is left as it is: its joints are better known than its silhouette."""
 LEAST_GAIN: Final = 0.001
-"""A turn that gains less in S is not made: it may be noise of the outline."""
+"""A turn that gains less in S is not made: it may be noise of the silhouette."""
 SHARES: Final = (1.0, 0.5, 1.0, 0.5, 0.25)
 """Of the steps, round by round."""
 
-_TURNED: Final = (
+_COORDINATES: Final = (
     *((name, 0.06) for name in "xy"),
     *((name, 8.0) for name in ("torso_z", "torso_x")),
     *((f"{side}_{name}", 16.0) for side in "rl" for name in ("hip_x", "hip_z", "knee_x")),
@@ -37,8 +37,8 @@ _TURNED: Final = (
     *((f"{side}_elbow_x", 16.0) for side in "rl"),
 )
 """What is moved or turned, in this order, by how much at first: metres or degrees."""
-_AT: Final = np.array([POSE_INDEX[name] for name, _ in _TURNED])
-_STEPS: Final = np.array([step for _, step in _TURNED])
+_AT: Final = np.array([POSE_INDEX[name] for name, _ in _COORDINATES])
+_STEPS: Final = np.array([step for _, step in _COORDINATES])
 _ENDS: Final = np.concatenate(
     [LIMB_ENDS]
     + [[[JOINT_NAMES.index(f"{side}_{name}") for side in "rl"]] for name in ("shoulder", "hip")]
@@ -51,7 +51,7 @@ class Task(NamedTuple):
 
     body: Vector
     """Body vector."""
-    lens: Vector
+    view_vector: Vector
     """(VIEW,)"""
     parts: Vector
     depth: float
@@ -79,7 +79,7 @@ def matched(
     report: Report,
     pose: Vector,
     joints_m: NDArray[np.float64],
-    turning: bool,
+    refining: bool,
 ) -> Match:
     """S of a body drawn as the stick body is, as thick as fits best; turned where that is low.
 
@@ -100,14 +100,14 @@ def matched(
     best, girth = 0.0, GIRTHS[0]
     for thickness in GIRTHS:
         stick[GIRTH] = thickness
-        value = float(_worth(task, stick, joints_m))
+        value = float(_similarity(task, stick, joints_m))
         if value > best:
             best, girth = value, thickness
-    if best >= GOOD or not turning:
+    if best >= GOOD or not refining:
         return Match(pose, joints_m, best)
     stick[GIRTH] = girth
-    turned, best = _climbed(task, stick, pose, joints_m)
-    return Match(turned, joints_m + joints(body, turned) - joints(body, pose), float(best))
+    refined, best = _coordinate_descent(task, stick, pose, joints_m)
+    return Match(refined, joints_m + joints(body, refined) - joints(body, pose), float(best))
 
 
 def _tall_px(camera: Camera, stature_m: float, joints_m: NDArray[np.float64]) -> float:
@@ -123,18 +123,18 @@ def _task(camera: Camera, body: Vector, man: Stickman, report: Report, tall_px: 
 
 
 @numba.njit(cache=True)
-def _climbed(task: Any, stick: Any, pose: Any, joints_m: Any) -> tuple[Any, float]:
+def _coordinate_descent(task: Any, stick: Any, pose: Any, joints_m: Any) -> tuple[Any, float]:
     """(pose, S): each parameter in turn, up and down, by smaller and smaller steps."""
     best_pose, trial = pose.copy(), pose.copy()
     rest = joints_m - joints(task.body, pose)
-    best = _worth(task, stick, joints_m)
+    best = _similarity(task, stick, joints_m)
     for share in SHARES:
         for k in range(_AT.size):
             at = _AT[k]
             for step in (-share * _STEPS[k], share * _STEPS[k]):
                 trial[:] = best_pose
                 trial[at] = min(max(best_pose[at] + step, LOW_DEG[at]), HIGH_DEG[at])
-                value = _worth(task, stick, rest + joints(task.body, trial))
+                value = _similarity(task, stick, rest + joints(task.body, trial))
                 if value > best + LEAST_GAIN:
                     best = value
                     best_pose[:] = trial
@@ -142,14 +142,14 @@ def _climbed(task: Any, stick: Any, pose: Any, joints_m: Any) -> tuple[Any, floa
 
 
 @numba.njit(cache=True)
-def _worth(task: Any, stick: Any, joints_m: Any) -> float:
+def _similarity(task: Any, stick: Any, joints_m: Any) -> float:
     """S of the body with these joints; `stick` gets the breadth that it shows."""
     ends = np.empty((12, 4))
     for row in range(12):
         for end in range(2):
             joint = _ENDS[row, end]
             x, y, z = joints_m[joint]
-            ends[row, 2 * end], ends[row, 2 * end + 1], _ = seen_at(task.lens, x, y, z)
+            ends[row, 2 * end], ends[row, 2 * end + 1], _ = seen_at(task.view_vector, x, y, z)
     across_px = math.hypot(ends[10, 2] - ends[10, 0], ends[10, 3] - ends[10, 1])
     stick[BREADTH] = min(1.0, across_px / task.broad_px)
     bits = np.zeros_like(task.seen)

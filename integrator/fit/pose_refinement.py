@@ -13,21 +13,21 @@ from common.body.body import POSE_INDEX, POSE_NAMES, Vector, rest_pose
 from common.body.kinematics import ALL_LIMBS, joints
 from common.raster.kernel import match
 from common.rig.camera import Rig
-from integrator.fit.silhouette_pair import Outlines, outlines_of
+from integrator.fit.silhouette_pair import Silhouettes, silhouettes_of
 from integrator.pairing import Seen
 from integrator.paper.silhouette_vote import products
 from integrator.pose.inverse_kinematics import HIGH_DEG, LOW_DEG
 
 POOR: Final = 0.6
 """A proposal of less S in either view is matched: of r01's and r04's every twentieth is."""
-SURE: Final = 0.75
+CONFIDENT: Final = 0.75
 """A proposal whose landmarks are surer than this on average is left as it is: cylinders that match
 better than it stand farther from the true joints of r01 and r04."""
 BETTER: Final = 1.25
 """How many times better S1 S2 must be for a matched pose to go on."""
 DOUBT: Final = 6.0
 """How fast a proposal that fits worse is believed less, however sure it is of itself."""
-TELLING: Final = 150.0
+SILHOUETTE_WEIGHT: Final = 150.0
 """What the log of S1 S2 counts beside the log likelihood of what was proposed."""
 
 ROUNDS: Final = 20
@@ -52,7 +52,7 @@ SPREAD: Final = np.array([_SPREADS[name] for name in POSE_NAMES])
 """Standard deviation of the first round, metres and degrees: what a body does in 1/15 s."""
 AT_FIRST: Final = 2.0
 """How many times wider poses are tried where none was known before."""
-CLIMBED_AGAIN: Final = 3
+SEARCHED_AGAIN: Final = 3
 """Of those, how many are followed up: which way somebody faces is told by little."""
 YAWS_DEG: Final = range(0, 360, 45)
 
@@ -76,16 +76,16 @@ class Wanted(NamedTuple):
 
     body: Vector
     """Body vector."""
-    outlines: Outlines
+    silhouettes: Silhouettes
     joints_m: NDArray[np.float64]
     """(15, 3) the landmarks of the proposed pose."""
     tightness: Vector
     """(15,) 1 / m^2: half the inverse variance of each of them."""
 
 
-def instead(
+def refined(
     proposed: Vector,
-    sure: Vector,
+    confidence: Vector,
     before: Vector | None,
     held: bool,
     body: Vector,
@@ -96,7 +96,7 @@ def instead(
 
     It is looked for near the proposed one, or near the one before it; where none was known before,
     also near somebody who stands where the proposed pose is, turned to any side. A proposal that
-    no pose near it makes match is refuted: then the outlines alone speak.
+    no pose near it makes match is refuted: then the silhouettes alone speak.
 
     Args:
         proposed: By the silhouettes, (25,).
@@ -112,10 +112,10 @@ def instead(
         somebody.
     """
     first, second = seen
-    if first is None or second is None or is_sure(sure):
+    if first is None or second is None or is_confident(confidence):
         return None
-    outlines = outlines_of(rig, (first, second))
-    wanted = Wanted(body, outlines, joints(body, proposed), 0.5 / spread_m(sure) ** 2)
+    silhouettes = silhouettes_of(rig, (first, second))
+    wanted = Wanted(body, silhouettes, joints(body, proposed), 0.5 / spread_m(confidence) ** 2)
     fits = _poorest(proposed, wanted)
     if fits >= POOR:
         return _held(proposed, before, wanted) if held and before is not None else None
@@ -123,33 +123,33 @@ def instead(
     pose = proposed if before is None else _searched(proposed, before, wanted)
     if _poorest(pose, wanted) >= POOR:
         return pose
-    refuted = wanted._replace(tightness=np.zeros(len(sure)))
+    refuted = wanted._replace(tightness=np.zeros(len(confidence)))
     return _searched(pose, before, refuted)
 
 
-def is_sure(sure: Vector) -> bool:
+def is_confident(confidence: Vector) -> bool:
     """Whether a proposal, by its (15,) landmarks' sureness, is left as it is."""
-    return bool(sure.mean() >= SURE)
+    return bool(confidence.mean() >= CONFIDENT)
 
 
 def _held(proposed: Vector, before: Vector, wanted: Wanted) -> Vector | None:
     """The pose that goes on from the one before, where the proposed one matches surely worse."""
-    pose, _ = climbed(before, 1.0, wanted)
-    fits = products(wanted.body, np.stack([pose, proposed]), ALL_LIMBS, *wanted.outlines)
+    pose, _ = cross_entropy(before, 1.0, wanted)
+    fits = products(wanted.body, np.stack([pose, proposed]), ALL_LIMBS, *wanted.silhouettes)
     return pose if fits[0] > BETTER * fits[1] else None
 
 
 def _searched(proposed: Vector, before: Vector | None, wanted: Wanted) -> Vector:
     if before is None:
-        starts = [proposed, *_standing(proposed)]
-        found = [climbed(start, AT_FIRST, wanted) for start in starts]
-        likely = sorted(found, key=itemgetter(1), reverse=True)[:CLIMBED_AGAIN]
-        return max((climbed(pose, 1.0, wanted) for pose, _ in likely), key=itemgetter(1))[0]
+        starts = [proposed, *_standing_poses(proposed)]
+        found = [cross_entropy(start, AT_FIRST, wanted) for start in starts]
+        likely = sorted(found, key=itemgetter(1), reverse=True)[:SEARCHED_AGAIN]
+        return max((cross_entropy(pose, 1.0, wanted) for pose, _ in likely), key=itemgetter(1))[0]
     near = np.stack([before, proposed])
-    return climbed(near[likelihoods(near, wanted).argmax()], 1.0, wanted)[0]
+    return cross_entropy(near[likelihoods(near, wanted).argmax()], 1.0, wanted)[0]
 
 
-def climbed(start: Vector, wider: float, wanted: Wanted) -> tuple[Vector, float]:
+def cross_entropy(start: Vector, wider: float, wanted: Wanted) -> tuple[Vector, float]:
     """The likeliest pose that rounds of samples met, and its log likelihood.
 
     Each round draws poses around the mean of the round before's best, as far apart as those were
@@ -175,15 +175,15 @@ def climbed(start: Vector, wider: float, wanted: Wanted) -> tuple[Vector, float]
 
 
 def likelihoods(poses: NDArray[np.float64], wanted: Wanted) -> Vector:
-    """Log likelihood of each pose, (n,): what both outlines say, and what was proposed."""
-    fits = products(wanted.body, poses, ALL_LIMBS, *wanted.outlines)
-    astray = _astray(wanted.body, poses, wanted.joints_m, wanted.tightness)
-    found: Vector = TELLING * np.log(np.maximum(fits, 1e-9)) - astray
+    """Log likelihood of each pose, (n,): what both silhouettes say, and what was proposed."""
+    fits = products(wanted.body, poses, ALL_LIMBS, *wanted.silhouettes)
+    penalties = _penalties(wanted.body, poses, wanted.joints_m, wanted.tightness)
+    found: Vector = SILHOUETTE_WEIGHT * np.log(np.maximum(fits, 1e-9)) - penalties
     return found
 
 
 @numba.njit(cache=True)
-def _astray(body: Any, poses: Any, joints_m: Any, tightness: Any) -> Any:
+def _penalties(body: Any, poses: Any, joints_m: Any, tightness: Any) -> Any:
     """How improbably far the landmarks of each pose are from others, (n,)."""
     found = np.zeros(len(poses))
     for i in range(len(poses)):
@@ -194,22 +194,22 @@ def _astray(body: Any, poses: Any, joints_m: Any, tightness: Any) -> Any:
     return found
 
 
-def spread_m(sure: Vector) -> Vector:
+def spread_m(confidence: Vector) -> Vector:
     """Standard deviation of a joint that is so probably less than 50 mm off, each axis."""
-    found: Vector = 0.05 / np.interp(sure, _WITHIN[1], _WITHIN[0])
+    found: Vector = 0.05 / np.interp(confidence, _WITHIN[1], _WITHIN[0])
     return found
 
 
 def _poorest(pose: Vector, wanted: Wanted) -> float:
     """S of a pose in the view where it is lower."""
-    body, (views, masks, areas, width) = wanted.body, wanted.outlines
+    body, (views, masks, areas, width) = wanted.body, wanted.silhouettes
     return min(
         float(match(body, pose, view, ALL_LIMBS, width, mask, int(area)))
         for view, mask, area in zip(views, masks, areas, strict=True)
     )
 
 
-def _standing(proposed: Vector) -> list[Vector]:
+def _standing_poses(proposed: Vector) -> list[Vector]:
     """Somebody who stands at the place of a pose, arms hanging or stretched, to every side."""
     poses = []
     for yaw_deg, raised_deg in product(YAWS_DEG, (0.0, 90.0)):

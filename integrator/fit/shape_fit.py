@@ -1,4 +1,4 @@
-"""A body fitted to the person's outlines as they move: widths and arms."""
+"""A body fitted to the person's silhouettes as they move: widths and arms."""
 
 from typing import Any, Final
 
@@ -11,7 +11,7 @@ from common.body.kinematics import ALL_LIMBS
 from common.body.proportions import body_vector, stature, thesis_bdp
 from common.raster.kernel import match
 from common.rig.camera import Rig
-from integrator.fit.silhouette_pair import outlines_of
+from integrator.fit.silhouette_pair import silhouettes_of
 from integrator.opening_posture import Opening, Sample
 from integrator.pairing import Seen
 
@@ -28,8 +28,8 @@ GROUPS: Final[tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]] = (
 """What is scaled together: limbs and their lengths. The heights of head, trunk and legs stay: they
 make up the stature, which the silhouette tells."""
 
-TELLING: Final = 1.2
-"""Sum of S over both views; an outline that the body fits less is not of it alone."""
+LEAST_FIT: Final = 1.2
+"""Sum of S over both views; a silhouette that the body fits less is not of it alone."""
 WIDEST: Final = 1.2
 """Times the thesis's radii at that stature: a limb that would be wider covers something else."""
 FACTORS: Final = (0.85, 0.93, 1.08, 1.18)
@@ -65,28 +65,28 @@ def step(opening: Opening, rig: Rig, seen: Seen, pose: Vector) -> Opening:
     if opening.samples and opening.unsampled < APART:
         return opening._replace(unsampled=opening.unsampled + 1)
     samples, body = (*opening.samples, Sample(pose, (first, second))), opening.bdp
-    if float(fit(body_vector(body), *_outlines(rig, samples[-1:]))) < TELLING:
+    if float(fit(body_vector(body), *_fit_inputs(rig, samples[-1:]))) < LEAST_FIT:
         return opening
     if len(samples) in (1, MOST_SAMPLES):
-        body = adapted(body, rig, samples)
+        body = fitted(body, rig, samples)
     return opening._replace(bdp=body, samples=samples, unsampled=0)
 
 
-def adapted(bdp: Bdp, rig: Rig, samples: tuple[Sample, ...]) -> Bdp:
-    """The body whose outline fits the silhouettes of all samples best, group after group.
+def fitted(bdp: Bdp, rig: Rig, samples: tuple[Sample, ...]) -> Bdp:
+    """The body that fits the silhouettes of all samples best, group after group.
 
     Args:
         bdp: The body so far.
         rig: Two cameras.
         samples: Both views of each, in pictures of one size.
     """
-    outlines = _outlines(rig, samples)
-    best, body = float(fit(body_vector(bdp), *outlines)), bdp
+    inputs = _fit_inputs(rig, samples)
+    best, body = float(fit(body_vector(bdp), *inputs)), bdp
     for _ in range(ROUNDS):
         before = best
         for limbs, lengths in GROUPS:
             for trial in [_scaled(body, limbs, lengths, factor) for factor in FACTORS]:
-                found = float(fit(body_vector(trial), *outlines))
+                found = float(fit(body_vector(trial), *inputs))
                 if found > best and _of_a_person(trial):
                     best, body = found, trial
         if best == before:
@@ -113,9 +113,9 @@ def fit(body: Any, poses: Any, views: Any, seen: Any, seen_px: Any, width: int) 
     return total
 
 
-def _outlines(rig: Rig, samples: tuple[Sample, ...]) -> tuple[Any, Any, Any, Any, int]:
+def _fit_inputs(rig: Rig, samples: tuple[Sample, ...]) -> tuple[Any, Any, Any, Any, int]:
     """Poses, views, silhouettes, their areas and their width, as `fit` wants them."""
-    each = [outlines_of(rig, sample.seen) for sample in samples]
+    each = [silhouettes_of(rig, sample.seen) for sample in samples]
     return (
         np.array([sample.pose for sample in samples]),
         each[0].views,

@@ -12,7 +12,7 @@ from common.raster.kernel import view_of
 from common.rig.camera import Rig
 
 
-class Outlines(NamedTuple):
+class Silhouettes(NamedTuple):
     """What both views show of a person, in pictures of one size."""
 
     views: Vector
@@ -25,7 +25,7 @@ class Outlines(NamedTuple):
     """Of the pictures, pixels."""
 
 
-def outlines_of(rig: Rig, seen: tuple[Report, Report]) -> Outlines:
+def silhouettes_of(rig: Rig, seen: tuple[Report, Report]) -> Silhouettes:
     """The silhouettes of two reports, and the views of a rig.
 
     Pictures of two sizes are both taken to be as wide and as high as the larger is.
@@ -35,7 +35,7 @@ def outlines_of(rig: Rig, seen: tuple[Report, Report]) -> Outlines:
     masks = np.zeros((2, rows, words), np.uint64)
     for whole, mask in zip(masks, each, strict=True):
         whole[: mask.shape[0], : mask.shape[1]] = mask
-    return Outlines(
+    return Silhouettes(
         np.array([view_of(camera) for camera in rig.cameras]),
         masks,
         np.array([count(mask) for mask in masks]),

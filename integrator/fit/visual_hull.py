@@ -1,4 +1,4 @@
-"""What two outlines show of one piece of space: a person, without what else differs from the room.
+"""What two silhouettes show of one piece of space: a person, without other foreground.
 
 A place that both views show belongs to their common hull (Laurentini 1994); a person is one piece
 of it, and the largest and tallest. Shadows, glare and moved furniture are others, or none.
@@ -20,26 +20,26 @@ from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig, project
 from integrator.pairing import Pair
 from integrator.rig.perspective import px_per_m, triangulate
-from integrator.rig.undistortion import straight
+from integrator.rig.undistortion import undistorted
 
 CELL_M: Final = 0.05
 """Thinner than an arm, so that it stays in one piece with its hand."""
 ASIDE_CELLS: Final = 40
-"""2 m to each side of the middle of the outlines, which strays draw away from the person."""
+"""2 m to each side of the middle of the silhouettes, which clutter draws away from the person."""
 UP_CELLS: Final = 48
 FLOOR_M: Final = 0.05
 """What is lower lies on the floor."""
 REACH_CELLS: Final = 10
 """How far an arm may reach out of one of the pictures."""
-STRAY_SHARE: Final = 0.03
-"""Less than this of an outline is left as it is: the hull is coarse."""
+CLUTTER_SHARE: Final = 0.03
+"""Less than this of a silhouette is left as it is: the hull is coarse."""
 
 
 class Cleaned(NamedTuple):
     """Two reports of one piece, and whether anything else was in them."""
 
     pair: Pair
-    strays: bool
+    clutter: bool
 
 
 def cleaned(rig: Rig, pair: Pair) -> Cleaned:
@@ -49,21 +49,21 @@ def cleaned(rig: Rig, pair: Pair) -> Cleaned:
         rig: Two cameras; their world has y up and its floor at 0.
         pair: What was seen, left as it is where one view alone shows somebody.
     """
-    first, second = pair.with_somebody
+    first, second = pair.detections
     if first is None or second is None:
         return Cleaned(pair, False)
     masks = (unpack(first), unpack(second))
     kept = one_piece(rig, masks)
     if kept is None or not any(
-        after.sum() < (1.0 - STRAY_SHARE) * before.sum()
+        after.sum() < (1.0 - CLUTTER_SHARE) * before.sum()
         for after, before in zip(kept, masks, strict=True)
     ):
         return Cleaned(pair, False)
-    return Cleaned(Pair(_told(first, kept[0]), _told(second, kept[1])), True)
+    return Cleaned(Pair(_with_silhouette(first, kept[0]), _with_silhouette(second, kept[1])), True)
 
 
 def one_piece(rig: Rig, masks: tuple[Mask, Mask]) -> tuple[Mask, Mask] | None:
-    """Both outlines' parts that show the largest piece of their hull; None where there is none.
+    """Both silhouettes' parts that show the largest piece of their hull; None where there is none.
 
     Args:
         rig: Two cameras.
@@ -78,7 +78,7 @@ def one_piece(rig: Rig, masks: tuple[Mask, Mask]) -> tuple[Mask, Mask] | None:
     views = np.array([view_of(camera) for camera in rig.cameras])
     full = np.zeros((2 * ASIDE_CELLS, UP_CELLS, 2 * ASIDE_CELLS), np.int32)
     for view, mask, camera in zip(views, masks, rig.cameras, strict=True):
-        _carve(full, corner_m, view, straight(mask, camera))
+        _carve(full, corner_m, view, undistorted(mask, camera))
     piece = _largest(full)
     if not len(piece):
         return None
@@ -193,8 +193,8 @@ def _shown(places_m: NDArray[np.float64], camera: Camera, mask: Mask) -> Mask:
     return np.asarray(cv2.dilate(dots, around) > 0)
 
 
-def _told(report: Report, mask: Mask) -> Report:
-    """The report with another outline."""
+def _with_silhouette(report: Report, mask: Mask) -> Report:
+    """The report with another silhouette."""
     box = box_of(mask)
     assert box is not None
     return msgspec.structs.replace(

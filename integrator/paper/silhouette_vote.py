@@ -15,7 +15,7 @@ from common.body.kinematics import ALL_LIMBS, ARM_LIMBS, LEG_LIMBS
 from common.bus.messages import Report
 from common.raster.kernel import draw_limbs, match_over
 from common.rig.camera import Rig
-from integrator.fit.silhouette_pair import outlines_of
+from integrator.fit.silhouette_pair import silhouettes_of
 
 Doubt = Callable[[Vector, Vector], NDArray[np.float64]]
 """From the pose so far and that of the frame before: it, and others that may be meant, (n, 25)."""
@@ -108,7 +108,7 @@ def settled(
     In turn: whether the person squats; where the body is; which arm it is that swings, or whether
     both do (L3); whether an arm was lost, and is where it was or hangs. Each is a few poses, of
     which the one with the highest S1 S2 is taken, and the first, which is the pose so far, unless
-    another is surely better. A body that was fitted to its outline is then turned joint by joint
+    another is surely better. A body that was fitted to its silhouette is then turned joint by joint
     too; one that was measured in the opening posture is not: its cylinders have no feet, and
     would bend to cover them.
 
@@ -119,9 +119,9 @@ def settled(
         rig: Two cameras.
         seen: Both views' reports, of pictures of one size.
         upright_m: Height of the navel of the person standing upright.
-        fitted: The body is a prior that was fitted to the outline.
+        fitted: The body is a prior that was fitted to the silhouette.
     """
-    outlines = outlines_of(rig, seen)
+    silhouettes = silhouettes_of(rig, seen)
     turns: list[tuple[Doubt, float]] = [
         (partial(turned, pair, share), 1.0) for share in TURN_SHARES for pair in TURNS if fitted
     ]
@@ -135,7 +135,7 @@ def settled(
     ]
     for doubts, surely in all_doubts:
         poses = doubts(pose, before)
-        likely = products(body, poses, moving(poses), *outlines)
+        likely = products(body, poses, moving(poses), *silhouettes)
         best = int(likely.argmax())
         pose = poses[best if likely[best] > surely * likely[0] else 0]
     return pose

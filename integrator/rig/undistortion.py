@@ -1,4 +1,4 @@
-"""What a lens bends, straightened: the kernel and the network take pictures without distortion."""
+"""Lens distortion undone: the kernel and the network take pictures without distortion."""
 
 from functools import lru_cache
 
@@ -15,39 +15,39 @@ from common.rig.camera import Camera, Rig
 from integrator.pairing import Pair
 
 
-def straight_rig(rig: Rig) -> Rig:
+def undistorted_rig(rig: Rig) -> Rig:
     """The cameras that take pictures without distortion."""
     if not any(any(camera.distortion) for camera in rig.cameras):
         return rig
-    cameras = tuple(straight_camera(camera) for camera in rig.cameras)
+    cameras = tuple(undistorted_camera(camera) for camera in rig.cameras)
     return msgspec.structs.replace(rig, cameras=cameras, distortion=())
 
 
-def straight_camera(camera: Camera) -> Camera:
+def undistorted_camera(camera: Camera) -> Camera:
     """The camera that takes such pictures."""
     return msgspec.structs.replace(camera, distortion=()) if any(camera.distortion) else camera
 
 
-def straight_pair(rig: Rig | None, pair: Pair) -> Pair:
+def undistorted_pair(rig: Rig | None, pair: Pair) -> Pair:
     """The reports of an instant as such cameras would give rise to; as they are of unknown ones."""
     if rig is None:
         return pair
     first, second = (
-        None if report is None else straight_report(report, camera)
+        None if report is None else undistorted_report(report, camera)
         for report, camera in zip(pair, rig.cameras, strict=True)
     )
     return Pair(first, second)
 
 
-def straight_report(report: Report, camera: Camera) -> Report:
-    """A report with outline, box, area and navel as without distortion.
+def undistorted_report(report: Report, camera: Camera) -> Report:
+    """A report with silhouette, box, area and navel as without distortion.
 
     What the lens shows beyond the border of that picture is cut off; somebody of whom nothing
     would be left stays as they are, as does everything where nothing is bent.
     """
     if report.root_px is None or not any(camera.distortion):
         return report
-    mask = straight(unpack(report), camera)
+    mask = undistorted(unpack(report), camera)
     box, K = box_of(mask), np.array(camera.K)
     if box is None:
         return report
@@ -63,7 +63,7 @@ def straight_report(report: Report, camera: Camera) -> Report:
     )
 
 
-def straight(mask: Mask, camera: Camera) -> Mask:
+def undistorted(mask: Mask, camera: Camera) -> Mask:
     """A silhouette (H, W) as the camera would show it without distortion; itself where it is."""
     if not any(camera.distortion):
         return mask
@@ -75,7 +75,7 @@ def straight(mask: Mask, camera: Camera) -> Mask:
 def _maps(
     camera: Camera, width: int, height: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Where the bent picture has each pixel of the straight one; OpenCV's begin in their middle."""
+    """Where the bent picture has each undistorted pixel; OpenCV's begin in their middle."""
     K = np.array(camera.K)
     K[:2, 2] -= 0.5
     across, down = cv2.initUndistortRectifyMap(

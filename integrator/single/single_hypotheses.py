@@ -22,7 +22,9 @@ from integrator.fit import joint_refinement
 from integrator.pose import joint_limits, smoothing
 from integrator.pose.inverse_kinematics import PLACES, pose_of
 from integrator.proposal import pose_network, pose_proposal
-from integrator.rig.undistortion import straight_camera, straight_report, straight_rig
+from integrator.rig.undistortion import undistorted_camera as straight_camera
+from integrator.rig.undistortion import undistorted_report as straight_report
+from integrator.rig.undistortion import undistorted_rig as straight_rig
 from integrator.single import depth_signs, reflection
 from integrator.single.lifting import SWAPPED, Lifted, lift
 from integrator.single.reflection import Front

@@ -14,7 +14,7 @@ from recognizer.postures import STATES, Array, Topology
 NEIGHBOUR_WIDTH: Final = 0.25
 """Distance between codewords at which a symbol still vouches for another: an arm turned by 14
 degrees, a thigh by 5. What a handful of people showed must cover what the next one will show. Of
-420 held-out made-up performances, 0.15, 0.2 and 0.25 named 371, 372 and 374."""
+420 held-out synthetic performances, 0.15, 0.2 and 0.25 named 371, 372 and 374."""
 
 EMISSION_FLOOR: Final = 1e-4
 """No symbol is impossible: one that training never saw must not refuse a posture (P57)."""
@@ -33,14 +33,14 @@ MEAN_WEIGHT: Final = 1e-3
 
 VARIANCE_FLOOR: Final = 0.01
 """Of a direction: 6 degrees, what the tracker errs by; no state shall know a person better. 0.005
-and 0.01 named 415 and 417 of 420 held-out made-up performances, 0.05 only 411."""
+and 0.01 named 415 and 417 of 420 held-out synthetic performances, 0.05 only 411."""
 
 
 def allowed(topology: Topology, states: int) -> NDArray[np.bool_]:
     """Which state may follow which: (from, to).
 
     Postures repeat and windows begin anywhere in them, so any state may follow any: chosen on four
-    made-up performers outside training (52 of 60 right against 47, tracked in `default` mode; 49
+    synthetic performers outside training (52 of 60 right against 47, tracked in `default` mode; 49
     against 45 in `paper` mode).
     """
     if topology == "ergodic":

@@ -125,7 +125,7 @@ def _cut(
 
 
 def leg(p: Person, at: dict[str, Vector], side: str) -> list[Ring]:
-    """From the hip to the ankle; it starts inside of the trunk's outline."""
+    """From the hip to the ankle; it starts inside of the trunk's contour."""
     m, look = p.measures, p.look
     x, hip, _ = (float(value) for value in at[f"{side}_thigh"])
     sign = 1.0 if side == "l" else -1.0

@@ -14,7 +14,7 @@ from synth.person.mesh import Mesh, body_mesh
 from synth.person.people import Person, person
 from synth.person.skeleton import ANGLES
 from synth.picture.mask_flaws import Flaw, flaw, spoilt
-from synth.picture.random_rig import made_up_rig
+from synth.picture.random_rig import random_rig
 from synth.picture.raster import cover, skin
 
 FPS: Final = 15.0
@@ -104,7 +104,7 @@ def outlines(seed: int, manner: Manner = ORDINARY) -> Iterator[Outline]:
     angles = _angles(someone, manner, rng)
     leash = rng.uniform(-ROOM_M, ROOM_M, 2)
     body = posed(someone.measures, angles, leash, np.tile(leash, (len(angles), 1)))
-    mesh, rig = body_mesh(someone), made_up_rig(rng, manner.slanted, manner.distances_m)
+    mesh, rig = body_mesh(someone), random_rig(rng, manner.slanted, manner.distances_m)
     present = _present(len(angles), rng)
     flaws = (flaw(len(angles), rng), flaw(len(angles), rng))
     since_s = 1.0 / FPS

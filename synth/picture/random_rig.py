@@ -14,7 +14,7 @@ APART_DEG, RISE_M, ROLL_DEG = (50.0, 130.0), (0.5, 2.6), 6.0
 """Of cameras that stand anywhere."""
 
 
-def made_up_rig(
+def random_rig(
     rng: np.random.Generator, slanted_share: float, distances_m: tuple[float, float]
 ) -> Rig:
     """Two cameras before somebody.

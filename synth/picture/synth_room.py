@@ -30,7 +30,7 @@ SAMPLES: Final = 2
 """Rays a pixel, each way."""
 
 
-class Box(NamedTuple):
+class Cuboid(NamedTuple):
     """A thing in the room: a box along the axes with one finish."""
 
     low: Vector
@@ -99,15 +99,15 @@ def _lamp(place: Vector) -> Lamp:
     return Lamp(place, np.stack([x, np.cross(z, x), z]), focal)
 
 
-def _walls(rng: np.random.Generator, rig: Rig) -> list[Box]:
+def _walls(rng: np.random.Generator, rig: Rig) -> list[Cuboid]:
     """The room itself: a box that is seen from inside, first of all boxes."""
     far = max(5.0, *(float(np.abs(centre(camera)).max()) for camera in rig.cameras)) + 0.6
     low = np.array([-far, 0.0, -rng.uniform(1.5, 2.5)])
     high = np.array([rng.uniform(1.5, 2.5), rng.uniform(2.5, 2.9), far])
-    return [Box(low, high, finish("room", rng))]
+    return [Cuboid(low, high, finish("room", rng))]
 
 
-def _furniture(rng: np.random.Generator, back: float, side: float) -> list[Box]:
+def _furniture(rng: np.random.Generator, back: float, side: float) -> list[Cuboid]:
     """Things along the far wall of each camera."""
     boxes = []
     for wall in (0, 1):
@@ -133,18 +133,18 @@ _HEIGHTS: Final = {
 
 def _against(
     rng: np.random.Generator, kind: str, along: float, wide: float, wall: int, at: float
-) -> Box:
+) -> Cuboid:
     bottom_from, bottom_to, top_from, top_to, deep = _HEIGHTS[kind]
     bottom, top = rng.uniform(bottom_from, bottom_to), rng.uniform(top_from, top_to)
     if wall == 0:
         low, high = (along, bottom, at), (along + wide, top, at + deep)
     else:
         low, high = (at - deep, bottom, along), (at, top, along + wide)
-    return Box(np.array(low), np.array(high), finish(kind, rng))
+    return Cuboid(np.array(low), np.array(high), finish(kind, rng))
 
 
 def _seen(
-    rig: Rig, n: int, boxes: list[Box], key: Vector, rng: np.random.Generator
+    rig: Rig, n: int, boxes: list[Cuboid], key: Vector, rng: np.random.Generator
 ) -> tuple[Picture, NDArray[np.float64]]:
     """The picture (h, w, 3) and the point of the room in each pixel (h, w, 3)."""
     camera, size = rig.cameras[n], (rig.height * SAMPLES, rig.width * SAMPLES)
@@ -180,7 +180,7 @@ def _rays(camera: Camera, size: tuple[int, int]) -> NDArray[np.float64]:
     return seen @ np.array(camera.R)
 
 
-def _leaving(origin: Vector, rays: NDArray[np.float64], box: Box) -> Vector:
+def _leaving(origin: Vector, rays: NDArray[np.float64], box: Cuboid) -> Vector:
     """How far along each ray the room ends."""
     with np.errstate(divide="ignore"):
         ends = np.maximum((box.low - origin) / rays, (box.high - origin) / rays)
@@ -188,7 +188,9 @@ def _leaving(origin: Vector, rays: NDArray[np.float64], box: Box) -> Vector:
     return found
 
 
-def _entering(origins: Vector, rays: NDArray[np.float64], box: Box, least: float = 0.0) -> Vector:
+def _entering(
+    origins: Vector, rays: NDArray[np.float64], box: Cuboid, least: float = 0.0
+) -> Vector:
     """How far along each ray a box begins; infinite where it is missed.
 
     Args:
@@ -206,7 +208,7 @@ def _entering(origins: Vector, rays: NDArray[np.float64], box: Box, least: float
 
 
 def _light(
-    points: NDArray[np.float64], boxes: list[Box], key: Vector, rng: np.random.Generator
+    points: NDArray[np.float64], boxes: list[Cuboid], key: Vector, rng: np.random.Generator
 ) -> Vector:
     """Brightness of the points: lamp with the furniture's shadows, and dark corners."""
     away = np.linalg.norm(points - key, axis=1)

@@ -42,7 +42,7 @@ FINE: Final = 4
 """Binary digits of a pixel's fraction, as OpenCV draws them."""
 
 
-class Frame(NamedTuple):
+class WorstFrame(NamedTuple):
     """A frame that went badly."""
 
     clip: str
@@ -57,28 +57,28 @@ class Frame(NamedTuple):
     joint_mm: float
 
 
-def worst(clips: Mapping[str, Compared], most: int = MOST) -> list[Frame]:
+def worst(clips: Mapping[str, Compared], most: int = MOST) -> list[WorstFrame]:
     """The frames with the largest mean error, one of any APART in a row of a clip."""
     mean = [
         (float(off), name, place)
         for name, clip in clips.items()
         for place, off in enumerate(clip.off_mm.mean(axis=1))
     ]
-    found: list[Frame] = []
+    found: list[WorstFrame] = []
     for off, name, place in sorted(mean, key=lambda one: (-one[0], *one[1:])):
         at = int(clips[name].frames[place])
         if any(one.clip == name and abs(one.frame - at) < APART for one in found):
             continue
         joints = clips[name].off_mm[place]
         most_off = int(joints.argmax())
-        found.append(Frame(name, place, at, off, JOINTS[most_off], float(joints[most_off])))
+        found.append(WorstFrame(name, place, at, off, JOINTS[most_off], float(joints[most_off])))
         if len(found) == most:
             break
     return found
 
 
 def draw(
-    frames: Sequence[Frame],
+    frames: Sequence[WorstFrame],
     clips: Mapping[str, Compared],
     truths: Mapping[str, Arrays],
     settings: Mapping[str, Settings],
@@ -109,7 +109,7 @@ def draw(
 
 
 def _shown(
-    one: Frame, compared: Compared, truth: Arrays, settings: Settings, decoders: Decoders
+    one: WorstFrame, compared: Compared, truth: Arrays, settings: Settings, decoders: Decoders
 ) -> Picture:
     clip = open_clip(msgspec.structs.replace(settings, size=SHOWN), decoders.of[1])
     rig, row, parts = both_cameras(clip), int(compared.rows[one.place]), []

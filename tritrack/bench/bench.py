@@ -93,7 +93,7 @@ def matching(size: tuple[int, int], target_us: float, repeats: int) -> Iterator[
     """A limb match at one size: alone, with its place in the picture, and as OpenCV would."""
     at = f"{size[0]}x{size[1]}"
     given = scene(size)
-    matches = given.outlines.shape[0] * given.outlines.shape[1]
+    matches = given.primitives.shape[0] * given.primitives.shape[1]
     match_us = 1e6 * least_s(lambda: match_all(*given.matched), repeats) / matches
     placed_us = 1e6 * least_s(lambda: match_placed(*given.placed), repeats) / matches
     naive_us = 1e6 * least_s(by_opencv(given), repeats) / matches
@@ -134,8 +134,8 @@ def loaded_s() -> float:
     settings = Settings()
     room = learn([np.full((SMALL[1], SMALL[0], 3), 128, np.uint8)])
     for viewer in integrator_warmup.VIEWERS:
-        viewer_warmup.rehearse(track.init(viewer, room, None, settings), SMALL)
-    integrator_warmup.rehearse(settings, SMALL)
+        viewer_warmup.warm_up(track.init(viewer, room, None, settings), SMALL)
+    integrator_warmup.warm_up(settings, SMALL)
     return time.perf_counter() - began
 
 

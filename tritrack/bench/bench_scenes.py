@@ -1,4 +1,4 @@
-"""Made-up matches to measure: limbs of a standing person over the drawn rest of the body."""
+"""Synthetic matches to measure: limbs of a standing person over the drawn rest of the body."""
 
 from collections.abc import Callable
 from typing import Any, Final, NamedTuple
@@ -12,7 +12,7 @@ from common.body.body import POSE_INDEX, Vector, rest_pose
 from common.body.kinematics import ALL_LIMBS, FRAME, hang_limbs, limb_frames, place_limbs
 from common.body.proportions import body_vector, thesis_bdp
 from common.raster.bits import Bits, pack_words, unpack_words
-from common.raster.kernel import draw_body, draw_limbs, limb_outline, score
+from common.raster.kernel import draw_body, draw_limbs, limb_primitive, score
 from common.raster.row_spans import PRIMITIVE, gain, spans
 from common.rig.camera import PAPER_ROTATIONS
 from viewer.paper.posed_model import Figure, figure_of, view_at
@@ -24,7 +24,7 @@ MATCHES: Final = 9
 SWAY_DEG: Final = 12.0
 """Standard deviation of every angle around the rest: of a person who walks."""
 RING: Final = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
-"""Points of a disc's outline as OpenCV gets it."""
+"""Points of a disc's contour as OpenCV gets it."""
 
 
 class Scene(NamedTuple):
@@ -38,7 +38,7 @@ class Scene(NamedTuple):
     """(8,), as in LIMBS: those that a search moves."""
     poses: Vector
     """(8, MATCHES, 25)."""
-    outlines: Vector
+    primitives: Vector
     """(8, MATCHES, PRIMITIVE)."""
     rests: Bits
     """(8, H, words): the body without the limb."""
@@ -46,7 +46,7 @@ class Scene(NamedTuple):
     @property
     def matched(self) -> tuple[Any, ...]:
         """What `match_all` takes."""
-        return self.outlines, self.rests, self.seen, self.size[0]
+        return self.primitives, self.rests, self.seen, self.size[0]
 
     @property
     def placed(self) -> tuple[Any, ...]:
@@ -61,14 +61,14 @@ def scene(size: tuple[int, int]) -> Scene:
     body, view = body_vector(thesis_bdp(1.0)), _view(size, 1)
     pose, limbs = swayed(rest_pose(), random), np.arange(2, 10)
     poses = np.array([[swayed(pose, random) for _ in range(MATCHES)] for _ in limbs])
-    outlines = np.empty((len(limbs), MATCHES, PRIMITIVE))
+    primitives = np.empty((len(limbs), MATCHES, PRIMITIVE))
     rests = np.zeros((len(limbs), height, (width + 63) // 64), np.uint64)
     for i, limb in enumerate(limbs):
         draw_limbs(body, pose, view, ALL_LIMBS & ~(1 << int(limb)), width, rests[i])
         for j in range(MATCHES):
-            limb_outline(limb_frames(body, poses[i, j]), body, int(limb), view, outlines[i, j])
+            limb_primitive(limb_frames(body, poses[i, j]), body, int(limb), view, primitives[i, j])
     seen = pack_words(draw_body(body, swayed(pose, random), view, size))
-    return Scene(size, body, view, seen, limbs, poses, outlines, rests)
+    return Scene(size, body, view, seen, limbs, poses, primitives, rests)
 
 
 def swayed(pose: Vector, random: np.random.Generator) -> Vector:
@@ -80,13 +80,13 @@ def swayed(pose: Vector, random: np.random.Generator) -> Vector:
 
 
 @numba.njit(cache=True)
-def match_all(outlines: Any, rests: Any, seen: Any, width: int) -> int:
-    """Match every outline over its rest; a sum of counts, so that nothing is left out."""
+def match_all(primitives: Any, rests: Any, seen: Any, width: int) -> int:
+    """Match every primitive over its rest; a sum of counts, so that nothing is left out."""
     height, total = seen.shape[0], 0
     first, last = np.empty(height, np.int32), np.empty(height, np.int32)
-    for i in range(outlines.shape[0]):
-        for j in range(outlines.shape[1]):
-            top, bottom = spans(outlines[i, j], width, height, first, last)
+    for i in range(primitives.shape[0]):
+        for j in range(primitives.shape[1]):
+            top, bottom = spans(primitives[i, j], width, height, first, last)
             drawn, hit = gain(first, last, top, bottom, rests[i], seen)
             total += drawn + hit
     return total
@@ -96,7 +96,7 @@ def match_all(outlines: Any, rests: Any, seen: Any, width: int) -> int:
 def match_placed(
     limbs: Any, poses: Any, body: Any, view: Any, rests: Any, seen: Any, width: int
 ) -> float:
-    """The same from angles to scores: kinematics, outline, rows, counts, S."""
+    """The same from angles to scores: kinematics, contour, rows, counts, S."""
     height, total = seen.shape[0], 0.0
     first, last = np.empty(height, np.int32), np.empty(height, np.int32)
     frames, p = np.empty((10, FRAME)), np.empty(PRIMITIVE)
@@ -104,7 +104,7 @@ def match_placed(
     for i in range(limbs.size):
         for j in range(poses.shape[1]):
             hang_limbs(body, poses[i, j], 1 << limbs[i], frames)
-            limb_outline(frames, body, limbs[i], view, p)
+            limb_primitive(frames, body, limbs[i], view, p)
             top, bottom = spans(p, width, height, first, last)
             drawn, hit = gain(first, last, top, bottom, rests[i], seen)
             total += score(hit, drawn, 1000)
@@ -113,7 +113,7 @@ def match_placed(
 
 def by_opencv(given: Scene) -> Callable[[], int]:
     """The same matches with full masks: a convex polygon drawn, unions and overlaps counted."""
-    polygons = [[_polygon(outline) for outline in row] for row in given.outlines]
+    polygons = [[_polygon(primitive) for primitive in row] for row in given.primitives]
     rests = [unpack_words(rest, given.size[0]).astype(np.uint8) for rest in given.rests]
     seen = unpack_words(given.seen, given.size[0]).astype(np.uint8)
 
@@ -157,10 +157,12 @@ def _view(size: tuple[int, int], viewer: int, off_px: tuple[float, float] = (0.0
     return view_at(np.array(PAPER_ROTATIONS[viewer - 1]), STATURE_SHARE * height, root)
 
 
-def _polygon(outline: Vector) -> NDArray[np.int32]:
-    """A limb's outline as a convex polygon of OpenCV's whole pixels."""
-    discs = [(x + r * np.cos(RING), y + r * np.sin(RING)) for x, y, r in outline[:6].reshape(2, 3)]
+def _polygon(primitive: Vector) -> NDArray[np.int32]:
+    """A limb's contour as a convex polygon of OpenCV's whole pixels."""
+    discs = [
+        (x + r * np.cos(RING), y + r * np.sin(RING)) for x, y, r in primitive[:6].reshape(2, 3)
+    ]
     sheared, y = np.concatenate(discs, axis=1)
-    x = outline[7] * sheared + outline[6] * y
+    x = primitive[7] * sheared + primitive[6] * y
     points = np.round(np.stack([x, y], axis=1) - 0.5).astype(np.int32)
     return np.asarray(cv2.convexHull(points), np.int32)

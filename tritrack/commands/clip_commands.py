@@ -51,7 +51,7 @@ def synth(
     ] = None,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Make clips of made-up people whose truth is known.
+    """Make clips of synthetic people whose truth is known.
 
     Example: tritrack synth --out clips --performers 3 --seed 7
     """

@@ -20,7 +20,7 @@ def demo(
     page: Annotated[bool, typer.Option(help="Show it on the live page too.")] = True,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Run the whole system on a made-up person: two viewers, integrator, recognizer, page.
+    """Run the whole system on a synthetic person: two viewers, integrator, recognizer, page.
 
     Example: tritrack demo
     """

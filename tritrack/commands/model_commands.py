@@ -34,7 +34,7 @@ def train(
     cache: Cache = CACHE,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Learn postures from clips or runs, or poses and silhouettes from made-up people.
+    """Learn postures from clips or runs, or poses and silhouettes from synthetic people.
 
     A new posture needs three takes; with --add-to, the shipped model or another learns it too.
 

@@ -13,7 +13,7 @@ from common.bus.messages import Body, Posture
 from common.bus.process import READY_S
 from common.config import Settings
 from tritrack.live.process_table import Part
-from tritrack.live.recorded import Kept
+from tritrack.live.recorded import MessageLog
 from tritrack.live.supervise import Watched, watched
 
 LOOK_S: Final = 0.1
@@ -26,8 +26,8 @@ log = logging.getLogger(__name__)
 class Heard(NamedTuple):
     """What a run said, as its supervisor heard it."""
 
-    bodies: Kept[Body]
-    postures: Kept[Posture]
+    bodies: MessageLog[Body]
+    postures: MessageLog[Posture]
     pulses: dict[str, Pulse]
     cameras: list[Cameras]
     notes: list[str]
@@ -36,7 +36,7 @@ class Heard(NamedTuple):
 
 def nothing_heard() -> Heard:
     """Of a run that begins."""
-    return Heard(Kept(Body), Kept(Posture), {}, [], [])
+    return Heard(MessageLog(Body), MessageLog(Posture), {}, [], [])
 
 
 def run(
@@ -68,7 +68,7 @@ def run(
         bus = doors.enter_context(_client(settings, hub, stop))
         if bus is None:
             return
-        listening = Ears(bus, heard)
+        listening = Subscriber(bus, heard)
         crew = [hub, *(doors.enter_context(watched(part)) for part in parts[1:])]
         try:
             while not stop.wait(LOOK_S) and not _over(crew):
@@ -106,7 +106,7 @@ def _over(crew: Sequence[Watched]) -> bool:
     return needed or all(one.done or one.given_up for one in leads)
 
 
-class Ears:
+class Subscriber:
     """Gathers what is said into a Heard."""
 
     def __init__(self, bus: Bus, heard: Heard) -> None:

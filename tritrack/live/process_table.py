@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any, Final, NamedTuple
 
-from common.bus.process import Place
+from common.bus.process import ProcessContext
 from common.config import Settings
 from common.video.clip_facts import Clip
 
@@ -43,17 +43,17 @@ class Running(NamedTuple):
     """On which it says why it fails."""
 
 
-def live_parts(settings: Settings, clip: Clip, place: Place) -> list[Part]:
+def live_parts(settings: Settings, clip: Clip, context: ProcessContext) -> list[Part]:
     """The table of a live run: who listens comes before who speaks (P2)."""
     period_s = clip.every / clip.views[0].fps
     parts = [
-        Part("integrator", integrator_main, (settings, clip, place), beats=True),
-        Part("recognizer", recognizer_main, (settings, period_s, place)),
+        Part("integrator", integrator_main, (settings, clip, context), beats=True),
+        Part("recognizer", recognizer_main, (settings, period_s, context)),
     ]
     if settings.page.port:
-        parts.append(Part("animator", animator_main, (settings, clip.rig, period_s, place)))
+        parts.append(Part("animator", animator_main, (settings, clip.rig, period_s, context)))
     for view in clip.views:
-        arguments = (settings, view.number, place)
+        arguments = (settings, view.number, context)
         name = f"viewer {view.number}"
         parts.append(Part(name, viewer_main, arguments, leads=True, beats=True))
     return parts

@@ -10,7 +10,7 @@ MOST_KEPT: Final = 54_000
 """An hour at 15 frames a second. A body takes 1.7 kB so, and five times as much as an object."""
 
 
-class Kept(Generic[Said]):
+class MessageLog(Generic[Said]):
     """The newest messages of one kind; the oldest give way, counted."""
 
     def __init__(self, kind: type[Said], most: int = MOST_KEPT) -> None:

@@ -17,7 +17,7 @@ from rich.live import Live as LiveDisplay
 
 from common.bus.control_messages import Pulse
 from common.bus.messages import Posture
-from common.bus.process import Place, logged
+from common.bus.process import ProcessContext, logged
 from common.config import BusSettings, PageSettings, Settings
 from common.video.clip_facts import Clip, both_cameras
 from common.video.clips import open_clip
@@ -71,7 +71,7 @@ def live(settings: Settings, out: Path, console: Console, name: str = "") -> dic
         path = _new_log(out)
         try:
             with TemporaryDirectory(prefix=".kept-", dir=out) as kept:
-                parts = live_parts(settings, clip, Place(True, path, Path(kept)))
+                parts = live_parts(settings, clip, ProcessContext(True, path, Path(kept)))
                 names = [part.name for part in parts]
                 with screen.shown(names) as show, logged("supervisor", path):
                     run(parts, settings, stop, show, heard)

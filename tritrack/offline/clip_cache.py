@@ -38,7 +38,7 @@ DAMAGE: Final = (
 """What reading half a file raises; such a clip is tracked again."""
 
 
-class Kept(NamedTuple):
+class CachedRun(NamedTuple):
     """As much of a run as recognition needs."""
 
     facts: dict[str, Any]
@@ -104,12 +104,12 @@ def write(folder: Path, key: str, content: bytes) -> None:
         new.write_bytes(content)
 
 
-def read(folder: Path, key: str) -> Kept | None:
+def read(folder: Path, key: str) -> CachedRun | None:
     """What was kept under a key; None where nothing was, or something that is damaged."""
     try:
         with np.load(folder / f"{key}.npz", allow_pickle=False) as file:
             facts = json.loads(file["facts"].tobytes())
-            return Kept(facts, {name: file[name] for name in KEPT})
+            return CachedRun(facts, {name: file[name] for name in KEPT})
     except DAMAGE:
         return None
 

@@ -1,4 +1,4 @@
-"""A clip as one picture: some frames of its motion in both views, with the body's outline."""
+"""A clip as one picture: some frames of its motion in both views, with the body's contour."""
 
 from pathlib import Path
 from typing import Any, Final
@@ -6,7 +6,7 @@ from typing import Any, Final
 import cv2
 import numpy as np
 
-from animator.page.inset import Image, draw_outlines, inset, limb_ends, limb_outlines
+from animator.page.inset import Image, draw_contours, inset, limb_contours, limb_ends
 from animator.scene import figure
 from common import config
 from common.bus.messages import Body, Picture, Report, ViewerNumber
@@ -64,8 +64,8 @@ def _shown(now: Instant, number: ViewerNumber, rig: Rig | None) -> Image:
     image = inset(report, seen)
     drawn = figure(body)
     if drawn is not None and rig is not None:
-        outlines = limb_outlines(rig.cameras[number - 1], limb_ends(drawn))
-        draw_outlines(image, outlines, report.width)
+        contours = limb_contours(rig.cameras[number - 1], limb_ends(drawn))
+        draw_contours(image, contours, report.width)
     return _fitted(image)
 
 

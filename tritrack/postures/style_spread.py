@@ -1,4 +1,4 @@
-"""How differently performers move: the spread of their styles, as made-up clips note them."""
+"""How differently performers move: the spread of their styles, as synthetic clips note them."""
 
 import json
 from collections.abc import Sequence

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 
 from animator.take import Take, take_of
-from common.bus.process import Place, process
+from common.bus.process import ProcessContext, process
 from common.config import CameraSettings, Settings, working_size
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path, save_notes
@@ -78,7 +78,7 @@ def retouch(
             return str(error), False
         return f"{ledger(take, new).given.total} inputs, kept in {path.name}", True
 
-    with process("retouch", Place()) as stop:
+    with process("retouch", ProcessContext()) as stop:
         page = RetouchPage(take, clip.views[0].source_size, picture_of, notes, keep, port)
         console.print(f"the page is at {page.address}; Ctrl-C ends it", highlight=False)
         try:

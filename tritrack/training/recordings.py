@@ -19,7 +19,7 @@ from recognizer.evaluation import Recording
 from recognizer.features import rows
 from recognizer.spotting import motion_of
 from tritrack.offline import clip_cache
-from tritrack.offline.clip_cache import Kept
+from tritrack.offline.clip_cache import CachedRun
 from tritrack.offline.lockstep import Decoders, overridden, track_clip
 from tritrack.store.clip_paths import ClipsFailed, without_plain_files
 from tritrack.store.cores import made
@@ -74,7 +74,7 @@ def recordings(
     return [_recording(path, kept[path] if path in kept else _of_run(path)) for path in folders]
 
 
-def _tell_what_is_odd(kept: dict[Path, Kept], console: Console) -> None:
+def _tell_what_is_odd(kept: dict[Path, CachedRun], console: Console) -> None:
     """One line, however many the clips."""
     odd = {path: one.facts["warnings"] for path, one in kept.items() if one.facts["warnings"]}
     for path, warnings in list(odd.items())[:1]:
@@ -82,7 +82,9 @@ def _tell_what_is_odd(kept: dict[Path, Kept], console: Console) -> None:
         warn(console, f"{path}: {warnings[0]}{others}")
 
 
-def kept_of(clips: Sequence[Path], mode: Mode | None, cache: Path, console: Console) -> list[Kept]:
+def kept_of(
+    clips: Sequence[Path], mode: Mode | None, cache: Path, console: Console
+) -> list[CachedRun]:
     """What tracking makes of each clip, tracked by all cores where it is not kept yet.
 
     Raises:
@@ -145,16 +147,16 @@ def _tracked(due: Due, decoders: Decoders) -> Done:
     return Done(due.key, content, refusal)
 
 
-def _of_run(path: Path) -> Kept:
+def _of_run(path: Path) -> CachedRun:
     try:
         facts = json.loads((path / "summary.json").read_text())
         with np.load(path / "poses.npz", allow_pickle=False) as arrays:
-            return Kept(facts, {name: arrays[name] for name in clip_cache.KEPT})
+            return CachedRun(facts, {name: arrays[name] for name in clip_cache.KEPT})
     except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
         raise RecordingError(f"{path} is no run folder: {error}; track the clip again") from error
 
 
-def _recording(path: Path, kept: Kept) -> Recording:
+def _recording(path: Path, kept: CachedRun) -> Recording:
     posture = kept.facts.get("posture_meant", "")
     if not posture:
         raise RecordingError(f"{path} names no posture: write it into the clip's meta.json")

@@ -28,8 +28,8 @@ TORSO_LIMITS: Final = (0.12, 0.36)
 """Widths of a trunk over the height that a person standing with closed feet can have."""
 
 
-class Outline(NamedTuple):
-    """What the facade's outline says, pixels; rows run down (P11-P18)."""
+class FacadeShape(NamedTuple):
+    """What the facade's silhouette says, pixels; rows run down (P11-P18)."""
 
     left: float
     right: float
@@ -76,7 +76,7 @@ def without_head(mask: Mask, torso_width: float) -> Mask:
     return opened[:, line:-line].astype(np.bool_)
 
 
-def outline_of(mask: Mask, box: Box) -> Outline:
+def facade_shape(mask: Mask, box: Box) -> FacadeShape:
     """Trunk, head and legs of the facade (P11-P17).
 
     The trunk's width is read again above y_c only, where legs that stand apart are not (P13).
@@ -88,7 +88,7 @@ def outline_of(mask: Mask, box: Box) -> Outline:
     torso = TORSO_SHARE * below
     x1, x2 = projection_width(mask[: max(box.top + 2, round(top + torso))])
     leg = 0.5 * (1 - TORSO_SHARE) * below
-    return Outline(x1, x2 + 1, (x1 + x2 + 1) / 2, top, top - box.top, torso, leg)
+    return FacadeShape(x1, x2 + 1, (x1 + x2 + 1) / 2, top, top - box.top, torso, leg)
 
 
 def arm_angle_deg(side: str, dx: float, dy: float) -> float:
@@ -105,7 +105,7 @@ def refusal_of(mask: Mask, box: Box) -> str:
     height, width = box.bottom + 1 - box.top, box.right + 1 - box.left
     if width < SPAN_LEAST * height:
         return "the arms are not stretched out to the sides"
-    found = outline_of(mask, box)
+    found = facade_shape(mask, box)
     trunk = (found.right - found.left) / height
     if not TORSO_LIMITS[0] <= trunk <= TORSO_LIMITS[1]:
         return f"the trunk seems {trunk:.0%} of the height wide: stand upright with closed feet"
@@ -120,7 +120,7 @@ def refusal_of(mask: Mask, box: Box) -> str:
 
 def measure_front(mask: Mask, box: Box) -> Measure:
     """All BDPs but the trunk's depth, and where the centre of the body is, fine-tuned (P12-P20)."""
-    found = outline_of(mask, box)
+    found = facade_shape(mask, box)
     radius = (found.right - found.left) / 2
     angles = _arm_angles(mask, box, found)
     lengths = _arm_lengths(mask, box, found)
@@ -168,7 +168,7 @@ def measure_side(mask: Mask, box: Box) -> Measure:
     )
 
 
-def _shoulders(found: Outline) -> tuple[float, float, float]:
+def _shoulders(found: FacadeShape) -> tuple[float, float, float]:
     """Columns of the right and the left shoulder, and their row (P18)."""
     radius = (found.right - found.left) / 2
     row = found.shoulder_row + SHOULDER_DROP * radius
@@ -182,7 +182,7 @@ def _tips(mask: Mask, box: Box) -> tuple[tuple[float, float], tuple[float, float
     return (float(box.left), right_row), (float(box.right + 1), left_row)
 
 
-def _arm_angles(mask: Mask, box: Box, found: Outline) -> tuple[float, float]:
+def _arm_angles(mask: Mask, box: Box, found: FacadeShape) -> tuple[float, float]:
     right, left, row = _shoulders(found)
     tips = _tips(mask, box)
     return (
@@ -191,7 +191,7 @@ def _arm_angles(mask: Mask, box: Box, found: Outline) -> tuple[float, float]:
     )
 
 
-def _arm_lengths(mask: Mask, box: Box, found: Outline) -> tuple[float, float]:
+def _arm_lengths(mask: Mask, box: Box, found: FacadeShape) -> tuple[float, float]:
     right, left, row = _shoulders(found)
     tips = _tips(mask, box)
     return (
@@ -200,7 +200,7 @@ def _arm_lengths(mask: Mask, box: Box, found: Outline) -> tuple[float, float]:
     )
 
 
-def _arm_thickness(mask: Mask, found: Outline, box: Box) -> float:
+def _arm_thickness(mask: Mask, found: FacadeShape, box: Box) -> float:
     """Median height of the columns that only arms fill: where fine tuning starts (P20)."""
     column = _heights(mask)
     arms = np.concatenate(

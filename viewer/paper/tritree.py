@@ -8,7 +8,7 @@ import numpy as np
 
 from common.body.kinematics import ALL_LIMBS, FRAME, hang_limbs, place_limbs
 from common.raster.bits import count, count_both
-from common.raster.kernel import draw_placed, limb_outline, score
+from common.raster.kernel import draw_placed, limb_primitive, score
 from common.raster.row_spans import PRIMITIVE, draw, gain, spans, undraw
 
 MOST_STAGES = 16
@@ -119,7 +119,7 @@ def added(
     highest, lowest = height, 0
     drawn = hit = 0
     for limb in range(10):
-        if moving >> limb & 1 and limb_outline(frames, body, limb, view, p):
+        if moving >> limb & 1 and limb_primitive(frames, body, limb, view, p):
             top, bottom = spans(p, width, height, first, last)
             more_drawn, more_hit = gain(first, last, top, bottom, scratch, seen)
             drawn, hit = drawn + more_drawn, hit + more_hit

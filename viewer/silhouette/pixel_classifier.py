@@ -13,7 +13,7 @@ from viewer.silhouette.boundary_features import CLUES
 from viewer.silhouette.difference import KERNEL, Bytes
 
 SHIPPED: Final = Path(__file__).with_name("silhouettes.npz")
-"""Learnt from made-up people; docs/models.md says of whom."""
+"""Learnt from synthetic people; docs/models.md says of whom."""
 HIDDEN: Final = 16
 """Units between the clues and the answer."""
 
