@@ -66,7 +66,7 @@ def test_matches_are_of_limbs_in_the_picture_that_show_beside_the_rest(
     """A match of an empty or hidden limb would cost nothing."""
     given = scene(size)
     first, last = np.empty(size[1], np.int32), np.empty(size[1], np.int32)
-    for rest, row in zip(given.rests, given.outlines, strict=True):
+    for rest, row in zip(given.rests, given.primitives, strict=True):
         shown = []
         for outline in row:
             top, bottom = spans(outline, size[0], size[1], first, last)
@@ -82,7 +82,7 @@ def test_opencv_is_given_the_same_limbs() -> None:
     seen = unpack_words(given.seen, size[0])
     first, last = np.empty(size[1], np.int32), np.empty(size[1], np.int32)
     new = before = 0
-    for rest, row in zip(given.rests, given.outlines, strict=True):
+    for rest, row in zip(given.rests, given.primitives, strict=True):
         drawn = unpack_words(rest, size[0])
         before += len(row) * (int((drawn & seen).sum()) + int((drawn | seen).sum()))
         for outline in row:

@@ -37,7 +37,7 @@ def test_what_one_view_alone_shows_goes_and_the_border_is_free_again() -> None:
     glare[200:240, 0:40] = True
     spoilt = first | glare
     found = visual_hull.cleaned(ROLLED, Pair(told(1, spoilt), told(2, second)))
-    assert found.strays
+    assert found.clutter
     report = found.pair.first
     assert report is not None
     assert told(1, spoilt).cut
