@@ -23,7 +23,7 @@ demo: setup
 	$(BIN)/tritrack demo
 
 test: setup
-	$(BIN)/python -m pytest -m "not slow"
+	$(BIN)/python -m pytest -m "not slow" -n 2 --dist loadfile --durations=15
 
 check: setup
 	$(BIN)/ruff check .

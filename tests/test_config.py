@@ -98,7 +98,7 @@ def test_what_no_run_could_mean_is_refused_with_what_was_got(
 
 
 def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(SettingsError, match="cannot read the settings"):
+    with pytest.raises(SettingsError, match="there is no clip folder and no settings file"):
         load(tmp_path / "none.toml")
 
 
