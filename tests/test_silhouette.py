@@ -17,7 +17,7 @@ from viewer.silhouette.alpha_matte import covered, sides_of
 from viewer.silhouette.colour_model import counted, familiar
 from viewer.silhouette.difference import followed, label, seeds
 from viewer.silhouette.pixel_classifier import redraw
-from viewer.silhouette.regions import chosen
+from viewer.silhouette.regions import same_body
 from viewer.silhouette.silhouette import Seen, State, init, step
 from viewer.viewer_warmup import warm_up
 
@@ -174,7 +174,7 @@ def test_step_leaves_the_state_that_it_was_given() -> None:
 
 
 def test_after_the_rehearsal_no_frame_waits_for_the_compiler() -> None:
-    kernels = [light_gain, seeds, chosen, label, sides_of, covered, redraw]
+    kernels = [light_gain, seeds, same_body, label, sides_of, covered, redraw]
     kernels += [familiar, counted, followed]
     warm_up(track.init(1, learn([shot(room(), 2.0, 9)]), None, Settings()), (WIDTH, HEIGHT))
     compiled = [list(kernel.signatures) for kernel in kernels]

@@ -11,6 +11,7 @@ import msgspec
 import numba
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from common.bus.message_codec import pack, unpack
 from common.bus.messages import Report
@@ -76,7 +77,7 @@ def one_piece(rig: Rig, masks: tuple[Mask, Mask]) -> tuple[Mask, Mask] | None:
     corner_m = middle_m - ASIDE_CELLS * CELL_M
     corner_m[1] = FLOOR_M
     views = np.array([view_of(camera) for camera in rig.cameras])
-    full = np.zeros((2 * ASIDE_CELLS, UP_CELLS, 2 * ASIDE_CELLS), np.int32)
+    full = np.zeros((2 * ASIDE_CELLS, UP_CELLS, 2 * ASIDE_CELLS), np.int8)
     for view, mask, camera in zip(views, masks, rig.cameras, strict=True):
         _carve(full, corner_m, view, undistorted(mask, camera))
     piece = _largest(full)
@@ -115,70 +116,21 @@ def _carve(full: Any, corner_m: Any, view: Any, mask: Any) -> None:
                     full[i, j, k] = full[i, j, k] + 1 if mask[int(v), int(u)] else -1
 
 
-@numba.njit(cache=True)
 def _largest(full: Any) -> Any:
     """Cells, (n, 3), of the piece that both views see with the most volume times height.
 
     And of what one view sees next to it, an arm that reaches out of the other's picture.
     """
-    first, last, most, end = 0, 0, 0, 0
-    piece = np.empty((full.size, 3), np.int64)
-    for i in range(full.shape[0]):
-        for j in range(full.shape[1]):
-            for k in range(full.shape[2]):
-                if full[i, j, k] == 2:
-                    piece[end] = i, j, k
-                    full[i, j, k] = -1
-                    begin, end = end, _spread(full, 2, piece, end, end + 1)
-                    rows = piece[begin:end, 1]
-                    worth = (end - begin) * (rows.max() - rows.min() + 1)
-                    if worth > most:
-                        first, last, most = begin, end, worth
-    piece[: last - first] = piece[first:last].copy()
-    begin, end = 0, last - first
-    for _ in range(REACH_CELLS):
-        before = end
-        end = _ring(full, piece, begin, end)
-        begin = before
-    return piece[:end]
-
-
-@numba.njit(cache=True)
-def _spread(full: Any, value: int, piece: Any, done: int, end: int) -> int:
-    """Write all that hangs together with cells of a piece behind them; returns its end."""
-    while done < end:
-        end = _around(full, value, piece, done, end)
-        done += 1
-    return end
-
-
-@numba.njit(cache=True)
-def _ring(full: Any, piece: Any, begin: int, end: int) -> int:
-    """Write what one view alone sees next to some cells of a piece; returns its new end."""
-    stop = end
-    for at in range(begin, stop):
-        end = _around(full, 1, piece, at, end)
-    return end
-
-
-@numba.njit(cache=True)
-def _around(full: Any, value: int, piece: Any, at: int, end: int) -> int:
-    """Write the cells with a value that share a side with a cell behind a piece, and mark them."""
-    for axis in range(3):
-        for step in (-1, 1):
-            i, j, k = piece[at]
-            if axis == 0:
-                i += step
-            elif axis == 1:
-                j += step
-            else:
-                k += step
-            inside = 0 <= i < full.shape[0] and 0 <= j < full.shape[1] and 0 <= k < full.shape[2]
-            if inside and full[i, j, k] == value:
-                full[i, j, k] = -1
-                piece[end] = i, j, k
-                end += 1
-    return end
+    common = np.argwhere(full == 2)
+    if not len(common):
+        return common
+    low = np.maximum(common.min(axis=0) - REACH_CELLS, 0)
+    high = common.max(axis=0) + 1 + REACH_CELLS
+    near = full[tuple(map(slice, low, high))]
+    labels, _ = ndimage.label(near == 2)
+    tall = [rows.stop - rows.start for _, rows, _ in ndimage.find_objects(labels)]
+    piece = labels == 1 + np.argmax(np.bincount(labels.ravel())[1:] * tall)
+    return low + np.argwhere(ndimage.binary_dilation(piece, iterations=REACH_CELLS, mask=near == 1))
 
 
 def _shown(places_m: NDArray[np.float64], camera: Camera, mask: Mask) -> Mask:

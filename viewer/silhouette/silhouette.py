@@ -16,7 +16,7 @@ from viewer.silhouette.boundary_features import clues_of, counts_3x3
 from viewer.silhouette.colour_model import counted, familiar, fresh
 from viewer.silhouette.difference import Bytes, followed, label, seeds
 from viewer.silhouette.pixel_classifier import judged, redraw, shipped
-from viewer.silhouette.regions import NOWHERE, chosen
+from viewer.silhouette.regions import chosen
 
 CELLS: Final = 60
 """Rows of the coarse picture on which regions are told apart."""
@@ -115,7 +115,7 @@ def guess(state: State, frame: Frame, near_px: tuple[float, float] | None) -> Gu
     gain = light_gain(frame, room)
     cell = max(1, round(frame.shape[0] / CELLS))
     found = seeds(frame, room, weight, gain, cell)
-    near = NOWHERE if near_px is None else (near_px[0] / cell, near_px[1] / cell)
+    near = None if near_px is None else (near_px[0] / cell, near_px[1] / cell)
     cells, blobs = chosen(found, state.settings.min_height_share, near)
     mask, doubt = np.zeros(frame.shape[:2], np.uint8), np.zeros(frame.shape[:2], np.uint8)
     if blobs:

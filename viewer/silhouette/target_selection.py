@@ -11,7 +11,7 @@ from viewer.background.image_stack import CHANGES, Floats, Frame
 from viewer.silhouette import silhouette
 from viewer.silhouette.colour_model import familiar
 from viewer.silhouette.difference import KERNEL, Bytes, light_of, shade_of
-from viewer.silhouette.regions import same_body
+from viewer.silhouette.regions import boxes_of, same_body
 
 SCRAP: Final = 0.03
 """A region apart of less than this share of the silhouette is a reflection or noise."""
@@ -98,10 +98,8 @@ def without_others(mask: Mask, before: Mask) -> Mask:
     shared = np.bincount(labels[before[around]], minlength=count).astype(np.float64)
     shared[0] = 0.0
     best = int(np.argmax(shared if shared.any() else areas))
-    boxes = stats[:, :4].copy()
-    boxes[:, 2:] += boxes[:, :2]
     own = shared >= OWN * areas if shared.any() else np.ones(count, np.bool_)
-    own |= same_body(boxes, best, len(mask))  # a part may have been missed for a frame
+    own |= same_body(boxes_of(stats), best, len(mask))  # a part may have been missed for a frame
     own &= areas >= SCRAP * areas.sum()
     own[best], own[0] = True, False
     found = np.zeros_like(mask)
