@@ -21,7 +21,7 @@ import numpy as np
 
 from common.body.body import POSE_INDEX, rest_pose
 from common.body.kinematics import ARM_LIMBS
-from common.body.proportions import body_vector, thesis_bdp
+from common.body.proportions import LOWER_LEG_HEIGHT, UPPER_LEG_HEIGHT, body_vector, thesis_bdp
 from common.config import Settings
 from common.raster.bits import count, pack_words
 from common.raster.kernel import draw_body, view_of
@@ -62,7 +62,7 @@ def _judged_us(width: int, height: int, hypotheses: int, repeats: int) -> float:
     rig, body = default_rig(width, height), body_vector(thesis_bdp(1.75))
     views = np.array([view_of(camera) for camera in rig.cameras])
     poses = np.tile(rest_pose(), (hypotheses, 1))
-    poses[:, POSE_INDEX["y"]] = body[8] + body[14]  # both parts of a leg
+    poses[:, POSE_INDEX["y"]] = body[UPPER_LEG_HEIGHT] + body[LOWER_LEG_HEIGHT]
     poses[:, POSE_INDEX["r_shoulder_x"]] = np.linspace(0.0, 90.0, hypotheses)
     limbs = sum(1 << limb for limb in ARM_LIMBS[0])
     seen = np.array(

@@ -107,6 +107,14 @@ POSE_NAMES: Final = POSITION_NAMES + DOF_NAMES
 
 POSE_INDEX: Final = {name: i for i, name in enumerate(POSE_NAMES)}
 
+TORSO_X, TORSO_Y, TORSO_Z = (POSE_INDEX[f"torso_{axis}"] for axis in "xyz")
+NECK: Final = POSE_INDEX["neck_x"]
+SHOULDER, ELBOW, HIP, KNEE = (
+    POSE_INDEX[f"r_{joint}_x"] for joint in ("shoulder", "elbow", "hip", "knee")
+)
+"""Where the angles of a joint begin in a pose, of a limb's joint the right one's: the left one's
+follow. Compiled functions read them."""
+
 FIXED_ANGLES: Final = ("torso_x", "torso_z", "neck_x", "neck_y", "neck_z")
 """What the paper does not estimate: three angles of the head, two of the torso (P22)."""
 

@@ -7,7 +7,30 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import Vector
+from common.body.body import (
+    ELBOW,
+    HIP,
+    KNEE,
+    NECK,
+    SHOULDER,
+    TORSO_X,
+    TORSO_Y,
+    TORSO_Z,
+    Vector,
+)
+from common.body.proportions import (
+    ANKLE_ALONG,
+    ELBOW_ALONG,
+    HEAD_HEIGHT,
+    HIP_ASIDE,
+    HIPS_UP,
+    KNEE_ALONG,
+    SHOULDER_ASIDE,
+    SHOULDER_INSET,
+    SHOULDER_UP,
+    TORSO_HEIGHT,
+    WRIST_ALONG,
+)
 
 TORSO, HEAD = 0, 1
 ARM_LIMBS: Final = ((6, 8), (7, 9))
@@ -75,18 +98,19 @@ def hang_limbs(body: Any, pose: Any, limbs: int, frames: Any) -> None:
         frames: (10, FRAME); those of the other limbs are left alone.
     """
     if limbs >> HEAD & 1:
-        _hang_ball(frames, HEAD, 0.0, body[2], pose, 6)
+        _hang_ball(frames, HEAD, 0.0, body[TORSO_HEIGHT], pose, NECK)
     for side in range(2):
         sign = -1.0 if side == 0 else 1.0
         arm, leg = 6 + side, 2 + side
         if limbs >> arm & 1:
-            _hang_ball(frames, arm, sign * body[26], body[27], pose, 9 + 3 * side)
+            x, y = sign * body[SHOULDER_ASIDE], body[SHOULDER_UP]
+            _hang_ball(frames, arm, x, y, pose, SHOULDER + 3 * side)
         if limbs >> (arm + 2) & 1:
-            _hang_hinge(frames, arm, body[_LENGTH_AT[arm]], pose[15 + side])
+            _hang_hinge(frames, arm, body[_LENGTH_AT[arm]], pose[ELBOW + side])
         if limbs >> leg & 1:
-            _hang_ball(frames, leg, sign * body[28], 0.0, pose, 17 + 3 * side)
+            _hang_ball(frames, leg, sign * body[HIP_ASIDE], 0.0, pose, HIP + 3 * side)
         if limbs >> (leg + 2) & 1:
-            _hang_hinge(frames, leg, body[_LENGTH_AT[leg]], pose[23 + side])
+            _hang_hinge(frames, leg, body[_LENGTH_AT[leg]], pose[KNEE + side])
 
 
 @numba.njit(cache=True)
@@ -105,9 +129,9 @@ def place_limbs(body: Any, pose: Any, limbs: int, frames: Any) -> None:
         frames[TORSO, i] = pose[i]
     for i in range(9):
         frames[TORSO, 3 + i] = 1.0 if i % 4 == 0 else 0.0
-    _turn(frames, TORSO, pose[4], 2, 0)
-    _turn(frames, TORSO, pose[3], 1, 2)
-    _turn(frames, TORSO, pose[5], 0, 1)
+    _turn(frames, TORSO, pose[TORSO_Y], 2, 0)
+    _turn(frames, TORSO, pose[TORSO_X], 1, 2)
+    _turn(frames, TORSO, pose[TORSO_Z], 0, 1)
     hang_limbs(body, pose, limbs | limbs >> 2 & _UPPER, frames)
 
 
@@ -132,18 +156,18 @@ def joints(body: Any, pose: Any) -> Any:
     place_limbs(body, pose, ALL_LIMBS, frames)
     for i in range(3):
         across, up = frames[TORSO, 3 + 3 * i], frames[TORSO, 4 + 3 * i]
-        out[0, i] = frames[TORSO, i] + body[37] * up
-        out[1, i] = frames[TORSO, i] + body[2] * up
-        out[2, i] = frames[HEAD, i] + body[5] * frames[HEAD, 4 + 3 * i]
+        out[0, i] = frames[TORSO, i] + body[HIPS_UP] * up
+        out[1, i] = frames[TORSO, i] + body[TORSO_HEIGHT] * up
+        out[2, i] = frames[HEAD, i] + body[HEAD_HEIGHT] * frames[HEAD, 4 + 3 * i]
         for side, at in ((1, 3), (0, 9)):
             arm, leg = 6 + side, 2 + side
-            inwards = (body[38] if side == 0 else -body[38]) * across
+            inwards = (body[SHOULDER_INSET] if side == 0 else -body[SHOULDER_INSET]) * across
             out[at, i] = frames[arm, i] + inwards
-            out[at + 1, i] = _along(frames, body, arm, body[29 + side], i) + inwards
-            out[at + 2, i] = _along(frames, body, arm, body[31 + side], i) + inwards
-            out[at + 3, i] = frames[leg, i] + body[37] * up
-            out[at + 4, i] = _along(frames, body, leg, body[33 + side], i)
-            out[at + 5, i] = _along(frames, body, leg, body[35 + side], i)
+            out[at + 1, i] = _along(frames, body, arm, body[ELBOW_ALONG + side], i) + inwards
+            out[at + 2, i] = _along(frames, body, arm, body[WRIST_ALONG + side], i) + inwards
+            out[at + 3, i] = frames[leg, i] + body[HIPS_UP] * up
+            out[at + 4, i] = _along(frames, body, leg, body[KNEE_ALONG + side], i)
+            out[at + 5, i] = _along(frames, body, leg, body[ANKLE_ALONG + side], i)
     return out
 
 

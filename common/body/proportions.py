@@ -81,15 +81,30 @@ HIP_SHARE, KNEE_SHARE, ANKLE_SHARE = 0.530, 0.285, 0.039
 """Heights of hip, knee and ankle above the sole, in statures."""
 
 
-def body_vector(bdp: Bdp) -> Vector:
-    """The body as the kernel wants it, shape (39,): 26 lengths, attachments, landmarks.
+PER_ELLIPTIC, PER_ROUND = 3, 2
+"""Lengths of a cylinder: two radii and a height, or an arm's radius and height."""
+LENGTHS: Final = 26
+"""A body vector begins with the BDPs in the order of LIMBS. Of limbs, the right one's place."""
+TORSO_RADIUS, TORSO_HEIGHT, HEAD_HEIGHT = 0, 2, 5
+UPPER_LEG_RADIUS, UPPER_LEG_HEIGHT, LOWER_LEG_HEIGHT = 6, 8, 14
+ARMS: Final = 18
+"""Where the arms' lengths begin: the first is a radius."""
+UPPER_ARM_HEIGHT, LOWER_ARM_HEIGHT = 19, 23
+SHOULDER_ASIDE, SHOULDER_UP, HIP_ASIDE = 26, 27, 28
+"""Shoulder and hip from the navel, in body axes, both sides alike."""
+ELBOW_ALONG, WRIST_ALONG, KNEE_ALONG, ANKLE_ALONG = 29, 31, 33, 35
+"""How far joints lie from the shoulder or hip along the straight limb, right then left each."""
+HIPS_UP: Final = 37
+"""How far the anatomical hips lie above the navel."""
+SHOULDER_INSET: Final = 38
+"""How far the joint centres of the shoulders, and with them the arms' landmarks, lie within the
+cylinders'."""
+BODY: Final = 39
+"""Numbers of a body vector."""
 
-    Entries 0-25 are the BDPs in the order of LIMBS. 26-28: shoulder_x, shoulder_y, hip_x from the
-    navel, in body axes, both sides alike. 29-36: how far elbow, wrist, knee and ankle lie from
-    the shoulder or hip along the straight limb, right then left each. 37: how far the anatomical
-    hips lie above the navel. 38: how far the joint centres of the shoulders, and with them the
-    arms' landmarks, lie within the cylinders'.
-    """
+
+def body_vector(bdp: Bdp) -> Vector:
+    """The body as the kernel wants it, (BODY,): its lengths, where limbs hang, where joints lie."""
     return np.array(_body_numbers(bdp))
 
 
@@ -101,21 +116,31 @@ def _body_numbers(bdp: Bdp) -> tuple[float, ...]:
 
 @numba.njit(cache=True)
 def attached(lengths: Any) -> Any:
-    """The body vector (39,) of 26 lengths."""
-    body = np.empty(39)
-    body[:26] = lengths
-    long_radius, height = lengths[0], lengths[5] + lengths[2] + lengths[8] + lengths[14]
-    inset = long_radius - SHOULDERS_APART / 2 * height
-    body[26] = long_radius
-    body[27] = lengths[2] - SHOULDER_DROP * long_radius
-    body[28] = long_radius - lengths[6]
+    """The body vector (BODY,) of its LENGTHS lengths."""
+    body = np.empty(BODY)
+    body[:LENGTHS] = lengths
+    radius, leg = lengths[TORSO_RADIUS], lengths[UPPER_LEG_HEIGHT] + lengths[LOWER_LEG_HEIGHT]
+    height = (
+        lengths[HEAD_HEIGHT]
+        + lengths[TORSO_HEIGHT]
+        + lengths[UPPER_LEG_HEIGHT]
+        + lengths[LOWER_LEG_HEIGHT]
+    )
+    inset = radius - SHOULDERS_APART / 2 * height
+    body[SHOULDER_ASIDE] = radius
+    body[SHOULDER_UP] = lengths[TORSO_HEIGHT] - SHOULDER_DROP * radius
+    body[HIP_ASIDE] = radius - lengths[UPPER_LEG_RADIUS]
+    body[HIPS_UP] = HIP_SHARE * height - leg
+    body[SHOULDER_INSET] = inset
     for side in range(2):
-        arm = lengths[19 + 2 * side] + lengths[23 + 2 * side]
-        leg = lengths[8 + 3 * side] + lengths[14 + 3 * side]
-        body[29 + side], body[31 + side] = ELBOW_SHARE * (inset + arm), WRIST_SHARE * (inset + arm)
-        body[33 + side], body[35 + side] = leg - KNEE_SHARE * height, leg - ANKLE_SHARE * height
-    body[37] = HIP_SHARE * height - (lengths[8] + lengths[14])
-    body[38] = inset
+        at = PER_ROUND * side
+        arm = lengths[UPPER_ARM_HEIGHT + at] + lengths[LOWER_ARM_HEIGHT + at]
+        body[ELBOW_ALONG + side] = ELBOW_SHARE * (inset + arm)
+        body[WRIST_ALONG + side] = WRIST_SHARE * (inset + arm)
+        at = PER_ELLIPTIC * side
+        leg = lengths[UPPER_LEG_HEIGHT + at] + lengths[LOWER_LEG_HEIGHT + at]
+        body[KNEE_ALONG + side] = leg - KNEE_SHARE * height
+        body[ANKLE_ALONG + side] = leg - ANKLE_SHARE * height
     return body
 
 

@@ -24,7 +24,7 @@ TORSO, HEAD, SHOULDER_LINE, HIP_LINE = 0, 1, 10, 11
 CHAINS: Final = ((6, 8), (7, 9), (2, 4), (3, 5))
 """Upper and lower limb: both arms, both legs, r before l."""
 
-_HALF_SHOULDERS, _SHOULDER_DROP, _HALF_HIPS = 10, 11, 12
+HALF_SHOULDERS, SHOULDERS_BELOW, HALF_HIPS = 10, 11, 12
 _L_SHOULDER, _R_SHOULDER = (JOINT_NAMES.index(f"{side}_shoulder") for side in "lr")
 
 
@@ -96,9 +96,9 @@ def place_segments(lengths: Any, pose: Any, ends: Any) -> None:
     neck_x, neck_y = pose[X] + trunk * ux, pose[Y] + trunk * uy
     _set(ends, TORSO, pose[X], pose[Y], neck_x, neck_y)
     _hang(ends, HEAD, neck_x, neck_y, lengths, pose)
-    drop = lengths[_SHOULDER_DROP] * pose[RATIO] * size
+    drop = lengths[SHOULDERS_BELOW] * pose[RATIO] * size
     base_x, base_y = neck_x - drop * ux, neck_y - drop * uy
-    half = lengths[_HALF_SHOULDERS] * pose[BREADTH] * size
+    half = lengths[HALF_SHOULDERS] * pose[BREADTH] * size
     _set(
         ends,
         SHOULDER_LINE,
@@ -107,7 +107,7 @@ def place_segments(lengths: Any, pose: Any, ends: Any) -> None:
         base_x - half * uy,
         base_y + half * ux,
     )
-    half = lengths[_HALF_HIPS] * pose[BREADTH] * size
+    half = lengths[HALF_HIPS] * pose[BREADTH] * size
     _set(
         ends,
         HIP_LINE,
@@ -165,7 +165,7 @@ def pose_of(man: Stickman, joints: NDArray[np.float64], stature_px: float) -> Ve
     lengths_px = man.lengths * stature_px
     pose[RATIO:GIRTH] = np.minimum(1.0, np.hypot(*along.T) / lengths_px[: len(LIMBS)])
     across_px = np.hypot(*(joints[_L_SHOULDER] - joints[_R_SHOULDER]))
-    pose[BREADTH] = min(1.0, across_px / (2.0 * lengths_px[_HALF_SHOULDERS]))
+    pose[BREADTH] = min(1.0, across_px / (2.0 * lengths_px[HALF_SHOULDERS]))
     return pose
 
 

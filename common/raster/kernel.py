@@ -15,19 +15,29 @@ import numpy as np
 
 from common.body.body import LIMBS, Vector, rest_pose
 from common.body.kinematics import ALL_LIMBS, FRAME, place_limbs
-from common.body.proportions import body_vector, thesis_bdp
+from common.body.proportions import ARMS, PER_ELLIPTIC, PER_ROUND, body_vector, thesis_bdp
 from common.raster.bits import count, count_both, unpack_words
 from common.raster.row_spans import PRIMITIVE, draw, spans
 from common.raster.similarity import Mask
 from common.rig.camera import Camera
 
+R_UPPER_ARM: Final = LIMBS.index("r_upper_arm")
+"""The first of the limbs that are round."""
 THINNEST: Final = 1e-3
 """Least height of a section in the picture, as a share of its width: flat ends stay finite."""
 NEAREST_M: Final = 0.05
 """A limb that reaches nearer to the camera, or behind it, is not drawn."""
 
+ACROSS, DOWN, AHEAD = 0, 3, 6
+"""Where a view vector has the rows of its R, world to camera ..."""
+SHIFT: Final = 9
+"""... its t, metres, ..."""
+FOCAL_X, FOCAL_Y, CENTRE_X, CENTRE_Y = 12, 13, 14, 15
+"""... its focal length and its centre, pixels, ..."""
+DEPTH: Final = 16
+"""... and the depth of scaled orthography, metres; 0: true perspective."""
 VIEW: Final = 17
-"""A view: R (9), t (3), focal x, y (px), centre x, y (px), depth (m; 0: true perspective)."""
+"""Numbers of a view vector."""
 
 
 @numba.njit(cache=True)
@@ -36,11 +46,12 @@ def seen_at(view: Any, x: float, y: float, z: float) -> tuple[float, float, floa
 
     What is nearer than NEAREST_M, or behind the camera, is shown as if it were so near.
     """
-    depth = view[6] * x + view[7] * y + view[8] * z + view[11]
-    across = view[0] * x + view[1] * y + view[2] * z + view[9]
-    down = view[3] * x + view[4] * y + view[5] * z + view[10]
+    depth = view[AHEAD] * x + view[AHEAD + 1] * y + view[AHEAD + 2] * z + view[SHIFT + 2]
+    across = view[ACROSS] * x + view[ACROSS + 1] * y + view[ACROSS + 2] * z + view[SHIFT]
+    down = view[DOWN] * x + view[DOWN + 1] * y + view[DOWN + 2] * z + view[SHIFT + 1]
     share = 1.0 / max(depth, NEAREST_M)
-    return across * share * view[12] + view[14], down * share * view[13] + view[15], depth
+    u = across * share * view[FOCAL_X] + view[CENTRE_X]
+    return u, down * share * view[FOCAL_Y] + view[CENTRE_Y], depth
 
 
 @numba.njit(cache=True)
@@ -56,9 +67,10 @@ def score(hit: int, drawn: int, seen: int) -> float:
 @numba.njit(cache=True)
 def limb_size(body: Any, limb: int) -> tuple[float, float, float]:
     """Half width, half depth and height of a limb from the body vector."""
-    if limb < 6:
-        return body[3 * limb], body[3 * limb + 1], body[3 * limb + 2]
-    at = 18 + 2 * (limb - 6)
+    if limb < R_UPPER_ARM:
+        at = PER_ELLIPTIC * limb
+        return body[at], body[at + 1], body[at + 2]
+    at = ARMS + PER_ROUND * (limb - R_UPPER_ARM)
     return body[at], body[at], body[at + 1]
 
 
@@ -71,9 +83,9 @@ def _section(
     for column, radius in ((3, long), (5, short)):
         px = py = 0.0
         for j in range(3):
-            px += view[j] * frames[limb, 3 * j + column]
-            py += view[3 + j] * frames[limb, 3 * j + column]
-        px, py = px * radius * view[12], py * radius * view[13]
+            px += view[ACROSS + j] * frames[limb, 3 * j + column]
+            py += view[DOWN + j] * frames[limb, 3 * j + column]
+        px, py = px * radius * view[FOCAL_X], py * radius * view[FOCAL_Y]
         sxx += px * px
         sxy += px * py
         syy += py * py
@@ -99,26 +111,27 @@ def limb_primitive(frames: Any, body: Any, limb: int, view: Any, out: Any) -> bo
         False where it is not before the camera.
     """
     long, short, height = limb_size(body, limb)
-    ax, ay, depth_a = view[9], view[10], view[11]
+    ax, ay, depth_a = view[SHIFT], view[SHIFT + 1], view[SHIFT + 2]
     bx = by = depth_b = 0.0
     for j in range(3):
         origin, axis = frames[limb, j], frames[limb, 4 + 3 * j] * height
-        ax, bx = ax + view[j] * origin, bx + view[j] * axis
-        ay, by = ay + view[3 + j] * origin, by + view[3 + j] * axis
-        depth_a, depth_b = depth_a + view[6 + j] * origin, depth_b + view[6 + j] * axis
+        across, down, ahead = view[ACROSS + j], view[DOWN + j], view[AHEAD + j]
+        ax, bx = ax + across * origin, bx + across * axis
+        ay, by = ay + down * origin, by + down * axis
+        depth_a, depth_b = depth_a + ahead * origin, depth_b + ahead * axis
     bx, by, depth_b = ax + bx, ay + by, depth_a + depth_b
-    if view[16] != 0.0:
-        depth_a = depth_b = view[16]
+    if view[DEPTH] != 0.0:
+        depth_a = depth_b = view[DEPTH]
     elif depth_a < NEAREST_M or depth_b < NEAREST_M:
         return False
-    shear, stretch, half_height = 0.0, 1.0, long * view[12]
-    if limb < 6:
+    shear, stretch, half_height = 0.0, 1.0, long * view[FOCAL_X]
+    if limb < R_UPPER_ARM:
         shear, stretch, half_height = _section(frames, limb, long, short, view)
     share_a, share_b = 1.0 / depth_a, 1.0 / depth_b
-    out[1] = ay * share_a * view[13] + view[15]
-    out[4] = by * share_b * view[13] + view[15]
-    out[0] = (ax * share_a * view[12] + view[14] - shear * out[1]) / stretch
-    out[3] = (bx * share_b * view[12] + view[14] - shear * out[4]) / stretch
+    out[1] = ay * share_a * view[FOCAL_Y] + view[CENTRE_Y]
+    out[4] = by * share_b * view[FOCAL_Y] + view[CENTRE_Y]
+    out[0] = (ax * share_a * view[FOCAL_X] + view[CENTRE_X] - shear * out[1]) / stretch
+    out[3] = (bx * share_b * view[FOCAL_X] + view[CENTRE_X] - shear * out[4]) / stretch
     out[2], out[5] = half_height * share_a, half_height * share_b
     out[6], out[7] = shear, stretch
     return True

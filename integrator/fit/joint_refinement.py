@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, LIMB_ENDS, POSE_INDEX, Bdp, Vector
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
-from common.body.stick_body import BREADTH, GIRTH, POSE_SIZE, STATURE, Stickman
+from common.body.stick_body import BREADTH, GIRTH, HALF_SHOULDERS, POSE_SIZE, STATURE, Stickman
 from common.bus.messages import Report
 from common.raster.bits import Bits, count, count_both
 from common.raster.kernel import NEAREST_M, score, seen_at, view_of
@@ -118,7 +118,7 @@ def _tall_px(camera: Camera, stature_m: float, joints_m: NDArray[np.float64]) ->
 
 def _task(camera: Camera, body: Vector, man: Stickman, report: Report, tall_px: float) -> Task:
     seen, view = packed(report), view_of(camera)
-    broad_px = 2 * man.lengths[10] * tall_px
+    broad_px = 2 * man.lengths[HALF_SHOULDERS] * tall_px
     return Task(body, view, man.parts, man.depth, broad_px, seen, count(seen), report.width)
 
 

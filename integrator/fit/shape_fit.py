@@ -8,7 +8,15 @@ import numpy as np
 
 from common.body.body import LIMBS, Bdp, Vector
 from common.body.kinematics import ALL_LIMBS
-from common.body.proportions import body_vector, stature, thesis_bdp
+from common.body.proportions import (
+    ARMS,
+    LENGTHS,
+    PER_ELLIPTIC,
+    PER_ROUND,
+    body_vector,
+    stature,
+    thesis_bdp,
+)
 from common.raster.kernel import match
 from common.rig.camera import Rig
 from integrator.fit.silhouette_pair import silhouettes_of
@@ -36,7 +44,11 @@ FACTORS: Final = (0.85, 0.93, 1.08, 1.18)
 ROUNDS: Final = 3
 
 
-RADII: Final = [*range(0, 18, 3), *range(1, 18, 3), 18, 20, 22, 24]
+RADII: Final = [
+    *range(0, ARMS, PER_ELLIPTIC),
+    *range(1, ARMS, PER_ELLIPTIC),
+    *range(ARMS, LENGTHS, PER_ROUND),
+]
 """Where a body vector has the radii of the limbs."""
 MOST_SAMPLES: Final = 6
 APART: Final = 12

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from common.body.body import POSE_INDEX, REST_DEG, Vector
 from common.body.kinematics import ALL_LIMBS, ARM_LIMBS, LEG_LIMBS
+from common.body.proportions import LOWER_LEG_HEIGHT, UPPER_LEG_HEIGHT
 from common.bus.messages import Report
 from common.raster.kernel import draw_limbs, match_over
 from common.rig.camera import Rig
@@ -122,11 +123,12 @@ def settled(
         fitted: The body is a prior that was fitted to the silhouette.
     """
     silhouettes = silhouettes_of(rig, seen)
+    leg_m = float(body[UPPER_LEG_HEIGHT] + body[LOWER_LEG_HEIGHT])
     turns: list[tuple[Doubt, float]] = [
         (partial(turned, pair, share), 1.0) for share in TURN_SHARES for pair in TURNS if fitted
     ]
     all_doubts: list[tuple[Doubt, float]] = [
-        (partial(squatted, upright_m, float(body[8] + body[14])), SQUATS),
+        (partial(squatted, upright_m, leg_m), SQUATS),
         (shifted, SURELY),
         (swung, SURELY),
         (partial(regained, 0), SURELY),

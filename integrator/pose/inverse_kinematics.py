@@ -6,7 +6,24 @@ from typing import Any, Final
 import numba
 import numpy as np
 
-from common.body.body import LIMITS_DEG, POSE_NAMES
+from common.body.body import (
+    ELBOW,
+    HIP,
+    KNEE,
+    LIMITS_DEG,
+    POSE_NAMES,
+    SHOULDER,
+    TORSO_X,
+    TORSO_Y,
+    TORSO_Z,
+)
+from common.body.proportions import (
+    HIPS_UP,
+    PER_ELLIPTIC,
+    PER_ROUND,
+    UPPER_ARM_HEIGHT,
+    UPPER_LEG_HEIGHT,
+)
 
 PLACES: Final = {
     f"{side}_{name}": 2 * i + (side == "r")
@@ -23,8 +40,6 @@ ASTRAY: Final = 3.0
 LOW_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[0] for name in POSE_NAMES])
 HIGH_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[1] for name in POSE_NAMES])
 """Limits of each parameter of a pose."""
-SHOULDER, ELBOW, HIP, KNEE = 9, 15, 17, 23
-"""Where the right limbs' angles begin in a pose; the left's follow each joint's."""
 
 
 @numba.njit(cache=True)
@@ -39,11 +54,11 @@ def pose_of(joints_m: Any, body: Any, before: Any) -> Any:
     pose = before.copy()
     trunk = trunk_of(joints_m)
     for i in range(3):
-        pose[i] = (joints_m[6, i] + joints_m[7, i]) / 2 - body[37] * trunk[i, 1]
+        pose[i] = (joints_m[6, i] + joints_m[7, i]) / 2 - body[HIPS_UP] * trunk[i, 1]
     # theta_X, theta_Y, theta_Z of R_y R_x R_z
-    pose[3] = -math.degrees(math.asin(cosine(trunk[1, 2])))
-    pose[4] = math.degrees(math.atan2(trunk[0, 2], trunk[2, 2]))
-    pose[5] = math.degrees(math.atan2(trunk[1, 0], trunk[1, 1]))
+    pose[TORSO_X] = -math.degrees(math.asin(cosine(trunk[1, 2])))
+    pose[TORSO_Y] = math.degrees(math.atan2(trunk[0, 2], trunk[2, 2]))
+    pose[TORSO_Z] = math.degrees(math.atan2(trunk[1, 0], trunk[1, 1]))
     own = np.empty((12, 3))
     for place in range(12):
         for i in range(3):
@@ -54,11 +69,12 @@ def pose_of(joints_m: Any, body: Any, before: Any) -> Any:
             )
     for side in range(2):
         shoulder, elbow, wrist = own[1 - side], own[3 - side], own[5 - side]
-        upper_arm, arm, leg = body[19 + 2 * side], SHOULDER + 3 * side, HIP + 3 * side
+        upper_arm, arm = body[UPPER_ARM_HEIGHT + PER_ROUND * side], SHOULDER + 3 * side
         _set_limb(pose, shoulder, elbow, wrist, upper_arm, arm, ELBOW + side)
         hip, knee, ankle = own[7 - side].copy(), own[9 - side], own[11 - side]
-        hip[1] -= body[37]
-        _set_limb(pose, hip, knee, ankle, body[8 + 3 * side], leg, KNEE + side)
+        hip[1] -= body[HIPS_UP]
+        thigh, leg = body[UPPER_LEG_HEIGHT + PER_ELLIPTIC * side], HIP + 3 * side
+        _set_limb(pose, hip, knee, ankle, thigh, leg, KNEE + side)
     return pose
 
 

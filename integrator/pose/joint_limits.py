@@ -7,20 +7,18 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, LIMITS_DEG, Vector
-from common.body.kinematics import joints
-from integrator.pose.inverse_kinematics import (
+from common.body.body import (
+    ANGLE_NAMES,
+    ANGLES_IN_POSE,
     ELBOW,
-    HIGH_DEG,
     HIP,
     KNEE,
-    LOW_DEG,
+    LIMITS_DEG,
     SHOULDER,
-    apart,
-    bend,
-    cosine,
-    turn_deg,
+    Vector,
 )
+from common.body.kinematics import joints
+from integrator.pose.inverse_kinematics import HIGH_DEG, LOW_DEG, apart, bend, cosine, turn_deg
 
 TWIST_DEG: Final = 60.0
 """How far a thigh turns about its own axis to either side of where its knee points to the front: a

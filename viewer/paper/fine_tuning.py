@@ -9,7 +9,15 @@ import numba
 import numpy as np
 
 from common.body.body import POSE_INDEX, Bdp, Round, rest_pose
-from common.body.proportions import attached
+from common.body.proportions import (
+    ARMS,
+    LENGTHS,
+    LOWER_ARM_HEIGHT,
+    PER_ROUND,
+    TORSO_RADIUS,
+    UPPER_ARM_HEIGHT,
+    attached,
+)
 from common.raster.bits import count, pack_words
 from common.raster.kernel import match
 from common.raster.similarity import Mask
@@ -66,11 +74,12 @@ def _score(
     values: Any, lengths: Any, pose: Any, view: Any, width: int, seen: Any, seen_px: int
 ) -> float:
     """S of the body with other values; its lengths and its pose are set to them."""
-    lengths[0] = values[0]
-    for at in range(18, 26, 2):
+    lengths[TORSO_RADIUS] = values[0]
+    for at in range(ARMS, LENGTHS, PER_ROUND):
         lengths[at] = values[1]
-    lengths[19] = lengths[23] = values[2] / 2
-    lengths[21] = lengths[25] = values[3] / 2
+    for side in range(2):
+        for height in (UPPER_ARM_HEIGHT, LOWER_ARM_HEIGHT):
+            lengths[height + PER_ROUND * side] = values[2 + side] / 2
     pose[R_SHOULDER_Z], pose[L_SHOULDER_Z] = values[4], values[5]
     return match(attached(lengths), pose, view, ABOVE_CENTRE, width, seen, seen_px)
 

@@ -9,7 +9,7 @@ from common.body.body import POSE_INDEX, POSE_NAMES, YAW_DEG, Vector
 from common.body.kinematics import ALL_LIMBS
 from common.bus.messages import Facing, ViewerNumber
 from common.raster.bits import Bits, count, pack_words
-from common.raster.kernel import VIEW, match
+from common.raster.kernel import CENTRE_X, CENTRE_Y, DEPTH, FOCAL_X, FOCAL_Y, SHIFT, VIEW, match
 from common.raster.similarity import Mask
 from common.rig.camera import PAPER_ROTATIONS, Camera
 from viewer.paper.tritree import search, window
@@ -111,10 +111,10 @@ def matched(figure: Figure) -> Figure:
 def view_at(rotation: NDArray[np.float64], px_per_m: float, root_px: tuple[float, float]) -> Vector:
     """Scaled orthography: the kernel's view that shows the navel at a pixel (section 3.2)."""
     view = np.zeros(VIEW)
-    view[:9] = rotation.ravel()
-    view[12] = view[13] = px_per_m
-    view[14:16] = root_px
-    view[16] = 1.0
+    view[:SHIFT] = rotation.ravel()
+    view[FOCAL_X] = view[FOCAL_Y] = px_per_m
+    view[CENTRE_X], view[CENTRE_Y] = root_px
+    view[DEPTH] = 1.0
     return view
 
 

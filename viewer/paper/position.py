@@ -6,7 +6,7 @@ import numba
 import numpy as np
 
 from common.raster.bits import ONES, popcount
-from common.raster.kernel import draw_limbs, score
+from common.raster.kernel import CENTRE_X, CENTRE_Y, draw_limbs, score
 from viewer.paper.posed_model import Figure
 
 SHIFTS_PX: Final = (0, -1, 1, -2, 2, -5, 5)
@@ -110,8 +110,8 @@ def located(figure: Figure) -> Figure:
         MOST_PASSES,
     )
     view = figure.view.copy()
-    view[14] += right
-    view[15] += down
+    view[CENTRE_X] += right
+    view[CENTRE_Y] += down
     return figure._replace(view=view, score=value, matches=figure.matches + matches)
 
 
