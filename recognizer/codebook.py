@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recognizer.features import FEATURE_NAMES, Features
+from recognizer.learning_error import LearningError
 
 Codebook = NDArray[np.float64]
 """The codewords: (SYMBOLS, 16); a symbol is the number of a row. Its space is that of
@@ -32,14 +33,14 @@ def fit(seen: Features, seed: int = 0, count: int = SYMBOLS) -> Codebook:
     paper does not say how its symbols were found (P57).
 
     Raises:
-        ValueError: When fewer different vectors than symbols are given.
+        LearningError: When fewer different vectors than symbols are given.
     """
     from sklearn.cluster import KMeans
     from threadpoolctl import threadpool_limits
 
     different = len(np.unique(seen, axis=0))
     if different < count:
-        raise ValueError(
+        raise LearningError(
             f"{different} different poses are too few for {count} symbols: give more clips"
         )
     with threadpool_limits(1):

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from recognizer.codebook import SYMBOLS
 from recognizer.features import Rows, with_pose
+from recognizer.learning_error import LearningError
 from recognizer.postures import (
     POSTURES,
     STATES,
@@ -68,7 +69,7 @@ def recognise(
     """Train on some people and name what others do.
 
     Raises:
-        ValueError: When somebody is in both sets: that would measure memory.
+        LearningError: When somebody is in both sets: that would measure memory.
     """
     performers = sorted({recording.performer for recording in learnt_from})
     sequences: dict[str, list[Rows]] = {}
@@ -83,11 +84,11 @@ def refuse_who_was_learnt_from(performers: Sequence[str], tested_on: Sequence[Re
     """Nobody is tested who was seen in training.
 
     Raises:
-        ValueError: When somebody is.
+        LearningError: When somebody is.
     """
     both = sorted({recording.performer for recording in tested_on} & set(performers))
     if both:
-        raise ValueError(f"{', '.join(both)}: in training and in test; split by performer")
+        raise LearningError(f"{', '.join(both)}: in training and in test; split by performer")
 
 
 def named_by(model: PostureModel, tested_on: Sequence[Recording]) -> list[Outcome]:

@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from common.atomic_file import replacing
 from recognizer.codebook import SYMBOLS
 from recognizer.postures import (
     STATES,
@@ -63,7 +64,7 @@ class Header(Kind, frozen=True, forbid_unknown_fields=True):
 
 
 def save(model: PostureModel, path: Path) -> None:
-    """Write a model; the same model gives the same bytes.
+    """Write a model, whole or not at all; the same model gives the same bytes.
 
     Raises:
         ModelError: When the file cannot be written.
@@ -72,7 +73,8 @@ def save(model: PostureModel, path: Path) -> None:
     header = Header("tritrack postures", VERSION, model.names, kind.FEATURES, model.card)
     arrays = {name: getattr(model, name) for name in _shapes(header)}
     try:
-        with path.open("wb") as file:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with replacing(path) as new, new.open("wb") as file:
             np.savez(
                 file,
                 header=np.frombuffer(msgspec.json.encode(header), np.uint8),

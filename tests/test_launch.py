@@ -15,7 +15,7 @@ import zenoh
 from rich.console import Console
 
 from common.bus.messages import Body
-from common.config import BusSettings, PageSettings, Settings
+from common.config import BusSettings, PageSettings, Settings, SettingsError
 from tritrack.live.launch import Heard, nothing_heard, run
 from tritrack.live.process_table import Part
 from tritrack.live.session import free_settings, live
@@ -31,7 +31,7 @@ def ends_at_once() -> None:
 
 
 def fails(text: str) -> None:
-    raise RuntimeError(text)
+    raise SettingsError(text)
 
 
 def settings_of(clip: Path, **changes: object) -> Settings:

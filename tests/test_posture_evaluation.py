@@ -11,6 +11,8 @@ from acting import perform
 from rich.console import Console
 
 from recognizer.evaluation import Recording
+from recognizer.learning_error import LearningError
+from tritrack.faults import code_of
 from tritrack.postures import posture_evaluation
 from tritrack.postures.posture_evaluation import EACH_IN_TURN, Plan, evaluate_postures
 from tritrack.training.training import TrainingError
@@ -28,6 +30,12 @@ def of(performer: str, number: int) -> list[Recording]:
     ]
 
 
+def shown(given: list[Recording], patch: pytest.MonkeyPatch) -> None:
+    """What clips say of themselves, and what tracking made of them, is this list."""
+    patch.setattr(posture_evaluation, "announced", lambda *_: given)
+    patch.setattr(posture_evaluation, "recordings", lambda *_: given)
+
+
 @pytest.fixture
 def people(monkeypatch: pytest.MonkeyPatch) -> list[Recording]:
     """Ann, bob and cas, of whom cas calls a squat a bow and a bow a squat."""
@@ -36,7 +44,7 @@ def people(monkeypatch: pytest.MonkeyPatch) -> list[Recording]:
         for one in of("cas", 3)
     ]
     everybody = [*of("ann", 1), *of("bob", 2), *cas]
-    monkeypatch.setattr(posture_evaluation, "recordings", lambda *_: everybody)
+    shown(everybody, monkeypatch)
     monkeypatch.setattr(posture_evaluation, "spread", nullcontext)
     return everybody
 
@@ -125,11 +133,47 @@ def test_the_page_shows_shares_and_pictures_and_fetches_nothing(
 def test_a_split_that_measures_nothing_is_refused(
     people: list[Recording], tmp_path: Path, split: str, reason: str
 ) -> None:
-    with pytest.raises(TrainingError, match=reason):
+    with pytest.raises((TrainingError, LearningError), match=reason):
         evaluate(tmp_path, split)
 
 
 def test_one_performer_cannot_be_left_out(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(posture_evaluation, "recordings", lambda *_: of("ann", 1))
+    shown(of("ann", 1), monkeypatch)
     with pytest.raises(TrainingError, match="nobody is left to learn from"):
         evaluate(tmp_path, EACH_IN_TURN)
+
+
+@pytest.mark.parametrize(
+    ("split", "reason"),
+    [
+        (EACH_IN_TURN, "none of the postures that are tested is shown by anybody who is learnt"),
+        ("ann:zoe", "name performers that are there"),
+        ("ann,bob:bob", "bob: in training and in test"),
+    ],
+)
+def test_what_would_measure_nothing_is_refused_before_anything_is_tracked(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, split: str, reason: str
+) -> None:
+    """Two people who share no posture: whoever is left out, nobody showed it to the models."""
+
+    def tracked(*_: object) -> None:
+        raise AssertionError("a clip was tracked")
+
+    squat, arm, bow = of("ann", 1)
+    alone = [squat, arm, bow._replace(performer="bob")]
+    monkeypatch.setattr(posture_evaluation, "announced", lambda *_: alone)
+    monkeypatch.setattr(posture_evaluation, "recordings", tracked)
+    with pytest.raises((TrainingError, LearningError), match=reason):
+        evaluate(tmp_path, split)
+
+
+def test_a_fault_of_ours_is_not_dressed_as_a_users_mistake(
+    people: list[Recording], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def broken(*_: object) -> None:
+        raise ValueError("axis 1 is out of bounds for array of dimension 1")
+
+    monkeypatch.setattr(posture_evaluation, "draw_confusion", broken)
+    with pytest.raises(ValueError, match="axis 1") as met:
+        evaluate(tmp_path, EACH_IN_TURN)
+    assert code_of(met.value) == 1

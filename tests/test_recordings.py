@@ -15,7 +15,7 @@ from tritrack.offline.lockstep import track_all
 from tritrack.store.clip_paths import ClipsFailed
 from tritrack.store.runs import RunError
 from tritrack.training import recordings as stage
-from tritrack.training.recordings import RecordingError, recordings
+from tritrack.training.recordings import RecordingError, announced, recordings
 
 QUIET = Console(quiet=True)
 POSTURES = ("raise_right_lateral", "squat")
@@ -100,11 +100,23 @@ def test_the_opening_posture_is_no_part_of_the_motion(runs: list[Path], tmp_path
     assert (recording.posture, recording.performer) == ("raise_right_lateral", "s02")
 
 
-def test_a_clip_without_a_posture_is_named(clips: list[Path], tmp_path: Path) -> None:
+def test_a_clip_without_a_posture_is_named_before_any_is_tracked(
+    clips: list[Path], tmp_path: Path, tracked_names: list[str]
+) -> None:
     folder = copied(clips[0], tmp_path / "clip")
     edit_json(folder / "meta.json", lambda meta: meta.pop("posture"))
     with pytest.raises(RecordingError, match=r"clip names no posture: write it into .*meta.json"):
-        recordings([folder], None, tmp_path / "kept", QUIET)
+        recordings([*clips, folder], None, tmp_path / "kept", QUIET)
+    assert not tracked_names
+
+
+def test_clips_say_themselves_who_performs_what(clips: list[Path], runs: list[Path]) -> None:
+    told = [(one.performer, one.posture, one.clip) for one in announced([*clips, *runs], QUIET)]
+    assert told == [
+        ("s02", posture, str(path))
+        for paths in (clips, runs)
+        for posture, path in zip(POSTURES, paths, strict=True)
+    ]
 
 
 @pytest.mark.parametrize("damage", ["no summary", "half the poses", "pickled"])

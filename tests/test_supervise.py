@@ -4,12 +4,15 @@ import os
 import signal
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 
 from common.bus.control_messages import Pulse
+from common.video.clip_sources import ClipError
+from tritrack.faults import code_of
 from tritrack.live.process_table import Part
-from tritrack.live.supervise import BACK_OFF_S, TRIES, PartFailed, Watched, watched
+from tritrack.live.supervise import BACK_OFF_S, TRIES, PartBroke, PartFailed, Watched, watched
 
 PATIENCE_S = 60.0
 
@@ -19,9 +22,14 @@ def sleeps() -> None:
     time.sleep(600.0)
 
 
-def breaks(text: str) -> None:
+def refuses(text: str) -> None:
     """A part that does not."""
-    raise RuntimeError(text)
+    raise ClipError(text)
+
+
+def breaks() -> None:
+    """A part with a fault."""
+    {}["nothing"]
 
 
 def beating(name: str) -> dict[str, Pulse]:
@@ -115,10 +123,21 @@ def test_what_hangs_is_killed_but_not_by_a_supervisor_that_slept_itself(sleeper:
 
 
 def test_what_fails_before_it_ever_worked_fails_the_run_with_its_reason() -> None:
-    with watched(Part("viewer 1", breaks, ("no camera",), leads=True)) as one:
+    with watched(Part("viewer 1", refuses, ("no camera",), leads=True)) as one:
         until(lambda: one.running.process.exitcode is not None)
         with pytest.raises(PartFailed, match="viewer 1: no camera"):
             one.look(100.0, {})
+
+
+def test_a_fault_is_told_from_what_a_user_can_mend() -> None:
+    with watched(Part("viewer 1", breaks, (), leads=True)) as one:
+        until(lambda: one.running.process.exitcode is not None)
+        with pytest.raises(PartBroke, match=r"viewer 1: a fault .*KeyError.*report (.*)") as told:
+            one.look(100.0, {})
+    assert code_of(told.value) == 1
+    kept = Path(str(told.value).rpartition(" ")[2])
+    assert "breaks" in kept.read_text()
+    kept.unlink()
 
 
 def test_nothing_runs_after_the_end(sleeper: Watched) -> None:

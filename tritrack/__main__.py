@@ -1,6 +1,5 @@
 """The front door: every command of tritrack."""
 
-import errno
 import logging
 import os
 import sys
@@ -18,15 +17,11 @@ from tritrack.commands.command_output import JsonWanted, console, results
 from tritrack.commands.live_commands import animate, demo, integrate, live, recognize, view
 from tritrack.commands.model_commands import evaluate_app, train
 from tritrack.commands.rig_commands import calibrate_app
+from tritrack.faults import code_of, told
 from tritrack.terminal import complain, json_text
-
-OURS = ("animator", "common", "integrator", "recognizer", "synth", "tritrack", "viewer")
 
 STOPPED = 130
 """Exit code of what Ctrl-C ended before it was done, as shells count it."""
-
-FULL = (errno.ENOSPC, errno.EDQUOT)
-"""What a full disk says, wherever it is met."""
 
 app = typer.Typer(
     name="tritrack",
@@ -105,10 +100,7 @@ app.add_typer(evaluate_app, name="evaluate")
 
 
 def main() -> None:
-    """Run a command; a user's mistake is one line and exit code 2, never a traceback.
-
-    What is raised by a class of ours is meant for the user; all else is a fault of the program.
-    """
+    """Run a command; a user's mistake is one line and exit code 2, a fault of ours 1."""
     try:
         code = app(standalone_mode=False)
     except typer.TyperException as error:
@@ -116,12 +108,9 @@ def main() -> None:
     except (typer.Abort, KeyboardInterrupt):
         code = STOPPED
     except Exception as error:
-        full = isinstance(error, OSError) and error.errno in FULL
-        if not full and type(error).__module__.split(".")[0] not in OURS:
-            raise
         log.debug("refused", exc_info=error)
-        complain(console, str(error))
-        code = 2
+        complain(console, told(error))
+        code = code_of(error)
     if code == STOPPED:
         complain(console, "stopped before it was done")
     sys.exit(code or 0)

@@ -61,6 +61,15 @@ def open_clip(
     )
 
 
+def meta_of(settings: Settings) -> Meta:
+    """What the `meta.json` beside a clip's videos tells; the videos are not looked into.
+
+    Raises:
+        ClipError: When there is no such clip, or the file cannot be read.
+    """
+    return _meta(companions_folder(settings, footage_of(settings)))
+
+
 def find_calibration(settings: Settings, folder: Path) -> Path | None:
     """The calibration that a run uses: the one named, else the clip's, else its parent folder's."""
     if settings.calibration:

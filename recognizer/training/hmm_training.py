@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recognizer.codebook import Codebook, Symbols
+from recognizer.learning_error import LearningError
 from recognizer.postures import STATES, Array, Topology
 
 NEIGHBOUR_WIDTH: Final = 0.25
@@ -62,13 +63,13 @@ def train_densities(
     from each sequence cut into as many stretches.
 
     Raises:
-        ValueError: When there are fewer different vectors than states.
+        LearningError: When there are fewer different vectors than states.
     """
     from hmmlearn.hmm import GaussianHMM
 
     shown, may = np.concatenate(given), allowed(topology, states)
     if len(np.unique(shown, axis=0)) < states:
-        raise ValueError(f"fewer than {states} different poses in a posture: give more clips")
+        raise LearningError(f"fewer than {states} different poses in a posture: give more clips")
     state = _clusters(shown, seed, states) if topology == "ergodic" else _stretch(given, states)
     hmm: Any = GaussianHMM(
         states,

@@ -7,6 +7,7 @@ import numpy as np
 from recognizer.codebook import SYMBOLS, Codebook, fit, symbols
 from recognizer.features import Rows, features, with_pose
 from recognizer.filler import fit_of, standing
+from recognizer.learning_error import LearningError
 from recognizer.limb_directions import bearings
 from recognizer.postures import (
     STATES,
@@ -46,7 +47,7 @@ def train(
         symbols_count: Of the codebook; a file keeps the paper's 64 only.
 
     Raises:
-        ValueError: When a posture has no usable sequence, or all poses together are too few.
+        LearningError: When a posture has no usable sequence, or all poses together are too few.
 
     Source: Huang & Chung 2004, section 5.1 (P57).
     """
@@ -73,7 +74,7 @@ def taught(
         performers: Whose sequences these are, for the card.
 
     Raises:
-        ValueError: When a posture has no usable sequence, or too few different poses.
+        LearningError: When a posture has no usable sequence, or too few different poses.
     """
     seen = _seen(sequences)
     old = known.card
@@ -109,7 +110,7 @@ def _usable(posture: str, given: Sequence[Rows]) -> list[Rows]:
     seen = [with_pose(one) for one in given]
     usable = [one for one in seen if len(one) >= STATES]
     if not usable:
-        raise ValueError(
+        raise LearningError(
             f"{posture}: none of {len(given)} sequences has {STATES} frames with a pose;"
             " give clips in which the person was tracked"
         )

@@ -33,6 +33,10 @@ TINY_M2: Final = 1e-12
 """Keeps limbs without length from being divided by, as the yardstick does it."""
 
 
+class Mismatch(ValueError):
+    """A run or a truth whose arrays are not those that they should be; the text says which."""
+
+
 class Compared(NamedTuple):
     """One clip: the frames that have a true and a tracked person, and how many had a true one."""
 
@@ -67,9 +71,10 @@ def compare(poses: Arrays, truth: Arrays) -> Compared:
         truth: What `truth.npz` holds. Without `frames_cam1` frame and row are the same.
 
     Raises:
-        KeyError: When an array is missing.
-        ValueError: When a joint is not named, or an array has another shape than it should.
+        Mismatch: When a joint is not named, or an array has another shape than it should.
     """
+    _refuse_other_shapes(poses, "frame", "joints_m")
+    _refuse_other_shapes(truth, "present", "joints3d")
     n = len(truth["present"])
     row_of = np.asarray(truth["frames_cam1"] if "frames_cam1" in truth else np.arange(n), int)
     frame = np.asarray(poses["frame"], int)
@@ -99,17 +104,28 @@ def compare(poses: Arrays, truth: Arrays) -> Compared:
     )
 
 
+def _refuse_other_shapes(arrays: Arrays, rows: str, places: str) -> None:
+    _places(arrays["joint_names"])
+    due = (np.size(arrays[rows]), np.size(arrays["joint_names"]), 3)
+    if np.ndim(arrays[rows]) != 1 or np.shape(arrays[places]) != due:
+        raise Mismatch(f"{places} is {np.shape(arrays[places])}, {rows} {np.shape(arrays[rows])}")
+
+
 def picked(of_all: NDArray[Any], names: NDArray[Any]) -> Floats:
     """The twelve joints, in their order, of an array (n, joints, ...).
 
     Raises:
-        ValueError: When one of them is not among the names.
+        Mismatch: When one of them is not among the names.
     """
+    return np.asarray(of_all, float)[:, _places(names)]
+
+
+def _places(names: NDArray[Any]) -> list[int]:
     known = [str(name) for name in names]
     missing = [name for name in JOINTS if name not in known]
     if missing:
-        raise ValueError(f"there is no joint {missing[0]!r}; there are {', '.join(known)}")
-    return np.asarray(of_all, float)[:, [known.index(name) for name in JOINTS]]
+        raise Mismatch(f"there is no joint {missing[0]!r}; there are {', '.join(known)}")
+    return [known.index(name) for name in JOINTS]
 
 
 def summary(clips: Sequence[Compared]) -> dict[str, Any]:

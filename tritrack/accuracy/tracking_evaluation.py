@@ -14,7 +14,7 @@ from common import config
 from common.body.body import Bdp
 from common.config import Mode, Settings
 from tritrack.accuracy import accuracy_plots, accuracy_report, worst_frames
-from tritrack.accuracy.accuracy import Arrays, Compared, compare, per_joint, summary
+from tritrack.accuracy.accuracy import Arrays, Compared, Mismatch, compare, per_joint, summary
 from tritrack.accuracy.limb_lengths import length_errors
 from tritrack.accuracy.reliability import trust
 from tritrack.accuracy.silhouette_iou import Overlap, overlaps
@@ -147,7 +147,7 @@ def _case(run: Path, clip: Path | None, mode: Mode | None, size: str | None) -> 
     poses, truth = _arrays(run / "poses.npz", IN_POSES), _arrays(path, IN_TRUTH)
     try:
         compared = compare(poses, truth)
-    except (KeyError, ValueError, IndexError) as error:
+    except Mismatch as error:
         raise EvaluationError(f"{run} and {path} do not fit together: {error}") from error
     told = facts.get("performer", ""), facts.get("posture_meant", "")
     return Case(settings, *told, bdp, compared, truth)

@@ -6,7 +6,16 @@ from typing import Annotated, Literal
 import typer
 
 from tritrack.commands.command_output import JsonWanted, console, tell
-from tritrack.commands.options import CACHE, Cache, ModeName, Out, OwnMode, Size
+from tritrack.commands.options import (
+    CACHE,
+    Cache,
+    ModeName,
+    Out,
+    OwnMode,
+    Size,
+    writable,
+    writable_file,
+)
 
 RecognizerName = Annotated[
     Literal["default", "paper"], typer.Option(help="The better models, or the paper's.")
@@ -16,7 +25,7 @@ evaluate_app = typer.Typer(help="Measure how well people are tracked, and recogn
 
 
 def train(
-    out: Annotated[Path, typer.Option(help="The model file to write.")],
+    out: Annotated[Path, typer.Option(help="The model file to write.", callback=writable_file)],
     runs: Annotated[
         list[Path] | None,
         typer.Argument(help="Clips that name their posture, or their run folders."),
@@ -135,7 +144,10 @@ def evaluate_tracking(
     clips: Annotated[list[Path], typer.Argument(help="Clips with a truth, or their run folders.")],
     out: Out,
     runs: Annotated[
-        Path | None, typer.Option(help="Where runs stand; clips without one are tracked into it.")
+        Path | None,
+        typer.Option(
+            help="Where runs stand; clips without one are tracked into it.", callback=writable
+        ),
     ] = None,
     mode: ModeName = None,
     size: Size = None,

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from tritrack.commands.command_output import JsonWanted, console, tell_rows
+from tritrack.commands.options import writable_file
 
 calibrate_app = typer.Typer(
     help="Find out where the cameras are: from line markers, then from poles (section 4.1).",
@@ -30,7 +31,9 @@ def markers(
 @calibrate_app.command()
 def poles(
     measured: Annotated[Path, typer.Argument(help="Tops of the poles in both pictures (TOML).")],
-    out: Annotated[Path, typer.Option(help="The file to write.")] = Path("calibration.json"),
+    out: Annotated[Path, typer.Option(help="The file to write.", callback=writable_file)] = Path(
+        "calibration.json"
+    ),
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
     json_wanted: JsonWanted = False,
 ) -> None:

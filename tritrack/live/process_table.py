@@ -14,6 +14,7 @@ from typing import Any, Final, NamedTuple
 from common.bus.process import ProcessContext
 from common.config import Settings
 from common.video.clip_facts import Clip
+from tritrack.faults import code_of, told
 
 SPAWN: Final = multiprocessing.get_context("spawn")
 """Never fork: Zenoh's threads are not inherited."""
@@ -143,5 +144,5 @@ def _guarded(part: Part, words: Connection) -> None:
         part.main(*part.arguments)
     except Exception as error:
         logging.getLogger(part.name).debug("failed", exc_info=error)
-        words.send(str(error) or type(error).__name__)
-        raise SystemExit(2) from None
+        words.send(told(error))
+        raise SystemExit(code_of(error)) from None

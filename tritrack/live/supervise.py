@@ -10,6 +10,7 @@ import msgspec
 from common.bus.control_messages import Pulse
 from common.bus.message_codec import TOPICS
 from common.bus.rate import silent
+from tritrack.faults import FAULTY, Fault
 from tritrack.live.process_table import Part, end, last_words, started
 
 TRIES: Final = 5
@@ -25,6 +26,10 @@ its group, must not take the others for hung."""
 
 class PartFailed(RuntimeError):
     """A process of the run failed; the text names it and says why."""
+
+
+class PartBroke(PartFailed, Fault):
+    """It failed by a fault of the program."""
 
 
 class Watched:
@@ -80,7 +85,7 @@ class Watched:
             PartFailed: When its process ended with an error, or it was given up.
         """
         if self.given_up or (self._again_s is None and self.running.process.exitcode):
-            raise PartFailed(f"{self.part.name}: {self.given_up or last_words(self.running)}")
+            raise self._failure(self.given_up or last_words(self.running))
 
     def end(self) -> None:
         """End its process and start no other."""
@@ -97,7 +102,7 @@ class Watched:
     def _died(self, now_s: float, pulses: dict[str, Pulse]) -> str:
         why = last_words(self.running)
         if not self._came_up:
-            raise PartFailed(f"{self.part.name}: {why}")
+            raise self._failure(why)
         if self._tries == TRIES:
             self.given_up = f"{why}; after {TRIES} new starts it is given up"
             self._show("given up", pulses)
@@ -110,6 +115,10 @@ class Watched:
             f"{self.part.name}: {why}; it is started again in {wait_s:g} s "
             f"({self._tries} of {TRIES} times)"
         )
+
+    def _failure(self, why: str) -> PartFailed:
+        kind = PartBroke if self.running.process.exitcode == FAULTY else PartFailed
+        return kind(f"{self.part.name}: {why}")
 
     def _show(self, state: Literal["restarting", "given up"], pulses: dict[str, Pulse]) -> None:
         """Let the table of processes say how it is, with its counts so far."""

@@ -1,7 +1,7 @@
 """How well postures of people never learnt from are named: the paper's experiment (P56-P60)."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -20,13 +20,14 @@ from tritrack.postures.posture_split import (
     jobs_of,
     judged,
     parts_of,
+    refuse_in_vain,
     sweep_of,
     swept,
 )
 from tritrack.postures.style_spread import spread_of
 from tritrack.store.cores import spread
 from tritrack.terminal import json_text
-from tritrack.training.recordings import recordings
+from tritrack.training.recordings import announced, recordings
 from tritrack.training.training import TrainingError, model_named
 
 KINDS: Final[dict[str, tuple[Recognizer, ...]]] = {
@@ -70,29 +71,33 @@ def evaluate_postures(
         What `report.json` holds.
 
     Raises:
-        TrainingError: When nothing can be learnt or tested, or the report cannot be written.
+        TrainingError, LearningError: When nothing can be learnt or tested: before anything is
+            tracked where the clips' own words tell it; or when the report cannot be written.
         RecordingError: When a folder is neither clip nor run, or names no posture.
-        ClipsFailed: When clips cannot be used.
+        SettingsError, ClipError, ClipsFailed: When clips cannot be used.
         ModelError: When the plan's model cannot.
         ClusterError: When the plan's cluster cannot.
     """
     models = _models(plan)
+    given = announced(paths, console)
+    clips = [Path(one.clip) for one in given]
+    _refuse_in_vain(given, models, plan)
     report: dict[str, Any] = {"split": f"{plan.model} models" if plan.model else plan.split}
+    with spread(plan.dask):
+        for kind, model in models.items():
+            mode = plan.mode or kind
+            given = recordings(clips, mode, plan.cache, console)
+            report |= {"clips": len(given), "people": _people(given, plan)}
+            result = _result(given, kind, model, plan, console)
+            report.setdefault("recognizers", {})[kind] = {"mode": mode, **result}
+        if plan.sweep and plan.model is None:
+            given = recordings(clips, plan.mode or "paper", plan.cache, console)
+            report["sweep"] = _swept(given, plan, console)
     try:
         out.mkdir(parents=True, exist_ok=True)
-        with spread(plan.dask):
-            for kind, model in models.items():
-                mode = plan.mode or kind
-                given = recordings(paths, mode, plan.cache, console)
-                report |= {"clips": len(given), "people": _people(given, plan)}
-                result = _result(given, kind, model, plan, console)
-                report.setdefault("recognizers", {})[kind] = {"mode": mode, **result}
-            if plan.sweep and plan.model is None:
-                given = recordings(paths, plan.mode or "paper", plan.cache, console)
-                report["sweep"] = _swept(given, plan, console)
         _write(report, out)
-    except (ValueError, OSError) as error:
-        raise TrainingError(f"cannot evaluate into {out}: {error}") from error
+    except OSError as error:
+        raise TrainingError(f"cannot write {out}: {error.strerror}; name another --out") from error
     return report
 
 
@@ -102,6 +107,19 @@ def _models(plan: Plan) -> dict[Recognizer, PostureModel | None]:
         return dict.fromkeys(plan.recognizers)
     given = [model_named(plan.model, kind) for kind in plan.recognizers]
     return {model.card.recognizer: model for model in given}
+
+
+def _refuse_in_vain(
+    given: Sequence[Recording], models: Mapping[Recognizer, PostureModel | None], plan: Plan
+) -> None:
+    """Say before the work that nothing would be measured."""
+    for model in models.values():
+        if model is None:
+            refuse_in_vain(given, plan.split)
+        else:
+            refuse_who_was_learnt_from(model.card.performers, given)
+            if not {one.posture for one in given} & set(model.names):
+                raise TrainingError(f"{plan.model} knows none of the postures of these clips")
 
 
 def _result(
@@ -117,7 +135,6 @@ def _result(
     if model is None:
         groups = judged(list(jobs_of(given, plan.split, kind)), console)
     else:
-        refuse_who_was_learnt_from(model.card.performers, given)
         groups = {"headline": named_by(model, given)}
     within = groups.get("within test")
     return {

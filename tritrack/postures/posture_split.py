@@ -7,10 +7,18 @@ from typing import Final, NamedTuple
 from rich.console import Console
 
 from recognizer.codebook import SYMBOLS
-from recognizer.evaluation import Fold, Outcome, Recording, folds, recognise
+from recognizer.evaluation import (
+    Fold,
+    Outcome,
+    Recording,
+    folds,
+    recognise,
+    refuse_who_was_learnt_from,
+)
 from recognizer.postures import STATES, Recognizer
 from tritrack.store.cores import made
 from tritrack.terminal import bar
+from tritrack.training.training import TrainingError
 
 EACH_IN_TURN: Final = "leave-one-performer-out"
 """The split in which everybody is named by a model of all others."""
@@ -40,7 +48,7 @@ def jobs_of(given: Sequence[Recording], split: str, kind: Recognizer) -> Iterato
         kind: Of model.
 
     Raises:
-        ValueError: When the split leaves nobody to learn from or to test on.
+        TrainingError: When the split leaves nobody to learn from or to test on.
     """
     parts = parts_of(given, split)
     if parts is None:
@@ -55,7 +63,7 @@ def sweep_of(given: Sequence[Recording], split: str) -> Iterator[Job]:
     """The paper's recogniser in other sizes, on the headline's split.
 
     Raises:
-        ValueError: As `jobs_of`.
+        TrainingError: As `jobs_of`.
     """
     parts = parts_of(given, split)
     for fold in folds(given) if parts is None else [parts]:
@@ -73,20 +81,42 @@ def parts_of(given: Sequence[Recording], split: str) -> Fold | None:
     """Whom to learn from and whom to test; None where everybody is tested in turn.
 
     Raises:
-        ValueError: When that leaves nobody.
+        TrainingError: When that leaves nobody.
     """
     if split == EACH_IN_TURN:
         if len({one.performer for one in given}) < 2:
-            raise ValueError("one performer alone: nobody is left to learn from")
+            raise TrainingError("one performer alone: nobody is left to learn from")
         return None
     learnt, colon, tested = split.partition(":")
     parts = _of(given, learnt), _of(given, tested)
     if not colon or not all(parts):
-        raise ValueError(
+        raise TrainingError(
             f"the split {split!r} must be {EACH_IN_TURN} or name performers that are there, "
             f"to learn from and to test on, as in r01,r04:r07"
         )
     return parts
+
+
+def refuse_in_vain(given: Sequence[Recording], split: str) -> None:
+    """Say before the work that a split would measure nothing.
+
+    Args:
+        given: Of everybody; their rows are not looked at.
+        split: As `jobs_of` takes it.
+
+    Raises:
+        TrainingError: When it leaves nobody, or nobody shows what others were learnt from.
+        LearningError: When somebody is in training and in test.
+    """
+    parts = parts_of(given, split)
+    for learnt, tested in folds(given) if parts is None else [parts]:
+        refuse_who_was_learnt_from([one.performer for one in learnt], tested)
+        if {one.posture for one in learnt} & {one.posture for one in tested}:
+            return
+    raise TrainingError(
+        "none of the postures that are tested is shown by anybody who is learnt from: give clips "
+        "of several performers who show the same postures"
+    )
 
 
 def judged(jobs: Sequence[Job], console: Console) -> dict[str, list[Outcome]]:

@@ -12,6 +12,7 @@ from rich.console import Console
 
 from common import config
 from common.config import Mode, RecognizerSettings
+from common.video.clips import meta_of
 from recognizer.__main__ import MOVING, SHIPPED
 from recognizer.evaluation import wilson
 from recognizer.features import Rows, rows
@@ -70,20 +71,33 @@ def streams(paths: Sequence[Path], mode: Mode | None, console: Console) -> list[
     """The streams of clips or runs; single performances are joined, performer by performer."""
     whole: list[Stream] = []
     single: dict[str, list[tuple[str, Rows]]] = defaultdict(list)
+    folders = without_plain_files(paths, console)
+    for path in folders:
+        _refuse_nameless(path)
     with Decoders() as decoders, bar(console) as progress:
-        for path in progress.track(without_plain_files(paths, console), description="reading"):
+        for path in progress.track(folders, description="reading"):
             facts, seen = (
                 _run(path) if (path / "poses.npz").is_file() else _clip(path, mode, decoders)
             )
             if "acts" in facts:
                 acts = tuple(Act(**act) for act in facts["acts"])
                 whole.append(Stream(path.name, seen, acts))
-            elif facts.get("posture_meant"):
+            else:
                 cut = seen[-RecognizerSettings().window_frames :]
                 single[facts.get("performer", "")].append((facts["posture_meant"], cut))
-            else:
-                raise TrainingError(f"{path} names neither acts nor a posture in its meta.json")
     return [*whole, *(joined(who, given, SEED) for who, given in sorted(single.items()))]
+
+
+def _refuse_nameless(path: Path) -> None:
+    """Before anything is tracked."""
+    if (path / "poses.npz").is_file():
+        facts = _run(path)[0]
+        named = "acts" in facts or facts.get("posture_meant")
+    else:
+        meta = meta_of(config.load(path))
+        named = meta.acts or meta.posture
+    if not named:
+        raise TrainingError(f"{path} names neither acts nor a posture in its meta.json")
 
 
 def _clip(path: Path, mode: Mode | None, decoders: Decoders) -> tuple[dict[str, Any], Rows]:

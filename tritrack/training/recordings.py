@@ -13,10 +13,11 @@ from rich.console import Console
 from common import config
 from common.config import Mode, RecognizerSettings, Settings
 from common.video.clip_sources import ClipError
+from common.video.clips import meta_of
 from common.video.decoding import DecoderDied, Undecodable
 from recognizer.__main__ import MOVING
 from recognizer.evaluation import Recording
-from recognizer.features import rows
+from recognizer.features import ROW_NAMES, rows
 from recognizer.spotting import motion_of
 from tritrack.offline import clip_cache
 from tritrack.offline.clip_cache import CachedRun
@@ -64,14 +65,53 @@ def recordings(
         console: For progress and warnings.
 
     Raises:
-        RecordingError: When a folder is neither, or names no posture.
-        ClipsFailed: When clips cannot be used; which and why was said before.
+        RecordingError: When a folder is neither, or names no posture: before anything is tracked.
+        SettingsError, ClipError, ClipsFailed: When clips cannot be used; ClipsFailed at the end,
+            which and why was said before.
     """
-    folders = without_plain_files(paths, console)
-    clips = [path for path in folders if not (path / "poses.npz").is_file()]
+    folders = [Path(one.clip) for one in announced(paths, console)]
+    clips = [path for path in folders if not _is_run(path)]
     kept = dict(zip(clips, kept_of(clips, mode, cache, console), strict=True))
     _tell_what_is_odd(kept, console)
     return [_recording(path, kept[path] if path in kept else _of_run(path)) for path in folders]
+
+
+def announced(paths: Sequence[Path], console: Console) -> list[Recording]:
+    """Who performs what in each clip or run, as it says itself: nothing is tracked, there are no
+    rows yet.
+
+    Args:
+        paths: As `recordings` takes them.
+        console: For warnings.
+
+    Raises:
+        RecordingError: When a folder is neither clip nor run, or names no posture.
+        SettingsError, ClipError: When a clip cannot be found.
+        ClipsFailed: When there is none.
+    """
+    told = [_announced(path) for path in without_plain_files(paths, console)]
+    nameless = [one.clip for one in told if not one.posture]
+    if nameless:
+        others = f", and {len(nameless) - 1} more name none" if len(nameless) > 1 else ""
+        raise RecordingError(
+            f"{nameless[0]} names no posture: write it into the clip's meta.json{others}"
+        )
+    return told
+
+
+def _announced(path: Path) -> Recording:
+    nothing = np.empty((0, len(ROW_NAMES)))
+    if _is_run(path):
+        facts = _of_run(path).facts
+        return Recording(
+            facts.get("performer", ""), facts.get("posture_meant", ""), nothing, str(path)
+        )
+    meta = meta_of(config.load(path))
+    return Recording(meta.performer, meta.posture, nothing, str(path))
+
+
+def _is_run(path: Path) -> bool:
+    return (path / "poses.npz").is_file()
 
 
 def _tell_what_is_odd(kept: dict[Path, CachedRun], console: Console) -> None:
@@ -157,12 +197,10 @@ def _of_run(path: Path) -> CachedRun:
 
 
 def _recording(path: Path, kept: CachedRun) -> Recording:
-    posture = kept.facts.get("posture_meant", "")
-    if not posture:
-        raise RecordingError(f"{path} names no posture: write it into the clip's meta.json")
     arrays = kept.arrays
     tracked = rows(arrays["angles_deg"], arrays["joints_m"])
     moving = np.where(np.isin(arrays["status"], MOVING)[:, None], tracked, np.nan)
     window = RecognizerSettings().window_frames
     motion = motion_of(moving, window)
-    return Recording(kept.facts.get("performer", ""), posture, motion, str(path))
+    facts = kept.facts
+    return Recording(facts.get("performer", ""), facts["posture_meant"], motion, str(path))

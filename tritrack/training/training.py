@@ -20,7 +20,7 @@ SHIPPED_MODELS: Final[dict[Recognizer, Path]] = {"default": SHIPPED, "paper": SH
 
 
 class TrainingError(ValueError):
-    """Nothing can be learnt, or the model cannot be written; the text names the cure."""
+    """What cannot be learnt, tested or written; the text names the cure."""
 
 
 def train_postures(
@@ -47,8 +47,8 @@ def train_postures(
     Raises:
         RecordingError: When a folder is neither, or names no posture.
         ClipsFailed: When clips cannot be used.
-        TrainingError: When nothing can be learnt, or the file cannot be written.
-        ModelError: When the model to add to cannot be read.
+        LearningError: When nothing can be learnt.
+        ModelError: When the file cannot be written, or the model to add to cannot be read.
     """
     known = model_named(add_to, recognizer) if add_to else None
     kind = known.card.recognizer if known else recognizer
@@ -59,15 +59,11 @@ def train_postures(
     for recording in given:
         learnt[recording.posture].append(recording.rows)
         performers.add(recording.performer)
-    try:
-        if known is None:
-            model = train(dict(learnt), kind, performers=sorted(performers))
-        else:
-            model = taught(known, learnt, sorted(performers))
-        out.parent.mkdir(parents=True, exist_ok=True)
-        save(model, out)
-    except (ValueError, OSError) as error:
-        raise TrainingError(f"cannot learn or write {out}: {error}") from error
+    if known is None:
+        model = train(dict(learnt), kind, performers=sorted(performers))
+    else:
+        model = taught(known, learnt, sorted(performers))
+    save(model, out)
     return {
         "model": str(out),
         "sequences": {name: len(given) for name, given in sorted(learnt.items())},

@@ -1,0 +1,44 @@
+"""What goes wrong, told apart: what a user can mend, and faults of the program."""
+
+import errno
+import tempfile
+import traceback
+from typing import Final
+
+OURS: Final = ("animator", "common", "integrator", "recognizer", "synth", "tritrack", "viewer")
+"""What is raised by a class of ours is meant for the user; all else is a fault."""
+
+FULL: Final = (errno.ENOSPC, errno.EDQUOT)
+"""What a full disk says, wherever it is met."""
+
+FAULTY: Final = 1
+"""Exit code of a fault."""
+MENDABLE: Final = 2
+"""Exit code of what a user can mend."""
+
+
+class Fault(RuntimeError):
+    """A fault that another process met; the text says where its traceback is."""
+
+
+def told(error: Exception) -> str:
+    """What is wrong in one line; it names the file that keeps the traceback of a fault."""
+    if _is_for_the_user(error) or isinstance(error, Fault):
+        return str(error)
+    with tempfile.NamedTemporaryFile(
+        "w", prefix="tritrack-fault-", suffix=".txt", delete=False
+    ) as kept:
+        kept.writelines(traceback.format_exception(error))
+    name, text = type(error).__name__, " ".join(str(error).split())
+    return f"a fault of tritrack itself ({name}: {text}): please report {kept.name}"
+
+
+def code_of(error: Exception) -> int:
+    """The exit code of a process that ends by it."""
+    return FAULTY if isinstance(error, Fault) or not _is_for_the_user(error) else MENDABLE
+
+
+def _is_for_the_user(error: Exception) -> bool:
+    if isinstance(error, OSError) and error.errno in FULL:
+        return True
+    return type(error).__module__.split(".")[0] in OURS
