@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from stick_posing import STATURE_PX, stick_pose
 
 from common.body.body import LIMBS
 from common.body.stick_body import ADULT, BREADTH, joints_px
@@ -9,7 +10,6 @@ from common.notes.notes import Orientation
 from integrator.single import depth_signs
 from integrator.single.lifting import lift
 from integrator.single.orientation import faced
-from tests.stick_posing import STATURE_PX, stick_pose
 
 LENGTHS_M = ADULT.lengths * 1.75
 PX_PER_M = STATURE_PX / 1.75

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from stick_posing import STATURE_PX, stick_pose
 
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS
 from common.body.stick_body import ADULT, joints_px
 from integrator.single.lifting import depths_m, lift, tilt_errors_deg, yaw_of
-from tests.stick_posing import STATURE_PX, stick_pose
 
 LENGTHS_M = ADULT.lengths * 1.75
 PX_PER_M = STATURE_PX / 1.75

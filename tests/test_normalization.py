@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from stick_posing import STATURE_PX, drawn, larger, stick_pose
 
 from common.body.stick_body import X, Y
-from tests.stick_posing import STATURE_PX, drawn, larger, stick_pose
 from viewer.stick.normalization import NORMAL_SIZE, normalised
 
 ARMS = {"r_upper_arm": 200.0, "r_lower_arm": 200.0}

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from stick_posing import in_profile, stick_pose
 
 from common.body.stick_body import ADULT, BREADTH, X, joints_px
 from integrator.single.orientation import Bearing, faced
-from tests.stick_posing import in_profile, stick_pose
 
 STEP = {"r_upper_leg": 285.0, "r_lower_leg": 262.0, "l_upper_leg": 262.0, "l_lower_leg": 228.0}
 """A stride to the right: knees bend backwards."""

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from stick_posing import STATURE_PX, drawn, in_profile, larger, stick_pose
 
 from common.body.body import LIMBS
 from common.body.stick_body import ANGLE, THESIS, joints_px
 from common.bus.message_codec import decode, encode, pack
 from common.bus.messages import Fit, Report
-from tests.stick_posing import STATURE_PX, drawn, in_profile, larger, stick_pose
 from viewer.stick.stick_fit import Mode, Stick, fit, told
 
 TWELVE = slice(3, 15)

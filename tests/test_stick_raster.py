@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from stick_posing import SIZE, drawn, stick_pose
 
 from common.body.stick_body import ADULT, ANGLE, THESIS, place_segments, standing
 from common.raster.bits import pack_words
@@ -14,7 +15,6 @@ from common.raster.stick_raster import (
     match_stick,
     widening,
 )
-from tests.stick_posing import SIZE, drawn, stick_pose
 
 
 @pytest.mark.parametrize("angle_deg", [0.0, 20.0, 63.0, 90.0, 135.0, 270.0])
