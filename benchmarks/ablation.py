@@ -23,6 +23,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from unittest.mock import patch
 
+from integrator.paper.arbiter import arbitrate
+
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("NUMBA_NUM_THREADS", "1")
@@ -107,7 +109,7 @@ POSES = (
             (
                 fused_pose,
                 "arbitrate",
-                lambda one, other, _, real=fused_pose.arbitrate: real(one, other, 1.0),
+                lambda one, other, _, real=arbitrate: real(one, other, 1.0),
             ),
         ),
     ),

@@ -107,7 +107,8 @@ def with_hole(clip: Path, folder: Path, lost: int) -> Path:
 
 def film_of(video: Path) -> list[Any]:
     """All frames of a video."""
-    capture, film = cv2.VideoCapture(str(video)), []
+    capture = cv2.VideoCapture(str(video))
+    film: list[Any] = []
     while True:
         came, frame = capture.read()
         if not came:

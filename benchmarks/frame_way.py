@@ -1,12 +1,15 @@
 """The files of ours that one frame passes on its way from two cameras to a posture's name."""
 
-import importlib
+import importlib.util
 import sys
 import tempfile
 from collections.abc import Callable
+from contextlib import ExitStack
+from importlib import import_module
 from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any, NamedTuple
+from unittest.mock import patch
 
 from numba.core.dispatcher import Dispatcher
 
@@ -82,18 +85,16 @@ def way(root: Path) -> Way:
         naming, _ = named(naming, body)
         each.append(calls.taken())
 
-    steps = (track.step, merge.step)
-    try:
-        track.step, merge.step = map(calls.noted, steps)
+    with ExitStack() as doors:
+        for module in (track, merge):
+            doors.enter_context(patch.object(module, "step", calls.noted(module.step)))
         _follow(watch)
-    finally:
-        track.step, merge.step = steps
     compiled = _compiled()
     return Way([_files(root, codes, compiled) for codes in each])
 
 
 def _follow(watch: Callable[..., None]) -> None:
-    offline = importlib.import_module(next(filter(_is_there, OFFLINE)))
+    offline = import_module(next(filter(_is_there, OFFLINE)))
     with tempfile.TemporaryDirectory(prefix="tritrack-way-") as folder, offline.Decoders() as doors:
         posture = ("raise_right_lateral",)
         clip = write_set(Path(folder), "postures", 1, 1, PERFORMER_SEED, (160, 120), posture)[0]

@@ -103,7 +103,8 @@ def write_settings(data: Path, out: Path, size: str, every: int) -> list[Path]:
     for name, boxed in (("trial", ("cam01", "cam02")), ("tpose", ("cam03", "cam04"))):
         (out / f"{name}.json").write_text(json.dumps(cameras_of(given, boxed)))
     for plate in data.glob("bg_*.png"):
-        cv2.imwrite(str(out / plate.name), rebarred(cv2.imread(str(plate))))
+        picture = np.asarray(cv2.imread(str(plate)), np.uint8)
+        cv2.imwrite(str(out / plate.name), rebarred(picture))
     found = []
     for one, two in PAIRS:
         found.append(out / f"{one}_{two}.toml")

@@ -71,7 +71,8 @@ def standing(frames: int) -> Array:
 def perform(posture: str, performer: int, take: int = 1, frames: int = 40) -> Array:
     """One performance, (frames, 20): a performer's own reach, pace and delay, and noise."""
     style = np.random.default_rng([performer, list(POSTURES).index(posture)])
-    reach, pace, delay = [*style.uniform(0.85, 1.15, 2).tolist(), style.uniform(-0.5, 0.5)]
+    reach, pace = style.uniform(0.85, 1.15, 2)
+    delay = style.uniform(-0.5, 0.5)
     phase = 2 * np.pi * pace * np.arange(frames) / 20 + delay
     swing = np.sin(phase), (1 - np.cos(phase)) / 2
     rows = standing(frames)

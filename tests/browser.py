@@ -13,7 +13,8 @@ from typing import Any
 
 import cv2
 import numpy as np
-from websockets.sync.client import ClientConnection, connect
+from websockets.sync.client import connect
+from websockets.sync.connection import Connection
 
 FLAGS = (
     "--headless",
@@ -37,7 +38,7 @@ class NotNow(RuntimeError):
 class Tab:
     """One page in the browser, driven by the DevTools protocol."""
 
-    def __init__(self, socket: ClientConnection) -> None:
+    def __init__(self, socket: Connection) -> None:
         self._socket = socket
         self._ids = itertools.count(1)
         self._session: str | None = None
@@ -75,17 +76,20 @@ class Tab:
             if said.get("id") == number and "error" in said:
                 raise NotNow(f"{method}: {said['error']['message']}")
             if said.get("id") == number:
-                return said["result"]
+                result: dict[str, Any] = said["result"]
+                return result
 
     def screenshot(self) -> np.ndarray:
         """What is seen now, (800, 1360, 3), red, green, blue."""
         png = base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
-        return cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR_RGB)
+        picture = cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR_RGB)
+        assert picture is not None
+        return np.asarray(picture)
 
     def text(self) -> str:
         """Every word on the page."""
         answer = self.call("Runtime.evaluate", expression="document.body?.innerText ?? ''")
-        return answer["result"]["value"]
+        return str(answer["result"]["value"])
 
 
 def waited(tab: Tab, until: Callable[[np.ndarray, str], bool], seconds: float = 60.0) -> np.ndarray:
@@ -106,6 +110,7 @@ def open_tab(chromium: str) -> Iterator[Tab]:
         command = [chromium, *FLAGS, f"--user-data-dir={profile}", "about:blank"]
         with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as browser:
             try:
+                assert browser.stderr is not None
                 address = next(
                     line.split()[-1] for line in browser.stderr if "DevTools listening" in line
                 )

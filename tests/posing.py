@@ -2,7 +2,8 @@
 
 from common.body.body import POSE_INDEX, Vector, rest_pose
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.messages import ViewerNumber
+from common.bus.messages import Box, ViewerNumber
+from common.raster.bounds import box_of
 from common.raster.kernel import draw_body
 from common.raster.similarity import Mask
 from viewer.paper.posed_model import Figure, figure_of, rotation_of, view_at
@@ -50,3 +51,10 @@ def picture(
 def laid_over(mask: Mask, pose: Vector, viewer: ViewerNumber = 1, body: Vector = BODY) -> Figure:
     """A model in a pose, where `picture` puts it, laid over a silhouette."""
     return figure_of(mask, body, pose, view(viewer))
+
+
+def box_around(mask: Mask) -> Box:
+    """The boundary of a silhouette that is not empty."""
+    box = box_of(mask)
+    assert box is not None
+    return box

@@ -15,24 +15,26 @@ from common.body.body import POSE_INDEX, Vector, rest_pose
 from common.body.proportions import thesis_bdp
 from common.bus.control_messages import Pulse
 from common.bus.message_codec import pack
-from common.bus.messages import Body, Posture, Report
+from common.bus.messages import Body, Posture, Report, ViewerNumber
 from common.rig.camera import Camera, paper_rig
 
 RATE_HZ = 15
 BDP = thesis_bdp(1.72)
 LEG_M = BDP.r_upper_leg.height + BDP.r_lower_leg.height
+VIEWERS: tuple[ViewerNumber, ...] = (1, 2)
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
 
 
 def snapshot_at(frame: int) -> Snapshot:
     """What a run without fault would say of a body that walks in place."""
     seconds = frame / RATE_HZ
-    moment = {"frame": frame, "captured_s": seconds, "clock_s": seconds}
     pose = pose_at(seconds)
     masks = [silhouette(camera, pose) for camera in RIG.cameras]
     return Snapshot(
         body=Body(
-            **moment,
+            frame=frame,
+            captured_s=seconds,
+            clock_s=seconds,
             status="tracking",
             views="both",
             pose=tuple(pose.tolist()),
@@ -40,11 +42,22 @@ def snapshot_at(frame: int) -> Snapshot:
             bdp=BDP,
         ),
         reports={
-            n: Report(**moment, viewer=n, width=160, height=120, silhouette=pack(mask), box=None)
-            for n, mask in enumerate(masks, start=1)
+            n: Report(
+                frame=frame,
+                captured_s=seconds,
+                clock_s=seconds,
+                viewer=n,
+                width=160,
+                height=120,
+                silhouette=pack(mask),
+                box=None,
+            )
+            for n, mask in zip(VIEWERS, masks, strict=True)
         },
         posture=Posture(
-            **moment,
+            frame=frame,
+            captured_s=seconds,
+            clock_s=seconds,
             name="walk_in_place",
             log_likelihoods={"walk_in_place": -61.0, "squat": -142.5, "kick_left_side": -171.2},
             segment=(max(0, frame - 39), frame),

@@ -1,5 +1,7 @@
 """A network for tests, small enough to work out by hand."""
 
+from typing import Any
+
 import numpy as np
 
 from integrator.proposal.network_weights import Network, halves
@@ -17,7 +19,7 @@ def network(fill: float = 0.0) -> Network:
         "join": (8, 4),
         "say": (4, 48),
     }
-    parts = {}
+    parts: dict[str, Any] = {}
     for name, size in sizes.items():
         parts[name] = halves(np.full(size, fill, np.float32))
         parts[f"{name}_bias"] = np.zeros(size[1], np.float32)

@@ -4,6 +4,7 @@ import json
 import shutil
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -20,7 +21,7 @@ def copied(clip: Path, folder: Path) -> Path:
 
 def film_of(video: Path) -> Film:
     capture = cv2.VideoCapture(str(video))
-    film = []
+    film: Film = []
     while True:
         came, frame = capture.read()
         if not came:
@@ -42,7 +43,7 @@ def refilmed(folder: Path, change: Callable[[Film], Film], cameras: Sequence[int
         write_film(video, change(film_of(video)))
 
 
-def edit_json(path: Path, change: Callable[[dict], object]) -> None:
+def edit_json(path: Path, change: Callable[[dict[str, Any]], object]) -> None:
     content = json.loads(path.read_text())
     change(content)
     path.write_text(json.dumps(content))

@@ -16,6 +16,7 @@ from common.raster.bounds import box_of
 from common.raster.kernel import draw_body, view_of
 from common.raster.similarity import Mask
 from common.rig.camera import Rig, paper_rig
+from common.video.decoding import Picture
 from integrator import merge
 from integrator.pairing import Pair
 from viewer import track
@@ -48,7 +49,7 @@ def squatting(hip_deg: float, **angles_deg: float) -> Vector:
     down_m = NAVEL_M * (1 - float(np.cos(hip)))
     legs = {f"{side}_hip_x": hip_deg for side in "rl"}
     legs |= {f"{side}_knee_x": -2 * hip_deg for side in "rl"}
-    return standing(down_m=down_m, **legs, **angles_deg)
+    return standing((0.0, 0.0), down_m=down_m, **legs, **angles_deg)
 
 
 def silhouettes(pose: Vector, body: Bdp = PERSON, rig: Rig = RIG) -> tuple[Mask, Mask]:
@@ -63,12 +64,12 @@ def silhouettes(pose: Vector, body: Bdp = PERSON, rig: Rig = RIG) -> tuple[Mask,
 def exact(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let viewers take the picture for the silhouette; one that stands still is no fault."""
 
-    def step(state: None, picture: Mask, _near: object) -> tuple[None, Seen]:
-        if not picture.any():
-            return state, Seen(mask=picture, box=None, area_px=0, blobs=0, cut=False)
-        box = box_of(picture)
+    def step(state: None, picture: Picture, _near: object) -> tuple[None, Seen]:
+        mask, box = picture.view(np.bool_), box_of(picture)
+        if box is None:
+            return state, Seen(mask=mask, box=None, area_px=0, blobs=0, cut=False)
         cut = box.left == 0 or box.top == 0 or box.right == WIDTH - 1 or box.bottom == HEIGHT - 1
-        return state, Seen(picture, box, int(picture.sum()), 1, cut)
+        return state, Seen(mask, box, int(mask.sum()), 1, cut)
 
     monkeypatch.setattr("viewer.camera_fault.init", lambda _: None)
     monkeypatch.setattr("viewer.camera_fault.step", lambda state, _: (state, ""))
@@ -110,7 +111,7 @@ class Stage:
             if mask is None:
                 continue
             moment = self.at * PERIOD_S
-            frame = Frame(self.at, moment, moment, mask)
+            frame = Frame(self.at, moment, moment, mask.view(np.uint8))
             self.viewers[n], reports[n - 1] = track.step(viewer, frame, self.guide)
         self.state, body, self.guide = merge.step(self.state, Pair(reports[0], reports[1]))
         self.at += 1

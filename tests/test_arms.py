@@ -30,7 +30,7 @@ def arm(side: str, outward_deg: float, elbow_deg: float) -> dict[str, float]:
 
 
 def ends(pose: Vector, limb: str) -> Vector:
-    return segments(BODY, pose)[LIMBS.index(limb)]
+    return np.asarray(segments(BODY, pose)[LIMBS.index(limb)])
 
 
 def within_range(pose: Vector, side: str) -> bool:
@@ -41,7 +41,7 @@ def within_range(pose: Vector, side: str) -> bool:
     low, high = (0.0, 180.0) if side == "r" else (180.0, 360.0)
     outward = y == (90.0 if side == "r" else -90.0)
     most = 140.0 if outward else inward_limit_deg(side, z)
-    return low <= z <= high and abs(y) == 90.0 and 0.0 <= elbow <= most + 0.5
+    return bool(low <= z <= high and abs(y) == 90.0 and 0.0 <= elbow <= most + 0.5)
 
 
 @pytest.mark.parametrize(

@@ -181,12 +181,14 @@ def test_what_is_lost_on_the_way_is_counted_by_who_should_have_heard_it(place: P
         heard.recv()
         for frame in range(3):
             place.hub.publish(a_report(1, frame))
-        numbers, end = [], time.monotonic() + SOON_S
+        numbers: list[int] = []
+        end = time.monotonic() + SOON_S
         while len(numbers) < 3 and time.monotonic() < end:
             sample = heard.try_recv()
             if sample is None:
                 time.sleep(0.01)
             else:
+                assert sample.attachment is not None
                 numbers.append(int.from_bytes(sample.attachment.to_bytes(), "big"))
         assert numbers == [1, 2, 3]
         for number in (4, 7, 8, 1, 2, 5, 2**64 - 1):

@@ -75,7 +75,9 @@ def read_bvh(text: str) -> Read:
     lines = text.split("MOTION")[1].strip().splitlines()
     table = np.array([[float(value) for value in line.split()] for line in lines[2:]])
     assert lines[0] == f"Frames: {len(table)}"
-    places, turns, at = {}, {}, 0
+    places: dict[str, np.ndarray] = {}
+    turns: dict[str, Rotation] = {}
+    at = 0
     for name, parent, offset, channels in joints_found:
         place = np.tile(offset, (len(table), 1))
         turn = Rotation.identity(len(table))

@@ -30,7 +30,7 @@ def somebody(picture: Picture) -> Picture:
 
 
 def faults(state: State, pictures: list[Picture]) -> list[str]:
-    found = []
+    found: list[str] = []
     for picture in pictures:
         state, fault = step(state, picture)
         found.append(fault)

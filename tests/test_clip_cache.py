@@ -87,6 +87,6 @@ def test_a_pickle_is_not_read(tmp_path: Path) -> None:
         tmp_path / "k.npz",
         allow_pickle=True,
         facts=np.frombuffer(b"{}", np.uint8),
-        **arrays,  # type: ignore[arg-type]
+        **arrays,
     )
     assert read(tmp_path, "k") is None

@@ -12,7 +12,8 @@ import pytest
 from common.config import CameraSettings, Settings
 from common.rig.camera import paper_rig, project
 from common.video.clip_facts import Clip, View, shortfall
-from common.video.clips import ClipError, open_clip
+from common.video.clip_sources import ClipError
+from common.video.clips import open_clip
 from common.video.decoding import Decoder
 
 SIZE = (320, 240)

@@ -17,7 +17,7 @@ def strip(clip: Path) -> np.ndarray:
         png = contact_strip(clip, None, decoders)
     picture = cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR_RGB)
     assert picture is not None
-    return picture
+    return np.asarray(picture)
 
 
 def test_a_strip_has_a_row_a_view(strip: np.ndarray) -> None:

@@ -89,7 +89,7 @@ def test_what_is_wrong_is_mended_by_as_many_inputs_as_it_has_runs(danced: Motion
     assert found == Count(orientation=6, joints=2)
     flat = truth._replace(joints_m=truth.joints_m * (1.0, 1.0, 0.0))
     changes = depth_of(truth.joints_m)[:, forearm]
-    runs = np.count_nonzero(np.diff(changes[changes != 0])) + 1
+    runs = int(np.count_nonzero(np.diff(changes[changes != 0]))) + 1
     alone = flat.joints_m.copy()
     others = [i for i, name in enumerate(JOINT_NAMES) if name != "l_wrist"]
     alone[:, others] = truth.joints_m[:, others]

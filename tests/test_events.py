@@ -34,7 +34,7 @@ def still(frames: int, place: np.ndarray | None = None) -> np.ndarray:
     rows = standing(frames) + np.random.default_rng(frames).normal(0.0, 1.0, (frames, 20)) * SHAKE
     if place is not None:
         rows[:, 17:] = place
-    return rows
+    return np.asarray(rows)
 
 
 @pytest.fixture(scope="module")

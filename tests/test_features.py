@@ -17,7 +17,7 @@ def one(**angles_deg: float) -> np.ndarray:
     row = standing(1)
     for name, angle_deg in angles_deg.items():
         row[0, ANGLE_INDEX[name]] = angle_deg
-    return features(row)[0]
+    return np.asarray(features(row)[0])
 
 
 def direction(vector: np.ndarray, limb: str) -> list[float]:
@@ -29,7 +29,7 @@ def rotated(x_deg: float, z_deg: float) -> np.ndarray:
     x, z = np.radians([x_deg, z_deg])
     rx = np.array([[1, 0, 0], [0, np.cos(x), -np.sin(x)], [0, np.sin(x), np.cos(x)]])
     rz = np.array([[np.cos(z), -np.sin(z), 0], [np.sin(z), np.cos(z), 0], [0, 0, 1]])
-    return rz @ rx @ np.array([0.0, 1.0, 0.0])
+    return np.asarray(rz @ rx @ np.array([0.0, 1.0, 0.0]))
 
 
 def test_ten_angles_are_the_papers() -> None:

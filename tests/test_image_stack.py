@@ -9,7 +9,9 @@ from viewer.background.image_stack import CHANGES, LUMA, median, overlaid, squar
 @pytest.mark.parametrize("count", [1, 2, 3, 8, 9])
 @pytest.mark.parametrize("kind", [np.uint8, np.float32])
 def test_the_median_is_numpys(count: int, kind: type) -> None:
-    pictures = np.random.default_rng(count).uniform(0, 255, (count, 5, 7, 3)).astype(kind)
+    pictures: np.ndarray = (
+        np.random.default_rng(count).uniform(0, 255, (count, 5, 7, 3)).astype(kind)
+    )
     given = pictures.copy()
     np.testing.assert_array_equal(median(pictures), np.median(pictures, axis=0).astype(np.float32))
     np.testing.assert_array_equal(pictures, given)

@@ -12,6 +12,7 @@ def test_a_picture_comes_back_as_it_was_within_jpegs_loss() -> None:
     picture[..., 0] = np.linspace(0, 255, 160, dtype=np.uint8)
     picture[..., 2] = np.linspace(0, 255, 120, dtype=np.uint8)[:, None]
     back = cv2.imdecode(np.frombuffer(jpeg_of(picture), np.uint8), cv2.IMREAD_COLOR)
+    assert back is not None
     assert back.shape == picture.shape
     assert np.abs(back.astype(int) - picture).mean() < 4
 

@@ -21,7 +21,7 @@ poses = st.lists(degrees, min_size=22, max_size=22).map(
 def axis(limb: str, **angles_deg: float) -> Vector:
     """Where a limb of a standing body points, world, unit length."""
     first, last = segments(BODY, posed(**angles_deg))[LIMBS.index(limb)]
-    return (last - first) / np.linalg.norm(last - first)
+    return np.asarray((last - first) / np.linalg.norm(last - first))
 
 
 def spherical(x_deg: float, y_deg: float, z_deg: float) -> Rotation:

@@ -7,6 +7,7 @@ import socket
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import psutil
@@ -49,15 +50,20 @@ def slow_clip(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+Lived = tuple[Path, dict[str, Any]]
+
+
 @pytest.fixture(scope="module")
-def lived(slow_clip: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict]:
+def lived(slow_clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Lived:
     """One live run of it, and what its summary tells."""
     out = tmp_path_factory.mktemp("lived")
     return out, live(settings_of(slow_clip), out, QUIET)
 
 
 @pytest.mark.slow
-def test_a_live_run_is_two_viewer_processes_and_an_integrator(lived: tuple[Path, dict]) -> None:
+def test_a_live_run_is_two_viewer_processes_and_an_integrator(
+    lived: Lived,
+) -> None:
     """P1, D2, D4: every frame of both views is looked at, merged and judged, at the clip's pace."""
     processes = lived[1]["processes"]
     assert set(processes) == {"viewer 1", "viewer 2", "integrator", "recognizer"}
@@ -69,7 +75,7 @@ def test_a_live_run_is_two_viewer_processes_and_an_integrator(lived: tuple[Path,
 
 
 @pytest.mark.slow
-def test_a_live_run_equals_an_offline_one(slow_clip: Path, lived: tuple[Path, dict]) -> None:
+def test_a_live_run_equals_an_offline_one(slow_clip: Path, lived: Lived) -> None:
     """One code path, two shells; P2: report t used the guide of t - 1."""
     out, facts = lived
     assert [facts["processes"][f"viewer {n}"]["guide_misses"] for n in (1, 2)] == [0, 0]
@@ -81,14 +87,14 @@ def test_a_live_run_equals_an_offline_one(slow_clip: Path, lived: tuple[Path, di
 
 
 @pytest.mark.slow
-def test_a_run_folder_holds_all_that_it_should(lived: tuple[Path, dict]) -> None:
+def test_a_run_folder_holds_all_that_it_should(lived: Lived) -> None:
     out, _ = lived
     names = {path.name for path in out.iterdir()}
     assert names == {"poses.npz", "summary.json", "posture.json", "log.txt"}
 
 
 @pytest.mark.slow
-def test_no_process_is_left_behind(lived: tuple[Path, dict]) -> None:
+def test_no_process_is_left_behind(lived: Lived) -> None:
     assert [p for p in psutil.Process().children(recursive=True) if "decoder" in p.name()] == []
     assert multiprocessing.active_children() == []
 

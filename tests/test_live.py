@@ -17,6 +17,7 @@ from browser import open_tab, saved, waited
 from show_page import RIG, snapshot_at
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
+from websockets.typing import Origin, Subprotocol
 
 from animator.page.door import PageError, is_own
 from animator.page.live import LivePage
@@ -101,11 +102,11 @@ def test_only_the_pages_own_browser_tab_may_connect(host: str, origin: str, own:
 def test_a_foreign_web_page_is_shown_nothing(page: LivePage) -> None:
     """It would else read the silhouettes of whoever stands before the cameras."""
     where = page.address.replace("http", "ws")
-    speaks = {"subprotocols": [f"viser-v{viser.__version__}"]}
-    with connect(where, origin=page.address, **speaks) as own:
+    speaks = [Subprotocol(f"viser-v{viser.__version__}")]
+    with connect(where, origin=Origin(page.address), subprotocols=speaks) as own:
         assert own.recv(timeout=10)
     with (
-        connect(where, origin="https://evil.example", **speaks) as foreign,
+        connect(where, origin=Origin("https://evil.example"), subprotocols=speaks) as foreign,
         pytest.raises(ConnectionClosed) as closed,
     ):
         foreign.recv(timeout=10)
@@ -128,8 +129,9 @@ def test_a_body_appears_moves_and_goes_again(page: LivePage) -> None:
 
 def test_a_cameras_picture_hangs_in_the_room_while_its_viewer_speaks(page: LivePage) -> None:
     frustum = page._server.scene.get_handle_by_name("/camera 2")
-    assert frustum.image is None
+    before = frustum.image
     page.show(snapshot_at(0))
+    assert before is None
     assert frustum.image.shape == (240, 320, 3)
     page.show(Snapshot())
     assert frustum.image is None

@@ -4,12 +4,14 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from rich.console import Console
-from spoiling import copied, cut_off, edit_json, refilmed
+from spoiling import Film, copied, cut_off, edit_json, refilmed
 
 from common.config import Settings, SettingsError
 from tritrack.offline.lockstep import Decoders, overridden, track_all, track_clip
@@ -18,7 +20,7 @@ from tritrack.store.runs import poses
 QUIET = Console(quiet=True)
 
 
-def tracked(clip: Path) -> tuple[dict[str, np.ndarray], dict]:
+def tracked(clip: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     with Decoders() as decoders:
         done = track_clip(Settings(clip=str(clip)), decoders)
     return poses([body for body in done.bodies if body.frame >= 0]), done.facts
@@ -77,6 +79,10 @@ def test_a_view_that_ends_early_leaves_the_other_to_go_on(clip: Path, tmp_path: 
     assert facts["warnings"] == ["the views differ in length: 69 and 40 frames"]
 
 
+def only(kept: list[int]) -> Callable[[Film], Film]:
+    return lambda film: [film[i] for i in kept]
+
+
 def test_frames_that_one_camera_missed_are_paired_by_their_moments(
     clip: Path, tmp_path: Path
 ) -> None:
@@ -85,7 +91,7 @@ def test_frames_that_one_camera_missed_are_paired_by_their_moments(
     gone = {1: {30, 31}, 2: {50}}
     kept = {n: [i for i in range(69) if i not in gone[n]] for n in (1, 2)}
     for n in (1, 2):
-        refilmed(folder, lambda film, n=n: [film[i] for i in kept[n]], cameras=(n,))
+        refilmed(folder, only(kept[n]), cameras=(n,))
     moments = {f"cam{n}": [i / 15 for i in kept[n]] for n in (1, 2)}
     edit_json(folder / "meta.json", lambda meta: meta.update(capture_s=moments))
     rows, facts = tracked(folder)

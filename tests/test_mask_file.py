@@ -11,7 +11,7 @@ MASKS = np.random.default_rng(3).random((5, 20, 13)) > 0.5
 
 
 def written(path: Path, **arrays: np.ndarray) -> Path:
-    np.savez(path, **arrays)
+    np.savez(path, allow_pickle=True, **arrays)
     return path
 
 

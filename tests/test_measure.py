@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from posing import BODY, ROOT_PX, picture, posed, stretched
+from posing import BODY, ROOT_PX, box_around, picture, posed, stretched
 
 from common.body.body import LIMBS, Bdp, Elliptic, Vector
 from common.body.kinematics import segments
 from common.body.proportions import body_vector, thesis_bdp
-from common.raster.bounds import box_of
 from common.raster.similarity import Mask, similarity
 from viewer.paper.fine_tuning import fine_tuned
 from viewer.paper.measure import (
@@ -77,10 +76,10 @@ def test_the_trunk_is_as_wide_as_it_was_drawn(legs_deg: float) -> None:
     Over all columns legs at 8 degrees would make it 31 of 23 pixels.
     """
     mask = opening(r_hip_z=180.0 - legs_deg, l_hip_z=180.0 + legs_deg)
-    found = facade_shape(mask, box_of(mask))
+    found = facade_shape(mask, box_around(mask))
     assert abs(found.right - found.left - TRUNK_PX) <= (1.0 if legs_deg == 0 else 2.0)
     assert found.centre == pytest.approx(ROOT_PX[0], abs=0.5)
-    measure = measure_front(mask, box_of(mask))
+    measure = measure_front(mask, box_around(mask))
     assert measure.bdp_px is not None
     assert abs(2 * measure.bdp_px.torso.long_radius - TRUNK_PX) <= 2.0
     if legs_deg == 8.0:
@@ -107,7 +106,7 @@ def test_raised_arms_hide_the_shoulders() -> None:
 def test_lengths_are_the_papers_shares() -> None:
     """P15, P16, M7, rows down: head = y_h - y_top, trunk to legs as 4 to 6, two halves."""
     mask = opening()
-    box = box_of(mask)
+    box = box_around(mask)
     found = facade_shape(mask, box)
     below = box.bottom + 1 - found.shoulder_row
     assert found.head == found.shoulder_row - box.top
@@ -121,15 +120,15 @@ def test_the_theses_shares_are_another_prior() -> None:
     """P16, T4: trunk 52, upper leg 46, lower leg 52 of 150: the centre is 8 px higher of 86."""
     below = 52 + 46 + 52
     mask = opening()
-    found = facade_shape(mask, box_of(mask))
+    found = facade_shape(mask, box_around(mask))
     assert found.torso - BDP.torso.height == pytest.approx((0.4 - 52 / below) * 86, abs=1.0)
 
 
 def test_widths_are_the_papers_shares_of_the_trunk() -> None:
     """P17, M10: head 0.20 and 0.16, leg 0.20 and (for the printed 0.36) 0.18; LR = W / 2."""
     mask = opening()
-    found = facade_shape(mask, box_of(mask))
-    body = measure_front(mask, box_of(mask)).bdp_px
+    found = facade_shape(mask, box_around(mask))
+    body = measure_front(mask, box_around(mask)).bdp_px
     assert body is not None
     width = found.right - found.left
     assert body.head == Elliptic(0.20 * width, 0.16 * width, found.head)
@@ -141,7 +140,7 @@ def test_widths_are_the_papers_shares_of_the_trunk() -> None:
 def test_arms_have_two_equal_halves() -> None:
     """M6, P19: th_a needs it; their sum is the shoulder's distance from the tip."""
     mask = opening()
-    body = measure_front(mask, box_of(mask)).bdp_px
+    body = measure_front(mask, box_around(mask)).bdp_px
     assert body is not None
     for side in "rl":
         upper, lower = getattr(body, f"{side}_upper_arm"), getattr(body, f"{side}_lower_arm")
@@ -153,7 +152,7 @@ def test_arms_have_two_equal_halves() -> None:
 def test_the_centre_and_the_shoulders_lie_where_they_were_drawn() -> None:
     """P17, P18, M7: y_c = y_h + torso; shoulders 0.45 LR below the trunk's end."""
     mask = opening()
-    measure, found = measure_front(mask, box_of(mask)), facade_shape(mask, box_of(mask))
+    measure, found = measure_front(mask, box_around(mask)), facade_shape(mask, box_around(mask))
     assert measure.centre_px == (found.centre, found.shoulder_row + found.torso)
     radius = (found.right - found.left) / 2
     shoulder_row = found.shoulder_row + 0.45 * radius
@@ -179,7 +178,7 @@ def test_the_angle_of_an_arm_knows_its_quadrant(dx: float, dy: float, right_deg:
 def test_arms_of_the_opening_posture_are_read_within_two_degrees(drop_deg: float) -> None:
     """P19, P20."""
     mask = opening(r_shoulder_z=90.0 + drop_deg, l_shoulder_z=270.0 - drop_deg)
-    angles = measure_front(mask, box_of(mask)).arms_z_deg
+    angles = measure_front(mask, box_around(mask)).arms_z_deg
     assert angles == pytest.approx((90.0 + drop_deg, 270.0 - drop_deg), abs=2.5)
 
 
@@ -207,7 +206,7 @@ def test_fine_tuning_never_scores_worse(wrong: float) -> None:
 def test_the_side_view_has_the_trunks_depth() -> None:
     """P21: within a pixel; the near arm points at the camera and lies inside the trunk."""
     mask = picture(stretched(), viewer=2)
-    measure = measure_side(mask, box_of(mask))
+    measure = measure_side(mask, box_around(mask))
     assert measure.bdp_px is None
     assert measure.depth_px == pytest.approx(BDP.torso.short_radius, abs=1.0)
     assert measure.height_px == pytest.approx(100.0, abs=2.0)
@@ -221,7 +220,7 @@ def cut_off_head(mask: Mask) -> Mask:
 
 def refusal(pose: Vector) -> str:
     mask = picture(pose)
-    return refusal_of(mask, box_of(mask))
+    return refusal_of(mask, box_around(mask))
 
 
 @pytest.mark.parametrize(
@@ -244,11 +243,11 @@ def test_the_opening_posture_is_accepted_and_a_headless_one_is_not() -> None:
     for drop_deg in (0.0, 10.0, 20.0):
         assert refusal(stretched(r_shoulder_z=90.0 + drop_deg, l_shoulder_z=270.0 - drop_deg)) == ""
     cut = cut_off_head(opening())
-    assert "no head" in refusal_of(cut, box_of(cut))
+    assert "no head" in refusal_of(cut, box_around(cut))
 
 
 def test_somebody_too_broad_to_be_one_person_upright_is_refused() -> None:
     """P10: a trunk 0.23 statures wide is a trunk, one of 0.45 is not."""
     torso = msgspec.structs.replace(BDP.torso, long_radius=22.0)
     broad = drawn(msgspec.structs.replace(BDP, torso=torso), (90.0, 270.0), ROOT_PX)
-    assert "closed feet" in refusal_of(broad, box_of(broad))
+    assert "closed feet" in refusal_of(broad, box_around(broad))

@@ -99,7 +99,7 @@ def test_standing_squatting_and_lifting_are_told_apart() -> None:
 def test_an_arm_raised_sideways_is_the_facades(side: str) -> None:
     """P51: theta_Z down from the opening posture to 120 degrees (240)."""
     target_deg = 120.0 if side == "r" else 240.0
-    target = standing(**{f"{side}_shoulder_z": target_deg})
+    target = standing((0.0, 0.0), **{f"{side}_shoulder_z": target_deg})
     stage = after_opening(Stage())
     last = stage.show(between(standing(), target, 12) + [target] * 4)[-1]
     assert angle(last, f"{side}_shoulder_z") == pytest.approx(target_deg, abs=8.0)

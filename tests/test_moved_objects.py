@@ -30,8 +30,8 @@ def after(room: Background, patches: list[Patch], frame: int) -> np.ndarray:
 
 def test_a_chair_that_is_brought_is_room_from_then_on() -> None:
     """Otherwise it would be taken for somebody to the end of the clip."""
-    film = [passer_by(n) for n in range(FRAMES)]
-    film = [shot(with_chair(p) if n >= 20 else p, 2.0, n) for n, p in enumerate(film)]
+    bare = [passer_by(n) for n in range(FRAMES)]
+    film = [shot(with_chair(p) if n >= 20 else p, 2.0, n) for n, p in enumerate(bare)]
     patches = patches_of(learn([shot(room(), 2.0, 99)]), film, SPACING, FPS)
     early, late = (after(learn([shot(room(), 2.0, 99)]), patches, k) for k in (150, 250))
     assert np.abs(early - room()).mean() < 2
@@ -48,9 +48,9 @@ def test_somebody_who_moves_on_the_spot_is_no_thing() -> None:
 
 def test_what_stays_for_less_is_no_thing() -> None:
     """Somebody who lies still does so for some seconds."""
-    film = [passer_by(n) for n in range(FRAMES)]
+    bare = [passer_by(n) for n in range(FRAMES)]
     stays = range(15, 15 + int(0.8 * AT_REST_S * FPS / SPACING))
-    film = [shot(with_chair(p) if n in stays else p, 2.0, n) for n, p in enumerate(film)]
+    film = [shot(with_chair(p) if n in stays else p, 2.0, n) for n, p in enumerate(bare)]
     assert not patches_of(learn_uncovered(film), film, SPACING, FPS)
 
 

@@ -3,14 +3,13 @@
 import msgspec
 import numpy as np
 import pytest
-from posing import posed
+from posing import box_around, posed
 from rolling import BODY, ROLLED, outlines, told
 from staging import PERSON, RIG, opening, report, silhouettes, standing
 
 from common.body.body import Bdp, Vector
 from common.body.proportions import stature, thesis_bdp
 from common.bus.messages import Measure, Report
-from common.raster.bounds import box_of
 from common.rig.camera import Rig, paper_rig
 from integrator import opening_posture as stage
 from integrator.opening_posture import Opening, prior
@@ -22,7 +21,7 @@ Seen = tuple[Report | None, Report | None]
 def measured(rig: Rig = RIG, place_m: tuple[float, float] = (0.0, 0.0)) -> Seen:
     """Both viewers' reports of the opening posture."""
     first, second = silhouettes(opening(place_m), rig=rig)
-    front, side = measure_front(first, box_of(first)), measure_side(second, box_of(second))
+    front, side = measure_front(first, box_around(first)), measure_side(second, box_around(second))
     return (
         report(1, first, root_px=front.centre_px, measure=front),
         report(2, second, root_px=side.centre_px, measure=side),

@@ -18,7 +18,7 @@ def body(**angles_deg: float) -> np.ndarray:
     pose = rest_pose()
     for name, angle in {"y": 1.0, **angles_deg}.items():
         pose[POSE_INDEX[name]] = angle
-    return joints(body_vector(thesis_bdp(1.75)), pose)
+    return np.asarray(joints(body_vector(thesis_bdp(1.75)), pose))
 
 
 def where(image: np.ndarray, colour: tuple[int, int, int]) -> np.ndarray:

@@ -205,7 +205,7 @@ def talks(draw: st.DrawFn) -> tuple[list[Report], list[Report]]:
         known = draw(st.booleans())
         both.append(
             [
-                report(viewer, moment, n, next_s if known else None)  # type: ignore[arg-type]
+                report(viewer, moment, n, next_s if known else None)
                 for n, moment, next_s in zip(frames, taken, [*taken, 99.0][1:], strict=True)
             ]
         )
@@ -280,13 +280,16 @@ def corrected_pairs(offset_s: float) -> list[Pair]:
     return pairs + flush(state)[1]
 
 
+def frames_of(pairs: list[Pair]) -> list[tuple[int, int]]:
+    """The frames' numbers of the pairs that are whole."""
+    return [(p.first.frame, p.second.frame) for p in pairs if p.first and p.second]
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_viewers_whose_clocks_differ_by_200_ms_pair_after_correction_only(seed: int) -> None:
     state, offset = clock.init(), None
     for one in exchanges(0.2, seed):
         state, offset = clock.step(state, one)
     assert offset is not None
-    right = [p for p in corrected_pairs(offset.offset_s) if p.first and p.second]
-    assert [p.first.frame for p in right] == [p.second.frame for p in right] == list(range(40))
-    wrong = [p for p in corrected_pairs(0.0) if p.first and p.second]
-    assert all(p.first.frame != p.second.frame for p in wrong)
+    assert frames_of(corrected_pairs(offset.offset_s)) == [(n, n) for n in range(40)]
+    assert all(first != second for first, second in frames_of(corrected_pairs(0.0)))

@@ -70,6 +70,6 @@ def test_another_network_is_refused(tmp_path: Path, field: str) -> None:
 
 def test_a_pickle_is_not_read(tmp_path: Path) -> None:
     objects = {name: np.array([None], object) for name in Network._fields}
-    np.savez(tmp_path / "network.npz", **objects)
+    np.savez(tmp_path / "network.npz", allow_pickle=True, **objects)
     with pytest.raises(NetworkError):
         load(tmp_path / "network.npz")

@@ -48,7 +48,8 @@ def test_untaught_people_are_found_to_a_few_centimetres() -> None:
 
 def test_somebody_in_a_mirror_is_found_there() -> None:
     """Where the cameras stand the other way round too: left for right, and nothing else."""
-    memories, seen_m = [None, None], []
+    memories: list[np.ndarray | None] = [None, None]
+    seen_m = []
     for shown in islice(outlines(UNTAUGHT[0]), 20):
         first, second = shown.masks
         assert first is not None

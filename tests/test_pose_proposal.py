@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from staging import HEIGHT, RIG, WIDTH, Stage, Told, exact
 from staging import report as reported
 
@@ -44,7 +45,7 @@ class Shown(NamedTuple):
     masks: list[tuple[Mask, Mask]]
     joints_m: Vector
     """(n, 12, 3)"""
-    phase: Vector
+    phase: NDArray[np.uint8]
 
 
 def shown(posture: str, yaw_deg: Vector | None = None) -> Shown:
@@ -65,13 +66,13 @@ def shown(posture: str, yaw_deg: Vector | None = None) -> Shown:
 
 
 def joints(told: Told) -> Vector:
-    return np.array(told.body.joints_m)[AT]
+    return np.asarray(np.array(told.body.joints_m)[AT])
 
 
 def missed_mm(told: list[Told], truth: Vector) -> Vector:
     """(n, 12)"""
     off = [joints(t) - each for t, each in zip(told, truth, strict=True)]
-    return 1e3 * np.linalg.norm(off, axis=-1)
+    return np.asarray(1e3 * np.linalg.norm(off, axis=-1))
 
 
 def angle(told: Told, name: str) -> float:

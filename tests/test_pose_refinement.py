@@ -12,6 +12,7 @@ from scipy.stats import maxwell
 from common.body.body import JOINT_NAMES, LIMITS_DEG, POSE_INDEX, Vector
 from common.body.kinematics import ALL_LIMBS, joints
 from common.body.proportions import body_vector
+from common.bus.messages import Report
 from common.raster.kernel import match, view_of
 from integrator.fit import pose_refinement
 from integrator.fit.silhouette_pair import silhouettes_of
@@ -28,12 +29,12 @@ for compiled in (visual_hull._carve, pose_refinement._penalties):
 UNSURE = np.full(15, 0.05)
 
 
-def seen_as(pose: Vector) -> tuple:
+def seen_as(pose: Vector) -> tuple[Report, Report]:
     first, second = outlines(pose)
     return told(1, first), told(2, second)
 
 
-def scores(pose: Vector, seen: tuple) -> list[float]:
+def scores(pose: Vector, seen: tuple[Report, Report]) -> list[float]:
     both = silhouettes_of(ROLLED, seen)
     return [
         match(VECTOR, pose, view_of(camera), ALL_LIMBS, both.width, mask, int(area))
@@ -136,6 +137,8 @@ def test_the_same_instant_gives_the_same_pose() -> None:
         pose_refinement.refined(standing(), UNSURE, on_one_leg(35.0), False, VECTOR, ROLLED, seen)
         for _ in range(2)
     )
+    assert first is not None
+    assert second is not None
     assert np.array_equal(first, second)
 
 

@@ -35,7 +35,8 @@ def test_pictures_run_as_the_conventions_say(viewer: ViewerNumber, column: int) 
 
 def test_a_calibrated_camera_of_the_papers_kind_turns_the_world_as_the_papers() -> None:
     """C1."""
-    for viewer, camera in zip((1, 2), paper_rig(SIZE, (9, 9), (4, 4)).cameras, strict=True):
+    viewers: tuple[ViewerNumber, ...] = (1, 2)
+    for viewer, camera in zip(viewers, paper_rig(SIZE, (9, 9), (4, 4)).cameras, strict=True):
         assert (rotation_of(camera, viewer) == rotation_of(None, viewer)).all()
 
 

@@ -14,7 +14,8 @@ from recognizer.evaluation import Recording
 from recognizer.learning_error import LearningError
 from tritrack.faults import code_of
 from tritrack.postures import posture_evaluation
-from tritrack.postures.posture_evaluation import EACH_IN_TURN, Plan, evaluate_postures
+from tritrack.postures.posture_evaluation import Plan, evaluate_postures
+from tritrack.postures.posture_split import EACH_IN_TURN
 from tritrack.training.training import TrainingError
 
 QUIET = Console(quiet=True)

@@ -34,18 +34,22 @@ RECOGNIZERS: list[Recognizer] = ["default", "paper"]
 
 @pytest.fixture(scope="module", params=TOPOLOGIES)
 def model(request: pytest.FixtureRequest) -> SymbolModel:
-    return train(performances(range(3)), "paper", request.param)
+    learnt = train(performances(range(3)), "paper", request.param)
+    assert isinstance(learnt, SymbolModel)
+    return learnt
 
 
 @pytest.fixture(scope="module", params=TOPOLOGIES)
 def densities(request: pytest.FixtureRequest) -> DensityModel:
-    return train(performances(range(3)), "default", request.param)
+    learnt = train(performances(range(3)), "default", request.param)
+    assert isinstance(learnt, DensityModel)
+    return learnt
 
 
 def scores_of(model: SymbolModel, observed: np.ndarray) -> np.ndarray:
     """Of symbols, by the compiled forward algorithm."""
     log_emission = np.log(model.emission).transpose(2, 0, 1)[observed]
-    return forward(model.start, model.transition, log_emission)
+    return np.asarray(forward(model.start, model.transition, log_emission))
 
 
 def textbook_log_forward(
@@ -134,7 +138,9 @@ def test_density_likelihood_is_that_of_hmmlearn(densities: DensityModel) -> None
 def test_a_state_knows_nobody_better_than_the_tracker_does() -> None:
     """One person who never varies still leaves room: 5.7 degrees in a direction."""
     still = {posture: [perform(posture, 1)] * 3 for posture in POSTURES}
-    assert train(still, "default").variance.min() >= np.radians(5.7) ** 2
+    learnt = train(still, "default")
+    assert isinstance(learnt, DensityModel)
+    assert learnt.variance.min() >= np.radians(5.7) ** 2
 
 
 def test_only_travel_tells_a_walk_from_a_walk_in_place() -> None:
@@ -180,6 +186,7 @@ def test_unseen_symbols_are_likelier_the_nearer_they_lie_to_seen_ones() -> None:
     """What one person showed vouches for what the next one does a little differently."""
     sequences = performances(range(6))
     model = train(sequences, "paper")
+    assert isinstance(model, SymbolModel)
     for i, posture in enumerate(POSTURES):
         shown = np.concatenate(
             [symbols(model.codebook, features(one)) for one in sequences[posture]]
@@ -211,10 +218,11 @@ def test_people_never_seen_are_recognised(recognizer: Recognizer) -> None:
 
 def test_training_twice_gives_the_same_model_bit_for_bit() -> None:
     sequences = performances(range(1))
-    for recognizer, arrays in (
-        ("paper", ("codebook", "transition", "emission")),
-        ("default", ("transition", "mean", "variance")),
-    ):
+    fitted: dict[Recognizer, tuple[str, ...]] = {
+        "paper": ("codebook", "transition", "emission"),
+        "default": ("transition", "mean", "variance"),
+    }
+    for recognizer, arrays in fitted.items():
         first, again = (train(sequences, recognizer, seed=5) for _ in range(2))
         for array in arrays:
             assert getattr(first, array).tobytes() == getattr(again, array).tobytes()
@@ -252,7 +260,7 @@ def test_a_posture_that_nobody_showed_is_refused_by_name() -> None:
 def paper_angles(joints_m: np.ndarray, names: list[str]) -> np.ndarray:
     """True joints as the paper's angles (C3, C4), (n, 17): the yaw from shoulders and hips."""
     joint = {name: joints_m[:, i].astype(np.float64) for i, name in enumerate(names)}
-    left = sum(joint[f"l_{pair}"] - joint[f"r_{pair}"] for pair in ("hip", "shoulder"))
+    left = joint["l_hip"] - joint["r_hip"] + joint["l_shoulder"] - joint["r_shoulder"]
     left = left * [1.0, 0.0, 1.0] / np.hypot(left[:, :1], left[:, 2:])
     axes = np.stack(
         [left, np.broadcast_to([0.0, 1.0, 0.0], left.shape), left[:, ::-1] * [-1, 0, 1]]
@@ -261,7 +269,8 @@ def paper_angles(joints_m: np.ndarray, names: list[str]) -> np.ndarray:
 
     def limb(upper: str, lower: str) -> np.ndarray:
         along = joint[lower] - joint[upper]
-        return np.einsum("anc,nc->an", axes, along / np.linalg.norm(along, axis=1)[:, np.newaxis])
+        unit = along / np.linalg.norm(along, axis=1)[:, np.newaxis]
+        return np.asarray(np.einsum("anc,nc->an", axes, unit))
 
     for side in "rl":
         for at, upper, lower, end in (

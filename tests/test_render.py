@@ -163,7 +163,8 @@ def test_a_person_throws_a_shadow_outside_of_the_silhouette() -> None:
 
 
 def decoded(path: Path) -> NDArray[np.uint8]:
-    film, frames = cv2.VideoCapture(str(path)), []
+    film = cv2.VideoCapture(str(path))
+    frames: list[np.ndarray] = []
     while True:
         got, frame = film.read()
         if not got:

@@ -16,12 +16,13 @@ from browser import Tab, open_tab, saved, waited
 from test_take import ARM, WRIST, body, take
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
+from websockets.typing import Origin, Subprotocol
 
 from animator.page.easel import GAP_M, TALL_M
 from animator.page.retouch import RetouchPage
 from animator.take import Take
 from common.body.body import LIMB_ENDS
-from common.notes.notes import Notes, held
+from common.notes.notes import Held, Notes, held
 from common.notes.notes_file import load_notes, save_notes
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -60,7 +61,7 @@ def page(tmp_path: Path) -> Iterator[RetouchPage]:
     made.close()
 
 
-def said(page: RetouchPage, path: Path, frame: int) -> object:
+def said(page: RetouchPage, path: Path, frame: int) -> Held:
     """What holds at a frame, in memory and on disk alike."""
     assert load_notes(path / "notes.toml") == page.notes
     return held(page.notes, frame)
@@ -137,9 +138,9 @@ def test_a_frame_without_a_pose_shows_its_picture_alone(page: RetouchPage) -> No
 
 def test_a_foreign_web_page_may_not_read_or_write_notes(page: RetouchPage) -> None:
     where = page.address.replace("http", "ws")
-    speaks = {"subprotocols": [f"viser-v{viser.__version__}"]}
+    speaks = [Subprotocol(f"viser-v{viser.__version__}")]
     with (
-        connect(where, origin="https://evil.example", **speaks) as foreign,
+        connect(where, origin=Origin("https://evil.example"), subprotocols=speaks) as foreign,
         pytest.raises(ConnectionClosed) as closed,
     ):
         foreign.recv(timeout=10)

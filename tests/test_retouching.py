@@ -64,8 +64,12 @@ def test_the_page_opens_and_ctrl_c_ends_it_with_the_ledger(tmp_path: Path) -> No
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment
     ) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
         told = next(line for line in process.stderr if "the page is at" in line)
-        with urllib.request.urlopen(re.search(r"http://\S+\d", told)[0]) as answer:
+        address = re.search(r"http://\S+\d", told)
+        assert address is not None
+        with urllib.request.urlopen(address[0]) as answer:
             assert answer.status == 200
         process.send_signal(signal.SIGINT)
         facts = json.loads(process.stdout.read())

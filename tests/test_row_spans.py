@@ -56,7 +56,7 @@ def two_discs_and_what_lies_between(limb: Vector, size: tuple[int, int]) -> Mask
     covered |= np.hypot(x - bx, y - by) <= rb
     length = math.hypot(bx - ax, by - ay)
     if length <= abs(ra - rb):
-        return covered
+        return np.asarray(covered)
     along, lean = math.atan2(by - ay, bx - ax), math.acos((ra - rb) / length)
     corners = []
     for turn in (lean, -lean):

@@ -4,6 +4,7 @@ import errno
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -132,13 +133,14 @@ def test_the_summary_tells_what_the_contract_names(run: Path) -> None:
     assert told["settings"]["silhouette"]["empty_frames"] == 8
 
 
-def strict(text: str) -> dict:
+def strict(text: str) -> dict[str, Any]:
     """JSON as the standard has it: no NaN, no Infinity."""
 
     def refuse(word: str) -> None:
         raise ValueError(word)
 
-    return json.loads(text, parse_constant=refuse)
+    told: dict[str, Any] = json.loads(text, parse_constant=refuse)
+    return told
 
 
 def test_json_has_no_nan(tmp_path: Path) -> None:

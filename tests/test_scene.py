@@ -40,7 +40,7 @@ poses = st.lists(
 def placed(mesh: Mesh, shapes: Shapes, i: int) -> NDArray[np.float64]:
     """The vertices of one copy, in the room; turned by scipy, not by us."""
     turn = Rotation.from_quat(shapes.wxyzs[i], scalar_first=True)
-    return turn.apply(mesh.vertices * shapes.scales[i]) + shapes.positions[i]
+    return np.asarray(turn.apply(mesh.vertices * shapes.scales[i]) + shapes.positions[i])
 
 
 @settings(max_examples=50, deadline=None)
@@ -98,7 +98,7 @@ def test_a_frustum_stands_at_its_camera_and_spans_its_picture(camera: Camera) ->
     half = np.tan(shape.fov_rad / 2)
     corners = np.array([[shape.aspect * half, half, 1.0], [-shape.aspect * half, -half, 1.0]])
     seen = project(camera, turn.apply(corners) + shape.position)
-    assert np.allclose(seen, [[RIG.width, RIG.height], [0.0, 0.0]])
+    assert np.allclose(seen, np.array([[RIG.width, RIG.height], [0, 0]]))
     assert np.allclose(turn.apply([0.0, 0.0, 1.0]), ray(camera, (160.0, 120.0)))
 
 

@@ -164,7 +164,7 @@ def lives(child: psutil.Process) -> bool:
     try:
         child.wait(timeout=1.0)
     except psutil.TimeoutExpired:
-        return child.status() != psutil.STATUS_ZOMBIE
+        return bool(child.status() != psutil.STATUS_ZOMBIE)
     except psutil.NoSuchProcess:
         return False
     return False

@@ -16,7 +16,7 @@ from tritrack.training.silhouette_training import (
 )
 from tritrack.training.training import TrainingError
 from viewer.silhouette.boundary_features import CLUES
-from viewer.silhouette.pixel_classifier import judged, load, shipped
+from viewer.silhouette.pixel_classifier import judged, load, save, shipped
 
 
 def test_a_network_learns_a_clue_that_tells() -> None:
@@ -46,7 +46,7 @@ def test_films_show_the_empty_room_then_somebody() -> None:
 def test_what_is_learnt_is_repeatable_and_can_be_loaded(tmp_path: Path) -> None:
     one, again = taught_by(1), taught_by(1)
     assert all(np.array_equal(a, b) for a, b in zip(one, again, strict=True))
-    silhouette_training.save(fitted(one, 0), tmp_path / "learnt.npz")
+    save(fitted(one, 0), tmp_path / "learnt.npz")
     told = judged(load(tmp_path / "learnt.npz"), one.clues) > 0
     assert np.mean(told == one.body) > 0.9
 

@@ -95,6 +95,7 @@ def test_stepping_the_same_state_twice_gives_the_same() -> None:
     assert np.array_equal(answers[0][2], answers[1][2])
     assert np.array_equal(state.x, kept[0])
     assert state.P is not None
+    assert kept[1] is not None
     assert np.array_equal(state.P, kept[1])
 
 

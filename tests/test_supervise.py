@@ -29,7 +29,8 @@ def refuses(text: str) -> None:
 
 def breaks() -> None:
     """A part with a fault."""
-    {}["nothing"]
+    empty: dict[str, int] = {}
+    empty["nothing"]
 
 
 def beating(name: str) -> dict[str, Pulse]:

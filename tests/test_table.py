@@ -1,6 +1,7 @@
 """What a person sees of a run."""
 
 import io
+from collections.abc import Callable
 
 import pytest
 from rich.console import Console
@@ -67,7 +68,9 @@ def test_rows_become_columns_by_name() -> None:
 
 
 @pytest.mark.parametrize(("say", "word"), [(warn, "warning"), (complain, "error")])
-def test_what_is_said_is_one_line_however_long_and_taken_literally(say, word) -> None:
+def test_what_is_said_is_one_line_however_long_and_taken_literally(
+    say: Callable[[Console, str], None], word: str
+) -> None:
     paper = io.StringIO()
     say(Console(file=paper, width=80), "a\n  file [red]x[/] " + "y" * 200)
     assert paper.getvalue() == f"{word}: a file [red]x[/] {'y' * 200}\n"

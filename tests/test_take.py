@@ -7,7 +7,7 @@ from animator.take import Take, doubts_at, leaned, next_unsure, take_of, with_no
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
-from common.notes.notes import Note, Notes, held
+from common.notes.notes import Auto, Depth, Note, Notes, held
 
 ARM = LIMBS.index("l_upper_arm")
 WRIST = JOINT_NAMES.index("l_wrist")
@@ -17,7 +17,7 @@ def body(**angles_deg: float) -> np.ndarray:
     pose = rest_pose()
     for name, angle in angles_deg.items():
         pose[POSE_INDEX[name]] = angle
-    return joints(body_vector(thesis_bdp(1.7)), pose)
+    return np.asarray(joints(body_vector(thesis_bdp(1.7)), pose))
 
 
 def take(n: int = 12) -> Take:
@@ -54,7 +54,7 @@ def test_what_the_user_settled_is_not_asked_again() -> None:
     seen = take()
     seen.orientation_confidence[:] = seen.depth_confidence[:] = 0.5
     seen.confidence[:, WRIST] = 0.1
-    lifted = {"l_upper_arm": "toward", "l_lower_arm": "toward"}
+    lifted: dict[str, Depth | Auto] = {"l_upper_arm": "toward", "l_lower_arm": "toward"}
     notes = Notes(note=(Note(6, "left", lifted, {"l_wrist": (1.0, 1.0)}),))
     assert doubts_at(seen, 3, notes) == []
     assert len(doubts_at(seen, 2, notes)) == 4
@@ -79,10 +79,10 @@ def test_the_next_uncertain_frame_is_the_first_with_another_question() -> None:
     seen.depth_confidence[3:6, ARM] = 0.5
     seen.orientation_confidence[5:8] = 0.5
     seen.confidence[10, WRIST] = 0.0
-    visited, row = [], 0
-    while (row := next_unsure(seen, row, Notes())) is not None:
+    visited = [0]
+    while (row := next_unsure(seen, visited[-1], Notes())) is not None:
         visited.append(row)
-    assert visited == [3, 5, 6, 10]
+    assert visited == [0, 3, 5, 6, 10]
     assert next_unsure(seen, 10, Notes(), -1) == 7
     assert next_unsure(seen, 3, Notes(), -1) is None
     settled = Notes(note=(Note(0, "left", {"l_upper_arm": "toward"}),))

@@ -82,7 +82,12 @@ def test_the_stages_follow_each_other_as_in_the_paper(monkeypatch: pytest.Monkey
 
     def noted(name: str) -> None:
         inner = getattr(track, name)
-        monkeypatch.setattr(track, name, lambda *a: called.append(name) or inner(*a))
+
+        def noting(*given: object) -> object:
+            called.append(name)
+            return inner(*given)
+
+        monkeypatch.setattr(track, name, noting)
 
     for name in ("thresholds_px", "located", "facade_arms", "facade_legs"):
         noted(name)

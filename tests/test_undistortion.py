@@ -53,7 +53,8 @@ def test_a_bent_silhouette_is_the_straight_one_again() -> None:
 
 
 def test_a_lens_that_does_not_bend_changes_nothing() -> None:
-    pair = Pair(*(told(n + 1, mask) for n, mask in enumerate(outlines(on_one_leg()))))
+    first, second = outlines(on_one_leg())
+    pair = Pair(told(1, first), told(2, second))
     assert undistorted_pair(ROLLED, pair) == pair
     assert undistorted_pair(None, pair) == pair
     assert undistorted_rig(ROLLED) is ROLLED
