@@ -111,7 +111,7 @@ def test_names_from_the_bus_cannot_become_markup() -> None:
 
 def test_each_view_says_what_it_sees_and_its_score() -> None:
     html = views_table(body(), {}, 2)
-    assert re.search("camera 1: front or back.*0.83.*camera 2: side.*0.71", html)
+    assert re.search("camera 1: front or back.*0.83.*camera 2: side.*0.71", html, re.DOTALL)
     assert "camera 2" not in views_table(body(), {}, 1)
     assert "front" not in views_table(None, {}, 2)
 

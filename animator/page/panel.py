@@ -1,15 +1,14 @@
 """What the page says beside the room: posture, views, body and processes, as pieces of HTML."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from html import escape
-from typing import Final
+from typing import Any, Final
 
 from animator.scene import LEFT, RIGHT, TRUNK, Colour
 from common.bus.control_messages import Pulse
 from common.bus.messages import Body, Facing, Performance, Posture, Report, Status
+from common.templates import rendered
 
 ACCENT: Final[Colour] = (62, 142, 126)
-QUIET: Final = "opacity:.62;font-size:.85em"
 
 STATUS_WORDS: Final[dict[Status, tuple[str, Colour]]] = {
     "empty": ("nobody in view", (150, 157, 166)),
@@ -23,26 +22,16 @@ FACING_WORDS: Final[dict[Facing, str]] = {"facade": "front or back", "flank": "s
 
 def posture_headline(posture: Posture | None) -> str:
     """The posture's name, large; pale while nobody performs it: the nearest of the names then."""
-    name = spoken(posture.name) if posture else ""
-    if posture and posture.doing:
-        times = f" × {posture.times}" if posture.times > 1 else ""
-        name = f"{spoken(posture.doing)}{times}"
-    colour = _rgb(ACCENT) if posture and posture.doing else "inherit;opacity:.62"
-    shown = escape(name) or '<span style="opacity:.4">no posture yet</span>'
-    style = f"font-size:1.65em;line-height:1.2;font-weight:650;color:{colour}"
-    return block(f'<div style="{style}">{shown}</div>')
+    if posture is None or not posture.doing:
+        name = posture.name if posture else ""
+        return piece("posture.html", {"name": name, "times": 1, "colour": "inherit;opacity:.62"})
+    given = {"name": posture.doing, "times": posture.times, "colour": _rgb(ACCENT)}
+    return piece("posture.html", given)
 
 
 def events_list(performances: Sequence[Performance]) -> str:
     """The last performances that are over, the newest first."""
-    rows = "".join(
-        f"<div>{escape(spoken(one.name))}"
-        f"{f' × {one.times}' if one.times > 1 else ''}"
-        f' <span style="{QUIET}">{one.onset_s:.1f} to {one.end_s:.1f} s</span></div>'
-        for one in reversed(performances)
-    )
-    title = f'<div style="{QUIET}">seen from beginning to end</div>'
-    return block(title + rows) if rows else ""
+    return piece("events.html", {"performances": performances}) if performances else ""
 
 
 def likelihood_bars(posture: Posture | None) -> str:
@@ -50,21 +39,18 @@ def likelihood_bars(posture: Posture | None) -> str:
 
     The likeliest fills its bar, the middle one half of it: so the scale needs no tuning.
     """
-    if posture is None or not posture.log_likelihoods:
-        return block(f'<div style="{QUIET}">no log-likelihoods yet</div>')
-    ranked = sorted(posture.log_likelihoods.items(), key=lambda item: -item[1])
-    shares = bar_shares([value for _, value in ranked])
-    rows = [
-        _bar(escape(spoken(name)), share, f"{value:.1f}", strong=i == 0)
-        for i, ((name, value), share) in enumerate(zip(ranked, shares, strict=True))
-    ]
-    first, last = posture.segment
-    title = f'<div style="{QUIET}">log-likelihood of frames {first} to {last}</div>'
-    return block(title + "".join(rows))
+    values = posture.log_likelihoods if posture else {}
+    names = sorted(values, key=values.__getitem__, reverse=True)
+    ranked = [values[name] for name in names]
+    rows = list(zip(names, ranked, bar_shares(ranked), strict=True))
+    segment = posture.segment if posture else None
+    return piece("likelihoods.html", {"rows": rows, "segment": segment, "colour": _rgb(ACCENT)})
 
 
-def bar_shares(ranked: list[float]) -> list[float]:
+def bar_shares(ranked: Sequence[float]) -> list[float]:
     """How far each bar is filled, in [0, 1], for log-likelihoods sorted from the best down."""
+    if not ranked:
+        return []
     span = 2.0 * (ranked[0] - ranked[len(ranked) // 2])
     return [
         1.0 if value == ranked[0] else max(0.0, 1.0 - (ranked[0] - value) / span) if span else 0.0
@@ -74,16 +60,16 @@ def bar_shares(ranked: list[float]) -> list[float]:
 
 def views_table(body: Body | None, reports: Mapping[int, Report], cameras: int) -> str:
     """What each camera sees of the body, how well the model covers it, and what is in the way."""
-    rows = []
-    for n in range(1, cameras + 1):
-        facing = FACING_WORDS[body.facing[n - 1]] if body and body.pose else "–"
-        score = body.score[n - 1] if body and body.pose else 0.0
-        rows.append(_bar(f"camera {n}: {facing}", score, f"{score:.2f}"))
-        hint = _hint(body, reports.get(n))
-        if hint:
-            rows.append(f'<div style="{QUIET}">{escape(hint)}</div>')
-    title = f'<div style="{QUIET}">what each camera sees, and its score</div>'
-    return block(title + "".join(rows))
+    posed = body if body and body.pose else None
+    views = [
+        (
+            FACING_WORDS[posed.facing[n]] if posed else "–",
+            posed.score[n] if posed else 0.0,
+            _hint(body, reports.get(n + 1)),
+        )
+        for n in range(cameras)
+    ]
+    return piece("views.html", {"views": views, "colour": _rgb(ACCENT)})
 
 
 def status_line(body: Body | None, pulses: Iterable[Pulse]) -> str:
@@ -94,40 +80,24 @@ def status_line(body: Body | None, pulses: Iterable[Pulse]) -> str:
     if running:
         facts.append(f"{min(pulse.fps for pulse in running):.1f} fps")
         facts.append(f"{max(pulse.latency_p50_ms for pulse in running):.0f} ms latency")
-    return block(
-        f'<div><span style="color:{_rgb(colour)}">●</span> <b>{words}</b></div>'
-        f'<div style="{QUIET}">{" · ".join(facts)}</div>'
-    )
+    return piece("status.html", {"words": words, "colour": _rgb(colour), "facts": facts})
 
 
 def pulse_table(pulses: Iterable[Pulse]) -> str:
     """How each process is doing."""
-    head = "".join(
-        f'<th style="text-align:{side};font-weight:500;{QUIET}">{title}</th>'
-        for title, side in (
-            ("process", "left"),
-            ("state", "left"),
-            ("fps", "right"),
-            ("ms p50 / p99", "right"),
-            ("missed", "right"),
-        )
-    )
-    rows = "".join(_pulse_row(pulse) for pulse in sorted(pulses, key=lambda each: each.process))
-    return block(f'<table style="width:100%;font-size:.85em"><tr>{head}</tr>{rows}</table>')
+    by_name = sorted(pulses, key=lambda each: each.process)
+    return piece("processes.html", {"pulses": by_name})
 
 
 def legend() -> str:
     """Which colour means what."""
-    named = ((LEFT, "left"), (RIGHT, "right"), (TRUNK, "trunk"))
-    marks = "  ".join(
-        f'<span style="color:{_rgb(colour)}">■</span> {name}' for colour, name in named
-    )
-    return block(f'<div style="{QUIET}">{marks} · pale: not sure</div>')
+    sides = {"left": _rgb(LEFT), "right": _rgb(RIGHT), "trunk": _rgb(TRUNK)}
+    return piece("legend.html", {"sides": sides})
 
 
-def spoken(name: str) -> str:
-    """A posture's name as one says it."""
-    return name.replace("_", " ")
+def piece(name: str, given: Mapping[str, Any]) -> str:
+    """A template of the page filled in."""
+    return rendered("animator.page", name, given)
 
 
 def _hint(body: Body | None, report: Report | None) -> str:
@@ -137,42 +107,6 @@ def _hint(body: Body | None, report: Report | None) -> str:
     if report.cut:
         return "the person is partly outside the picture"
     return report.refusal if body and body.status == "measuring" else ""
-
-
-def _pulse_row(pulse: Pulse) -> str:
-    missed = pulse.deadline_misses + pulse.dropped + pulse.late
-    cells = (
-        ("left", pulse.process),
-        ("left", pulse.state),
-        ("right", f"{pulse.fps:.1f}"),
-        ("right", f"{pulse.latency_p50_ms:.0f} / {pulse.latency_p99_ms:.0f}"),
-        ("right", str(missed)),
-    )
-    return (
-        f'<tr title="{escape(pulse.detail)}">'
-        + "".join(f'<td style="text-align:{side}">{escape(text)}</td>' for side, text in cells)
-        + "</tr>"
-    )
-
-
-def _bar(name: str, share: float, number: str, strong: bool = False) -> str:
-    weight, opacity = ("600", "1") if strong else ("400", ".45")
-    return (
-        f'<div style="display:flex;align-items:center;gap:.5em;font-weight:{weight};'
-        f'font-size:.85em;line-height:1.5">'
-        f'<div style="flex:0 0 54%;white-space:nowrap;overflow:hidden;text-overflow:ellipsis">'
-        f"{name}</div>"
-        f'<div style="flex:1;height:.6em;border-radius:.3em;background:rgba(128,138,150,.18)">'
-        f'<div style="width:{100 * min(1.0, max(0.0, share)):.0f}%;height:100%;'
-        f'border-radius:.3em;background:{_rgb(ACCENT)};opacity:{opacity}"></div></div>'
-        f'<div style="flex:0 0 3.6em;text-align:right;font-variant-numeric:tabular-nums">'
-        f"{number}</div></div>"
-    )
-
-
-def block(inside: str) -> str:
-    """A piece of the panel, with its margins."""
-    return f'<div style="padding:.15em .9em">{inside}</div>'
 
 
 def _rgb(colour: Colour) -> str:

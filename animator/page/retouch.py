@@ -2,7 +2,6 @@
 
 import threading
 from collections.abc import Callable
-from html import escape
 from typing import Any, Final
 
 import numpy as np
@@ -10,23 +9,13 @@ import viser
 
 from animator.page.door import HOST, close_server, open_server
 from animator.page.easel import Easel, Picture
-from animator.page.panel import ACCENT, QUIET, block
+from animator.page.panel import ACCENT, piece
 from animator.take import Take, doubts_at, next_unsure, with_notes
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS
 from common.notes.notes import ORIENTATIONS, WAYS, Depth, Note, Notes, held, noted, placed_once
 
 PANEL_PX: Final = 340
 AUTO: Final = "auto"
-WRONG: Final = "rgb(192,80,70)"
-HELP: Final = (
-    "Click on a limb of the body: it leans the other way. Drag a joint on the picture: it is "
-    "placed in this frame. What you say holds from its frame on, until you say otherwise."
-)
-QUESTIONS: Final = {
-    "orientation": "does the person face {}?",
-    "depth": "does the {} lean this way?",
-    "joint": "is the {} there? it is hidden",
-}
 
 
 class RetouchPage:
@@ -111,8 +100,7 @@ class RetouchPage:
         return int(self._take.frame[self._row])
 
     def _tell(self, text: str, well: bool) -> None:
-        colour = "inherit" if well else WRONG
-        self._kept.content = block(f'<span style="color:{colour}">{escape(text)}</span>')
+        self._kept.content = piece("retouch_kept.html", {"text": text, "well": well})
 
     def _build_panel(self) -> None:
         gui = self._server.gui
@@ -129,7 +117,7 @@ class RetouchPage:
         self._orientation = gui.add_dropdown("faces", (AUTO, *ORIENTATIONS))
         with gui.add_folder("Where each far end leans", expand_by_default=False):
             self._depth = {limb: gui.add_dropdown(_spoken(limb), (AUTO, *WAYS)) for limb in LIMBS}
-        gui.add_html(block(f'<div style="{QUIET}">{HELP}</div>'))
+        gui.add_html(piece("retouch_help.html", {}))
         with gui.add_folder("Hidden joints"):
             self._hold = gui.add_checkbox("hold until changed", initial_value=False)
             gui.add_button("Let go of placed joints").on_click(lambda _: self._let_go())
@@ -183,24 +171,19 @@ class RetouchPage:
 
     def _questions(self) -> str:
         """The frame, what was decided in it, and what it leaves open."""
-        head = f"<b>frame {self._frame}</b>"
-        if not self._take.posed[self._row]:
-            return block(f"{head}: nobody is seen")
-        facing = _spoken(str(self._take.orientation[self._row]))
-        sure = float(self._take.orientation_confidence[self._row])
-        if facing:
-            head += f' <span style="{QUIET}">taken to face {facing}, {sure:.0%} sure</span>'
         doubts = doubts_at(self._take, self._row, self.notes)
-        rows = "".join(
-            f"<div>{QUESTIONS[doubt.kind].format(_spoken(doubt.name))} "
-            f'<span style="{QUIET}">{doubt.confidence:.0%} sure</span></div>'
-            for doubt in doubts
-        )
-        return block(head + (rows or "<div>nothing is uncertain</div>"))
+        given = {
+            "frame": self._frame,
+            "posed": bool(self._take.posed[self._row]),
+            "facing": _spoken(str(self._take.orientation[self._row])),
+            "confidence": float(self._take.orientation_confidence[self._row]),
+            "doubts": [(doubt.kind, _spoken(doubt.name), doubt.confidence) for doubt in doubts],
+        }
+        return piece("retouch_questions.html", given)
 
 
 def _spoken(name: str) -> str:
     """A name of the files as one says it: forward_left, l_upper_arm."""
     sides = {"l": "left", "r": "right"}
     first, *others = name.split("_")
-    return escape(" ".join([sides.get(first, first), *others]))
+    return " ".join([sides.get(first, first), *others])
