@@ -31,7 +31,7 @@ from synth.motion.motions import Motion
 from synth.person.people import person
 from synth.person.skeleton import JOINTS
 from synth.picture.exposure import default_rig
-from synth.write import write_clip
+from synth.write import Filming, write_clip
 from tritrack.single.ledger import PRINTED, mending_inputs
 from tritrack.single.single import single_all
 
@@ -62,7 +62,7 @@ def measured(performer: int) -> dict[str, Any]:
     truth = truth_of(motion, rig)
     with tempfile.TemporaryDirectory(prefix="tritrack-dance-") as name:
         folder = Path(name)
-        write_clip(folder / "dance", someone, motion, rig, performer, performer, 0)
+        write_clip(folder / "dance", someone, motion, Filming(rig, performer, performer), 0)
         video = folder / "dance" / "cam1.avi"
         facts = single_all([video], folder, None, Settings(size="320x240"), Console(quiet=True))
         with np.load(folder / "cam1" / "poses.npz") as poses:

@@ -1,6 +1,7 @@
 """The files of ours that one frame passes on its way from two cameras to a posture's name."""
 
 import importlib.util
+import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
@@ -16,11 +17,11 @@ from numba.core.dispatcher import Dispatcher
 from common.config import Settings
 from integrator import merge
 from recognizer import __main__ as recognizer
-from synth.write import write_set
 from viewer import track
 
 PERFORMER_SEED = 90_001
 """Whom the clip shows: a person of no training set."""
+POSTURE = "raise_right_lateral"
 OFFLINE = ("tritrack.offline.lockstep", "tritrack.offline")
 """Where the lock-step run lies now, and where it lay in version 0.1.0."""
 
@@ -96,8 +97,11 @@ def way(root: Path) -> Way:
 def _follow(watch: Callable[..., None]) -> None:
     offline = import_module(next(filter(_is_there, OFFLINE)))
     with tempfile.TemporaryDirectory(prefix="tritrack-way-") as folder, offline.Decoders() as doors:
-        posture = ("raise_right_lateral",)
-        clip = write_set(Path(folder), "postures", 1, 1, PERFORMER_SEED, (160, 120), posture)[0]
+        # by the command, which is the same in every version
+        asked = ("--posture", POSTURE, "--seed", str(PERFORMER_SEED), "--size", "160x120")
+        command = (sys.executable, "-m", "tritrack", "synth", "--out", folder, *asked)
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        clip = next(Path(folder).glob(f"*{POSTURE}"))
         offline.track_clip(Settings(clip=str(clip)), doors, (1, 2), watch)
 
 

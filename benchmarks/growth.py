@@ -27,7 +27,7 @@ from common.raster.bits import count, pack_words
 from common.raster.kernel import draw_body, view_of
 from integrator.paper.silhouette_vote import products
 from synth.picture.exposure import default_rig
-from synth.write import write_set
+from synth.write import ClipSet, write_set
 from tritrack.bench.bench import PERFORMER_SEED, machine
 from tritrack.offline.lockstep import Decoders, track_clip
 
@@ -40,9 +40,8 @@ def tracking(repeats: int) -> dict[str, dict[str, float]]:
     """Milliseconds a frame pair of `track` in default mode by stage, at every size: the least."""
     found = {}
     with tempfile.TemporaryDirectory(prefix="tritrack-growth-") as folder, Decoders() as decoders:
-        clip = write_set(
-            Path(folder), "postures", 1, 1, PERFORMER_SEED, SIZES[-1], ("walk_in_place",)
-        )[0]
+        wanted = ClipSet("postures", seed=PERFORMER_SEED, postures=("walk_in_place",))
+        clip = write_set(Path(folder), wanted, SIZES[-1])[0]
         for width, height in SIZES:
             settings = Settings(clip=str(clip), size=f"{width}x{height}")
             runs = [track_clip(settings, decoders) for _ in range(repeats + 1)][1:]

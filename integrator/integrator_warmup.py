@@ -45,7 +45,9 @@ def _match_elsewhere(rig: Rig, seen: tuple[Report, Report]) -> None:
     )
     aside, body = rest_pose(), body_vector(thesis_bdp(1.75))
     aside[:2] = 0.5, 1.0
-    pose_refinement.refined(aside, np.full(len(JOINT_NAMES), 0.1), aside, False, body, rig, seen)
+    pose_refinement.refined(
+        aside, np.full(len(JOINT_NAMES), 0.1), pose_refinement.Previous(aside), body, rig, seen
+    )
 
 
 def _rig(size: tuple[int, int]) -> Rig:

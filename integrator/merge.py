@@ -130,7 +130,9 @@ def _proposed(state: State, rig: Rig, seen: Seen, dt_s: float) -> State:
     before = rest_pose() if state.pose is None else state.pose
     body = body_vector(bdp)
     pose, beside_m = pose_proposal.pose_and_rest(body, before, known.joints_m)
-    better = pose_refinement.refined(pose, known.sure, state.pose, state.matched, body, rig, seen)
+    better = pose_refinement.refined(
+        pose, known.sure, pose_refinement.Previous(state.pose, state.matched), body, rig, seen
+    )
     if better is not None:
         pose, beside_m[pose_proposal.ARMS] = better, 0.0
     state = state._replace(insight=known, beside_m=beside_m, matched=better is not None)

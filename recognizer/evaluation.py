@@ -7,19 +7,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from recognizer.codebook import SYMBOLS
 from recognizer.features import Rows, with_pose
 from recognizer.learning_error import LearningError
 from recognizer.postures import (
     POSTURES,
-    STATES,
     PostureModel,
     Recognizer,
     Topology,
     likeliest,
     scored,
 )
-from recognizer.training.learning import train
+from recognizer.training.learning import Sizes, train
 
 Z_95 = 1.959964
 """Standard normal quantile of a two-sided interval of 95 %."""
@@ -63,8 +61,7 @@ def recognise(
     recognizer: Recognizer = "default",
     topology: Topology = "ergodic",
     seed: int = 0,
-    states: int = STATES,
-    symbols: int = SYMBOLS,
+    sizes: Sizes = Sizes(),
 ) -> list[Outcome]:
     """Train on some people and name what others do.
 
@@ -76,7 +73,7 @@ def recognise(
     for recording in learnt_from:
         sequences.setdefault(recording.posture, []).append(recording.rows)
     refuse_who_was_learnt_from(performers, tested_on)
-    model = train(sequences, recognizer, topology, seed, performers, states, symbols)
+    model = train(sequences, recognizer, topology, seed, performers, sizes)
     return named_by(model, tested_on)
 
 

@@ -4,7 +4,7 @@ import itertools
 import json
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Final, Literal
+from typing import Final, Literal, NamedTuple
 
 import cv2
 import msgspec
@@ -34,26 +34,43 @@ class SynthError(ValueError):
     """A set of clips that cannot be made: the text says what to ask for instead."""
 
 
+class ClipSet(NamedTuple):
+    """What a set of clips shows."""
+
+    motion: Literal["postures", "free", "stream"]
+    """The named postures; people who turn and move at random; all postures in one take."""
+    performers: int = 1
+    """How many people; the first of seed s is person(s * performers)."""
+    takes: int = 1
+    """Of each posture by each person."""
+    seed: int = 0
+    """The same one gives the same clips, byte for byte."""
+    postures: tuple[str, ...] = POSTURES
+    """Which ones; not asked for when the motion is free."""
+
+
+class Filming(NamedTuple):
+    """By what a motion is filmed."""
+
+    rig: Rig
+    """Two cameras."""
+    room_seed: int
+    seed: int
+    """Of noise and exposure."""
+
+
 def write_set(
     out: Path,
-    motion: Literal["postures", "free", "stream"],
-    performers: int,
-    takes: int,
-    seed: int,
+    wanted: ClipSet,
     size: tuple[int, int],
-    postures: tuple[str, ...] = POSTURES,
     progress: Callable[[int, int], None] | None = None,
 ) -> list[Path]:
     """Clips of several people, with `calibration.json` beside them.
 
     Args:
         out: Folder, made where it is missing; clips of the same names are replaced.
-        motion: The named postures; people who turn and move at random; all postures in one take.
-        performers: How many people; the first of seed s is person(s * performers).
-        takes: Of each posture by each person.
-        seed: The same one gives the same clips, byte for byte.
+        wanted: What they show.
         size: Width and height of the pictures.
-        postures: Which ones; all 15 by default; not asked for when the motion is free.
         progress: Told how many clips are done, of how many.
 
     Returns:
@@ -63,8 +80,9 @@ def write_set(
         SynthError: When nothing would be written, a posture or the motion is not known, or the
             calibration of other cameras would be lost.
     """
+    motion, performers, takes, seed, postures = wanted
     names = (motion,) if motion in ("free", "stream") else postures
-    _refuse_what_cannot_be(motion, performers, takes, seed, size, names)
+    _refuse_what_cannot_be(wanted, size, names)
     rig = default_rig(*size)
     out.mkdir(parents=True, exist_ok=True)
     _refuse_to_lose(out / "calibration.json", rig)
@@ -79,8 +97,8 @@ def write_set(
         else:
             moved = performance(someone, posture, own, FPS)
         folders.append(out / clip_name(someone, posture, take))
-        room = seed * ROOM_SEED + number
-        write_clip(folders[-1], someone, moved, rig, room, own, take)
+        filming = Filming(rig, seed * ROOM_SEED + number, own)
+        write_clip(folders[-1], someone, moved, filming, take)
         if progress is not None:
             progress(done, len(jobs))
     return folders
@@ -92,26 +110,23 @@ def clip_name(someone: Person, posture: str, take: int) -> str:
     return f"{someone.name}_t{take}_{number:02d}_{posture}"
 
 
-def write_clip(
-    folder: Path, someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int, take: int
-) -> None:
+def write_clip(folder: Path, someone: Person, motion: Motion, filming: Filming, take: int) -> None:
     """One clip: cam1.avi, cam2.avi (Motion JPEG), meta.json, truth.npz.
 
     Args:
         folder: Made where it is missing.
         someone: Who performs.
         motion: What they do.
-        rig: Two cameras.
-        room_seed: Of the room.
-        seed: Of noise and exposure.
+        filming: By what they are filmed.
         take: Number of the take, for the notes.
 
     Raises:
         SynthError: When a film cannot be written there.
     """
+    rig, room_seed, seed = filming
     folder.mkdir(parents=True, exist_ok=True)
     masks = _film(folder, render(someone, motion, rig, room_seed, seed), rig, motion.fps)
-    meta = _meta(someone, motion, room_seed, seed, take)
+    meta = _meta(someone, motion, filming, take)
     (folder / "meta.json").write_text(json.dumps(meta, indent=1) + "\n")
     gain = exposures(len(motion.phase), seed, motion.fps)
     np.savez_compressed(
@@ -164,23 +179,21 @@ def _writer(path: Path, rig: Rig, fps: float) -> cv2.VideoWriter:
     return film
 
 
-def _meta(
-    someone: Person, motion: Motion, room_seed: int, seed: int, take: int
-) -> dict[str, object]:
+def _meta(someone: Person, motion: Motion, filming: Filming, take: int) -> dict[str, object]:
     counts = np.bincount(motion.phase, minlength=4).tolist()
     return {
         "performer": someone.name,
         "posture": motion.posture,
         "posture_id": _number(motion.posture),
         "take": take,
-        "room": room_seed,
+        "room": filming.room_seed,
         "fps": motion.fps,
         "n_frames": len(motion.phase),
         "phases": dict(zip(PHASES, counts, strict=True)),
         "sex": someone.sex,
         "look": someone.look._asdict(),
         "measures": {name: round(someone.measures[name], 4) for name in MEASURE_NAMES},
-        "seed": seed,
+        "seed": filming.seed,
         "acts": [act._asdict() for act in motion.acts],
         "style": {name: round(value, 4) for name, value in motion.style._asdict().items()},
     }
@@ -225,14 +238,8 @@ def _number(posture: str) -> int:
     return POSTURES.index(posture) if posture in POSTURES else -1
 
 
-def _refuse_what_cannot_be(
-    motion: str,
-    performers: int,
-    takes: int,
-    seed: int,
-    size: tuple[int, int],
-    names: tuple[str, ...],
-) -> None:
+def _refuse_what_cannot_be(wanted: ClipSet, size: tuple[int, int], names: tuple[str, ...]) -> None:
+    motion, performers, takes, seed, _ = wanted
     if motion not in ("postures", "free", "stream"):
         raise SynthError(f"motion must be postures, free or stream, got {motion!r}")
     for what, number in (("performers", performers), ("takes", takes)):

@@ -23,7 +23,8 @@ def data_dir() -> Path:
 @pytest.fixture(scope="session")
 def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A made-up clip with truth: a person of no training set raises the right arm."""
-    from synth.write import write_set
+    from synth.write import ClipSet, write_set
 
     out = tmp_path_factory.mktemp("clips")
-    return write_set(out, "postures", 1, 1, 90_001, (160, 120), ("raise_right_lateral",))[0]
+    wanted = ClipSet("postures", seed=90_001, postures=("raise_right_lateral",))
+    return write_set(out, wanted, (160, 120))[0]

@@ -152,9 +152,9 @@ def test_the_facades_search_is_the_shoulder_then_the_elbow_right_then_left(
     """P31, P41: windows of 64 degrees down to 4, and the elbow's range follows the shoulder."""
     calls = []
 
-    def recorded(figure, how, width, stop, limits, wide=False):  # type: ignore[no-untyped-def]
-        calls.append((how.at, width, stop, limits))
-        return viewer.paper.posed_model.searched(figure, how, width, stop, limits, wide)
+    def recorded(figure, how, within):  # type: ignore[no-untyped-def]
+        calls.append((how.at, *within[:3]))
+        return viewer.paper.posed_model.searched(figure, how, within)
 
     monkeypatch.setattr("viewer.paper.arms.searched", recorded)
     seen = picture(posed(r_shoulder_z=150.0, l_shoulder_z=210.0))

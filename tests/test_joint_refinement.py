@@ -14,7 +14,7 @@ from common.bus.messages import Report
 from common.raster.bits import unpack_words
 from common.raster.stick_raster import ALL_SEGMENTS, draw_segments
 from common.rig.camera import project
-from integrator.fit.joint_refinement import GOOD, Match, matched
+from integrator.fit.joint_refinement import GOOD, Match, PosedBody, matched
 
 BDP = thesis_bdp(1.75)
 BODY = body_vector(BDP)
@@ -45,7 +45,7 @@ def report_on(pose: Vector) -> Report:
 
 def fitted(seen: Vector, start: Vector, turning: bool = True) -> Match:
     report = report_on(seen)
-    return matched(CAMERA, BDP, ADULT, report, start, joints(BODY, start), turning)
+    return matched(CAMERA, BDP, ADULT, report, PosedBody(start, joints(BODY, start)), turning)
 
 
 def test_the_body_that_was_drawn_fits_and_is_left_alone() -> None:

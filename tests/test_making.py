@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 
 from common.config import SettingsError
-from synth.write import SynthError
+from synth.write import ClipSet, SynthError
 from tritrack.making import make_clips
 
 QUIET = Console(quiet=True)
@@ -23,7 +23,9 @@ def made(out: Path, **changes: object) -> list[Path]:
         "size": "64x48",
         "postures": ("squat",),
     }
-    return make_clips(out, console=QUIET, **{**asked, **changes})  # type: ignore[arg-type]
+    wanted = {**asked, **changes}
+    size = str(wanted.pop("size"))
+    return make_clips(out, ClipSet(**wanted), size, QUIET)  # type: ignore[arg-type]
 
 
 def test_clips_are_named_after_performer_take_and_posture(tmp_path: Path) -> None:

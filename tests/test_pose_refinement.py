@@ -15,6 +15,7 @@ from common.body.proportions import body_vector
 from common.bus.messages import Report
 from common.raster.kernel import match, view_of
 from integrator.fit import pose_refinement
+from integrator.fit.pose_refinement import Previous
 from integrator.fit.silhouette_pair import silhouettes_of
 
 VECTOR = body_vector(BODY)
@@ -56,7 +57,7 @@ def test_a_pose_is_followed_from_the_one_before_whatever_is_proposed() -> None:
     """Leaning far over on one leg, which the network hardly learnt, before rolled cameras."""
     before, truth = on_one_leg(35.0), on_one_leg(45.0)
     seen = seen_as(truth)
-    found = pose_refinement.refined(standing(), UNSURE, before, False, VECTOR, ROLLED, seen)
+    found = pose_refinement.refined(standing(), UNSURE, Previous(before), VECTOR, ROLLED, seen)
     assert found is not None
     assert min(scores(standing(), seen)) < 0.4
     assert min(scores(found, seen)) > 0.75
@@ -68,7 +69,7 @@ def test_somebody_is_found_where_nothing_was_known_before() -> None:
     truth = standing()
     truth[POSE_INDEX["r_shoulder_z"]] = 90.0
     seen = seen_as(truth)
-    found = pose_refinement.refined(on_one_leg(), UNSURE, None, False, VECTOR, ROLLED, seen)
+    found = pose_refinement.refined(on_one_leg(), UNSURE, Previous(), VECTOR, ROLLED, seen)
     assert found is not None
     assert min(scores(found, seen)) > 0.75
 
@@ -76,7 +77,7 @@ def test_somebody_is_found_where_nothing_was_known_before() -> None:
 def test_a_proposal_that_matches_is_left_alone() -> None:
     truth = on_one_leg()
     assert (
-        pose_refinement.refined(truth, UNSURE, None, False, VECTOR, ROLLED, seen_as(truth)) is None
+        pose_refinement.refined(truth, UNSURE, Previous(), VECTOR, ROLLED, seen_as(truth)) is None
     )
 
 
@@ -85,18 +86,23 @@ def test_a_pose_that_was_matched_goes_on_until_a_proposal_matches_as_well() -> N
     seen, proposed = seen_as(truth), truth.copy()
     proposed[POSE_INDEX["l_hip_z"]] -= 10.0
     assert min(scores(proposed, seen)) > pose_refinement.POOR
-    found = pose_refinement.refined(proposed, UNSURE, on_one_leg(42.0), True, VECTOR, ROLLED, seen)
+    found = pose_refinement.refined(
+        proposed, UNSURE, Previous(on_one_leg(42.0), True), VECTOR, ROLLED, seen
+    )
     assert found is not None
     assert error_m(found, truth) < error_m(proposed, truth)
     assert (
-        pose_refinement.refined(truth, UNSURE, on_one_leg(42.0), True, VECTOR, ROLLED, seen) is None
+        pose_refinement.refined(
+            truth, UNSURE, Previous(on_one_leg(42.0), True), VECTOR, ROLLED, seen
+        )
+        is None
     )
 
 
 def test_one_view_alone_matches_nothing() -> None:
     first, _ = seen_as(on_one_leg())
     assert (
-        pose_refinement.refined(standing(), UNSURE, None, False, VECTOR, ROLLED, (first, None))
+        pose_refinement.refined(standing(), UNSURE, Previous(), VECTOR, ROLLED, (first, None))
         is None
     )
 
@@ -107,8 +113,8 @@ def test_joints_that_are_sure_stay_where_they_are() -> None:
     legs = np.array(["knee" in name or "ankle" in name for name in JOINT_NAMES])
     sure = np.where(legs, 0.999, UNSURE)
     assert sure.mean() < pose_refinement.CONFIDENT
-    held = pose_refinement.refined(proposed, sure, proposed, False, VECTOR, ROLLED, seen)
-    free = pose_refinement.refined(proposed, UNSURE, proposed, False, VECTOR, ROLLED, seen)
+    held = pose_refinement.refined(proposed, sure, Previous(proposed), VECTOR, ROLLED, seen)
+    free = pose_refinement.refined(proposed, UNSURE, Previous(proposed), VECTOR, ROLLED, seen)
     assert held is not None
     assert free is not None
     moved_m = [
@@ -122,7 +128,10 @@ def test_a_proposal_that_is_sure_is_left_as_it_is() -> None:
     """However badly it matches: cylinders are no people."""
     proposed, seen = _bent_over(), seen_as(on_one_leg())
     sure = np.full(15, pose_refinement.CONFIDENT)
-    assert pose_refinement.refined(proposed, sure, proposed, True, VECTOR, ROLLED, seen) is None
+    assert (
+        pose_refinement.refined(proposed, sure, Previous(proposed, True), VECTOR, ROLLED, seen)
+        is None
+    )
 
 
 def _bent_over() -> Vector:
@@ -134,7 +143,9 @@ def _bent_over() -> Vector:
 def test_the_same_instant_gives_the_same_pose() -> None:
     seen = seen_as(on_one_leg())
     first, second = (
-        pose_refinement.refined(standing(), UNSURE, on_one_leg(35.0), False, VECTOR, ROLLED, seen)
+        pose_refinement.refined(
+            standing(), UNSURE, Previous(on_one_leg(35.0)), VECTOR, ROLLED, seen
+        )
         for _ in range(2)
     )
     assert first is not None
@@ -144,7 +155,7 @@ def test_the_same_instant_gives_the_same_pose() -> None:
 
 def test_no_joint_is_turned_beyond_its_limits() -> None:
     found = pose_refinement.refined(
-        standing(), UNSURE, on_one_leg(35.0), False, VECTOR, ROLLED, seen_as(on_one_leg(45.0))
+        standing(), UNSURE, Previous(on_one_leg(35.0)), VECTOR, ROLLED, seen_as(on_one_leg(45.0))
     )
     assert found is not None
     for name, (low, high) in LIMITS_DEG.items():

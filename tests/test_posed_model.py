@@ -9,7 +9,7 @@ from common.body.kinematics import ARM_LIMBS, LEG_LIMBS
 from common.bus.messages import Facing, ViewerNumber
 from common.raster.kernel import draw_body
 from common.rig.camera import paper_rig
-from viewer.paper.posed_model import rotation_of, searched, turn, view_at, yaw_of
+from viewer.paper.posed_model import SearchRange, rotation_of, searched, turn, view_at, yaw_of
 
 SHOULDER = turn(ARM_LIMBS[0], r_shoulder_z=1.0)
 
@@ -69,17 +69,17 @@ def test_a_search_reaches_half_a_window_and_a_wide_one_everywhere() -> None:
     """P38, P41: +-32 degrees a frame for an arm; limitation L1 beyond."""
     seen = picture(posed(r_shoulder_z=20.0))
     start = laid_over(seen, posed(r_shoulder_z=170.0))
-    near = searched(start, SHOULDER, 64, 4, (0.0, 180.0))
+    near = searched(start, SHOULDER, SearchRange(64, 4, (0.0, 180.0)))
     assert 116.0 <= angle(near, "r_shoulder_z") <= 180.0
     assert near.matches <= 9
-    wide = searched(start, SHOULDER, 64, 4, (0.0, 180.0), wide=True)
+    wide = searched(start, SHOULDER, SearchRange(64, 4, (0.0, 180.0), wide=True))
     assert angle(wide, "r_shoulder_z") == pytest.approx(20.0, abs=2.0)
     assert wide.score > near.score
 
 
 def test_a_search_counts_its_matches_and_leaves_the_rest_of_the_pose() -> None:
     start = laid_over(picture(posed()), posed(l_hip_z=190.0))._replace(matches=5)
-    found = searched(start, SHOULDER, 64, 4, (0.0, 180.0))
+    found = searched(start, SHOULDER, SearchRange(64, 4, (0.0, 180.0)))
     assert 5 + 6 <= found.matches <= 5 + 9
     changed = np.flatnonzero(found.pose != start.pose)
     assert set(changed) <= {POSE_INDEX["r_shoulder_z"]}

@@ -57,13 +57,13 @@ def test_outcomes_come_in_one_order_and_with_their_clips() -> None:
 def test_the_sweep_meets_the_papers_sizes(monkeypatch: pytest.MonkeyPatch) -> None:
     """16 to 256 symbols, 3 to 8 states; 64 and 5 give what the headline gives."""
     jobs = list(sweep_of(of("a", "b"), "a:b"))
-    sizes = {(job.symbols, job.states) for job in jobs}
+    sizes = {(job.sizes.symbols, job.sizes.states) for job in jobs}
     assert sizes == {
         (symbols, states) for symbols in (16, 32, 64, 128, 256) for states in range(3, 9)
     }
-    papers = [job for job in jobs if (job.symbols, job.states) == (64, 5)]
+    papers = [job for job in jobs if (job.sizes.symbols, job.sizes.states) == (64, 5)]
     headline = list(jobs_of(of("a", "b"), "a:b", "paper"))
     assert [*judged(papers, QUIET).values()] == [*judged(headline, QUIET).values()]
-    small = [job for job in jobs if (job.symbols, job.states) == (16, 3)]
+    small = [job for job in jobs if (job.sizes.symbols, job.sizes.states) == (16, 3)]
     assert len(judged(small, QUIET)[small[0].group]) == 3
     assert posture_split.swept(16, 3) == small[0].group

@@ -10,6 +10,7 @@ from rich.console import Console
 from spoiling import copied, edit_json
 
 from recognizer.evaluation import Recording
+from synth.write import ClipSet
 from tritrack.making import make_clips
 from tritrack.offline.lockstep import track_all
 from tritrack.store.clip_paths import ClipsFailed
@@ -24,7 +25,7 @@ POSTURES = ("raise_right_lateral", "squat")
 @pytest.fixture(scope="module")
 def clips(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     out = tmp_path_factory.mktemp("clips")
-    return make_clips(out, "postures", 1, 1, 2, "160x120", POSTURES, QUIET)
+    return make_clips(out, ClipSet("postures", seed=2, postures=POSTURES), "160x120", QUIET)
 
 
 @pytest.fixture(scope="module")

@@ -20,7 +20,7 @@ from synth.person.skeleton import JOINTS
 from synth.picture.exposure import default_rig, exposures
 from synth.picture.raster import skin
 from synth.picture.render import Shot, render
-from synth.write import SynthError, write_set
+from synth.write import ClipSet, SynthError, write_set
 
 RIG = default_rig(160, 120)
 
@@ -41,7 +41,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("set")
     told: list[tuple[int, int]] = []
     write_set(
-        out, "postures", 2, 1, 0, (160, 120), ("kick_left_side",), lambda *done: told.append(done)
+        out,
+        ClipSet("postures", performers=2, postures=("kick_left_side",)),
+        (160, 120),
+        lambda *done: told.append(done),
     )
     assert told == [(1, 2), (2, 2)]
     return out
@@ -210,7 +213,7 @@ def test_truth_has_the_arrays_of_the_development_clips(folder: Path, data_dir: P
 
 
 def test_a_set_is_written_the_same_byte_for_byte(folder: Path, tmp_path: Path) -> None:
-    again = write_set(tmp_path, "postures", 1, 1, 0, (160, 120), ("kick_left_side",))
+    again = write_set(tmp_path, ClipSet("postures", postures=("kick_left_side",)), (160, 120))
     for name in ("cam1.avi", "cam2.avi", "meta.json"):
         assert (again[0] / name).read_bytes() == (folder / again[0].name / name).read_bytes()
     first, second = (np.load(f / again[0].name / "truth.npz") for f in (folder, tmp_path))
@@ -219,7 +222,7 @@ def test_a_set_is_written_the_same_byte_for_byte(folder: Path, tmp_path: Path) -
 
 
 def test_people_of_other_sets_are_others(tmp_path: Path) -> None:
-    (clip,) = write_set(tmp_path, "postures", 1, 1, 3, (160, 120), ("squat",))
+    (clip,) = write_set(tmp_path, ClipSet("postures", seed=3, postures=("squat",)), (160, 120))
     assert clip.name == "s03_t1_12_squat"
 
 
@@ -267,9 +270,10 @@ def test_what_cannot_be_made_is_refused(
         "seed": 0,
         "size": (160, 120),
         "postures": POSTURES,
-    }
+    } | change
+    size = asked.pop("size")
     with pytest.raises(SynthError, match=says):
-        write_set(tmp_path / "new", **(asked | change))  # type: ignore[arg-type]
+        write_set(tmp_path / "new", ClipSet(**asked), size)  # type: ignore[arg-type]
     assert not (tmp_path / "new").exists()
 
 

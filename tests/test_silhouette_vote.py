@@ -13,6 +13,7 @@ from common.raster.bits import count, pack_words
 from common.raster.kernel import draw_body, view_of
 from common.raster.similarity import Mask, similarity
 from common.rig.camera import paper_rig
+from integrator.fit.silhouette_pair import silhouettes_of
 from integrator.paper.silhouette_vote import moving, products, settled, turned
 
 BODY = body_vector(thesis_bdp(1.75))
@@ -71,7 +72,12 @@ def test_the_arm_that_swings_is_told_from_the_one_that_hangs(
     truth = standing(**apart, **{f"{side}_shoulder_x": 80.0})
     said = {f"{other}_shoulder_x": 80.0} | ({f"{side}_shoulder_x": 80.0} if wrong == "both" else {})
     found = settled(
-        standing(**apart, **said), standing(**apart), BODY, RIG, reports(truth), UPRIGHT_M, False
+        standing(**apart, **said),
+        standing(**apart),
+        BODY,
+        silhouettes_of(RIG, reports(truth)),
+        UPRIGHT_M,
+        False,
     )
     assert found[POSE_INDEX[f"{side}_shoulder_x"]] == 80.0
     assert found[POSE_INDEX[f"{other}_shoulder_x"]] == 0.0
@@ -80,7 +86,9 @@ def test_the_arm_that_swings_is_told_from_the_one_that_hangs(
 def test_a_lost_arm_is_found_hanging() -> None:
     """L1: errors do not go on for ever."""
     pose = standing(l_shoulder_z=280.0, l_shoulder_x=100.0, l_elbow_x=90.0)
-    found = settled(pose, pose, BODY, RIG, reports(standing()), UPRIGHT_M, fitted=False)
+    found = settled(
+        pose, pose, BODY, silhouettes_of(RIG, reports(standing())), UPRIGHT_M, fitted=False
+    )
     assert found == pytest.approx(standing())
 
 
@@ -89,15 +97,17 @@ def test_a_body_is_moved_to_where_both_views_have_it(axis: int) -> None:
     """P50: columns and rows are whole pixels, 22 mm of the room; both views know better."""
     truth, pose = standing(), standing()
     pose[axis] += 0.03
-    assert settled(pose, pose, BODY, RIG, reports(truth), UPRIGHT_M, fitted=False) == pytest.approx(
-        truth
-    )
+    assert settled(
+        pose, pose, BODY, silhouettes_of(RIG, reports(truth)), UPRIGHT_M, fitted=False
+    ) == pytest.approx(truth)
 
 
 def test_what_fits_is_left_alone() -> None:
     """A pose that both silhouettes agree with stays, bit for bit."""
     pose = standing(r_shoulder_z=120.0, l_shoulder_x=40.0, r_hip_x=30.0)
-    found = settled(pose, standing(), BODY, RIG, reports(pose), UPRIGHT_M, fitted=False)
+    found = settled(
+        pose, standing(), BODY, silhouettes_of(RIG, reports(pose)), UPRIGHT_M, fitted=False
+    )
     assert np.array_equal(found, pose)
 
 
@@ -108,7 +118,9 @@ def test_a_squat_is_found_from_straight_legs(bend_deg: float, bow_deg: float) ->
     legs |= {f"{side}_knee_x": -2 * bend_deg for side in "rl"}
     truth = standing(torso_x=bow_deg, **legs)
     truth[1] -= 2 * 0.49 * (1.0 - np.cos(np.radians(bend_deg)))  # thigh and shank: 0.46, 0.52
-    found = settled(standing(), standing(), BODY, RIG, reports(truth), UPRIGHT_M, fitted=False)
+    found = settled(
+        standing(), standing(), BODY, silhouettes_of(RIG, reports(truth)), UPRIGHT_M, fitted=False
+    )
     assert found == pytest.approx(truth, abs=1e-9)
 
 
@@ -116,8 +128,10 @@ def test_only_a_fitted_body_is_turned_joint_by_joint() -> None:
     """A measured body has no feet and would bend to cover them; what was fitted may turn."""
     truth = standing(r_hip_x=24.0, r_knee_x=-30.0)
     start = standing(r_hip_x=10.0, r_knee_x=-8.0)
-    turned = settled(start, start, BODY, RIG, reports(truth), UPRIGHT_M, fitted=True)
-    kept = settled(start, start, BODY, RIG, reports(truth), UPRIGHT_M, fitted=False)
+    turned = settled(
+        start, start, BODY, silhouettes_of(RIG, reports(truth)), UPRIGHT_M, fitted=True
+    )
+    kept = settled(start, start, BODY, silhouettes_of(RIG, reports(truth)), UPRIGHT_M, fitted=False)
     hip, knee = POSE_INDEX["r_hip_x"], POSE_INDEX["r_knee_x"]
     assert turned[hip] == pytest.approx(24.0, abs=6.0)
     assert turned[knee] == pytest.approx(-30.0, abs=9.0)

@@ -11,7 +11,7 @@ from recognizer.evaluation import Recording
 from recognizer.learning_error import LearningError
 from recognizer.model_file import ModelError, load
 from tritrack.training import training
-from tritrack.training.training import train_postures
+from tritrack.training.training import Plan, train_postures
 
 QUIET = Console(quiet=True)
 POSTURES = ("raise_right_lateral", "squat")
@@ -30,7 +30,7 @@ def shown(monkeypatch: pytest.MonkeyPatch) -> list[Recording]:
 
 
 def learn(out: Path) -> dict[str, object]:
-    return train_postures([], out, None, QUIET, "default", out.parent)
+    return train_postures([], out, Plan(None, "default", out.parent), QUIET)
 
 
 def test_a_model_learns_the_postures_that_the_clips_name(

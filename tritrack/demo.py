@@ -11,7 +11,7 @@ from common.config import PageSettings, Settings
 from synth.motion.motions import performance
 from synth.person.people import person
 from synth.picture.exposure import default_rig
-from synth.write import clip_name, write_clip, write_rig
+from synth.write import Filming, clip_name, write_clip, write_rig
 from tritrack.live.session import free_settings, live
 
 PERFORMER_SEED: Final = 90_001
@@ -36,10 +36,8 @@ def made_clip(folder: Path) -> Path:
         clip,
         someone,
         performance(someone, POSTURE, TAKE, motion_s=MOTION_S),
-        rig,
-        room_seed=PERFORMER_SEED,
-        seed=PERFORMER_SEED,
-        take=TAKE,
+        Filming(rig, room_seed=PERFORMER_SEED, seed=PERFORMER_SEED),
+        TAKE,
     )
     write_rig(folder / "calibration.json", rig)
     return clip

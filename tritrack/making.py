@@ -1,24 +1,19 @@
 """Synthetic people as clips."""
 
 from pathlib import Path
-from typing import Literal
 
 from rich.console import Console
 
 from common.config import SettingsError, size_of
 from synth.motion.motions import POSTURES
-from synth.write import SynthError, write_set
+from synth.write import ClipSet, SynthError, write_set
 from tritrack.terminal import bar
 
 
 def make_clips(
     out: Path,
-    motion: Literal["postures", "free", "stream"],
-    performers: int,
-    takes: int,
-    seed: int,
+    wanted: ClipSet,
     size: str,
-    postures: tuple[str, ...],
     console: Console,
 ) -> list[Path]:
     """Write clips with truth, showing how far it is; returns their folders.
@@ -27,7 +22,7 @@ def make_clips(
         SettingsError: When the size or a posture's name is none, or free motion is to be a posture.
         SynthError: When a clip cannot be written: no space, no right.
     """
-    _refuse_postures(motion, postures)
+    _refuse_postures(wanted.motion, wanted.postures)
     try:
         width_height = size_of(size)
     except ValueError as error:
@@ -37,12 +32,8 @@ def make_clips(
             task = progress.add_task("rendering", total=None)
             return write_set(
                 out,
-                motion,
-                performers,
-                takes,
-                seed,
+                wanted._replace(postures=wanted.postures or POSTURES),
                 width_height,
-                postures or POSTURES,
                 lambda done, due: progress.update(task, completed=done, total=due),
             )
     except OSError as error:

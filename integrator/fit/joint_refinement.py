@@ -64,6 +64,15 @@ class Task(NamedTuple):
     """The silhouette, its pixels, and the width of the picture."""
 
 
+class PosedBody(NamedTuple):
+    """A pose, and the joints that belong to it."""
+
+    pose: Vector
+    """Within the limits."""
+    joints_m: NDArray[np.float64]
+    """(15, 3) world; they need not be where the pose's cylinders have them."""
+
+
 class Match(NamedTuple):
     """A body, and how well its picture fits."""
 
@@ -77,8 +86,7 @@ def matched(
     bdp: Bdp,
     man: Stickman,
     report: Report,
-    pose: Vector,
-    joints_m: NDArray[np.float64],
+    start: PosedBody,
     refining: bool,
 ) -> Match:
     """S of a body drawn as the stick body is, as thick as fits best; turned where that is low.
@@ -88,10 +96,10 @@ def matched(
         bdp: The body.
         man: How thick its parts are.
         report: Of that camera.
-        pose: Within the limits, and stays there.
-        joints_m: (15, 3) world; they need not be where the pose's cylinders have them.
+        start: As it is so far; it stays within the limits.
         turning: Whether the pose may be turned.
     """
+    pose, joints_m = start
     tall_px = _tall_px(camera, stature(bdp), joints_m)
     body = body_vector(bdp)
     task = _task(camera, body, man, report, tall_px)

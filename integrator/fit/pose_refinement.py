@@ -83,11 +83,19 @@ class Wanted(NamedTuple):
     """(15,) 1 / m^2: half the inverse variance of each of them."""
 
 
+class Previous(NamedTuple):
+    """What was made of the frame before."""
+
+    pose: Vector | None = None
+    """None at the first."""
+    matched: bool = False
+    """The pose was matched, as the proposed one fitted badly."""
+
+
 def refined(
     proposed: Vector,
     confidence: Vector,
-    before: Vector | None,
-    held: bool,
+    previous: Previous,
     body: Vector,
     rig: Rig,
     seen: Seen,
@@ -101,8 +109,8 @@ def refined(
     Args:
         proposed: By the silhouettes, (25,).
         sure: (15,) how probably each of its landmarks is less than 50 mm off.
-        before: Of the frame before; None at the first.
-        held: That was matched too; a proposal must match nearly as well to be believed again.
+        previous: After a pose that was matched, a proposal must match nearly as well to be
+            believed again.
         body: Body vector.
         rig: Two cameras.
         seen: Both views' reports.
@@ -118,8 +126,11 @@ def refined(
     wanted = Wanted(body, silhouettes, joints(body, proposed), 0.5 / spread_m(confidence) ** 2)
     fits = _poorest(proposed, wanted)
     if fits >= POOR:
-        return _held(proposed, before, wanted) if held and before is not None else None
+        if not previous.matched or previous.pose is None:
+            return None
+        return _held(proposed, previous.pose, wanted)
     wanted = wanted._replace(tightness=wanted.tightness * (fits / POOR) ** DOUBT)
+    before = previous.pose
     pose = proposed if before is None else _searched(proposed, before, wanted)
     if _poorest(pose, wanted) >= POOR:
         return pose

@@ -4,6 +4,7 @@ from common.body.body import POSE_INDEX, YAW_DEG, Vector, rest_pose
 from common.body.proportions import body_vector
 from common.bus.messages import Facing
 from common.rig.camera import Rig
+from integrator.fit.silhouette_pair import silhouettes_of
 from integrator.merge_state import State
 from integrator.pairing import Seen
 from integrator.paper.arbiter import Sight, arbitrate
@@ -80,4 +81,4 @@ def _settled(state: State, rig: Rig, seen: Seen, pose: Vector) -> Vector:
     upright_m = known.measured_at_m[1] if known.measured else float(body[8] + body[14])
     pose[POSE_INDEX["torso_x"]] = 0.0
     fitted = bool(known.samples) and not known.measured
-    return settled(pose, before, body, rig, (first, second), upright_m, fitted)
+    return settled(pose, before, body, silhouettes_of(rig, (first, second)), upright_m, fitted)

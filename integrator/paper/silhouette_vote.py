@@ -13,10 +13,8 @@ from numpy.typing import NDArray
 from common.body.body import POSE_INDEX, REST_DEG, Vector
 from common.body.kinematics import ALL_LIMBS, ARM_LIMBS, LEG_LIMBS
 from common.body.proportions import LOWER_LEG_HEIGHT, UPPER_LEG_HEIGHT
-from common.bus.messages import Report
 from common.raster.kernel import draw_limbs, match_over
-from common.rig.camera import Rig
-from integrator.fit.silhouette_pair import silhouettes_of
+from integrator.fit.silhouette_pair import Silhouettes
 
 Doubt = Callable[[Vector, Vector], NDArray[np.float64]]
 """From the pose so far and that of the frame before: it, and others that may be meant, (n, 25)."""
@@ -99,8 +97,7 @@ def settled(
     pose: Vector,
     before: Vector,
     body: Vector,
-    rig: Rig,
-    seen: tuple[Report, Report],
+    silhouettes: Silhouettes,
     upright_m: float,
     fitted: bool,
 ) -> Vector:
@@ -117,12 +114,10 @@ def settled(
         pose: As the two views' angles were fused, (25,).
         before: Of the frame before.
         body: Body vector.
-        rig: Two cameras.
-        seen: Both views' reports, of pictures of one size.
+        silhouettes: Of both views.
         upright_m: Height of the navel of the person standing upright.
         fitted: The body is a prior that was fitted to the silhouette.
     """
-    silhouettes = silhouettes_of(rig, seen)
     leg_m = float(body[UPPER_LEG_HEIGHT] + body[LOWER_LEG_HEIGHT])
     turns: list[tuple[Doubt, float]] = [
         (partial(turned, pair, share), 1.0) for share in TURN_SHARES for pair in TURNS if fitted

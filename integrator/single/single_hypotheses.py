@@ -198,7 +198,8 @@ def _match(
     state: State, pose: Vector, joints_m: NDArray[np.float64], report: Report, turning: bool
 ) -> joint_refinement.Match:
     camera, straight = straight_camera(state.camera), straight_report(report, state.camera)
-    return joint_refinement.matched(camera, state.bdp, state.man, straight, pose, joints_m, turning)
+    start = joint_refinement.PosedBody(pose, joints_m)
+    return joint_refinement.matched(camera, state.bdp, state.man, straight, start, turning)
 
 
 def in_room(

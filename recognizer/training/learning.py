@@ -1,6 +1,7 @@
 """Learning the models of both recognisers from sequences of rows."""
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,14 +23,22 @@ from recognizer.postures import (
 from recognizer.training.hmm_training import nearness, start, train_densities, train_symbols
 
 
+class Sizes(NamedTuple):
+    """How large models are."""
+
+    states: int = STATES
+    """Of each model; a file keeps models of the paper's five only."""
+    symbols: int = SYMBOLS
+    """Of the codebook; a file keeps the paper's 64 only."""
+
+
 def train(
     sequences: Mapping[str, Sequence[Rows]],
     recognizer: Recognizer = "default",
     topology: Topology = "ergodic",
     seed: int = 0,
     performers: Sequence[str] = (),
-    states: int = STATES,
-    symbols_count: int = SYMBOLS,
+    sizes: Sizes = Sizes(),
 ) -> PostureModel:
     """A model of each posture, from sequences (n, 20) of people who perform it.
 
@@ -43,8 +52,7 @@ def train(
             such that may begin anywhere.
         seed: Of the first guess of clusters.
         performers: Whose sequences these are, for the card.
-        states: Of each model; a file keeps models of the paper's five only.
-        symbols_count: Of the codebook; a file keeps the paper's 64 only.
+        sizes: Of the models.
 
     Raises:
         LearningError: When a posture has no usable sequence, or all poses together are too few.
@@ -55,9 +63,9 @@ def train(
     card = _card(seen, recognizer, topology, seed, performers)
     shown = list(seen.values())
     if recognizer == "default":
-        return _density_model(shown, card, states)
+        return _density_model(shown, card, sizes.states)
     poses = [features(one) for given in shown for one in given]
-    return _symbol_model(shown, card, states, fit(np.concatenate(poses), seed, symbols_count))
+    return _symbol_model(shown, card, sizes.states, fit(np.concatenate(poses), seed, sizes.symbols))
 
 
 def taught(

@@ -100,19 +100,26 @@ def performance(
     else:
         moved = performed(MOVES[posture], still, time_s, style)
     angles_deg = opened(moved, phase, fps) + sway(style, time_s, rng)
-    return staged(someone, posture, fps, angles_deg, phase, style, leash)
+    return staged(someone, Course(posture, fps, angles_deg, phase, style, leash))
 
 
-def staged(
-    someone: Person,
-    posture: str,
-    fps: float,
-    angles_deg: NDArray[np.float64],
-    phase: NDArray[np.uint8],
-    style: Style,
-    leash: Vector | None,
-) -> Motion:
+class Course(NamedTuple):
+    """What the joints do in a take."""
+
+    posture: str
+    fps: float
+    angles_deg: NDArray[np.float64]
+    """(n, 27), of all frames."""
+    phase: NDArray[np.uint8]
+    """(n,) what is shown: EMPTY and so on."""
+    style: Style
+    leash: Vector | None
+    """(n, 2) where the pelvis is drawn to; None: nowhere, and the way is centred."""
+
+
+def staged(someone: Person, course: Course) -> Motion:
     """A take from the joint angles of all its frames: feet on the floor, in the room's middle."""
+    posture, fps, angles_deg, phase, style, leash = course
     start = np.array([style.x0, style.z0])
     body = posed(someone.measures, angles_deg, start, leash)
     if leash is None:

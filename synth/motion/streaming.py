@@ -13,6 +13,7 @@ from synth.motion.motions import (
     OPENING_S,
     POSTURES,
     Act,
+    Course,
     Motion,
     opened,
     performed,
@@ -71,7 +72,7 @@ def streamed(
     moved = opened(np.concatenate([piece.angles_deg for piece in pieces]), phase, fps)
     angles_deg = moved + sway(style, np.arange(len(phase)) / fps, rng)
     leash = np.concatenate([_leash(piece, style) for piece in pieces])
-    motion = staged(someone, "stream", fps, angles_deg, phase, style, leash)
+    motion = staged(someone, Course("stream", fps, angles_deg, phase, style, leash))
     return motion._replace(acts=_acts(pieces))
 
 

@@ -4,6 +4,7 @@ from typing import Final
 
 import numpy as np
 
+from common.body.body import Vector
 from common.rig.camera import Camera, Rig, as_matrix, as_row, paper_rig
 from synth.person.skeleton import turned
 
@@ -34,22 +35,22 @@ def random_rig(
     rises = rng.uniform(*RISE_M, 2)
     return Rig(
         *size,
-        tuple(_slanted(n, size, far[n], rises[n], focal[n], -apart * n, rng) for n in (0, 1)),
+        tuple(
+            _slanted(n, size, _on_circle(-apart * n, far[n], rises[n]), focal[n], rng)
+            for n in (0, 1)
+        ),
     )
 
 
+def _on_circle(at_deg: float, far_m: float, high_m: float) -> Vector:
+    way = np.radians(at_deg)
+    return np.array([far_m * np.sin(way), high_m, far_m * np.cos(way)])
+
+
 def _slanted(
-    n: int,
-    size: tuple[int, int],
-    far_m: float,
-    high_m: float,
-    focal_px: float,
-    at_deg: float,
-    rng: np.random.Generator,
+    n: int, size: tuple[int, int], place: Vector, focal_px: float, rng: np.random.Generator
 ) -> Camera:
     """A camera somewhere on the circle that looks at the middle of a body, rolled a little."""
-    way = np.radians(at_deg)
-    place = np.array([far_m * np.sin(way), high_m, far_m * np.cos(way)])
     forward = np.array([0.0, rng.uniform(0.8, 1.1), 0.0]) - place
     forward /= np.linalg.norm(forward)
     right = np.cross(forward, [0.0, 1.0, 0.0])

@@ -85,7 +85,8 @@ def render(someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int)
         else:
             bodies, dark = empty
         views = [
-            _exposed(scene, n, bodies[n], dark[n], gains[n, i], grain, corners[n]) for n in (0, 1)
+            _exposed(scene, n, bodies[n], dark[n], gains[n, i], _grain_of(grain, corners[n], rig))
+            for n in (0, 1)
         ]
         yield Shot(views[0][0], views[1][0], views[0][1], views[1][1])
 
@@ -218,18 +219,22 @@ def _nobody(rig: Rig) -> tuple[list[Body], list[NDArray[np.float32]]]:
     return [body, body], [np.ones(shape, np.float32)] * 2
 
 
+def _grain_of(
+    grain: NDArray[np.float32], corner: NDArray[np.int64], rig: Rig
+) -> NDArray[np.float32]:
+    """A picture's noise: the same grain, shifted."""
+    return grain[corner[0] : corner[0] + rig.height, corner[1] : corner[1] + rig.width]
+
+
 def _exposed(
     scene: _Scene,
     n: int,
     body: Body,
     lit: NDArray[np.float32],
     gain: float,
-    grain: NDArray[np.float32],
-    corner: NDArray[np.int64],
+    noise: NDArray[np.float32],
 ) -> tuple[Frame, Mask]:
     """The picture of camera n and its mask."""
-    high, wide = scene.rig.height, scene.rig.width
-    noise = grain[corner[0] : corner[0] + high, corner[1] : corner[1] + wide]
-    frame = np.empty((high, wide, 3), np.uint8)
+    frame = np.empty((scene.rig.height, scene.rig.width, 3), np.uint8)
     expose(scene.room.pictures[n], lit, body[0], gain, noise, frame)
     return frame, body[1]

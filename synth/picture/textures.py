@@ -48,15 +48,16 @@ def painted(look: Finish, points_m: NDArray[np.float64], low: Vector, high: Vect
     x, y, z = points_m.T
     across = np.where(_on(z, low[2], high[2]), x, z)
     if look.kind == "room":
-        return _shell(look, x, y, z, across, low, high)
+        return _shell(look, points_m, across, low, high)
     u, v = across - (low[0] if high[0] - low[0] > high[2] - low[2] else low[2]), y - low[1]
     paint = {"shelf": _shelf, "chest": _chest, "picture": _picture, "curtain": _curtain}
     return paint.get(look.kind, _door)(look, u, v, high - low)
 
 
 def _shell(
-    look: Finish, x: Vector, y: Vector, z: Vector, across: Vector, low: Vector, high: Vector
+    look: Finish, points_m: NDArray[np.float64], across: Vector, low: Vector, high: Vector
 ) -> Colours:
+    x, y, z = points_m.T
     colours = _wall(look, across, y)
     colours[y < 0.09] = 0.25 * look.first + 150.0
     ground, roof = _on(y, low[1], low[1]), _on(y, high[1], high[1])

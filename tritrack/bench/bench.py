@@ -21,7 +21,7 @@ from rich.table import Table
 from common.config import Mode, PageSettings, SearchSettings, Settings
 from common.video.clips import open_clip
 from integrator import integrator_warmup
-from synth.write import write_set
+from synth.write import ClipSet, write_set
 from tritrack.bench.bench_figure import Measured, least_s
 from tritrack.bench.bench_scenes import by_opencv, figure_pairs, match_all, match_placed, scene
 from tritrack.bench.single_bench import FOLLOWED, figures
@@ -76,8 +76,8 @@ def measured(quick: bool) -> Iterator[Measured]:
     yield from searching(SMALL, 2500.0, repeats)
     yield loading()
     with tempfile.TemporaryDirectory(prefix="tritrack-bench-") as folder:
-        postures = ("walk_in_place",)
-        clip = write_set(Path(folder), "postures", 1, 1, PERFORMER_SEED, FILMED, postures)[0]
+        wanted = ClipSet("postures", seed=PERFORMER_SEED, postures=("walk_in_place",))
+        clip = write_set(Path(folder), wanted, FILMED)[0]
         settings = Settings(clip=str(clip))
         for mode, size, due in TRACKED[:1] if quick else TRACKED:
             chosen = msgspec.structs.replace(settings, mode=mode, size=size)

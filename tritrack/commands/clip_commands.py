@@ -55,9 +55,11 @@ def synth(
 
     Example: tritrack synth --out clips --performers 3 --seed 7
     """
+    from synth.write import ClipSet
     from tritrack.making import make_clips
 
-    made = make_clips(out, motion, performers, takes, seed, size, tuple(posture or ()), console)
+    wanted = ClipSet(motion, performers, takes, seed, tuple(posture or ()))
+    made = make_clips(out, wanted, size, console)
     facts = {"clips": [str(folder) for folder in made]}
     tell(facts, json_wanted, f"{len(made)} clips written to {out}")
 

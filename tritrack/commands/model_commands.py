@@ -63,9 +63,9 @@ def train(
         return
     if not runs:
         raise typer.BadParameter("name clips or run folders to learn postures from")
-    from tritrack.training.training import train_postures
+    from tritrack.training.training import Plan, train_postures
 
-    facts = train_postures(runs, out, mode, console, recognizer, cache, add_to)
+    facts = train_postures(runs, out, Plan(mode, recognizer, cache, add_to), console)
     line = (
         f"{len(facts['sequences'])} postures learnt, {len(facts['knows'])} known; written to {out}"
     )

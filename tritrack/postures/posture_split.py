@@ -6,7 +6,6 @@ from typing import Final, NamedTuple
 
 from rich.console import Console
 
-from recognizer.codebook import SYMBOLS
 from recognizer.evaluation import (
     Fold,
     Outcome,
@@ -15,7 +14,8 @@ from recognizer.evaluation import (
     recognise,
     refuse_who_was_learnt_from,
 )
-from recognizer.postures import STATES, Recognizer
+from recognizer.postures import Recognizer
+from recognizer.training.learning import Sizes
 from tritrack.store.cores import made
 from tritrack.terminal import bar
 from tritrack.training.training import TrainingError
@@ -35,8 +35,7 @@ class Job(NamedTuple):
     """Outcomes of the same group are counted together."""
     fold: Fold
     recognizer: Recognizer
-    states: int = STATES
-    symbols: int = SYMBOLS
+    sizes: Sizes = Sizes()
 
 
 def jobs_of(given: Sequence[Recording], split: str, kind: Recognizer) -> Iterator[Job]:
@@ -69,7 +68,7 @@ def sweep_of(given: Sequence[Recording], split: str) -> Iterator[Job]:
     for fold in folds(given) if parts is None else [parts]:
         for symbols in SWEPT_SYMBOLS:
             for states in SWEPT_STATES:
-                yield Job(swept(symbols, states), fold, "paper", states, symbols)
+                yield Job(swept(symbols, states), fold, "paper", Sizes(states, symbols))
 
 
 def swept(symbols: int, states: int) -> str:
@@ -130,7 +129,7 @@ def judged(jobs: Sequence[Job], console: Console) -> dict[str, list[Outcome]]:
 
 
 def _answered(job: Job) -> tuple[str, list[Outcome]]:
-    outcomes = recognise(*job.fold, job.recognizer, states=job.states, symbols=job.symbols)
+    outcomes = recognise(*job.fold, job.recognizer, sizes=job.sizes)
     return job.group, outcomes
 
 

@@ -3,7 +3,7 @@
 import multiprocessing
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import scipy.linalg
@@ -37,6 +37,16 @@ SHORTEST: Final = 8
 """Instants that a performance must have."""
 
 Floats = NDArray[np.float32]
+
+
+class Round(NamedTuple):
+    """How a round of training goes."""
+
+    epochs: int
+    rate: float
+    """The highest."""
+    batch: int
+    """Performances that are shown at once."""
 
 
 def train_proposals(out: Path, seed: int, console: Console) -> dict[str, Any]:
@@ -98,7 +108,7 @@ def learnt(
     with bar(console) as progress:
         ends = []
         for epochs, rate in rounds:
-            _round(torch, parts, lessons, rng, epochs, rate, batch, progress)
+            _round(torch, parts, lessons, rng, Round(epochs, rate, batch), progress)
             ends.append([weight.detach().clone() for part in parts for weight in part.parameters()])
     _settle(torch, parts, ends)
     return torch_network.network_of(mean, components, parts)
@@ -109,12 +119,11 @@ def _round(
     parts: list[Any],
     lessons: list[tuple[Any, ...]],
     rng: np.random.Generator,
-    epochs: int,
-    rate: float,
-    batch: int,
+    how: Round,
     progress: Progress,
 ) -> None:
-    """Show all lessons so often, in other orders."""
+    """Show all examples so often, in other orders."""
+    epochs, rate, batch = how
     weights = [weight for part in parts for weight in part.parameters()]
     adam = torch.optim.AdamW(weights, lr=rate, weight_decay=DECAY)
     count = len(lessons) // batch

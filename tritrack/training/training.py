@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from rich.console import Console
 
@@ -23,26 +23,30 @@ class TrainingError(ValueError):
     """What cannot be learnt, tested or written; the text names the cure."""
 
 
+class Plan(NamedTuple):
+    """What a model is to be, and how its clips are tracked."""
+
+    mode: Mode | None
+    """How clips are tracked; None: in the recogniser's own mode."""
+    recognizer: Recognizer
+    """Which kind of model."""
+    cache: Path
+    """Folder that keeps what tracking made of clips."""
+    add_to: Path | None = None
+    """A model whose other postures are kept, and whose kind the new ones get; None: the model
+    knows what is learnt here alone."""
+
+
 def train_postures(
-    paths: Sequence[Path],
-    out: Path,
-    mode: Mode | None,
-    console: Console,
-    recognizer: Recognizer,
-    cache: Path,
-    add_to: Path | None = None,
+    paths: Sequence[Path], out: Path, plan: Plan, console: Console
 ) -> dict[str, Any]:
     """Learn a model of each posture and write it.
 
     Args:
         paths: Clip folders whose `meta.json` names posture and performer, or their run folders.
         out: The file to write.
-        mode: How clips are tracked; None: in the recogniser's own mode.
+        plan: What the model is to be.
         console: For progress and warnings.
-        recognizer: Which kind of model.
-        cache: Folder that keeps what tracking made of clips.
-        add_to: A model whose other postures are kept, and whose kind the new ones get; None: the
-            model knows what was learnt here alone.
 
     Raises:
         RecordingError: When a folder is neither, or names no posture.
@@ -50,12 +54,12 @@ def train_postures(
         LearningError: When nothing can be learnt.
         ModelError: When the file cannot be written, or the model to add to cannot be read.
     """
-    known = model_named(add_to, recognizer) if add_to else None
-    kind = known.card.recognizer if known else recognizer
+    known = model_named(plan.add_to, plan.recognizer) if plan.add_to else None
+    kind = known.card.recognizer if known else plan.recognizer
     learnt: dict[str, list[Any]] = defaultdict(list)
     performers = set()
     with spread(""):
-        given = recordings(paths, mode or kind, cache, console)
+        given = recordings(paths, plan.mode or kind, plan.cache, console)
     for recording in given:
         learnt[recording.posture].append(recording.rows)
         performers.add(recording.performer)

@@ -6,7 +6,7 @@ from typing import Final
 from common.body.body import LIMITS_DEG, POSE_INDEX, wrapped_deg
 from common.body.kinematics import ARM_LIMBS
 from common.config import SearchSettings
-from viewer.paper.posed_model import Figure, matched, searched, turn
+from viewer.paper.posed_model import Figure, SearchRange, matched, searched, turn
 
 SIDES: Final = ("r", "l")
 BEND_MOST_DEG: Final = 140.0
@@ -57,9 +57,9 @@ def facade_arms(figure: Figure, settings: SearchSettings, wide: bool) -> Figure:
         spare = half_turn_deg(side, figure.pose[_SHOULDER_X[i].at])
         limits = (low + spare, high + spare)
         width, stop = settings.arm_window_deg, settings.stop_deg
-        figure = searched(figure, _SHOULDER_Z[i], width, stop, limits, wide)
+        figure = searched(figure, _SHOULDER_Z[i], SearchRange(width, stop, limits, wide))
         inward = inward_limit_deg(side, figure.pose[_SHOULDER_Z[i].at] - spare)
-        figure = searched(figure, _ELBOW[i], width, stop, (-inward, BEND_MOST_DEG))
+        figure = searched(figure, _ELBOW[i], SearchRange(width, stop, (-inward, BEND_MOST_DEG)))
         figure = _with_flexion_positive(figure, side, outward)
     return figure
 
@@ -79,14 +79,12 @@ def flank_arms(figure: Figure, settings: SearchSettings, near: int, wide: bool) 
     width, stop = settings.arm_window_deg, settings.stop_deg
     apart = figure = matched(figure)
     for i in (near, 1 - near):
-        limits = _whole_turn(figure, i)
-        apart = searched(apart, _SHOULDER_X[i], width, stop, limits, wide, HIDDEN)
+        within = SearchRange(width, stop, _whole_turn(figure, i), wide)
+        apart = searched(apart, _SHOULDER_X[i], within, HIDDEN)
     start = figure.pose.copy()
     start[_SHOULDER_X[1 - near].at] = start[_SHOULDER_X[near].at]
-    limits = _whole_turn(figure, near)
-    together = searched(
-        matched(figure._replace(pose=start)), _BOTH_X, width, stop, limits, wide, HIDDEN
-    )
+    within = SearchRange(width, stop, _whole_turn(figure, near), wide)
+    together = searched(matched(figure._replace(pose=start)), _BOTH_X, within, HIDDEN)
     matches = apart.matches + together.matches - figure.matches
     better = apart if apart.score > together.score else together
     pose = better.pose.copy()

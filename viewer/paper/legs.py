@@ -5,7 +5,7 @@ from typing import Final
 from common.body.body import LIMITS_DEG
 from common.body.kinematics import LEG_LIMBS
 from common.config import SearchSettings
-from viewer.paper.posed_model import Figure, searched, turn
+from viewer.paper.posed_model import Figure, SearchRange, searched, turn
 
 SIDES: Final = ("r", "l")
 SQUAT_SHARE, RISE_SHARE = 0.04, 0.025
@@ -38,10 +38,10 @@ def facade_legs(figure: Figure, settings: SearchSettings, squatting: bool) -> Fi
     """
     width, stop = settings.leg_window_deg, settings.stop_deg
     for i, side in enumerate(SIDES):
-        figure = searched(figure, _HIP_Z[i], width, stop, LIMITS_DEG[f"{side}_hip_z"])
+        figure = searched(figure, _HIP_Z[i], SearchRange(width, stop, LIMITS_DEG[f"{side}_hip_z"]))
     if squatting:
         for how in _SQUAT:
-            figure = searched(figure, how, width, stop, _SQUAT_LIMITS_DEG)
+            figure = searched(figure, how, SearchRange(width, stop, _SQUAT_LIMITS_DEG))
     return figure
 
 
@@ -55,8 +55,8 @@ def flank_legs(figure: Figure, settings: SearchSettings, near: int) -> Figure:
     apart = figure
     for i in (near, 1 - near):
         side = SIDES[i]
-        apart = searched(apart, _HIP_X[i], width, stop, LIMITS_DEG[f"{side}_hip_x"])
-        apart = searched(apart, _KNEE[i], width, stop, LIMITS_DEG[f"{side}_knee_x"])
-    together = searched(figure, _BOTH_SQUAT, width, stop, _SQUAT_LIMITS_DEG)
+        apart = searched(apart, _HIP_X[i], SearchRange(width, stop, LIMITS_DEG[f"{side}_hip_x"]))
+        apart = searched(apart, _KNEE[i], SearchRange(width, stop, LIMITS_DEG[f"{side}_knee_x"]))
+    together = searched(figure, _BOTH_SQUAT, SearchRange(width, stop, _SQUAT_LIMITS_DEG))
     better = apart if apart.score >= together.score else together
     return better._replace(matches=apart.matches + together.matches - figure.matches)

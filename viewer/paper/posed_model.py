@@ -53,27 +53,29 @@ def turn(limbs: tuple[int, ...], **coupled: float) -> Turn:
     return Turn(step, parts[0][0], sum(1 << limb for limb in limbs), parts)
 
 
-def searched(
-    figure: Figure,
-    how: Turn,
-    width_deg: int,
-    stop_deg: int,
-    limits_deg: tuple[float, float],
-    wide: bool = False,
-    least_gain: float = -1.0,
-) -> Figure:
+class SearchRange(NamedTuple):
+    """Where an angle is searched."""
+
+    width_deg: int
+    """Width of the window around the present angle (P41)."""
+    stop_deg: int
+    """Where the search stops."""
+    limits_deg: tuple[float, float]
+    """Of the joint, or of this posture (P31)."""
+    wide: bool = False
+    """Nothing is known of the angle: search windows that tile the whole range."""
+
+
+def searched(figure: Figure, how: Turn, within: SearchRange, least_gain: float = -1.0) -> Figure:
     """The figure with one angle set to the best that the tritree meets.
 
     Args:
         figure: The model so far.
         how: What turns.
-        width_deg: Width of the window around the present angle (P41).
-        stop_deg: Where the search stops.
-        limits_deg: Of the joint, or of this posture (P31).
-        wide: Nothing is known of the angle: search windows that tile the whole range.
+        within: Where it is searched.
         least_gain: What must be added to the figure's score for the angle to change.
     """
-    low, high = limits_deg
+    width_deg, stop_deg, (low, high), wide = within
     centres = np.arange(low + width_deg / 2, high, width_deg) if wide else [figure.pose[how.at]]
     best_angle, best_score, matches = figure.pose[how.at], -1.0, 0
     for centre in centres:
