@@ -1,22 +1,16 @@
 PYTHON ?= python3.11
 VENV := .venv
 BIN := $(VENV)/bin
-SOURCES := $(shell find animator common integrator recognizer synth tritrack viewer -name "*.py")
 
 .PHONY: setup demo test check bench clean
 
-setup: $(VENV)/.compiled
+setup: $(VENV)/.installed
+	@$(BIN)/python -m tritrack.first_run
 
 $(VENV)/.installed: pyproject.toml constraints.txt
 	@command -v $(PYTHON) >/dev/null || { echo "tritrack needs Python 3.11: install it, or name it: make PYTHON=/path/to/python3.11"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[page,export,report,single,cluster,dev]'
-	@touch $@
-
-# numba renews a compiled function when its own file changed, not when one that it calls did.
-$(VENV)/.compiled: $(VENV)/.installed $(SOURCES)
-	@find animator common integrator recognizer synth tritrack viewer -name '*.nb[ic]' -delete
-	$(BIN)/python -m common.raster.kernel
 	@touch $@
 
 demo: setup
@@ -34,5 +28,4 @@ bench: setup
 	$(BIN)/python benchmarks/run.py
 
 clean:
-	rm -rf $(VENV) runs .pytest_cache .mypy_cache .ruff_cache
-	@find . -name '*.nb[ic]' -delete
+	rm -rf $(VENV) .cache runs .pytest_cache .mypy_cache .ruff_cache

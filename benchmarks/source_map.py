@@ -2,6 +2,7 @@
 
 import ast
 import io
+import re
 import subprocess
 import tokenize
 import tomllib
@@ -19,6 +20,8 @@ NO_CODE = frozenset(
         tokenize.ENDMARKER,
     }
 )
+COMPILING = re.compile(r"(compiled|compiling|KERNEL|INLINE)\b|(numba\.)?njit\b")
+"""Decorators of compiled functions: those of `common/compiled.py`, and numba's own."""
 BRANCHES = (ast.If, ast.For, ast.While, ast.With, ast.Try, ast.Match)
 Definition = ast.FunctionDef | ast.AsyncFunctionDef
 Graph = Mapping[str, set[str]]
@@ -133,7 +136,7 @@ def _parameters(node: Definition) -> int:
 
 
 def _kind(node: Definition) -> str:
-    if any("jit" in ast.unparse(mark) for mark in node.decorator_list):
+    if any(COMPILING.match(ast.unparse(mark)) for mark in node.decorator_list):
         return "compiled"
     return "command" if "typer." in ast.unparse(node.args) else "plain"
 

@@ -3,11 +3,12 @@
 import math
 from typing import Any
 
-import numba
 import numpy as np
 
+from common.compiled import compiled
 
-@numba.njit(cache=True)
+
+@compiled
 def forward(start: Any, transition: Any, log_emission: Any) -> Any:
     """log P(observations | posture), shape (p,); 0 where nothing was observed.
 

@@ -3,11 +3,11 @@
 import math
 from typing import Any, Final
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import ANGLE_INDEX
+from common.compiled import compiled
 from recognizer.features import ROW_NAMES, Rows
 
 Bearings = NDArray[np.float64]
@@ -59,7 +59,7 @@ def bearings(given: Rows) -> Bearings:
     return shown
 
 
-@numba.njit(cache=True)
+@compiled
 def _point(turns_deg: Any, shown: Any) -> None:
     """Write R_z R_x (0, 1, 0) and R_z R_x R_y R_hinge (0, 1, 0), side by side."""
     for row in range(len(turns_deg)):
@@ -75,7 +75,7 @@ def _point(turns_deg: Any, shown: Any) -> None:
         shown[row, 5] = along * math.sin(x) + ahead * math.cos(x)
 
 
-@numba.njit(cache=True)
+@compiled
 def _move(root: Any, yaw_deg: Any, shown: Any) -> None:
     """Write the weighted way of the root since TRAVEL_POSES poses before, or since the first, in
     the body's frame."""

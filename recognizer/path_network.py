@@ -3,8 +3,9 @@
 import math
 from typing import Any, Final
 
-import numba
 import numpy as np
+
+from common.compiled import compiled
 
 SCALE: Final = 0.3
 """Weight of a log density: neighbouring frames say nearly the same."""
@@ -32,7 +33,7 @@ ONSET, COUNT, PHASE, LAST = 0, 1, 2, 3
 gone through, whether it is in its second half; and of one that is over: its last frame."""
 
 
-@numba.njit(cache=True)
+@compiled
 def emissions(
     seen: Any, speed: Any, mean: Any, variance: Any, rest: Any, rest_variance: Any
 ) -> Any:
@@ -69,7 +70,7 @@ def emissions(
     return found
 
 
-@numba.njit(cache=True)
+@compiled
 def _way_into(k: int, score: Any, log_transition: Any, enter: float) -> tuple[float, int]:
     """The best way into a state of a posture: its score, and from which of that posture's states;
     -1 from outside, at the score of `enter`."""
@@ -83,7 +84,7 @@ def _way_into(k: int, score: Any, log_transition: Any, enter: float) -> tuple[fl
     return best, origin
 
 
-@numba.njit(cache=True)
+@compiled
 def _turned(s: int, turn: Any, own: Any) -> None:
     """Count a repetition where a path comes to the far turn after the near one."""
     if s == turn[1] and own[PHASE] == 0:
@@ -93,7 +94,7 @@ def _turned(s: int, turn: Any, own: Any) -> None:
         own[PHASE] = 0
 
 
-@numba.njit(cache=True)
+@compiled
 def advance(
     score: Any, record: Any, over: Any, emission: Any, log_transition: Any, turn: Any, frame: int,
     open_: bool,

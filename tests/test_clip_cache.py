@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from spoiling import copied, edit_json
 
+from common.cache_folder import ROOT
 from common.config import Settings
 from common.video.clip_sources import ClipError
 from tritrack.offline import clip_cache
@@ -65,10 +66,18 @@ def test_a_camera_is_no_recorded_clip(tmp_path: Path) -> None:
         key_of(settings, "tracker")
 
 
-def test_the_tracker_is_named_by_its_code_and_models(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_tracker_is_named_by_all_our_code_and_by_its_models(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     before = clip_cache.tracker_id()
     assert clip_cache.tracker_id() == before
-    monkeypatch.setattr(clip_cache, "TRACKERS", ("common", "viewer"))
+    with monkeypatch.context() as patched:
+        patched.setattr(clip_cache, "DIGEST", "of other sources")
+        assert clip_cache.tracker_id() != before
+    shutil.copytree(ROOT / "viewer", tmp_path / "viewer")
+    monkeypatch.setattr(clip_cache, "ROOT", tmp_path)
+    before = clip_cache.tracker_id()
+    changed(next((tmp_path / "viewer").rglob("*.npz")))
     assert clip_cache.tracker_id() != before
 
 

@@ -35,7 +35,7 @@ def tracked() -> list[Path]:
         ).stdout.split("\0")
         return [ROOT / name for name in listed if name and (ROOT / name).is_file()]
     except (OSError, subprocess.CalledProcessError):
-        made = {".git", ".venv", "runs", "dist", "__pycache__", ".hypothesis"}
+        made = {".git", ".venv", ".cache", "runs", "dist", "__pycache__", ".hypothesis"}
         return [p for p in ROOT.rglob("*") if p.is_file() and not made & set(p.parts)]
 
 

@@ -37,7 +37,7 @@ class Wall:
         )
 
 
-@numba.njit(cache=True)
+@compiled
 def fast(): return stone
 ''',
     "lower/__init__.py": '"""Below."""\n',

@@ -2,11 +2,11 @@
 
 from typing import Final, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from common.bus.messages import CameraFault
+from common.compiled import compiled
 from viewer.background.background import Background
 from viewer.background.image_stack import Frame
 
@@ -72,7 +72,7 @@ def _contrast(grey: NDArray[np.float32]) -> float:
     return float(ranked[-1 - tenth] - ranked[tenth])
 
 
-@numba.njit(cache=True)
+@compiled
 def _contrast_of(picture: Frame) -> float:
     """The same of a picture; its brightness, a sum of bytes, is counted and not sorted."""
     counts = np.zeros(3 * 255 + 1, np.int64)
@@ -92,7 +92,7 @@ def _contrast_of(picture: Frame) -> float:
     return (high - low) / 3
 
 
-@numba.njit(cache=True)
+@compiled
 def _grey(picture: NDArray[np.float32] | Frame) -> NDArray[np.float32]:
     height, width = picture.shape[:2]
     rows, columns = (height + STRIDE - 1) // STRIDE, (width + STRIDE - 1) // STRIDE
@@ -105,7 +105,7 @@ def _grey(picture: NDArray[np.float32] | Frame) -> NDArray[np.float32]:
     return grey
 
 
-@numba.njit(cache=True)
+@compiled
 def _same(one: Frame, other: Frame) -> bool:
     """Whether pictures are the same, bit for bit; the first pixels tell when they are not."""
     if one.shape != other.shape:

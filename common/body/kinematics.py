@@ -3,7 +3,6 @@
 import math
 from typing import Any, Final
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,6 +30,7 @@ from common.body.proportions import (
     TORSO_HEIGHT,
     WRIST_ALONG,
 )
+from common.compiled import compiled
 
 TORSO, HEAD = 0, 1
 ARM_LIMBS: Final = ((6, 8), (7, 9))
@@ -49,7 +49,7 @@ _LENGTH_AT: Final = np.array([2, 5, 8, 11, 14, 17, 19, 21, 23, 25])
 """Where each limb's height stands in a body vector."""
 
 
-@numba.njit(cache=True)
+@compiled
 def _turn(frames: Any, limb: int, angle_deg: float, one: int, other: int) -> None:
     """Multiply a limb's rotation by a turn that leads the axis `one` to the axis `other`."""
     if angle_deg == 0.0:
@@ -61,7 +61,7 @@ def _turn(frames: Any, limb: int, angle_deg: float, one: int, other: int) -> Non
         frames[limb, row + other] = c * v - s * u
 
 
-@numba.njit(cache=True)
+@compiled
 def _start(frames: Any, parent: int, limb: int, x: float, y: float) -> None:
     """A limb's frame = its parent's, with its origin at the parent's point (x, y, 0)."""
     for i in range(3):
@@ -71,7 +71,7 @@ def _start(frames: Any, parent: int, limb: int, x: float, y: float) -> None:
         frames[limb, i] = frames[parent, i]
 
 
-@numba.njit(cache=True)
+@compiled
 def _hang_ball(frames: Any, limb: int, x: float, y: float, pose: Any, at: int) -> None:
     """M_N^S = T(x, y, 0) R_z R_x R_y with the angles pose[at : at + 3] = (x, y, z)."""
     _start(frames, TORSO, limb, x, y)
@@ -80,14 +80,14 @@ def _hang_ball(frames: Any, limb: int, x: float, y: float, pose: Any, at: int) -
     _turn(frames, limb, pose[at + 1], 2, 0)
 
 
-@numba.njit(cache=True)
+@compiled
 def _hang_hinge(frames: Any, upper: int, length: float, angle_deg: float) -> None:
     """M_S^F = T(0, length, 0) R_x."""
     _start(frames, upper, upper + 2, 0.0, length)
     _turn(frames, upper + 2, angle_deg, 1, 2)
 
 
-@numba.njit(cache=True)
+@compiled
 def hang_limbs(body: Any, pose: Any, limbs: int, frames: Any) -> None:
     """Write the frames of some limbs, not the trunk's: what they hang on is placed already.
 
@@ -113,7 +113,7 @@ def hang_limbs(body: Any, pose: Any, limbs: int, frames: Any) -> None:
             _hang_hinge(frames, leg, body[_LENGTH_AT[leg]], pose[KNEE + side])
 
 
-@numba.njit(cache=True)
+@compiled
 def place_limbs(body: Any, pose: Any, limbs: int, frames: Any) -> None:
     """Write the frames of some limbs into `frames` (10, FRAME).
 
@@ -149,7 +149,7 @@ def segments(body: Vector, pose: Vector) -> NDArray[np.float64]:
     return np.stack([frames[:, :3], ends], axis=1)
 
 
-@numba.njit(cache=True)
+@compiled
 def joints(body: Any, pose: Any) -> Any:
     """The 15 landmarks, (15, 3), world metres, in the order of JOINT_NAMES."""
     frames, out = np.empty((10, FRAME)), np.empty((15, 3))
@@ -171,7 +171,7 @@ def joints(body: Any, pose: Any) -> Any:
     return out
 
 
-@numba.njit(cache=True)
+@compiled
 def _along(frames: Any, body: Any, upper: int, distance_m: float, i: int) -> float:
     """Coordinate i of the point so far along an upper limb and the lower one that follows it."""
     beyond_m = distance_m - body[_LENGTH_AT[upper]]

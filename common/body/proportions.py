@@ -3,10 +3,10 @@
 from functools import lru_cache
 from typing import Any, Final
 
-import numba
 import numpy as np
 
 from common.body.body import Bdp, Elliptic, Round, Vector
+from common.compiled import compiled
 
 THESIS_RATIOS: Final = {
     "stature": 175.0,
@@ -114,7 +114,7 @@ def _body_numbers(bdp: Bdp) -> tuple[float, ...]:
     return tuple(attached(np.array(bdp.lengths())).tolist())
 
 
-@numba.njit(cache=True)
+@compiled
 def attached(lengths: Any) -> Any:
     """The body vector (BODY,) of its LENGTHS lengths."""
     body = np.empty(BODY)

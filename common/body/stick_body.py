@@ -2,12 +2,12 @@
 
 from typing import Any, Final, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
 from common.body.proportions import THESIS_DIAMETERS, THESIS_RATIOS
+from common.compiled import compiled
 
 SIDES: Final = ("r", "l")
 """r is on the left of the picture: where the right is of somebody who faces the camera (T10)."""
@@ -80,7 +80,7 @@ THESIS: Final = _thesis()
 ADULT: Final = _adult()
 
 
-@numba.njit(cache=True)
+@compiled
 def place_segments(lengths: Any, pose: Any, ends: Any) -> None:
     """Both ends of every segment in the picture.
 
@@ -121,7 +121,7 @@ def place_segments(lengths: Any, pose: Any, ends: Any) -> None:
         place_chain(2 + side, lengths, pose, ends)
 
 
-@numba.njit(cache=True)
+@compiled
 def place_chain(upper: int, lengths: Any, pose: Any, ends: Any) -> None:
     """The same for an upper limb and the lower limb that hangs on it; the trunk is placed."""
     line, side = (SHOULDER_LINE, upper - 6) if upper >= 6 else (HIP_LINE, upper - 2)
@@ -129,14 +129,14 @@ def place_chain(upper: int, lengths: Any, pose: Any, ends: Any) -> None:
     _hang(ends, upper + 2, ends[upper, 2], ends[upper, 3], lengths, pose)
 
 
-@numba.njit(cache=True)
+@compiled
 def _hang(ends: Any, limb: int, x: float, y: float, lengths: Any, pose: Any) -> None:
     reach = lengths[limb] * pose[RATIO + limb] * pose[STATURE]
     angle = np.radians(pose[ANGLE + limb])
     _set(ends, limb, x, y, x + reach * np.cos(angle), y - reach * np.sin(angle))
 
 
-@numba.njit(cache=True)
+@compiled
 def _set(ends: Any, row: int, ax: float, ay: float, bx: float, by: float) -> None:
     ends[row, 0], ends[row, 1], ends[row, 2], ends[row, 3] = ax, ay, bx, by
 

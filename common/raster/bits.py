@@ -2,13 +2,13 @@
 
 from typing import Any, Final
 
-import numba
 import numpy as np
 from llvmlite import ir
 from numba.core import types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
+from common.compiled import compiled
 from common.raster.similarity import Mask
 
 Bits = NDArray[np.uint64]
@@ -27,7 +27,7 @@ def popcount(_context: Any, _word: Any) -> Any:
     return types.int64(types.uint64), generate
 
 
-@numba.njit(cache=True)
+@compiled
 def count(bits: Any) -> int:
     """Number of pixels in packed rows."""
     total = 0
@@ -37,7 +37,7 @@ def count(bits: Any) -> int:
     return total
 
 
-@numba.njit(cache=True)
+@compiled
 def count_both(one: Any, other: Any) -> int:
     """Number of pixels that two packed masks share."""
     total = 0

@@ -10,12 +10,12 @@ import time
 from functools import lru_cache
 from typing import Any, Final
 
-import numba
 import numpy as np
 
 from common.body.body import LIMBS, Vector, rest_pose
 from common.body.kinematics import ALL_LIMBS, FRAME, place_limbs
 from common.body.proportions import ARMS, PER_ELLIPTIC, PER_ROUND, body_vector, thesis_bdp
+from common.compiled import compiled
 from common.raster.bits import count, count_both, unpack_words
 from common.raster.row_spans import PRIMITIVE, draw, spans
 from common.raster.similarity import Mask
@@ -40,7 +40,7 @@ VIEW: Final = 17
 """Numbers of a view vector."""
 
 
-@numba.njit(cache=True)
+@compiled
 def seen_at(view: Any, x: float, y: float, z: float) -> tuple[float, float, float]:
     """(u, v, depth): where a view, of true perspective, shows a place of the world; pixels, metres.
 
@@ -54,7 +54,7 @@ def seen_at(view: Any, x: float, y: float, z: float) -> tuple[float, float, floa
     return u, down * share * view[FOCAL_Y] + view[CENTRE_Y], depth
 
 
-@numba.njit(cache=True)
+@compiled
 def score(hit: int, drawn: int, seen: int) -> float:
     """S of eq. (1) from counts of pixels: in both, in the model, in the silhouette (P9)."""
     union = drawn + seen - hit
@@ -64,7 +64,7 @@ def score(hit: int, drawn: int, seen: int) -> float:
     return math.exp(-p - (drawn - hit) / union) * (1.0 - p)
 
 
-@numba.njit(cache=True)
+@compiled
 def limb_size(body: Any, limb: int) -> tuple[float, float, float]:
     """Half width, half depth and height of a limb from the body vector."""
     if limb < R_UPPER_ARM:
@@ -74,7 +74,7 @@ def limb_size(body: Any, limb: int) -> tuple[float, float, float]:
     return body[at], body[at], body[at + 1]
 
 
-@numba.njit(cache=True)
+@compiled
 def _section(
     frames: Any, limb: int, long: float, short: float, view: Any
 ) -> tuple[float, float, float]:
@@ -96,7 +96,7 @@ def _section(
     return shear, half_width / half_height, half_height
 
 
-@numba.njit(cache=True)
+@compiled
 def limb_primitive(frames: Any, body: Any, limb: int, view: Any, out: Any) -> bool:
     """Contour of a placed limb: arms are round-ended, the others flat-ended cylinders (P5).
 
@@ -137,7 +137,7 @@ def limb_primitive(frames: Any, body: Any, limb: int, view: Any, out: Any) -> bo
     return True
 
 
-@numba.njit(cache=True)
+@compiled
 def draw_placed(frames: Any, body: Any, view: Any, limbs: int, width: int, bits: Any) -> None:
     """OR some placed limbs (as bits of LIMBS) into packed rows (H, words)."""
     height = bits.shape[0]
@@ -149,7 +149,7 @@ def draw_placed(frames: Any, body: Any, view: Any, limbs: int, width: int, bits:
             draw(first, last, top, bottom, bits)
 
 
-@numba.njit(cache=True)
+@compiled
 def draw_limbs(body: Any, pose: Any, view: Any, limbs: int, width: int, bits: Any) -> None:
     """OR some limbs of a posed body into packed rows (H, words)."""
     frames = np.empty((10, FRAME))
@@ -157,7 +157,7 @@ def draw_limbs(body: Any, pose: Any, view: Any, limbs: int, width: int, bits: An
     draw_placed(frames, body, view, limbs, width, bits)
 
 
-@numba.njit(cache=True)
+@compiled
 def match(
     body: Any, pose: Any, view: Any, limbs: int, width: int, seen: Any, seen_px: int
 ) -> float:
@@ -175,7 +175,7 @@ def match(
     return match_over(np.zeros_like(seen), body, pose, view, limbs, width, seen, seen_px)
 
 
-@numba.njit(cache=True)
+@compiled
 def match_over(
     rest: Any, body: Any, pose: Any, view: Any, limbs: int, width: int, seen: Any, seen_px: int
 ) -> float:

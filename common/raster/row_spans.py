@@ -11,10 +11,10 @@ Source: design: exact pixel-centre rule; requirement P9.
 import math
 from typing import Any, Final
 
-import numba
 import numpy as np
 
 from common.body.body import Vector
+from common.compiled import compiled
 from common.raster.bits import ONES, popcount
 
 EDGE: Final = 1e-9
@@ -46,7 +46,7 @@ def inside(primitive: Vector, x_px: float, y_px: float) -> bool:
     return gap <= EDGE
 
 
-@numba.njit(cache=True)
+@compiled
 def _tangent(p: Any, nx: float, ny: float) -> tuple[float, float, float, float]:
     """The line that touches both discs where their normal is (nx, ny): x = at + slope y.
 
@@ -61,19 +61,19 @@ def _tangent(p: Any, nx: float, ny: float) -> tuple[float, float, float, float]:
     return p[0] + ra * nx - slope * one, slope, min(one, other), max(one, other)
 
 
-@numba.njit(cache=True)
+@compiled
 def _cut_first(x: float, width: int) -> Any:
     """First pixel of the picture whose centre is not left of x + 0.5; width where there is none."""
     return np.int32(np.ceil(min(max(x, 0.0), float(width))))
 
 
-@numba.njit(cache=True)
+@compiled
 def _cut_last(x: float, width: int) -> Any:
     """Last pixel whose centre is not right of x + 0.5; -1 where there is none."""
     return np.int32(np.floor(max(min(x, width - 1.0), -1.0)))
 
 
-@numba.njit(cache=True)
+@compiled
 def _rows_of_steep(
     p: Any, left: Any, right: Any, begin: int, end: int, width: int, first: Any, last: Any
 ) -> None:
@@ -98,7 +98,7 @@ def _rows_of_steep(
         last[row] = _cut_last(stretch * high + offset, width)
 
 
-@numba.njit(cache=True)
+@compiled
 def _rows_of_all(
     p: Any, one: Any, other: Any, begin: int, end: int, width: int, first: Any, last: Any
 ) -> None:
@@ -119,7 +119,7 @@ def _rows_of_all(
         last[row] = _cut_last(p[7] * high + offset, width)
 
 
-@numba.njit(cache=True)
+@compiled
 def spans(p: Any, width: int, height: int, first: Any, last: Any) -> tuple[int, int]:
     """Row intervals of a limb: first and last pixel of each row, cut to the picture.
 
@@ -158,7 +158,7 @@ def spans(p: Any, width: int, height: int, first: Any, last: Any) -> tuple[int, 
     return top, bottom
 
 
-@numba.njit(cache=True)
+@compiled
 def draw(first: Any, last: Any, top: int, bottom: int, bits: Any) -> None:
     """OR row intervals into packed rows (H, words)."""
     for row in range(top, bottom):
@@ -171,7 +171,7 @@ def draw(first: Any, last: Any, top: int, bottom: int, bits: Any) -> None:
             bits[row, b >> 6] |= new & ONES >> np.uint64(63 - (b & 63))
 
 
-@numba.njit(cache=True)
+@compiled
 def gain(first: Any, last: Any, top: int, bottom: int, base: Any, seen: Any) -> tuple[int, int]:
     """What a limb adds to a drawn rest: (pixels newly drawn, those of them that are seen).
 
@@ -199,7 +199,7 @@ def gain(first: Any, last: Any, top: int, bottom: int, base: Any, seen: Any) -> 
     return drawn, hit
 
 
-@numba.njit(cache=True)
+@compiled
 def undraw(top: int, bottom: int, base: Any, bits: Any) -> None:
     """Bring packed rows from top to bottom - 1 back to what they were before limbs were drawn."""
     for row in range(top, bottom):

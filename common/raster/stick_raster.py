@@ -3,11 +3,11 @@
 import math
 from typing import Any, Final
 
-import numba
 import numpy as np
 
 from common.body.body import Vector
 from common.body.stick_body import BREADTH, GIRTH, STATURE, Stickman, place_segments
+from common.compiled import compiled
 from common.raster.bits import Bits, count, count_both, unpack_words
 from common.raster.kernel import THINNEST, score
 from common.raster.row_spans import PRIMITIVE, draw, gain, spans, undraw
@@ -18,7 +18,7 @@ ALL_SEGMENTS: Final = 0xFFF
 WITHOUT_ARMS: Final = 0b110000111111
 
 
-@numba.njit(cache=True)
+@compiled
 def _primitive(ends: Any, part: Any, pose: Any, wide: float, out: Any) -> None:
     """A part of the placed body as the kernel draws limbs (`spans`)."""
     row = int(part[0])
@@ -42,13 +42,13 @@ def _primitive(ends: Any, part: Any, pose: Any, wide: float, out: Any) -> None:
         out[3] = (out[3] - shear * out[4]) / out[7]
 
 
-@numba.njit(cache=True)
+@compiled
 def widening(breadth: float, depth: float) -> float:
     """How wide an elliptic trunk looks that shows so much of its breadth."""
     return math.sqrt(breadth * breadth + depth * depth * (1.0 - breadth * breadth))
 
 
-@numba.njit(cache=True)
+@compiled
 def draw_segments(
     ends: Any, pose: Any, parts: Any, depth: float, which: int, width: int, bits: Any
 ) -> None:
@@ -64,7 +64,7 @@ def draw_segments(
             draw(first, last, top, bottom, bits)
 
 
-@numba.njit(cache=True)
+@compiled
 def added(
     ends: Any,
     pose: Any,
@@ -99,7 +99,7 @@ def added(
     return drawn, hit
 
 
-@numba.njit(cache=True)
+@compiled
 def match_stick(
     lengths: Any, parts: Any, depth: float, pose: Any, which: int, width: int, seen: Any
 ) -> float:

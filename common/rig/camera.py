@@ -6,10 +6,10 @@ from typing import Any, Final, NamedTuple
 
 import cv2
 import msgspec
-import numba
 import numpy as np
 
 from common.body.body import Vector
+from common.compiled import compiled
 
 PAPER_ROTATIONS: Final = (
     ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)),
@@ -139,7 +139,7 @@ def project(camera: Camera, points_m: Vector) -> Vector:
     return plane
 
 
-@numba.njit(cache=True)
+@compiled
 def _on_plane(points_m: Any, R: Any, t: Any) -> Any:
     """Where the rays from points (n, 3) cross the plane at depth 1, (n, 2); NaN where none does."""
     plane = np.full((len(points_m), 2), np.nan)
@@ -164,7 +164,7 @@ def ray(camera: Camera, pixel: tuple[float, float]) -> Vector:
     return direction
 
 
-@numba.njit(cache=True)
+@compiled
 def _turned_back(R: Any, x: float, y: float) -> Any:
     """The direction (3,), unit length, of a point on the plane at depth 1."""
     direction = np.empty(3)

@@ -3,7 +3,6 @@
 import math
 from typing import Any, Final, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +11,7 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
 from common.body.stick_body import BREADTH, GIRTH, HALF_SHOULDERS, POSE_SIZE, STATURE, Stickman
 from common.bus.messages import Report
+from common.compiled import compiled
 from common.raster.bits import Bits, count, count_both
 from common.raster.kernel import NEAREST_M, score, seen_at, view_of
 from common.raster.stick_raster import ALL_SEGMENTS, draw_segments
@@ -130,7 +130,7 @@ def _task(camera: Camera, body: Vector, man: Stickman, report: Report, tall_px: 
     return Task(body, view, man.parts, man.depth, broad_px, seen, count(seen), report.width)
 
 
-@numba.njit(cache=True)
+@compiled
 def _coordinate_descent(task: Any, stick: Any, pose: Any, joints_m: Any) -> tuple[Any, float]:
     """(pose, S): each parameter in turn, up and down, by smaller and smaller steps."""
     best_pose, trial = pose.copy(), pose.copy()
@@ -149,7 +149,7 @@ def _coordinate_descent(task: Any, stick: Any, pose: Any, joints_m: Any) -> tupl
     return best_pose, best
 
 
-@numba.njit(cache=True)
+@compiled
 def _similarity(task: Any, stick: Any, joints_m: Any) -> float:
     """S of the body with these joints; `stick` gets the breadth that it shows."""
     ends = np.empty((12, 4))

@@ -5,12 +5,12 @@ from itertools import product
 from operator import itemgetter
 from typing import Any, Final, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import POSE_INDEX, POSE_NAMES, Vector, rest_pose
 from common.body.kinematics import ALL_LIMBS, joints
+from common.compiled import compiled
 from common.raster.kernel import match
 from common.rig.camera import Rig
 from integrator.fit.silhouette_pair import Silhouettes, silhouettes_of
@@ -193,7 +193,7 @@ def likelihoods(poses: NDArray[np.float64], wanted: Wanted) -> Vector:
     return found
 
 
-@numba.njit(cache=True)
+@compiled
 def _penalties(body: Any, poses: Any, joints_m: Any, tightness: Any) -> Any:
     """How improbably far the landmarks of each pose are from others, (n,)."""
     found = np.zeros(len(poses))

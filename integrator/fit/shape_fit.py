@@ -3,7 +3,6 @@
 from typing import Any, Final
 
 import msgspec
-import numba
 import numpy as np
 
 from common.body.body import LIMBS, Bdp, Vector
@@ -17,6 +16,7 @@ from common.body.proportions import (
     stature,
     thesis_bdp,
 )
+from common.compiled import compiled
 from common.raster.kernel import match
 from common.rig.camera import Rig
 from integrator.fit.silhouette_pair import silhouettes_of
@@ -106,7 +106,7 @@ def fitted(bdp: Bdp, rig: Rig, samples: tuple[Sample, ...]) -> Bdp:
     return body
 
 
-@numba.njit(cache=True)
+@compiled
 def fit(body: Any, poses: Any, views: Any, seen: Any, seen_px: Any, width: int) -> float:
     """Sum of S over all samples and views.
 

@@ -8,13 +8,13 @@ from typing import Any, Final, NamedTuple
 
 import cv2
 import msgspec
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.bus.message_codec import pack, unpack
 from common.bus.messages import Report
+from common.compiled import compiled
 from common.raster.bounds import box_of, is_cut
 from common.raster.kernel import NEAREST_M, seen_at, view_of
 from common.raster.similarity import Mask
@@ -96,7 +96,7 @@ def _middle_px(mask: Mask) -> tuple[float, float]:
     return float(np.median(columns)) + 0.5, float(np.median(rows)) + 0.5
 
 
-@numba.njit(cache=True)
+@compiled
 def _carve(full: Any, corner_m: Any, view: Any, mask: Any) -> None:
     """Count the views that see each cell covered; -1 where one sees the room there.
 

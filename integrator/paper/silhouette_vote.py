@@ -6,13 +6,13 @@ from functools import partial
 from itertools import product
 from typing import Any, Final
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import POSE_INDEX, REST_DEG, Vector
 from common.body.kinematics import ALL_LIMBS, ARM_LIMBS, LEG_LIMBS
 from common.body.proportions import LOWER_LEG_HEIGHT, UPPER_LEG_HEIGHT
+from common.compiled import compiled
 from common.raster.kernel import draw_limbs, match_over
 from integrator.fit.silhouette_pair import Silhouettes
 
@@ -67,7 +67,7 @@ def moving(poses: NDArray[np.float64]) -> int:
     return int(np.bitwise_or.reduce(_LIMBS_OF[(poses != poses[0]).any(axis=0)], initial=0))
 
 
-@numba.njit(cache=True)
+@compiled
 def products(
     body: Any, poses: Any, limbs: int, views: Any, seen: Any, seen_px: Any, width: int
 ) -> Any:

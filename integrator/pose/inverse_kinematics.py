@@ -3,7 +3,6 @@
 import math
 from typing import Any, Final
 
-import numba
 import numpy as np
 
 from common.body.body import (
@@ -24,6 +23,7 @@ from common.body.proportions import (
     UPPER_ARM_HEIGHT,
     UPPER_LEG_HEIGHT,
 )
+from common.compiled import compiled
 
 PLACES: Final = {
     f"{side}_{name}": 2 * i + (side == "r")
@@ -42,7 +42,7 @@ HIGH_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[1] for name 
 """Limits of each parameter of a pose."""
 
 
-@numba.njit(cache=True)
+@compiled
 def pose_of(joints_m: Any, body: Any, before: Any) -> Any:
     """The pose, (25,), that puts a body's landmarks where joints are, but for their lengths.
 
@@ -78,7 +78,7 @@ def pose_of(joints_m: Any, body: Any, before: Any) -> Any:
     return pose
 
 
-@numba.njit(cache=True)
+@compiled
 def trunk_of(joints_m: Any) -> Any:
     """Axes of the trunk as columns, (3, 3): left, up, front."""
     up, across = np.empty(3), np.empty(3)
@@ -92,7 +92,7 @@ def trunk_of(joints_m: Any) -> Any:
     return trunk
 
 
-@numba.njit(cache=True)
+@compiled
 def _set_limb(
     pose: Any, start: Any, middle: Any, end: Any, length: float, at: int, at_bend: int
 ) -> None:
@@ -110,7 +110,7 @@ def _set_limb(
     bend(pose, at, at_bend, _unit(end - start - length * upper))
 
 
-@numba.njit(cache=True)
+@compiled
 def bend(pose: Any, at: int, at_bend: int, lower: Any) -> None:
     """Set the twist of an upper limb and the bend of the lower one, so that this points as told.
 
@@ -130,7 +130,7 @@ def bend(pose: Any, at: int, at_bend: int, lower: Any) -> None:
         pose[at_bend] = turn if way > 0.0 else min(0.0, turn)
 
 
-@numba.njit(cache=True)
+@compiled
 def turn_deg(lower: Any, pose: Any, at: int) -> float:
     """How far a lower limb is turned against its upper one, about that one's twisted axis."""
     across, along, front = _framed(lower, pose[at], pose[at + 2])
@@ -138,24 +138,24 @@ def turn_deg(lower: Any, pose: Any, at: int) -> float:
     return math.degrees(math.atan2(across * math.sin(twist) + front * math.cos(twist), along))
 
 
-@numba.njit(cache=True)
+@compiled
 def _unit(arrow: Any) -> Any:
     return arrow / max(math.sqrt(arrow[0] ** 2 + arrow[1] ** 2 + arrow[2] ** 2), 1e-9)
 
 
-@numba.njit(cache=True)
+@compiled
 def _cross(a: Any, b: Any) -> Any:
     x = a[1] * b[2] - a[2] * b[1]
     return np.array([x, a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
-@numba.njit(cache=True)
+@compiled
 def cosine(value: float) -> float:
     """The value, were it not for rounding."""
     return min(max(value, -1.0), 1.0)
 
 
-@numba.njit(cache=True)
+@compiled
 def _aim(axis: Any, at: int, before: Any) -> tuple[float, float]:
     """theta_X and theta_Z, degrees, that lead a limb along an axis: of two ways the likelier."""
     x = math.degrees(math.asin(cosine(axis[2])))
@@ -168,7 +168,7 @@ def _aim(axis: Any, at: int, before: Any) -> tuple[float, float]:
     return other
 
 
-@numba.njit(cache=True)
+@compiled
 def _cost(at: int, turn_deg: float, before: Any) -> float:
     """How far a parameter would turn, and how far beyond its limits."""
     low, high = LOW_DEG[at], HIGH_DEG[at]
@@ -178,13 +178,13 @@ def _cost(at: int, turn_deg: float, before: Any) -> float:
     return total
 
 
-@numba.njit(cache=True)
+@compiled
 def apart(one_deg: float, other_deg: float) -> float:
     """How far an angle is beyond another, in [-180, 180)."""
     return (one_deg - other_deg + 180.0) % 360.0 - 180.0
 
 
-@numba.njit(cache=True)
+@compiled
 def _framed(arrow: Any, x_deg: float, z_deg: float) -> tuple[float, float, float]:
     """An arrow of the trunk's axes in those of a limb turned by R_z R_x."""
     a, b = math.radians(z_deg), math.radians(x_deg)

@@ -3,7 +3,6 @@
 import math
 from typing import Any, Final
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,6 +17,7 @@ from common.body.body import (
     Vector,
 )
 from common.body.kinematics import joints
+from common.compiled import compiled
 from integrator.pose.inverse_kinematics import HIGH_DEG, LOW_DEG, apart, bend, cosine, turn_deg
 
 TWIST_DEG: Final = 60.0
@@ -59,7 +59,7 @@ def within(
     return kept, joints_m + joints(body, kept) - joints(body, pose)
 
 
-@numba.njit(cache=True)
+@compiled
 def held(pose: Any, before: Any) -> Any:
     """The pose with every limb where its joints let it be, (25,).
 
@@ -78,7 +78,7 @@ def held(pose: Any, before: Any) -> Any:
     return found
 
 
-@numba.njit(cache=True)
+@compiled
 def _hold(pose: Any, before: Any, at: int, at_bend: int) -> None:
     """Hold one limb, whose lower half keeps its direction where it can."""
     x, y, z = pose[at], pose[at + 1], pose[at + 2]
@@ -91,7 +91,7 @@ def _hold(pose: Any, before: Any, at: int, at_bend: int) -> None:
     pose[at_bend] = min(max(pose[at_bend], LOW_DEG[at_bend]), HIGH_DEG[at_bend])
 
 
-@numba.njit(cache=True)
+@compiled
 def _untwist(pose: Any, at: int, at_bend: int, lower: Any) -> None:
     """Turn a knee back that points too far aside."""
     x, z = math.radians(pose[at]), math.radians(pose[at + 2])
@@ -102,7 +102,7 @@ def _untwist(pose: Any, at: int, at_bend: int, lower: Any) -> None:
         pose[at_bend] = min(0.0, turn_deg(lower, pose, at))
 
 
-@numba.njit(cache=True)
+@compiled
 def _nearest(axis: Any, at: int, before: Any) -> tuple[float, float]:
     """theta_X and theta_Z within their limits that lead a limb along an axis, or near it."""
     straight_deg = math.degrees(math.atan2(-axis[0], axis[1]))
@@ -124,19 +124,19 @@ def _nearest(axis: Any, at: int, before: Any) -> tuple[float, float]:
     return x, z
 
 
-@numba.njit(cache=True)
+@compiled
 def _is_within(angle_deg: float, at: int) -> bool:
     return LOW_DEG[at] <= angle_deg <= HIGH_DEG[at]
 
 
-@numba.njit(cache=True)
+@compiled
 def _into(angle_deg: float, at: int) -> float:
     """The angle in the turn of its limits, or the nearer limit."""
     middle = (LOW_DEG[at] + HIGH_DEG[at]) / 2
     return min(max(middle + apart(angle_deg, middle), LOW_DEG[at]), HIGH_DEG[at])
 
 
-@numba.njit(cache=True)
+@compiled
 def _along(x_deg: float, y_deg: float, z_deg: float, bend_deg: float) -> Any:
     """Where a lower limb points, in the trunk's axes: R_z R_x R_y R_x(bend) of the upward axis."""
     x, y, z, b = (

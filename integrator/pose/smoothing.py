@@ -3,11 +3,11 @@
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
-import numba
 import numpy as np
 from filterpy.common import Q_discrete_white_noise
 
 from common.body.body import Vector
+from common.compiled import compiled
 
 
 class Smoothing(NamedTuple):
@@ -85,7 +85,7 @@ def _stepped(state: State, before: Vector, angles_deg: Vector | None, dt_s: floa
     return state._replace(x=x, P=P)
 
 
-@numba.njit(cache=True)
+@compiled
 def _predicted(x: Any, P: Any, dt_s: float, noise: Any) -> tuple[Any, Any]:
     """What constant speed leads to, (2, n), and its covariance, (2, 2)."""
     ahead, due = x.copy(), P + noise
@@ -96,7 +96,7 @@ def _predicted(x: Any, P: Any, dt_s: float, noise: Any) -> tuple[Any, Any]:
     return ahead, due
 
 
-@numba.njit(cache=True)
+@compiled
 def _correct(x: Any, P: Any, angles_deg: Any, noise: float) -> None:
     """Draw what was predicted, brought to their turn, to what was measured."""
     gain, speed_gain = P[0, 0] / (P[0, 0] + noise), P[1, 0] / (P[0, 0] + noise)

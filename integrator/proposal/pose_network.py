@@ -2,11 +2,11 @@
 
 from typing import Any, Final, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
+from common.compiled import compiled, compiling
 from integrator.proposal.network_weights import JOINTS, Network
 from integrator.proposal.silhouette_window import Floats, Look
 
@@ -47,7 +47,7 @@ def step(
     return memory, Proposal(joints_m, _gate(said[3 * len(JOINTS) :][own]))
 
 
-@numba.njit(cache=True)
+@compiled
 def _remembered(network: Any, memory: Any, windows: Any, beside: Any) -> tuple[Any, Any]:
     """What is remembered now, and what is said."""
     n, own, one = network, len(memory), np.float32(1.0)
@@ -61,7 +61,7 @@ def _remembered(network: Any, memory: Any, windows: Any, beside: Any) -> tuple[A
     return memory, _product(joined, n.say, n.say_bias)
 
 
-@numba.njit(cache=True)
+@compiled
 def _shown(network: Any, windows: Any, beside: Any) -> Any:
     """Components of both windows, 0 of a view that does not see, and what is said beside them."""
     size = len(network.see_bias)
@@ -74,7 +74,7 @@ def _shown(network: Any, windows: Any, beside: Any) -> Any:
     return shown
 
 
-@numba.njit(cache=True)
+@compiled
 def _product(values: Any, weights: Any, bias: Any) -> Any:
     """values (n,) @ weights (n, m) + bias (m,).
 
@@ -100,13 +100,13 @@ def _product(values: Any, weights: Any, bias: Any) -> Any:
     return total
 
 
-@numba.njit(cache=True, inline="always")
+@compiling(inline="always")
 def _whole(half: Any) -> Any:
     """The number that a half stands for."""
     return np.uint32(np.uint32(half) << np.uint32(16)).view(np.float32)
 
 
-@numba.njit(cache=True)
+@compiled
 def _positive(values: Any) -> Any:
     return np.maximum(values, np.float32(0.0))
 

@@ -4,11 +4,11 @@ from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
 import cv2
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
+from common.compiled import compiled
 from common.raster.kernel import NEAREST_M
 from common.rig.camera import Camera, Rig, arrays_of, centre, project, ray
 from integrator.rig.perspective import triangulate
@@ -97,7 +97,7 @@ def look(
     return Look(windows, beside, middle_m, turn, mirrored)
 
 
-@numba.njit(cache=True)
+@compiled
 def _tell(turn: Any, away_m: Any, stature_m: float, out: Any) -> None:
     """That a view sees, where its camera is and its scale, (5,)."""
     far = np.sqrt((away_m * away_m).sum())
@@ -153,7 +153,7 @@ def _standing_m(mask: Mask, camera: Camera) -> Vector:
     return found
 
 
-@numba.njit(cache=True)
+@compiled
 def _middle_px(mask: Any) -> tuple[float, float]:
     """Mean column and row of what is in a mask."""
     area = along = down = 0
@@ -186,7 +186,7 @@ def _cells(mask: Mask, camera: Camera, middle_m: Vector, stature_m: float) -> Fl
     return np.asarray(cells / np.float32(255), np.float32)
 
 
-@numba.njit(cache=True)
+@compiled
 def _warp(at_and_above: Any, size_px: float) -> Any:
     """From samples of the window to the picture, (2, 3), as OpenCV wants it.
 

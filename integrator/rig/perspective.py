@@ -3,11 +3,11 @@
 from typing import Any, Final
 
 import msgspec
-import numba
 import numpy as np
 
 from common.body.body import Bdp, Vector
 from common.bus.messages import Measure, Pixel
+from common.compiled import compiled
 from common.rig.camera import Camera, PaperRig, arrays_of, centre, ray
 
 PARALLEL: Final = 1e-9
@@ -68,7 +68,7 @@ def triangulate(cameras: tuple[Camera, Camera], pixels: tuple[Pixel, Pixel]) -> 
     return middle
 
 
-@numba.njit(cache=True)
+@compiled
 def _meeting(one: Any, first: Any, other: Any, second: Any) -> Any:
     """The middle of the shortest line between two rays, from their starts and directions (3,)."""
     cosine = along = across = 0.0

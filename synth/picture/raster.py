@@ -3,9 +3,9 @@
 import math
 from typing import Any, Final
 
-import numba
 import numpy as np
 
+from common.compiled import compiled, compiling
 from synth.person.people import PATTERNS
 
 AMBIENT: Final = 0.52
@@ -17,7 +17,7 @@ THREADS: Final = 90.0
 HOOPS, BARS, CHECKS, PRINT = (PATTERNS.index(n) for n in ("hoops", "bars", "checks", "print"))
 
 
-@numba.njit(cache=True)
+@compiled
 def skin(vertices: Any, origins: Any, bones: Any, shares: Any, frames: Any, out: Any) -> None:
     """Place the vertices: each follows its two bones in its share.
 
@@ -45,7 +45,7 @@ def skin(vertices: Any, origins: Any, bones: Any, shares: Any, frames: Any, out:
                 out[i, row] += share * (f[0] * x + f[1] * y + f[2] * z + f[3])
 
 
-@numba.njit(cache=True)
+@compiled
 def shade(places: Any, faces: Any, light: Any, normals: Any, out: Any) -> None:
     """Brightness of each vertex under a distant light and the room's scattered light, (v,)."""
     normals[:] = 0.0
@@ -75,7 +75,7 @@ def shade(places: Any, faces: Any, light: Any, normals: Any, out: Any) -> None:
         out[i] = AMBIENT * sky + (1.0 - AMBIENT) * 1.25 * key
 
 
-@numba.njit(cache=True)
+@compiled
 def cover(pixels: Any, faces: Any, mask: Any) -> None:
     """Set every pixel of `mask` (h, w) whose centre lies in a face; pixels (v, 2)."""
     height, width = mask.shape
@@ -103,7 +103,7 @@ def cover(pixels: Any, faces: Any, mask: Any) -> None:
                     mask[row, column] = 1
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiling(error_model="numpy")
 def draw(
     pixels: Any,
     depths: Any,
@@ -170,7 +170,7 @@ def draw(
                     colours[row, column, k] = palette[colour, k] * bright * weave
 
 
-@numba.njit(cache=True)
+@compiled
 def _second(kind: float, pitch: float, x: float, y: float, z: float) -> bool:
     """Whether the pattern shows its second colour at a point of the resting shirt."""
     if kind == HOOPS:
@@ -185,7 +185,7 @@ def _second(kind: float, pitch: float, x: float, y: float, z: float) -> bool:
     return False
 
 
-@numba.njit(cache=True)
+@compiled
 def gather(nearest: Any, colours: Any, scale: int, body: Any, weight: float, own: Any) -> None:
     """Average `scale` x `scale` samples into pixels.
 
@@ -218,7 +218,7 @@ def gather(nearest: Any, colours: Any, scale: int, body: Any, weight: float, own
                 body[row, column, 3] += weight * share * count
 
 
-@numba.njit(cache=True)
+@compiled
 def expose(room: Any, shadow: Any, body: Any, gain: float, grain: Any, out: Any) -> None:
     """The picture: room in its shadow, body over it, gain, sensor noise, 8 bits.
 

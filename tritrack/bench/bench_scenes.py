@@ -4,13 +4,13 @@ from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
 import cv2
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import POSE_INDEX, Vector, rest_pose
 from common.body.kinematics import ALL_LIMBS, FRAME, hang_limbs, limb_frames, place_limbs
 from common.body.proportions import body_vector, thesis_bdp
+from common.compiled import compiled
 from common.raster.bits import Bits, pack_words, unpack_words
 from common.raster.kernel import draw_body, draw_limbs, limb_primitive, score
 from common.raster.row_spans import PRIMITIVE, gain, spans
@@ -79,7 +79,7 @@ def swayed(pose: Vector, random: np.random.Generator) -> Vector:
     return changed
 
 
-@numba.njit(cache=True)
+@compiled
 def match_all(primitives: Any, rests: Any, seen: Any, width: int) -> int:
     """Match every primitive over its rest; a sum of counts, so that nothing is left out."""
     height, total = seen.shape[0], 0
@@ -92,7 +92,7 @@ def match_all(primitives: Any, rests: Any, seen: Any, width: int) -> int:
     return total
 
 
-@numba.njit(cache=True)
+@compiled
 def match_placed(
     limbs: Any, poses: Any, body: Any, view: Any, rests: Any, seen: Any, width: int
 ) -> float:

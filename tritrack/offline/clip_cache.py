@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.atomic_file import replacing
+from common.cache_folder import DIGEST, PACKAGES, ROOT, add
 from common.config import Settings
 from common.video.clip_sources import ClipError, companions_folder, footage_of
 from common.video.clips import find_calibration
@@ -24,12 +25,8 @@ from tritrack.store.runs import poses
 KEPT: Final = ("frame", "angles_deg", "joints_m", "joints_px", "confidence", "status")
 """Arrays of `poses.npz` that recognisers and pictures are made of."""
 
-TRACKERS: Final = ("common", "viewer", "integrator")
-"""Packages whose code and models decide what is tracked; with SHELLS."""
-SHELLS: Final = ("offline/lockstep.py", "offline/frame_pairs.py")
-"""Files of `tritrack` that do."""
-
-LIBRARIES: Final = ("numpy", "opencv-python-headless", "numba")
+DECODER: Final = "opencv-python-headless"
+"""The one library that changes what is tracked and names no compiled code."""
 
 DAMAGE: Final = (
     *(OSError, ValueError, KeyError, EOFError, NotImplementedError, RuntimeError),
@@ -48,16 +45,12 @@ class CachedRun(NamedTuple):
 
 
 def tracker_id() -> str:
-    """A word for the tracker itself: another after any change of its code, models or libraries."""
-    root = Path(__file__).parents[2]
-    files = [root / "tritrack" / name for name in SHELLS]
-    for package in TRACKERS:
-        files += sorted((root / package).rglob("*.py")) + sorted((root / package).rglob("*.npz"))
-    digest = hashlib.sha256()
-    for path in files:
-        _add(digest, path.relative_to(root).as_posix(), path.read_bytes())
-    for name in LIBRARIES:
-        _add(digest, name, version(name).encode())
+    """A word for the tracker itself: another after any change of our code, models or libraries."""
+    digest = hashlib.sha256(DIGEST.encode())
+    for package in PACKAGES:
+        for path in sorted((ROOT / package).rglob("*.npz")):
+            add(digest, path.relative_to(ROOT).as_posix(), path.read_bytes())
+    add(digest, DECODER, version(DECODER).encode())
     return digest.hexdigest()
 
 
@@ -69,11 +62,11 @@ def key_of(settings: Settings, tracker: str) -> str:
     """
     plain = msgspec.structs.replace(settings, clip="", calibration="")
     digest = hashlib.sha256(tracker.encode())
-    _add(digest, "settings", msgspec.json.encode(plain))
-    _add(digest, "clip", Path(settings.clip).resolve().name.encode())
+    add(digest, "settings", msgspec.json.encode(plain))
+    add(digest, "clip", Path(settings.clip).resolve().name.encode())
     for path in _files(settings):
         try:
-            _add(digest, path.name, path.read_bytes())
+            add(digest, path.name, path.read_bytes())
         except OSError as error:
             raise ClipError(f"cannot read {path}: {error.strerror}; check the path") from error
     return digest.hexdigest()[:32]
@@ -127,10 +120,3 @@ def _files(settings: Settings) -> Iterator[Path]:
     calibration = find_calibration(settings, folder)
     notes = folder / "meta.json"
     yield from (path for path in (calibration, notes) if path is not None and path.is_file())
-
-
-def _add(digest: Any, name: str, content: bytes) -> None:
-    """Name and content, each with its length: two files are never taken for one."""
-    for part in (name.encode(), content):
-        digest.update(len(part).to_bytes(8, "little"))
-        digest.update(part)

@@ -5,9 +5,9 @@ from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from common.compiled import compiling
 from viewer.background.image_stack import Floats, Frame, Overlaid, median, overlaid
 
 SENSOR_NOISE: Final = 2.0
@@ -68,7 +68,7 @@ def overlaid_opening(frames: Sequence[Frame]) -> Overlaid:
     return overlaid(np.stack(frames), lights)
 
 
-@njit(cache=True, fastmath=True)
+@compiling(fastmath=True)
 def light_gain(frame: Frame, background: Floats) -> Floats:
     """How much brighter a frame is than the background, per channel, whoever stands in it.
 

@@ -7,9 +7,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from common.compiled import INLINE, KERNEL
 from viewer.background.background import large_regions, light_gain
 from viewer.background.image_stack import CHANGES, LUMA, Floats, Frame, Overlaid
-from viewer.silhouette.difference import INLINE, KERNEL, Bytes
+from viewer.silhouette.difference import Bytes
 
 EDGE_SHARE: Final = 0.45
 """Of an empty opening the contours of what differs later keep less than this share of their

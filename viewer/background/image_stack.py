@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from common.compiled import compiled
 
 Frame = NDArray[np.uint8]
 """A picture at the working size: (H, W, 3), blue green red."""
@@ -36,7 +37,7 @@ def median(pictures: Sequence[Frame] | Floats) -> Floats:
     return _median(np.stack([*pictures]))
 
 
-@njit(cache=True)
+@compiled
 def overlaid(frames: NDArray[np.uint8], lights: Floats) -> Overlaid:
     """Pictures laid over each other.
 
@@ -72,7 +73,7 @@ def overlaid(frames: NDArray[np.uint8], lights: Floats) -> Overlaid:
     return found
 
 
-@njit(cache=True)
+@compiled
 def squares(deviations: Floats) -> Floats:
     """Sums over (n, H, W, 3) deviations of brightness squared and of colour squared, (H, W, 2)."""
     count, height, width = deviations.shape[:3]
@@ -82,7 +83,7 @@ def squares(deviations: Floats) -> Floats:
     return out
 
 
-@njit(cache=True)
+@compiled
 def _median(pictures: Any) -> Floats:
     """The median of pictures (n, H, W, 3)."""
     found = np.empty(pictures.shape[1:], np.float32)
@@ -91,7 +92,7 @@ def _median(pictures: Any) -> Floats:
     return found
 
 
-@njit(cache=True)
+@compiled
 def _middle(ranked: Any, out: Floats) -> None:
     """The medians of columns (n, m), which change places.
 
@@ -107,7 +108,7 @@ def _middle(ranked: Any, out: Floats) -> None:
         out[j] = (np.float32(one[j]) + np.float32(other[j])) / np.float32(2)
 
 
-@njit(cache=True)
+@compiled
 def _change_places(one: Any, other: Any) -> None:
     for j in range(len(one)):
         a, b = one[j], other[j]
@@ -116,7 +117,7 @@ def _change_places(one: Any, other: Any) -> None:
         other[j] = b if less else a
 
 
-@njit(cache=True)
+@compiled
 def _set_mean(even: Floats, out: Floats) -> None:
     """The mean of every column of (n, m)."""
     out[:] = even[0]
@@ -128,7 +129,7 @@ def _set_mean(even: Floats, out: Floats) -> None:
         out[j] /= np.float32(len(even))
 
 
-@njit(cache=True)
+@compiled
 def _set_squares(even: Floats, mean: Floats, out: Floats) -> None:
     """Sums over pixels' columns (n, 3 W) of brightness squared and of colour squared, (W, 2)."""
     out[:] = 0
@@ -143,7 +144,7 @@ def _set_squares(even: Floats, mean: Floats, out: Floats) -> None:
             out[x, 1] += (b * b + g * g + r * r) * np.float32(0.5)
 
 
-@njit(cache=True)
+@compiled
 def _set_moving(even: Floats, middle: Floats, out: NDArray[np.bool_]) -> None:
     """Where the brightness of a row of pixels (3 W,) is not that of another."""
     for x in range(len(out)):

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from typing import Any, Final, NamedTuple
 
 import cv2
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from common.compiled import compiled
 from viewer.background.image_stack import LUMA, Floats, Frame
 
 EDGE_POINTS: Final = 4000
@@ -126,7 +126,7 @@ def _edges(luma: Floats) -> list[Floats]:
     return [np.asarray(picture - wide, np.float32) for picture in blurred]
 
 
-@numba.njit(cache=True)
+@compiled
 def _nearer(edges: Any, steep: Any, due: Any, slopes: Any, shift: Any) -> Any:
     """How much further a picture is to be moved, (2,): a step of reweighted least squares."""
     height, width = edges.shape

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from typing import Any, Final
 
 import msgspec
-import numba
 import numpy as np
 
 from common.body.body import POSE_INDEX, Bdp, Round, rest_pose
@@ -18,6 +17,7 @@ from common.body.proportions import (
     UPPER_ARM_HEIGHT,
     attached,
 )
+from common.compiled import compiled
 from common.raster.bits import count, pack_words
 from common.raster.kernel import match
 from common.raster.similarity import Mask
@@ -69,7 +69,7 @@ def fine_tuned(
     return _tuned(bdp, best), (best[4], best[5])
 
 
-@numba.njit(cache=True)
+@compiled
 def _score(
     values: Any, lengths: Any, pose: Any, view: Any, width: int, seen: Any, seen_px: int
 ) -> float:

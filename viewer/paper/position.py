@@ -2,9 +2,9 @@
 
 from typing import Any, Final
 
-import numba
 import numpy as np
 
+from common.compiled import compiled
 from common.raster.bits import ONES, popcount
 from common.raster.kernel import CENTRE_X, CENTRE_Y, draw_limbs, score
 from viewer.paper.posed_model import Figure
@@ -20,7 +20,7 @@ MOST_PASSES: Final = 3
 """One pass leaves a pixel at shifts of 3, 4, 6 and more (P27)."""
 
 
-@numba.njit(cache=True)
+@compiled
 def extent(bits: Any) -> tuple[int, int, int, int]:
     """Where packed rows have pixels: first row and one past the last, words likewise."""
     top, bottom, begin, end = bits.shape[0], 0, bits.shape[1], 0
@@ -32,7 +32,7 @@ def extent(bits: Any) -> tuple[int, int, int, int]:
     return top, bottom, begin, end
 
 
-@numba.njit(cache=True)
+@compiled
 def shifted_counts(
     model: Any, within: tuple[int, int, int, int], seen: Any, width: int, right: int, down: int
 ) -> tuple[int, int]:
@@ -68,7 +68,7 @@ def shifted_counts(
     return drawn, hit
 
 
-@numba.njit(cache=True)
+@compiled
 def best_shift(
     seen: Any, seen_px: int, width: int, body: Any, pose: Any, view: Any, shifts: Any, passes: int
 ) -> tuple[int, int, float, int]:

@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 
 from common.body.kinematics import ALL_LIMBS, FRAME, hang_limbs, place_limbs
+from common.compiled import compiled
 from common.raster.bits import count, count_both
 from common.raster.kernel import draw_placed, limb_primitive, score
 from common.raster.row_spans import PRIMITIVE, draw, gain, spans, undraw
@@ -28,7 +28,7 @@ class Found(NamedTuple):
     """How often the score was computed; the paper's measure of cost."""
 
 
-@numba.njit(cache=True)
+@compiled
 def window(previous_deg: float, width_deg: int, low_deg: float, high_deg: float) -> tuple[int, int]:
     """Where to search: around the previous angle, pushed inside the joint's range.
 
@@ -41,13 +41,13 @@ def window(previous_deg: float, width_deg: int, low_deg: float, high_deg: float)
     return centre - half, centre + half
 
 
-@numba.njit(cache=True)
+@compiled
 def whole(value: float) -> int:
     """The nearest whole number, halves upwards."""
     return int(np.floor(value + 0.5))
 
 
-@numba.njit(cache=True)
+@compiled
 def narrowed(
     low: int, high: int, left: float, middle: float, right: float
 ) -> tuple[int, int, float, float, float]:
@@ -96,7 +96,7 @@ def tritree(
     return best
 
 
-@numba.njit(cache=True)
+@compiled
 def added(
     frames: Any,
     body: Any,
@@ -130,7 +130,7 @@ def added(
     return drawn, hit
 
 
-@numba.njit(cache=True)
+@compiled
 def search(
     seen: Any,
     seen_px: int,

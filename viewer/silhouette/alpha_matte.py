@@ -5,12 +5,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from common.compiled import INLINE, KERNEL
 from viewer.background.image_stack import Floats, Frame
 from viewer.silhouette.difference import (
     BLUE,
     GREEN,
-    INLINE,
-    KERNEL,
     ONE,
     RED,
     WHITE,

@@ -3,17 +3,13 @@
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from common.compiled import INLINE, KERNEL
 from viewer.background.image_stack import Floats, Frame
 
 Bytes = NDArray[np.uint8]
 Triple = tuple[np.float32, np.float32, np.float32]
-KERNEL: Final = njit(cache=True, fastmath=True, error_model="numpy")
-"""A whole-picture pass; compiled once and kept on disk."""
-INLINE: Final = njit(fastmath=True, error_model="numpy", inline="always")
-"""What a pass does at a pixel; calls that carry arrays would cost more than the work."""
 BLUE, GREEN, RED = np.float32(0.114), np.float32(0.587), np.float32(0.299)
 ONE, WHITE = np.float32(1.0), np.float32(255.0)
 

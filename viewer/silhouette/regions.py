@@ -3,9 +3,9 @@
 from typing import Any, Final
 
 import cv2
-import numba
 import numpy as np
 
+from common.compiled import compiled
 from viewer.silhouette.difference import Bytes
 
 APART_SHARE: Final = 0.2
@@ -52,7 +52,7 @@ def boxes_of(stats: Any) -> Any:
     return boxes
 
 
-@numba.njit(cache=True)
+@compiled
 def same_body(regions: Any, best: int, rows: int) -> Any:
     """Which regions stand over or under the best one, or all but touch it.
 

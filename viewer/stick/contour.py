@@ -3,10 +3,10 @@
 import math
 from typing import Any, Final, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from common.compiled import compiled
 from common.raster.similarity import Mask
 
 CORNER_DISTANCE: Final = 4
@@ -29,7 +29,7 @@ class ArmAngles(NamedTuple):
     """Which point of the curve is the elbow; -1: none is seen, the arm is straight."""
 
 
-@numba.njit(cache=True)
+@compiled
 def outer_runs(mask: Any) -> Any:
     """Where scan lines are inside a silhouette (H, W): how often, and their outermost runs.
 
@@ -50,7 +50,7 @@ def outer_runs(mask: Any) -> Any:
     return found
 
 
-@numba.njit(cache=True)
+@compiled
 def _line(curve: Any) -> tuple[float, float]:
     """The line of least squared distances through a curve: (angle, sum of these squares)."""
     size = len(curve)
@@ -114,13 +114,13 @@ def lower_leg_curves(mask: Mask, top: int, bottom: int) -> tuple[Curve, Curve, l
     return left, right, merged.tolist()
 
 
-@numba.njit(cache=True)
+@compiled
 def turn_deg(one_deg: float, other_deg: float) -> float:
     """The angle between two directions, in [0, 180]."""
     return abs((one_deg - other_deg + 180.0) % 360.0 - 180.0)
 
 
-@numba.njit(cache=True)
+@compiled
 def elbow_corner(curve: Any) -> int:
     """Algorithm 4: the point that parts a curve into two lines of different directions; -1: none.
 

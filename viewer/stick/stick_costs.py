@@ -2,10 +2,10 @@
 
 from typing import Any, Final
 
-import numba
 import numpy as np
 
 from common.body.stick_body import ANGLE, BREADTH, GIRTH, HEAD, RATIO, STATURE, TORSO
+from common.compiled import compiled
 
 (
     TIME,
@@ -35,7 +35,7 @@ STIFF_NECK: Final = 3.0
 """How much more it costs a neck to bend in the plane than an elbow."""
 
 
-@numba.njit(cache=True)
+@compiled
 def limb_cost(pose: Any, expected: Any, limb: int, trust: float, costs: Any) -> float:
     """What a limb's place costs: how far it turned in space since it was expected, and its depth.
 
@@ -51,7 +51,7 @@ def limb_cost(pose: Any, expected: Any, limb: int, trust: float, costs: Any) -> 
     return moved + costs[which] * off / (off + TILTED)
 
 
-@numba.njit(cache=True)
+@compiled
 def bend_cost(pose: Any, upper: int, costs: Any) -> float:
     """What the bend of an elbow or a knee costs, as far as it lies in the plane."""
     bend = np.radians(pose[ANGLE + upper + 2] - pose[ANGLE + upper])
@@ -59,7 +59,7 @@ def bend_cost(pose: Any, upper: int, costs: Any) -> float:
     return share if upper >= 6 else share * pose[BREADTH]
 
 
-@numba.njit(cache=True)
+@compiled
 def cross_cost(ends: Any, pose: Any, costs: Any) -> float:
     """What knees and feet on the wrong sides cost."""
     wrong = 0.0
@@ -68,7 +68,7 @@ def cross_cost(ends: Any, pose: Any, costs: Any) -> float:
     return costs[CROSS] * pose[BREADTH] * wrong / pose[STATURE]
 
 
-@numba.njit(cache=True)
+@compiled
 def pose_cost(pose: Any, ends: Any, expected: Any, trust: float, costs: Any) -> float:
     """What a whole pose costs; `ends` are its segments."""
     wider, taller = pose[BREADTH] - expected[BREADTH], pose[STATURE] / expected[STATURE] - 1.0

@@ -2,11 +2,11 @@
 
 from typing import Any, Final, NamedTuple
 
-import numba
 import numpy as np
 
 from common.body.body import Vector
 from common.body.stick_body import ANGLE, POSE_SIZE, RATIO, place_chain, place_segments
+from common.compiled import compiled
 from common.raster.bits import Bits, count, count_both
 from common.raster.kernel import score
 from common.raster.row_spans import PRIMITIVE
@@ -54,7 +54,7 @@ class Moves(NamedTuple):
     """(POSE_SIZE,): bounds."""
 
 
-@numba.njit(cache=True)
+@compiled
 def worth(task: Any, pose: Any, which: int, ends: Any, bits: Any) -> float:
     """S of some segments less what the pose costs; `ends` and `bits` are overwritten."""
     place_segments(task.lengths, pose, ends)
@@ -64,7 +64,7 @@ def worth(task: Any, pose: Any, which: int, ends: Any, bits: Any) -> float:
     return s - pose_cost(pose, ends, task.expected, task.trust, task.costs)
 
 
-@numba.njit(cache=True)
+@compiled
 def refined(
     task: Any, pose: Any, moves: Any, how_many: int, half: int, stop: int, which: int
 ) -> tuple[float, int]:
@@ -116,7 +116,7 @@ def refined(
     return best, matches
 
 
-@numba.njit(cache=True)
+@compiled
 def _moved(trial: Any, start: Any, moves: Any, k: int, by: float) -> None:
     """Write where a move leads, kept within the bounds."""
     for n in range(POSE_SIZE):
@@ -124,13 +124,13 @@ def _moved(trial: Any, start: Any, moves: Any, k: int, by: float) -> None:
         trial[n] = min(max(at, moves.lows[n]), moves.highs[n])
 
 
-@numba.njit(cache=True)
+@compiled
 def _rows(height: int) -> Any:
     """Room for the row intervals of a part, and for the part."""
     return np.empty(height, np.int32), np.empty(height, np.int32), np.empty(PRIMITIVE)
 
 
-@numba.njit(cache=True)
+@compiled
 def _similar(task: Any, pose: Any, which: int, over: Any, rest_px: int, rest_hit: int) -> float:
     """S of some placed segments over a drawn rest, of which the pixels and the hits are known."""
     rest, scratch, ends, first, last, p = over
@@ -141,7 +141,7 @@ def _similar(task: Any, pose: Any, which: int, over: Any, rest_px: int, rest_hit
     return score(rest_hit + hit, rest_px + drawn, task.seen_px)
 
 
-@numba.njit(cache=True)
+@compiled
 def _limb_of(pose: Any, limb: int, was: Any, n: int, first_deg: float, step_deg: float) -> None:
     """Set a limb to the n-th of the beam's angles and shortenings; n = -1: to what it was."""
     if n < 0:
@@ -151,7 +151,7 @@ def _limb_of(pose: Any, limb: int, was: Any, n: int, first_deg: float, step_deg:
         pose[RATIO + limb] = SHORTENINGS[n % SHORTENINGS.size]
 
 
-@numba.njit(cache=True)
+@compiled
 def _uppers(
     task: Any, pose: Any, was: Any, upper: int, over: Any, low_deg: float, high_deg: float
 ) -> tuple[Any, int]:
@@ -171,7 +171,7 @@ def _uppers(
     return kept, tries + 1
 
 
-@numba.njit(cache=True)
+@compiled
 def beamed(
     task: Any, pose: Any, upper: int, low_deg: float, high_deg: float, bend_deg: float, which: int
 ) -> int:
@@ -222,7 +222,7 @@ def beamed(
     return matches + BEAM * (tries + 1)
 
 
-@numba.njit(cache=True)
+@compiled
 def covered(task: Any, pose: Any, shares: Any) -> None:
     """How much of each limb the rest of the body covers, or is covered by: (10,), written."""
     ends, own, rest = np.empty((12, 4)), np.zeros_like(task.seen), np.zeros_like(task.seen)

@@ -1,0 +1,139 @@
+"""The folder of what is compiled, named by a digest of the sources that it was compiled from."""
+
+import hashlib
+import logging
+import os
+import re
+import shutil
+import stat
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from typing import Any, Final
+
+import numba
+import numpy as np
+
+ROOT: Final = Path(__file__).resolve().parents[1]
+"""Of a checkout, or `site-packages`."""
+PACKAGES: Final = (
+    *("animator", "common", "integrator", "recognizer"),
+    *("synth", "tritrack", "viewer"),
+)
+KEPT: Final = 3
+"""Folders of as many digests stay: of this one and of those that were used last."""
+NAME: Final = re.compile(r"tritrack-[0-9a-f]{32}")
+
+log = logging.getLogger(__name__)
+
+
+def digest_of(root: Path) -> str:
+    """A word for all that decides what is compiled, 32 hexadecimal digits.
+
+    Any change in any of our files changes it: what a function compiles to depends on the functions
+    that it calls and the constants that it reads, wherever they stand. Takes 3 ms.
+
+    Args:
+        root: Folder of PACKAGES.
+    """
+    digest = hashlib.sha256()
+    for version in (sys.version, np.__version__, numba.__version__):
+        add(digest, "version", version.encode())
+    for package in PACKAGES:
+        for path in sorted((root / package).rglob("*.py")):
+            add(digest, path.relative_to(root).as_posix(), path.read_bytes())
+    return digest.hexdigest()[:32]
+
+
+def add(digest: Any, name: str, content: bytes) -> None:
+    """Name and content, each with its length: two files are never taken for one."""
+    for part in (name.encode(), content):
+        digest.update(len(part).to_bytes(8, "little"))
+        digest.update(part)
+
+
+DIGEST: Final = digest_of(ROOT)
+"""Of the sources as this process began: taken on import, before an edit can come between what was
+read of them and this."""
+
+
+@cache
+def compiled_folder() -> Path:
+    """The folder of this process's sources, there and writable; old ones beside it are removed."""
+    folder = first_writable(parents(ROOT, os.environ), f"tritrack-{DIGEST}")
+    os.utime(folder)
+    prune(folder.parent)
+    return folder
+
+
+def parents(root: Path, environ: Mapping[str, str]) -> Iterator[Path]:
+    """Where the folder may lie, best first.
+
+    What numba is told in NUMBA_CACHE_DIR; the checkout; the user's cache folder, for an installed
+    wheel or a checkout that belongs to somebody else.
+    """
+    if environ.get("NUMBA_CACHE_DIR"):
+        yield Path(environ["NUMBA_CACHE_DIR"])
+    if (root / "pyproject.toml").is_file():
+        yield root / ".cache"
+    of_user = environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    if os.path.isabs(of_user):
+        yield Path(of_user) / "tritrack"
+
+
+def first_writable(candidates: Iterable[Path], name: str) -> Path:
+    """The folder of that name in the first place that can be written; made where it is not there.
+
+    Where none can be: in a temporary folder of this user alone, with a warning.
+    """
+    tried = []
+    for parent in candidates:
+        with suppress(OSError):
+            return _made(parent / name)
+        tried.append(str(parent))
+    parent = _private()
+    log.warning("compiled code is kept in %s: cannot write %s", parent, ", ".join(tried))
+    return _made(parent / name)
+
+
+def prune(parent: Path) -> None:
+    """Remove the folders of old digests, all but KEPT that were used last.
+
+    A process that runs on an older one yet does without: it compiles, and makes its folder again.
+    """
+    named = [path for path in parent.iterdir() if NAME.fullmatch(path.name)]
+    for path in sorted(named, key=_used_s, reverse=True)[KEPT:]:
+        shutil.rmtree(path, ignore_errors=True)
+
+
+def _made(folder: Path) -> Path:
+    new = not folder.is_dir()
+    folder.mkdir(parents=True, exist_ok=True)
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise PermissionError(f"cannot write {folder}")
+    if new:
+        log.warning("compiling for the first time, about a minute; kept in %s", folder)
+    return folder
+
+
+def _private() -> Path:
+    """A folder for temporary files that nobody else can have put anything into.
+
+    Compiled code is loaded without a question, so another user's would be a stranger's program.
+    """
+    folder = Path(tempfile.gettempdir()) / f"tritrack-{os.getuid()}"
+    with suppress(FileExistsError):
+        folder.mkdir(mode=0o700)
+    found = folder.lstat()
+    own = found.st_uid == os.getuid() and stat.S_IMODE(found.st_mode) == 0o700
+    return folder if stat.S_ISDIR(found.st_mode) and own else Path(tempfile.mkdtemp())
+
+
+def _used_s(folder: Path) -> float:
+    try:
+        return folder.stat().st_mtime
+    except FileNotFoundError:  # Another process tidies up too.
+        return 0.0

@@ -1,0 +1,83 @@
+"""Compiled functions: numba's decorators, and what they compiled, kept for the next process."""
+
+import hashlib
+import logging
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Final
+
+import numba
+from numba.core.caching import NullCache
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
+
+from common.atomic_file import replacing
+from common.cache_folder import PACKAGES, compiled_folder
+
+log = logging.getLogger(__name__)
+
+
+class KeptOverloads(NullCache):
+    """numba's cache of one function: a file for each signature, in the folder of the sources.
+
+    numba's own is not for us: it looks at a function's own file alone, so a callee that changed in
+    another one goes unnoticed, and two processes that compile two signatures at once give both the
+    same name. A file here is named by all that decides its content; it is whole or not there.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        """Nothing is read or written before the function is called."""
+        self._function = function
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """What was kept for a signature; None where nothing was, or what cannot be read."""
+        target_context.refresh()
+        key = (sig, target_context.codegen().magic_tuple())
+        try:
+            kept, payload = pickle.loads(self._path(key).read_bytes())
+        except (OSError, EOFError, pickle.UnpicklingError):
+            return None
+        return CompileResult._rebuild(target_context, *payload) if kept == key else None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep it, but not what holds addresses of this process; on a full disk do without."""
+        if data.library.has_dynamic_globals:
+            return
+        key = (sig, data.codegen.magic_tuple())
+        path = self._path(key)
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with replacing(path) as new:
+                new.write_bytes(dumps((key, data._reduce())))
+        except OSError as error:
+            log.info("not kept: %s", error)
+
+    def _path(self, key: Any) -> Path:
+        word = hashlib.sha256(repr(key).encode()).hexdigest()[:16]
+        function = self._function
+        return compiled_folder() / f"{function.__module__}.{function.__qualname__}-{word}.nbc"
+
+
+def compiling(**flags: Any) -> Callable[[Callable[..., Any]], Any]:
+    """A decorator: numba's njit with these flags, which keeps what it compiled.
+
+    Functions of a module that runs as the program, or of a test, are compiled anew each time: the
+    next process cannot know them by the name `__main__`, and no digest speaks for them.
+    """
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        dispatcher = numba.njit(**flags)(function)
+        if function.__module__.split(".")[0] in PACKAGES:
+            dispatcher._cache = KeptOverloads(function)
+        return dispatcher
+
+    return decorate
+
+
+compiled: Final = compiling()
+"""A function that computes as Python does; division by zero is an error."""
+KERNEL: Final = compiling(fastmath=True, error_model="numpy")
+"""A whole-picture pass."""
+INLINE: Final = numba.njit(fastmath=True, error_model="numpy", inline="always")
+"""What a pass does at a pixel; calls that carry arrays would cost more than the work."""

@@ -1,0 +1,39 @@
+"""What the commands run by default, compiled once: what `make setup` waits for."""
+
+import tempfile
+import time
+from pathlib import Path
+
+
+def compile_all() -> None:
+    """Track a made-up clip by both cameras and by one, so that no later run need compile.
+
+    A mark in the folder of what is compiled says that this was done: the next time takes no longer
+    than importing numba.
+    """
+    from common.cache_folder import compiled_folder
+
+    mark = compiled_folder() / "all"
+    if mark.exists():
+        return
+    began = time.perf_counter()
+    _run_all()
+    mark.touch()
+    print(f"compiled in {time.perf_counter() - began:.0f} s; the next start loads it")
+
+
+def _run_all() -> None:
+    from common.config import Settings
+    from recognizer.__main__ import model_of, warm_up
+    from tritrack.demo import made_clip
+    from tritrack.offline.lockstep import Decoders, track_clip
+
+    with tempfile.TemporaryDirectory(prefix="tritrack-first-") as folder, Decoders() as decoders:
+        settings = Settings(clip=str(made_clip(Path(folder))))
+        track_clip(settings, decoders)
+        track_clip(settings, decoders, (1,))
+    warm_up(model_of(settings), settings.recognizer.window_frames)
+
+
+if __name__ == "__main__":
+    compile_all()
