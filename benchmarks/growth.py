@@ -25,7 +25,7 @@ from common.body.proportions import LOWER_LEG_HEIGHT, UPPER_LEG_HEIGHT, body_vec
 from common.config import Settings
 from common.raster.bits import count, pack_words
 from common.raster.kernel import draw_body, view_of
-from integrator.paper.silhouette_vote import products
+from integrator.fit.silhouette_pair import products
 from synth.picture.exposure import default_rig
 from synth.write import ClipSet, write_set
 from tritrack.bench.bench import PERFORMER_SEED, machine

@@ -22,7 +22,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
 import numpy as np
-from source_map import Function, Source, arrows, circles, room_of, sources
+from source_map import Function, Source, arrows, circles, pointing, room_of, sources
 
 FLOORS = {"tritrack": 2, "common": 0}
 """Who may import whom: a package those of lower floors; all others stand on floor 1."""
@@ -99,10 +99,7 @@ def floor(path: Path) -> int:
 
 def turning(pairs: Iterable[tuple[str, str]]) -> list[str]:
     """The circles that pairs of names make, each in a line."""
-    graph: dict[str, set[str]] = {}
-    for one, other in pairs:
-        graph.setdefault(one, set()).add(other)
-    return [" - ".join(sorted(circle)) for circle in circles(graph)]
+    return [" - ".join(sorted(circle)) for circle in circles(pointing(pairs))]
 
 
 def said(found: Sequence[str]) -> str:

@@ -6,7 +6,7 @@ import re
 import subprocess
 import tokenize
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -78,7 +78,7 @@ def tracked(root: Path) -> list[Path]:
         ).stdout.split("\0")
         return [root / name for name in listed if name and (root / name).is_file()]
     except (OSError, subprocess.CalledProcessError):
-        made = {".git", ".venv", "runs", "dist", "__pycache__", ".hypothesis"}
+        made = {".git", ".venv", ".cache", "runs", "dist", "__pycache__", ".hypothesis"}
         return [p for p in root.rglob("*") if p.is_file() and not made & set(p.parts)]
 
 
@@ -170,6 +170,14 @@ def arrows(root: Path, found: list[Source]) -> list[tuple[Path, Path]]:
 def room_of(path: Path) -> str:
     """The folder within a package that a file lies in; at the package's top, the file itself."""
     return path.as_posix() if len(path.parts) == 2 else path.parent.as_posix()
+
+
+def pointing(pairs: Iterable[tuple[str, str]]) -> Graph:
+    """What each first of the pairs points to."""
+    graph: dict[str, set[str]] = {}
+    for one, other in pairs:
+        graph.setdefault(one, set()).add(other)
+    return graph
 
 
 def circles(graph: Graph) -> list[set[str]]:

@@ -1,13 +1,12 @@
 """The house rules that a reader relies on: arrows between packages, names, and the list of ids."""
 
-import ast
 import importlib
 import re
-import subprocess
 from collections import Counter
 from pathlib import Path
 
 import pytest
+from source_map import Source, arrows, circles, pointing, room_of, sources, tracked
 
 ROOT = Path(__file__).parents[1]
 BELOW = {
@@ -27,47 +26,66 @@ PLACE = re.compile(r"`([\w/]+\.\w+)(?: \((\w+)\))?`")
 TEST = re.compile(r"`(test_\w+\.py)::(test_\w+)`")
 
 
-def tracked() -> list[Path]:
-    """Files under version control; in an unpacked copy, every file that is no by-product."""
-    try:
-        listed = subprocess.run(
-            ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True, text=True
-        ).stdout.split("\0")
-        return [ROOT / name for name in listed if name and (ROOT / name).is_file()]
-    except (OSError, subprocess.CalledProcessError):
-        made = {".git", ".venv", ".cache", "runs", "dist", "__pycache__", ".hypothesis"}
-        return [p for p in ROOT.rglob("*") if p.is_file() and not made & set(p.parts)]
+SYSTEM = {
+    "layout": "the rules of the house, this file",
+    "system_commands": "every command as a user calls it",
+    "system_live_fallback": "live runs that lose a view: real processes that are killed or frozen",
+    "system_lost_view": "both viewers and the integrator in lock-step, then one of them alone",
+    "system_meeting": "how the processes of a run wait for each other",
+    "system_naming": "from a clip to the name of its posture",
+}
+"""Tests of more than one module; every other file of tests bears its module's name."""
+MOST_FILES = 15
+"""Of a folder: more are a heap, no longer a list."""
 
 
-def imported(path: Path) -> set[str]:
-    """Our packages that a file imports, anywhere in it."""
-    names = set()
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.Import):
-            names |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path} imports relatively"
-            names.add(node.module or "")
-    return {name.split(".")[0] for name in names} & set(BELOW)
+@pytest.fixture(scope="module")
+def found() -> list[Source]:
+    return sources(ROOT)
 
 
-@pytest.mark.parametrize("package", BELOW)
-def test_imports_go_downwards_only(package: str) -> None:
+def test_imports_go_downwards_only(found: list[Source]) -> None:
     """tritrack -> viewer, integrator, recognizer, animator, synth -> common; no arrow across."""
-    files = sorted((ROOT / package).rglob("*.py"))
-    assert files
-    for path in files:
-        assert imported(path) - {package} <= BELOW[package], path
+    assert {each.package for each in found} == set(BELOW)
+    for importer, file in arrows(ROOT, found):
+        above, below = importer.parts[0], file.parts[0]
+        assert below == above or below in BELOW[above], f"{importer} imports {file}"
+
+
+def test_no_imports_turn_in_circles(found: list[Source]) -> None:
+    """Neither of files nor of the folders in a package."""
+    between = arrows(ROOT, found)
+    assert circles(pointing((str(a), str(b)) for a, b in between)) == []
+    rooms = ((room_of(a), room_of(b)) for a, b in between)
+    assert circles(pointing((a, b) for a, b in rooms if a != b)) == []
+
+
+def test_every_folder_is_a_package_that_says_what_it_is(found: list[Source]) -> None:
+    """In the first line of its `__init__.py`, as every file does."""
+    named = {each.folder for each in found if each.path.name == "__init__.py"}
+    assert {each.folder for each in found} == named
+
+
+def test_no_folder_is_a_heap(found: list[Source]) -> None:
+    files = Counter(each.folder for each in found)
+    assert {folder: n for folder, n in files.items() if n > MOST_FILES} == {}
+
+
+def test_a_test_bears_the_name_of_what_it_tests() -> None:
+    paths = [path.relative_to(ROOT) for path in tracked(ROOT) if path.suffix == ".py"]
+    modules = {path.stem for path in paths if path.parts[0] != "tests"}
+    tests = {path.stem.removeprefix("test_") for path in paths if path.stem.startswith("test_")}
+    assert tests - modules == set(SYSTEM)
 
 
 def test_no_file_name_occurs_twice() -> None:
-    names = Counter(path.name for path in tracked() if path.suffix == ".py")
+    names = Counter(path.name for path in tracked(ROOT) if path.suffix == ".py")
     twice = {name for name, times in names.items() if times > 1}
     assert twice <= {"__init__.py", "__main__.py"}
 
 
 def test_every_file_says_what_it_is_in_its_first_line() -> None:
-    for path in tracked():
+    for path in tracked(ROOT):
         if path.suffix == ".py":
             first = path.read_text().split("\n", 1)[0]
             assert re.match(r'r?"""\S', first), path
@@ -93,7 +111,7 @@ def test_nothing_names_one_machine() -> None:
     folders = "|".join(("work", "root", "home", "Users", "mnt"))
     machine = re.compile(rf"(?<![\w.$}}])/(?:{folders})/\w")
     registry = re.compile("index" + "-url|find" + "-links|https?://[^ ]*/simp" + "le\\b")
-    for path in tracked():
+    for path in tracked(ROOT):
         try:
             text = path.read_text()
         except UnicodeDecodeError:

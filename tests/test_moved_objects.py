@@ -5,9 +5,10 @@ from test_background import HEIGHT, WIDTH, passer_by, room, shot, walker
 
 from common.config import SilhouetteSettings
 from viewer.background.background import Background, learn
-from viewer.background.moved_objects import AT_REST_S, Patch, patched, patches_of
+from viewer.background.moved_objects import AT_REST_S, Patch, patches_of
 from viewer.background.occluded_background import learn_uncovered
 from viewer.silhouette import silhouette
+from viewer.silhouette.silhouette import patched
 
 FPS, SPACING, FRAMES = 10.0, 10, 40
 CHAIR = (slice(60, 90), slice(20, 40))

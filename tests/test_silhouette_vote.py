@@ -13,8 +13,8 @@ from common.raster.bits import count, pack_words
 from common.raster.kernel import draw_body, view_of
 from common.raster.similarity import Mask, similarity
 from common.rig.camera import paper_rig
-from integrator.fit.silhouette_pair import silhouettes_of
-from integrator.paper.silhouette_vote import moving, products, settled, turned
+from integrator.fit.silhouette_pair import products, silhouettes_of
+from integrator.paper.silhouette_vote import moving, settled, turned
 
 BODY = body_vector(thesis_bdp(1.75))
 UPRIGHT_M = 0.95

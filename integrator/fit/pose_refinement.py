@@ -13,9 +13,8 @@ from common.body.kinematics import ALL_LIMBS, joints
 from common.compiled import compiled
 from common.raster.kernel import match
 from common.rig.camera import Rig
-from integrator.fit.silhouette_pair import Silhouettes, silhouettes_of
+from integrator.fit.silhouette_pair import Silhouettes, products, silhouettes_of
 from integrator.pairing import Seen
-from integrator.paper.silhouette_vote import products
 from integrator.pose.inverse_kinematics import HIGH_DEG, LOW_DEG
 
 POOR: Final = 0.6

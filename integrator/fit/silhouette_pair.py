@@ -1,14 +1,16 @@
-"""Both views' silhouettes of one instant, as the kernel takes them."""
+"""Both views' silhouettes of one instant, and how well poses fit both: S1 S2."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
+from common.body.kinematics import ALL_LIMBS
 from common.bus.messages import Report
+from common.compiled import compiled
 from common.raster.bits import Bits, count, words_of_rows
-from common.raster.kernel import view_of
+from common.raster.kernel import draw_limbs, match_over, view_of
 from common.rig.camera import Rig
 
 
@@ -46,3 +48,29 @@ def silhouettes_of(rig: Rig, seen: tuple[Report, Report]) -> Silhouettes:
 def packed(report: Report) -> Bits:
     """The silhouette of a report, (H, words)."""
     return words_of_rows(report.silhouette, report.width, report.height)
+
+
+@compiled
+def products(
+    body: Any, poses: Any, limbs: int, views: Any, seen: Any, seen_px: Any, width: int
+) -> Any:
+    """The product of S over the views, of each pose, (n,).
+
+    Args:
+        body: Body vector.
+        poses: (n, 25).
+        limbs: Those in which the poses differ, as bits; the rest is drawn once.
+        views: (cameras, VIEW), true perspective.
+        seen: The silhouettes, packed (cameras, H, words).
+        seen_px: Their numbers of pixels, (cameras,).
+        width: Of the pictures, pixels.
+    """
+    found = np.ones(poses.shape[0])
+    for n in range(views.shape[0]):
+        rest = np.zeros_like(seen[n])
+        draw_limbs(body, poses[0], views[n], ALL_LIMBS & ~limbs, width, rest)
+        for i in range(poses.shape[0]):
+            found[i] *= match_over(
+                rest, body, poses[i], views[n], limbs, width, seen[n], seen_px[n]
+            )
+    return found

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from functools import partial
 from itertools import product
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +12,7 @@ from numpy.typing import NDArray
 from common.body.body import POSE_INDEX, REST_DEG, Vector
 from common.body.kinematics import ALL_LIMBS, ARM_LIMBS, LEG_LIMBS
 from common.body.proportions import LOWER_LEG_HEIGHT, UPPER_LEG_HEIGHT
-from common.compiled import compiled
-from common.raster.kernel import draw_limbs, match_over
-from integrator.fit.silhouette_pair import Silhouettes
+from integrator.fit.silhouette_pair import Silhouettes, products
 
 Doubt = Callable[[Vector, Vector], NDArray[np.float64]]
 """From the pose so far and that of the frame before: it, and others that may be meant, (n, 25)."""
@@ -65,32 +63,6 @@ _LIMBS_OF: Final = np.array(
 def moving(poses: NDArray[np.float64]) -> int:
     """The limbs, as bits, in which some poses differ from the first."""
     return int(np.bitwise_or.reduce(_LIMBS_OF[(poses != poses[0]).any(axis=0)], initial=0))
-
-
-@compiled
-def products(
-    body: Any, poses: Any, limbs: int, views: Any, seen: Any, seen_px: Any, width: int
-) -> Any:
-    """The product of S over the views, of each pose, (n,).
-
-    Args:
-        body: Body vector.
-        poses: (n, 25).
-        limbs: Those in which the poses differ, as bits; the rest is drawn once.
-        views: (cameras, VIEW), true perspective.
-        seen: The silhouettes, packed (cameras, H, words).
-        seen_px: Their numbers of pixels, (cameras,).
-        width: Of the pictures, pixels.
-    """
-    found = np.ones(poses.shape[0])
-    for n in range(views.shape[0]):
-        rest = np.zeros_like(seen[n])
-        draw_limbs(body, poses[0], views[n], ALL_LIMBS & ~limbs, width, rest)
-        for i in range(poses.shape[0]):
-            found[i] *= match_over(
-                rest, body, poses[i], views[n], limbs, width, seen[n], seen_px[n]
-            )
-    return found
 
 
 def settled(

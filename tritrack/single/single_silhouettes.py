@@ -16,13 +16,13 @@ from common.video.clip_sources import ClipError
 from common.video.frame_cache import Reader
 from viewer.background.background_source import Scene
 from viewer.background.image_stack import LUMA
-from viewer.background.moved_objects import patched
 from viewer.background.stabilization import aligned as laid
 from viewer.background.stabilization import alignment_of as place_of
 from viewer.background.stabilization import unaligned as back
 from viewer.capture import recorded
 from viewer.silhouette import silhouette, target_selection
 from viewer.silhouette.cast_shadow import without_cast
+from viewer.silhouette.silhouette import patched
 
 MOST_FRAMES: Final = 50_000
 """Outlines are kept until the standing height is known, some 10 kB each."""

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from common.compiled import INLINE, KERNEL
 from viewer.background.background import large_regions, light_gain
-from viewer.background.image_stack import CHANGES, LUMA, Floats, Frame, Overlaid
-from viewer.silhouette.difference import Bytes
+from viewer.background.image_stack import CHANGES, LUMA, Bytes, Floats, Frame, Overlaid
 
 EDGE_SHARE: Final = 0.45
 """Of an empty opening the contours of what differs later keep less than this share of their

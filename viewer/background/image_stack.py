@@ -11,6 +11,7 @@ from common.compiled import compiled
 Frame = NDArray[np.uint8]
 """A picture at the working size: (H, W, 3), blue green red."""
 Floats = NDArray[np.float32]
+Bytes = NDArray[np.uint8]
 
 LUMA: Final = np.array([0.114, 0.587, 0.299], np.float32)
 """Shares of blue, green and red in brightness (ITU-R BT.601)."""

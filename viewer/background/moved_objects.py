@@ -10,7 +10,6 @@ import numpy as np
 from common.raster.similarity import Mask
 from viewer.background.background import Background, even_light, spread_of
 from viewer.background.image_stack import CHANGES, LUMA, Floats, Frame, median, squares
-from viewer.silhouette.silhouette import State
 
 AT_REST_S: Final = 10.0
 """Nobody who stands holds still for so long, edges and all; who lies still for longer is lost until
@@ -75,14 +74,6 @@ def patches_of(
                 found.append(Patch(frame, where, shown[where], spread[where]))
         guessed &= ~other
     return sorted(found, key=lambda patch: patch.frame)
-
-
-def patched(state: State, patch: Patch) -> State:
-    """Silhouettes in a background with a patch on it."""
-    background, weight = state.room.copy(), state.weight.copy()
-    background[patch.where] = patch.centre
-    weight[patch.where] = np.float32(1) / patch.spread**2
-    return state._replace(room=background, weight=weight)
 
 
 def _smooth(mask: Mask) -> Mask:

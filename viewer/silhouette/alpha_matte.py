@@ -6,14 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import INLINE, KERNEL
-from viewer.background.image_stack import Floats, Frame
+from viewer.background.image_stack import Bytes, Floats, Frame
 from viewer.silhouette.difference import (
     BLUE,
     GREEN,
     ONE,
     RED,
     WHITE,
-    Bytes,
     Triple,
     brightness,
     colour,

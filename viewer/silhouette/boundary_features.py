@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import KERNEL
-from viewer.background.image_stack import Floats, Frame
+from viewer.background.image_stack import Bytes, Floats, Frame
 from viewer.silhouette.alpha_matte import FACTS, SHARES, covered, sides_of
-from viewer.silhouette.difference import Bytes
 
 ROWS: Final = 240
 """Of a taller picture every other pixel, or every third, is a neighbour, so that as much is seen

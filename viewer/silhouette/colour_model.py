@@ -5,8 +5,8 @@ from typing import Final
 import numpy as np
 
 from common.compiled import KERNEL
-from viewer.background.image_stack import Floats, Frame
-from viewer.silhouette.difference import Bytes, light_of, shade_of, unshaded
+from viewer.background.image_stack import Bytes, Floats, Frame
+from viewer.silhouette.difference import light_of, shade_of, unshaded
 
 SHADES: Final = 2048
 """8 steps of brightness times 16 x 16 of blue and red against it."""

@@ -3,12 +3,10 @@
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from common.compiled import INLINE, KERNEL
-from viewer.background.image_stack import Floats, Frame
+from viewer.background.image_stack import Bytes, Floats, Frame
 
-Bytes = NDArray[np.uint8]
 Triple = tuple[np.float32, np.float32, np.float32]
 BLUE, GREEN, RED = np.float32(0.114), np.float32(0.587), np.float32(0.299)
 ONE, WHITE = np.float32(1.0), np.float32(255.0)

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import KERNEL
-from viewer.background.image_stack import Floats
+from viewer.background.image_stack import Bytes, Floats
 from viewer.silhouette.boundary_features import CLUES
-from viewer.silhouette.difference import Bytes
 
 SHIPPED: Final = Path(__file__).with_name("silhouettes.npz")
 """Learnt from synthetic people; docs/models.md says of whom."""

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from common.compiled import compiled
-from viewer.silhouette.difference import Bytes
+from viewer.background.image_stack import Bytes
 
 APART_SHARE: Final = 0.2
 """Regions this share of the picture's height apart can still be one body."""

@@ -11,10 +11,11 @@ from common.config import SilhouetteSettings
 from common.raster.bounds import box_of, is_cut
 from common.raster.similarity import Mask
 from viewer.background.background import Background, learn, light_gain
-from viewer.background.image_stack import Floats, Frame
+from viewer.background.image_stack import Bytes, Floats, Frame
+from viewer.background.moved_objects import Patch
 from viewer.silhouette.boundary_features import clues_of, counts_3x3
 from viewer.silhouette.colour_model import counted, familiar, fresh
-from viewer.silhouette.difference import Bytes, followed, label, seeds
+from viewer.silhouette.difference import followed, label, seeds
 from viewer.silhouette.pixel_classifier import judged, redraw, shipped
 from viewer.silhouette.regions import chosen
 
@@ -123,6 +124,14 @@ def guess(state: State, frame: Frame, near_px: tuple[float, float] | None) -> Gu
     return Guess(
         gain, cells, cell, blobs, mask, *clues_of(frame, room, weight, gain, known, mask, doubt)
     )
+
+
+def patched(state: State, patch: Patch) -> State:
+    """Silhouettes in a background with a patch on it."""
+    background, weight = state.room.copy(), state.weight.copy()
+    background[patch.where] = patch.centre
+    weight[patch.where] = np.float32(1) / patch.spread**2
+    return state._replace(room=background, weight=weight)
 
 
 def learn_colours(state: State, mask: Bytes, frame: Frame, first: Guess) -> State:

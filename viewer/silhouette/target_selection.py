@@ -8,10 +8,10 @@ import numpy as np
 from common.compiled import KERNEL
 from common.raster.similarity import Mask
 from viewer.background.background import light_gain
-from viewer.background.image_stack import CHANGES, Floats, Frame
+from viewer.background.image_stack import CHANGES, Bytes, Floats, Frame
 from viewer.silhouette import silhouette
 from viewer.silhouette.colour_model import familiar
-from viewer.silhouette.difference import Bytes, light_of, shade_of
+from viewer.silhouette.difference import light_of, shade_of
 from viewer.silhouette.regions import boxes_of, same_body
 
 SCRAP: Final = 0.03
