@@ -10,8 +10,8 @@ from common.body.proportions import body_vector, thesis_bdp
 from common.bus.message_codec import pack, unpack
 from common.bus.messages import Report, ViewerNumber
 from common.config import Settings
-from common.raster.bounds import box_of
 from common.raster.kernel import draw_body, view_of
+from common.raster.silhouette_report import silhouette_report
 from common.rig.camera import Rig, paper_rig
 from integrator import merge
 from integrator.fit import pose_refinement, visual_hull
@@ -60,14 +60,5 @@ def _report(viewer: ViewerNumber, index: int, size: tuple[int, int], rig: Rig) -
     pose[POSE_INDEX["y"]] = 1.0
     view = view_of(rig.cameras[viewer - 1])
     mask = draw_body(body_vector(thesis_bdp(1.75)), pose, view, size)
-    return Report(
-        frame=index,
-        captured_s=float(index),
-        clock_s=float(index),
-        viewer=viewer,
-        width=width,
-        height=height,
-        silhouette=pack(mask),
-        box=box_of(mask),
-        root_px=(width / 2, height / 2),
-    )
+    report = silhouette_report(viewer, mask, index, float(index))
+    return msgspec.structs.replace(report, root_px=(width / 2, height / 2))

@@ -2,15 +2,15 @@
 
 import math
 
+import msgspec
 import numpy as np
 from posing import posed
 
 from common.body.body import Vector
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.message_codec import pack
 from common.bus.messages import Report, ViewerNumber
-from common.raster.bounds import box_of, is_cut
 from common.raster.kernel import draw_body, view_of
+from common.raster.silhouette_report import silhouette_report
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig, as_matrix, as_row
 
@@ -65,17 +65,4 @@ def outlines(pose: Vector) -> tuple[Mask, Mask]:
 
 def told(viewer: ViewerNumber, mask: Mask) -> Report:
     """A report of an outline."""
-    box = box_of(mask)
-    return Report(
-        frame=0,
-        captured_s=0.0,
-        clock_s=0.0,
-        viewer=viewer,
-        width=mask.shape[1],
-        height=mask.shape[0],
-        silhouette=pack(mask),
-        box=box,
-        area_px=int(mask.sum()),
-        cut=is_cut(box, mask.shape),
-        root_px=(80.0, 120.0),
-    )
+    return msgspec.structs.replace(silhouette_report(viewer, mask), root_px=(80.0, 120.0))

@@ -1,12 +1,13 @@
 """Where a silhouette stands in its picture, held against its pixels."""
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from common.bus.messages import Box
-from common.raster.bounds import box_of, is_cut
+from common.raster.bounds import box_of, centroid_px, is_cut
 
 
 def test_a_box_is_the_boundary_of_what_was_drawn() -> None:
@@ -36,3 +37,10 @@ def test_a_mask_of_bytes_is_bounded_as_one_of_truths(inside: int) -> None:
     mask = np.zeros((8, 9), np.uint8)
     mask[2:5, 3:7] = inside
     assert box_of(mask) == box_of(mask > 0)
+
+
+def test_the_centroid_is_opencvs() -> None:
+    mask = np.random.default_rng(5).random((24, 32)) < 0.2
+    moments = cv2.moments(mask.view(np.uint8), binaryImage=True)
+    middle = (moments["m10"] / moments["m00"] + 0.5, moments["m01"] / moments["m00"] + 0.5)
+    assert centroid_px(mask) == middle

@@ -7,16 +7,14 @@ of it, and the largest and tallest. Shadows, glare and moved furniture are other
 from typing import Any, Final, NamedTuple
 
 import cv2
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from common.bus.message_codec import pack, unpack
-from common.bus.messages import Report
+from common.bus.message_codec import unpack
 from common.compiled import compiled
-from common.raster.bounds import box_of, is_cut
 from common.raster.kernel import NEAREST_M, seen_at, view_of
+from common.raster.silhouette_report import with_silhouette
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig, project
 from integrator.pairing import Pair
@@ -60,7 +58,7 @@ def cleaned(rig: Rig, pair: Pair) -> Cleaned:
         for after, before in zip(kept, masks, strict=True)
     ):
         return Cleaned(pair, False)
-    return Cleaned(Pair(_with_silhouette(first, kept[0]), _with_silhouette(second, kept[1])), True)
+    return Cleaned(Pair(with_silhouette(first, kept[0]), with_silhouette(second, kept[1])), True)
 
 
 def one_piece(rig: Rig, masks: tuple[Mask, Mask]) -> tuple[Mask, Mask] | None:
@@ -70,7 +68,7 @@ def one_piece(rig: Rig, masks: tuple[Mask, Mask]) -> tuple[Mask, Mask] | None:
         rig: Two cameras.
         masks: Not empty.
     """
-    first, second = (_middle_px(mask) for mask in masks)
+    first, second = (_median_px(mask) for mask in masks)
     middle_m = triangulate((rig.cameras[0], rig.cameras[1]), (first, second))
     if not np.isfinite(middle_m).all():
         return None
@@ -91,7 +89,7 @@ def one_piece(rig: Rig, masks: tuple[Mask, Mask]) -> tuple[Mask, Mask] | None:
     return (kept[0], kept[1]) if kept[0].any() and kept[1].any() else None
 
 
-def _middle_px(mask: Mask) -> tuple[float, float]:
+def _median_px(mask: Mask) -> tuple[float, float]:
     rows, columns = np.nonzero(mask)
     return float(np.median(columns)) + 0.5, float(np.median(rows)) + 0.5
 
@@ -143,16 +141,3 @@ def _shown(places_m: NDArray[np.float64], camera: Camera, mask: Mask) -> Mask:
     reach = int(np.ceil(CELL_M * px_per_m(camera, places_m.mean(axis=0))))
     around = np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
     return np.asarray(cv2.dilate(dots, around) > 0)
-
-
-def _with_silhouette(report: Report, mask: Mask) -> Report:
-    """The report with another silhouette."""
-    box = box_of(mask)
-    assert box is not None
-    return msgspec.structs.replace(
-        report,
-        silhouette=pack(mask),
-        box=box,
-        area_px=int(mask.sum()),
-        cut=is_cut(box, mask.shape),
-    )

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.compiled import compiled
+from common.raster.bounds import centroid_px
 from common.raster.kernel import NEAREST_M
 from common.rig.camera import Camera, Rig, arrays_of, centre, project, ray
 from integrator.rig.perspective import triangulate
@@ -126,7 +127,7 @@ def _middle_m(masks: tuple[Mask | None, Mask | None], rig: Rig) -> Vector | None
     first, second = masks
     if first is not None and second is not None:
         found = triangulate(
-            (rig.cameras[0], rig.cameras[1]), (_middle_px(first), _middle_px(second))
+            (rig.cameras[0], rig.cameras[1]), (centroid_px(first), centroid_px(second))
         )
         if not all(_depth_m(camera, found) >= NEAREST_M for camera in rig.cameras):
             return None
@@ -140,7 +141,7 @@ def _middle_m(masks: tuple[Mask | None, Mask | None], rig: Rig) -> Vector | None
 
 def _standing_m(mask: Mask, camera: Camera) -> Vector:
     """The middle of a silhouette whose lowest row is on the floor."""
-    column, row = _middle_px(mask)
+    column, row = centroid_px(mask)
     lowest = float(np.flatnonzero(mask.any(axis=1))[-1] + 1)
     eye = centre(camera)
     down, middle = ray(camera, (column, lowest)), ray(camera, (column, row))
@@ -151,20 +152,6 @@ def _standing_m(mask: Mask, camera: Camera) -> Vector:
         max(far_m, NEAR_M) / max(float(np.hypot(middle[0], middle[2])), 1e-9)
     )
     return found
-
-
-@compiled
-def _middle_px(mask: Any) -> tuple[float, float]:
-    """Mean column and row of what is in a mask."""
-    area = along = down = 0
-    for y in range(mask.shape[0]):
-        here = 0
-        for x in range(mask.shape[1]):
-            here += mask[y, x]
-            along += x * mask[y, x]
-        area += here
-        down += y * here
-    return along / area + 0.5, down / area + 0.5
 
 
 def _depth_m(camera: Camera, place_m: Vector) -> float:
