@@ -47,7 +47,7 @@ class Outcome(NamedTuple):
     """Log-likelihood of a frame of what was named, on average."""
     fit_of_others: float = math.nan
     """The same of the best posture but the truth: what would be named had nobody taught it."""
-    taught: bool = True
+    known: bool = True
     """The truth has a model."""
 
 
@@ -94,7 +94,7 @@ def named_by(model: PostureModel, tested_on: Sequence[Recording]) -> list[Outcom
 
 
 def _outcome(model: PostureModel, one: Recording) -> Outcome:
-    seen, taught = with_pose(one.rows), one.posture in model.names
+    seen, known = with_pose(one.rows), one.posture in model.names
     named, margin, fit, other = "", math.nan, math.nan, math.nan
     if len(seen):
         fits = {name: score / len(seen) for name, score in scored(model, seen).items()}
@@ -102,7 +102,7 @@ def _outcome(model: PostureModel, one: Recording) -> Outcome:
         fit, own = fits[named], fits.pop(one.posture, math.nan)
         other = max(fits.values(), default=math.nan)
         margin = own - other
-    return Outcome(one.posture, named, one.performer, one.clip, margin, fit, other, taught)
+    return Outcome(one.posture, named, one.performer, one.clip, margin, fit, other, known)
 
 
 def folds(recordings: Sequence[Recording]) -> Iterator[Fold]:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from viewer.background.image_stack import Frame
 from viewer.silhouette.alpha_matte import NOISE, SHARES
-from viewer.silhouette.boundary_features import CLUES, CROSS, clues_of
+from viewer.silhouette.boundary_features import CROSS, FEATURES, features_of
 from viewer.silhouette.colour_model import SHADES
 
 BODY, ROOM = (40.0, 60.0, 160.0), (150.0, 150.0, 150.0)
@@ -37,8 +37,8 @@ def clues(share: float, shade: float, doubted: tuple[slice, slice] | None = None
     room = np.full((ROWS, COLUMNS, 3), ROOM, np.float32)
     weight = np.full((ROWS, COLUMNS, 2), 0.25, np.float32)
     known, gain = np.zeros(SHADES, np.float32), np.ones(3, np.float32)
-    places, found = clues_of(mixed(share, shade), room, weight, gain, known, mask, doubt)
-    out = np.full((ROWS, COLUMNS, CLUES), np.nan, np.float32)
+    places, found = features_of(mixed(share, shade), room, weight, gain, known, mask, doubt)
+    out = np.full((ROWS, COLUMNS, FEATURES), np.nan, np.float32)
     out[places[:, 0], places[:, 1]] = found
     return out
 
@@ -80,5 +80,5 @@ def test_of_nobody_nothing_is_looked_at() -> None:
     nobody, room = np.zeros((ROWS, COLUMNS), np.uint8), np.full((ROWS, COLUMNS, 3), 150, np.float32)
     weight, known = np.ones((ROWS, COLUMNS, 2), np.float32), np.zeros(SHADES, np.float32)
     frame, gain = mixed(0.5, 1.0), np.ones(3, np.float32)
-    places, found = clues_of(frame, room, weight, gain, known, nobody, nobody)
-    assert (places.shape, found.shape) == ((0, 2), (0, CLUES))
+    places, found = features_of(frame, room, weight, gain, known, nobody, nobody)
+    assert (places.shape, found.shape) == ((0, 2), (0, FEATURES))

@@ -9,7 +9,7 @@ from acting import perform, performances, standing
 from recognizer.events import Event, init, step
 from recognizer.path_network import CHANGE, ENTER, EXIT, LAST, advance
 from recognizer.postures import DensityModel
-from recognizer.training.learning import taught, train
+from recognizer.training.learning import extended, train
 
 SHOWN = ("squat", "walk_toward", "raise_right_lateral", "kick_right_forward")
 """Some of the fifteen: a network of few is as good an example, and faster."""
@@ -109,7 +109,7 @@ def test_a_posture_that_is_taught_later_is_told_too() -> None:
     """Three performances, added to a model that is there."""
     known = learnt("squat", "walk_toward", "raise_right_lateral")
     kicks = [begun(rows) for rows in performances(range(3))["kick_right_forward"]]
-    model = taught(known, {"kick_right_forward": kicks})
+    model = extended(known, {"kick_right_forward": kicks})
     assert isinstance(model, DensityModel)
     events = told(model, still(30), perform("kick_right_forward", performer=9), still(30))
     assert [event.name for event, _ in events] == ["kick_right_forward"]

@@ -8,7 +8,7 @@ from acting import perform, performances
 
 from recognizer.model_file import load, save
 from recognizer.postures import PER_POSTURE, POSTURES, PostureModel, Recognizer, name
-from recognizer.training.learning import taught, train
+from recognizer.training.learning import extended, train
 
 KNOWN = [posture for posture in POSTURES if posture not in ("raise_right_lateral", "squat")]
 
@@ -27,7 +27,7 @@ def takes(posture: str, count: int, performer: int = 7) -> list[np.ndarray]:
 
 def test_three_takes_of_one_person_teach_a_posture(known: PostureModel) -> None:
     """Their further takes get the new name; the other postures keep theirs."""
-    model = taught(known, {"raise_right_lateral": takes("raise_right_lateral", 3)})
+    model = extended(known, {"raise_right_lateral": takes("raise_right_lateral", 3)})
     assert model.names == (*KNOWN, "raise_right_lateral")
     for take in (5, 6, 7, 8):
         assert name(model, perform("raise_right_lateral", 7, take)) == "raise_right_lateral"
@@ -36,7 +36,7 @@ def test_three_takes_of_one_person_teach_a_posture(known: PostureModel) -> None:
 
 
 def test_what_was_known_stays_bit_for_bit(known: PostureModel) -> None:
-    model = taught(known, {"squat": takes("squat", 3)}, ["user"])
+    model = extended(known, {"squat": takes("squat", 3)}, ["user"])
     for array in PER_POSTURE:
         if hasattr(known, array):
             assert np.array_equal(getattr(model, array)[: len(KNOWN)], getattr(known, array))
@@ -46,14 +46,14 @@ def test_what_was_known_stays_bit_for_bit(known: PostureModel) -> None:
 
 def test_a_posture_that_is_taught_again_is_replaced_in_its_place(known: PostureModel) -> None:
     """From now on a user's squat is what this model calls a walk in place."""
-    model = taught(known, {"walk_in_place": takes("squat", 3)})
+    model = extended(known, {"walk_in_place": takes("squat", 3)})
     assert model.names == known.names
     assert model.card.sequences["walk_in_place"] == 3
     assert name(model, perform("squat", 7, 5)) == "walk_in_place"
 
 
 def test_a_taught_model_is_saved_as_any_other(known: PostureModel, tmp_path: Path) -> None:
-    model = taught(known, {"squat": takes("squat", 3)})
+    model = extended(known, {"squat": takes("squat", 3)})
     save(model, tmp_path / "m.npz")
     again = load(tmp_path / "m.npz", [*KNOWN, "squat"])
     assert again.card == model.card
@@ -61,4 +61,4 @@ def test_a_taught_model_is_saved_as_any_other(known: PostureModel, tmp_path: Pat
 
 def test_takes_in_which_nobody_moved_teach_nothing(known: PostureModel) -> None:
     with pytest.raises(ValueError, match="wave: none of 3 sequences has 5 frames with a pose"):
-        taught(known, {"wave": [np.full((40, 20), np.nan)] * 3})
+        extended(known, {"wave": [np.full((40, 20), np.nan)] * 3})

@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from small_network import network
 
-from integrator.proposal.network_weights import halves, load, save, wholes
+from integrator.proposal.network_weights import from_bfloat16, load, save, to_bfloat16
 from integrator.proposal.silhouette_window import CELLS
 
 
 @given(arrays(np.float32, 40, elements=st.floats(-(2.0**99), 2.0**99, width=32)))
 def test_a_half_is_off_by_a_256th_at_most(values: np.ndarray) -> None:
     """Seven digits behind the leading one, the last of them rounded (IEEE 754 single, cut)."""
-    off = np.abs(wholes(halves(values)) - values)
+    off = np.abs(from_bfloat16(to_bfloat16(values)) - values)
     assert (off <= np.abs(values) / 256 + 1e-38).all()
 
 
@@ -31,9 +31,9 @@ def test_a_network_survives_its_file(tmp_path: Path) -> None:
 def test_a_damaged_file_is_refused(tmp_path: Path, spoilt: str) -> None:
     path, made = tmp_path / "n.npz", network()
     if spoilt == "misfit":
-        made = made._replace(join=np.zeros((7, 4), np.uint16))
+        made = made._replace(fc3=np.zeros((7, 4), np.uint16))
     if spoilt == "endless":
-        made.say[0, 0] = halves(np.array([np.inf], np.float32))[0]
+        made.out[0, 0] = to_bfloat16(np.array([np.inf], np.float32))[0]
     save(made, path)
     if spoilt == "cut":
         path.write_bytes(path.read_bytes()[:-300])

@@ -5,36 +5,36 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from viewer.silhouette.boundary_features import CLUES
+from viewer.silhouette.boundary_features import FEATURES
 from viewer.silhouette.pixel_classifier import (
     SHAPES,
     SHIPPED,
-    Network,
     NetworkError,
-    judged,
+    PixelClassifier,
     load,
+    log_odds,
     save,
     shipped,
 )
 
 
-def network(seed: int) -> Network:
+def network(seed: int) -> PixelClassifier:
     rng = np.random.default_rng(seed)
-    return Network(*(rng.normal(size=shape).astype(np.float32) for shape in SHAPES))
+    return PixelClassifier(*(rng.normal(size=shape).astype(np.float32) for shape in SHAPES))
 
 
 def test_a_network_is_two_sums_with_a_bend_between() -> None:
     """P3: one unit that adds the first two clues and takes off 1, and an answer of its double."""
     enter, enter_bias, leave, leave_bias = (np.zeros(shape, np.float32) for shape in SHAPES)
     enter[:2, 0], enter_bias[0], leave[0], leave_bias[0] = 1, -1, 2, -3
-    clues = np.zeros((3, CLUES), np.float32)
+    clues = np.zeros((3, FEATURES), np.float32)
     clues[:, :2] = (0.25, 0.25), (2, 1), (5, -1)
-    own = Network(enter, enter_bias, leave, leave_bias)
-    assert judged(own, clues).tolist() == [-3, 1, 3]
+    own = PixelClassifier(enter, enter_bias, leave, leave_bias)
+    assert log_odds(own, clues).tolist() == [-3, 1, 3]
 
 
 def test_the_clues_of_nobody_say_nothing() -> None:
-    assert judged(shipped(), np.empty((0, CLUES), np.float32)).shape == (0,)
+    assert log_odds(shipped(), np.empty((0, FEATURES), np.float32)).shape == (0,)
 
 
 def test_what_is_saved_is_loaded(tmp_path: Path) -> None:
@@ -59,7 +59,7 @@ def test_a_missing_file_is_refused_by_name(tmp_path: Path) -> None:
         load(tmp_path / "gone.npz")
 
 
-@pytest.mark.parametrize("field", Network._fields)
+@pytest.mark.parametrize("field", PixelClassifier._fields)
 def test_another_network_is_refused(tmp_path: Path, field: str) -> None:
     own = network(2)
     for strange in (getattr(own, field)[:-1], getattr(own, field) * np.float32(np.nan)):
@@ -69,7 +69,7 @@ def test_another_network_is_refused(tmp_path: Path, field: str) -> None:
 
 
 def test_a_pickle_is_not_read(tmp_path: Path) -> None:
-    objects = {name: np.array([None], object) for name in Network._fields}
+    objects = {name: np.array([None], object) for name in PixelClassifier._fields}
     np.savez(tmp_path / "network.npz", allow_pickle=True, **objects)
     with pytest.raises(NetworkError):
         load(tmp_path / "network.npz")

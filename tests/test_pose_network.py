@@ -12,7 +12,7 @@ from integrator.proposal.network_weights import JOINTS
 from integrator.proposal.pose_network import OTHER_SIDES
 from integrator.proposal.silhouette_window import BESIDE, CELLS, Look, look
 from synth.person.skeleton import JOINTS as ALL_JOINTS
-from synth.picture.outline_examples import outlines
+from synth.picture.silhouette_examples import silhouette_examples
 
 PICK = [ALL_JOINTS.index(name) for name in JOINTS]
 UNTAUGHT = range(900_000, 900_012)
@@ -32,7 +32,7 @@ def test_untaught_people_are_found_to_a_few_centimetres() -> None:
     missed = []
     for seed in UNTAUGHT:
         memory = None
-        for shown in outlines(seed):
+        for shown in silhouette_examples(seed):
             masks = tuple(m if m is not None and m.any() else None for m in shown.masks)
             if masks[0] is None or masks[1] is None:
                 continue
@@ -50,7 +50,7 @@ def test_somebody_in_a_mirror_is_found_there() -> None:
     """Where the cameras stand the other way round too: left for right, and nothing else."""
     memories: list[np.ndarray | None] = [None, None]
     seen_m = []
-    for shown in islice(outlines(UNTAUGHT[0]), 20):
+    for shown in islice(silhouette_examples(UNTAUGHT[0]), 20):
         first, second = shown.masks
         assert first is not None
         assert second is not None
@@ -78,7 +78,7 @@ def test_a_memory_without_weights_fades_by_half() -> None:
 
 def test_a_shut_gate_keeps_the_memory() -> None:
     shut = network()
-    shut.take_bias[4:8] = 60.0
+    shut.gru_ih_bias[4:8] = 60.0
     memory, _ = pose_network.step(shut, np.arange(4, dtype=np.float32), SEEN, 1.75)
     assert memory == pytest.approx(np.arange(4))
 
@@ -86,10 +86,10 @@ def test_a_shut_gate_keeps_the_memory() -> None:
 def test_the_second_layer_adds_to_the_first() -> None:
     """Thought 3, deepened by half of it, 4.5; a sum of four says 18."""
     told = network()
-    told.think_bias[:] = 3.0
-    told.deepen[:] = network_weights.halves(0.5 * np.eye(4, dtype=np.float32))
-    told.join[:4] = network_weights.halves(np.eye(4, dtype=np.float32))
-    told.say[:, 0] = network_weights.halves(np.ones(4, np.float32))
+    told.fc1_bias[:] = 3.0
+    told.fc2[:] = network_weights.to_bfloat16(0.5 * np.eye(4, dtype=np.float32))
+    told.fc3[:4] = network_weights.to_bfloat16(np.eye(4, dtype=np.float32))
+    told.out[:, 0] = network_weights.to_bfloat16(np.ones(4, np.float32))
     _, found = pose_network.step(told, None, SEEN._replace(middle_m=np.zeros(3)), 1.0)
     assert found.joints_m[0] == pytest.approx([18.0, 0.0, 0.0])
 
@@ -106,7 +106,7 @@ def test_what_is_said_is_statures_in_the_frame_of_the_proposal() -> None:
     seen = SEEN._replace(turn=turn)
     joints_m = np.random.default_rng(1).normal(size=(12, 3))
     told = network()
-    told.say_bias[:36] = pose_network.aimed(joints_m, seen, 1.6).ravel()
+    told.out_bias[:36] = pose_network.aimed(joints_m, seen, 1.6).ravel()
     _, found = pose_network.step(told, None, seen, 1.6)
     assert found.joints_m == pytest.approx(joints_m, abs=1e-6)
 
@@ -131,12 +131,14 @@ def test_halves_multiply_as_numbers_do() -> None:
     told, beside = network(), rng.normal(size=BESIDE).astype(np.float32)
     beside[list(pose_network.SEES)] = 0.0
     thinks = rng.normal(size=(BESIDE, 4)).astype(np.float32)
-    told.think[6:] = network_weights.halves(thinks)
-    told.join[:4] = network_weights.halves(np.eye(4, dtype=np.float32))
-    told.say[:, :4] = network_weights.halves(np.eye(4, dtype=np.float32))
+    told.fc1[6:] = network_weights.to_bfloat16(thinks)
+    told.fc3[:4] = network_weights.to_bfloat16(np.eye(4, dtype=np.float32))
+    told.out[:, :4] = network_weights.to_bfloat16(np.eye(4, dtype=np.float32))
     seen = SEEN._replace(beside=beside, middle_m=np.zeros(3))
     _, found = pose_network.step(told, None, seen, 1.0)
-    due = np.maximum(beside @ network_weights.wholes(network_weights.halves(thinks)), 0.0)
+    due = np.maximum(
+        beside @ network_weights.from_bfloat16(network_weights.to_bfloat16(thinks)), 0.0
+    )
     assert found.joints_m.ravel()[:4] == pytest.approx(due, rel=1e-5)
 
 

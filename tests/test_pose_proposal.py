@@ -24,7 +24,7 @@ from synth.motion.motions import MOTION, TPOSE, performance
 from synth.person.mesh import body_mesh
 from synth.person.people import person
 from synth.person.skeleton import ANGLES, JOINTS
-from synth.picture.outline_examples import AT_LARGE, cast, outlines
+from synth.picture.silhouette_examples import AT_LARGE, exact_mask, silhouette_examples
 
 SOMEBODY = 31
 """Below all who are taught on."""
@@ -60,7 +60,9 @@ def shown(posture: str, yaw_deg: Vector | None = None) -> Shown:
     mesh = body_mesh(someone)
     masks = []
     for bones in body.bones:
-        first, second = (cast(mesh, bones, c, (WIDTH, HEIGHT)).astype(bool) for c in RIG.cameras)
+        first, second = (
+            exact_mask(mesh, bones, c, (WIDTH, HEIGHT)).astype(bool) for c in RIG.cameras
+        )
         masks.append((first, second))
     return Shown(masks, body.joints_m[:, PICK], phase)
 
@@ -224,7 +226,7 @@ def test_two_looks_find_what_neither_is_sure_of() -> None:
     for least, found in missed.items():
         for seed in UNTAUGHT:
             memory = None
-            for shown in islice(outlines(seed, AT_LARGE), 40):
+            for shown in islice(silhouette_examples(seed, AT_LARGE), 40):
                 first, second = shown.masks
                 if first is None or second is None or not (first.any() and second.any()):
                     continue

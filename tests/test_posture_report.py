@@ -39,7 +39,7 @@ def test_the_worst_are_the_mistaken_and_then_the_narrowest() -> None:
 
 def test_what_was_not_taught_is_counted_for_rejection_alone() -> None:
     """A known squat fits by 30, what it would be called else by 20; the limit lies between."""
-    stranger = Outcome("jump", "squat", "cas", "", math.nan, 10.0, 10.0, taught=False)
+    stranger = Outcome("jump", "squat", "cas", "", math.nan, 10.0, 10.0, known=False)
     told = result_of([*OUTCOMES, stranger], 25.0)
     assert told["all"]["tested"] == 4
     assert told["rejection"]["known"] == {"tested": 4, "no_name": 0}

@@ -9,7 +9,7 @@ from rich.console import Console
 
 from integrator.proposal import network_weights, pose_network
 from integrator.proposal.silhouette_window import Look
-from synth.picture.outline_examples import AT_LARGE, ORDINARY, outlines
+from synth.picture.silhouette_examples import AT_LARGE, ORDINARY, silhouette_examples
 from tritrack.training.proposal_examples import Example, example, example_of
 from tritrack.training.proposal_training import learnt, train_proposals
 from tritrack.training.training import TrainingError
@@ -17,7 +17,7 @@ from tritrack.training.training import TrainingError
 QUIET = Console(quiet=True)
 
 
-def said(network: network_weights.Network, shown: Example) -> np.ndarray:
+def said(network: network_weights.PoseNetwork, shown: Example) -> np.ndarray:
     """What a network says of a performance, (n, 36): in statures from the middle."""
     memory, told = None, []
     for cells, beside in zip(shown.cells, shown.beside, strict=True):
@@ -28,7 +28,7 @@ def said(network: network_weights.Network, shown: Example) -> np.ndarray:
 
 
 def test_a_wrong_stature_moves_what_is_due_by_as_much() -> None:
-    shown = list(outlines(7))
+    shown = list(silhouette_examples(7))
     one, other = (example(shown, np.random.default_rng(seed)) for seed in (1, 2))
     ratio = one.stature_m / other.stature_m
     tall = np.abs(one.due).max(axis=1)

@@ -13,7 +13,7 @@ from viewer import track
 from viewer.background.background import learn, light_gain
 from viewer.background.image_stack import Frame
 from viewer.background.occluded_background import learn_uncovered
-from viewer.silhouette.alpha_matte import covered, sides_of
+from viewer.silhouette.alpha_matte import matte, sides_of
 from viewer.silhouette.colour_model import counted, familiar
 from viewer.silhouette.difference import followed, label, seeds
 from viewer.silhouette.pixel_classifier import redraw
@@ -174,7 +174,7 @@ def test_step_leaves_the_state_that_it_was_given() -> None:
 
 
 def test_after_the_rehearsal_no_frame_waits_for_the_compiler() -> None:
-    kernels = [light_gain, seeds, same_body, label, sides_of, covered, redraw]
+    kernels = [light_gain, seeds, same_body, label, sides_of, matte, redraw]
     kernels += [familiar, counted, followed]
     warm_up(track.init(1, learn([shot(room(), 2.0, 9)]), None, Settings()), (WIDTH, HEIGHT))
     compiled = [list(kernel.signatures) for kernel in kernels]

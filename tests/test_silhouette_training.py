@@ -8,24 +8,24 @@ from rich.console import Console
 
 from tritrack.training import silhouette_training
 from tritrack.training.silhouette_training import (
-    Taught,
+    Examples,
+    examples_of,
     films,
     fitted,
-    taught_by,
     train_silhouettes,
 )
 from tritrack.training.training import TrainingError
-from viewer.silhouette.boundary_features import CLUES
-from viewer.silhouette.pixel_classifier import judged, load, save, shipped
+from viewer.silhouette.boundary_features import FEATURES
+from viewer.silhouette.pixel_classifier import load, log_odds, save, shipped
 
 
 def test_a_network_learns_a_clue_that_tells() -> None:
     """The third clue says it; clues that never change do no harm."""
     rng = np.random.default_rng(3)
-    clues = np.zeros((4000, CLUES), np.float32)
+    clues = np.zeros((4000, FEATURES), np.float32)
     clues[:, :6] = rng.normal(5, 3, (4000, 6))
-    taught = Taught(clues, clues[:, 2] > 5)
-    told = judged(fitted(taught, 0), clues) > 0
+    taught = Examples(clues, clues[:, 2] > 5)
+    told = log_odds(fitted(taught, 0), clues) > 0
     assert np.mean(told == taught.body) > 0.95
 
 
@@ -44,10 +44,10 @@ def test_films_show_the_empty_room_then_somebody() -> None:
 
 @pytest.mark.slow
 def test_what_is_learnt_is_repeatable_and_can_be_loaded(tmp_path: Path) -> None:
-    one, again = taught_by(1), taught_by(1)
+    one, again = examples_of(1), examples_of(1)
     assert all(np.array_equal(a, b) for a, b in zip(one, again, strict=True))
     save(fitted(one, 0), tmp_path / "learnt.npz")
-    told = judged(load(tmp_path / "learnt.npz"), one.clues) > 0
+    told = log_odds(load(tmp_path / "learnt.npz"), one.features) > 0
     assert np.mean(told == one.body) > 0.9
 
 
@@ -55,6 +55,6 @@ def test_what_is_learnt_is_repeatable_and_can_be_loaded(tmp_path: Path) -> None:
 def test_the_shipped_network_tells_the_pixels_of_people_it_never_saw() -> None:
     """P3: nine in ten of the doubtful ones, clothes of the wall's colour among them."""
     first = silhouette_training.PERFORMANCES
-    new = [taught_by(seed) for seed in range(first, first + 3)]
-    right = [(judged(shipped(), each.clues) > 0) == each.body for each in new]
+    new = [examples_of(seed) for seed in range(first, first + 3)]
+    right = [(log_odds(shipped(), each.features) > 0) == each.body for each in new]
     assert np.mean(right) > 0.9

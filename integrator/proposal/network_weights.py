@@ -16,54 +16,54 @@ JOINTS: Final = tuple(
     for side in "lr"
 )
 """What is proposed."""
-Halves = NDArray[np.uint16]
-"""Upper halves of float32 numbers."""
+Bfloat16 = NDArray[np.uint16]
+"""Upper halves of float32 numbers, as bits."""
 
 LINE_BYTES, PAGE_BYTES = 64, 1 << 21
 """What memory is fetched in, and what a large page of it holds."""
 
 SHIPPED: Final = Path(__file__).with_name("proposals.npz")
-VERSION: Final = 3
-SAYS: Final = 4 * len(JOINTS)
-"""What the network says: three coordinates of each joint, and how sure it is of each."""
+VERSION: Final = 4
+OUTPUTS: Final = 4 * len(JOINTS)
+"""Three coordinates of each joint, and the confidence in each, as a logit."""
 
 
-class Network(NamedTuple):
+class PoseNetwork(NamedTuple):
     """Principal components of a window; then two layers, a gated recurrent unit, and two layers.
 
-    The second layer adds to what the first found. Weights are (inputs, outputs), and halves: a
+    The second layer adds to what the first found. Weights are (inputs, outputs), in bfloat16: a
     product waits for its weights to come from memory. The unit is that of Cho et al. 2014 with the
     reset gate on the hidden product; its gates are in the order reset, update, new.
     """
 
-    see: Halves
+    pca: Bfloat16
     """(CELLS, n) components."""
-    see_bias: Floats
+    pca_bias: Floats
     """(n,) less those of the mean window."""
-    think: Halves
-    think_bias: Floats
-    deepen: Halves
-    deepen_bias: Floats
-    take: Halves
-    take_bias: Floats
-    keep: Halves
-    keep_bias: Floats
-    join: Halves
-    join_bias: Floats
-    say: Halves
-    say_bias: Floats
+    fc1: Bfloat16
+    fc1_bias: Floats
+    fc2: Bfloat16
+    fc2_bias: Floats
+    gru_ih: Bfloat16
+    gru_ih_bias: Floats
+    gru_hh: Bfloat16
+    gru_hh_bias: Floats
+    fc3: Bfloat16
+    fc3_bias: Floats
+    out: Bfloat16
+    out_bias: Floats
 
 
-PARTS: Final = ("see", "think", "deepen", "take", "keep", "join", "say")
+LAYERS: Final = ("pca", "fc1", "fc2", "gru_ih", "gru_hh", "fc3", "out")
 
 
 @lru_cache(maxsize=1)
-def shipped() -> Network:
+def shipped() -> PoseNetwork:
     """The network that is installed with the program."""
     return load(SHIPPED)
 
 
-def load(path: Path) -> Network:
+def load(path: Path) -> PoseNetwork:
     """Read a network that `save` wrote.
 
     Raises:
@@ -73,7 +73,7 @@ def load(path: Path) -> Network:
         with np.load(path, allow_pickle=False) as file:
             if int(file["version"]) != VERSION:
                 raise ValueError(f"it has version {int(file['version'])}, not {VERSION}")
-            found = Network(*(file[name] for name in Network._fields))
+            found = PoseNetwork(*(file[name] for name in PoseNetwork._fields))
     except (OSError, KeyError, EOFError, ValueError, zipfile.BadZipFile) as error:
         raise ValueError(
             f"no usable proposals in {path}: {error}; install tritrack again"
@@ -82,7 +82,7 @@ def load(path: Path) -> Network:
     return _in_one_piece(found)
 
 
-def _in_one_piece(network: Network) -> Network:
+def _in_one_piece(network: PoseNetwork) -> PoseNetwork:
     """The same, side by side in memory: a few large pages are found sooner than many small ones.
 
     NumPy asks the system for large pages for an array of this size.
@@ -96,45 +96,45 @@ def _in_one_piece(network: Network) -> Network:
         own[...] = part
         parts.append(own)
         at += size
-    return Network(*parts)
+    return PoseNetwork(*parts)
 
 
-def _refuse_misfits(network: Network, path: Path) -> None:
+def _refuse_misfits(network: PoseNetwork, path: Path) -> None:
     n = network
-    sees, thinks, keeps, joins = (part.shape[-1] for part in (n.see, n.think, n.keep, n.join))
-    keeps //= 3
+    components, hidden, gates, joined = (part.shape[-1] for part in (n.pca, n.fc1, n.gru_hh, n.fc3))
+    memory = gates // 3
     due = {
-        "see": (CELLS, sees),
-        "think": (2 * sees + BESIDE, thinks),
-        "deepen": (thinks, thinks),
-        "take": (thinks, 3 * keeps),
-        "keep": (keeps, 3 * keeps),
-        "join": (thinks + keeps, joins),
-        "say": (joins, SAYS),
+        "pca": (CELLS, components),
+        "fc1": (2 * components + BESIDE, hidden),
+        "fc2": (hidden, hidden),
+        "gru_ih": (hidden, gates),
+        "gru_hh": (memory, gates),
+        "fc3": (hidden + memory, joined),
+        "out": (joined, OUTPUTS),
     }
-    for name in PARTS:
+    for name in LAYERS:
         weights, bias = getattr(n, name), getattr(n, f"{name}_bias")
         if weights.shape != due[name] or bias.shape != due[name][1:]:
             raise ValueError(f"{path}: {name} is {weights.shape}, not {due[name]}")
         if weights.dtype != np.uint16 or bias.dtype != np.float32:
-            raise ValueError(f"{path}: {name} is not of halves and single floats")
-        if not (np.isfinite(wholes(weights)).all() and np.isfinite(bias).all()):
+            raise ValueError(f"{path}: {name} is not of bfloat16 and single floats")
+        if not (np.isfinite(from_bfloat16(weights)).all() and np.isfinite(bias).all()):
             raise ValueError(f"{path}: {name} holds a number that is not finite")
 
 
-def save(network: Network, path: Path) -> None:
+def save(network: PoseNetwork, path: Path) -> None:
     """Write a network."""
     parts: dict[str, Any] = network._asdict()
     with path.open("wb") as file:
         np.savez(file, version=np.array(VERSION), **parts)
 
 
-def halves(values: Floats) -> Halves:
-    """The upper halves of numbers (bfloat16), to the nearest: three digits, whole range."""
+def to_bfloat16(values: Floats) -> Bfloat16:
+    """Numbers as bfloat16, to the nearest: three digits, whole range."""
     bits = np.ascontiguousarray(values, np.float32).view(np.uint32).astype(np.uint64)
     return ((bits + 0x7FFF + (bits >> 16 & 1)) >> 16).astype(np.uint16)
 
 
-def wholes(values: Halves) -> Floats:
-    """The numbers that halves stand for."""
+def from_bfloat16(values: Bfloat16) -> Floats:
+    """The numbers that bfloat16 bits stand for."""
     return (values.astype(np.uint32) << 16).view(np.float32)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.compiled import compiled, compiling
-from integrator.proposal.network_weights import JOINTS, Network
+from integrator.proposal.network_weights import JOINTS, PoseNetwork
 from integrator.proposal.silhouette_window import Floats, Look
 
 SHOULDERS, HIPS = slice(0, 2), slice(6, 8)
@@ -28,7 +28,7 @@ class Proposal(NamedTuple):
 
 
 def step(
-    network: Network, memory: Floats | None, seen: Look, stature_m: float
+    network: PoseNetwork, memory: Floats | None, seen: Look, stature_m: float
 ) -> tuple[Floats, Proposal]:
     """One more instant: what is remembered of all, and the joints of this one.
 
@@ -38,37 +38,38 @@ def step(
         seen: The views of this instant.
         stature_m: Of the person.
     """
-    memory = np.zeros(len(network.keep), np.float32) if memory is None else memory
-    memory, said = _remembered(network, memory, seen.windows, seen.beside)
-    said = said.astype(np.float64)
-    places = said[: 3 * len(JOINTS)].reshape(-1, 3)
+    memory = np.zeros(len(network.gru_hh), np.float32) if memory is None else memory
+    memory, outputs = _recurrent_step(network, memory, seen.windows, seen.beside)
+    outputs = outputs.astype(np.float64)
+    places = outputs[: 3 * len(JOINTS)].reshape(-1, 3)
     own = OTHER_SIDES if seen.mirrored else slice(None)
     joints_m = seen.middle_m + stature_m * places[own] @ seen.turn
-    return memory, Proposal(joints_m, _gate(said[3 * len(JOINTS) :][own]))
+    return memory, Proposal(joints_m, _sigmoid(outputs[3 * len(JOINTS) :][own]))
 
 
 @compiled
-def _remembered(network: Any, memory: Any, windows: Any, beside: Any) -> tuple[Any, Any]:
-    """What is remembered now, and what is said."""
+def _recurrent_step(network: Any, memory: Any, windows: Any, beside: Any) -> tuple[Any, Any]:
+    """The memory after this instant, and the outputs."""
     n, own, one = network, len(memory), np.float32(1.0)
-    thought = _positive(_product(_shown(n, windows, beside), n.think, n.think_bias))
-    thought = _positive(_product(thought, n.deepen, n.deepen_bias) + thought)
-    taken, kept = _product(thought, n.take, n.take_bias), _product(memory, n.keep, n.keep_bias)
-    gates = one / (one + np.exp(-(taken[: 2 * own] + kept[: 2 * own])))
-    new = np.tanh(taken[2 * own :] + gates[:own] * kept[2 * own :])
+    hidden = _relu(_product(_inputs(n, windows, beside), n.fc1, n.fc1_bias))
+    hidden = _relu(_product(hidden, n.fc2, n.fc2_bias) + hidden)
+    input_gates = _product(hidden, n.gru_ih, n.gru_ih_bias)
+    hidden_gates = _product(memory, n.gru_hh, n.gru_hh_bias)
+    gates = one / (one + np.exp(-(input_gates[: 2 * own] + hidden_gates[: 2 * own])))
+    new = np.tanh(input_gates[2 * own :] + gates[:own] * hidden_gates[2 * own :])
     memory = (one - gates[own:]) * new + gates[own:] * memory
-    joined = _positive(_product(np.concatenate((thought, memory)), n.join, n.join_bias))
-    return memory, _product(joined, n.say, n.say_bias)
+    joined = _relu(_product(np.concatenate((hidden, memory)), n.fc3, n.fc3_bias))
+    return memory, _product(joined, n.out, n.out_bias)
 
 
 @compiled
-def _shown(network: Any, windows: Any, beside: Any) -> Any:
-    """Components of both windows, 0 of a view that does not see, and what is said beside them."""
-    size = len(network.see_bias)
+def _inputs(network: Any, windows: Any, beside: Any) -> Any:
+    """Components of both windows, 0 of a view that does not see, and what goes beside them."""
+    size = len(network.pca_bias)
     shown = np.zeros(2 * size + len(beside), np.float32)
     for view in range(2):
         if beside[SEES[view]] > 0.0:
-            components = _product(windows[view], network.see, network.see_bias)
+            components = _product(windows[view], network.pca, network.pca_bias)
             shown[view * size : (view + 1) * size] = components
     shown[2 * size :] = beside
     return shown
@@ -78,7 +79,7 @@ def _shown(network: Any, windows: Any, beside: Any) -> Any:
 def _product(values: Any, weights: Any, bias: Any) -> Any:
     """values (n,) @ weights (n, m) + bias (m,).
 
-    Weights that meet a zero, as half of what is thought is and most of a window, are left in
+    Weights that meet a zero, as half of the hidden units are and most of a window, are left in
     memory. Four rows at a time halve what is left of the work.
     """
     total = bias.copy()
@@ -89,34 +90,34 @@ def _product(values: Any, weights: Any, bias: Any) -> Any:
         at_a, at_b, at_c, at_d = weights[a], weights[b], weights[c], weights[d]
         for j in range(len(total)):
             total[j] += (
-                values[a] * _whole(at_a[j])
-                + values[b] * _whole(at_b[j])
-                + values[c] * _whole(at_c[j])
-                + values[d] * _whole(at_d[j])
+                values[a] * _from_bfloat16(at_a[j])
+                + values[b] * _from_bfloat16(at_b[j])
+                + values[c] * _from_bfloat16(at_c[j])
+                + values[d] * _from_bfloat16(at_d[j])
             )
     for row in rows[fours:]:
         for j in range(len(total)):
-            total[j] += values[row] * _whole(weights[row, j])
+            total[j] += values[row] * _from_bfloat16(weights[row, j])
     return total
 
 
 @compiling(inline="always")
-def _whole(half: Any) -> Any:
-    """The number that a half stands for."""
-    return np.uint32(np.uint32(half) << np.uint32(16)).view(np.float32)
+def _from_bfloat16(bits: Any) -> Any:
+    """The number that bfloat16 bits stand for."""
+    return np.uint32(np.uint32(bits) << np.uint32(16)).view(np.float32)
 
 
 @compiled
-def _positive(values: Any) -> Any:
+def _relu(values: Any) -> Any:
     return np.maximum(values, np.float32(0.0))
 
 
-def _gate(values: Any) -> Any:
+def _sigmoid(values: Any) -> Any:
     return 1.0 / (1.0 + np.exp(-values.clip(-60.0, 60.0)))
 
 
 def aimed(joints_m: NDArray[np.float64], seen: Look, stature_m: float) -> NDArray[np.float64]:
-    """Where the network should say that joints are, (n, 3) statures from the middle."""
+    """What the network should put out, (n, 3) statures from the middle."""
     own = OTHER_SIDES if seen.mirrored else slice(None)
     found: NDArray[np.float64] = (joints_m[own] - seen.middle_m) @ seen.turn.T / stature_m
     return found

@@ -11,10 +11,10 @@ from common.body.body import Vector
 from common.compiled import compiled
 from common.raster.bounds import centroid_px
 from common.raster.kernel import NEAREST_M
+from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig, arrays_of, centre, project, ray
 from integrator.rig.perspective import triangulate
 
-Mask = NDArray[np.bool_]
 Floats = NDArray[np.float32]
 
 ROWS, COLUMNS = 48, 40
@@ -61,7 +61,7 @@ def axes_of(one: Camera, other: Camera) -> Vector:
     """Axes of the proposals' frame, rows (3, 3): y up, z towards one camera.
 
     x is right in that camera, or left in a mirror: there the other always stands where the
-    paper's camera 2 does, to the left, as it does in most of what the network is taught.
+    paper's camera 2 does, to the left, as it does in most of what the network is trained on.
     """
     first, second = np.array(one.R)[2], np.array(other.R)[2]
     right = np.array(one.R)[0] * [1.0, 0.0, 1.0]

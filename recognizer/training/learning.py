@@ -68,13 +68,13 @@ def train(
     return _symbol_model(shown, card, sizes.states, fit(np.concatenate(poses), seed, sizes.symbols))
 
 
-def taught(
+def extended(
     known: PostureModel, sequences: Mapping[str, Sequence[Rows]], performers: Sequence[str] = ()
 ) -> PostureModel:
     """A model that knows more postures, or some of its own anew; its others stay as they are.
 
     The paper's keeps its codebook: poses unlike all that it was made from share a symbol with
-    others, so it is taught less well than the default one.
+    others, so it learns them less well than the default one.
 
     Args:
         known: What it is added to; its codebook, topology and seed are used again.

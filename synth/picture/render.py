@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
+from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig, project
 from synth.motion.motions import Motion
 from synth.person.mesh import Mesh, body_mesh
@@ -19,7 +20,6 @@ from synth.picture.raster import cover, draw, expose, gather, shade, skin
 from synth.picture.synth_room import LIGHT_MAP_PX, Lamp, Room, furnished, lamp_pixels, lit_from
 
 Frame = NDArray[np.uint8]
-Mask = NDArray[np.bool_]
 
 FINE_PX: Final = 480
 """Samples across a picture: a smaller one averages more samples a pixel."""

@@ -20,7 +20,7 @@ def result_of(outcomes: Sequence[Outcome], least_fit: float) -> dict[str, Any]:
         outcomes: Of everybody who was tested.
         least_fit: Below it, a frame's log-likelihood means that the posture is not known.
     """
-    known = [one for one in outcomes if one.taught]
+    known = [one for one in outcomes if one.known]
     names = postures_of(known)
     counts = confusion(known, names)
     return {
@@ -78,7 +78,7 @@ def _margins(outcomes: Sequence[Outcome]) -> dict[str, Any]:
 def _rejection(outcomes: Sequence[Outcome], least_fit: float) -> dict[str, Any]:
     """How often what was taught gets no name, and how often each posture would get none, had
     nobody taught it."""
-    known = [one for one in outcomes if one.taught]
+    known = [one for one in outcomes if one.known]
     unknown = {}
     for name in postures_of(outcomes):
         fits = [one.fit_of_others for one in outcomes if one.truth == name]

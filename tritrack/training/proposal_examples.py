@@ -1,4 +1,4 @@
-"""What the network that proposes poses is taught: outlines of made-up people, and their joints."""
+"""What the network that proposes poses is trained on: synthetic silhouettes, and joints."""
 
 from collections.abc import Iterable
 from typing import Final, NamedTuple
@@ -10,7 +10,7 @@ from integrator.proposal.network_weights import JOINTS
 from integrator.proposal.pose_network import aimed
 from integrator.proposal.silhouette_window import look
 from synth.person.skeleton import JOINTS as ALL_JOINTS
-from synth.picture.outline_examples import Manner, Outline, outlines
+from synth.picture.silhouette_examples import Manner, SilhouetteExample, silhouette_examples
 
 BELIEVED: Final = (1.008, 0.02, 0.05)
 """A measured stature over the true one: mean and standard deviation of a body that was measured,
@@ -39,10 +39,10 @@ class Example(NamedTuple):
 def example_of(performance: tuple[int, Manner]) -> Example:
     """What is learnt from a performance: its seed and its manner."""
     seed, manner = performance
-    return example(outlines(seed, manner), np.random.default_rng([seed, 78]))
+    return example(silhouette_examples(seed, manner), np.random.default_rng([seed, 78]))
 
 
-def example(shown: Iterable[Outline], rng: np.random.Generator) -> Example:
+def example(shown: Iterable[SilhouetteExample], rng: np.random.Generator) -> Example:
     """What the network sees of a performance, and what it should say."""
     cells, beside, due, believed_m = [], [], [], 0.0
     mean, measured, unmeasured = BELIEVED

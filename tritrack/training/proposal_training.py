@@ -1,4 +1,4 @@
-"""The network that proposes poses, learnt from outlines of made-up people."""
+"""The network that proposes poses, trained on silhouettes of synthetic people."""
 
 import multiprocessing
 from collections.abc import Sequence
@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import Progress
 
-from integrator.proposal.network_weights import Network, save
+from integrator.proposal.network_weights import PoseNetwork, save
 from integrator.proposal.pose_network import SEES
 from integrator.proposal.silhouette_window import CELLS
-from synth.picture.outline_examples import AT_LARGE, ORDINARY
+from synth.picture.silhouette_examples import AT_LARGE, ORDINARY
 from tritrack.terminal import bar
 from tritrack.training import torch_network
 from tritrack.training.proposal_examples import Example, example_of
@@ -85,7 +85,7 @@ def learnt(
     console: Console,
     rounds: Sequence[tuple[int, float]] = ROUNDS,
     batch: int = BATCH,
-) -> Network:
+) -> PoseNetwork:
     """The network that misses least: mean distance of the joints, by Adam.
 
     Args:
@@ -101,14 +101,14 @@ def learnt(
     torch = _torch()
     torch.manual_seed(seed)
     rng, (mean, components) = np.random.default_rng(seed), _components(shown)
-    lessons = [_lesson(torch, mean, components, each) for each in shown]
+    examples = [_tensors(torch, mean, components, each) for each in shown]
     parts = torch_network.parts_of(
         torch, COMPONENTS, np.concatenate([each.due for each in shown]).mean(0)
     )
     with bar(console) as progress:
         ends = []
         for epochs, rate in rounds:
-            _round(torch, parts, lessons, rng, Round(epochs, rate, batch), progress)
+            _round(torch, parts, examples, rng, Round(epochs, rate, batch), progress)
             ends.append([weight.detach().clone() for part in parts for weight in part.parameters()])
     _settle(torch, parts, ends)
     return torch_network.network_of(mean, components, parts)
@@ -117,7 +117,7 @@ def learnt(
 def _round(
     torch: Any,
     parts: list[Any],
-    lessons: list[tuple[Any, ...]],
+    examples: list[tuple[Any, ...]],
     rng: np.random.Generator,
     how: Round,
     progress: Progress,
@@ -126,15 +126,15 @@ def _round(
     epochs, rate, batch = how
     weights = [weight for part in parts for weight in part.parameters()]
     adam = torch.optim.AdamW(weights, lr=rate, weight_decay=DECAY)
-    count = len(lessons) // batch
+    count = len(examples) // batch
     warm = min(0.3, WARM_STEPS / epochs / count)
     pace = torch.optim.lr_scheduler.OneCycleLR(
         adam, rate, total_steps=epochs * count + 1, pct_start=warm
     )
     for _ in progress.track(range(epochs), description="learning"):
-        for rows in np.array_split(rng.permutation(len(lessons)), count):
+        for rows in np.array_split(rng.permutation(len(examples)), count):
             adam.zero_grad()
-            torch_network.missed(torch, parts, [lessons[row] for row in rows]).backward()
+            torch_network.loss(torch, parts, [examples[row] for row in rows]).backward()
             torch.nn.utils.clip_grad_norm_(weights, STEEPEST)
             adam.step()
             pace.step()
@@ -165,7 +165,7 @@ def _components(shown: list[Example]) -> tuple[Floats, Floats]:
     return mean, (vectors / (spreads + LIFTED * spreads[-1])).astype(np.float32)
 
 
-def _lesson(torch: Any, mean: Floats, components: Floats, shown: Example) -> tuple[Any, ...]:
+def _tensors(torch: Any, mean: Floats, components: Floats, shown: Example) -> tuple[Any, ...]:
     """Inputs, what is due, ones, and the stature: as tensors of an example's instants."""
     windows = shown.cells.astype(np.float32) / np.float32(255)
     seen = (windows - mean) @ components * shown.beside[:, SEES, None]

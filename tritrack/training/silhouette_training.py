@@ -1,4 +1,4 @@
-"""The network that draws outlines, learnt from films of made-up people whose masks are known."""
+"""The pixel classifier, trained on films of synthetic people whose masks are known."""
 
 import multiprocessing
 import warnings
@@ -11,17 +11,18 @@ import numpy as np
 from rich.console import Console
 
 from common.config import SilhouetteSettings
+from common.raster.similarity import Mask
 from synth.motion.motions import EMPTY, POSTURES, Motion, performance
 from synth.person.people import Colour, Person, person
 from synth.picture.exposure import default_rig
-from synth.picture.render import Frame, Mask, render, room_of
+from synth.picture.render import Frame, render, room_of
 from synth.picture.synth_room import Room
 from tritrack.terminal import bar
 from tritrack.training.training import TrainingError
 from viewer.background.background import learn
 from viewer.background.image_stack import Floats
 from viewer.silhouette import silhouette
-from viewer.silhouette.pixel_classifier import HIDDEN, Network, save
+from viewer.silhouette.pixel_classifier import HIDDEN, PixelClassifier, save
 
 PERFORMANCES: Final = 70
 """People in rooms that are learnt from."""
@@ -44,17 +45,17 @@ PEOPLE, ROOMS = 400_000, 300_000
 """First ones: no set of clips has them."""
 EPOCHS, BATCH, RATE = 10, 512, 3e-3
 NARROW: Final = 1e-3
-"""Least spread that a clue is divided by."""
+"""Least spread that a feature is divided by."""
 
 
-class Taught(NamedTuple):
-    """Pixels: their clues (n, CLUES), and whether they are body (n,)."""
+class Examples(NamedTuple):
+    """Pixels: their features (n, FEATURES), and whether they are body (n,)."""
 
-    clues: Floats
+    features: Floats
     body: Mask
 
 
-class Film(NamedTuple):
+class LabelledFilm(NamedTuple):
     """What a camera saw."""
 
     frames: list[Frame]
@@ -77,37 +78,37 @@ def train_silhouettes(out: Path, seed: int, console: Console) -> dict[str, Any]:
     with multiprocessing.get_context("spawn").Pool() as pool, bar(console) as progress:
         seeds = range(seed, seed + PERFORMANCES)
         drawn = progress.track(
-            pool.imap(taught_by, seeds), total=len(seeds), description="rendering"
+            pool.imap(examples_of, seeds), total=len(seeds), description="rendering"
         )
         parts = list(drawn)
-    taught = Taught(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+    examples = Examples(*(np.concatenate(part) for part in zip(*parts, strict=True)))
     try:
-        save(fitted(taught, seed), out)
+        save(fitted(examples, seed), out)
     except OSError as error:
         raise TrainingError(f"cannot write {out}: {error.strerror}") from error
-    return {"model": str(out), "pixels": len(taught.body)}
+    return {"model": str(out), "pixels": len(examples.body)}
 
 
-def taught_by(seed: int) -> Taught:
+def examples_of(seed: int) -> Examples:
     """What is learnt from one performance, seen by two cameras."""
     rng = np.random.default_rng([seed, 79])
     parts = [
         part
         for film in films(seed, rng)
         for share in SHARES
-        for part in _looked_at(_small(film, share), rng)
+        for part in _doubtful_pixels(_small(film, share), rng)
     ]
-    return Taught(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+    return Examples(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
 
-def films(seed: int, rng: np.random.Generator) -> list[Film]:
+def films(seed: int, rng: np.random.Generator) -> list[LabelledFilm]:
     """A performance as two cameras filmed it: the empty room, then somebody amid a movement."""
     rig, staging = default_rig(*SIZE), np.random.default_rng([seed, 77])
     someone = _dressed(person(PEOPLE + seed), room_of(ROOMS + seed, rig), staging)
     posture = POSTURES[seed % len(POSTURES)] if seed % FREE_EVERY else "free"
     moved = _cut(performance(someone, posture, seed), staging)
     quality = [cv2.IMWRITE_JPEG_QUALITY, int(rng.integers(*QUALITY))]
-    seen = [Film([], []), Film([], [])]
+    seen = [LabelledFilm([], []), LabelledFilm([], [])]
     for shot in render(someone, moved, rig, ROOMS + seed, seed):
         for film, frame, mask in zip(seen, shot[:2], shot[2:], strict=True):
             packed = cv2.imencode(".jpg", frame, quality)[1]
@@ -151,17 +152,17 @@ def _cut(moved: Motion, rng: np.random.Generator) -> Motion:
     )
 
 
-def _small(film: Film, share: int) -> Film:
+def _small(film: LabelledFilm, share: int) -> LabelledFilm:
     """The film at a share of its size; a small pixel is body where half of it is."""
     width, height = SIZE[0] // share, SIZE[1] // share
     frames = [cv2.resize(each, (width, height), interpolation=cv2.INTER_AREA) for each in film[0]]
     masks = [
         each.reshape(height, share, width, share).mean(axis=(1, 3)) >= 0.5 for each in film.masks
     ]
-    return Film([np.asarray(frame, np.uint8) for frame in frames], masks)
+    return LabelledFilm([np.asarray(frame, np.uint8) for frame in frames], masks)
 
 
-def _looked_at(film: Film, rng: np.random.Generator) -> Iterator[Taught]:
+def _doubtful_pixels(film: LabelledFilm, rng: np.random.Generator) -> Iterator[Examples]:
     """What the viewer would look at again in some frames, and what is there."""
     settings = SilhouetteSettings()
     state = silhouette.init(learn(film.frames[: settings.empty_frames]), settings)
@@ -171,16 +172,16 @@ def _looked_at(film: Film, rng: np.random.Generator) -> Iterator[Taught]:
             continue
         if count % EVERY == 0:
             rows = rng.permutation(len(guessed.places))[:PIXELS]
-            yield Taught(guessed.clues[rows], truth[tuple(guessed.places[rows].T)])
+            yield Examples(guessed.clues[rows], truth[tuple(guessed.places[rows].T)])
         state = silhouette.learn_colours(state, guessed.mask, frame, guessed)
 
 
-def fitted(taught: Taught, seed: int) -> Network:
-    """The network that tells them apart, by Adam; the clues' scales end up in its weights."""
+def fitted(examples: Examples, seed: int) -> PixelClassifier:
+    """The network that tells them apart, by Adam; the features' scales end up in its weights."""
     from sklearn.exceptions import ConvergenceWarning
     from sklearn.neural_network import MLPClassifier
 
-    middle, spread = taught.clues.mean(axis=0), taught.clues.std(axis=0) + NARROW
+    middle, spread = examples.features.mean(axis=0), examples.features.std(axis=0) + NARROW
     model = MLPClassifier(
         (HIDDEN,),
         batch_size=BATCH,
@@ -192,7 +193,9 @@ def fitted(taught: Taught, seed: int) -> Network:
     with warnings.catch_warnings():
         # EPOCHS are enough, whether or not more would still change it
         warnings.simplefilter("ignore", ConvergenceWarning)
-        model.fit((taught.clues - middle) / spread, taught.body)
-    enter = model.coefs_[0] / spread[:, None]
-    arrays = (enter, model.intercepts_[0] - middle @ enter, model.coefs_[1][:, 0])
-    return Network(*(np.asarray(each, np.float32) for each in (*arrays, model.intercepts_[1])))
+        model.fit((examples.features - middle) / spread, examples.body)
+    fc1 = model.coefs_[0] / spread[:, None]
+    arrays = (fc1, model.intercepts_[0] - middle @ fc1, model.coefs_[1][:, 0])
+    return PixelClassifier(
+        *(np.asarray(each, np.float32) for each in (*arrays, model.intercepts_[1]))
+    )

@@ -11,7 +11,7 @@ from common.config import Mode
 from recognizer.__main__ import SHIPPED, SHIPPED_PAPER
 from recognizer.model_file import load, save
 from recognizer.postures import PostureModel, Recognizer
-from recognizer.training.learning import taught, train
+from recognizer.training.learning import extended, train
 from tritrack.store.cores import spread
 from tritrack.training.recordings import recordings
 
@@ -66,7 +66,7 @@ def train_postures(
     if known is None:
         model = train(dict(learnt), kind, performers=sorted(performers))
     else:
-        model = taught(known, learnt, sorted(performers))
+        model = extended(known, learnt, sorted(performers))
     save(model, out)
     return {
         "model": str(out),

@@ -26,21 +26,21 @@ Beside = tuple[np.float32, np.float32, np.float32, np.float32, np.float32]
 SIDES: Final = 6
 """Sums over a neighbourhood: see `sides_of`."""
 SHARES: Final = 2
-"""What is said of a pixel for its neighbours too: see `covered`."""
+"""What is said of a pixel for its neighbours too: see `matte`."""
 FACTS: Final = 8
 """What is said of a pixel of the band beside: see `_tell`."""
 COLOUR: Final = np.float32(0.4)
 """What colour counts beside brightness at a contour: cameras and codecs blur colour twofold."""
 NOISE: Final = np.float32(25.0)
-"""Grey levels squared: where body and background differ by no more, coverage says nothing."""
+"""Grey levels squared: where body and background differ by no more, alpha says nothing."""
 DIMMEST, BRIGHTEST = np.float32(0.5), np.float32(1.1)
 """Shade that is believed of the background beside a body."""
 HALF: Final = np.float32(0.5)
 """Rounds."""
 LEAST, MOST = np.float32(-0.5), np.float32(1.5)
-"""Coverage is believed so far beyond none and whole."""
+"""Alpha is believed so far beyond none and whole."""
 UNKNOWN: Final = np.float32(-1.0)
-"""Coverage where no body is near."""
+"""Alpha where no body is near."""
 FEW: Final = np.float32(1e-3)
 """Less light, or less body, than any neighbourhood that has some."""
 LEVELS, CONTRAST = np.float32(20.0), np.float32(100.0)
@@ -79,7 +79,7 @@ def sides_of(
 
 
 @KERNEL
-def covered(
+def matte(
     frame: Frame,
     background: Floats,
     weight: Floats,
@@ -138,7 +138,7 @@ def covered(
 def _tell(out: Floats, off: Colour, full: Colour, share: np.float32, beside: Beside) -> None:
     """Contrast of body and background, in brightness alone, what is off their line, and shade.
 
-    `covered` adds the distance from the background with shadows forgiven, how much brighter and
+    `matte` adds the distance from the background with shadows forgiven, how much brighter and
     how much another colour that is, and whose colour.
     """
     square = _dot(full, full)

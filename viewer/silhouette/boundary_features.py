@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from common.compiled import KERNEL
 from viewer.background.image_stack import Bytes, Floats, Frame
-from viewer.silhouette.alpha_matte import FACTS, SHARES, covered, sides_of
+from viewer.silhouette.alpha_matte import FACTS, SHARES, matte, sides_of
 
 ROWS: Final = 240
 """Of a taller picture every other pixel, or every third, is a neighbour, so that as much is seen
@@ -16,18 +16,18 @@ of the body around a pixel."""
 SIDE_SHARE: Final = 1 / 60
 """How far around a pixel body and background are asked for colours, of the picture's height."""
 COUNTED: Final = (3, 7)
-"""How far the neighbourhoods reach whose share of body is a clue."""
+"""How far the neighbourhoods reach whose share of body is a feature."""
 NEAR_SHARE: Final = 1 / 120
 """How far from the guess's contour pixels are looked at, of the picture's height."""
 CROSS: Final = np.array(
     [(i, j) for i in range(-2, 3) for j in range(-2, 3) if abs(i) + abs(j) <= 2], np.int64
 )
-"""Neighbours whose coverage is a clue."""
-CLUES: Final = SHARES * len(CROSS) + len(COUNTED) + FACTS
+"""Neighbours whose alpha is a feature."""
+FEATURES: Final = SHARES * len(CROSS) + len(COUNTED) + FACTS
 """What the network sees of a pixel."""
 
 
-def clues_of(
+def features_of(
     frame: Frame,
     background: Floats,
     weight: Floats,
@@ -48,10 +48,10 @@ def clues_of(
         doubt: (H, W) 1 where the guess was not sure.
 
     Returns:
-        Row and column (n, 2) of the pixels, and their clues (n, CLUES).
+        Row and column (n, 2) of the pixels, and their features (n, FEATURES).
     """
     if not mask.any():
-        return np.empty((0, 2), np.int32), np.empty((0, CLUES), np.float32)
+        return np.empty((0, 2), np.int32), np.empty((0, FEATURES), np.float32)
     rows = frame.shape[0]
     stride, near = max(1, round(rows / ROWS)), max(1, round(NEAR_SHARE * rows))
     left, top, right, bottom = _window(cv2.bitwise_or(mask, doubt), near + 2 * stride)
@@ -62,13 +62,11 @@ def clues_of(
     sides = sides_of(frame, background, gain, counts_3x3(own), top, left)
     size = (2 * round(SIDE_SHARE * rows) + 1,) * 2
     means = cv2.boxFilter(sides, cv2.CV_32F, size, borderType=cv2.BORDER_REPLICATE)
-    shares, places, facts = covered(
-        frame, background, weight, gain, known, means, reach, (top, left)
-    )
+    shares, places, facts = matte(frame, background, weight, gain, known, means, reach, (top, left))
     own *= np.uint8(255)
     counts = [_mean(own, 2 * far * stride + 1) for far in COUNTED]
-    clues = _gathered(places, shares, facts, *counts, stride, (top, left))
-    return places, clues
+    features = _gathered(places, shares, facts, *counts, stride, (top, left))
+    return places, features
 
 
 def _square(far: int) -> Bytes:
@@ -107,9 +105,9 @@ def _gathered(
     stride: int,
     corner: tuple[int, int],
 ) -> Floats:
-    """The clues (n, CLUES); moves the places from the window to the frame, whose corner it is."""
+    """The features (n, FEATURES); moves places from the window to the frame, whose corner it is."""
     height, width = wide.shape
-    out = np.empty((len(places), CLUES), np.float32)
+    out = np.empty((len(places), FEATURES), np.float32)
     unit = np.float32(1 / 255)
     for n in range(len(places)):
         y, x, at, k = places[n, 0], places[n, 1], out[n], 0

@@ -10,32 +10,32 @@ from numpy.typing import NDArray
 
 from common.compiled import KERNEL
 from viewer.background.image_stack import Bytes, Floats
-from viewer.silhouette.boundary_features import CLUES
+from viewer.silhouette.boundary_features import FEATURES
 
 SHIPPED: Final = Path(__file__).with_name("silhouettes.npz")
-"""Learnt from synthetic people; docs/models.md says of whom."""
+"""Trained on synthetic people; docs/models.md says of whom."""
 HIDDEN: Final = 16
-"""Units between the clues and the answer."""
+"""Units between the features and the answer."""
 
 
 LIKELY: Final = np.float32(-0.4)
 """Log odds from which a pixel is body: chosen on development performers r01 and r04."""
 
 
-class Network(NamedTuple):
+class PixelClassifier(NamedTuple):
     """One hidden layer of rectified units, and the log odds that a pixel is body."""
 
-    enter: Floats
-    """(CLUES, HIDDEN)."""
-    enter_bias: Floats
+    fc1: Floats
+    """(FEATURES, HIDDEN)."""
+    fc1_bias: Floats
     """(HIDDEN,)."""
-    leave: Floats
+    out: Floats
     """(HIDDEN,)."""
-    leave_bias: Floats
+    out_bias: Floats
     """(1,)."""
 
 
-SHAPES: Final = ((CLUES, HIDDEN), (HIDDEN,), (HIDDEN,), (1,))
+SHAPES: Final = ((FEATURES, HIDDEN), (HIDDEN,), (HIDDEN,), (1,))
 
 
 class NetworkError(ValueError):
@@ -43,12 +43,12 @@ class NetworkError(ValueError):
 
 
 @cache
-def shipped() -> Network:
+def shipped() -> PixelClassifier:
     """The network that came with tritrack."""
     return load(SHIPPED)
 
 
-def load(path: Path) -> Network:
+def load(path: Path) -> PixelClassifier:
     """The network in a file that `save` wrote.
 
     Raises:
@@ -57,7 +57,7 @@ def load(path: Path) -> Network:
     cure = "install tritrack again, or tritrack train --what silhouettes"
     try:
         with np.load(path, allow_pickle=False) as held:
-            network = Network(*(held[field] for field in Network._fields))
+            network = PixelClassifier(*(held[field] for field in PixelClassifier._fields))
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise NetworkError(f"{path} holds no network of silhouettes: {cure}") from error
     sound = all(
@@ -69,16 +69,16 @@ def load(path: Path) -> Network:
     return network
 
 
-def save(network: Network, path: Path) -> None:
+def save(network: PixelClassifier, path: Path) -> None:
     """Write a network."""
     np.savez_compressed(path, allow_pickle=False, **network._asdict())
 
 
-def judged(network: Network, clues: Floats) -> Floats:
-    """Log odds (n,) that each of n pixels is body, by its clues (n, CLUES)."""
-    seen = clues @ network.enter
-    seen += network.enter_bias
-    return np.asarray(np.maximum(seen, 0, out=seen) @ network.leave + network.leave_bias)
+def log_odds(network: PixelClassifier, features: Floats) -> Floats:
+    """Log odds (n,) that each of n pixels is body, by its features (n, FEATURES)."""
+    seen = features @ network.fc1
+    seen += network.fc1_bias
+    return np.asarray(np.maximum(seen, 0, out=seen) @ network.out + network.out_bias)
 
 
 @KERNEL

@@ -13,10 +13,12 @@ from common.raster.similarity import Mask
 from viewer.background.background import Background, learn, light_gain
 from viewer.background.image_stack import Bytes, Floats, Frame
 from viewer.background.moved_objects import Patch
-from viewer.silhouette.boundary_features import clues_of, counts_3x3
+from viewer.silhouette.boundary_features import counts_3x3
+from viewer.silhouette.boundary_features import features_of as clues_of
 from viewer.silhouette.colour_model import counted, familiar, fresh
 from viewer.silhouette.difference import followed, label, seeds
-from viewer.silhouette.pixel_classifier import judged, redraw, shipped
+from viewer.silhouette.pixel_classifier import log_odds as judged
+from viewer.silhouette.pixel_classifier import redraw, shipped
 from viewer.silhouette.regions import chosen
 
 CELLS: Final = 60

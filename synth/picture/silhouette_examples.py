@@ -1,4 +1,4 @@
-"""Outlines of made-up people in two cameras, without light: what a network is taught on."""
+"""Silhouettes of synthetic people in two cameras, without light, to train a network on."""
 
 from collections.abc import Iterator
 from typing import Final, NamedTuple
@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
+from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig, project
 from synth.motion.footing import Posed, posed
 from synth.motion.motions import MOTION, POSTURES, performance
@@ -19,7 +20,7 @@ from synth.picture.raster import cover, skin
 
 FPS: Final = 15.0
 PEOPLE: Final = (100_000, 1_000_000)
-"""Numbers of those who are taught on; whoever is made up for a test has a lower one."""
+"""Numbers of those who are trained on; whoever is made for a test has a lower one."""
 LONGEST: Final = 90
 """Instants of one performance that are drawn."""
 TURNED_SHARE: Final = 0.25
@@ -57,10 +58,8 @@ FARTHER: Final = {"hip_abd": 2.0, "torso_roll": 1.6, "root_roll": 5.0, "root_pit
 WIDER: Final = np.array([FARTHER.get(name.split("_", name[1] == "_")[-1], 1.0) for name in ANGLES])
 """What the angles of those who go farther are multiplied by."""
 
-Mask = NDArray[np.bool_]
 
-
-class Outline(NamedTuple):
+class SilhouetteExample(NamedTuple):
     """One instant."""
 
     masks: tuple[Mask | None, Mask | None]
@@ -97,7 +96,7 @@ AT_LARGE: Final = Manner(0.65, 0.8, 0.3, 20.0, 0.25, 0.4, (2.3, 5.6))
 """People who move as they like, also close to cameras that stand anywhere."""
 
 
-def outlines(seed: int, manner: Manner = ORDINARY) -> Iterator[Outline]:
+def silhouette_examples(seed: int, manner: Manner = ORDINARY) -> Iterator[SilhouetteExample]:
     """The instants of one performance by one person before two cameras; a seed is a performance."""
     rng = np.random.default_rng([seed, 77])
     someone = _differing(person(int(rng.integers(*PEOPLE))), rng)
@@ -115,7 +114,7 @@ def outlines(seed: int, manner: Manner = ORDINARY) -> Iterator[Outline]:
         masks = _seen(mesh, body, i, rig, flaws, rng)
         shown = tuple(mask if seen else None for mask, seen in zip(masks, present[i], strict=True))
         first, second = shown
-        yield Outline(
+        yield SilhouetteExample(
             (first, second), body.joints_m[i], rig, someone.measures["stature_m"], since_s
         )
         since_s = 1.0 / FPS
@@ -129,9 +128,9 @@ def _differing(someone: Person, rng: np.random.Generator) -> Person:
         for name, value in someone.measures.items()
     }
     measures["stature_m"] = someone.measures["stature_m"]
-    look, room = someone.look, rng.uniform(*LOOSER, 2)
+    look, slack = someone.look, rng.uniform(*LOOSER, 2)
     look = look._replace(
-        loose_top_m=look.loose_top_m * room[0], loose_legs_m=look.loose_legs_m * room[1]
+        loose_top_m=look.loose_top_m * slack[0], loose_legs_m=look.loose_legs_m * slack[1]
     )
     return someone._replace(measures=measures, look=look)
 
@@ -214,12 +213,12 @@ def _seen(
     masks = []
     for camera, wrong in zip(rig.cameras, flaws, strict=True):
         jitter_px = rng.normal(0.0, JITTER_PX, 2)
-        mask = cast(mesh, body.bones[i], camera, (rig.width, rig.height), jitter_px)
+        mask = exact_mask(mesh, body.bones[i], camera, (rig.width, rig.height), jitter_px)
         masks.append(spoilt(mask, wrong, i).astype(bool))
     return masks
 
 
-def cast(
+def exact_mask(
     mesh: Mesh,
     bones: NDArray[np.float64],
     camera: Camera,

@@ -4,19 +4,19 @@ import numpy as np
 
 from common.rig.camera import project
 from synth.person.skeleton import JOINTS
-from synth.picture.outline_examples import (
+from synth.picture.silhouette_examples import (
     AT_LARGE,
     FPS,
     LONGEST,
     ORDINARY,
     PEOPLE,
     Manner,
-    outlines,
+    silhouette_examples,
 )
 
 
 def test_outlines_hold_the_pelvis_and_repeat() -> None:
-    first, again = list(outlines(5)), list(outlines(5))
+    first, again = list(silhouette_examples(5)), list(silhouette_examples(5))
     assert 10 < len(first) <= LONGEST
     for a, b in zip(first, again, strict=True):
         for m, n in zip(a.masks, b.masks, strict=True):
@@ -32,14 +32,16 @@ def test_outlines_hold_the_pelvis_and_repeat() -> None:
 
 
 def test_one_camera_at_least_sees_every_instant() -> None:
-    shown = [each for seed in range(12) for each in outlines(seed)]
+    shown = [each for seed in range(12) for each in silhouette_examples(seed)]
     seeing = np.array([[mask is not None for mask in each.masks] for each in shown])
     assert seeing.any(axis=1).all()
     assert 0.03 < (~seeing.all(axis=1)).mean() < 0.5
 
 
 def test_time_passes_by_whole_frames() -> None:
-    frames = np.array([each.since_s * FPS for seed in range(6) for each in outlines(seed)])
+    frames = np.array(
+        [each.since_s * FPS for seed in range(6) for each in silhouette_examples(seed)]
+    )
     assert np.allclose(frames, np.rint(frames))
     assert frames.min() >= 1
     assert 1 < frames.max() <= 5
@@ -48,7 +50,7 @@ def test_time_passes_by_whole_frames() -> None:
 def test_joints_move_as_bodies_do_from_frame_to_frame() -> None:
     """No jump: nothing is faster than a thrown hand, 16 m/s."""
     for seed in range(6):
-        shown = list(outlines(seed))
+        shown = list(silhouette_examples(seed))
         steps = np.diff([each.joints_m for each in shown], axis=0)
         since_s = np.array([each.since_s for each in shown[1:]])
         speed = np.linalg.norm(steps, axis=-1).max(axis=1) / since_s
@@ -64,7 +66,9 @@ def test_people_at_large_lean_farther_and_lift_their_legs_higher() -> None:
     """Measured on the joints: the trunk from the vertical, an ankle above the other."""
 
     def reached(manner: Manner) -> tuple[float, float]:
-        poses = np.array([each.joints_m for seed in range(24) for each in outlines(seed, manner)])
+        poses = np.array(
+            [each.joints_m for seed in range(24) for each in silhouette_examples(seed, manner)]
+        )
         at = {name: poses[:, JOINTS.index(name)] for name in JOINTS}
         trunk = at["neck"] - at["pelvis"]
         lean_deg = np.degrees(np.arccos(trunk[:, 1] / np.linalg.norm(trunk, axis=1)))
