@@ -2,13 +2,13 @@ PYTHON ?= python3.11
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test check bench clean
+.PHONY: setup demo test matrix check bench clean
 
 setup: $(VENV)/.installed
 	@$(BIN)/python -m tritrack.first_run
 
 $(VENV)/.installed: pyproject.toml constraints.txt
-	@command -v $(PYTHON) >/dev/null || { echo "tritrack needs Python 3.11: install it, or name it: make PYTHON=/path/to/python3.11"; exit 1; }
+	@command -v $(PYTHON) >/dev/null || { echo "tritrack needs Python 3.11 or newer: install it, or name it: make PYTHON=/path/to/python3.11"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[page,export,report,single,cluster,dev]'
 	@touch $@
@@ -19,6 +19,9 @@ demo: setup
 test: setup
 	$(BIN)/python -m pytest -m "not slow" -n 2 --dist loadfile --durations=15
 
+matrix:
+	.ci/matrix
+
 check: setup
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -28,4 +31,4 @@ bench: setup
 	$(BIN)/python benchmarks/run.py
 
 clean:
-	rm -rf $(VENV) .cache runs .pytest_cache .mypy_cache .ruff_cache
+	rm -rf .venv .venv-* .cache runs .pytest_cache .mypy_cache .ruff_cache
