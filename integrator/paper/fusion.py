@@ -43,23 +43,26 @@ def fused(before: Vector, facade: Report | None, flank: Report | None) -> Vector
     """
     pose = before.copy()
     if flank is not None:
-        _take(pose, flank, ARM_FROM_FLANK)
+        pose = _with_angles(pose, flank, ARM_FROM_FLANK)
     if facade is not None:
-        _take(pose, facade, ARM_FROM_FACADE)
+        pose = _with_angles(pose, facade, ARM_FROM_FACADE)
     for side in ("r", "l"):
         hip_x, knee_x = f"{side}_hip_x", f"{side}_knee_x"
         if facade is not None:
-            _take(pose, facade, (f"{side}_hip_z",))
+            pose = _with_angles(pose, facade, (f"{side}_hip_z",))
         if facade is not None and facade.squatting:
-            _take(pose, facade, (hip_x, knee_x))
+            pose = _with_angles(pose, facade, (hip_x, knee_x))
         elif flank is not None and (facade is None or lifted(pose[POSE_INDEX[f"{side}_hip_z"]])):
-            _take(pose, flank, (hip_x, knee_x))
+            pose = _with_angles(pose, flank, (hip_x, knee_x))
         elif facade is not None:
-            pose[POSE_INDEX[hip_x]] = pose[POSE_INDEX[knee_x]] = 0.0
+            pose[[POSE_INDEX[hip_x], POSE_INDEX[knee_x]]] = 0.0
     return pose
 
 
-def _take(pose: Vector, report: Report, names: tuple[str, ...]) -> None:
+def _with_angles(pose: Vector, report: Report, names: tuple[str, ...]) -> Vector:
+    """The pose with those of the named angles that a view tells."""
+    found = pose.copy()
     for name in names:
         if name in report.angles_deg:
-            pose[POSE_INDEX[name]] = report.angles_deg[name]
+            found[POSE_INDEX[name]] = report.angles_deg[name]
+    return found

@@ -76,7 +76,7 @@ def roaming(
             continue
         columns.append(_between(t, at, np.array([first, *keys, first])))
     angles = np.stack(columns, axis=1)
-    _uncrowd(angles)
+    angles = _uncrowded(angles)
     path = np.stack(
         [
             _between(t, at, np.array([0.0, *rng.uniform(-ROOM_M, ROOM_M, KEYS), 0.0]))
@@ -133,8 +133,11 @@ def _between(t: Vector, at: Vector, values: Vector) -> Vector:
     return found
 
 
-def _uncrowd(angles: NDArray[np.float64]) -> None:
+def _uncrowded(angles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Arms that are lifted less to the front where they are lifted far aside."""
+    found = angles.copy()
     for side in "lr":
         abd, flex = (ANGLES.index(f"{side}_sh_{name}") for name in ("abd", "flex"))
         both = np.abs(angles[:, abd]) + np.abs(angles[:, flex])
-        angles[:, flex] *= np.minimum(1.0, ARM_CROWDING_DEG / np.maximum(both, 1.0))
+        found[:, flex] *= np.minimum(1.0, ARM_CROWDING_DEG / np.maximum(both, 1.0))
+    return found

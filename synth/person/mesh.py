@@ -44,12 +44,16 @@ def body_mesh(someone: Person) -> Mesh:
     vertices, bones, shares = (np.concatenate([part[i] for part in parts]) for i in range(3))
     faces = np.concatenate([part[3] + n for part, n in zip(parts, counts, strict=True)])
     materials = np.concatenate([part[4] for part in parts])
-    _flatten_soles(vertices, bones)
+    vertices = _with_flat_soles(vertices, bones)
     origins = np.stack([at[name] for name in BONES])
     return Mesh(vertices, origins, bones, shares, faces, materials)
 
 
-def _flatten_soles(vertices: NDArray[np.float64], bones: NDArray[np.int64]) -> None:
+def _with_flat_soles(
+    vertices: NDArray[np.float64], bones: NDArray[np.int64]
+) -> NDArray[np.float64]:
     """Nothing of a shoe lies below the floor of the resting body."""
     shoe = np.isin(bones[:, 0], [BONE_INDEX["l_foot"], BONE_INDEX["r_foot"]])
-    vertices[shoe, 1] = np.maximum(vertices[shoe, 1], 0.0)
+    found = vertices.copy()
+    found[shoe, 1] = np.maximum(found[shoe, 1], 0.0)
+    return found

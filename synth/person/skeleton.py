@@ -110,7 +110,8 @@ def bone_frames(measures: dict[str, float], angle: dict[str, Vector]) -> NDArray
     for side, sign in (("l", 1.0), ("r", -1.0)):
         upper = _limb_turn(angle, f"{side}_sh", sign)
         put(f"{side}_upper_arm", "chest", upper)
-        _lift_shoulder(bones, rest, side, sign, upper)
+        chest, shoulder = bones[:, BONE_INDEX["chest"]], BONE_INDEX[f"{side}_upper_arm"]
+        bones[:, shoulder, :, 3] = _lifted_shoulder(chest, rest, side, upper)
         put(f"{side}_forearm", f"{side}_upper_arm", turned("x", -angle[f"{side}_elbow"]))
         put(f"{side}_hand", f"{side}_forearm", np.eye(3)[None])
         put(f"{side}_thigh", "pelvis", _limb_turn(angle, f"{side}_hip", sign))
@@ -120,22 +121,17 @@ def bone_frames(measures: dict[str, float], angle: dict[str, Vector]) -> NDArray
     return bones
 
 
-def _lift_shoulder(
-    bones: NDArray[np.float64],
-    rest: dict[str, Vector],
-    side: str,
-    sign: float,
-    upper: NDArray[np.float64],
-) -> None:
-    """Raise the shoulder on its clavicle: its distance from the neck stays."""
+def _lifted_shoulder(
+    chest: NDArray[np.float64], rest: dict[str, Vector], side: str, upper: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Where a shoulder is, (n, 3), raised on its clavicle: its distance from the neck stays."""
+    sign = 1.0 if side == "l" else -1.0
     raised_deg = np.degrees(np.arccos(np.clip(upper[:, 1, 1], -1.0, 1.0)))
     swung = turned("z", sign * CLAVICLE_LIFT * raised_deg) @ (
         rest[f"{side}_upper_arm"] - rest["head"]
     )
-    chest = bones[:, BONE_INDEX["chest"]]
     offset = swung + rest["head"] - rest["chest"]
-    place = np.einsum("nij,nj->ni", chest[..., :3], offset) + chest[..., 3]
-    bones[:, BONE_INDEX[f"{side}_upper_arm"], :, 3] = place
+    return np.asarray(np.einsum("nij,nj->ni", chest[..., :3], offset) + chest[..., 3])
 
 
 def _foot_turn(shank: NDArray[np.float64], hanging: Vector) -> NDArray[np.float64]:
