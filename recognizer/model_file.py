@@ -1,8 +1,5 @@
 """A posture model on disk: one npz of numbers with a JSON header, and no pickle."""
 
-import tokenize
-import zipfile
-import zlib
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -11,7 +8,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.atomic_file import replacing
+from common.npz_file import read_arrays, write_arrays
 from recognizer.codebook import SYMBOLS
 from recognizer.postures import (
     STATES,
@@ -36,12 +33,6 @@ PROBABILITIES: Final = ("start", "transition", "emission")
 """Arrays whose rows sum to 1."""
 
 CURE: Final = "make one with `tritrack train --what postures`"
-
-DAMAGE: Final = (
-    *(ValueError, KeyError, EOFError, RecursionError, MemoryError, NotImplementedError),
-    *(msgspec.DecodeError, tokenize.TokenError, zipfile.BadZipFile, zlib.error, RuntimeError),
-)
-"""What reading a damaged or foreign archive, array or header raises."""
 
 
 class ModelError(ValueError):
@@ -72,14 +63,9 @@ def save(model: PostureModel, path: Path) -> None:
     kind = KINDS[model.card.recognizer]
     header = Header("tritrack postures", VERSION, model.names, kind.FEATURES, model.card)
     arrays = {name: getattr(model, name) for name in _shapes(header)}
+    arrays["header"] = np.frombuffer(msgspec.json.encode(header), np.uint8)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(path) as new, new.open("wb") as file:
-            np.savez(
-                file,
-                header=np.frombuffer(msgspec.json.encode(header), np.uint8),
-                **arrays,
-            )
+        write_arrays(path, arrays)
     except OSError as error:
         raise ModelError(f"cannot write the model {path}: {error.strerror}") from error
 
@@ -100,20 +86,16 @@ def load(path: Path, postures: Collection[str] | None = None) -> PostureModel:
     except OSError as error:
         reason = error.strerror or str(error)
         raise ModelError(f"cannot read the model {path}: {reason}; {CURE}") from error
-    except DAMAGE as error:
+    except (ValueError, KeyError, RecursionError, msgspec.DecodeError) as error:
         reason = (str(error).splitlines() or [type(error).__name__])[0]
         raise ModelError(f"no usable posture model in {path}: {reason}; {CURE}") from error
     return model
 
 
 def _read(path: Path) -> PostureModel:
-    with zipfile.ZipFile(path) as archive:
-        unpacked = sum(member.file_size for member in archive.infolist())
-    if unpacked > MAX_BYTES:
-        raise ValueError(f"{unpacked} bytes unpacked, at most {MAX_BYTES} are taken")
-    with np.load(path, allow_pickle=False) as file:
-        header = _header(file["header"].tobytes())
-        arrays = {name: file[name] for name in _shapes(header)}
+    held = read_arrays(path, MAX_BYTES)
+    header = _header(held["header"].tobytes())
+    arrays = {name: held[name] for name in _shapes(header)}
     _refuse_false_arrays(arrays, _shapes(header))
     kind: Any = KINDS[header.card.recognizer]
     model: PostureModel = kind(names=header.postures, card=header.card, **arrays)

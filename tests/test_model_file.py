@@ -189,5 +189,6 @@ def test_damage_is_refused_or_harmless(saved: Path, data: st.DataObject) -> None
 
 
 def test_a_place_that_cannot_be_written_is_named(model: PostureModel, tmp_path: Path) -> None:
+    (tmp_path / "no folder").write_text("")
     with pytest.raises(ModelError, match="cannot write the model"):
-        save(model, tmp_path / "no such folder" / "postures.npz")
+        save(model, tmp_path / "no folder" / "postures.npz")

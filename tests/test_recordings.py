@@ -120,8 +120,15 @@ def test_clips_say_themselves_who_performs_what(clips: list[Path], runs: list[Pa
     ]
 
 
-@pytest.mark.parametrize("damage", ["no summary", "half the poses", "pickled"])
-def test_a_damaged_run_is_named(runs: list[Path], tmp_path: Path, damage: str) -> None:
+@pytest.mark.parametrize(
+    ("damage", "told"),
+    [
+        ("no summary", r"run has no summary\.json: is it a run folder"),
+        ("half the poses", r"run was damaged .*: track the clip again"),
+        ("pickled", r"run was damaged .*: track the clip again"),
+    ],
+)
+def test_a_damaged_run_is_named(runs: list[Path], tmp_path: Path, damage: str, told: str) -> None:
     run = tmp_path / "run"
     run.mkdir()
     poses, summary = (runs[0] / "poses.npz").read_bytes(), (runs[0] / "summary.json").read_text()
@@ -132,7 +139,7 @@ def test_a_damaged_run_is_named(runs: list[Path], tmp_path: Path, damage: str) -
         np.savez(run / "poses.npz", allow_pickle=True, frame=np.array([{}], object))
     if damage != "no summary":
         (run / "summary.json").write_text(summary)
-    with pytest.raises(RecordingError, match=r"run is no run folder: .*track the clip again"):
+    with pytest.raises(RecordingError, match=told):
         recordings([run], None, tmp_path, QUIET)
 
 

@@ -1,6 +1,5 @@
 """The weights of the network that proposes joints, and the file that holds them."""
 
-import zipfile
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -8,6 +7,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from common.npz_file import read_arrays, write_arrays
 from integrator.proposal.silhouette_window import BESIDE, CELLS, Floats
 
 JOINTS: Final = tuple(
@@ -24,6 +24,8 @@ LINE_BYTES, PAGE_BYTES = 64, 1 << 21
 
 SHIPPED: Final = Path(__file__).with_name("proposals.npz")
 VERSION: Final = 4
+MOST_BYTES: Final = 100_000_000
+"""No network is larger unpacked: the one that is installed takes 6 MB."""
 OUTPUTS: Final = 4 * len(JOINTS)
 """Three coordinates of each joint, and the confidence in each, as a logit."""
 
@@ -70,11 +72,11 @@ def load(path: Path) -> PoseNetwork:
         ValueError: When the file is none, is damaged or of another version.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
-            if int(file["version"]) != VERSION:
-                raise ValueError(f"it has version {int(file['version'])}, not {VERSION}")
-            found = PoseNetwork(*(file[name] for name in PoseNetwork._fields))
-    except (OSError, KeyError, EOFError, ValueError, zipfile.BadZipFile) as error:
+        held = read_arrays(path, MOST_BYTES)
+        if int(held["version"]) != VERSION:
+            raise ValueError(f"it has version {int(held['version'])}, not {VERSION}")
+        found = PoseNetwork(*(held[name] for name in PoseNetwork._fields))
+    except (OSError, KeyError, TypeError, ValueError) as error:
         raise ValueError(
             f"no usable proposals in {path}: {error}; install tritrack again"
         ) from error
@@ -124,9 +126,7 @@ def _refuse_misfits(network: PoseNetwork, path: Path) -> None:
 
 def save(network: PoseNetwork, path: Path) -> None:
     """Write a network."""
-    parts: dict[str, Any] = network._asdict()
-    with path.open("wb") as file:
-        np.savez(file, version=np.array(VERSION), **parts)
+    write_arrays(path, {"version": np.array(VERSION), **network._asdict()})
 
 
 def to_bfloat16(values: Floats) -> Bfloat16:

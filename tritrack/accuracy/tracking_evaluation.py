@@ -1,7 +1,6 @@
 """Tracking held against the truth of clips: every figure of accuracy, as a report."""
 
 import json
-import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -13,8 +12,9 @@ from rich.console import Console
 from common import config
 from common.body.body import Bdp
 from common.config import Mode, Settings
+from common.npz_file import Arrays, DamagedFile, read_arrays
 from tritrack.accuracy import accuracy_plots, accuracy_report, worst_frames
-from tritrack.accuracy.accuracy import Arrays, Compared, Mismatch, compare, per_joint, summary
+from tritrack.accuracy.accuracy import Compared, Mismatch, compare, per_joint, summary
 from tritrack.accuracy.limb_lengths import length_errors
 from tritrack.accuracy.reliability import trust
 from tritrack.accuracy.silhouette_iou import Overlap, overlaps
@@ -22,6 +22,8 @@ from tritrack.offline.lockstep import Decoders, track_all
 from tritrack.store.clip_paths import run_names, without_plain_files
 from tritrack.terminal import bar, json_text, warn
 
+MAX_BYTES: Final = 1 << 30
+"""No run and no truth is larger."""
 IN_POSES: Final = ("frame", "joints_m", "joint_names", "confidence")
 IN_TRUTH: Final = ("present", "joints3d", "joint_names")
 
@@ -155,9 +157,8 @@ def _case(run: Path, clip: Path | None, mode: Mode | None, size: str | None) -> 
 
 def _arrays(path: Path, needed: Sequence[str]) -> Arrays:
     try:
-        with np.load(path, allow_pickle=False) as file:
-            held = {name: file[name] for name in file.files}
-    except (OSError, ValueError, zipfile.BadZipFile) as error:
+        held = read_arrays(path, MAX_BYTES)
+    except (OSError, DamagedFile) as error:
         raise EvaluationError(f"cannot read {path}: {error}; make it again") from error
     missing = [name for name in needed if name not in held]
     if missing:

@@ -3,8 +3,6 @@
 import hashlib
 import io
 import json
-import tokenize
-import zipfile
 from collections.abc import Iterator
 from importlib.metadata import version
 from pathlib import Path
@@ -12,27 +10,22 @@ from typing import Any, Final, NamedTuple
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from common.atomic_file import replacing
 from common.cache_folder import DIGEST, PACKAGES, ROOT, add
 from common.config import Settings
+from common.npz_file import Arrays, read_arrays
 from common.video.clip_sources import ClipError, companions_folder, footage_of
 from common.video.clips import find_calibration
 from tritrack.offline.lockstep import Tracked
+from tritrack.store.past_run import MAX_BYTES
 from tritrack.store.runs import poses
 
 KEPT: Final = ("frame", "angles_deg", "joints_m", "joints_px", "confidence", "status")
 """Arrays of `poses.npz` that recognisers and pictures are made of."""
 
-DECODER: Final = "opencv-python-headless"
-"""The one library that changes what is tracked and names no compiled code."""
-
-DAMAGE: Final = (
-    *(OSError, ValueError, KeyError, EOFError, NotImplementedError, RuntimeError),
-    *(tokenize.TokenError, zipfile.BadZipFile),
-)
-"""What reading half a file raises; such a clip is tracked again."""
+LIBRARIES: Final = ("opencv-python-headless", "scipy")
+"""What changes what is tracked and names no compiled code."""
 
 
 class CachedRun(NamedTuple):
@@ -40,7 +33,7 @@ class CachedRun(NamedTuple):
 
     facts: dict[str, Any]
     """clip, performer, posture_meant, warnings, as in `summary.json`."""
-    arrays: dict[str, NDArray[Any]]
+    arrays: Arrays
     """KEPT, as in `poses.npz`."""
 
 
@@ -50,7 +43,8 @@ def tracker_id() -> str:
     for package in PACKAGES:
         for path in sorted((ROOT / package).rglob("*.npz")):
             add(digest, path.relative_to(ROOT).as_posix(), path.read_bytes())
-    add(digest, DECODER, version(DECODER).encode())
+    for name in LIBRARIES:
+        add(digest, name, version(name).encode())
     return digest.hexdigest()
 
 
@@ -100,10 +94,10 @@ def write(folder: Path, key: str, content: bytes) -> None:
 def read(folder: Path, key: str) -> CachedRun | None:
     """What was kept under a key; None where nothing was, or something that is damaged."""
     try:
-        with np.load(folder / f"{key}.npz", allow_pickle=False) as file:
-            facts = json.loads(file["facts"].tobytes())
-            return CachedRun(facts, {name: file[name] for name in KEPT})
-    except DAMAGE:
+        held = read_arrays(folder / f"{key}.npz", MAX_BYTES)
+        facts = json.loads(held["facts"].tobytes())
+        return CachedRun(facts, {name: held[name] for name in KEPT})
+    except (OSError, ValueError, KeyError):
         return None
 
 

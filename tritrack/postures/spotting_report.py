@@ -1,7 +1,5 @@
 """How many performances are found in streams that nobody cuts, how soon, and what is false."""
 
-import json
-import zipfile
 from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
@@ -21,6 +19,7 @@ from recognizer.postures import DensityModel
 from recognizer.training.streams import Act, Found, Stream, found, joined
 from tritrack.offline.lockstep import Decoders, overridden, track_clip
 from tritrack.store.clip_paths import without_plain_files
+from tritrack.store.past_run import PastRunError, open_run
 from tritrack.store.runs import poses
 from tritrack.terminal import bar, json_text
 from tritrack.training.training import TrainingError
@@ -107,11 +106,10 @@ def _clip(path: Path, mode: Mode | None, decoders: Decoders) -> tuple[dict[str, 
 
 def _run(path: Path) -> tuple[dict[str, Any], Rows]:
     try:
-        facts = json.loads((path / "summary.json").read_text())
-        with np.load(path / "poses.npz", allow_pickle=False) as arrays:
-            return facts, _rows({name: arrays[name] for name in arrays.files})
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
-        raise TrainingError(f"{path} is no run folder: {error}; track the clip again") from error
+        run = open_run(path)
+    except PastRunError as error:
+        raise TrainingError(str(error)) from error
+    return run.summary, _rows(run.poses)
 
 
 def _rows(arrays: dict[str, Any]) -> Rows:

@@ -1,14 +1,13 @@
 """A run that was written before: its poses and its summary, checked while they are read."""
 
 import json
-import zipfile
-import zlib
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS
+from common.npz_file import Arrays, read_arrays
 
 MAX_BYTES: Final = 1 << 28
 """No poses of a run are larger: an hour at 30 frames a second."""
@@ -41,7 +40,7 @@ class PastRun(NamedTuple):
     """What a run left behind."""
 
     folder: Path
-    poses: dict[str, Any]
+    poses: Arrays
     """Arrays by name: those of ROWS, and what else the file holds."""
     summary: dict[str, Any]
 
@@ -56,15 +55,12 @@ def open_run(folder: Path) -> PastRun:
         raise PastRunError(f"there is no run folder {folder}: name one that `tritrack track` wrote")
     path = folder / "poses.npz"
     try:
-        if path.stat().st_size > MAX_BYTES:
-            raise PastRunError(f"{path} is larger than any run's: name another run")
-        with np.load(path, allow_pickle=False) as arrays:
-            poses = {name: arrays[name] for name in arrays.files}
+        poses = read_arrays(path, MAX_BYTES)
         summary = json.loads((folder / "summary.json").read_text())
     except FileNotFoundError as error:
         missing = Path(str(error.filename)).name
         raise PastRunError(f"{folder} has no {missing}: is it a run folder?") from error
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+    except (OSError, ValueError) as error:
         raise PastRunError(f"{folder} was damaged ({error}): track the clip again") from error
     _refuse_other_arrays(path, poses)
     return PastRun(folder, poses, summary if isinstance(summary, dict) else {})

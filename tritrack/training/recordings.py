@@ -1,7 +1,5 @@
 """What was performed in clips and runs: the rows that recognisers learn from and are tested on."""
 
-import json
-import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -24,6 +22,7 @@ from tritrack.offline.clip_cache import CachedRun
 from tritrack.offline.lockstep import Decoders, overridden, track_clip
 from tritrack.store.clip_paths import ClipsFailed, without_plain_files
 from tritrack.store.cores import made
+from tritrack.store.past_run import PastRunError, open_run
 from tritrack.store.runs import RunError
 from tritrack.terminal import bar, complain, warn
 
@@ -189,11 +188,10 @@ def _tracked(due: Due, decoders: Decoders) -> Done:
 
 def _of_run(path: Path) -> CachedRun:
     try:
-        facts = json.loads((path / "summary.json").read_text())
-        with np.load(path / "poses.npz", allow_pickle=False) as arrays:
-            return CachedRun(facts, {name: arrays[name] for name in clip_cache.KEPT})
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
-        raise RecordingError(f"{path} is no run folder: {error}; track the clip again") from error
+        run = open_run(path)
+        return CachedRun(run.summary, {name: run.poses[name] for name in clip_cache.KEPT})
+    except PastRunError as error:
+        raise RecordingError(str(error)) from error
 
 
 def _recording(path: Path, kept: CachedRun) -> Recording:

@@ -1,6 +1,5 @@
 """A small network that tells body from background at a pixel, trained on clips of known masks."""
 
-import zipfile
 from functools import cache
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -9,11 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import KERNEL
+from common.npz_file import DamagedFile, read_arrays, write_arrays
 from viewer.background.image_stack import Bytes, Floats
 from viewer.silhouette.boundary_features import FEATURES
 
 SHIPPED: Final = Path(__file__).with_name("silhouettes.npz")
 """Trained on synthetic people; docs/models.md says of whom."""
+MOST_BYTES: Final = 100_000
+"""No network is larger unpacked: it takes 3 kB."""
 HIDDEN: Final = 16
 """Units between the features and the answer."""
 
@@ -56,9 +58,9 @@ def load(path: Path) -> PixelClassifier:
     """
     cure = "install tritrack again, or tritrack train --what silhouettes"
     try:
-        with np.load(path, allow_pickle=False) as held:
-            network = PixelClassifier(*(held[field] for field in PixelClassifier._fields))
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        held = read_arrays(path, MOST_BYTES)
+        network = PixelClassifier(*(held[field] for field in PixelClassifier._fields))
+    except (OSError, DamagedFile, KeyError) as error:
         raise NetworkError(f"{path} holds no network of silhouettes: {cure}") from error
     sound = all(
         values.shape == shape and values.dtype == np.float32 and np.isfinite(values).all()
@@ -71,7 +73,7 @@ def load(path: Path) -> PixelClassifier:
 
 def save(network: PixelClassifier, path: Path) -> None:
     """Write a network."""
-    np.savez_compressed(path, allow_pickle=False, **network._asdict())
+    write_arrays(path, network._asdict())
 
 
 def log_odds(network: PixelClassifier, features: Floats) -> Floats:
