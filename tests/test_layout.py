@@ -2,6 +2,8 @@
 
 import importlib
 import re
+import subprocess
+import sys
 from collections import Counter
 from pathlib import Path
 
@@ -15,6 +17,11 @@ BELOW = {
     "tritrack": {"viewer", "integrator", "recognizer", "animator", "synth", "common"},
 }
 """Which of our packages each may import."""
+HEAVY = (
+    *("matplotlib", "sklearn", "hmmlearn", "filterpy", "joblib", "distributed", "dask", "torch"),
+    *("zenoh", "viser", "skimage", "tomlkit"),
+)
+"""What only some commands need."""
 IDS = [
     *(f"C{n}" for n in range(1, 9)),
     *(f"M{n}" for n in range(1, 26)),
@@ -76,6 +83,30 @@ def test_a_test_bears_the_name_of_what_it_tests() -> None:
     modules = {path.stem for path in paths if path.parts[0] != "tests"}
     tests = {path.stem.removeprefix("test_") for path in paths if path.stem.startswith("test_")}
     assert tests - modules == set(SYSTEM)
+
+
+@pytest.mark.parametrize(
+    ("module", "heavy"),
+    [
+        ("tritrack.__main__", {*HEAVY, "numba", "cv2", "scipy"}),
+        ("tritrack.offline.lockstep", {*HEAVY, "scipy.ndimage", "scipy.stats", "scipy.linalg"}),
+    ],
+    ids=["help", "track"],
+)
+def test_nothing_heavy_is_imported_before_it_is_needed(module: str, heavy: set[str]) -> None:
+    code = f"import sys, {module}; print(*sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, check=True, text=True
+    )
+    assert heavy.isdisjoint(done.stdout.split())
+
+
+def test_only_one_file_has_functions_compiled() -> None:
+    """Through numba's own decorators a function would keep its code when a callee changes."""
+    for package in BELOW:
+        for path in (ROOT / package).rglob("*.py"):
+            compiles = re.search(r"(@|numba\.|numba import )n?jit\b", path.read_text())
+            assert not compiles or path.name == "compiled.py", path
 
 
 def test_no_file_name_occurs_twice() -> None:

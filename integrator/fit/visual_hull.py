@@ -9,7 +9,6 @@ from typing import Any, Final, NamedTuple
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from common.bus.message_codec import unpack
 from common.compiled import compiled
@@ -123,6 +122,8 @@ def _largest(full: Any) -> Any:
     if not len(common):
         return common
     low = np.maximum(common.min(axis=0) - REACH_CELLS, 0)
+    from scipy import ndimage  # takes as long to import as half of all else
+
     high = common.max(axis=0) + 1 + REACH_CELLS
     near = full[tuple(map(slice, low, high))]
     labels, _ = ndimage.label(near == 2)

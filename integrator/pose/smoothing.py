@@ -4,7 +4,6 @@ from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from filterpy.common import Q_discrete_white_noise
 
 from common.body.body import Vector
 from common.compiled import compiled
@@ -117,5 +116,7 @@ def _started(state: State, angles_deg: Vector) -> State:
 
 @lru_cache(maxsize=16)
 def _noise(dt_s: float, settings: Smoothing) -> Vector:
-    """(2, 2) what an unknown acceleration adds to the covariance in a step."""
-    return np.asarray(Q_discrete_white_noise(2, dt_s, settings.acceleration_deg_s2**2), np.float64)
+    """(2, 2) what an unknown acceleration, the same all through a step, adds to the covariance."""
+    position, speed = 0.5 * dt_s**2, dt_s
+    moved = [[position**2, position * speed], [position * speed, speed**2]]
+    return np.array(moved) * settings.acceleration_deg_s2**2

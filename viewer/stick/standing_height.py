@@ -4,7 +4,6 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import theilslopes
 
 from common.body.body import Vector
 from common.raster.similarity import Mask
@@ -47,6 +46,8 @@ def statures_px(crowns: Vector, soles: Vector, whole: NDArray[np.bool_]) -> Vect
     slope = 0.0
     low, high = np.quantile(soles[told], (0.05, 0.95))
     if high - low > NEARER * np.median(heights[told]):
+        from scipy.stats import theilslopes  # takes as long to import as all else does
+
         some = np.flatnonzero(told)[:: max(1, told.sum() // MOST_SAMPLES)]
         with np.errstate(invalid="ignore"):  # in its error bar, which nobody reads
             slope = float(theilslopes(heights[some], soles[some])[0])
