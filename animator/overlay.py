@@ -153,9 +153,9 @@ def _tint(image: Image, silhouette: NDArray[np.bool_]) -> None:
 
 def _paint(stroke: Stroke, confidence: Vector) -> tuple[int, ...]:
     """A stroke's colour in OpenCV's order, paler the less sure its far end is."""
-    sure = float(np.clip(np.nan_to_num(confidence[stroke.far]), 0.0, 1.0))
+    strength = float(np.clip(np.nan_to_num(confidence[stroke.far]), 0.0, 1.0))
     return tuple(
-        round(pale + sure * (full - pale))
+        round(pale + strength * (full - pale))
         for full, pale in zip(stroke.colour[::-1], UNSURE[::-1], strict=True)
     )
 

@@ -147,8 +147,8 @@ def limb_colours(confidence: tuple[float, ...] = ()) -> Colours:
     """The colour of each limb, (10, 3): by side, faded where its far joint is not sure."""
     sides = {"l": LEFT, "r": RIGHT}
     full = np.array([sides[limb[0]] if limb[1] == "_" else TRUNK for limb in LIMBS], float)
-    sure = np.array(confidence)[list(_JOINT_OF_LIMB), None] if confidence else np.ones((10, 1))
-    faded: Colours = np.rint(UNSURE + sure * (full - UNSURE)).astype(np.uint8)
+    strength = np.array(confidence)[list(_JOINT_OF_LIMB), None] if confidence else np.ones((10, 1))
+    faded: Colours = np.rint(UNSURE + strength * (full - UNSURE)).astype(np.uint8)
     return faded
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
 from common.notes.notes import Depth, Held, Notes, held
 
-SURE: Final = 0.7
+CONFIDENT: Final = 0.7
 """A decision with less confidence than this is worth a look."""
 SEEN: Final = 0.3
 """A joint that keeps less than this of the confidence of the joint before it is hidden, the
@@ -106,23 +106,23 @@ def doubts_at(take: Take, row: int, notes: Notes) -> list[Doubt]:
     """What a frame leaves open, the least sure first; what the user settled is not."""
     if not take.posed[row]:
         return []
-    told = held(notes, int(take.frame[row]))
+    annotations = held(notes, int(take.frame[row]))
     found = []
-    sure = float(take.orientation_confidence[row])
-    if sure < SURE and told.orientation is None:
-        found.append(Doubt("orientation", str(take.orientation[row]), sure))
+    confidence = float(take.orientation_confidence[row])
+    if confidence < CONFIDENT and annotations.orientation is None:
+        found.append(Doubt("orientation", str(take.orientation[row]), confidence))
     leans = depth_of(take.joints_m[row : row + 1])[0]
     hidden = hidden_of(take.confidence[row])
-    for name, lean, sure in zip(LIMBS, leans, take.depth_confidence[row], strict=True):
-        if lean and sure < SURE and name not in told.depth:
-            found.append(Doubt("depth", name, float(sure)))
+    for name, lean, confidence in zip(LIMBS, leans, take.depth_confidence[row], strict=True):
+        if lean and confidence < CONFIDENT and name not in annotations.depth:
+            found.append(Doubt("depth", name, float(confidence)))
     for joint in LIMB_ENDS[hidden, 1]:
-        if (name := JOINT_NAMES[joint]) not in told.joints_px:
+        if (name := JOINT_NAMES[joint]) not in annotations.joints_px:
             found.append(Doubt("joint", name, float(take.confidence[row, joint])))
     return sorted(found, key=lambda doubt: doubt.confidence)
 
 
-def next_unsure(take: Take, row: int, notes: Notes, step: int = 1) -> int | None:
+def next_doubtful(take: Take, row: int, notes: Notes, step: int = 1) -> int | None:
     """The next row after this one, or before it, that leaves something open; None: there is none.
 
     A stretch of frames with the same open questions is one place to look at: its first frame.
@@ -136,15 +136,15 @@ def next_unsure(take: Take, row: int, notes: Notes, step: int = 1) -> int | None
     return None
 
 
-def with_notes(take: Take, row: int, told: Held) -> tuple[Vector, Vector]:
+def with_notes(take: Take, row: int, annotations: Held) -> tuple[Vector, Vector]:
     """A frame's stick (15, 2) and body (15, 3) with the user's joints and depths laid over them.
 
     Shows at once what was said; the fit itself follows when the video is tracked again.
     """
     joints_px, joints_m = take.joints_px[row].copy(), take.joints_m[row].copy()
-    for name, place in told.joints_px.items():
+    for name, place in annotations.joints_px.items():
         joints_px[_AT[name]] = place
-    return joints_px, leaned(joints_m, told.depth)
+    return joints_px, leaned(joints_m, annotations.depth)
 
 
 def leaned(joints_m: Vector, depth: Mapping[str, Depth]) -> Vector:

@@ -70,7 +70,7 @@ class Doing(NamedTuple):
 NOTHING: Final = Doing("", 0, None)
 
 
-class Network:
+class PathNetwork:
     """What a model's network needs at every frame, computed once."""
 
     def __init__(self, model: DensityModel) -> None:
@@ -110,7 +110,7 @@ class Network:
 class State:
     """The best paths through the network, and the last frames."""
 
-    network: Network
+    network: PathNetwork
     score: Array  # (p s + 2,)
     record: NDArray[np.int64]  # (p s + 2, LAST)
     over: NDArray[np.int64]  # (p s + 2, LAST + 1)
@@ -134,7 +134,7 @@ def init(model: DensityModel) -> State:
     score = np.full(states, -np.inf)
     score[-1] = 0.0
     record, over = np.zeros((states, LAST), np.int64), np.full((states, LAST + 1), -1)
-    return State(Network(model), score, record, over, np.empty((0, len(ROW_NAMES))))
+    return State(PathNetwork(model), score, record, over, np.empty((0, len(ROW_NAMES))))
 
 
 def step(state: State, row: NDArray[np.float64] | None) -> tuple[State, Doing]:
@@ -207,7 +207,7 @@ def _event(state: State, over: NDArray[np.int64]) -> Event | None:
     return Event(model.names[posture], first, last, posterior, int(over[COUNT]))
 
 
-def _holds(network: Network, posture: int, shown: Bearings, logs: Array) -> bool:
+def _holds(network: PathNetwork, posture: int, shown: Bearings, logs: Array) -> bool:
     """Whether frames show the posture, and all of it.
 
     Args:

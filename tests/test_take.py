@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from animator.take import Take, doubts_at, leaned, next_unsure, take_of, with_notes
+from animator.take import Take, doubts_at, leaned, next_doubtful, take_of, with_notes
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
@@ -80,13 +80,13 @@ def test_the_next_uncertain_frame_is_the_first_with_another_question() -> None:
     seen.orientation_confidence[5:8] = 0.5
     seen.confidence[10, WRIST] = 0.0
     visited = [0]
-    while (row := next_unsure(seen, visited[-1], Notes())) is not None:
+    while (row := next_doubtful(seen, visited[-1], Notes())) is not None:
         visited.append(row)
     assert visited == [0, 3, 5, 6, 10]
-    assert next_unsure(seen, 10, Notes(), -1) == 7
-    assert next_unsure(seen, 3, Notes(), -1) is None
+    assert next_doubtful(seen, 10, Notes(), -1) == 7
+    assert next_doubtful(seen, 3, Notes(), -1) is None
     settled = Notes(note=(Note(0, "left", {"l_upper_arm": "toward"}),))
-    assert next_unsure(seen, 0, settled) == 10
+    assert next_doubtful(seen, 0, settled) == 10
 
 
 def test_notes_are_laid_over_the_stick_and_the_body() -> None:

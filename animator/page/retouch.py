@@ -10,7 +10,7 @@ import viser
 from animator.page.door import HOST, close_server, open_server
 from animator.page.easel import Easel, Picture
 from animator.page.panel import ACCENT, piece
-from animator.take import Take, doubts_at, next_unsure, with_notes
+from animator.take import Take, doubts_at, next_doubtful, with_notes
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS
 from common.notes.notes import ORIENTATIONS, WAYS, Depth, Note, Notes, held, noted, placed_once
 
@@ -133,7 +133,7 @@ class RetouchPage:
             act(*given)
 
     def _look(self, step: int) -> None:
-        self.go_to(next_unsure(self._take, self._row, self.notes, step))
+        self.go_to(next_doubtful(self._take, self._row, self.notes, step))
 
     def _slid(self) -> None:
         row = int(np.searchsorted(self._take.frame, self._slider.value))
@@ -153,21 +153,21 @@ class RetouchPage:
             self.say(noted(self.notes, Note(self._frame, joints_px=dict.fromkeys(placed, AUTO))))
 
     def _show(self) -> None:
-        told = held(self.notes, self._frame)
+        annotations = held(self.notes, self._frame)
         with self._server.atomic():
             self._slider.value = self._frame
-            self._orientation.value = told.orientation or AUTO
+            self._orientation.value = annotations.orientation or AUTO
             for limb, chosen in self._depth.items():
-                chosen.value = told.depth.get(limb, AUTO)
+                chosen.value = annotations.depth.get(limb, AUTO)
             self._open.content = self._questions()
             posed = bool(self._take.posed[self._row])
             self._easel.show(self._picture_of(self._row), posed)
             if posed:
-                joints_px, joints_m = with_notes(self._take, self._row, told)
+                joints_px, joints_m = with_notes(self._take, self._row, annotations)
                 doubts = doubts_at(self._take, self._row, self.notes)
-                unsure = {doubt.name for doubt in doubts if doubt.kind == "depth"}
-                self._easel.show_stick(joints_px, set(told.joints_px))
-                self._easel.show_body(joints_m, unsure)
+                doubtful = {doubt.name for doubt in doubts if doubt.kind == "depth"}
+                self._easel.show_stick(joints_px, set(annotations.joints_px))
+                self._easel.show_body(joints_m, doubtful)
 
     def _questions(self) -> str:
         """The frame, what was decided in it, and what it leaves open."""

@@ -17,7 +17,7 @@ Depth = Literal["toward", "away"]
 far end is that away from the trunk; of the trunk itself, the neck."""
 Auto = Literal["auto"]
 """Gives a decision back to the program."""
-Place = tuple[float, float]
+JointPixel = tuple[float, float]
 """Column and row in the video's own pixels; the centre of the top-left one is (0.5, 0.5)."""
 
 ORIENTATIONS: Final[tuple[Orientation, ...]] = get_args(Orientation)
@@ -35,7 +35,7 @@ class Note(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_default
     orientation: Orientation | Auto | None = None
     depth: dict[str, Depth | Auto] = {}
     """By segment, a name of LIMBS."""
-    joints_px: dict[str, Place | Auto] = {}
+    joints_px: dict[str, JointPixel | Auto] = {}
     """By joint, a name of JOINT_NAMES."""
 
     def __post_init__(self) -> None:
@@ -72,14 +72,14 @@ class Held(msgspec.Struct, frozen=True):
 
     orientation: Orientation | None = None
     depth: dict[str, Depth] = {}
-    joints_px: dict[str, Place] = {}
+    joints_px: dict[str, JointPixel] = {}
 
 
 def held(notes: Notes, frame: int) -> Held:
     """What holds at a frame: of every entry the newest that is not later (T21)."""
     orientation: Orientation | Auto | None = None
     depth: dict[str, Depth | Auto] = {}
-    joints_px: dict[str, Place | Auto] = {}
+    joints_px: dict[str, JointPixel | Auto] = {}
     for note in notes.note:
         if note.frame <= frame:
             orientation = note.orientation or orientation
@@ -105,9 +105,9 @@ def noted(notes: Notes, new: Note) -> Notes:
     return _tidied(Notes(notes.video, (*others, joined)))
 
 
-def placed_once(notes: Notes, frame: int, joint: str, place: Place) -> Notes:
+def placed_once(notes: Notes, frame: int, joint: str, place: JointPixel) -> Notes:
     """The notes with a joint placed in one frame alone: at the next holds what held before."""
-    before: Place | Auto = held(notes, frame + 1).joints_px.get(joint, "auto")
+    before: JointPixel | Auto = held(notes, frame + 1).joints_px.get(joint, "auto")
     first = noted(notes, Note(frame, joints_px={joint: place}))
     return noted(first, Note(frame + 1, joints_px={joint: before}))
 

@@ -81,9 +81,9 @@ def compare(poses: Arrays, truth: Arrays) -> Compared:
     known = (frame >= 0) & (frame < len(row_of))
     known[known] &= (row_of[frame[known]] >= 0) & (row_of[frame[known]] < n)
     at = row_of[frame[known]]
-    tracked, sure = np.full((n, len(JOINTS), 3), np.nan), np.zeros((n, len(JOINTS)))
+    tracked, confidence = np.full((n, len(JOINTS), 3), np.nan), np.zeros((n, len(JOINTS)))
     tracked[at] = picked(poses["joints_m"], poses["joint_names"])[known]
-    sure[at] = picked(poses["confidence"], poses["joint_names"])[known]
+    confidence[at] = picked(poses["confidence"], poses["joint_names"])[known]
     true = picked(truth["joints3d"], truth["joint_names"])
     frame_of = np.full(n, -1)
     filmed = (row_of >= 0) & (row_of < n)
@@ -97,7 +97,7 @@ def compare(poses: Arrays, truth: Arrays) -> Compared:
         rows=np.flatnonzero(has),
         tracked_m=tracked[has],
         true_m=true[has],
-        confidence=sure[has],
+        confidence=confidence[has],
         due=int(due.sum()),
         empty=int(absent.sum()),
         ghosts=int((absent & np.isfinite(tracked).any(axis=(1, 2))).sum()),

@@ -66,10 +66,10 @@ def _reliability(axes: Any, _clips: Sequence[Compared], report: Mapping[str, Any
 
 
 def _roc(axes: Any, clips: Sequence[Compared], report: Mapping[str, Any]) -> None:
-    sure = np.concatenate([clip.confidence for clip in clips])
+    confidence = np.concatenate([clip.confidence for clip in clips])
     near = np.concatenate([clip.off_mm for clip in clips]) < NEAR_MM
     area = report["confidence"]["auc"]["all"]
-    axes.plot(*roc(sure, near), label=f"all joints, area {area:.2f}")
+    axes.plot(*roc(confidence, near), label=f"all joints, area {area:.2f}")
     axes.plot((0, 1), (0, 1), ":", color="grey", label="a constant, area 0.50")
     axes.set(xlim=(0, 1), ylim=(0, 1))
     axes.set(xlabel=f"share of those beyond {NEAR_MM:g} mm", ylabel="share of those within")

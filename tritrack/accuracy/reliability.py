@@ -18,27 +18,27 @@ COUNTS: Final = 0.01
 
 def trust(clips: Sequence[Compared]) -> dict[str, Any]:
     """Reliability of all joints together and area under the ROC curve of each, for NEAR_MM."""
-    sure = np.concatenate([clip.confidence for clip in clips])
+    confidence = np.concatenate([clip.confidence for clip in clips])
     near = np.concatenate([clip.off_mm for clip in clips]) < NEAR_MM
-    bins = reliability(sure, near)
+    bins = reliability(confidence, near)
     return {
         "near_mm": NEAR_MM,
         "near": float(near.mean()) if near.size else np.nan,
         "bins": bins,
         "gap": gap(bins, near.size),
         "auc": {
-            **{name: auc(sure[:, i], near[:, i]) for i, name in enumerate(JOINTS)},
-            "all": auc(sure, near),
+            **{name: auc(confidence[:, i], near[:, i]) for i, name in enumerate(JOINTS)},
+            "all": auc(confidence, near),
         },
     }
 
 
-def reliability(sure: Floats, near: NDArray[np.bool_]) -> list[dict[str, float]]:
+def reliability(confidence: Floats, near: NDArray[np.bool_]) -> list[dict[str, float]]:
     """Of each bin of confidence: from, to, count, mean confidence, share that was near."""
     edges = np.linspace(0.0, 1.0, BINS + 1)
-    place = np.clip((sure.ravel() * BINS).astype(int), 0, BINS - 1)
+    place = np.clip((confidence.ravel() * BINS).astype(int), 0, BINS - 1)
     counts = np.bincount(place, minlength=BINS)
-    said = np.bincount(place, sure.ravel(), BINS)
+    said = np.bincount(place, confidence.ravel(), BINS)
     came = np.bincount(place, near.ravel(), BINS)
     return [
         {
@@ -58,7 +58,7 @@ def gap(bins: Sequence[dict[str, float]], joints: int) -> float:
     return max(gaps, default=np.nan)
 
 
-def auc(sure: Floats, near: NDArray[np.bool_]) -> float:
+def auc(confidence: Floats, near: NDArray[np.bool_]) -> float:
     """How likely a joint that is near has more confidence than one that is not.
 
     Equal ones count half: a constant has 0.5. NaN where all are near, or none.
@@ -68,18 +68,18 @@ def auc(sure: Floats, near: NDArray[np.bool_]) -> float:
     hits, all_of_them = int(near.sum()), near.size
     if hits in (0, all_of_them):
         return np.nan
-    _, place, ties = np.unique(sure.ravel(), return_inverse=True, return_counts=True)
+    _, place, ties = np.unique(confidence.ravel(), return_inverse=True, return_counts=True)
     ranks = (np.cumsum(ties) - (ties - 1) / 2)[place][near.ravel()]
     return float((ranks.sum() - hits * (hits + 1) / 2) / (hits * (all_of_them - hits)))
 
 
-def roc(sure: Floats, near: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+def roc(confidence: Floats, near: NDArray[np.bool_]) -> tuple[Floats, Floats]:
     """The ROC curve from (0, 0) to (1, 1): shares of the far and of the near at each threshold.
 
     What has the same confidence is taken together, so the area beneath is what `auc` says.
     """
-    order = np.argsort(-sure.ravel(), kind="stable")
-    said, came = sure.ravel()[order], near.ravel()[order]
+    order = np.argsort(-confidence.ravel(), kind="stable")
+    said, came = confidence.ravel()[order], near.ravel()[order]
     last = np.append(np.flatnonzero(np.diff(said)), said.size - 1)
     hits, misses = np.cumsum(came)[last], np.cumsum(~came)[last]
     start = np.zeros(1)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animator.inbetween import key_frames
-from animator.take import SURE, Take, depth_of, hidden_of
+from animator.take import CONFIDENT, Take, depth_of, hidden_of
 from common.body.body import LIMB_ENDS, LIMBS
 from common.notes.notes import Notes
 
@@ -93,8 +93,8 @@ def given_inputs(notes: Notes) -> Count:
 
 def open_inputs(take: Take) -> Count:
     """The inputs that would settle every doubt, each held as long as it agrees (T21)."""
-    asked = take.posed & (take.orientation_confidence < SURE)
-    unsure = take.posed[:, None] & (take.depth_confidence < SURE)
+    asked = take.posed & (take.orientation_confidence < CONFIDENT)
+    unsure = take.posed[:, None] & (take.depth_confidence < CONFIDENT)
     hidden = take.posed[:, None] & hidden_of(take.confidence)
     depth = depth_of(take.joints_m)
     return Count(
