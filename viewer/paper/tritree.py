@@ -15,7 +15,10 @@ MOST_STAGES = 16
 """A window of 2^16 stops would still end: the guard that M14 asks for."""
 
 
-MIDDLE_FIRST = (1, 0, 2)
+LOW, HIGH, LEFT, MIDDLE, RIGHT, ROUNDS, BEST_ANGLE, BEST_SCORE, MATCHES = range(9)
+"""What a search knows: its window, the scores at its ends and its middle (NaN: to be matched), how
+often it was narrowed, and the best that it met."""
+MIDDLE_FIRST = (MIDDLE, LEFT, RIGHT)
 """Order of the probes: what is met first wins a tie, and the middle is the previous angle."""
 
 
@@ -49,8 +52,8 @@ def whole(value: float) -> int:
 
 @compiled
 def narrowed(
-    low: int, high: int, left: float, middle: float, right: float
-) -> tuple[int, int, float, float, float]:
+    low: float, high: float, left: float, middle: float, right: float
+) -> tuple[float, float, float, float, float]:
     """The half window around the winner, with the scores that it inherits (NaN: to be matched).
 
     A tie goes to the middle, then to the left: deterministic, and close to the previous angle.
@@ -63,14 +66,57 @@ def narrowed(
     return high - 2 * quarter, high, middle, np.nan, right
 
 
-def tritree(
-    score_at: Callable[[float], float], bounds_deg: tuple[int, int], stop_deg: int
-) -> Found:
-    """Best angle in a window, for any score.
+@compiled
+def begun(low: float, high: float) -> Any:
+    """A search of a window that has matched nothing: what LOW to MATCHES name."""
+    tree = np.full(MATCHES + 1, np.nan)
+    tree[LOW], tree[HIGH], tree[ROUNDS] = low, high, 0.0
+    tree[BEST_ANGLE], tree[BEST_SCORE], tree[MATCHES] = 0.5 * (low + high), -1.0, 0.0
+    return tree
+
+
+@compiled
+def probe(tree: Any, stop: float) -> int:
+    """Which of a window's ends and its middle to match next: LEFT, MIDDLE or RIGHT; -1: none.
 
     Each round compares the left end, the middle and the right end of the window and keeps the
     half around the winner. The halves overlap, and the winner is always a point of the next
     round, so at most two new matches are needed there.
+
+    Args:
+        tree: From `begun`; narrowed in place.
+        stop: Width at which to stop.
+    """
+    while tree[HIGH] - tree[LOW] > stop and tree[ROUNDS] < MOST_STAGES:
+        for i in MIDDLE_FIRST:
+            if np.isnan(tree[i]):
+                return i
+        tree[LOW], tree[HIGH], tree[LEFT], tree[MIDDLE], tree[RIGHT] = narrowed(
+            tree[LOW], tree[HIGH], tree[LEFT], tree[MIDDLE], tree[RIGHT]
+        )
+        tree[ROUNDS] += 1
+    return -1
+
+
+@compiled
+def angle_of(tree: Any, which: int) -> float:
+    """The angle of a probe."""
+    return tree[LOW] + (which - LEFT) * ((tree[HIGH] - tree[LOW]) // 2)
+
+
+@compiled
+def tell(tree: Any, which: int, score: float) -> None:
+    """Take in what a probe matched."""
+    tree[which] = score
+    tree[MATCHES] += 1
+    if score > tree[BEST_SCORE]:
+        tree[BEST_ANGLE], tree[BEST_SCORE] = angle_of(tree, which), score
+
+
+def tritree(
+    score_at: Callable[[float], float], bounds_deg: tuple[int, int], stop_deg: int
+) -> Found:
+    """Best angle in a window, for any score.
 
     Args:
         score_at: Matching score of an angle in degrees; called once per angle.
@@ -79,21 +125,10 @@ def tritree(
 
     Source: Huang & Chung 2004, section 3.5, steps (1)-(6) (P36-P41).
     """
-    low, high = bounds_deg
-    probes = [np.nan, np.nan, np.nan]
-    best = Found((low + high) / 2, -1.0, 0)
-    for _ in range(MOST_STAGES):
-        if high - low <= stop_deg:
-            break
-        for i in MIDDLE_FIRST:
-            if np.isnan(probes[i]):
-                angle = low + i * ((high - low) // 2)
-                probes[i] = score_at(float(angle))
-                best = best._replace(matches=best.matches + 1)
-                if probes[i] > best.score:
-                    best = best._replace(angle_deg=float(angle), score=probes[i])
-        low, high, *probes = narrowed(low, high, *probes)
-    return best
+    tree = begun(*bounds_deg)
+    while (which := probe(tree, stop_deg)) >= 0:
+        tell(tree, which, score_at(angle_of(tree, which)))
+    return Found(float(tree[BEST_ANGLE]), float(tree[BEST_SCORE]), int(tree[MATCHES]))
 
 
 @compiled
@@ -170,27 +205,15 @@ def search(
     rest_px, rest_hit = count(rest), count_both(rest, seen)
     scratch, posed = rest.copy(), pose.copy()
     first, last, p = np.empty(height, np.int32), np.empty(height, np.int32), np.empty(PRIMITIVE)
-    probes = np.array([np.nan, np.nan, np.nan])
-    best_angle, best_score, matches = 0.5 * (low + high), -1.0, 0
-    for _ in range(MOST_STAGES):
-        if high - low <= stop:
-            break
-        for i in MIDDLE_FIRST:
-            if not np.isnan(probes[i]):
-                continue
-            angle = low + i * ((high - low) // 2)
-            for k in range(posed.size):
-                if step[k] != 0.0:
-                    posed[k] = angle * step[k]
-            hang_limbs(body, posed, moving, frames)
-            drawn, hit = added(
-                frames, body, view, moving, width, rest, seen, scratch, first, last, p
-            )
-            probes[i] = score(rest_hit + hit, rest_px + drawn, seen_px)
-            matches += 1
-            if probes[i] > best_score:
-                best_angle, best_score = float(angle), probes[i]
-        low, high, probes[0], probes[1], probes[2] = narrowed(
-            low, high, probes[0], probes[1], probes[2]
-        )
-    return best_angle, best_score, matches
+    tree = begun(low, high)
+    which = probe(tree, stop)
+    while which >= 0:
+        angle = angle_of(tree, which)
+        for k in range(posed.size):
+            if step[k] != 0.0:
+                posed[k] = angle * step[k]
+        hang_limbs(body, posed, moving, frames)
+        drawn, hit = added(frames, body, view, moving, width, rest, seen, scratch, first, last, p)
+        tell(tree, which, score(rest_hit + hit, rest_px + drawn, seen_px))
+        which = probe(tree, stop)
+    return tree[BEST_ANGLE], tree[BEST_SCORE], int(tree[MATCHES])
