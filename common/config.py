@@ -180,7 +180,11 @@ def load(path: Path) -> Settings:
         raise SettingsError(f"cannot read the settings {path}: {error.strerror}") from error
     try:
         settings = msgspec.toml.decode(text, type=Settings)
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
+        raise SettingsError(
+            f"{path} is no settings file: name a TOML file, or a clip folder"
+        ) from error
+    except msgspec.DecodeError as error:
         raise SettingsError(f"{path}: {error}") from error
     return _with_full_paths(settings, path)
 

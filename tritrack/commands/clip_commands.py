@@ -8,7 +8,7 @@ import typer
 from common.bus.messages import ViewerNumber
 from common.config import Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
-from tritrack.commands.options import Out, Size
+from tritrack.commands.options import Out, Size, writable_file
 
 VIEWERS: Final[dict[str, tuple[ViewerNumber, ...]]] = {"12": (1, 2), "1": (1,), "2": (2,)}
 
@@ -95,7 +95,10 @@ def export(
     to: Annotated[Literal["bvh", "csv"], typer.Option(help="For Blender, or for spreadsheets.")],
     out: Annotated[
         Path | None,
-        typer.Option(help="The file to write; body.bvh or poses.csv in RUN by default."),
+        typer.Option(
+            help="The file to write; body.bvh or poses.csv in RUN by default.",
+            callback=writable_file,
+        ),
     ] = None,
     json_wanted: JsonWanted = False,
 ) -> None:

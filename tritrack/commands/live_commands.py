@@ -1,7 +1,7 @@
 """The live commands: a whole run on this machine, or one process of a rig spread over hosts."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 import msgspec
 import typer
@@ -58,10 +58,12 @@ def view(
 
     Example: tritrack view configs/live.toml --viewer 1
     """
+    from common.video.clip_sources import footage_of
     from viewer.__main__ import main as viewer_main
 
-    number: ViewerNumber = 1 if viewer == 1 else 2
-    viewer_main(live_settings(settings_file), number)
+    settings, number = live_settings(settings_file), cast(ViewerNumber, viewer)
+    footage_of(settings)  # refuses what is no clip at once, not when the integrator answers
+    viewer_main(settings, number)
 
 
 def integrate(settings_file: ConfigPath) -> None:

@@ -23,12 +23,14 @@ def writable(folder: Path | None) -> Path | None:
     return folder
 
 
-def writable_file(path: Path) -> Path:
+def writable_file(path: Path | None) -> Path | None:
     """A file that can be written, or replaced.
 
     Raises:
         BadParameter: When it is a folder, or its own cannot be written.
     """
+    if path is None:
+        return None
     if path.is_dir():
         raise typer.BadParameter(f"{path} is a folder: name a file")
     writable(path.parent)

@@ -1,0 +1,189 @@
+"""The README as a test: what it prints is typed, in its order, in a fresh copy with an empty cache.
+
+Its commands are the lines of its indented blocks. Where the product needs cameras or other hosts,
+the README speaks of a command in its text, and nothing here runs it.
+"""
+
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Final, NamedTuple
+from urllib.request import urlopen
+
+import numpy as np
+import pytest
+from test_layout import ROOT, tracked
+
+COMMAND: Final = re.compile(r"^ {4}(\S.*)$", re.MULTILINE)
+LIMIT_S: Final = 300.0
+"""No command takes longer; the installation is the longest."""
+PORTS: Final = (8080, 7447)
+"""Of the page and the bus, where a settings file names no others."""
+PAGE: Final = re.compile(r"the page is at (http://\S+);")
+
+
+class Result(NamedTuple):
+    """What a command leaves behind."""
+
+    files: tuple[str, ...] = ()
+    """Patterns, from the copy's folder; of each there is a file, and none is empty."""
+    says: str = ""
+    """A pattern of what it prints."""
+
+
+RESULTS: Final = {
+    "make demo": Result(("runs/demo/poses.npz", "runs/demo/posture.json"), "posture: raise_right"),
+    "tritrack doctor": Result(says="matching kernel"),
+    "tritrack synth": Result(
+        ("clips/calibration.json", "clips/s0*/cam1.avi", "clips/s0*/cam2.avi")
+    ),
+    "tritrack track": Result(("runs/s0*/poses.npz", "runs/s0*/summary.json")),
+    "tritrack live clips": Result(
+        ("runs/live/poses.npz", "runs/live/posture.json"), "posture: squat"
+    ),
+    "tritrack live configs": Result(("runs/1/poses.npz", "runs/1/posture.json"), "posture: squat"),
+    "tritrack single": Result(
+        ("runs/cam1/poses.npz", "runs/cam1/body.bvh", "runs/cam1/overlay.avi")
+    ),
+    "tritrack retouch": Result(says="then fit the video again"),
+    "tritrack export": Result(("runs/cam1/poses.csv",), "frames written"),
+    "tritrack evaluate tracking": Result(("report/tracking/report.html",), r"mean \d\d\.\d mm"),
+    "tritrack train clips/*/": Result(("postures.npz",), "2 postures learnt, 2 known"),
+    "tritrack train clips/*squat/": Result(("mine.npz",), "1 postures learnt, 15 known"),
+    "tritrack evaluate postures": Result(("report/postures/report.html",), r"all: \d/4"),
+    "tritrack calibrate markers": Result(says="cam2"),
+    "tritrack calibrate poles": Result(("configs/calibration.json",), "cam2"),
+    "tritrack bench": Result(says="limb match"),
+}
+"""By how a command begins; every command of the README is here."""
+
+ENDLESS: Final = ("tritrack retouch",)
+"""Pages that serve until Ctrl-C: each is fetched once, then ended so."""
+
+
+def commands() -> list[str]:
+    return [line.strip() for line in COMMAND.findall((ROOT / "README.md").read_text())]
+
+
+def result_of(command: str) -> Result:
+    (found,) = [result for start, result in RESULTS.items() if command.startswith(start)]
+    return found
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    """What is under version control as it stands, alone in a folder."""
+    folder = tmp_path / "tritrack"
+    for path in tracked():
+        new = folder / path.relative_to(ROOT)
+        new.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(path, new)
+    return folder
+
+
+@pytest.fixture
+def shell(copy: Path, tmp_path: Path) -> dict[str, str]:
+    """A user's environment: no cache but pip's, no virtual environment but the one to be made."""
+    refuse_without_network(tmp_path)
+    for port in PORTS:
+        with socket.socket() as door:
+            if door.connect_ex(("127.0.0.1", port)) == 0:
+                pytest.skip(f"another program holds port {port}, which the README's commands use")
+    (tmp_path / "tmp").mkdir()
+    ours = {"VIRTUAL_ENV", "TRITRACK_DATA", "TRITRACK_LOG", "NUMBA_CACHE_DIR", "PYTHONPATH"}
+    inherited = {name: value for name, value in os.environ.items() if name not in ours}
+    here = str(Path(sys.executable).parent)
+    places = [place for place in os.environ["PATH"].split(os.pathsep) if place != here]
+    return inherited | {
+        "PATH": os.pathsep.join([str(copy / ".venv/bin"), *places]),
+        "PIP_CACHE_DIR": pip("cache", "dir").stdout.strip(),
+        "XDG_CACHE_HOME": str(tmp_path / "cache"),
+        "TMPDIR": str(tmp_path / "tmp"),
+    }
+
+
+def pip(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "pip", *words], capture_output=True, text=True, check=False
+    )
+
+
+def refuse_without_network(folder: Path) -> None:
+    tried = pip("download", "--quiet", "--no-deps", "--dest", str(folder / "tried"), "iniconfig")
+    if tried.returncode:
+        pytest.skip(f"no package can be installed here: {tried.stderr.strip()[-200:]}")
+
+
+def typed(command: str, copy: Path, shell: dict[str, str]) -> tuple[int, str]:
+    """Exit code and all that a command printed."""
+    with subprocess.Popen(
+        ["sh", "-c", command],
+        cwd=copy,
+        env=shell,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        said = ""
+        if command.startswith(ENDLESS):
+            said = fetched(process)
+            os.killpg(process.pid, signal.SIGINT)
+        said += process.communicate(timeout=LIMIT_S)[0]
+        return process.returncode, said
+
+
+def fetched(process: subprocess.Popen[str]) -> str:
+    """What was printed until the address of a page, which then answers."""
+    assert process.stdout is not None
+    said = ""
+    for line in process.stdout:
+        said += line
+        address = PAGE.search(said)
+        if address:
+            with urlopen(address[1], timeout=LIMIT_S) as page:
+                assert page.status == 200
+            break
+    return said
+
+
+def posed_rows(path: Path) -> int:
+    with np.load(path, allow_pickle=False) as poses:
+        return int(np.isfinite(poses["joints_m"]).all(axis=(1, 2)).sum())
+
+
+def wrong_with(result: Result, copy: Path, said: str) -> Iterator[str]:
+    """What a command should have left behind and did not."""
+    if not re.search(result.says, said):
+        yield f"nothing like {result.says!r} was said"
+    for pattern in result.files:
+        files = sorted(copy.glob(pattern))
+        if not files:
+            yield f"there is no {pattern}"
+        yield from (f"{path} is empty" for path in files if not path.stat().st_size)
+        poses = [path for path in files if path.name == "poses.npz"]
+        yield from (f"{path} has no poses" for path in poses if posed_rows(path) < 30)
+
+
+def test_every_command_of_the_readme_is_known_here() -> None:
+    """A new example is run only if it is told what it leaves behind."""
+    assert commands()[0].startswith("make demo")
+    assert [result_of(command) for command in commands()] == list(RESULTS.values())
+
+
+@pytest.mark.slow
+def test_the_commands_of_the_readme_work_one_after_the_other(
+    copy: Path, shell: dict[str, str], tmp_path: Path
+) -> None:
+    for command in commands():
+        code, said = typed(command, copy, shell)
+        assert code == 0, f"{command} ended with {code}:\n{said}"
+        assert "Traceback" not in said, f"{command}:\n{said}"
+        assert not list(wrong_with(result_of(command), copy, said)), f"{command}:\n{said}"
+    assert list((tmp_path / "tmp").iterdir()) == []
