@@ -35,6 +35,7 @@ TEST = re.compile(r"`(test_\w+\.py)::(test_\w+)`")
 
 SYSTEM = {
     "layout": "the rules of the house, this file",
+    "readme": "the README, typed as it stands in a fresh copy",
     "system_commands": "every command as a user calls it",
     "system_live_fallback": "live runs that lose a view: real processes that are killed or frozen",
     "system_lost_view": "both viewers and the integrator in lock-step, then one of them alone",

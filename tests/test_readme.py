@@ -18,8 +18,9 @@ from urllib.request import urlopen
 
 import numpy as np
 import pytest
-from test_layout import ROOT, tracked
+from source_map import tracked
 
+ROOT: Final = Path(__file__).parents[1]
 COMMAND: Final = re.compile(r"^ {4}(\S.*)$", re.MULTILINE)
 LIMIT_S: Final = 300.0
 """No command takes longer; the installation is the longest."""
@@ -80,7 +81,7 @@ def result_of(command: str) -> Result:
 def copy(tmp_path: Path) -> Path:
     """What is under version control as it stands, alone in a folder."""
     folder = tmp_path / "tritrack"
-    for path in tracked():
+    for path in tracked(ROOT):
         new = folder / path.relative_to(ROOT)
         new.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(path, new)
