@@ -2,10 +2,13 @@
 
 import json
 import math
-from typing import Any
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, TypeVar
 
 from rich.console import Console
 from rich.progress import Progress
+
+Thing = TypeVar("Thing")
 
 
 def warn(console: Console, text: str) -> None:
@@ -21,6 +24,23 @@ def complain(console: Console, text: str) -> None:
 def bar(console: Console) -> Progress:
     """How far long work is; nothing where nobody looks on, as in a file."""
     return Progress(console=console, transient=True, disable=not console.is_terminal)
+
+
+def by_share(
+    progress: Progress, things: Sequence[Thing], description: str
+) -> Iterator[tuple[Thing, Callable[[float], None]]]:
+    """Things one after the other, each with a function that is told which share of it is done.
+
+    One long video moves the bar with its frames, as many short ones do with each that is over.
+    """
+    task = progress.add_task(description, total=len(things))
+    for before, thing in enumerate(things):
+
+        def tell(share: float, before: int = before) -> None:
+            progress.update(task, completed=before + share)
+
+        yield thing, tell
+        progress.update(task, completed=before + 1)
 
 
 def json_text(value: Any) -> str:
