@@ -178,6 +178,15 @@ def test_every_command_of_the_readme_is_known_here() -> None:
     assert [result_of(command) for command in commands()] == list(RESULTS.values())
 
 
+def test_the_first_command_says_what_goes_on_before_anything_that_takes_long(copy: Path) -> None:
+    planned = subprocess.run(
+        ["make", "--dry-run", "demo"], cwd=copy, capture_output=True, text=True, check=True
+    ).stdout.splitlines()
+    (told,) = [i for i, line in enumerate(planned) if "libraries into .venv" in line]
+    assert told < min(i for i, line in enumerate(planned) if " -m " in line)
+    assert all("command -v" in line for line in planned[:told])
+
+
 @pytest.mark.slow
 def test_the_commands_of_the_readme_work_one_after_the_other(
     copy: Path, shell: dict[str, str], tmp_path: Path
