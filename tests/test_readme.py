@@ -124,7 +124,7 @@ def refuse_without_network(folder: Path) -> None:
 def typed(command: str, copy: Path, shell: dict[str, str]) -> tuple[int, str]:
     """Exit code and all that a command printed."""
     with subprocess.Popen(
-        ["sh", "-c", command],
+        ["sh", "-c", f"exec {command}"],
         cwd=copy,
         env=shell,
         stdout=subprocess.PIPE,
