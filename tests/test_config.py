@@ -169,6 +169,14 @@ def test_the_bound_is_reached() -> None:
     assert working_size((100, 80), (160, 120)) == (100, 80)
 
 
+def test_a_video_is_told_from_a_settings_file(tmp_path: Path) -> None:
+    (tmp_path / "dance.avi").write_bytes(b"RIFF\xfd\xff")
+    with pytest.raises(
+        SettingsError, match=r"dance\.avi is no settings file: name a TOML file, or"
+    ):
+        load(tmp_path / "dance.avi")
+
+
 def test_a_variable_that_is_not_set_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -117,6 +117,10 @@ def test_every_command_has_help_with_an_example(tritrack: Commands, words: list[
             "free motion is no posture",
         ),
         (["synth", "--out", "/dev/null/o"], "cannot write /dev/null/o: Not a directory"),
+        (["track", "x", "--out", "/dev/null/o"], "cannot write /dev/null/o: Not a directory"),
+        (["train", "x", "--out", "."], ". is a folder: name a file"),
+        (["export", "x", "--to", "csv", "--out", "/dev/null/o"], "Not a directory: /dev/null"),
+        (["view", ".", "--viewer", "1"], "has neither cam1.* nor cam2.*: name the videos so"),
         (
             ["train", "nosuch", "--out", "m.npz"],
             "there is no clip folder and no settings file nosuch",

@@ -1,0 +1,41 @@
+"""What goes wrong, told apart: exit code 2 for what a user can mend, 1 for faults."""
+
+import errno
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from common.config import SettingsError
+from tritrack.faults import Fault, code_of, told
+
+
+@pytest.mark.parametrize(
+    "error",
+    [SettingsError("size must look like 160x120"), OSError(errno.ENOSPC, "No space left")],
+    ids=["a class of ours", "a full disk"],
+)
+def test_what_a_user_can_mend_is_told_as_it_is(error: Exception) -> None:
+    assert (code_of(error), told(error)) == (2, str(error))
+
+
+def test_a_fault_is_one_line_and_its_traceback_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    error = ValueError("axis 1 is out of bounds\nfor array of dimension 1")
+    line = told(error)
+    (kept,) = tmp_path.iterdir()
+    assert code_of(error) == 1
+    assert line.startswith("a fault of tritrack itself (ValueError: axis 1 is out of bounds for")
+    assert line.endswith(f"please report {kept}")
+    assert "ValueError: axis 1 is out of bounds" in kept.read_text()
+
+
+def test_a_fault_that_another_process_met_is_told_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    error = Fault("viewer 1: a fault of tritrack itself")
+    assert (code_of(error), told(error)) == (1, "viewer 1: a fault of tritrack itself")
+    assert not list(tmp_path.iterdir())
