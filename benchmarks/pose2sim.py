@@ -30,7 +30,7 @@ from common.video.clip_facts import both_cameras
 from integrator.rig.undistortion import undistorted
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.runs import write_run
-from viewer.capture import Frame
+from viewer.capture import CapturedFrame
 
 PAIRS: Final = (("cam01", "cam04"), ("cam03", "cam04"), ("cam02", "cam03"))
 Y_UP: Final = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
@@ -44,7 +44,7 @@ SHOWN: Final = 12
 """Frames on a contact sheet."""
 
 Picture = NDArray[np.uint8]
-Row = tuple[dict[Any, Frame], dict[int, Report], Body]
+Row = tuple[dict[Any, CapturedFrame], dict[int, Report], Body]
 """The frames of an instant, the reports on them and the body that they gave."""
 
 
@@ -119,7 +119,7 @@ def write_settings(data: Path, out: Path, size: str, every: int) -> list[Path]:
     return found
 
 
-def overlay(frame: Frame, report: Report, body: Body, rig: Rig) -> Picture:
+def overlay(frame: CapturedFrame, report: Report, body: Body, rig: Rig) -> Picture:
     """A view: blue the model alone, red the silhouette alone, green both."""
     n = report.viewer - 1
     picture = frame.picture // 2

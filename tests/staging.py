@@ -20,7 +20,7 @@ from common.video.decoding import Picture
 from integrator import merge
 from integrator.pairing import Pair
 from viewer import track
-from viewer.capture import Frame
+from viewer.capture import CapturedFrame
 from viewer.silhouette.silhouette import Seen
 
 WIDTH, HEIGHT = 160, 120
@@ -111,7 +111,7 @@ class Stage:
             if mask is None:
                 continue
             moment = self.at * PERIOD_S
-            frame = Frame(self.at, moment, moment, mask.view(np.uint8))
+            frame = CapturedFrame(self.at, moment, moment, mask.view(np.uint8))
             self.viewers[n], reports[n - 1] = track.step(viewer, frame, self.guide)
         self.state, body, self.guide = merge.step(self.state, Pair(reports[0], reports[1]))
         self.at += 1

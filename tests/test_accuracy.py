@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from rich.console import Console
 from scipy.spatial.transform import Rotation
 
+from common.npz_file import Arrays
 from tritrack.accuracy.accuracy import (
     INDEX,
     JOINTS,
-    Arrays,
     aligned,
     compare,
     inner_deg,

@@ -25,7 +25,7 @@ from common.video.decoding import (
     Picture,
     Undecodable,
 )
-from viewer.capture import WAITING, Frame, Live, RoomClock, recorded
+from viewer.capture import WAITING, CapturedFrame, Live, RoomClock, recorded
 
 SIZE = (64, 48)
 FRAMES = 40
@@ -253,7 +253,7 @@ def test_a_recorded_view_is_as_fast_as_it_can_and_keeps_the_cameras_times(
     assert [frame.clock_s for frame in frames] == [frame.captured_s for frame in frames]
 
 
-def all_of(live: Live) -> list[Frame]:
+def all_of(live: Live) -> list[CapturedFrame]:
     frames = []
     while not live.over:
         frame = live.take(5.0)

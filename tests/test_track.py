@@ -30,7 +30,7 @@ from common.bus.messages import Guide, Report, ViewerNumber
 from common.raster.similarity import Mask
 from common.rig.camera import project
 from viewer import track
-from viewer.capture import Frame
+from viewer.capture import CapturedFrame
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -44,8 +44,8 @@ def viewer(number: ViewerNumber) -> track.State:
     return track.init(number, None, RIG.cameras[number - 1], PAPER)  # type: ignore[arg-type]
 
 
-def frame(mask: Mask, index: int = 0) -> Frame:
-    return Frame(index, index / 15, index / 15, mask)  # type: ignore[arg-type]
+def frame(mask: Mask, index: int = 0) -> CapturedFrame:
+    return CapturedFrame(index, index / 15, index / 15, mask)  # type: ignore[arg-type]
 
 
 def guide(pose: Vector, **said: object) -> Guide:

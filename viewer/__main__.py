@@ -19,7 +19,7 @@ from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied
 from viewer import track
 from viewer.background.background_source import room_of_run
-from viewer.capture import Frame, Live, RoomClock
+from viewer.capture import CapturedFrame, Live, RoomClock
 from viewer.jpeg import jpeg_of
 from viewer.viewer_warmup import warm_up
 
@@ -187,7 +187,7 @@ def _lost(live: Live, guides: Guides) -> dict[str, int]:
     }
 
 
-def _picture(viewer: ViewerNumber, frame: Frame) -> Picture:
+def _picture(viewer: ViewerNumber, frame: CapturedFrame) -> Picture:
     return Picture(
         frame=frame.index,
         captured_s=frame.captured_s,

@@ -17,7 +17,7 @@ WAITING: Final = 2
 """Frames that may wait for a late viewer: one hides a short delay, more would only be stale."""
 
 
-class Frame(msgspec.Struct, frozen=True):
+class CapturedFrame(msgspec.Struct, frozen=True):
     """One picture and when it was taken."""
 
     index: int
@@ -32,7 +32,7 @@ class Frame(msgspec.Struct, frozen=True):
     """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
 
 
-def recorded(view: View, every: int, decoder: Reader) -> Iterator[Frame]:
+def recorded(view: View, every: int, decoder: Reader) -> Iterator[CapturedFrame]:
     """Every n-th frame of a video, as fast as they come.
 
     Raises:
@@ -42,7 +42,7 @@ def recorded(view: View, every: int, decoder: Reader) -> Iterator[Frame]:
     for decoded in decoder.frames(view.source, view.size, every):
         captured_s = view.captured_s(decoded.index)
         next_s = view.captured_s(decoded.index + every)
-        yield Frame(decoded.index, captured_s, captured_s, decoded.picture, next_s)
+        yield CapturedFrame(decoded.index, captured_s, captured_s, decoded.picture, next_s)
 
 
 class RoomClock(NamedTuple):
@@ -73,7 +73,7 @@ class Live:
         self._missed = 0
         self._stop = threading.Event()
         self._decoder = Decoder()
-        self._waiting: Mailbox[Frame] = Mailbox(WAITING)
+        self._waiting: Mailbox[CapturedFrame] = Mailbox(WAITING)
         self._failure: Exception | None = None
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -108,7 +108,7 @@ class Live:
         """True when the last frame was taken."""
         return self._waiting.over
 
-    def take(self, timeout_s: float) -> Frame | None:
+    def take(self, timeout_s: float) -> CapturedFrame | None:
         """The next frame; None when none came in time or it is over.
 
         Raises:
@@ -140,11 +140,11 @@ class Live:
             self._decoder.close()
             self._waiting.close()
 
-    def _timed(self, decoded: Decoded) -> Frame:
+    def _timed(self, decoded: Decoded) -> CapturedFrame:
         if isinstance(self._view.source, int):
             now_s = decoded.grabbed_s + self._room.offset_s
-            return Frame(decoded.index, now_s, now_s, decoded.picture)
+            return CapturedFrame(decoded.index, now_s, now_s, decoded.picture)
         captured_s = self._view.captured_s(decoded.index)
         next_s = self._view.captured_s(decoded.index + self._every)
         clock_s = self._room.start_s + captured_s
-        return Frame(decoded.index, captured_s, clock_s, decoded.picture, next_s)
+        return CapturedFrame(decoded.index, captured_s, clock_s, decoded.picture, next_s)

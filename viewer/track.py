@@ -14,7 +14,7 @@ from common.config import Settings, proposes
 from common.rig.camera import Camera
 from viewer import camera_fault
 from viewer.background.background import Background
-from viewer.capture import Frame
+from viewer.capture import CapturedFrame
 from viewer.paper.arms import facade_arms, flank_arms
 from viewer.paper.facing import thresholds_px, upper_body_px, vote
 from viewer.paper.legs import facade_legs, flank_legs, squats
@@ -75,7 +75,7 @@ def init(
     )
 
 
-def step(state: State, frame: Frame, guide: Guide | None) -> tuple[State, Report]:
+def step(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State, Report]:
     """One frame: silhouette, opening posture, facing, position, arms, legs (P23).
 
     A picture that shows no room (frozen, black, white) is told and not looked at.
@@ -138,7 +138,7 @@ def _expected(guide: Guide | None, viewer: ViewerNumber) -> bool:
     )
 
 
-def _outline_report(state: State, frame: Frame, guide: Guide | None, seen: Seen) -> Report:
+def _outline_report(state: State, frame: CapturedFrame, guide: Guide | None, seen: Seen) -> Report:
     height, width = seen.mask.shape
     return Report(
         frame=frame.index,
@@ -158,7 +158,9 @@ def _outline_report(state: State, frame: Frame, guide: Guide | None, seen: Seen)
     )
 
 
-def _blind_report(state: State, frame: Frame, guide: Guide | None, fault: CameraFault) -> Report:
+def _blind_report(
+    state: State, frame: CapturedFrame, guide: Guide | None, fault: CameraFault
+) -> Report:
     """Nobody is seen, and why."""
     nobody = np.zeros(frame.picture.shape[:2], np.bool_)
     seen = Seen(nobody, box=None, area_px=0, blobs=0, cut=False)

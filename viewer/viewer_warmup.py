@@ -8,7 +8,7 @@ from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Guide
 from common.raster.kernel import draw_body
 from viewer import track
-from viewer.capture import Frame
+from viewer.capture import CapturedFrame
 from viewer.paper.posed_model import view_at
 from viewer.silhouette import silhouette
 
@@ -41,4 +41,4 @@ def warm_up(state: track.State, size: tuple[int, int]) -> None:
         pose=tuple(pose.tolist()),
     )
     for index, told in enumerate((None, guide, msgspec.structs.replace(guide, measured=True))):
-        state, _ = track.step(state, Frame(index, 0.0, 0.0, picture), told)
+        state, _ = track.step(state, CapturedFrame(index, 0.0, 0.0, picture), told)

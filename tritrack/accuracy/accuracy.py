@@ -1,14 +1,13 @@
 """How far tracked joints are from the true ones: the yardstick's numbers."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-Arrays = Mapping[str, NDArray[Any]]
-"""What an npz file holds, by name."""
-Floats = NDArray[np.float64]
+from common.body.body import Vector
+from common.npz_file import Arrays
 
 JOINTS: Final = tuple(
     f"{side}_{name}"
@@ -44,11 +43,11 @@ class Compared(NamedTuple):
     """(n,) of camera 1's video."""
     rows: NDArray[np.int64]
     """(n,) of the truth."""
-    tracked_m: Floats
+    tracked_m: Vector
     """(n, 12, 3) world."""
-    true_m: Floats
+    true_m: Vector
     """(n, 12, 3) world."""
-    confidence: Floats
+    confidence: Vector
     """(n, 12) in [0, 1]."""
     due: int
     """Frames with a true person."""
@@ -58,7 +57,7 @@ class Compared(NamedTuple):
     """Frames without one that have a pose."""
 
     @property
-    def off_mm(self) -> Floats:
+    def off_mm(self) -> Vector:
         """Distance of each joint in the world, (n, 12)."""
         return 1e3 * np.linalg.norm(self.tracked_m - self.true_m, axis=-1)
 
@@ -111,7 +110,7 @@ def _refuse_other_shapes(arrays: Arrays, rows: str, places: str) -> None:
         raise Mismatch(f"{places} is {np.shape(arrays[places])}, {rows} {np.shape(arrays[rows])}")
 
 
-def picked(of_all: NDArray[Any], names: NDArray[Any]) -> Floats:
+def picked(of_all: NDArray[Any], names: NDArray[Any]) -> Vector:
     """The twelve joints, in their order, of an array (n, joints, ...).
 
     Raises:
@@ -163,7 +162,7 @@ def per_joint(clips: Sequence[Compared]) -> dict[str, dict[str, float]]:
     return {name: spread(off[:, i]) for i, name in enumerate(JOINTS)}
 
 
-def spread(values: Floats) -> dict[str, float]:
+def spread(values: Vector) -> dict[str, float]:
     """Mean, median and 95th percentile; NaN of nothing."""
     if not values.size:
         return {"mean": np.nan, "median": np.nan, "p95": np.nan}
@@ -171,7 +170,7 @@ def spread(values: Floats) -> dict[str, float]:
     return {"mean": float(values.mean()), "median": median, "p95": p95}
 
 
-def inner_deg(joints_m: Floats) -> Floats:
+def inner_deg(joints_m: Vector) -> Vector:
     """The inner angles of INNER, left and right of each, (n, 8) from joints (n, 12, 3)."""
     found = []
     for one, corner, other in INNER.values():
@@ -185,13 +184,13 @@ def inner_deg(joints_m: Floats) -> Floats:
     return np.stack(found, axis=1)
 
 
-def rooted(joints_m: Floats) -> Floats:
+def rooted(joints_m: Vector) -> Vector:
     """Joints (n, 12, 3) with the middle of the hips at the origin."""
     hips = joints_m[:, [INDEX["l_hip"], INDEX["r_hip"]]]
     return joints_m - hips.mean(axis=1, keepdims=True)
 
 
-def aligned(joints_m: Floats, onto_m: Floats) -> Floats:
+def aligned(joints_m: Vector, onto_m: Vector) -> Vector:
     """Each frame moved, turned and scaled so that it lies on another as well as it can.
 
     Source: Umeyama 1991, least squares of similarities, eqs. (40)-(43).
@@ -204,13 +203,13 @@ def aligned(joints_m: Floats, onto_m: Floats) -> Floats:
     turn = (u * upright[:, None]) @ vt
     size = np.maximum((p * p).sum(axis=(1, 2)), TINY_M2)
     scale = (s * upright).sum(axis=1) / size
-    moved: Floats = scale[:, None, None] * (p @ turn) + middle
+    moved: Vector = scale[:, None, None] * (p @ turn) + middle
     return moved
 
 
-def _distances_mm(one: Floats, other: Floats) -> Floats:
+def _distances_mm(one: Vector, other: Vector) -> Vector:
     return 1e3 * np.linalg.norm(one - other, axis=-1)
 
 
-def _mean(values: Floats) -> float:
+def _mean(values: Vector) -> float:
     return float(values.mean()) if values.size else np.nan

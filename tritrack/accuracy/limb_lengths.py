@@ -5,10 +5,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from common.body.body import JOINT_NAMES, Bdp, rest_pose
+from common.body.body import JOINT_NAMES, Bdp, Vector, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector
-from tritrack.accuracy.accuracy import JOINTS, Compared, Floats, picked
+from tritrack.accuracy.accuracy import JOINTS, Compared, picked
 
 SEGMENTS: Final[dict[str, tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]]] = {
     **{
@@ -27,12 +27,12 @@ SEGMENTS: Final[dict[str, tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]]] 
 """Between which joints, or middles of joints, a segment lies; both sides of those that have two."""
 
 
-def segments_m(joints_m: Floats) -> dict[str, Floats]:
+def segments_m(joints_m: Vector) -> dict[str, Vector]:
     """Length of every segment, (n, sides), of joints (n, 12, 3)."""
     at = {name: joints_m[:, i] for i, name in enumerate(JOINTS)}
 
-    def middle(names: tuple[str, ...]) -> Floats:
-        found: Floats = np.mean([at[name] for name in names], axis=0)
+    def middle(names: tuple[str, ...]) -> Vector:
+        found: Vector = np.mean([at[name] for name in names], axis=0)
         return found
 
     return {
@@ -43,7 +43,7 @@ def segments_m(joints_m: Floats) -> dict[str, Floats]:
     }
 
 
-def body_joints_m(bdp: Bdp) -> Floats:
+def body_joints_m(bdp: Bdp) -> Vector:
     """The twelve joints of a body at rest, (1, 12, 3)."""
     return picked(joints(body_vector(bdp), rest_pose())[None], np.array(JOINT_NAMES))
 
@@ -60,8 +60,8 @@ def length_errors(clips: Sequence[Compared], bodies: Sequence[Bdp | None]) -> di
         bodies: What was measured in each; None where nothing was.
     """
     measured: dict[str, list[float]] = {name: [] for name in SEGMENTS}
-    published: dict[str, list[Floats]] = {name: [] for name in SEGMENTS}
-    settled: dict[str, list[Floats]] = {name: [] for name in SEGMENTS}
+    published: dict[str, list[Vector]] = {name: [] for name in SEGMENTS}
+    settled: dict[str, list[Vector]] = {name: [] for name in SEGMENTS}
     for clip, bdp in zip(clips, bodies, strict=True):
         true, told = segments_m(clip.true_m), segments_m(clip.tracked_m)
         own = None if bdp is None or not len(clip.rows) else segments_m(body_joints_m(bdp))
@@ -78,7 +78,7 @@ def length_errors(clips: Sequence[Compared], bodies: Sequence[Bdp | None]) -> di
     }
 
 
-def _told(errors_m: dict[str, Floats]) -> dict[str, dict[str, float]]:
+def _told(errors_m: dict[str, Vector]) -> dict[str, dict[str, float]]:
     each = {
         name: {"off_mm": _mean_mm(np.abs(off)), "bias_mm": _mean_mm(off)}
         for name, off in errors_m.items()
@@ -87,5 +87,5 @@ def _told(errors_m: dict[str, Floats]) -> dict[str, dict[str, float]]:
     return {**each, "all": {"off_mm": float(np.mean(over)), "bias_mm": np.nan}}
 
 
-def _mean_mm(values_m: Floats) -> float:
+def _mean_mm(values_m: Vector) -> float:
     return 1e3 * float(values_m.mean()) if values_m.size else np.nan

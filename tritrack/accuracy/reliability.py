@@ -6,7 +6,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tritrack.accuracy.accuracy import JOINTS, Compared, Floats
+from common.body.body import Vector
+from tritrack.accuracy.accuracy import JOINTS, Compared
 
 NEAR_MM: Final = 50.0
 """Confidence c is to mean: nearer than this with probability c."""
@@ -33,7 +34,7 @@ def trust(clips: Sequence[Compared]) -> dict[str, Any]:
     }
 
 
-def reliability(confidence: Floats, near: NDArray[np.bool_]) -> list[dict[str, float]]:
+def reliability(confidence: Vector, near: NDArray[np.bool_]) -> list[dict[str, float]]:
     """Of each bin of confidence: from, to, count, mean confidence, share that was near."""
     edges = np.linspace(0.0, 1.0, BINS + 1)
     place = np.clip((confidence.ravel() * BINS).astype(int), 0, BINS - 1)
@@ -58,7 +59,7 @@ def gap(bins: Sequence[dict[str, float]], joints: int) -> float:
     return max(gaps, default=np.nan)
 
 
-def auc(confidence: Floats, near: NDArray[np.bool_]) -> float:
+def auc(confidence: Vector, near: NDArray[np.bool_]) -> float:
     """How likely a joint that is near has more confidence than one that is not.
 
     Equal ones count half: a constant has 0.5. NaN where all are near, or none.
@@ -73,7 +74,7 @@ def auc(confidence: Floats, near: NDArray[np.bool_]) -> float:
     return float((ranks.sum() - hits * (hits + 1) / 2) / (hits * (all_of_them - hits)))
 
 
-def roc(confidence: Floats, near: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+def roc(confidence: Vector, near: NDArray[np.bool_]) -> tuple[Vector, Vector]:
     """The ROC curve from (0, 0) to (1, 1): shares of the far and of the near at each threshold.
 
     What has the same confidence is taken together, so the area beneath is what `auc` says.

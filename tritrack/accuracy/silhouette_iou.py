@@ -6,11 +6,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from common.body.body import Vector
 from common.config import Settings
+from common.npz_file import Arrays
 from common.raster.similarity import Mask
 from common.video.clip_facts import View
 from common.video.clips import open_clip
-from tritrack.accuracy.accuracy import Arrays, Floats
 from tritrack.offline.lockstep import Decoders
 from viewer.background.background_source import empty_room
 from viewer.capture import recorded
@@ -23,7 +24,7 @@ HALF: Final = 0.5
 class Overlap(NamedTuple):
     """One view of one clip."""
 
-    iou: Floats
+    iou: Vector
     """(n,) of the frames with a true silhouette."""
     empty: int
     """Frames without one."""

@@ -8,12 +8,14 @@ import cv2
 import msgspec
 import numpy as np
 
+from common.body.body import Vector
 from common.config import Settings
+from common.npz_file import Arrays
 from common.rig.camera import project
 from common.video.clip_facts import View, both_cameras
 from common.video.clips import open_clip
 from common.video.decoding import Picture
-from tritrack.accuracy.accuracy import INDEX, JOINTS, Arrays, Compared, Floats
+from tritrack.accuracy.accuracy import INDEX, JOINTS, Compared
 from tritrack.offline.lockstep import Decoders
 from viewer.capture import recorded
 
@@ -141,7 +143,7 @@ def _taken(view: View, index: int, decoders: Decoders) -> tuple[Picture, float]:
     return cv2.resize(last, size, interpolation=cv2.INTER_CUBIC), enlarged
 
 
-def stick(picture: Picture, at_px: Floats, colours: tuple[Any, Any]) -> None:
+def stick(picture: Picture, at_px: Vector, colours: tuple[Any, Any]) -> None:
     """Draw a person as lines between joints (12, 2), in place; left and right in their colours."""
     for start, end in STICKS:
         ends = at_px[[INDEX[start], INDEX[end]]]

@@ -9,7 +9,7 @@ from common.video.clip_facts import Clip
 from common.video.frame_cache import Reader
 from viewer.background.background import Background
 from viewer.background.background_source import empty_room
-from viewer.capture import Frame, recorded
+from viewer.capture import CapturedFrame, recorded
 
 Readers = Mapping[ViewerNumber, Reader]
 """What reads each view, by its number."""
@@ -25,14 +25,14 @@ def rooms(
         )
 
 
-def instants(clip: Clip, readers: Readers) -> Iterator[dict[ViewerNumber, Frame]]:
+def instants(clip: Clip, readers: Readers) -> Iterator[dict[ViewerNumber, CapturedFrame]]:
     """The frames of all views, those of one instant together, in the order of time."""
     streams = {view.number: recorded(view, clip.every, readers[view.number]) for view in clip.views}
     waiting = {number: next(stream, None) for number, stream in streams.items()}
     tolerance_s = 0.5 * clip.every / clip.views[0].fps
     while any(waiting.values()):
         first_s = min(frame.captured_s for frame in waiting.values() if frame is not None)
-        now: dict[ViewerNumber, Frame] = {}
+        now: dict[ViewerNumber, CapturedFrame] = {}
         for number, frame in waiting.items():
             if frame is not None and frame.captured_s - first_s <= tolerance_s:
                 now[number] = frame

@@ -29,7 +29,7 @@ from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_file
 from tritrack.store.runs import write_run
 from tritrack.terminal import bar, complain, warn
 from viewer import track
-from viewer.capture import Frame
+from viewer.capture import CapturedFrame
 
 
 class Tracked(NamedTuple):
@@ -43,7 +43,7 @@ class Tracked(NamedTuple):
     """Arrays that one view alone adds to `poses.npz`."""
 
 
-Watch = Callable[[dict[ViewerNumber, Frame], dict[int, Report], Body], object]
+Watch = Callable[[dict[ViewerNumber, CapturedFrame], dict[int, Report], Body], object]
 """Looks at the frames of an instant, the reports on them and the body they gave."""
 
 

@@ -15,7 +15,7 @@ from common.rig.camera import Rig
 from common.video.clip_facts import both_cameras
 from recognizer.__main__ import MOVING
 from tritrack.offline.lockstep import Decoders, overridden, track_clip
-from viewer.capture import Frame
+from viewer.capture import CapturedFrame
 from viewer.jpeg import jpeg_of
 
 SHOWN: Final = 8
@@ -25,7 +25,7 @@ WIDTH_PX: Final = 160
 LEVELS: Final = 0xF0
 """Bits of a colour that are kept: a page of strips with their noise would weigh 12 MB."""
 
-Instant = tuple[dict[ViewerNumber, Frame], dict[int, Report], Body]
+Instant = tuple[dict[ViewerNumber, CapturedFrame], dict[int, Report], Body]
 """What went through the tracker at one time."""
 
 

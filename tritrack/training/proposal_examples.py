@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from integrator.proposal.network_weights import JOINTS
 from integrator.proposal.pose_network import aimed
-from integrator.proposal.silhouette_window import look
+from integrator.proposal.silhouette_window import Floats, look
 from synth.person.skeleton import JOINTS as ALL_JOINTS
 from synth.picture.silhouette_examples import Manner, SilhouetteExample, silhouette_examples
 
@@ -19,8 +19,6 @@ UNMEASURED_SHARE: Final = 0.15
 ASTRAY_M: Final = 1.5
 """A silhouette that lies farther from the person teaches nothing."""
 PICK: Final = [ALL_JOINTS.index(name) for name in JOINTS]
-
-Floats = NDArray[np.float32]
 
 
 class Example(NamedTuple):

@@ -7,13 +7,12 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 import scipy.linalg
-from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import Progress
 
 from integrator.proposal.network_weights import PoseNetwork, save
 from integrator.proposal.pose_network import SEES
-from integrator.proposal.silhouette_window import CELLS
+from integrator.proposal.silhouette_window import CELLS, Floats
 from synth.picture.silhouette_examples import AT_LARGE, ORDINARY
 from tritrack.terminal import bar
 from tritrack.training import torch_network
@@ -35,8 +34,6 @@ STEEPEST: Final = 1.0
 """Size that a slope is cut to."""
 SHORTEST: Final = 8
 """Instants that a performance must have."""
-
-Floats = NDArray[np.float32]
 
 
 class Round(NamedTuple):

@@ -3,11 +3,8 @@
 from collections.abc import Iterator
 from typing import Any, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from integrator.proposal.network_weights import JOINTS, OUTPUTS, PoseNetwork, to_bfloat16
-from integrator.proposal.silhouette_window import BESIDE
+from integrator.proposal.silhouette_window import BESIDE, Floats
 
 UNITS: Final = (512, 512, 384)
 """Units of fc1 and fc2, of the recurrent unit, and of fc3."""
@@ -15,8 +12,6 @@ CONFIDENCE_SHARE: Final = 0.01
 """Weight of what the network says of its sureness beside a distance in statures."""
 NEAR_M: Final = 0.05
 """What it is sure of: a joint is no farther off."""
-
-Floats = NDArray[np.float32]
 
 
 def parts_of(torch: Any, components: int, mean_pose: Floats) -> list[Any]:

@@ -33,7 +33,7 @@ STARTS: Final = (1.0, 0.3)
 """Breadths of the trunk with which somebody is met of whom nothing is known."""
 FIRST_TRUST: Final = 0.3
 """How much a standing body is expected then."""
-LOST_SCORE: Final = 0.6
+AFRESH_SCORE: Final = 0.6
 """A worth below which the body is also looked for afresh."""
 HIDDEN_SHARE: Final = 0.6
 """A limb of which more lies over or behind the rest of the body is hidden."""
@@ -119,7 +119,7 @@ def followed(mask: Mask, before: Vector | None) -> Followed:
     seen = pack_words(mask)
     tasks = [] if before is None else [_task(seen, mask, before, 1.0)]
     found = [_searched(task) for task in tasks]
-    if not found or found[0][1] < LOST_SCORE:
+    if not found or found[0][1] < AFRESH_SCORE:
         afresh = [_task(seen, mask, start, FIRST_TRUST) for start in _starts(mask)]
         tasks += afresh
         found += [_searched(task) for task in afresh]
