@@ -29,6 +29,7 @@ PERSON = thesis_bdp(1.75)
 NAVEL_M = PERSON.r_upper_leg.height + PERSON.r_lower_leg.height
 PERIOD_S = 1 / 15
 PAPER = Settings(mode="paper")
+"""For drawn cylinders: the body that the paper fits, and one that no network was trained on."""
 NOBODY = np.zeros((HEIGHT, WIDTH), np.bool_)
 
 
@@ -91,7 +92,7 @@ class Stage:
     def __init__(
         self,
         rig: Rig | None = RIG,
-        settings: Settings = PAPER,
+        settings: Settings = Settings(),
         views: Sequence[ViewerNumber] = (1, 2),
     ) -> None:
         cameras = (None, None) if rig is None else rig.cameras

@@ -159,7 +159,7 @@ def real_runs(
     out = tmp_path_factory.mktemp("runs")
     clips = [data_dir / "dev" / "r07_t1_14_kick_right_forward"]
     clips += sorted((data_dir / "dev_stress" / "frame_drops").glob("*/"))[:1]
-    track_all(clips, out, "paper", (1, 2), None, Console(quiet=True))
+    track_all(clips, out, None, (1, 2), None, Console(quiet=True))
     pairs = []
     for clip in clips:
         with np.load(out / clip.name / "poses.npz") as poses, np.load(clip / "truth.npz") as truth:

@@ -79,7 +79,7 @@ def test_standing_squatting_and_lifting_are_told_apart() -> None:
     """
     bent: dict[str, list[float]] = {}
     for name, target in MOVES.items():
-        stage = after_opening(Stage())
+        stage = after_opening(Stage(settings=PAPER))
         last = stage.show(between(standing(), target, 16) + [target] * 4)[-1]
         bent[name] = sorted(angle(last, f"{side}_hip_x") for side in "rl")
         assert last.body.status == "tracking"
@@ -100,7 +100,7 @@ def test_an_arm_raised_sideways_is_the_facades(side: str) -> None:
     """P51: theta_Z down from the opening posture to 120 degrees (240)."""
     target_deg = 120.0 if side == "r" else 240.0
     target = standing((0.0, 0.0), **{f"{side}_shoulder_z": target_deg})
-    stage = after_opening(Stage())
+    stage = after_opening(Stage(settings=PAPER))
     last = stage.show(between(standing(), target, 12) + [target] * 4)[-1]
     assert angle(last, f"{side}_shoulder_z") == pytest.approx(target_deg, abs=8.0)
     assert errors_m(last, target).mean() < 0.1
@@ -158,7 +158,7 @@ def test_an_empty_room_has_nobody_though_it_scores(mode: Mode) -> None:
 
 def test_a_pose_is_told_from_the_first_frame_on() -> None:
     """Measuring, by prior proportions; tracking once three frames have made the body (P46)."""
-    told = Stage().show([opening()] * 8)
+    told = Stage(settings=PAPER).show([opening()] * 8)
     assert [t.body.status for t in told] == ["measuring"] * 2 + ["tracking"] * 6
     for t in told:
         assert len(t.body.joints_m) == len(t.body.confidence) == 15
@@ -195,7 +195,7 @@ def test_a_body_that_fits_nothing_is_predicted_then_lost_then_found() -> None:
 @pytest.mark.parametrize("silent", [0, 1])
 def test_one_viewer_alone_carries_on(silent: int) -> None:
     """The other falls silent while tracking: position across the line of sight, views named."""
-    stage = after_opening(Stage())
+    stage = after_opening(Stage(settings=PAPER))
     stage.show([standing()])
     for _ in range(5):
         masks = list(silhouettes(standing()))
@@ -264,7 +264,7 @@ def test_a_person_behind_a_camera_is_followed_by_the_other() -> None:
     """
     away = msgspec.structs.replace(RIG.cameras[1], t=(0.0, 1.0, -1.0))
     rig = msgspec.structs.replace(RIG, cameras=(RIG.cameras[0], away))
-    stage = Stage(rig=rig)
+    stage = Stage(rig=rig, settings=PAPER)
     for _ in range(4):
         told = stage.see((silhouettes(standing())[0], NOBODY))
     assert told.body.views == "1"
@@ -290,7 +290,7 @@ def turned(yaw_deg: float) -> Vector:
 
 def test_a_turn_to_camera_2_exchanges_facade_and_flank() -> None:
     """P47-P49: exactly one facade at any time; theta_Y^T is 0 or -90."""
-    stage = after_opening(Stage())
+    stage = after_opening(Stage(settings=PAPER))
     path = between(turned(0.0), turned(-90.0), 20) + [turned(-90.0)] * 3
     told = stage.show(path)
     assert all(set(t.body.facing) == {"facade", "flank"} for t in told)
@@ -304,7 +304,7 @@ def test_a_turn_to_camera_2_exchanges_facade_and_flank() -> None:
 
 def test_a_late_partner_is_not_waited_for() -> None:
     """Reports of one instant alone are told as such; the guide says who was heard last."""
-    state = merge.init(RIG, 1 / 15, PAPER)
+    state = merge.init(RIG, 1 / 15, Settings())
     masks = silhouettes(standing())
     first = report(1, masks[0], root_px=(80.0, 61.0), frame=7)
     state, body, guide = merge.step(state, Pair(first, None))
