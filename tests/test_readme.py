@@ -180,7 +180,11 @@ def test_every_command_of_the_readme_is_known_here() -> None:
 
 def test_the_first_command_says_what_goes_on_before_anything_that_takes_long(copy: Path) -> None:
     planned = subprocess.run(
-        ["make", "--dry-run", "demo"], cwd=copy, capture_output=True, text=True, check=True
+        ["make", "--no-print-directory", "--dry-run", "demo"],
+        cwd=copy,
+        capture_output=True,
+        text=True,
+        check=True,
     ).stdout.splitlines()
     (told,) = [i for i, line in enumerate(planned) if "libraries into .venv" in line]
     assert told < min(i for i, line in enumerate(planned) if " -m " in line)
