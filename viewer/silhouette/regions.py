@@ -28,14 +28,14 @@ def chosen(
             is taken.
     """
     joined = np.asarray(cv2.dilate(found, AROUND), np.uint8)
-    _, labels, stats, middles = cv2.connectedComponentsWithStatsWithAlgorithm(
+    count, labels, stats, middles = cv2.connectedComponentsWithStatsWithAlgorithm(
         joined, 8, cv2.CV_16U, cv2.CCL_GRANA
     )
     # joining made every region two cells taller
     large = stats[:, cv2.CC_STAT_HEIGHT] - 2 >= least_share * len(found)
     large[0] = False  # what no region covers
-    if not large.any():
-        return joined, 0
+    if count <= 2 or not large.any():
+        return joined, int(large.any())
     worth = stats[:, cv2.CC_STAT_AREA].astype(np.float64)
     if near is not None:
         worth = -np.hypot(*(middles + 0.5 - near).T)
