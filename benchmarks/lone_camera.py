@@ -25,15 +25,16 @@ from plausible import plausible
 from rich.console import Console
 
 from common.config import load
-from common.notes.notes import Notes
 from common.rig.camera import Camera
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
+from common.video.frame_cache import Reel
 from tritrack.accuracy.accuracy import compare, picked, summary
 from tritrack.live.table import table_of_rows
+from tritrack.offline.film_passes import follow_clip
 from tritrack.offline.lockstep import overridden
-from tritrack.single.one_camera import follow_clip
 from tritrack.store.runs import poses
+from viewer.background.background_source import background_of_film
 
 
 def row_of(path: Path, camera: Camera, found: dict[str, Any], width: int) -> dict[str, Any]:
@@ -76,7 +77,8 @@ def main() -> None:
             assert clip.rig is not None, f"{path} has no calibration to hold the truth against"
             camera, width = clip.rig.cameras[0], clip.views[0].size[0]
             clip = clip if given.calibrated else msgspec.structs.replace(clip, rig=None)
-            found = poses(follow_clip(clip, settings, decoder, Notes()).bodies)
+            background = background_of_film(clip.views[0], settings.silhouette, Reel(decoder))
+            found = poses(follow_clip(clip, settings, background, decoder).bodies)
             rows.append(row_of(path, camera, found, width))
     weights = np.array([row["limb-frames"] for row in rows])
     mean = {key: np.nanmean([row[key] for row in rows]) for key in rows[0] if key != "name"}

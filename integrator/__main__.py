@@ -12,8 +12,9 @@ from common.bus.messages import Guide, Report, ViewerNumber
 from common.bus.process import Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
+from common.method import METHODS
 from common.video.clip_facts import Clip
-from integrator import diagnostics, merge, pairing, presence
+from integrator import diagnostics, merge, opening_posture, pairing, presence
 from integrator.integrator_warmup import warm_up
 from integrator.merge_state import State
 from integrator.pairing import Pair
@@ -175,7 +176,14 @@ def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContex
         bus.keep(Guide)
         bus.keep(Cameras)
         bus.announce("integrator")
-        state = merge.init(clip.rig, period_s, settings, clip.body)
+        state = merge.init(
+            clip.rig,
+            period_s,
+            settings,
+            METHODS[settings.mode],
+            alone=len(viewers) == 1,
+            opening=opening_posture.init(clip.body),
+        )
         warm_up(settings, clip.views[0].size)
         gc.collect()
         gc.freeze()

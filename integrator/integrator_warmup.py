@@ -10,6 +10,7 @@ from common.body.proportions import body_vector, thesis_bdp
 from common.bus.message_codec import pack, unpack
 from common.bus.messages import Report, ViewerNumber
 from common.config import Settings
+from common.method import METHODS
 from common.raster.kernel import draw_body, view_of
 from common.raster.silhouette_report import silhouette_report
 from common.rig.camera import Rig, paper_rig
@@ -21,7 +22,8 @@ VIEWERS: Final[tuple[ViewerNumber, ...]] = (1, 2)
 
 
 def warm_up(settings: Settings, size: tuple[int, int]) -> None:
-    """Merge three pairs of reports of somebody who stands, in a calibrated room and in another.
+    """Merge reports of somebody who stands, in a calibrated room and in another: three pairs, then
+    that of one view alone.
 
     Args:
         settings: Of the run.
@@ -29,10 +31,10 @@ def warm_up(settings: Settings, size: tuple[int, int]) -> None:
     """
     known = _rig(size)
     for rig in (known, None):
-        state = merge.init(rig, 1.0, settings)
-        for index in range(3):
+        state = merge.init(rig, 1.0, settings, METHODS[settings.mode])
+        for index in range(4):
             first, second = (_report(viewer, index, size, known) for viewer in VIEWERS)
-            state, _, _ = merge.step(state, Pair(first, second))
+            state, _, _ = merge.step(state, Pair(first, second if index < 3 else None))
     _match_elsewhere(known, (_report(1, 0, size, known), _report(2, 0, size, known)))
 
 
@@ -55,10 +57,8 @@ def _rig(size: tuple[int, int]) -> Rig:
 
 
 def _report(viewer: ViewerNumber, index: int, size: tuple[int, int], rig: Rig) -> Report:
-    width, height = size
     pose = rest_pose()
     pose[POSE_INDEX["y"]] = 1.0
     view = view_of(rig.cameras[viewer - 1])
     mask = draw_body(body_vector(thesis_bdp(1.75)), pose, view, size)
-    report = silhouette_report(viewer, mask, index, float(index))
-    return msgspec.structs.replace(report, root_px=(width / 2, height / 2))
+    return silhouette_report(viewer, mask, index, float(index))

@@ -1,116 +1,109 @@
-"""Two reports in, one body out: position, body, facing, pose, in the order of section 4."""
+"""Two reports in, or one, and one body out: place, body, facing, pose, in section 4's order."""
 
-from typing import Literal
-
-from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, Bdp, Vector, rest_pose
+from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, Vector
 from common.body.kinematics import ALL_LIMBS
 from common.body.proportions import body_vector
+from common.body.stick_body import ADULT, THESIS
 from common.bus.messages import Body, Guide, Report
-from common.config import Settings, proposes
+from common.config import Settings
+from common.method import Method
 from common.raster.bits import count
 from common.raster.kernel import match, view_of
 from common.rig.camera import Rig
 from integrator import opening_posture, outgoing
-from integrator.fit import pose_refinement, shape_fit, visual_hull
+from integrator.fit import proposed_pose, shape_fit
 from integrator.fit.silhouette_pair import packed
-from integrator.merge_state import State
+from integrator.merge_state import Posed, ScaleSource, State
+from integrator.opening_posture import Opening
 from integrator.pairing import Pair, Seen
 from integrator.paper import fused_pose
 from integrator.paper.arbiter import facing_of
-from integrator.pose import smoothing
-from integrator.proposal import pose_proposal
+from integrator.pose import joint_limits, smoothing
 from integrator.rig.assumed_rig import assumed_rig
-from integrator.rig.undistortion import undistorted_pair as straight_pair
-from integrator.rig.undistortion import undistorted_rig as straight_rig
+from integrator.rig.undistortion import undistorted_pair, undistorted_rig
+from integrator.single import single_view
+from integrator.single.sight import Annotations, Sight
 from integrator.track_status import LOST_SCORE
 
+NOTHING_SAID = Annotations()
 
-def init(rig: Rig | None, period_s: float, settings: Settings, body: Bdp | None = None) -> State:
+
+def init(
+    rig: Rig | None,
+    period_s: float,
+    settings: Settings,
+    method: Method,
+    *,
+    alone: bool = False,
+    source: ScaleSource | None = None,
+    opening: Opening = Opening(),
+) -> State:
     """An integrator that has heard nothing.
 
     Args:
-        rig: The calibrated cameras of viewer 1 and viewer 2, for the working size; None: a rig
-            of the paper's kind is assumed when somebody is seen.
+        rig: The cameras of viewer 1 and viewer 2, for the working size; None: a rig of the
+            paper's kind is assumed when somebody is seen.
         period_s: Time between frames.
         settings: Of the run.
-        body: Universal BDPs, metres, where they were measured before.
+        method: What is done beyond the print.
+        alone: One viewer is all that the run has.
+        source: Where the rig is from; None: it is calibrated, if there is one.
+        opening: What is known of the body.
     """
-    source: Literal["calibrated", "assumed"] = "assumed" if rig is None else "calibrated"
+    source = source or ("assumed" if rig is None else "calibrated")
+    proposes = method.proposals and (alone or source == "calibrated")
     smooth = smoothing.init(len(ANGLE_NAMES), period_s)
-    return State(settings, rig, source, smooth, opening_posture.init(body))
+    return State(settings, method, rig, source, proposes, smooth, opening)
 
 
-def step(state: State, pair: Pair) -> tuple[State, Body, Guide]:
+def step(
+    state: State, pair: Pair, annotations: Annotations = NOTHING_SAID
+) -> tuple[State, Body, Guide]:
     """One instant: what each viewer reports of it becomes one body, and a guide for the next.
 
     Universal BDPs come from the opening posture (P46), the arbiter settles the facing (P48),
     position and angles are fused (P50-P54) and smoothed; the viewers are told BDPs, positions
-    and facing for their next frame (P2).
+    and facing for their next frame (P2). One view alone is lifted (thesis 3.1.5).
 
-    In `default` mode outlines of which no pose is sure and that fit badly are looked at again,
-    without what is no part of the person, and so are those after them.
+    Args:
+        state: From `init` or the step before.
+        pair: What each viewer reports.
+        annotations: What the user says of the frame, where one view is alone.
     """
-    clean, strays = _of_one_piece(state, pair) if state.doubted else (pair, False)
-    after, body, guide = _merged(state, clean)
-    if not state.doubted and _is_doubtful(after, body):
-        clean, strays = _of_one_piece(state, pair)
-        after, body, guide = _merged(state, clean) if strays else (after, body, guide)
-    return after._replace(doubted=strays or _is_doubtful(after, body)), body, guide
-
-
-def _is_doubtful(state: State, body: Body) -> bool:
-    known = state.insight
-    return min(body.score) < pose_refinement.POOR and not (
-        known and pose_refinement.is_confident(known.sure)
-    )
-
-
-def _merged(state: State, pair: Pair) -> tuple[State, Body, Guide]:
-    """The same with outlines that are believed."""
-    now_s, before_s = pair.newest.captured_s, state.last_s
-    dt_s = 0.0 if before_s is None else max(0.0, now_s - before_s)
-    state = state._replace(frames=_heard(state.frames, pair), last_s=now_s)
-    straight = straight_pair(state.rig, pair)
+    state, dt_s = _at(state, pair)
+    straight = undistorted_pair(state.rig, pair)
     seen = straight.detections
     state = _with_rig(state, seen)
     if seen == (None, None) or state.rig is None:
         state = _without_pose(state)
         return (state, *outgoing.nobody(state, pair))
-    rig = straight_rig(state.rig)
+    rig = undistorted_rig(state.rig)
     opened, settled_at = opening_posture.step(
         state.opening, rig, seen, state.settings.body.opening_frames
     )
     state = state._replace(opening=opened)
-    if _is_proposed(state):
-        state = _proposed(state, rig, seen, dt_s)
-    else:
-        state = fused_pose.step(state, rig, seen, settled_at)
-    if state.settings.mode == "default":
-        assert state.pose is not None
-        state = state._replace(opening=shape_fit.step(state.opening, rig, seen, state.pose))
-    state, angles, scores = _smoothed(state, rig, straight, dt_s)
-    assert state.rig is not None
-    body = outgoing.body_of(state, state.rig, pair, angles, scores)
-    return state, body, outgoing.guide_of(state, state.rig, pair, settled_at is not None)
+    found, seen = _posed(state, rig, seen, dt_s, settled_at, annotations)
+    state = state._replace(found=found, facing=found.facing)
+    if state.method.shape_fit:
+        fitted = shape_fit.step(state.opening, rig, seen, found.pose)
+        state = state._replace(opening=fitted)
+    scores = _scores(state, rig, seen)
+    state, angles = _smoothed(state, max(scores) >= LOST_SCORE, dt_s)
+    body = outgoing.body_of(state, state.rig or rig, pair, angles, scores)
+    return state, body, outgoing.guide_of(state, state.rig or rig, pair, settled_at is not None)
 
 
-def _of_one_piece(state: State, pair: Pair) -> visual_hull.Cleaned:
-    """The reports without what is no part of the person: a departure from the paper."""
-    if state.rig is None or not _is_proposed(state):
-        return visual_hull.Cleaned(pair, False)
-    return visual_hull.cleaned(state.rig, pair)
-
-
-def _is_proposed(state: State) -> bool:
-    return proposes(state.settings, state.scale_source == "calibrated")
-
-
-def _heard(frames: tuple[int, int], pair: Pair) -> tuple[int, int]:
-    first, second = pair
-    return (
-        frames[0] if first is None else first.frame,
-        frames[1] if second is None else second.frame,
+def _at(state: State, pair: Pair) -> tuple[State, float]:
+    """The state at the moment of a pair, and the time since the one before."""
+    now_s, before_s = pair.newest.captured_s, state.last_s
+    frames = tuple(
+        before if report is None else report.frame
+        for before, report in zip(state.frames, pair, strict=True)
     )
+    dt_s = 0.0
+    if state.found is not None and before_s is not None:  # whom nobody saw before owes nothing
+        dt_s = max(0.0, now_s - before_s)
+    return state._replace(frames=(frames[0], frames[1]), last_s=now_s), dt_s
 
 
 def _with_rig(state: State, seen: Seen) -> State:
@@ -121,43 +114,91 @@ def _with_rig(state: State, seen: Seen) -> State:
     return state._replace(rig=assumed_rig(whole[0], whole[-1], state.settings.body.stature_m))
 
 
-def _proposed(state: State, rig: Rig, seen: Seen, dt_s: float) -> State:
-    """The pose that the silhouettes propose, and who sees its facade: beyond the paper."""
-    bdp = state.opening.bdp
+def _posed(
+    state: State,
+    rig: Rig,
+    seen: Seen,
+    dt_s: float,
+    settled_at: Vector | None,
+    annotations: Annotations,
+) -> tuple[Posed, Seen]:
+    """The pose of an instant, and the reports without clutter: of one view, proposed, or searched
+    for by the viewers."""
+    if state.method.stick_lifting or (state.proposes and None in seen):
+        return _lone(state, seen, dt_s, annotations), seen
+    if state.proposes:
+        return _proposed(state, rig, seen, dt_s)
+    return fused_pose.step(state, rig, seen, settled_at), seen
+
+
+def _lone(state: State, seen: Seen, dt_s: float, annotations: Annotations) -> Posed:
+    """The pose that one view shows: the other is gone, sees nobody, or there is none."""
+    n = 0 if seen[0] is not None else 1
+    report, bdp = seen[n], state.opening.bdp
+    assert report is not None
     assert bdp is not None
-    memory = None if state.insight is None else state.insight.memory
-    known = pose_proposal.step(memory, bdp, rig, seen, dt_s)
-    before = rest_pose() if state.pose is None else state.pose
-    body = body_vector(bdp)
-    pose, beside_m = pose_proposal.pose_and_rest(body, before, known.joints_m)
-    better = pose_refinement.refined(
-        pose, known.sure, pose_refinement.Previous(state.pose, state.matched), body, rig, seen
+    assert state.rig is not None
+    man = THESIS if state.method.stick_lifting else ADULT
+    before, number = state.found, report.viewer
+    sight = Sight(state.method, number, state.rig, report, man, bdp, state.pose, dt_s, annotations)
+    known = before.alone if before is not None else None
+    alone = known or single_view.begun(sight, None if before is None else before.joints_m)
+    found = single_view.step(before.memory if before is not None else None, alone, sight)
+    body = found.body
+    return Posed(
+        body.pose,
+        facing_of(state.rig, body.pose),
+        body.joints_m,
+        body.confidence,
+        found.memory,
+        alone=found.alone,
     )
-    if better is not None:
-        pose, beside_m[pose_proposal.ARMS] = better, 0.0
-    state = state._replace(insight=known, beside_m=beside_m, matched=better is not None)
-    return state._replace(pose=pose, facing=facing_of(rig, pose))
 
 
-def _smoothed(
-    state: State, rig: Rig, pair: Pair, dt_s: float
-) -> tuple[State, Vector, tuple[float, float]]:
-    """The smooth angles, and S of the pose in each view; a pose that fits badly is not believed."""
-    assert state.pose is not None
+def _proposed(state: State, rig: Rig, seen: Seen, dt_s: float) -> tuple[Posed, Seen]:
+    """The pose that both silhouettes propose, and who sees its facade: beyond the paper."""
+    assert state.opening.bdp is not None
+    known = state.found
+    before = proposed_pose.Before()
+    if known is not None:
+        before = proposed_pose.Before(known.memory, known.pose, known.matched)
+    now = proposed_pose.Instant(state.opening.bdp, rig, seen, dt_s, state.method)
+    found = proposed_pose.step(before, now)
+    facing = facing_of(rig, found.pose)
+    posed = Posed(found.pose, facing, found.joints_m, found.confidence, found.memory, found.matched)
+    return posed, found.seen
+
+
+def _smoothed(state: State, fits: bool, dt_s: float) -> tuple[State, Vector]:
+    """The smooth angles; a pose that fits badly is not believed."""
+    found = state.found
+    assert found is not None
+    state = state._replace(badly=0 if fits else state.badly + 1)
+    raw: Vector = found.pose[list(ANGLES_IN_POSE)]
+    if not state.method.smoothing:
+        return state, raw
+    believed = fits or state.smooth.P is None  # there is nothing else to go by yet
+    smooth, angles, _ = smoothing.step(state.smooth, raw if believed else None, dt_s)
+    if found.alone is not None and state.method.joint_limits:
+        angles = joint_limits.clipped(angles)
+    return state._replace(smooth=smooth), angles
+
+
+def _scores(state: State, rig: Rig, seen: Seen) -> tuple[float, float]:
+    """S of the pose in each picture; 0 where that view has nobody."""
+    found = state.found
+    assert found is not None
+    if found.alone is not None:
+        return (found.alone.score, 0.0) if seen[0] is not None else (0.0, found.alone.score)
     assert state.opening.bdp is not None
     body = body_vector(state.opening.bdp)
-    first, second = (_score(body, state.pose, rig, n, report) for n, report in enumerate(pair))
-    fits = max(first, second) >= LOST_SCORE
-    believed = fits or state.smooth.P is None  # there is nothing else to go by yet
-    raw = state.pose[list(ANGLES_IN_POSE)] if believed else None
-    smooth, angles, _ = smoothing.step(state.smooth, raw, dt_s)
-    state = state._replace(smooth=smooth, badly=0 if fits else state.badly + 1)
-    return state, angles, (first, second)
+    first, second = (_score(body, found.pose, rig, n, report) for n, report in enumerate(seen))
+    return first, second
 
 
 def _score(body: Vector, pose: Vector, rig: Rig, n: int, report: Report | None) -> float:
     """S of the whole body in one picture, true perspective; 0 where that view has nobody."""
-    if report is None or report.root_px is None:
+    if report is None:
         return 0.0
     seen, view = packed(report), view_of(rig.cameras[n])
     return float(match(body, pose, view, ALL_LIMBS, report.width, seen, count(seen)))
@@ -166,4 +207,4 @@ def _score(body: Vector, pose: Vector, rig: Rig, n: int, report: Report | None) 
 def _without_pose(state: State) -> State:
     """Nobody is in any view: what was learnt of the body is kept, its pose is not."""
     fresh = smoothing.init(len(ANGLE_NAMES), state.smooth.period_s)
-    return state._replace(pose=None, badly=0, smooth=fresh, insight=None, matched=False)
+    return state._replace(found=None, badly=0, smooth=fresh)

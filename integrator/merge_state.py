@@ -2,38 +2,62 @@
 
 from typing import Literal, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from common.body.body import Vector
 from common.bus.messages import Facing
 from common.config import Settings
+from common.method import Method
 from common.rig.camera import Rig
 from integrator.opening_posture import Opening
 from integrator.pose import smoothing
-from integrator.proposal.pose_proposal import Insight
+from integrator.proposal.pose_proposal import Memory
+from integrator.single.single_view import Alone
+
+ScaleSource = Literal["calibrated", "assumed"]
+
+
+class Posed(NamedTuple):
+    """The pose of an instant, and what is known with it."""
+
+    pose: Vector
+    """(25,) of POSE_NAMES, not smoothed."""
+    facing: tuple[Facing, Facing]
+    joints_m: NDArray[np.float64] | None = None
+    """(15, 3) world, JOINT_NAMES; None: where the cylinders of the smooth pose end."""
+    confidence: Vector | None = None
+    """(15,) how probably each joint is less than 50 mm off; None: as well as the body fits."""
+    memory: Memory | None = None
+    """Of the network that proposed it."""
+    matched: bool = False
+    """It was matched to both silhouettes, as the proposed one fitted badly."""
+    alone: Alone | None = None
+    """Where one view alone shows the body."""
 
 
 class State(NamedTuple):
     """Everything, as one value."""
 
     settings: Settings
+    method: Method
     rig: Rig | None
     """None until somebody is seen, where no calibration is given."""
-    scale_source: Literal["calibrated", "assumed"]
+    scale_source: ScaleSource
+    proposes: bool
+    """The network proposes poses; otherwise the viewers search for angles."""
     smooth: smoothing.State
     opening: Opening = Opening()
-    pose: Vector | None = None
-    """Last fused pose; None while nobody is there."""
+    found: Posed | None = None
+    """Of the instant before; None while nobody is there."""
     facing: tuple[Facing, Facing] = ("facade", "flank")
     frames: tuple[int, int] = (-1, -1)
     """The last frame that was heard of each viewer."""
     last_s: float | None = None
-    beside_m: Vector | None = None
-    """How far the joints lie beside the cylinders' landmarks, (15, 3) in the trunk's axes; None:
-    where they are."""
-    insight: Insight | None = None
-    """What the silhouettes last proposed, and the memory behind it."""
     badly: int = 0
     """For how many frames the model has fitted badly."""
-    matched: bool = False
-    """The pose was matched to the outlines, as the proposed one fitted badly."""
-    doubted: bool = True
-    """The outlines of the instant before fitted badly or had strays, or there were none."""
+
+    @property
+    def pose(self) -> Vector | None:
+        """(25,) the pose of the instant before; None while nobody is there."""
+        return None if self.found is None else self.found.pose

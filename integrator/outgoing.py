@@ -4,74 +4,86 @@ import math
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, Vector, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector
-from common.bus.messages import Body, Guide, Pixel, Status, Views
+from common.bus.messages import Body, Guide, Pixel, Report, Status, Views
 from common.rig.camera import Rig, project
 from integrator.merge_state import State
 from integrator.pairing import Pair
-from integrator.proposal import pose_proposal
-from integrator.rig.body_position import pixels_of, scales_at, scales_since
+from integrator.rig.body_position import pixels_of, scales_since
 from integrator.track_status import status_of
 
 
 def body_of(
     state: State, rig: Rig, pair: Pair, angles_deg: Vector, scores: tuple[float, float]
 ) -> Body:
-    """The body in the pose that is remembered, with its angles smooth.
+    """The body in the pose that was found, with its angles smooth.
 
     Args:
-        state: Of this instant; its pose is as fused.
+        state: Of this instant; its pose is as found.
         rig: Two cameras.
         pair: What was heard of it.
         angles_deg: The smooth angles, ANGLE_NAMES order.
         scores: S of the pose in each view.
     """
-    assert state.pose is not None
-    assert state.opening.bdp is not None
-    pose, in_pose = state.pose.copy(), list(ANGLES_IN_POSE)
+    found, bdp = state.found, state.opening.bdp
+    assert found is not None
+    assert bdp is not None
+    pose, in_pose = found.pose.copy(), list(ANGLES_IN_POSE)
     pose[in_pose] = angles_deg
-    body = body_vector(state.opening.bdp)
-    if state.beside_m is None:
-        places = joints(body, pose)
-    else:  # a memory has smoothed them: angles would only be late
-        places = joints(body, state.pose)
-        places += state.beside_m @ pose_proposal.trunk_axes(body, state.pose).T
+    places_m = joints(body_vector(bdp), pose) if found.joints_m is None else found.joints_m
+    pixels = tuple(project(camera, places_m) for camera in rig.cameras)
+    outside = _outside(pair, pixels)
+    confidence = np.where(outside, 0.0, _confidence(state, scores))
     return Body(
         **_moment(state, pair),
-        status=_status(state),
+        status=_status(state, bool(outside.any())),
         views=_views(pair),
-        joints_m=tuple((x, y, z) for x, y, z in places.tolist()),
-        joints_px=tuple(_pixels(project(camera, places)) for camera in rig.cameras),
+        joints_m=tuple((x, y, z) for x, y, z in places_m.tolist()),
+        joints_px=tuple(_pixels(each) for each in pixels),
         pose=tuple(pose.tolist()),
-        angles_raw_deg=tuple(state.pose[in_pose].tolist()),
-        confidence=_confidence(state, scores),
+        angles_raw_deg=tuple(found.pose[in_pose].tolist()),
+        confidence=tuple(confidence.tolist()),
         score=scores,
-        facing=state.facing,
-        bdp=state.opening.bdp,
-        matches=sum(report.matches for report in pair if report is not None),
+        facing=found.facing,
+        bdp=bdp,
+        matches=sum(_matches(report) for report in pair if report is not None),
+        lifting=None if found.alone is None else found.alone.lifting,
     )
 
 
-def _confidence(state: State, scores: tuple[float, float]) -> tuple[float, ...]:
-    """Of each landmark: what the proposal says of itself, as far as the pose is still its own, or
-    how well the whole body fits."""
+def _matches(report: Report) -> int:
+    return report.matches + (0 if report.fit is None else report.fit.matches)
+
+
+def _outside(pair: Pair, pixels: tuple[NDArray[np.float64], ...]) -> NDArray[np.bool_]:
+    """Which joints the only picture of somebody does not show, (15,): they are guessed."""
+    first, second = pair.detections
+    report = second if first is None else first
+    if report is None or None not in (first, second) or not report.cut:
+        return np.zeros(len(JOINT_NAMES), np.bool_)
+    places_px = pixels[0 if second is None else 1]
+    shown = (places_px >= 0) & (places_px <= (report.width, report.height))
+    return np.logical_not(shown.all(axis=1))
+
+
+def _confidence(state: State, scores: tuple[float, float]) -> Vector:
+    """Of each joint, (15,): what was found with the pose, or how well the whole body fits."""
+    assert state.found is not None
     if state.badly:
-        return (0.0,) * len(JOINT_NAMES)
-    if state.insight is not None:
-        sure = state.insight.sure
-        if state.matched:
-            sure = pose_proposal.probability(sure, pose_proposal.SURENESS_OF_MATCHED)
-        return tuple(sure.tolist())
-    return (max(scores),) * len(JOINT_NAMES)
+        return np.zeros(len(JOINT_NAMES))
+    if state.found.confidence is not None:
+        return state.found.confidence
+    return np.full(len(JOINT_NAMES), max(scores))
 
 
 def guide_of(state: State, rig: Rig, pair: Pair, settled_now: bool) -> Guide:
     """What the viewers need for their next frame.
 
-    As printed each starts where it had the body itself; in `default` where both together have it.
+    As printed each starts where it had the body itself; beyond that where both together have it.
 
     Args:
         state: Of this instant.
@@ -79,27 +91,28 @@ def guide_of(state: State, rig: Rig, pair: Pair, settled_now: bool) -> Guide:
         pair: What was heard of it.
         settled_now: The body has just been measured: both start where it was.
     """
-    assert state.pose is not None
-    place, known = state.pose[:3], state.opening
+    found, known = state.found, state.opening
+    assert found is not None
+    place = found.pose[:3]
     measured_at = np.array(known.measured_at_m) if known.measured else place
     roots = list(pixels_of(rig, place))
     for n, report in enumerate(pair):
-        own = state.settings.mode == "paper" and not settled_now
+        own = not (state.method.shared_start or settled_now)
         if own and report is not None and report.root_px is not None:
             roots[n] = report.root_px
     upright = pixels_of(rig, np.array([place[0], measured_at[1], place[2]]))
     return Guide(
         **_moment(state, pair),
         frames=state.frames,
-        status=_status(state),
+        status=_status(state, False),
         bdp=known.bdp,
         measured=known.measured,
         facing=state.facing,
         scale_px_per_m=_or_unseen(scales_since(rig, place, measured_at)),
-        reference_px_per_m=_or_unseen(scales_at(rig, measured_at)),
         root_px=(roots[0], roots[1]),
         rest_row_px=(upright[0][1], upright[1][1]),
-        pose=tuple(state.pose.tolist()),
+        pose=tuple(found.pose.tolist()),
+        stick=found.alone is not None and found.alone.stick,
     )
 
 
@@ -134,9 +147,11 @@ def _moment(state: State, pair: Pair) -> dict[str, Any]:
     return {"frame": frame, "captured_s": newest.captured_s, "clock_s": newest.clock_s}
 
 
-def _status(state: State) -> Status:
+def _status(state: State, cut: bool) -> Status:
     """By presence, the opening and the fit together: never by S alone (M25)."""
-    return status_of(state.badly, "measuring" if state.opening.under_way else "tracking")
+    if state.opening.under_way:
+        return status_of(state.badly, "measuring")
+    return status_of(state.badly, "predicted" if cut else "tracking")
 
 
 def _views(pair: Pair) -> Views:
@@ -152,6 +167,5 @@ def _or_unseen(scales: tuple[float, float]) -> tuple[float, float]:
     return first, second
 
 
-def _pixels(pixels: Vector) -> tuple[Pixel, ...]:
-    pixels[np.isnan(pixels)] = -1.0
-    return tuple((u, v) for u, v in pixels.tolist())
+def _pixels(pixels: NDArray[np.float64]) -> tuple[Pixel, ...]:
+    return tuple((u, v) for u, v in np.where(np.isnan(pixels), -1.0, pixels).tolist())

@@ -28,8 +28,8 @@ class Pair(NamedTuple):
 
     @property
     def detections(self) -> Seen:
-        """The reports that have found a body."""
-        first, second = (None if r is None or r.root_px is None else r for r in self)
+        """The reports in which somebody is seen."""
+        first, second = (None if r is None or r.box is None else r for r in self)
         return first, second
 
 

@@ -12,6 +12,7 @@ from common.body.proportions import body_vector, thesis_bdp
 from common.bus.message_codec import pack
 from common.bus.messages import Body, Box, Guide, Report, ViewerNumber
 from common.config import Settings
+from common.method import METHODS, Method
 from common.raster.bounds import box_of
 from common.raster.kernel import draw_body, view_of
 from common.raster.similarity import Mask
@@ -94,13 +95,15 @@ class Stage:
         rig: Rig | None = RIG,
         settings: Settings = Settings(),
         views: Sequence[ViewerNumber] = (1, 2),
+        method: Method | None = None,
     ) -> None:
         cameras = (None, None) if rig is None else rig.cameras
+        method = method or METHODS[settings.mode]
         self.viewers = {
-            n: track.init(n, None, cameras[n - 1], settings)  # type: ignore[arg-type]
+            n: track.init(n, None, cameras[n - 1], settings, method, alone=len(views) == 1)  # type: ignore[arg-type]
             for n in views
         }
-        self.state = merge.init(rig, PERIOD_S, settings)
+        self.state = merge.init(rig, PERIOD_S, settings, method, alone=len(views) == 1)
         self.guide: Guide | None = None
         self.at = 0
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from common.bus.message_codec import unpack
 from tritrack.single.mask_file import MaskFileError, is_mask_file, read_masks
 
 MASKS = np.random.default_rng(3).random((5, 20, 13)) > 0.5
@@ -22,9 +23,9 @@ def packed(name: str) -> dict[str, np.ndarray]:
 @pytest.mark.parametrize("arrays", [packed("walk"), {"walk": MASKS}], ids=["packed", "plain"])
 def test_masks_come_back(tmp_path: Path, arrays: dict[str, np.ndarray]) -> None:
     found = read_masks(written(tmp_path / "a.npz", **arrays))
-    assert found.size == (13, 20)
-    assert np.array_equal(np.stack([each.mask(13) for each in found.outlines]), MASKS)
-    assert [each.captured_s for each in found.outlines] == [0.0, 0.04, 0.08, 0.12, 0.16]
+    assert {(each.width, each.height) for each in found.reports} == {(13, 20)}
+    assert np.array_equal(np.stack([unpack(each) for each in found.reports]), MASKS)
+    assert [each.captured_s for each in found.reports] == [0.0, 0.04, 0.08, 0.12, 0.16]
 
 
 def test_one_of_many_is_named_after_a_hash(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ import numpy as np
 from test_background import HEIGHT, WIDTH, passer_by, room, shot, walker
 
 from common.config import SilhouetteSettings
+from common.method import DEFAULT
 from viewer.background.background import Background, learn
 from viewer.background.moved_objects import AT_REST_S, Patch, patches_of
 from viewer.background.occluded_background import learn_uncovered
@@ -22,7 +23,7 @@ def with_chair(picture: np.ndarray) -> np.ndarray:
 
 def after(room: Background, patches: list[Patch], frame: int) -> np.ndarray:
     """The room that frame is held against."""
-    state = silhouette.init(room, SilhouetteSettings())
+    state = silhouette.init(room, SilhouetteSettings(), DEFAULT)
     for patch in patches:
         if patch.frame <= frame:
             state = patched(state, patch)

@@ -3,28 +3,33 @@
 They have feet and faces of their own: cylinders look the same from behind.
 """
 
-from itertools import islice, pairwise
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from staging import HEIGHT, RIG, WIDTH, Stage, Told, exact
-from staging import report as reported
 
 from common.body.body import JOINT_NAMES, POSE_INDEX, Vector
-from common.body.proportions import stature, thesis_bdp
+from common.body.kinematics import joints as joints_of
+from common.body.proportions import body_vector, stature
 from common.bus.message_codec import decode, encode
 from common.config import Settings
 from common.raster.similarity import Mask
 from integrator.proposal import pose_proposal
-from integrator.proposal.pose_proposal import AT, SURENESS, TWICE, probability
+from integrator.proposal.pose_proposal import (
+    AT,
+    SURENESS,
+    SURENESS_OF_MATCHED,
+    probability,
+)
 from synth.motion.footing import posed
 from synth.motion.motions import MOTION, TPOSE, performance
 from synth.person.mesh import body_mesh
 from synth.person.people import person
 from synth.person.skeleton import ANGLES, JOINTS
-from synth.picture.silhouette_examples import AT_LARGE, exact_mask, silhouette_examples
+from synth.picture.silhouette_examples import exact_mask
 
 SOMEBODY = 31
 """Below all who are taught on."""
@@ -220,52 +225,28 @@ def test_what_is_sure_is_near_and_what_is_not_is_less_often() -> None:
     assert near[said > 0.8].mean() > near[said < 0.5].mean() + 0.2
 
 
-def test_two_looks_find_what_neither_is_sure_of() -> None:
-    """Made-up people at large: joints are nearer to where both looks have them together."""
-    missed: dict[float, list[float]] = {0.0: [], TWICE: []}
-    for least, found in missed.items():
-        for seed in UNTAUGHT:
-            memory = None
-            for shown in islice(silhouette_examples(seed, AT_LARGE), 40):
-                first, second = shown.masks
-                if first is None or second is None or not (first.any() and second.any()):
-                    continue
-                with pytest.MonkeyPatch.context() as patch:
-                    patch.setattr(pose_proposal, "TWICE", least)
-                    seen = (reported(1, first), reported(2, second))
-                    bdp = thesis_bdp(shown.stature_m)
-                    told = pose_proposal.step(memory, bdp, shown.rig, seen, shown.since_s)
-                memory = told.memory
-                off = np.linalg.norm(told.joints_m - shown.joints_m[PICK], axis=1)
-                found.append(float(off.mean()))
-    assert np.mean(missed[TWICE]) < 0.97 * np.mean(missed[0.0])
-
-
-def test_a_look_that_is_sure_is_enough() -> None:
-    """The second look's memory ends with the doubt."""
-    did, stage = shown("squat"), default()
-    doubts = []
-    for pair in did.masks:
-        stage.see(pair)
-        assert stage.state.insight is not None
-        own = stage.state.insight.sure[AT].mean()
-        doubts.append(stage.state.insight.memory.second is not None)
-        assert doubts[-1] or own >= TWICE
-    assert not all(doubts)
-
-
 def test_elbows_and_wrists_of_a_matched_pose_lie_on_its_own_arms() -> None:
     """How far they lay beside the arms of the proposed pose says nothing of others."""
     did, stage = shown("free"), default()
     matched = 0
     for pair in did.masks:
         stage.see(pair)
-        state = stage.state
-        assert state.beside_m is not None
-        aside_m = np.linalg.norm(state.beside_m[pose_proposal.ARMS], axis=1)
-        assert (aside_m.max() == 0.0) == state.matched
-        matched += state.matched
+        found, bdp = stage.state.found, stage.state.opening.bdp
+        assert found is not None
+        assert found.joints_m is not None
+        assert bdp is not None
+        beside_m = found.joints_m - joints_of(body_vector(bdp), found.pose)
+        aside_m = np.linalg.norm(beside_m[pose_proposal.ARMS], axis=1)
+        assert (aside_m.max() < 1e-9) == found.matched
+        matched += found.matched
     assert 0 < matched < len(did.masks)
+
+
+def proposed_of(matched: Vector) -> Vector:
+    """The confidence that a matched joint's was made of: the inverse of `probability`."""
+    grid = np.linspace(1e-6, 1.0 - 1e-6, 10_001)
+    found: Vector = np.interp(matched, probability(grid, SURENESS_OF_MATCHED), grid)
+    return found
 
 
 def test_joints_that_were_matched_are_surer_than_what_was_proposed() -> None:
@@ -274,11 +255,11 @@ def test_joints_that_were_matched_are_surer_than_what_was_proposed() -> None:
     rows = []
     for pair, joints_m in zip(did.masks, did.joints_m, strict=True):
         told = stage.see(pair)
-        if stage.state.matched:
-            assert stage.state.insight is not None
+        found = stage.state.found
+        if found is not None and found.matched:
             near = (missed_mm([told], joints_m[None]) < 50).ravel()
             said = np.array(told.body.confidence)[AT]
-            rows.append(np.stack([stage.state.insight.sure[AT], said, near]))
+            rows.append(np.stack([proposed_of(said), said, near]))
     proposed, said, near = np.concatenate(rows, axis=1)
     doubted = proposed < 0.3
     due = near[doubted].mean()
@@ -292,10 +273,10 @@ def test_the_memory_goes_with_the_person() -> None:
     stage = default()
     for pair in did.masks[: (did.phase == TPOSE).sum() + 10]:
         stage.see(pair)
-    assert stage.state.insight is not None
+    assert stage.state.found is not None
     empty = np.zeros((HEIGHT, WIDTH), np.bool_)
     stage.see((empty, empty))
-    assert stage.state.insight is None
+    assert stage.state.found is None
     assert stage.state.opening.measured
 
 

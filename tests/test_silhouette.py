@@ -8,6 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from common.config import Settings, SilhouetteSettings
+from common.method import DEFAULT
 from common.raster.similarity import Mask
 from viewer import track
 from viewer.background.background import learn, light_gain
@@ -63,7 +64,7 @@ def shot(picture: Picture, sigma: float, seed: int) -> Frame:
 
 
 def begin(sigma: float = 2.0) -> State:
-    return init(learn([shot(room(), sigma, seed) for seed in range(8)]), SETTINGS)
+    return init(learn([shot(room(), sigma, seed) for seed in range(8)]), SETTINGS, DEFAULT)
 
 
 def see(frame: Frame, near_px: tuple[float, float] | None = None) -> Seen:
@@ -176,12 +177,14 @@ def test_step_leaves_the_state_that_it_was_given() -> None:
 def test_after_the_rehearsal_no_frame_waits_for_the_compiler() -> None:
     kernels = [light_gain, seeds, same_body, label, sides_of, matte, redraw]
     kernels += [familiar, counted, followed]
-    warm_up(track.init(1, learn([shot(room(), 2.0, 9)]), None, Settings()), (WIDTH, HEIGHT))
+    warm_up(
+        track.init(1, learn([shot(room(), 2.0, 9)]), None, Settings(), DEFAULT), (WIDTH, HEIGHT)
+    )
     compiled = [list(kernel.signatures) for kernel in kernels]
     assert all(compiled)
     still = [shot(dressed(room(), body()), 2.0, seed) for seed in range(5)]
     for background in (learn([shot(room(), 2.0, 9)]), learn_uncovered(still)):
-        state = init(background, SETTINGS)
+        state = init(background, SETTINGS, DEFAULT)
         for seed in range(9):
             state, _ = step(state, shot(dressed(room(), body(150)), 2.0, seed), None)
     assert [list(kernel.signatures) for kernel in kernels] == compiled
@@ -206,7 +209,7 @@ def test_silhouettes_of_the_development_clips(
 ) -> None:
     """Mean IoU with the true masks (issue 3, item 1); the last empty frame stays empty."""
     frames, truth = clip(data_dir / "dev" / name, camera, size)
-    state = init(learn(frames[:8]), SETTINGS)
+    state = init(learn(frames[:8]), SETTINGS, DEFAULT)
     scores = []
     for frame, mask in zip(frames[8:], truth[8:], strict=True):
         state, seen = step(state, frame, None)

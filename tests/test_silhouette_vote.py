@@ -7,17 +7,24 @@ from staging import report
 
 from common.body.body import POSE_INDEX, POSE_NAMES, Vector
 from common.body.kinematics import limb_frames
-from common.body.proportions import body_vector, thesis_bdp
+from common.body.proportions import (
+    LOWER_LEG_HEIGHT,
+    UPPER_LEG_HEIGHT,
+    body_vector,
+    thesis_bdp,
+)
 from common.bus.messages import Report
+from common.method import DEFAULT
 from common.raster.bits import count, pack_words
 from common.raster.kernel import draw_body, view_of
 from common.raster.similarity import Mask, similarity
 from common.rig.camera import paper_rig
 from integrator.fit.silhouette_pair import products, silhouettes_of
-from integrator.paper.silhouette_vote import moving, settled, turned
+from integrator.paper.silhouette_vote import Vote, moving, settled, turned, votes_of
 
 BODY = body_vector(thesis_bdp(1.75))
 UPRIGHT_M = 0.95
+LEG_M = float(BODY[UPPER_LEG_HEIGHT] + BODY[LOWER_LEG_HEIGHT])
 SIZE = (160, 120)
 RIG = paper_rig(SIZE, (200.0, 200.0), (4.5, 4.5))
 VIEWS = np.array([view_of(camera) for camera in RIG.cameras])
@@ -62,6 +69,11 @@ def test_the_limbs_that_a_parameter_moves_are_those_whose_frames_change(name: st
     assert moving(np.array([start, other])) == sum(1 << int(i) for i in np.flatnonzero(moved))
 
 
+def votes(fitted: bool) -> list[Vote]:
+    """All of them."""
+    return votes_of(DEFAULT, UPRIGHT_M, LEG_M, fitted)
+
+
 @pytest.mark.parametrize(("side", "other"), [("r", "l"), ("l", "r")])
 @pytest.mark.parametrize("wrong", ["both", "other"])
 def test_the_arm_that_swings_is_told_from_the_one_that_hangs(
@@ -76,8 +88,7 @@ def test_the_arm_that_swings_is_told_from_the_one_that_hangs(
         standing(**apart),
         BODY,
         silhouettes_of(RIG, reports(truth)),
-        UPRIGHT_M,
-        False,
+        votes(False),
     )
     assert found[POSE_INDEX[f"{side}_shoulder_x"]] == 80.0
     assert found[POSE_INDEX[f"{other}_shoulder_x"]] == 0.0
@@ -86,9 +97,7 @@ def test_the_arm_that_swings_is_told_from_the_one_that_hangs(
 def test_a_lost_arm_is_found_hanging() -> None:
     """L1: errors do not go on for ever."""
     pose = standing(l_shoulder_z=280.0, l_shoulder_x=100.0, l_elbow_x=90.0)
-    found = settled(
-        pose, pose, BODY, silhouettes_of(RIG, reports(standing())), UPRIGHT_M, fitted=False
-    )
+    found = settled(pose, pose, BODY, silhouettes_of(RIG, reports(standing())), votes(False))
     assert found == pytest.approx(standing())
 
 
@@ -98,16 +107,14 @@ def test_a_body_is_moved_to_where_both_views_have_it(axis: int) -> None:
     truth, pose = standing(), standing()
     pose[axis] += 0.03
     assert settled(
-        pose, pose, BODY, silhouettes_of(RIG, reports(truth)), UPRIGHT_M, fitted=False
+        pose, pose, BODY, silhouettes_of(RIG, reports(truth)), votes(False)
     ) == pytest.approx(truth)
 
 
 def test_what_fits_is_left_alone() -> None:
     """A pose that both silhouettes agree with stays, bit for bit."""
     pose = standing(r_shoulder_z=120.0, l_shoulder_x=40.0, r_hip_x=30.0)
-    found = settled(
-        pose, standing(), BODY, silhouettes_of(RIG, reports(pose)), UPRIGHT_M, fitted=False
-    )
+    found = settled(pose, standing(), BODY, silhouettes_of(RIG, reports(pose)), votes(False))
     assert np.array_equal(found, pose)
 
 
@@ -118,9 +125,7 @@ def test_a_squat_is_found_from_straight_legs(bend_deg: float, bow_deg: float) ->
     legs |= {f"{side}_knee_x": -2 * bend_deg for side in "rl"}
     truth = standing(torso_x=bow_deg, **legs)
     truth[1] -= 2 * 0.49 * (1.0 - np.cos(np.radians(bend_deg)))  # thigh and shank: 0.46, 0.52
-    found = settled(
-        standing(), standing(), BODY, silhouettes_of(RIG, reports(truth)), UPRIGHT_M, fitted=False
-    )
+    found = settled(standing(), standing(), BODY, silhouettes_of(RIG, reports(truth)), votes(False))
     assert found == pytest.approx(truth, abs=1e-9)
 
 
@@ -128,10 +133,8 @@ def test_only_a_fitted_body_is_turned_joint_by_joint() -> None:
     """A measured body has no feet and would bend to cover them; what was fitted may turn."""
     truth = standing(r_hip_x=24.0, r_knee_x=-30.0)
     start = standing(r_hip_x=10.0, r_knee_x=-8.0)
-    turned = settled(
-        start, start, BODY, silhouettes_of(RIG, reports(truth)), UPRIGHT_M, fitted=True
-    )
-    kept = settled(start, start, BODY, silhouettes_of(RIG, reports(truth)), UPRIGHT_M, fitted=False)
+    turned = settled(start, start, BODY, silhouettes_of(RIG, reports(truth)), votes(True))
+    kept = settled(start, start, BODY, silhouettes_of(RIG, reports(truth)), votes(False))
     hip, knee = POSE_INDEX["r_hip_x"], POSE_INDEX["r_knee_x"]
     assert turned[hip] == pytest.approx(24.0, abs=6.0)
     assert turned[knee] == pytest.approx(-30.0, abs=9.0)

@@ -5,23 +5,30 @@ import numpy as np
 import pytest
 
 from common.body.body import JOINT_NAMES, LIMBS
-from common.body.proportions import THESIS_RATIOS
+from common.body.proportions import THESIS_RATIOS, thesis_bdp
 from common.body.stick_body import ADULT, ANGLE, THESIS, Stickman, joints_px, standing
 from common.bus.message_codec import pack
-from common.bus.messages import Body, Box, Fit, Report
+from common.bus.messages import Box, Fit, Report, ViewerNumber
+from common.method import DEFAULT, METHODS
 from common.rig.camera import paper_rig, project
-from integrator.single import single_view
-from integrator.single.single_hypotheses import Inputs, State, lifted_body
+from integrator.single import depth_signs, lifted_stick, reflection, single_view
+from integrator.single.reflection import Front
+from integrator.single.sight import Annotations, Hypothesis, Sight
 
 WIDTH, HEIGHT, TALL_PX = 160, 120, 80.0
-CAMERA = paper_rig((WIDTH, HEIGHT), (200.0, 200.0), (4.375, 4.375)).cameras[0]
+RIG = paper_rig((WIDTH, HEIGHT), (200.0, 200.0), (4.375, 4.375))
+CAMERA = RIG.cameras[0]
 """Somebody of 1.75 m is 80 pixels tall before it."""
 AT = {name: i for i, name in enumerate(JOINT_NAMES)}
 
 
-def begun(printed: bool) -> State:
-    man = THESIS if printed else ADULT
-    return single_view.init(1, CAMERA, man, 1.75, printed, 1 / 15)
+def sight_of(
+    report: Report, printed: bool = True, said: Annotations = Annotations(), n: int = 1
+) -> Sight:
+    """A report, held against somebody of 1.75 m."""
+    man, method = (THESIS, METHODS["thesis"]) if printed else (ADULT, DEFAULT)
+    number: ViewerNumber = 1 if n == 1 else 2
+    return Sight(method, number, RIG, report, man, thesis_bdp(1.75), None, 0.0, said)
 
 
 def report_of(man: Stickman, arm_deg: float = 270.0) -> Report:
@@ -54,14 +61,14 @@ def report_of(man: Stickman, arm_deg: float = 270.0) -> Report:
     )
 
 
-def settled(report: Report, told: Inputs = Inputs(), printed: bool = True) -> Body:
-    state = begun(printed)
-    return single_view.step(single_view.glance(state, report, told), report, told)[1]
+def settled(report: Report, said: Annotations = Annotations(), printed: bool = True) -> Hypothesis:
+    sight = sight_of(report, printed, said)
+    return single_view.step(None, single_view.begun(sight, None), sight).body
 
 
 def test_a_body_in_the_picture_plane_keeps_the_printed_lengths() -> None:
     """T19, T20: what is parallel to the picture is as long as table 3.1 says."""
-    joints = np.array(settled(report_of(THESIS, 225.0)).joints_m)
+    joints = settled(report_of(THESIS, 225.0)).joints_m
     unit = 1.75 / THESIS_RATIOS["stature"]
     for near, far, part in (
         ("r_shoulder", "r_elbow", "upper_arm"),
@@ -74,18 +81,17 @@ def test_a_body_in_the_picture_plane_keeps_the_printed_lengths() -> None:
 
 
 def test_the_lifted_body_is_seen_where_the_stick_was() -> None:
-    report = report_of(ADULT, 200.0)
-    _, lifted = lifted_body(begun(printed=False), report, Inputs(orientation="forward_right"))
+    report, said = report_of(ADULT, 200.0), Annotations(orientation="forward_right")
+    _, lifted = lifted_stick.step(depth_signs.init(), sight_of(report, False, said))
     assert report.fit is not None
-    seen = project(CAMERA, lifted.joints_m)
-    assert seen == pytest.approx(np.array(report.fit.joints_px), abs=1e-6)
+    assert project(CAMERA, lifted.joints_m) == pytest.approx(np.array(report.fit.joints_px))
 
 
 def test_who_is_told_to_face_away_has_the_sides_swapped() -> None:
     """T10, T22: left and right of the picture become those of the body by its orientation."""
     report = report_of(THESIS, 180.0)
-    front = np.array(settled(report, Inputs(orientation="forward_left")).joints_m)
-    back = np.array(settled(report, Inputs(orientation="backward_left")).joints_m)
+    front = settled(report, Annotations(orientation="forward_left")).joints_m
+    back = settled(report, Annotations(orientation="backward_left")).joints_m
     assert front[AT["r_wrist"], 0] == pytest.approx(back[AT["l_wrist"], 0])
     assert front[AT["l_shoulder"], 0] > 0 > back[AT["l_shoulder"], 0]
 
@@ -93,9 +99,10 @@ def test_who_is_told_to_face_away_has_the_sides_swapped() -> None:
 @pytest.mark.parametrize("printed", [True, False], ids=["thesis", "default"])
 def test_a_joint_is_where_the_user_puts_it(printed: bool) -> None:
     """T26: a hidden joint is pointed at."""
-    told = Inputs(joints_px={"r_wrist": (40.0, 30.0)})
+    told = Annotations(joints_px={"r_wrist": (40.0, 30.0)})
     body = settled(report_of(THESIS if printed else ADULT), told, printed)
-    assert body.joints_px[0][AT["r_wrist"]] == pytest.approx((40.0, 30.0), abs=0.5)
+    placed = project(CAMERA, body.joints_m)[AT["r_wrist"]]
+    assert placed == pytest.approx((40.0, 30.0), abs=0.5)
 
 
 def test_a_segment_leans_as_the_user_says() -> None:
@@ -109,7 +116,7 @@ def test_a_segment_leans_as_the_user_says() -> None:
     fit = msgspec.structs.replace(report.fit, joints_px=tuple(places))
     report = msgspec.structs.replace(report, fit=fit)
     for way, sign in (("toward", 1.0), ("away", -1.0)):
-        joints = np.array(settled(report, Inputs(depth={"r_upper_arm": way})).joints_m)
+        joints = settled(report, Annotations(depth={"r_upper_arm": way})).joints_m
         lean = joints[AT["r_elbow"], 2] - joints[AT["r_shoulder"], 2]
         expected = sign * np.sin(np.radians(60)) * 1.75 * THESIS_RATIOS["upper_arm"] / 175
         assert lean == pytest.approx(expected, rel=0.02)
@@ -117,13 +124,28 @@ def test_a_segment_leans_as_the_user_says() -> None:
 
 def test_what_a_pixel_does_to_a_limbs_angle_is_told() -> None:
     """T19: an upper arm of 11.4 px in the plane, one shorter, is 24 degrees out of it."""
-    seen = single_view.glance(begun(printed=True), report_of(THESIS), Inputs())
-    _, _, own = single_view.step(seen, report_of(THESIS), Inputs())
+    own = settled(report_of(THESIS)).lifting
     length_px = THESIS_RATIOS["upper_arm"] / THESIS_RATIOS["stature"] * TALL_PX
     error_deg = np.degrees(np.arccos(1.0 - 1.0 / length_px))
     assert own.depth_error_deg[LIMBS.index("l_upper_arm")] == pytest.approx(error_deg, rel=0.02)
 
 
-def test_nobody_has_no_pose() -> None:
-    _, body, _ = single_view.nobody(begun(printed=False), 7, 0.5)
-    assert (body.status, body.views, body.joints_m) == ("empty", "none", ())
+def test_a_view_left_alone_knows_which_way_both_had_the_body() -> None:
+    """T22: what segments pointed where goes on from the last instant that both views saw."""
+    sight = sight_of(report_of(ADULT), printed=False)
+    front = settled(report_of(THESIS)).joints_m
+    back = reflection.seen_from_behind(CAMERA, front)
+    for joints_m, towards in ((front, "forward"), (back, "backward")):
+        known = single_view.begun(sight, joints_m)
+        assert known.front is None
+        assert known.signs.bearing.orientation.startswith(towards)
+    assert single_view.begun(sight, None).front == Front()
+
+
+def test_a_stick_body_is_asked_for_where_what_is_proposed_fits_badly() -> None:
+    """A box is no person: the next report shall bring a stick body."""
+    report = msgspec.structs.replace(report_of(ADULT), fit=None)
+    sight = sight_of(report, printed=False)
+    found = single_view.step(None, single_view.begun(sight, None), sight)
+    assert found.body.score < single_view.GOOD
+    assert found.alone.stick

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from viewer.stick.standing_height import standing_rows, statures_px
+from viewer.stick.standing_height import standing_of, standing_rows
 
 
 def drawn(tall: int, arms_up: bool = False) -> np.ndarray:
@@ -22,9 +22,10 @@ def test_raised_arms_are_no_height() -> None:
 
 def test_a_squat_does_not_shrink_the_scale() -> None:
     """T20: the height of standing frames holds for the squats between them."""
-    rows = np.array([standing_rows(drawn(tall)) for tall in (80, 80, 79, 60, 50, 60, 80, 81)])
-    found = statures_px(rows[:, 0], rows[:, 1], np.ones(8, np.bool_))
-    assert found == pytest.approx(np.full(8, 80.0), abs=1.0)
+    rows = [standing_rows(drawn(tall)) for tall in (80, 80, 79, 60, 50, 60, 80, 81)]
+    found = standing_of(rows, [True] * 8)
+    assert found is not None
+    assert (found.tall_px, found.at(110.0)) == pytest.approx((80.0, 80.0), abs=1.0)
 
 
 def test_who_comes_nearer_grows_with_their_feet() -> None:
@@ -32,23 +33,25 @@ def test_who_comes_nearer_grows_with_their_feet() -> None:
     true = 0.6 * (soles - 10.0)
     crowns = soles - true
     crowns[::6] += 15.0  # bows
-    assert statures_px(crowns, soles, np.ones(30, np.bool_)) == pytest.approx(true, rel=0.03)
+    found = standing_of(list(zip(crowns, soles, strict=True)), [True] * 30)
+    assert found is not None
+    assert [found.at(sole) for sole in soles] == pytest.approx(true.tolist(), rel=0.03)
 
 
 def test_who_is_partly_outside_tells_no_height() -> None:
-    crowns, soles = np.array([30.0, 0.0, 30.0]), np.array([110.0, 60.0, 110.0])
-    found = statures_px(crowns, soles, np.array([True, False, True]))
-    assert found == pytest.approx(np.full(3, 80.0))
+    found = standing_of([(30.0, 110.0), (0.0, 60.0), (30.0, 110.0)], [True, False, True])
+    assert found is not None
+    assert [found.at(sole) for sole in (110.0, 60.0)] == pytest.approx([80.0, 80.0])
 
 
 def test_nobody_has_no_height() -> None:
-    nothing = np.full(4, np.nan)
-    assert np.isnan(statures_px(nothing, nothing, np.zeros(4, np.bool_))).all()
+    assert standing_of([], []) is None
 
 
 @pytest.mark.filterwarnings("error")
 def test_a_few_frames_of_which_one_is_odd_still_have_a_height() -> None:
-    crowns, soles = np.array([20.0, 20, 20, 50, 20, 20]), np.array([110.0, 110, 110, 51, 110, 110])
-    found = statures_px(crowns, soles, np.ones(6, np.bool_))
-    assert np.isfinite(found).all()
-    assert found.min() > 0.0
+    rows = [(20.0, 110.0)] * 3 + [(50.0, 51.0)] + [(20.0, 110.0)] * 2
+    found = standing_of(rows, [True] * 6)
+    assert found is not None
+    assert all(np.isfinite(found))
+    assert min(found.at(110.0), found.at(51.0)) > 0.0

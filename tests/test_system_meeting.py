@@ -14,6 +14,7 @@ from common.bus.control_messages import Cameras, ClockAnswer, ClockQuestion, End
 from common.bus.inbox import BOUND
 from common.bus.messages import Body, Guide, Message
 from common.config import BusSettings, PageSettings, Settings
+from common.method import DEFAULT
 from common.rig.camera import paper_rig
 from common.video.clip_facts import View
 from common.video.decoding import DecoderDied
@@ -140,7 +141,7 @@ def test_what_was_lost_is_told_to_the_end() -> None:
     """Six reports too many for the inbox: the last pulse still counts them."""
     bus = Talkative()
     pulses, bodies = bus.subscribe(Pulse), bus.subscribe(Body)
-    state = merge.init(RIG, 1 / 15, Settings())
+    state = merge.init(RIG, 1 / 15, Settings(), DEFAULT)
     integrator.run(state, (1,), 1 / 15, bus, threading.Event())
     last = pulses.drain()[-1]
     assert (last.state, last.frames, last.dropped) == ("ended", BOUND, 6)
@@ -160,7 +161,7 @@ def test_nobody_waits_for_a_viewer_whose_video_broke() -> None:
     bus = LocalBus()
     ended = bus.subscribe(Ended)
     view = View(1, "cam1.avi", (160, 120), (160, 120), fps=15.0, frames=10)
-    state = track.init(1, learn([np.zeros((120, 160, 3), np.uint8)]), None, Settings())
+    state = track.init(1, learn([np.zeros((120, 160, 3), np.uint8)]), None, Settings(), DEFAULT)
     with pytest.raises(DecoderDied):
         viewer.run(view, state, BrokenFilm(), bus, threading.Event())  # type: ignore[arg-type]
     (said,) = ended.drain()

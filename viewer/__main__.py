@@ -14,7 +14,9 @@ from common.bus.messages import Guide, Picture, ViewerNumber
 from common.bus.process import READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
+from common.method import METHODS
 from common.video.clip_facts import View, shortfall
+from common.video.clip_sources import footage_of
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied
 from viewer import track
@@ -138,7 +140,9 @@ def main(
         warnings = (*clip.warnings, *([odd] if odd else []))
         for warning in warnings:
             log.warning(warning)
-        state = track.init(viewer, room, clip.rig.cameras[0] if clip.rig else None, settings)
+        camera = clip.rig.cameras[0] if clip.rig else None
+        alone = len(footage_of(settings)) == 1
+        state = track.init(viewer, room, camera, settings, METHODS[settings.mode], alone=alone)
         warm_up(state, view.size)
         gc.collect()
         gc.freeze()

@@ -36,7 +36,6 @@ def warm_up(state: track.State, size: tuple[int, int]) -> None:
         status="tracking",
         bdp=thesis_bdp(1.0),
         scale_px_per_m=(0.7 * height,) * 2,
-        reference_px_per_m=(0.7 * height,) * 2,
         root_px=((width / 2, 0.55 * height),) * 2,
         pose=tuple(pose.tolist()),
     )

@@ -144,6 +144,13 @@ JOINT_NAMES: Final = (
     "r_ankle",
 )
 """The 15 landmarks that are published, in the order of `joints_m`."""
+OTHER_SIDE: Final = np.array(
+    [
+        JOINT_NAMES.index({"l_": "r_", "r_": "l_"}.get(name[:2], name[:2]) + name[2:])
+        for name in JOINT_NAMES
+    ]
+)
+"""Where a list by JOINT_NAMES has the same joint of the other side."""
 
 _BETWEEN: Final = {
     "upper_leg": ("hip", "knee"),

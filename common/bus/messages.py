@@ -6,7 +6,7 @@ import msgspec
 
 from common.body.body import Bdp
 
-PROTOCOL: Final = 3
+PROTOCOL: Final = 4
 
 ViewerNumber = Literal[1, 2]
 Facing = Literal["facade", "flank"]
@@ -100,7 +100,7 @@ class Report(Moment, frozen=True, kw_only=True):
     refusal: str = ""
     """Why the posture is not the opening posture, where it is not."""
     root_px: Pixel | None = None
-    """Where the navel lies in the picture."""
+    """Where the search has the navel in the picture; None where nothing was searched for."""
     angles_deg: dict[str, float] = {}
     """The angles that this view estimates; names as in ANGLE_NAMES."""
     squatting: bool = False
@@ -109,10 +109,8 @@ class Report(Moment, frozen=True, kw_only=True):
     """Similarity of silhouette and model in that pose, in [0, 1]."""
     matches: int = 0
     """How many times a model was matched for this frame."""
-    guide_frame: int = -1
-    """This viewer's frame that the guide in use had heard of; -1: none."""
     fit: Fit | None = None
-    """The stick body, where this view is alone."""
+    """The stick body, where the guide asked for one."""
     next_s: float | None = None
     """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
     fault: CameraFault = ""
@@ -133,14 +131,28 @@ class Guide(Moment, frozen=True, kw_only=True):
     scale_px_per_m: tuple[float, float] = (0.0, 0.0)
     """Size of a metre at the body in each picture: reference scale times r_t,n (section 4.2); 0
     where a camera has the body behind it."""
-    reference_px_per_m: tuple[float, float] = (0.0, 0.0)
-    """The same at the place where the BDPs were taken, where r_t1 = r_t2 = 1."""
     root_px: tuple[Pixel, Pixel] = ((0.0, 0.0), (0.0, 0.0))
     """Where to expect the navel in each picture."""
     rest_row_px: tuple[float, float] = (0.0, 0.0)
     """Row of each picture where the navel would be if the person stood upright there (P33)."""
     pose: tuple[float, ...] = ()
     """Predicted pose, POSE_NAMES order, metres and degrees."""
+    stick: bool = False
+    """A stick body is asked for: one view is left, and what it proposes does not fit."""
+
+
+class Lifting(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What one view alone cannot measure and was decided by itself (T21, T22)."""
+
+    orientation: str
+    """One of `common.notes.notes.ORIENTATIONS`."""
+    orientation_confidence: float
+    """In [0, 1]; 1 where the user said so."""
+    depth_confidence: tuple[float, ...]
+    """LIMBS order, in [0, 1]: of the sign of each segment's depth."""
+    depth_error_deg: tuple[float, ...] = ()
+    """LIMBS order: how far a segment's angle out of the picture changes with a pixel of its length
+    (T19); empty where the pose was not lifted from its segments."""
 
 
 class Body(Moment, frozen=True, kw_only=True):
@@ -162,6 +174,8 @@ class Body(Moment, frozen=True, kw_only=True):
     facing: tuple[Facing, Facing] = ("facade", "flank")
     bdp: Bdp | None = None
     matches: int = 0
+    lifting: Lifting | None = None
+    """Where one view alone shows the body."""
 
 
 class Performance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

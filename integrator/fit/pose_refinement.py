@@ -107,7 +107,7 @@ def refined(
 
     Args:
         proposed: By the silhouettes, (25,).
-        sure: (15,) how probably each of its landmarks is less than 50 mm off.
+        confidence: (15,) how probably each of its landmarks is less than 50 mm off.
         previous: After a pose that was matched, a proposal must match nearly as well to be
             believed again.
         body: Body vector.
@@ -123,7 +123,7 @@ def refined(
         return None
     silhouettes = silhouettes_of(rig, (first, second))
     wanted = Wanted(body, silhouettes, joints(body, proposed), 0.5 / spread_m(confidence) ** 2)
-    fits = _poorest(proposed, wanted)
+    fits = _poorest(proposed, body, silhouettes)
     if fits >= POOR:
         if not previous.matched or previous.pose is None:
             return None
@@ -131,7 +131,7 @@ def refined(
     wanted = wanted._replace(tightness=wanted.tightness * (fits / POOR) ** DOUBT)
     before = previous.pose
     pose = proposed if before is None else _searched(proposed, before, wanted)
-    if _poorest(pose, wanted) >= POOR:
+    if _poorest(pose, body, silhouettes) >= POOR:
         return pose
     refuted = wanted._replace(tightness=np.zeros(len(confidence)))
     return _searched(pose, before, refuted)
@@ -210,9 +210,16 @@ def spread_m(confidence: Vector) -> Vector:
     return found
 
 
-def _poorest(pose: Vector, wanted: Wanted) -> float:
-    """S of a pose in the view where it is lower."""
-    body, (views, masks, areas, width) = wanted.body, wanted.silhouettes
+def poorest(pose: Vector, body: Vector, rig: Rig, seen: Seen) -> float:
+    """S of a pose in that of both views where it is lower; 1 where one of them shows nobody."""
+    first, second = seen
+    if first is None or second is None:
+        return 1.0
+    return _poorest(pose, body, silhouettes_of(rig, (first, second)))
+
+
+def _poorest(pose: Vector, body: Vector, silhouettes: Silhouettes) -> float:
+    views, masks, areas, width = silhouettes
     return min(
         float(match(body, pose, view, ALL_LIMBS, width, mask, int(area)))
         for view, mask, area in zip(views, masks, areas, strict=True)

@@ -1,23 +1,23 @@
 """The pose of the angles that the viewers found: fused, its doubts settled by both silhouettes."""
 
 from common.body.body import POSE_INDEX, YAW_DEG, Vector, rest_pose
-from common.body.proportions import body_vector
+from common.body.proportions import LOWER_LEG_HEIGHT, UPPER_LEG_HEIGHT, body_vector
 from common.bus.messages import Facing
 from common.rig.camera import Rig
 from integrator.fit.silhouette_pair import silhouettes_of
-from integrator.merge_state import State
+from integrator.merge_state import Posed, State
 from integrator.pairing import Seen
 from integrator.paper.arbiter import Sight, arbitrate
 from integrator.paper.fusion import fused
-from integrator.paper.silhouette_vote import settled
+from integrator.paper.silhouette_vote import settled, votes_of
 from integrator.rig.body_position import place_of, roots_of, scales_at
 
 
-def step(state: State, rig: Rig, seen: Seen, settled_at: Vector | None) -> State:
+def step(state: State, rig: Rig, seen: Seen, settled_at: Vector | None) -> Posed:
     """The facing and the pose of one instant more.
 
-    The arbiter settles the facing (P48), position and angles are fused (P50-P54); in `default`
-    the doubts that are left are settled by matching both silhouettes, a departure from the paper.
+    The arbiter settles the facing (P48), position and angles are fused (P50-P54); beyond the
+    paper, the doubts that are left are settled by both silhouettes' votes.
 
     Args:
         state: What is remembered.
@@ -25,41 +25,45 @@ def step(state: State, rig: Rig, seen: Seen, settled_at: Vector | None) -> State
         seen: What each view reports; None where it has nobody.
         settled_at: Where the body was measured, if that has just been settled.
     """
-    state = _faced(state, seen)
-    pose = _posed(state, rig, seen, settled_at)
-    if state.settings.mode == "default":
-        pose = _settled(state, rig, seen, pose)
-    return state._replace(pose=pose)
+    facing = _faced(state, seen)
+    pose = _posed(state, facing, rig, seen, settled_at)
+    return Posed(_settled(state, rig, seen, pose), facing)
 
 
-def _faced(state: State, seen: Seen) -> State:
+def _faced(state: State, seen: Seen) -> tuple[Facing, Facing]:
     """Facade and flank, settled between the views' votes (P48); one view alone decides itself.
 
-    Of a body that both views have measured, the one that is left decides nothing in `default`:
-    arms that are raised narrow the upper body as a turn would, and nobody is left to say no.
+    Beyond the paper, of a body that both views have measured, the one that is left decides
+    nothing: arms that are raised narrow the upper body as a turn would, and nobody says no.
     """
     first, second = seen
     if first is None or second is None:
         own = first or second
         assert own is not None
+        if state.method.held_facing and state.opening.measured:
+            return state.facing
         other: Facing = "flank" if own.vote == "facade" else "facade"
-        facing = (own.vote, other) if second is None else (other, own.vote)
-        held = state.settings.mode == "default" and state.opening.measured
-        return state if held else state._replace(facing=facing)
+        return (own.vote, other) if second is None else (other, own.vote)
     sights = [
         Sight(before, report.vote, report.upper_body_px, *report.thresholds_px)
         for before, report in zip(state.facing, (first, second), strict=True)
     ]
     ratio = 1.0
-    if state.settings.mode == "default" and state.pose is not None and state.rig is not None:
+    if state.method.scaled_arbiter and state.pose is not None and state.rig is not None:
         scales = scales_at(state.rig, state.pose[:3])
         ratio = scales[0] / scales[1]
-    return state._replace(facing=arbitrate(sights[0], sights[1], ratio))
+    return arbitrate(sights[0], sights[1], ratio)
 
 
-def _posed(state: State, rig: Rig, seen: Seen, settled_at: Vector | None) -> Vector:
+def _posed(
+    state: State,
+    facing: tuple[Facing, Facing],
+    rig: Rig,
+    seen: Seen,
+    settled_at: Vector | None,
+) -> Vector:
     """Position and angles of this instant, not yet smoothed (P50-P54)."""
-    front = 0 if state.facing[0] == "facade" else 1
+    front = 0 if facing[0] == "facade" else 1
     before = rest_pose() if state.pose is None else state.pose
     pose = fused(before, seen[front], seen[1 - front])
     if settled_at is None:
@@ -78,7 +82,12 @@ def _settled(state: State, rig: Rig, seen: Seen, pose: Vector) -> Vector:
     assert state.opening.bdp is not None
     before = rest_pose() if state.pose is None else state.pose
     known, body = state.opening, body_vector(state.opening.bdp)
-    upright_m = known.measured_at_m[1] if known.measured else float(body[8] + body[14])
-    pose[POSE_INDEX["torso_x"]] = 0.0
+    leg_m = float(body[UPPER_LEG_HEIGHT] + body[LOWER_LEG_HEIGHT])
+    upright_m = known.measured_at_m[1] if known.measured else leg_m
     fitted = bool(known.samples) and not known.measured
-    return settled(pose, before, body, silhouettes_of(rig, (first, second)), upright_m, fitted)
+    votes = votes_of(state.method, upright_m, leg_m, fitted)
+    if not votes:
+        return pose
+    upright = pose.copy()
+    upright[POSE_INDEX["torso_x"]] = 0.0
+    return settled(upright, before, body, silhouettes_of(rig, (first, second)), votes)

@@ -1,21 +1,29 @@
 """Which of several poses both silhouettes speak for: what one view alone cannot tell."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from itertools import product
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import POSE_INDEX, REST_DEG, Vector
 from common.body.kinematics import ALL_LIMBS, ARM_LIMBS, LEG_LIMBS
-from common.body.proportions import LOWER_LEG_HEIGHT, UPPER_LEG_HEIGHT
+from common.method import Method
 from integrator.fit.silhouette_pair import Silhouettes, products
 
 Doubt = Callable[[Vector, Vector], NDArray[np.float64]]
 """From the pose so far and that of the frame before: it, and others that may be meant, (n, 25)."""
+
+
+class Vote(NamedTuple):
+    """A doubt, and how many times better S1 S2 must be for another pose than the one so far."""
+
+    doubt: Doubt
+    surely: float
+
 
 SURELY: Final = 1.01
 """How many times better S1 S2 must be for a pose to be preferred to the one before it."""
@@ -65,45 +73,53 @@ def moving(poses: NDArray[np.float64]) -> int:
     return int(np.bitwise_or.reduce(_LIMBS_OF[(poses != poses[0]).any(axis=0)], initial=0))
 
 
+def votes_of(method: Method, upright_m: float, leg_m: float, fitted: bool) -> list[Vote]:
+    """What both silhouettes vote on, in turn, each a few poses.
+
+    Whether the person squats; where the body is; which arm it is that swings, or whether both do
+    (L3); whether an arm was lost, and is where it was or hangs. A body that was fitted to its
+    silhouette is then turned joint by joint too; one that was measured in the opening posture is
+    not: its cylinders have no feet, and would bend to cover them.
+
+    Args:
+        method: Which of them.
+        upright_m: Height of the navel of the person standing upright.
+        leg_m: Length of a leg.
+        fitted: The body is a prior that was fitted to the silhouette.
+    """
+    votes: list[Vote] = []
+    if method.squat_votes:
+        votes.append(Vote(partial(squatted, upright_m, leg_m), SQUATS))
+    if method.place_votes:
+        votes.append(Vote(shifted, SURELY))
+    if method.arm_votes:
+        votes += [
+            Vote(each, SURELY) for each in (swung, partial(regained, 0), partial(regained, 1))
+        ]
+    if method.turn_votes and fitted:
+        votes += [
+            Vote(partial(turned, pair, share), 1.0) for share in TURN_SHARES for pair in TURNS
+        ]
+    return votes
+
+
 def settled(
-    pose: Vector,
-    before: Vector,
-    body: Vector,
-    silhouettes: Silhouettes,
-    upright_m: float,
-    fitted: bool,
+    pose: Vector, before: Vector, body: Vector, silhouettes: Silhouettes, votes: Iterable[Vote]
 ) -> Vector:
     """The fused pose with its doubts settled by both silhouettes.
 
-    In turn: whether the person squats; where the body is; which arm it is that swings, or whether
-    both do (L3); whether an arm was lost, and is where it was or hangs. Each is a few poses, of
-    which the one with the highest S1 S2 is taken, and the first, which is the pose so far, unless
-    another is surely better. A body that was fitted to its silhouette is then turned joint by joint
-    too; one that was measured in the opening posture is not: its cylinders have no feet, and
-    would bend to cover them.
+    Of each vote the pose with the highest S1 S2 is taken, and the first, which is the pose so far,
+    unless another is surely better.
 
     Args:
         pose: As the two views' angles were fused, (25,).
         before: Of the frame before.
         body: Body vector.
-        silhouettes: Of both views.
-        upright_m: Height of the navel of the person standing upright.
-        fitted: The body is a prior that was fitted to the silhouette.
+        silhouettes: Of both views, in pictures of one size.
+        votes: In their order.
     """
-    leg_m = float(body[UPPER_LEG_HEIGHT] + body[LOWER_LEG_HEIGHT])
-    turns: list[tuple[Doubt, float]] = [
-        (partial(turned, pair, share), 1.0) for share in TURN_SHARES for pair in TURNS if fitted
-    ]
-    all_doubts: list[tuple[Doubt, float]] = [
-        (partial(squatted, upright_m, leg_m), SQUATS),
-        (shifted, SURELY),
-        (swung, SURELY),
-        (partial(regained, 0), SURELY),
-        (partial(regained, 1), SURELY),
-        *turns,
-    ]
-    for doubts, surely in all_doubts:
-        poses = doubts(pose, before)
+    for doubt, surely in votes:
+        poses = doubt(pose, before)
         likely = products(body, poses, moving(poses), *silhouettes)
         best = int(likely.argmax())
         pose = poses[best if likely[best] > surely * likely[0] else 0]

@@ -14,8 +14,7 @@ from common.rig.camera import Rig
 from integrator.pose.inverse_kinematics import pose_of, trunk_of
 from integrator.proposal import network_weights, pose_network
 from integrator.proposal.network_weights import JOINTS
-from integrator.proposal.pose_network import Proposal
-from integrator.proposal.silhouette_window import Floats, Look, from_camera_2, look
+from integrator.proposal.silhouette_window import Floats, look
 
 AT: Final = np.array([JOINT_NAMES.index(name) for name in JOINTS])
 """Where the proposed joints stand among the landmarks."""
@@ -44,22 +43,13 @@ SURENESS: Final = (0.99, -0.64)
 becomes how often a joint of r01, of r04 and of people made up anew was less than 50 mm off."""
 
 
-TWICE: Final = 0.6
-"""Joints less sure than this on average are looked at from camera 2 too: both looks together miss
-made-up people by 5 to 12 % less than the first alone, and by as much where that is surer."""
-SURENESS_OF_TWO: Final = (1.21, -0.47)
-"""As SURENESS, of the mean of two looks at people made up anew."""
 SURENESS_OF_MATCHED: Final = (0.53, 0.60)
 """As SURENESS, of poses that were matched instead: from how sure what was proposed is, so of six
 other made-up people in free motion."""
 
 
-class Memory(NamedTuple):
-    """What is remembered of the instants before."""
-
-    own: Floats
-    second: Floats | None
-    """Of those that were looked at from camera 2 too; None where the last was not."""
+Memory = Floats
+"""What the network remembers of the instants before."""
 
 
 class Insight(NamedTuple):
@@ -101,29 +91,13 @@ def step(
         larger = (first, None) if areas_px[0] >= areas_px[1] else (None, second)
         shown = look(larger, rig, height_m, since_s)
     assert shown is not None  # one alone stands somewhere
-    memory, found = _looked(memory, shown, rig, height_m)
-    calibrated = SURENESS if memory.second is None else SURENESS_OF_TWO
+    memory, found = pose_network.step(network_weights.shipped(), memory, shown, height_m)
     found.joints_m[:] -= height_m * JOINTS_OFF @ trunk_of(found.joints_m).T
-    sure, own = np.zeros(len(JOINT_NAMES)), probability(found.sure, calibrated)
+    sure, own = np.zeros(len(JOINT_NAMES)), probability(found.sure)
     sure[AT] = own
     sure[PELVIS] = own[pose_network.HIPS].mean()
     sure[NECK] = sure[HEAD] = own[pose_network.SHOULDERS].mean()
     return Insight(found.joints_m, sure, memory)
-
-
-def _looked(
-    memory: Memory | None, shown: Look, rig: Rig, height_m: float
-) -> tuple[Memory, Proposal]:
-    """What a look proposes, and one from the other camera where that is not sure: their mean."""
-    network = network_weights.shipped()
-    before, other = (None, None) if memory is None else memory
-    own, found = pose_network.step(network, before, shown, height_m)
-    if not shown.beside[list(pose_network.SEES)].all() or probability(found.sure).mean() >= TWICE:
-        return Memory(own, None), found
-    again = from_camera_2(shown, rig)
-    other, second = pose_network.step(network, other, again, height_m)
-    joints_m, sure = (np.mean(pair, axis=0) for pair in zip(found, second, strict=True))
-    return Memory(own, other), Proposal(joints_m, sure)
 
 
 def probability(sure: Vector, calibrated: tuple[float, float] = SURENESS) -> Vector:

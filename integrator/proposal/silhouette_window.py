@@ -107,21 +107,6 @@ def _tell(turn: Any, away_m: Any, stature_m: float, out: Any) -> None:
         out[1 + i] = (turn[i] * away_m).sum() / far
 
 
-def from_camera_2(seen: Look, rig: Rig) -> Look:
-    """What both views show, as if camera 2 were camera 1."""
-    turn = axes_of(rig.cameras[1], rig.cameras[0])
-    mirrored = bool(np.linalg.det(turn) < 0.0)
-    windows = seen.windows[::-1].reshape(2, ROWS, COLUMNS)
-    if mirrored != seen.mirrored:
-        windows = windows[:, :, ::-1]
-    beside = seen.beside.copy()
-    beside[:5], beside[5:10] = seen.beside[5:10], seen.beside[:5]
-    for away in (beside[1:4], beside[6:9]):
-        away[:] = turn @ seen.turn.T @ away
-    flat = np.ascontiguousarray(windows).reshape(2, CELLS)
-    return Look(flat, beside, seen.middle_m, turn, mirrored)
-
-
 def _middle_m(masks: tuple[Mask | None, Mask | None], rig: Rig) -> Vector | None:
     """Where the middles of the silhouettes meet; of one alone, where its feet stand."""
     first, second = masks

@@ -6,7 +6,8 @@ from typing import Final
 import numpy as np
 
 from common.body.body import Vector
-from common.bus.messages import Pixel
+from common.bus.message_codec import unpack
+from common.bus.messages import Pixel, Report
 from common.raster.kernel import NEAREST_M
 from common.rig.camera import Camera, Rig, as_paper_rig, centre, project, ray
 from integrator.pairing import Seen
@@ -20,12 +21,17 @@ paper's cameras stand about so far away."""
 
 
 def roots_of(seen: Seen) -> Roots:
-    """Where each view has the navel."""
-    first, second = seen
-    return (
-        None if first is None else first.root_px,
-        None if second is None else second.root_px,
-    )
+    """Where each view has the navel, as searched for, or else its silhouette's middle."""
+    first, second = (None if report is None else _root_px(report) for report in seen)
+    return first, second
+
+
+def _root_px(report: Report) -> Pixel:
+    if report.root_px is not None:
+        return report.root_px
+    assert report.box is not None
+    columns = np.flatnonzero(unpack(report).ravel()) % report.width
+    return float(columns.mean()) + 0.5, (report.box.top + report.box.bottom + 1) / 2
 
 
 def place_of(rig: Rig, roots_px: Roots, before_m: Vector, facade: int) -> Vector:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bus.message_codec import pack, unpack
-from common.bus.messages import Report
+from common.bus.messages import Pixel, Report
 from common.raster.bounds import box_of, is_cut
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig
@@ -45,22 +45,28 @@ def undistorted_report(report: Report, camera: Camera) -> Report:
     What the lens shows beyond the border of that picture is cut off; somebody of whom nothing
     would be left stays as they are, as does everything where nothing is bent.
     """
-    if report.root_px is None or not any(camera.distortion):
+    if report.box is None or not any(camera.distortion):
         return report
     mask = undistorted(unpack(report), camera)
-    box, K = box_of(mask), np.array(camera.K)
+    box = box_of(mask)
     if box is None:
         return report
-    place = np.array([[report.root_px]])
-    root_px = cv2.undistortPoints(place, K, np.array(camera.distortion), P=K)[0, 0].tolist()
     return msgspec.structs.replace(
         report,
         silhouette=pack(mask),
         box=box,
         area_px=int(mask.sum()),
         cut=report.cut or is_cut(box, mask.shape),
-        root_px=(root_px[0], root_px[1]),
+        root_px=_undistorted_px(report.root_px, camera),
     )
+
+
+def _undistorted_px(place: Pixel | None, camera: Camera) -> Pixel | None:
+    if place is None:
+        return None
+    K = np.array(camera.K)
+    u, v = cv2.undistortPoints(np.array([[place]]), K, np.array(camera.distortion), P=K)[0, 0]
+    return float(u), float(v)
 
 
 def undistorted(mask: Mask, camera: Camera) -> Mask:

@@ -7,9 +7,9 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import LIMB_ENDS, LIMBS, Vector
+from common.body.body import LIMB_ENDS, LIMBS, OTHER_SIDE, Vector
 from common.notes.notes import Orientation
-from integrator.single.lifting import SWAPPED, depths_m, yaw_of
+from integrator.single.lifting import depths_m, yaw_of
 from integrator.single.orientation import Bearing, faced
 
 CHAINS: Final = np.array([[0, 1], [6, 8], [7, 9], [2, 4], [3, 5]])
@@ -83,7 +83,7 @@ def choose(
     """
     bearing = faced(memory.bearing, joints_px, breadth)
     facing = orientation or bearing.orientation
-    pixels = joints_px[SWAPPED] if facing.startswith("backward") else joints_px
+    pixels = joints_px[OTHER_SIDE] if facing.startswith("backward") else joints_px
     flat_m = (pixels[LIMB_ENDS[:, 1]] - pixels[LIMB_ENDS[:, 0]]) / px_per_m * np.array([1.0, -1.0])
     lengths_px = np.linalg.norm(flat_m, axis=1) * px_per_m
     deep_m = depths_m(lengths_m[: len(LIMBS)], lengths_px, px_per_m)

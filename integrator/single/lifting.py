@@ -6,15 +6,10 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import JOINT_NAMES, LIMB_ENDS, Vector
+from common.body.body import JOINT_NAMES, LIMB_ENDS, OTHER_SIDE, Vector
 from common.notes.notes import Orientation
 
 _AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
-
-SWAPPED: Final = np.array(
-    [_AT[{"l_": "r_", "r_": "l_"}.get(name[:2], name[:2]) + name[2:]] for name in JOINT_NAMES]
-)
-"""Where a list by JOINT_NAMES has the other side's."""
 
 
 class Lifted(NamedTuple):
@@ -89,7 +84,7 @@ def lift(
         orientation: Which way the person faces.
     """
     backward = orientation.startswith("backward")
-    pixels = joints_px[SWAPPED] if backward else joints_px
+    pixels = joints_px[OTHER_SIDE] if backward else joints_px
     flat_m = pixels / px_per_m * np.array([1.0, -1.0])
     lengths_px = np.linalg.norm(pixels[LIMB_ENDS[:, 1]] - pixels[LIMB_ENDS[:, 0]], axis=1)
     depth_m = np.where(np.asarray(signs) < 0, -1.0, 1.0) * depths_m(

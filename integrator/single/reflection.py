@@ -6,10 +6,9 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS
+from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, OTHER_SIDE
 from common.notes.notes import ORIENTATIONS, Orientation
 from common.rig.camera import Camera, arrays_of, centre
-from integrator.single.lifting import SWAPPED
 
 Joints = NDArray[np.float64]
 SIDEWAYS_DEG: Final = 20.0
@@ -94,7 +93,7 @@ def seen_from_behind(camera: Camera, joints_m: Joints) -> Joints:
     Each joint stays on its ray, as far before the pelvis as it was behind it, and sides change.
     """
     depth = _depths(camera, joints_m)
-    return _at_depths(camera, joints_m, 2 * depth[PELVIS] - depth)[SWAPPED]
+    return _at_depths(camera, joints_m, 2 * depth[PELVIS] - depth)[OTHER_SIDE]
 
 
 def leaning(camera: Camera, joints_m: Joints, told: Mapping[str, str]) -> Joints:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.config import Settings
+from common.method import METHODS
 from common.npz_file import Arrays
 from common.raster.similarity import Mask
 from common.video.clip_facts import View
@@ -58,7 +59,8 @@ def _of_view(
     packed, width = truth[f"mask_cam{view.number}"], int(truth["mask_shape"][1])
     row_of = truth.get(f"frames_cam{view.number}", np.arange(len(packed)))
     decoder = decoders.of[view.number]
-    state = silhouette.init(empty_room(view, settings.silhouette, decoder)[0], settings.silhouette)
+    background, _ = empty_room(view, settings.silhouette, decoder)
+    state = silhouette.init(background, settings.silhouette, METHODS[settings.mode])
     shares, empty, ghosts = [], 0, 0
     for frame in recorded(view, every, decoder):
         state, seen = silhouette.step(state, frame.picture, None)

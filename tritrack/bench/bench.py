@@ -19,6 +19,7 @@ from rich.console import Console
 from rich.table import Table
 
 from common.config import Mode, PageSettings, SearchSettings, Settings
+from common.method import DEFAULT, METHODS
 from common.video.clips import open_clip
 from integrator import integrator_warmup
 from synth.write import ClipSet, write_set
@@ -134,7 +135,7 @@ def loaded_s() -> float:
     settings = Settings()
     room = learn([np.full((SMALL[1], SMALL[0], 3), 128, np.uint8)])
     for viewer in integrator_warmup.VIEWERS:
-        viewer_warmup.warm_up(track.init(viewer, room, None, settings), SMALL)
+        viewer_warmup.warm_up(track.init(viewer, room, None, settings, DEFAULT), SMALL)
     integrator_warmup.warm_up(settings, SMALL)
     return time.perf_counter() - began
 
@@ -169,9 +170,8 @@ def _silhouettes_s(settings: Settings, decoders: Decoders) -> float:
     total_s = 0.0
     for view in open_clip(settings, decoders.of[1]).views:
         decoder = decoders.of[view.number]
-        state = silhouette.init(
-            empty_room(view, settings.silhouette, decoder)[0], settings.silhouette
-        )
+        background, _ = empty_room(view, settings.silhouette, decoder)
+        state = silhouette.init(background, settings.silhouette, METHODS[settings.mode])
         for frame in recorded(view, 1, decoder):
             began = time.perf_counter()
             state, _ = silhouette.step(state, frame.picture, None)

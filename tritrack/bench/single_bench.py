@@ -7,14 +7,12 @@ from typing import Final, NamedTuple
 import cv2
 
 from common.config import Mode, Settings
-from common.notes.notes import Notes
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reel
 from tritrack.bench.bench_figure import Measured, least_s
-from tritrack.single.one_camera_poses import poses_of
-from tritrack.single.single_silhouettes import outlines_of
-from viewer.background.background_source import room_of_clip
+from tritrack.offline.film_passes import FilmFacts, bodies_of, follow_clip, silhouettes_of
+from viewer.background.background_source import background_of_film
 
 ALONE: Final = (1,)
 """The view that is followed."""
@@ -78,22 +76,22 @@ def followed(settings: Settings, repeats: int) -> Times:
 def _followed(settings: Settings, repeats: int, decoder: Decoder) -> Times:
     clip = open_clip(settings, decoder, ALONE)
     view, reel = clip.views[0], Reel(decoder)
-    scene = room_of_clip(view, settings.silhouette, reel)
-    period_s = clip.every / view.fps
+    background = background_of_film(view, settings.silhouette, reel)
+    followed = follow_clip(clip, settings, background, decoder)
+    film = FilmFacts(settings, view.number, clip.every / view.fps, None)
 
     def decoded() -> int:
         return sum(1 for _ in decoder.frames(view.source, view.size))
 
-    def outlined() -> int:
-        return len(outlines_of(clip, scene, settings.silhouette, reel))
+    def cut_out() -> int:
+        return len(silhouettes_of(clip, background, film, reel))
 
     def posed() -> int:
-        return len(poses_of(outlines, view.size, None, settings, period_s, Notes()).bodies)
+        return len(bodies_of(followed.reports, film))
 
-    outlines = outlines_of(clip, scene, settings.silhouette, reel)
     return Times(
-        len(outlines),
+        len(followed.reports),
         least_s(decoded, repeats),
-        least_s(outlined, repeats, time.process_time),
+        least_s(cut_out, repeats, time.process_time),
         least_s(posed, repeats, time.process_time),
     )

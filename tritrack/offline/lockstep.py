@@ -1,10 +1,9 @@
 """The same steps as live, in one process and in lock-step: deterministic, as fast as it goes."""
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import msgspec
@@ -14,21 +13,22 @@ from common import config
 from common.body.body import Bdp
 from common.bus.messages import Body, Guide, Report, ViewerNumber
 from common.config import Mode, Settings, SettingsError
-from common.notes.notes import Notes
+from common.method import METHODS, Method
 from common.video.clip_facts import Clip, both_cameras, shortfall
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied, Undecodable
 from common.video.frame_cache import Reel
-from integrator import diagnostics, merge, merge_state
+from integrator import diagnostics, merge, merge_state, opening_posture
 from integrator.pairing import Pair
+from tritrack.offline.film_passes import follow_clip
 from tritrack.offline.frame_pairs import instants, rooms
 from tritrack.offline.opening_clip import body_of
-from tritrack.single.one_camera import extras_of, follow_clip
 from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_files
 from tritrack.store.runs import write_run
 from tritrack.terminal import bar, complain, warn
 from viewer import track
+from viewer.background.background_source import FilmBackground, empty_room
 from viewer.capture import CapturedFrame
 
 
@@ -39,8 +39,6 @@ class Tracked(NamedTuple):
     bodies: list[Body]
     facts: dict[str, Any]
     """For the summary: seconds of each stage, scale_source, warnings."""
-    extras: Mapping[str, Any] = MappingProxyType({})
-    """Arrays that one view alone adds to `poses.npz`."""
 
 
 Watch = Callable[[dict[ViewerNumber, CapturedFrame], dict[int, Report], Body], object]
@@ -92,8 +90,16 @@ def track_clip(
     decoders: Decoders,
     views: tuple[ViewerNumber, ...] = (1, 2),
     watch: Watch | None = None,
+    method: Method | None = None,
 ) -> Tracked:
     """Track one clip from its videos to its bodies; `watch` is shown every instant.
+
+    Args:
+        settings: Of the run.
+        decoders: Read the videos.
+        views: The cameras to use.
+        watch: Is shown every instant of a clip whose scale is known before.
+        method: Instead of that of the settings' mode.
 
     Raises:
         ClipError: When the clip cannot be used.
@@ -101,20 +107,31 @@ def track_clip(
     """
     began = time.perf_counter()
     clip = open_clip(settings, decoders.of[1], views)
-    if len(clip.views) == 1 and settings.mode != "paper":
-        decoder = decoders.of[clip.views[0].number]
-        followed = follow_clip(clip, settings, decoder, Notes())
-        return Tracked(clip, followed.bodies, followed.facts, extras_of(followed.settled))
-    if settings.mode == "thesis":
+    method = method or METHODS[settings.mode]
+    alone = len(clip.views) == 1
+    if method.stick_lifting and not alone:
         raise ClipError(f"{clip.name}: the thesis's mode is for one camera: add --views 1")
-    ready = _prepared(clip, settings, decoders, began)
+    if alone and (method.stick_lifting or (method.proposals and clip.rig is None)):
+        return _in_two_passes(clip, settings, decoders)
+    ready = _prepared(clip, settings, method, decoders, began)
     done = _performed(ready, watch)
     return Tracked(clip, done.bodies, _facts(ready, done))
 
 
-def _prepared(clip: Clip, settings: Settings, decoders: Decoders, began: float) -> Prepared:
-    """Viewers that know their rooms and an integrator that knows the rig."""
-    rig = both_cameras(clip)
+def _in_two_passes(clip: Clip, settings: Settings, decoders: Decoders) -> Tracked:
+    """One camera whose scale all of the clip must tell, or that is followed as the thesis does."""
+    view = clip.views[0]
+    decoder = decoders.of[view.number]
+    learnt, odd = empty_room(view, settings.silhouette, Reel(decoder))
+    followed = follow_clip(clip, settings, FilmBackground(learnt, [], odd), decoder)
+    return Tracked(clip, followed.bodies, followed.facts)
+
+
+def _prepared(
+    clip: Clip, settings: Settings, method: Method, decoders: Decoders, began: float
+) -> Prepared:
+    """Viewers that know their backgrounds and an integrator that knows the rig."""
+    rig, alone = both_cameras(clip), len(clip.views) == 1
     known = body_of(settings, lambda own: track_clip(own, decoders).bodies)
     reels = {view.number: Reel(decoders.of[view.number]) for view in clip.views}
     viewers: dict[ViewerNumber, track.State] = {}
@@ -123,8 +140,10 @@ def _prepared(clip: Clip, settings: Settings, decoders: Decoders, began: float) 
     for view, (room, odd) in zip(clip.views, learnt, strict=True):
         odd_rooms += [odd] if odd else []
         camera = None if rig is None else rig.cameras[view.number - 1]
-        viewers[view.number] = track.init(view.number, room, camera, settings)
-    integrator = merge.init(rig, clip.every / clip.views[0].fps, settings, known)
+        viewers[view.number] = track.init(view.number, room, camera, settings, method, alone=alone)
+    period_s = clip.every / clip.views[0].fps
+    opening = opening_posture.init(known)
+    integrator = merge.init(rig, period_s, settings, method, alone=alone, opening=opening)
     return Prepared(clip, reels, viewers, integrator, odd_rooms, time.perf_counter() - began)
 
 
@@ -234,7 +253,7 @@ def track_all(
             for warning in tracked.facts["warnings"]:
                 warn(console, f"{name}: {warning}")
             done[name] = {**tracked.facts, "clip": name}
-            write_run(out / name, tracked.bodies, settings, done[name], tracked.extras)
+            write_run(out / name, tracked.bodies, settings, done[name])
     if len(done) < len(runs):
         raise ClipsFailed(f"{len(runs) - len(done)} of {len(runs)} clips could not be tracked")
     return {"clips": done}

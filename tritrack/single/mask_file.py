@@ -7,8 +7,8 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from common.raster.bounds import box_of, is_cut
-from tritrack.single.single_silhouettes import Outline, outline_of
+from common.bus.messages import Report
+from common.raster.silhouette_report import silhouette_report
 
 MAX_PIXELS: Final = 1 << 30
 """No sequence is larger: 50,000 frames at 160x120."""
@@ -26,9 +26,7 @@ class MaskSequence(NamedTuple):
     """Silhouettes of one clip."""
 
     name: str
-    size: tuple[int, int]
-    """Width and height."""
-    outlines: list[Outline]
+    reports: list[Report]
 
 
 def is_mask_file(path: Path) -> bool:
@@ -67,11 +65,8 @@ def read_masks(path: Path, rate_hz: float = RATE_HZ) -> MaskSequence:
         raise MaskFileError(
             f"cannot read the masks {file_name}: {reason}; name an .npz of packed masks"
         ) from error
-    outlines = [
-        outline_of(i, i / rate_hz, mask, is_cut(box_of(mask), mask.shape))
-        for i, mask in enumerate(masks)
-    ]
-    return MaskSequence(wanted or Path(file_name).stem, masks.shape[:0:-1], outlines)
+    reports = [silhouette_report(1, mask, i, i / rate_hz) for i, mask in enumerate(masks)]
+    return MaskSequence(wanted or Path(file_name).stem, reports)
 
 
 def _unpacked(arrays: Any, name: str, file_name: str) -> Any:

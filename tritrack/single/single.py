@@ -9,6 +9,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
+from rich.progress import Progress, TaskID
 
 from animator.bvh import NoMotion, bvh_text, steady
 from animator.film import filming
@@ -16,20 +17,23 @@ from animator.inbetween import at, between, key_frames
 from animator.overlay import overlay
 from animator.take import take_of
 from common.atomic_file import replacing
+from common.bus.message_codec import unpack
 from common.config import CameraSettings, Settings, SettingsError, load
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied, Undecodable
+from common.video.frame_cache import Reel
+from tritrack.offline.film_passes import Followed, Watch, follow_clip, follow_masks
 from tritrack.single.angle_plot import angle_plot
 from tritrack.single.ledger import facts_of, ledger
 from tritrack.single.mask_file import MaskFileError, MaskSequence, is_mask_file, read_masks
-from tritrack.single.one_camera import Followed, extras_of, follow_clip, follow_masks
 from tritrack.store.clip_paths import ClipsFailed
 from tritrack.store.runs import RunError, poses, write_run
 from tritrack.terminal import bar, complain, json_text, warn
 from viewer.background.background import Background
+from viewer.background.background_source import background_of_film
 
 FLAG: Final = (0, 0, 255)
 """Pixels that were never uncovered are hatched in this colour."""
@@ -69,14 +73,15 @@ def single_all(
     """
     done: dict[str, Any] = {}
     with Decoder() as decoder, bar(console) as progress:
-        for path in progress.track(videos, description="following"):
+        for path in videos:
             name = name_of(path)
             if name in done:
                 complain(console, f"{path} would be written to {out / name} too: rename it")
                 continue
             try:
                 job = job_of(path, notes, settings)
-                done[name] = follow(job, out / name, decoder, console)
+                task = progress.add_task(name, total=None)
+                done[name] = follow(job, out / name, decoder, console, _shown(progress, task))
             except (
                 *(SettingsError, ClipError, DecoderDied, Undecodable),
                 *(MaskFileError, NotesError),
@@ -127,7 +132,18 @@ def job_of(path: Path, notes: Path | None, settings: Settings) -> Job:
     return Job(path, settings, None, load_notes(file) if notes or file.exists() else Notes())
 
 
-def follow(job: Job, folder: Path, decoder: Decoder, console: Console) -> dict[str, Any]:
+def _shown(progress: Progress, task: TaskID) -> Watch:
+    """Moves a bar by frames: each is looked at, and later drawn."""
+
+    def watch(frames: int, of: int) -> None:
+        progress.update(task, completed=frames, total=of or None)
+
+    return watch
+
+
+def follow(
+    job: Job, folder: Path, decoder: Decoder, console: Console, watch: Watch
+) -> dict[str, Any]:
     """Follow one video and write its run folder; what the summary tells of it.
 
     Raises:
@@ -135,25 +151,27 @@ def follow(job: Job, folder: Path, decoder: Decoder, console: Console) -> dict[s
         RunError, FilmError: When the folder cannot be written.
     """
     if job.masks is not None:
-        found = follow_masks(job.masks.name, job.masks.outlines, job.masks.size, job.settings)
+        found = follow_masks(job.masks.name, job.masks.reports, job.settings)
     else:
         clip = open_clip(job.settings, decoder, (1,))
-        found = follow_clip(clip, job.settings, decoder, job.notes)
-    arrays = {**poses(found.bodies), **extras_of(found.settled)}
+        background = background_of_film(clip.views[0], job.settings.silhouette, Reel(decoder))
+        found = follow_clip(clip, job.settings, background, decoder, job.notes, watch)
+    arrays = poses(found.bodies)
     facts = {
         **found.facts,
         "frames_with_pose": sum(bool(body.joints_m) for body in found.bodies),
         "effort": facts_of(ledger(take_of(arrays), job.notes)),
         "notes": msgspec.to_builtins(job.notes),
     }
-    write_run(folder, found.bodies, job.settings, facts, extras_of(found.settled))
+    write_run(folder, found.bodies, job.settings, facts)
     _write_bytes(folder / "angles.png", angle_plot(arrays))
-    if found.room is not None:
-        _write_picture(folder / "background.png", marked(found.room))
+    if found.background is not None:
+        _write_picture(folder / "background.png", marked(found.background))
     odd = _animate(folder, arrays)
     with filming(folder / "overlay.avi", found.rate_hz) as film:
-        for picture in overlaid(found, decoder):
+        for n, picture in enumerate(overlaid(found, decoder), 1 + len(found.reports)):
             film.write(picture)
+            watch(n, 2 * len(found.reports))
     for warning in (*facts["warnings"], *odd):
         warn(console, f"{folder.name}: {warning}")
     return facts
@@ -168,15 +186,15 @@ def marked(room: Background) -> NDArray[np.uint8]:
 
 
 def overlaid(found: Followed, decoder: Decoder) -> Iterator[NDArray[np.uint8]]:
-    """Every frame with its outline and stick, the lifted body beside it."""
-    for outline, body, picture in zip(
-        found.outlines, found.bodies, _pictures(found, decoder), strict=False
+    """Every frame with its silhouette and stick, the lifted body beside it."""
+    for report, body, picture in zip(
+        found.reports, found.bodies, _pictures(found, decoder), strict=False
     ):
         posed = bool(body.joints_m)
         nothing = np.full((15, 3), np.nan)
         yield overlay(
             picture,
-            outline.mask(found.size[0]),
+            unpack(report),
             np.array(body.joints_px[0]) if posed else nothing[:, :2],
             found.to_camera(np.array(body.joints_m)) if posed else nothing,
             np.array(body.confidence) if posed else np.zeros(15),
@@ -188,7 +206,7 @@ def _pictures(found: Followed, decoder: Decoder) -> Iterator[NDArray[np.uint8]]:
     """The frames that were followed; of masks: nothing but paper."""
     if found.clip is None:
         paper = np.full((found.size[1], found.size[0], 3), 255, np.uint8)
-        for _ in found.outlines:
+        for _ in found.reports:
             yield paper
         return
     view = found.clip.views[0]

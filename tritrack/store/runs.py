@@ -1,19 +1,18 @@
 """Run folders: the poses, the summary and the postures of a run, as files."""
 
 import platform
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, Final
 
 import msgspec
 import numpy as np
 
 from common.atomic_file import replacing
-from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES
-from common.bus.messages import Body, Posture
+from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES, LIMBS
+from common.bus.messages import Body, Lifting, Posture
 from common.config import Settings
 from tritrack.terminal import json_text
 
@@ -29,7 +28,6 @@ def write_run(
     bodies: Sequence[Body],
     settings: Settings,
     facts: dict[str, Any],
-    extras: Mapping[str, Any] = MappingProxyType({}),
 ) -> None:
     """Write `poses.npz` and `summary.json`, each whole or not at all.
 
@@ -38,18 +36,15 @@ def write_run(
         bodies: In the order of time; an instant that camera 1 missed (frame -1) gets no row.
         settings: As resolved for the run.
         facts: What else the summary tells: seconds, scale_source, warnings ...
-        extras: More arrays for `poses.npz`, a row for each of `bodies`.
 
     Raises:
         RunError: When the folder or a file cannot be written: no space, no right.
     """
-    kept = np.array([body.frame >= 0 for body in bodies], np.bool_)
     bodies = [body for body in bodies if body.frame >= 0]
-    more = {name: rows[kept] for name, rows in extras.items()}
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with replacing(folder / "poses.npz") as path, path.open("wb") as file:
-            np.savez(file, allow_pickle=False, **poses(bodies), **more)
+            np.savez(file, allow_pickle=False, **poses(bodies))
         _write_json(folder / "summary.json", _summary(bodies, settings, facts))
     except OSError as error:
         raise _unwritable(folder, error) from error
@@ -111,6 +106,26 @@ def poses(bodies: Sequence[Body]) -> dict[str, Any]:
         "views": np.array([body.views for body in bodies], "U4"),
         "score": np.array([body.score for body in bodies], np.float64).reshape(n, 2),
         "facing": np.array([body.facing for body in bodies], "U6").reshape(n, 2),
+        **_liftings([body.lifting for body in bodies]),
+    }
+
+
+def _liftings(told: Sequence[Lifting | None]) -> dict[str, Any]:
+    """What one view alone decided by itself, where it did: the arrays that retouching needs."""
+    if not any(told):
+        return {}
+    nothing = Lifting("", 1.0, ())
+    each = [one or nothing for one in told]
+
+    def limbs(values: Iterable[tuple[float, ...]], otherwise: float) -> Any:
+        missing = (otherwise,) * len(LIMBS)
+        return np.array([value or missing for value in values], np.float64)
+
+    return {
+        "orientation": np.array([one.orientation for one in each], "U14"),
+        "orientation_confidence": np.array([one.orientation_confidence for one in each]),
+        "depth_confidence": limbs((one.depth_confidence for one in each), 1.0),
+        "depth_error_deg": limbs((one.depth_error_deg for one in each), np.nan),
     }
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from rich.console import Console
 
 from common.config import SilhouetteSettings
+from common.method import DEFAULT
 from common.raster.similarity import Mask
 from synth.motion.motions import EMPTY, POSTURES, Motion, performance
 from synth.person.people import Colour, Person, person
@@ -165,7 +166,7 @@ def _small(film: LabelledFilm, share: int) -> LabelledFilm:
 def _doubtful_pixels(film: LabelledFilm, rng: np.random.Generator) -> Iterator[Examples]:
     """What the viewer would look at again in some frames, and what is there."""
     settings = SilhouetteSettings()
-    state = silhouette.init(learn(film.frames[: settings.empty_frames]), settings)
+    state = silhouette.init(learn(film.frames[: settings.empty_frames]), settings, DEFAULT)
     for count, (frame, truth) in enumerate(zip(film.frames, film.masks, strict=True)):
         guessed = silhouette.guess(state, frame, None)
         if guessed is None or not truth.any():

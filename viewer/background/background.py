@@ -28,6 +28,12 @@ class Background(NamedTuple):
     """(H, W, 2) standard deviation of brightness and of colour, grey levels."""
     uncertain: NDArray[np.bool_]
     """(H, W) True where the background was never seen and is guessed."""
+    low: Floats
+    """(H, W, 3) least grey levels that were seen while nobody was there (W4)."""
+    high: Floats
+    """(H, W, 3) greatest ones likewise."""
+    step: Floats
+    """(H, W, 3) largest changes between two frames likewise."""
 
 
 def learn(frames: Sequence[Frame]) -> Background:
@@ -39,20 +45,38 @@ def learn(frames: Sequence[Frame]) -> Background:
     Raises:
         ValueError: When there is no frame.
     """
-    return learnt(overlaid_opening(frames))
+    return learnt(overlaid_opening(frames), frames)
 
 
-def learnt(empty: Overlaid) -> Background:
+def learnt(empty: Overlaid, frames: Sequence[Frame]) -> Background:
     """The background from pictures of it, laid over each other.
 
     The minimum, maximum and largest step that W4 keeps grow with the number of frames; their place
     is taken here by mean and standard deviation, after the flicker of the light is taken out, and
     the deviations are pooled over 5x5 pixels, since eight frames alone say little.
 
+    W4's own statistics are kept beside them, for silhouettes as printed.
+
+    Args:
+        empty: The pictures, laid over each other.
+        frames: The pictures themselves.
+
     Source: Huang & Chung 2004, section 1 (W4); requirement P3.
     """
     spread = spread_of(empty.squares, len(empty.moving))
-    return Background(empty.mean, spread, np.zeros(spread.shape[:2], np.bool_))
+    return Background(empty.mean, spread, np.zeros(spread.shape[:2], np.bool_), *_range(frames))
+
+
+def estimated(centre: Floats, spread: Floats, uncertain: NDArray[np.bool_]) -> Background:
+    """A background that no empty frame showed: its range is its estimate, give or take noise."""
+    return Background(centre, spread, uncertain, centre, centre, np.full_like(centre, SENSOR_NOISE))
+
+
+def _range(frames: Sequence[Frame]) -> tuple[Floats, Floats, Floats]:
+    """Least and greatest grey levels of every pixel, and its largest steps, (H, W, 3) each."""
+    stack = np.stack(frames).astype(np.float32)
+    steps = np.abs(np.diff(stack, axis=0))
+    return stack.min(axis=0), stack.max(axis=0), steps.max(axis=0, initial=SENSOR_NOISE)
 
 
 def overlaid_opening(frames: Sequence[Frame]) -> Overlaid:

@@ -15,12 +15,9 @@ from common.video.decoding import Decoder
 from common.video.frame_cache import Reader
 from viewer.background.background import Background, learn, learnt, overlaid_opening
 from viewer.background.empty_opening import is_empty_opening, is_still
-from viewer.background.image_stack import LUMA, Frame
+from viewer.background.image_stack import Frame
 from viewer.background.moved_objects import Patch, patches_of
 from viewer.background.occluded_background import learn_uncovered
-from viewer.background.stabilization import Anchor, anchored
-from viewer.background.stabilization import aligned as laid
-from viewer.background.stabilization import alignment_of as place_of
 
 SAMPLE = 40
 """How many frames at most, spread over a clip, tell whether its opening is empty."""
@@ -33,12 +30,10 @@ LEFT_HIDDEN = 0.01
 """Who stays on a spot hides 2 to 20 % of the picture all through a clip, who roams up to 0.4 %."""
 
 
-class Scene(NamedTuple):
-    """The empty room of a clip of one camera, all through it."""
+class FilmBackground(NamedTuple):
+    """The picture of one camera without people, all through a film."""
 
-    room: Background
-    anchor: Anchor | None
-    """What its frames are to be laid over, where the camera trembles."""
+    background: Background
     patches: list[Patch]
     """What is another from some frame on."""
     odd: str
@@ -65,7 +60,7 @@ def empty_room(view: View, settings: SilhouetteSettings, decoder: Reader) -> tup
     opening, coming = _looked_at(view, settings.empty_frames, decoder)
     laid_over, sample = overlaid_opening(opening), list[Frame]()
     if is_still(laid_over) and is_empty_opening(laid_over, _kept(coming, sample)):
-        return learnt(laid_over), ""
+        return learnt(laid_over, opening), ""
     return learn_uncovered([*sample, *coming]), (
         f"{view.source} does not open with an empty room: the background is estimated from the "
         f"clip (name an empty picture with camera_{view.number}.background)"
@@ -93,27 +88,27 @@ def room_of_run(
     return room, odd
 
 
-def room_of_clip(view: View, settings: SilhouetteSettings, decoder: Reader) -> Scene:
-    """The room of a clip, from all over it where that shows all but a little, and what changes.
+def background_of_film(view: View, settings: SilhouetteSettings, decoder: Reader) -> FilmBackground:
+    """The background of a film, from all over it where that shows enough, and what changes.
 
-    Light changes through a clip, and with it more than a gain can follow; an empty opening knows
-    nothing of that. It is kept where somebody stays on the spot. The frames of a camera that
-    trembles are laid over each other first, and are to be laid over the anchor later. Things that
-    come to rest or leave are patches on it, also on a room that was given.
+    Light changes through a film, and with it more than a gain can follow; an empty opening knows
+    nothing of that. It is kept where somebody stays on the spot. Things that come to rest or leave
+    are patches on it, also on a background that was given.
+
+    Args:
+        view: Of the film; likewise `settings`, `decoder`: as for `empty_room`.
+        settings: How many opening frames show the empty room.
+        decoder: Reads the file; left at its start.
     """
-    room, odd = empty_room(view, settings, decoder)
+    background, odd = empty_room(view, settings, decoder)
     if isinstance(view.source, int):
-        return Scene(room, None, [], odd)
+        return FilmBackground(background, [], odd)
     sample = list(_looked_at(view, settings.empty_frames, decoder)[1])
-    anchor = None if view.background else anchored(sample)
-    if anchor is not None:
-        places = [place_of(anchor, np.asarray(frame @ LUMA, np.float32)) for frame in sample]
-        sample = list(map(laid, sample, places))
-        room = learn_uncovered(sample)
-    elif not (odd or view.background):
+    if not (odd or view.background):
         busy = learn_uncovered(sample)
-        room = busy if busy.uncertain.mean() < LEFT_HIDDEN else room
-    return Scene(room, anchor, patches_of(room, sample, _stride(view), view.fps), odd)
+        background = busy if busy.uncertain.mean() < LEFT_HIDDEN else background
+    patches = patches_of(background, sample, _stride(view), view.fps)
+    return FilmBackground(background, patches, odd)
 
 
 def _now(view: View, due: int, decoder: Reader) -> list[Frame]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from common.raster.similarity import Mask
 from viewer.background.background import (
     Background,
+    estimated,
     even_light,
     large_regions,
     slopes,
@@ -93,7 +94,7 @@ def learn_uncovered(frames: Sequence[Frame]) -> Background:
     if held.any() and not held.all():
         spread[held] = np.median(spread[~held], axis=0)
     spread[uncertain] = np.maximum(spread[uncertain], GUESSED)
-    return Background(background, spread, uncertain)
+    return estimated(background, spread, uncertain)
 
 
 def _filled(even: Floats, centre: Floats, held: Mask) -> tuple[Floats, Mask]:

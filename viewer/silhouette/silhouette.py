@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from common.bus.messages import Box
 from common.config import SilhouetteSettings
+from common.method import DEFAULT, Method
 from common.raster.bounds import box_of, is_cut
 from common.raster.similarity import Mask
 from viewer.background.background import Background, learn, light_gain
@@ -19,6 +20,7 @@ from viewer.silhouette.colour_model import counted, familiar, fresh
 from viewer.silhouette.difference import followed, label, seeds
 from viewer.silhouette.pixel_classifier import log_odds as judged
 from viewer.silhouette.pixel_classifier import redraw, shipped
+from viewer.silhouette.printed_silhouette import printed
 from viewer.silhouette.regions import chosen
 
 CELLS: Final = 60
@@ -48,6 +50,9 @@ class State(NamedTuple):
     """What one frame hands to the next."""
 
     settings: SilhouetteSettings
+    method: Method
+    background: Background
+    """As it was learnt."""
     room: Floats
     """(H, W, 3) grey levels of the empty room in the slow light of the day."""
     weight: Floats
@@ -75,9 +80,10 @@ class Guess(NamedTuple):
     """(n, CLUES) what is known of them."""
 
 
-def init(background: Background, settings: SilhouetteSettings) -> State:
+def init(background: Background, settings: SilhouetteSettings, method: Method) -> State:
     """Begin with the room as it was learnt."""
-    return State(settings, background.centre, np.float32(1) / background.spread**2, fresh(), 0)
+    weight = np.float32(1) / background.spread**2
+    return State(settings, method, background, background.centre, weight, fresh(), 0)
 
 
 def step(state: State, frame: Frame, near_px: tuple[float, float] | None) -> tuple[State, Seen]:
@@ -95,19 +101,24 @@ def step(state: State, frame: Frame, near_px: tuple[float, float] | None) -> tup
     """
     if frame.shape != state.room.shape:
         raise ValueError(f"a frame of {frame.shape}, the background has {state.room.shape}")
+    least_share, method = state.settings.min_height_share, state.method
+    if not method.pixel_evidence:
+        gain, least_rows = _gain(state, frame), least_share * frame.shape[0]
+        found = printed(state.background, frame, gain, least_rows, near_px)
+        return state, _seen(found.mask, found.blobs, least_share)
     first = guess(state, frame, near_px)
-    mask = _outlined(first)
-    seen = _seen(mask, first.blobs, state.settings.min_height_share)
-    if seen.box is not None:
+    mask = _outlined(first) if method.alpha_matte else first.mask
+    seen = _seen(mask, first.blobs, least_share)
+    if seen.box is not None and method.body_colours:
         state = learn_colours(state, mask, frame, first)
-    return _follow(state, frame, first.gain, seen.box), seen
+    return _follow(state, frame, first.gain, seen.box) if method.slow_light else state, seen
 
 
 def warm() -> None:
     """Compile every kernel (seconds, once on a host), so that no frame has to wait for it."""
     empty = np.full((120, 160, 3), 128, np.uint8)
     person = cv2.rectangle(empty.copy(), (60, 30), (100, 90), (0, 0, 0), cv2.FILLED)
-    state = init(learn([empty]), SilhouetteSettings())
+    state = init(learn([empty]), SilhouetteSettings(), DEFAULT)
     for _ in range(FOLLOW_EVERY):
         state, _ = step(state, person, None)
 
@@ -115,7 +126,7 @@ def warm() -> None:
 def guess(state: State, frame: Frame, near_px: tuple[float, float] | None) -> Guess:
     """Find the person by subtraction and known colours, and what tells the outline better."""
     room, weight, known = state.room, state.weight, familiar(state.colours)
-    gain = light_gain(frame, room)
+    gain = _gain(state, frame)
     cell = max(1, round(frame.shape[0] / CELLS))
     found = seeds(frame, room, weight, gain, cell)
     near = None if near_px is None else (near_px[0] / cell, near_px[1] / cell)
@@ -134,6 +145,13 @@ def patched(state: State, patch: Patch) -> State:
     background[patch.where] = patch.centre
     weight[patch.where] = np.float32(1) / patch.spread**2
     return state._replace(room=background, weight=weight)
+
+
+def _gain(state: State, frame: Frame) -> Floats:
+    """(3,) how much brighter than the background the frame is."""
+    if not state.method.steady_light:
+        return np.ones(3, np.float32)
+    return light_gain(frame, state.room)
 
 
 def learn_colours(state: State, mask: Bytes, frame: Frame, first: Guess) -> State:

@@ -1,9 +1,9 @@
-"""How tall a person would stand in every frame of a clip: the scale of a single view (T20)."""
+"""How tall a person would stand at every place of a film: the scale of a single view (T20)."""
 
-from typing import Final
+from collections.abc import Sequence
+from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.raster.similarity import Mask
@@ -18,6 +18,24 @@ MOST_SAMPLES: Final = 300
 """So many heights tell the slope."""
 
 
+class Standing(NamedTuple):
+    """The height of somebody upright, by the row on which they stand."""
+
+    sole_row: float
+    """Row below the feet, in most frames."""
+    tall_px: float
+    """Height there."""
+    level_px: float
+    """Height where the row is 0; what a row more adds is `slope`."""
+    slope: float
+    least_px: float
+    """No frame is lower: what squats is no measure."""
+
+    def at(self, sole_row: float) -> float:
+        """Height in pixels of somebody whose feet are on a row."""
+        return max(self.level_px + self.slope * sole_row, self.least_px)
+
+
 def standing_rows(mask: Mask) -> tuple[float, float]:
     """Row of the crown over the middle of a silhouette, and row below its feet, pixels."""
     rows, columns = np.nonzero(mask)
@@ -27,32 +45,35 @@ def standing_rows(mask: Mask) -> tuple[float, float]:
     return float(rows[middle].min()), float(bottom)
 
 
-def statures_px(crowns: Vector, soles: Vector, whole: NDArray[np.bool_]) -> Vector:
-    """Height of the person standing upright, at the place of each frame, (n,) pixels.
+def standing_of(rows: Sequence[tuple[float, float]], whole: Sequence[bool]) -> Standing | None:
+    """Height of the person standing upright, by all silhouettes of a film; None without any.
 
-    One height of the clip holds for all frames, not each frame's own: a squat would shrink it.
+    One height of the film holds for all frames, not each frame's own: a squat would shrink it.
     Where the feet come nearer along the floor it grows with their row.
 
     Args:
-        crowns: (n,) rows of `standing_rows`; NaN where nobody is seen.
-        soles: (n,) likewise.
-        whole: (n,) True where the silhouette is not cut by the picture's border.
+        rows: (n,) `standing_rows` of each silhouette.
+        whole: (n,) True where it is not cut by the picture's border.
     """
-    heights = soles - crowns
-    seen = np.isfinite(heights)
-    told = seen & (whole if (seen & whole).any() else seen)
-    if not told.any():
-        return np.full(len(heights), np.nan)
+    if not rows:
+        return None
+    both, uncut = np.array(rows, np.float64), np.array(whole, np.bool_)
+    told = both[uncut] if uncut.any() else both
+    soles, heights = told[:, 1], told[:, 1] - told[:, 0]
     slope = 0.0
-    low, high = np.quantile(soles[told], (0.05, 0.95))
-    if high - low > NEARER * np.median(heights[told]):
-        from scipy.stats import theilslopes  # takes as long to import as all else does
+    low, high = np.quantile(soles, (0.05, 0.95))
+    if high - low > NEARER * np.median(heights):
+        slope = _slope(soles, heights)
+    level = float(np.quantile(heights - slope * soles, UPRIGHT))
+    sole = float(np.median(both[:, 1]))
+    least = float(np.quantile(heights, 0.1))
+    return Standing(sole, max(level + slope * sole, least), level, slope, least)
 
-        some = np.flatnonzero(told)[:: max(1, told.sum() // MOST_SAMPLES)]
-        with np.errstate(invalid="ignore"):  # in its error bar, which nobody reads
-            slope = float(theilslopes(heights[some], soles[some])[0])
-    flat = heights[told] - slope * soles[told]
-    level = float(np.quantile(flat, UPRIGHT))
-    least = float(np.quantile(heights[told], 0.1))
-    found: Vector = np.maximum(level + slope * soles, least)
-    return found
+
+def _slope(soles: Vector, heights: Vector) -> float:
+    """How much taller a row nearer makes who stands (Theil and Sen: a median of slopes)."""
+    from scipy.stats import theilslopes
+
+    some = slice(None, None, max(1, len(soles) // MOST_SAMPLES))
+    with np.errstate(invalid="ignore"):  # in its error bar, which nobody reads
+        return float(theilslopes(heights[some], soles[some])[0])

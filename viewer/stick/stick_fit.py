@@ -1,24 +1,35 @@
 """The stick body of one silhouette: joints, foreshortening and what is hidden (T10-T18)."""
 
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import Vector
-from common.body.stick_body import ADULT, BREADTH, GIRTH, RATIO, STATURE, THESIS, joints_px
+from common.body.body import JOINT_NAMES, OTHER_SIDE, Vector
+from common.body.kinematics import joints
+from common.body.stick_body import (
+    ADULT,
+    BREADTH,
+    GIRTH,
+    RATIO,
+    STATURE,
+    THESIS,
+    joints_px,
+    pose_of,
+)
 from common.bus.messages import Fit
+from common.method import Method
 from common.raster.bits import pack_words
+from common.raster.kernel import CENTRE_X, CENTRE_Y, FOCAL_X
 from common.raster.similarity import Mask
 from common.raster.stick_raster import ALL_SEGMENTS, match_stick
 from viewer.stick.normalization import STATURE_PX, normalised
 from viewer.stick.thesis_fit import fit_printed
 from viewer.stick.tracked_fit import followed
 
-Mode = Literal["default", "thesis"]
-
-MEN = {"default": ADULT, "thesis": THESIS}
-"""The proportions that each mode fits."""
+_RIGHT, _LEFT = (
+    [JOINT_NAMES.index(f"{side}_{name}") for name in ("shoulder", "hip")] for side in "rl"
+)
 
 
 class Stick(NamedTuple):
@@ -55,31 +66,27 @@ class NoBody(ValueError):
     """A silhouette to which no body can be fitted."""
 
 
-def fit(
-    mask: Mask,
-    before: Vector | None,
-    mode: Mode = "default",
-    stature_px: float = float(STATURE_PX),
-) -> Stick:
+def fit(mask: Mask, before: Vector | None, stature_px: float, method: Method) -> Stick:
     """The stick body of a silhouette.
 
-    `thesis` looks at every frame by itself, as printed; `default` follows the body.
+    The thesis's own way looks at every frame by itself, as printed; ours follows the body.
 
     Args:
         mask: (H, W), of any size: it is normalised here (T9).
-        before: The stick pose of the frame before, in its pixels; None at the start.
-        mode: How to fit.
+        before: The stick pose that is expected, in its pixels; None at the start.
         stature_px: Height of the body standing upright, in pixels of the mask (T20).
+        method: How to fit.
 
     Raises:
         NoBody: When the mask is empty, or nothing of its stature, or that is no height.
     """
     if not mask.any() or not stature_px > 0.0:
         raise NoBody(f"no body to fit: {mask.sum()} pixels, a stature of {stature_px}")
-    normal, man = normalised(mask, stature_px), MEN[mode]
+    normal = normalised(mask, stature_px)
+    man = THESIS if method.stick_lifting else ADULT
     if not normal.mask.any():
         raise NoBody(f"no body to fit: {mask.sum()} pixels are nothing of {stature_px}")
-    if mode == "thesis":
+    if method.stick_lifting:
         pose, hidden, evaluations = fit_printed(normal.mask, float(STATURE_PX))
     else:
         expected = None if before is None else normal.inward(before)
@@ -88,6 +95,22 @@ def fit(
     value = match_stick(man.lengths, man.parts, man.depth, pose, ALL_SEGMENTS, width, seen)
     pose = normal.outward(pose)
     return Stick(pose, joints_px(man, pose), hidden, float(value), evaluations)
+
+
+def expected(body: Vector, pose: Vector, view: Vector, stature_px: float) -> Vector:
+    """The stick pose, (POSE_SIZE,), that a posed body is seen as, r on the left (T10).
+
+    Args:
+        body: Body vector.
+        pose: (25,)
+        view: Scaled orthography, as `view_at` gives it.
+        stature_px: Height of the body standing upright, in that picture.
+    """
+    across = joints(body, pose) - pose[:3]
+    scale_px, root_px = view[FOCAL_X], view[[CENTRE_X, CENTRE_Y]]
+    seen_px = root_px + scale_px * across @ view[:9].reshape(3, 3)[:2].T
+    mirrored = seen_px[_RIGHT, 0].mean() > seen_px[_LEFT, 0].mean()
+    return pose_of(ADULT, seen_px[OTHER_SIDE] if mirrored else seen_px, stature_px)
 
 
 def told(stick: Stick) -> Fit:

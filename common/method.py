@@ -1,0 +1,95 @@
+"""What a run does beyond the print: every departure by name, and the values that have names."""
+
+from typing import Final, Literal
+
+import msgspec
+
+Mode = Literal["default", "paper", "thesis"]
+
+
+class Method(msgspec.Struct, frozen=True, kw_only=True):
+    """How pictures become a body: False is as the paper prints it, True a departure.
+
+    Steps read its fields; nobody asks for the name of a mode. The ablation switches each field
+    by itself, so what is not listed here is no departure.
+    """
+
+    steady_light: bool
+    """Silhouettes are cut out under the light of each frame: exposure and flicker do not count."""
+    pixel_evidence: bool
+    """Pixels are told by the noise of each, forgiven soft shadows, and their neighbours; otherwise
+    by a threshold around what the empty background showed, opened and closed (P3)."""
+    body_colours: bool
+    """What colours body and background have is learnt while one looks."""
+    alpha_matte: bool
+    """A small network draws the contour again, by how much of each pixel the body covers."""
+    slow_light: bool
+    """The background takes on the slow changes of the light."""
+
+    clutter_removal: bool
+    """What both views do not show as one piece of space is no part of the person, where the network
+    is surer of what is left."""
+
+    scaled_arbiter: bool
+    """The arbiter holds widths of both views against each other at one scale (P48)."""
+    held_facing: bool
+    """One view that is left alone does not change the facing of a body that both have measured."""
+    shared_start: bool
+    """Viewers start where both views have the body, not where each had it itself."""
+    squat_votes: bool
+    """Both silhouettes vote on squats with a bowed trunk."""
+    place_votes: bool
+    """They vote on where the body is."""
+    arm_votes: bool
+    """They vote on which arm it is that swings, and regain an arm that was lost (L2, L3)."""
+    turn_votes: bool
+    """They vote joint by joint on a body that was not measured in the opening posture."""
+
+    proposals: bool
+    """A network with memory proposes the joints from the silhouettes; nothing is searched for."""
+    free_joints: bool
+    """Joints may lie beside the cylinders' ends: shoulders rise, and people differ."""
+    refinement: bool
+    """A proposed pose that is unsure and fits badly is matched to both silhouettes."""
+    shape_fit: bool
+    """The body's widths and arms are fitted to silhouettes as the person moves."""
+    reflection: bool
+    """One view alone remembers front and back: a proposal that jumps between them is reflected."""
+    joint_limits: bool
+    """One view's limbs are held within the limits of their joints in space (P30, P35)."""
+    smoothing: bool
+    """Published angles are smoothed by a Kalman filter."""
+
+    stick_lifting: bool
+    """The thesis's own way for one view: a stick body is fitted and lifted (T10 to T22)."""
+
+
+def _all(departs: bool) -> Method:
+    return Method(**dict.fromkeys(Method.__struct_fields__, departs))
+
+
+PAPER: Final = _all(False)
+"""Huang & Chung 2004, as printed, with the readings that make it run (M1 to M25)."""
+DEFAULT: Final = msgspec.structs.replace(_all(True), stick_lifting=False)
+"""The best that is known today."""
+THESIS: Final = msgspec.structs.replace(
+    PAPER,
+    steady_light=True,
+    pixel_evidence=True,
+    body_colours=True,
+    alpha_matte=True,
+    slow_light=True,
+    smoothing=True,
+    stick_lifting=True,
+)
+"""Demir 2006, as printed from the silhouette on: its own threshold has no value (T8)."""
+
+METHODS: Final[dict[Mode, Method]] = {"default": DEFAULT, "paper": PAPER, "thesis": THESIS}
+"""By the names that settings and commands use."""
+
+
+def departures(method: Method, printed: Method = PAPER) -> tuple[str, ...]:
+    """The fields in which a method differs from the print, in the order of their declaration."""
+    return tuple(
+        name for name in Method.__struct_fields__ if getattr(method, name) != getattr(printed, name)
+    )

@@ -1,0 +1,96 @@
+"""The pose that both silhouettes propose, cleared of clutter and refined where it fits badly."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Bdp, Vector, rest_pose
+from common.body.kinematics import joints
+from common.body.proportions import body_vector
+from common.method import Method
+from common.rig.camera import Rig
+from integrator.fit import pose_refinement, visual_hull
+from integrator.pairing import Pair, Seen
+from integrator.proposal import pose_proposal
+from integrator.proposal.pose_proposal import Insight, Memory
+
+
+class Before(NamedTuple):
+    """What is remembered of the instant before."""
+
+    memory: Memory | None = None
+    pose: Vector | None = None
+    """(25,); None at the first."""
+    matched: bool = False
+    """That pose was matched to the silhouettes."""
+
+
+class Instant(NamedTuple):
+    """What both views show, and what it is held against."""
+
+    bdp: Bdp
+    rig: Rig
+    """Two cameras without distortion."""
+    seen: Seen
+    """Both are there."""
+    dt_s: float
+    method: Method
+
+
+class ProposedPose(NamedTuple):
+    """A pose of two views."""
+
+    pose: Vector
+    """(25,)"""
+    joints_m: NDArray[np.float64]
+    """(15, 3) world."""
+    confidence: Vector
+    """(15,) how probably each joint is less than 50 mm off."""
+    memory: Memory
+    matched: bool
+    seen: Seen
+    """The reports that it is of: without clutter, where that was left out."""
+
+
+def step(before: Before, now: Instant) -> ProposedPose:
+    """One instant of both views.
+
+    A pose of which the network is not sure and that fits badly is looked for in the silhouettes
+    without clutter, where the network is surer of those; then it is matched to them.
+    """
+    known = _proposed(before, now)
+    body, was = body_vector(now.bdp), rest_pose() if before.pose is None else before.pose
+    if now.method.clutter_removal and not pose_refinement.is_confident(known.sure):
+        now, known = _without_clutter(before, now, known)
+    pose, beside_m = pose_proposal.pose_and_rest(body, was, known.joints_m)
+    better, confidence = None, known.sure
+    if now.method.refinement:
+        previous = pose_refinement.Previous(before.pose, before.matched)
+        better = pose_refinement.refined(pose, confidence, previous, body, now.rig, now.seen)
+    if better is not None:
+        pose, beside_m[pose_proposal.ARMS] = better, 0.0
+        confidence = pose_proposal.probability(confidence, pose_proposal.SURENESS_OF_MATCHED)
+    joints_m = joints(body, pose)
+    if now.method.free_joints:
+        joints_m += beside_m @ pose_proposal.trunk_axes(body, pose).T
+    matched = better is not None
+    return ProposedPose(pose, joints_m, confidence, known.memory, matched, now.seen)
+
+
+def _proposed(before: Before, now: Instant) -> Insight:
+    return pose_proposal.step(before.memory, now.bdp, now.rig, now.seen, now.dt_s)
+
+
+def _without_clutter(before: Before, now: Instant, known: Insight) -> tuple[Instant, Insight]:
+    """The instant without what both views do not show as one piece, if that is surer."""
+    body, was = body_vector(now.bdp), rest_pose() if before.pose is None else before.pose
+    pose, _ = pose_proposal.pose_and_rest(body, was, known.joints_m)
+    if pose_refinement.poorest(pose, body, now.rig, now.seen) >= pose_refinement.POOR:
+        return now, known
+    cleaned = visual_hull.cleaned(now.rig, Pair(*now.seen))
+    if not cleaned.clutter:
+        return now, known
+    clean = now._replace(seen=cleaned.pair.detections)
+    again = _proposed(before, clean)
+    return (clean, again) if again.sure.mean() > known.sure.mean() else (now, known)

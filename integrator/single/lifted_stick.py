@@ -1,0 +1,86 @@
+"""The stick body of one view lifted into the world: depths, signs, orientation (thesis 3.1.5)."""
+
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import JOINT_NAMES, LIMB_ENDS, OTHER_SIDE, Vector
+from common.bus.messages import Fit, Lifting
+from common.rig.camera import centre
+from integrator.single import depth_signs
+from integrator.single.lifting import Lifted, lift
+from integrator.single.sight import Hypothesis, Sight, posed
+from integrator.single.stick_similarity import stick_similarity
+
+UNSEEN: Final = 0.25
+"""Share of its confidence that the end of a hidden segment keeps."""
+TILTED_DEG: Final = 15.0
+"""A segment that leans less hardly moves with its sign."""
+
+
+def step(memory: depth_signs.Memory, sight: Sight) -> tuple[depth_signs.Memory, Hypothesis]:
+    """The stick body of a report in the world, its signs and orientation chosen or told.
+
+    Args:
+        memory: Of the frame before.
+        sight: Its report has a fit.
+    """
+    fit, told = sight.report.fit, sight.annotations
+    assert fit is not None
+    lengths_m = sight.man.lengths * sight.stature_m
+    px_per_m = fit.stature_px / sight.stature_m
+    picture = (np.array(fit.joints_px), fit.breadth, lengths_m, px_per_m)
+    choice = depth_signs.choose(memory, *picture, told.depth, told.orientation)
+    lifted = lift(*picture, choice.signs, choice.orientation)
+    pixels = _own_sides(picture[0], choice)
+    for name, place in told.joints_px.items():
+        pixels[JOINT_NAMES.index(name)] = place
+    pose, joints_m = posed(sight, in_world(sight, pixels, lifted, px_per_m))
+    score = fit.score if sight.method.stick_lifting else stick_similarity(sight, joints_m)
+    lifting = Lifting(
+        choice.orientation,
+        choice.orientation_confidence,
+        tuple(choice.confidence.tolist()),
+        tuple(lifted.error_deg.tolist()),
+    )
+    confidence = _confidence(fit, lifted, choice)
+    memory = depth_signs.remembered(memory, lifted.joints_m, choice)
+    return memory, Hypothesis(joints_m, pose, score, confidence, lifting)
+
+
+def in_world(
+    sight: Sight, pixels: NDArray[np.float64], lifted: Lifted, px_per_m: float
+) -> NDArray[np.float64]:
+    """The joints in the world, (15, 3) metres, at the depth at which the person is so tall.
+
+    The thesis prints scaled orthography (T19): every joint's ray is met at one depth.
+    """
+    camera = sight.camera
+    K = np.array(camera.K)
+    depth_m = K[1, 1] / px_per_m
+    plane = (pixels - K[:2, 2]) / np.array([K[0, 0], K[1, 1]])
+    if any(camera.distortion):
+        plane = cv2.undistortPoints(pixels[:, None], K, np.array(camera.distortion))[:, 0]
+    own_m = depth_m - lifted.joints_m[:, 2]
+    ray_m = np.full(len(pixels), depth_m) if sight.method.stick_lifting else own_m
+    seen = np.concatenate([plane * ray_m[:, None], own_m[:, None]], axis=1)
+    world: NDArray[np.float64] = centre(camera) + seen @ np.array(camera.R)
+    return world
+
+
+def _own_sides(joints_px: NDArray[np.float64], choice: depth_signs.Choice) -> NDArray[np.float64]:
+    """The stick's joints under the person's own sides."""
+    return joints_px[OTHER_SIDE] if choice.orientation.startswith("backward") else joints_px.copy()
+
+
+def _confidence(fit: Fit, lifted: Lifted, choice: depth_signs.Choice) -> Vector:
+    """Of each joint: of the fit, of what is hidden, and of the sign where it matters."""
+    found = np.full(len(JOINT_NAMES), fit.score)
+    for limb, (near, far) in enumerate(LIMB_ENDS):
+        own = UNSEEN if fit.hidden[limb] else 1.0
+        if abs(lifted.tilt_deg[limb]) > TILTED_DEG:
+            own *= float(choice.confidence[limb])
+        found[far] = (found[near] if limb > 1 else found[far]) * own
+    return found

@@ -1,0 +1,90 @@
+"""What one view alone shows of a body at an instant, and the body that it may be."""
+
+import math
+from collections.abc import Mapping
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import JOINT_NAMES, Bdp, Vector, rest_pose
+from common.body.proportions import body_vector, stature
+from common.body.stick_body import Stickman
+from common.bus.messages import Lifting, Report, ViewerNumber
+from common.method import Method
+from common.notes.notes import Orientation
+from common.rig.camera import Camera, Rig
+from integrator.pose import joint_limits
+from integrator.pose.inverse_kinematics import PLACES, pose_of
+
+TWELVE: Final = [JOINT_NAMES.index(name) for name in PLACES]
+
+
+class Annotations(NamedTuple):
+    """What the user says of a frame (T21, T22)."""
+
+    orientation: Orientation | None = None
+    depth: Mapping[str, str] = {}
+    """LIMBS name to toward or away."""
+    joints_px: Mapping[str, tuple[float, float]] = {}
+    """JOINT_NAMES name to its place in the working picture, sides the person's own."""
+
+
+class Sight(NamedTuple):
+    """One report, and what it is held against."""
+
+    method: Method
+    number: ViewerNumber
+    rig: Rig
+    """Of the run, at the working size: its other camera tells the network its axes."""
+    report: Report
+    """As without distortion, but its stick body, which is as the picture has it."""
+    man: Stickman
+    """Proportions of the stick body."""
+    bdp: Bdp
+    before: Vector | None
+    """(25,) pose of the frame before; None at the first."""
+    dt_s: float
+    annotations: Annotations
+
+    @property
+    def camera(self) -> Camera:
+        """That took the picture."""
+        return self.rig.cameras[self.number - 1]
+
+    @property
+    def stature_m(self) -> float:
+        """Of the person."""
+        return stature(self.bdp)
+
+
+class Hypothesis(NamedTuple):
+    """A body that one silhouette may show."""
+
+    joints_m: NDArray[np.float64]
+    """(15, 3) world."""
+    pose: Vector
+    """(25,)"""
+    score: float
+    """S of its parts in the picture."""
+    confidence: Vector
+    """(15,)"""
+    lifting: Lifting
+
+
+def posed(sight: Sight, joints_m: NDArray[np.float64]) -> tuple[Vector, NDArray[np.float64]]:
+    """The pose of joints (15, 3), and the joints, within limits unless the user placed them.
+
+    The print has limits in the picture's plane alone.
+    """
+    before = rest_pose() if sight.before is None else sight.before
+    body = body_vector(sight.bdp)
+    pose: Vector = pose_of(joints_m[TWELVE], body, before)
+    if not sight.method.joint_limits or sight.annotations.joints_px:
+        return pose, joints_m
+    return joint_limits.within(body, pose, before, joints_m)
+
+
+def share(value: float) -> float:
+    """A confidence as messages carry it: a number in [0, 1]."""
+    return min(1.0, max(0.0, float(value))) if math.isfinite(value) else 0.0

@@ -1,0 +1,86 @@
+"""S of a body whose joints are drawn as the stick body is, clothed as thickly as fits best (P9)."""
+
+import math
+from typing import Any, Final, NamedTuple
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import JOINT_NAMES, LIMB_ENDS, Vector
+from common.body.stick_body import BREADTH, GIRTH, POSE_SIZE, STATURE
+from common.raster.bits import Bits, count, count_both
+from common.raster.kernel import NEAREST_M, score, seen_at, view_of
+from common.raster.stick_raster import ALL_SEGMENTS, draw_segments
+from common.rig.camera import Camera, arrays_of
+from integrator.fit.silhouette_pair import packed
+from integrator.rig.undistortion import undistorted_camera
+from integrator.single.sight import Sight
+
+PELVIS: Final = JOINT_NAMES.index("pelvis")
+GIRTHS: Final = (1.0, 1.15, 1.3, 1.5)
+"""How thick clothed limbs may be over those of the proportions."""
+
+_ENDS: Final = np.concatenate(
+    [LIMB_ENDS]
+    + [[[JOINT_NAMES.index(f"{side}_{name}") for side in "rl"]] for name in ("shoulder", "hip")]
+)
+"""(12, 2): joints at the ends of LIMBS, of the line of the shoulders and of that of the hips."""
+
+
+class Task(NamedTuple):
+    """What is matched with what; its members are also what the compiled function reads."""
+
+    camera: Vector
+    """(VIEW,)"""
+    parts: Vector
+    depth: float
+    """The Stickman's."""
+    broad_px: float
+    """The line of the shoulders of somebody who faces the camera."""
+    seen: Bits
+    seen_px: int
+    width: int
+    """The silhouette, its pixels, and the width of the picture."""
+
+
+def stick_similarity(sight: Sight, joints_m: NDArray[np.float64]) -> float:
+    """S of the joints and the silhouette of a sight.
+
+    Args:
+        sight: Of one view.
+        joints_m: (15, 3) world; they need not be where a pose's cylinders have them.
+    """
+    camera, man, report = undistorted_camera(sight.camera), sight.man, sight.report
+    tall_px = _tall_px(camera, sight.stature_m, joints_m)
+    seen, broad_px = packed(report), 2 * man.lengths[10] * tall_px
+    task = Task(view_of(camera), man.parts, man.depth, broad_px, seen, count(seen), report.width)
+    stick = np.ones(POSE_SIZE)
+    stick[STATURE] = tall_px
+    best = 0.0
+    for girth in GIRTHS:
+        stick[GIRTH] = girth
+        best = max(best, float(_similar(task, stick, joints_m)))
+    return best
+
+
+def _tall_px(camera: Camera, stature_m: float, joints_m: NDArray[np.float64]) -> float:
+    """How tall the body would stand in the picture where its pelvis is."""
+    deep_m = float(arrays_of(camera).R[2] @ joints_m[PELVIS] + camera.t[2])
+    return camera.K[1][1] * stature_m / max(deep_m, NEAREST_M)
+
+
+@numba.njit(cache=True)
+def _similar(task: Any, stick: Any, joints_m: Any) -> float:
+    """S of the body with these joints; `stick` gets the breadth that it shows."""
+    ends = np.empty((12, 4))
+    for row in range(12):
+        for end in range(2):
+            joint = _ENDS[row, end]
+            x, y, z = joints_m[joint]
+            ends[row, 2 * end], ends[row, 2 * end + 1], _ = seen_at(task.camera, x, y, z)
+    across_px = math.hypot(ends[10, 2] - ends[10, 0], ends[10, 3] - ends[10, 1])
+    stick[BREADTH] = min(1.0, across_px / task.broad_px)
+    bits = np.zeros_like(task.seen)
+    draw_segments(ends, stick, task.parts, task.depth, ALL_SEGMENTS, task.width, bits)
+    return score(count_both(bits, task.seen), count(bits), task.seen_px)
