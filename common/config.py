@@ -3,11 +3,10 @@
 import math
 import os
 from pathlib import Path
-from typing import Literal
 
 import msgspec
 
-Mode = Literal["default", "paper", "thesis"]
+from common.method import Mode
 
 
 class SettingsError(ValueError):
@@ -152,14 +151,6 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         size_of(self.size)
         _within("every", self.every, 1, 1000)
         _within("fps", self.fps, 0.0, 1000.0)
-
-
-def proposes(settings: Settings, calibrated: bool) -> bool:
-    """Whether the silhouettes alone tell the pose; otherwise angles are searched for in each view.
-
-    The network that reads them was taught in rooms that are known.
-    """
-    return settings.mode == "default" and calibrated
 
 
 def load(path: Path) -> Settings:

@@ -8,7 +8,8 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from common.config import Mode, Settings
+from common.config import Settings
+from common.method import DEFAULT, PAPER, Method, Mode, departures
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.runs import poses
 
@@ -24,9 +25,10 @@ def ablation() -> ModuleType:
     return module
 
 
-def arrays(clip: Path, mode: Mode) -> dict[str, np.ndarray]:
+def arrays(clip: Path, mode: Mode, method: Method | None = None) -> dict[str, np.ndarray]:
     with Decoders() as decoders:
-        return poses(track_clip(Settings(clip=str(clip), mode=mode), decoders).bodies)
+        settings = Settings(clip=str(clip), mode=mode)
+        return poses(track_clip(settings, decoders, method=method).bodies)
 
 
 def same(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> bool:
@@ -36,25 +38,18 @@ def same(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> bool:
 def test_default_mode_with_every_departure_off_is_paper_mode(
     ablation: ModuleType, clip: Path
 ) -> None:
-    """To the byte: no departure is missing from the table, and none changes what is printed."""
-    with ablation.without(ablation.POSES):
-        off = arrays(clip, "default")
+    """To the byte: no departure is missing from the record, and none hides behind a mode's name."""
+    printed = ablation.with_fields(DEFAULT, departures(DEFAULT), PAPER)
+    off = arrays(clip, "default", printed)
     assert same(off, arrays(clip, "paper"))
     assert not same(off, arrays(clip, "default"))
 
 
-def test_what_was_off_is_on_again(ablation: ModuleType) -> None:
-    before = [getattr(*each[:2]) for step in ablation.STEPS for each in step.instead]
-    with ablation.without(ablation.STEPS):
-        during = [getattr(*each[:2]) for step in ablation.STEPS for each in step.instead]
-    after = [getattr(*each[:2]) for step in ablation.STEPS for each in step.instead]
-    assert all(one is other for one, other in zip(before, after, strict=True))
-    assert not any(one is other for one, other in zip(before, during, strict=True))
-
-
-def test_a_row_adds_to_the_one_above_and_each_is_left_out_once(ablation: ModuleType) -> None:
-    rows, n = ablation.rows(), len(ablation.STEPS)
-    assert [len(row.off) for row in rows] == [*range(n, -1, -1), *[1] * n]
-    for above, row in pairwise(rows[: n + 1]):
-        assert above.off[1:] == row.off
-    assert [row.off[0] for row in rows[n + 1 :]] == list(ablation.STEPS)
+def test_every_departure_is_a_row_added_and_a_row_left_out(ablation: ModuleType) -> None:
+    names, rows = departures(DEFAULT), ablation.rows()
+    added, left = rows[: len(names) + 1], rows[len(names) + 1 : -1]
+    assert set(names) == set(Method.__struct_fields__) - {"stick_lifting"}
+    assert (added[0].method, added[-1].method) == (PAPER, DEFAULT)
+    for name, (above, row) in zip(names, pairwise(added), strict=True):
+        assert departures(row.method, above.method) == (name,)
+    assert [departures(row.method, DEFAULT) for row in left] == [(name,) for name in names]

@@ -7,7 +7,8 @@ import pytest
 
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Body, Report
-from common.config import Mode, Settings
+from common.config import Settings
+from common.method import Mode
 from common.notes.notes import Note, Notes
 from common.raster.silhouette_report import silhouette_report
 from tritrack.offline.film_passes import FilmFacts, bodies_of

@@ -26,8 +26,8 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Guide
-from common.config import Mode, Settings
-from common.method import DEFAULT
+from common.config import Settings
+from common.method import DEFAULT, Mode
 from common.rig.camera import project
 from integrator import merge
 from integrator.pairing import Pair

@@ -3,12 +3,12 @@
 import math
 from typing import Any, Final, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, LIMB_ENDS, Vector
 from common.body.stick_body import BREADTH, GIRTH, POSE_SIZE, STATURE
+from common.compiled import compiled
 from common.raster.bits import Bits, count, count_both
 from common.raster.kernel import NEAREST_M, score, seen_at, view_of
 from common.raster.stick_raster import ALL_SEGMENTS, draw_segments
@@ -70,7 +70,7 @@ def _tall_px(camera: Camera, stature_m: float, joints_m: NDArray[np.float64]) ->
     return camera.K[1][1] * stature_m / max(deep_m, NEAREST_M)
 
 
-@numba.njit(cache=True)
+@compiled
 def _similar(task: Any, stick: Any, joints_m: Any) -> float:
     """S of the body with these joints; `stick` gets the breadth that it shows."""
     ends = np.empty((12, 4))

@@ -11,7 +11,8 @@ from rich.console import Console
 
 from common import config
 from common.body.body import Bdp
-from common.config import Mode, Settings
+from common.config import Settings
+from common.method import Mode
 from common.npz_file import Arrays, DamagedFile, read_arrays
 from tritrack.accuracy import accuracy_plots, accuracy_report, worst_frames
 from tritrack.accuracy.accuracy import Compared, Mismatch, compare, per_joint, summary

@@ -18,8 +18,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from common.config import Mode, PageSettings, SearchSettings, Settings
-from common.method import DEFAULT, METHODS
+from common.config import PageSettings, SearchSettings, Settings
+from common.method import DEFAULT, METHODS, Mode
 from common.video.clips import open_clip
 from integrator import integrator_warmup
 from synth.write import ClipSet, write_set

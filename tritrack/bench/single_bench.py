@@ -6,7 +6,8 @@ from typing import Final, NamedTuple
 
 import cv2
 
-from common.config import Mode, Settings
+from common.config import Settings
+from common.method import Mode
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reel

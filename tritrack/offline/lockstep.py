@@ -12,8 +12,8 @@ from rich.console import Console
 from common import config
 from common.body.body import Bdp
 from common.bus.messages import Body, Guide, Report, ViewerNumber
-from common.config import Mode, Settings, SettingsError
-from common.method import METHODS, Method
+from common.config import Settings, SettingsError
+from common.method import METHODS, Method, Mode
 from common.video.clip_facts import Clip, both_cameras, shortfall
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip

@@ -10,7 +10,7 @@ from animator.page.inset import Image, draw_contours, inset, limb_contours, limb
 from animator.scene import figure
 from common import config
 from common.bus.messages import Body, Picture, Report, ViewerNumber
-from common.config import Mode
+from common.method import Mode
 from common.rig.camera import Rig
 from common.video.clip_facts import both_cameras
 from recognizer.__main__ import MOVING

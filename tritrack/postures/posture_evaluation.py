@@ -7,7 +7,7 @@ from typing import Any, Final, NamedTuple
 
 from rich.console import Console
 
-from common.config import Mode
+from common.method import Mode
 from recognizer.evaluation import Outcome, Recording, named_by, refuse_who_was_learnt_from
 from recognizer.postures import LEAST_FIT, PostureModel, Recognizer
 from tritrack.postures.posture_page import page_of

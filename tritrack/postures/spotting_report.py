@@ -9,7 +9,8 @@ import numpy as np
 from rich.console import Console
 
 from common import config
-from common.config import Mode, RecognizerSettings
+from common.config import RecognizerSettings
+from common.method import Mode
 from common.video.clips import meta_of
 from recognizer.__main__ import MOVING, SHIPPED
 from recognizer.evaluation import wilson

@@ -9,7 +9,8 @@ import numpy as np
 from rich.console import Console
 
 from common import config
-from common.config import Mode, RecognizerSettings, Settings
+from common.config import RecognizerSettings, Settings
+from common.method import Mode
 from common.video.clip_sources import ClipError
 from common.video.clips import meta_of
 from common.video.decoding import DecoderDied, Undecodable

@@ -7,7 +7,7 @@ from typing import Any, Final, NamedTuple
 
 from rich.console import Console
 
-from common.config import Mode
+from common.method import Mode
 from recognizer.__main__ import SHIPPED, SHIPPED_PAPER
 from recognizer.model_file import load, save
 from recognizer.postures import PostureModel, Recognizer
