@@ -128,8 +128,8 @@ def main() -> None:
     bare = [clip for clip in given.clips if not (clip / "truth.npz").is_file()]
     if bare:
         parser.error(f"{bare[0]} has no truth.npz")
-    views: tuple[ViewerNumber, ...] = {"12": (1, 2), "1": (1,), "2": (2,)}[given.views]
-    work = partial(numbered, clips=given.clips, size=given.size, views=views)
+    chosen: dict[str, tuple[ViewerNumber, ...]] = {"12": (1, 2), "1": (1,), "2": (2,)}
+    work = partial(numbered, clips=given.clips, size=given.size, views=chosen[given.views])
     table = rows()
     with ProcessPoolExecutor(given.processes, get_context("spawn")) as pool:
         for number, results in enumerate(pool.map(work, range(len(table)))):
