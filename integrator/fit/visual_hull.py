@@ -118,18 +118,23 @@ def _largest(full: Any) -> Any:
 
     And of what one view sees next to it, an arm that reaches out of the other's picture.
     """
-    common = np.argwhere(full == 2)
+    from scipy import ndimage  # takes as long to import as half of all else
+
+    common = _cells(full == 2)
     if not len(common):
         return common
     low = np.maximum(common.min(axis=0) - REACH_CELLS, 0)
-    from scipy import ndimage  # takes as long to import as half of all else
-
     high = common.max(axis=0) + 1 + REACH_CELLS
     near = full[tuple(map(slice, low, high))]
     labels, _ = ndimage.label(near == 2)
     tall = [rows.stop - rows.start for _, rows, _ in ndimage.find_objects(labels)]
     piece = labels == 1 + np.argmax(np.bincount(labels.ravel())[1:] * tall)
-    return low + np.argwhere(ndimage.binary_dilation(piece, iterations=REACH_CELLS, mask=near == 1))
+    return low + _cells(ndimage.binary_dilation(piece, iterations=REACH_CELLS, mask=near == 1))
+
+
+def _cells(where: Any) -> Any:
+    """The cells, (n, 3), where something holds; np.argwhere takes ten times as long."""
+    return np.stack(np.unravel_index(np.flatnonzero(where), where.shape), axis=1)
 
 
 def _shown(places_m: NDArray[np.float64], camera: Camera, mask: Mask) -> Mask:
