@@ -117,6 +117,5 @@ def _started(state: State, angles_deg: Vector) -> State:
 @lru_cache(maxsize=16)
 def _noise(dt_s: float, settings: Smoothing) -> Vector:
     """(2, 2) what an unknown acceleration, the same all through a step, adds to the covariance."""
-    position, speed = 0.5 * dt_s**2, dt_s
-    moved = [[position**2, position * speed], [position * speed, speed**2]]
+    moved = [[0.25 * dt_s**4, 0.5 * dt_s**3], [0.5 * dt_s**3, dt_s**2]]
     return np.array(moved) * settings.acceleration_deg_s2**2
