@@ -15,7 +15,7 @@ import pytest
 import zenoh
 from rich.console import Console
 
-from common.bus.messages import Body
+from common.bus.messages import Body, ViewerNumber
 from common.config import BusSettings, PageSettings, Settings, SettingsError
 from tritrack.live.launch import Heard, nothing_heard, run
 from tritrack.live.process_table import Part
@@ -82,6 +82,25 @@ def test_a_live_run_equals_an_offline_one(slow_clip: Path, lived: Lived) -> None
     with Decoders() as decoders:
         offline = poses(track_clip(Settings(clip=str(slow_clip)), decoders).bodies)
     with np.load(out / "poses.npz") as found:
+        for name, values in offline.items():
+            np.testing.assert_array_equal(found[name], values, err_msg=name)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("view", [1, 2])
+def test_a_live_run_with_one_viewer_equals_tracking_one_view(
+    slow_clip: Path, tmp_path: Path, view: ViewerNumber
+) -> None:
+    """One camera is the same system: the viewer fits, the integrator lifts, bit for bit."""
+    folder = tmp_path / "alone"
+    shutil.copytree(slow_clip, folder)
+    (folder / f"cam{3 - view}.avi").unlink()
+    facts = live(settings_of(folder), tmp_path / "out", QUIET)
+    assert facts["processes"][f"viewer {view}"]["guide_misses"] == 0
+    with Decoders() as decoders:
+        offline = poses(track_clip(Settings(clip=str(slow_clip)), decoders, (view,)).bodies)
+    assert "orientation" in offline
+    with np.load(tmp_path / "out" / "poses.npz") as found:
         for name, values in offline.items():
             np.testing.assert_array_equal(found[name], values, err_msg=name)
 

@@ -7,7 +7,7 @@ import pytest
 from staging import Stage, between, exact, opening, silhouettes, standing
 
 from common.body.body import JOINT_NAMES, Vector
-from common.bus.messages import Body
+from common.bus.messages import Body, ViewerNumber
 from common.config import Settings
 
 
@@ -39,6 +39,16 @@ def met(*poses: Vector) -> Stage:
 
 def joint(body: Body, name: str) -> Vector:
     return np.array(body.joints_m[JOINT_NAMES.index(name)])
+
+
+@pytest.mark.parametrize("view", [1, 2])
+def test_a_view_that_was_always_alone_is_a_run_of_one_viewer(view: ViewerNumber) -> None:
+    """Whether the other viewer is not there, or never says a word: the same bodies, bit for bit."""
+    poses = [opening(), *between(opening(), standing(r_hip_x=30.0), 8)]
+    one, two = Stage(settings=Settings(), views=(view,)), Stage(settings=Settings())
+    for alone, silent in zip(lone(one, poses, view), lone(two, poses, view), strict=True):
+        assert alone == silent
+        assert alone.lifting is not None
 
 
 def test_a_leg_that_points_to_the_camera_keeps_doing_so() -> None:
