@@ -1,4 +1,4 @@
-"""The outline's clues, held against pixels mixed by hand."""
+"""Features around the contour, held against pixels mixed by hand."""
 
 from typing import Any
 
@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from viewer.background.background import BackgroundModel
 from viewer.background.image_stack import Frame
 from viewer.silhouette.alpha_matte import NOISE, SHARES
 from viewer.silhouette.boundary_features import CROSS, FEATURES, features_of
@@ -13,9 +14,9 @@ from viewer.silhouette.colour_model import SHADES
 
 BODY, ROOM = (40.0, 60.0, 160.0), (150.0, 150.0, 150.0)
 OWN = SHARES * [tuple(each) for each in CROSS.tolist()].index((0, 0))
-"""Which clue is a pixel's own coverage."""
+"""Which feature is a pixel's own alpha."""
 FACTS = SHARES * len(CROSS) + 2
-"""The first clue after the shares of body around."""
+"""The first feature after the shares of body around."""
 ROWS, COLUMNS, EDGE = 120, 160, 80
 
 
@@ -28,16 +29,25 @@ def mixed(share: float, shade: float) -> Frame:
     return np.rint(picture).astype(np.uint8)
 
 
-def clues(share: float, shade: float, doubted: tuple[slice, slice] | None = None) -> NDArray[Any]:
-    """(H, W, CLUES); NaN where nothing is looked at."""
+def wall() -> BackgroundModel:
+    """Of one grey, known to 2 grey levels, in its own light; no colour is anybody's."""
+    return BackgroundModel(
+        np.full((ROWS, COLUMNS, 3), ROOM, np.float32),
+        np.full((ROWS, COLUMNS, 2), 0.25, np.float32),
+        np.ones(3, np.float32),
+        np.zeros(SHADES, np.float32),
+    )
+
+
+def features(
+    share: float, shade: float, doubted: tuple[slice, slice] | None = None
+) -> NDArray[Any]:
+    """(H, W, FEATURES); NaN where nothing is looked at."""
     mask, doubt = np.zeros((2, ROWS, COLUMNS), np.uint8)
     mask[20:100, 40:EDGE] = 1
     if doubted is not None:
         doubt[doubted] = 1
-    room = np.full((ROWS, COLUMNS, 3), ROOM, np.float32)
-    weight = np.full((ROWS, COLUMNS, 2), 0.25, np.float32)
-    known, gain = np.zeros(SHADES, np.float32), np.ones(3, np.float32)
-    places, found = features_of(mixed(share, shade), room, weight, gain, known, mask, doubt)
+    places, found = features_of(mixed(share, shade), wall(), mask, doubt)
     out = np.full((ROWS, COLUMNS, FEATURES), np.nan, np.float32)
     out[places[:, 0], places[:, 1]] = found
     return out
@@ -47,7 +57,7 @@ def clues(share: float, shade: float, doubted: tuple[slice, slice] | None = None
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.7, 1.0])
 def test_coverage_is_the_share_that_was_mixed(share: float, shade: float) -> None:
     """P3: also where the room lies in the body's shadow."""
-    found = clues(share, shade)[60, EDGE, OWN]
+    found = features(share, shade)[60, EDGE, OWN]
     off = np.array(BODY) - np.array(ROOM) * shade
     luma = np.array([0.114, 0.587, 0.299]) @ off
     square = luma**2 + 0.16 * ((off - luma) ** 2).sum()
@@ -55,7 +65,7 @@ def test_coverage_is_the_share_that_was_mixed(share: float, shade: float) -> Non
 
 
 def test_the_shade_of_the_room_beside_the_body_is_told() -> None:
-    assert clues(0.5, 0.8)[60, EDGE, FACTS + 3] == pytest.approx(0.8, abs=0.01)
+    assert features(0.5, 0.8)[60, EDGE, FACTS + 3] == pytest.approx(0.8, abs=0.01)
 
 
 def test_distance_brightness_and_colour_are_in_spreads() -> None:
@@ -63,13 +73,13 @@ def test_distance_brightness_and_colour_are_in_spreads() -> None:
     off = np.array(BODY) - np.array(ROOM)
     luma = np.array([0.114, 0.587, 0.299]) @ off
     spreads = [luma / 2, np.sqrt(((off - luma) ** 2).sum()) / 2]
-    told = clues(0.5, 1.0)[60, EDGE - 1, FACTS + 5 : FACTS + 7]
+    told = features(0.5, 1.0)[60, EDGE - 1, FACTS + 5 : FACTS + 7]
     assert told == pytest.approx(np.clip(spreads, -20, 20) / 8, abs=1e-3)
 
 
 def test_only_the_outline_and_what_is_in_doubt_is_looked_at() -> None:
     doubted = slice(50, 54), slice(60, 62)
-    looked = ~np.isnan(clues(0.5, 1.0, doubted)[..., OWN])
+    looked = ~np.isnan(features(0.5, 1.0, doubted)[..., OWN])
     assert looked[60, EDGE - 1 : EDGE + 1].all()
     assert looked[doubted].all()
     assert not looked[60, 45 : EDGE - 2].any()
@@ -77,8 +87,6 @@ def test_only_the_outline_and_what_is_in_doubt_is_looked_at() -> None:
 
 
 def test_of_nobody_nothing_is_looked_at() -> None:
-    nobody, room = np.zeros((ROWS, COLUMNS), np.uint8), np.full((ROWS, COLUMNS, 3), 150, np.float32)
-    weight, known = np.ones((ROWS, COLUMNS, 2), np.float32), np.zeros(SHADES, np.float32)
-    frame, gain = mixed(0.5, 1.0), np.ones(3, np.float32)
-    places, found = features_of(frame, room, weight, gain, known, nobody, nobody)
+    nobody = np.zeros((ROWS, COLUMNS), np.uint8)
+    places, found = features_of(mixed(0.5, 1.0), wall(), nobody, nobody)
     assert (places.shape, found.shape) == ((0, 2), (0, FEATURES))

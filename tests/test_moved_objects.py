@@ -21,13 +21,13 @@ def with_chair(picture: np.ndarray) -> np.ndarray:
     return picture
 
 
-def after(room: Background, patches: list[Patch], frame: int) -> np.ndarray:
-    """The room that frame is held against."""
-    state = silhouette.init(room, SilhouetteSettings(), DEFAULT)
+def after(background: Background, patches: list[Patch], frame: int) -> np.ndarray:
+    """The background that frame is held against."""
+    state = silhouette.init(background, SilhouetteSettings(), DEFAULT)
     for patch in patches:
         if patch.frame <= frame:
             state = patched(state, patch)
-    return state.room
+    return state.model.centre
 
 
 def test_a_chair_that_is_brought_is_room_from_then_on() -> None:

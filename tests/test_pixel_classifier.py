@@ -24,16 +24,16 @@ def network(seed: int) -> PixelClassifier:
 
 
 def test_a_network_is_two_sums_with_a_bend_between() -> None:
-    """P3: one unit that adds the first two clues and takes off 1, and an answer of its double."""
+    """P3: a unit that adds the first two features and takes off 1, and an answer of its double."""
     enter, enter_bias, leave, leave_bias = (np.zeros(shape, np.float32) for shape in SHAPES)
     enter[:2, 0], enter_bias[0], leave[0], leave_bias[0] = 1, -1, 2, -3
-    clues = np.zeros((3, FEATURES), np.float32)
-    clues[:, :2] = (0.25, 0.25), (2, 1), (5, -1)
+    features = np.zeros((3, FEATURES), np.float32)
+    features[:, :2] = (0.25, 0.25), (2, 1), (5, -1)
     own = PixelClassifier(enter, enter_bias, leave, leave_bias)
-    assert log_odds(own, clues).tolist() == [-3, 1, 3]
+    assert log_odds(own, features).tolist() == [-3, 1, 3]
 
 
-def test_the_clues_of_nobody_say_nothing() -> None:
+def test_the_features_of_nobody_say_nothing() -> None:
     assert log_odds(shipped(), np.empty((0, FEATURES), np.float32)).shape == (0,)
 
 

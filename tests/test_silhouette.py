@@ -15,8 +15,8 @@ from viewer.background.background import learn, light_gain
 from viewer.background.image_stack import Frame
 from viewer.background.occluded_background import learn_uncovered
 from viewer.silhouette.alpha_matte import matte, sides_of
-from viewer.silhouette.colour_model import counted, familiar
-from viewer.silhouette.difference import followed, label, seeds
+from viewer.silhouette.colour_model import body_colours_of, counted
+from viewer.silhouette.difference import adapted, label, seeds
 from viewer.silhouette.pixel_classifier import redraw
 from viewer.silhouette.regions import same_body
 from viewer.silhouette.silhouette import Seen, State, init, step
@@ -166,17 +166,17 @@ def test_step_leaves_the_state_that_it_was_given() -> None:
     """The same frame on the same state gives the same answer, however often it is asked."""
     state = begin()._replace(frames=7)
     frame = shot(dressed(room(), body()), 2.0, 57)
-    room_before, colours_before = state.room.copy(), state.colours.copy()
+    centre_before, colours_before = state.model.centre.copy(), state.colours.copy()
     first, again = step(state, frame, None), step(state, frame, None)
-    assert np.array_equal(state.room, room_before)
+    assert np.array_equal(state.model.centre, centre_before)
     assert np.array_equal(state.colours, colours_before)
     assert np.array_equal(first[1].mask, again[1].mask)
-    assert np.array_equal(first[0].room, again[0].room)
+    assert np.array_equal(first[0].model.centre, again[0].model.centre)
 
 
 def test_after_the_rehearsal_no_frame_waits_for_the_compiler() -> None:
     kernels = [light_gain, seeds, same_body, label, sides_of, matte, redraw]
-    kernels += [familiar, counted, followed]
+    kernels += [body_colours_of, counted, adapted]
     warm_up(
         track.init(1, learn([shot(room(), 2.0, 9)]), None, Settings(), DEFAULT), (WIDTH, HEIGHT)
     )

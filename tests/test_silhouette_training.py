@@ -19,13 +19,13 @@ from viewer.silhouette.boundary_features import FEATURES
 from viewer.silhouette.pixel_classifier import load, log_odds, save, shipped
 
 
-def test_a_network_learns_a_clue_that_tells() -> None:
-    """The third clue says it; clues that never change do no harm."""
+def test_a_network_learns_a_feature_that_tells() -> None:
+    """The third feature says it; features that never change do no harm."""
     rng = np.random.default_rng(3)
-    clues = np.zeros((4000, FEATURES), np.float32)
-    clues[:, :6] = rng.normal(5, 3, (4000, 6))
-    taught = Examples(clues, clues[:, 2] > 5)
-    told = log_odds(fitted(taught, 0), clues) > 0
+    features = np.zeros((4000, FEATURES), np.float32)
+    features[:, :6] = rng.normal(5, 3, (4000, 6))
+    taught = Examples(features, features[:, 2] > 5)
+    told = log_odds(fitted(taught, 0), features) > 0
     assert np.mean(told == taught.body) > 0.95
 
 

@@ -26,7 +26,7 @@ def warm_up(state: track.State, size: tuple[int, int]) -> None:
     pose = rest_pose()
     pose[POSE_INDEX["r_shoulder_z"]], pose[POSE_INDEX["l_shoulder_z"]] = 90.0, 270.0
     person = draw_body(body_vector(thesis_bdp(1.0)), pose, view, size)
-    background = np.clip(state.silhouette.room, 0, 255).astype(np.uint8)
+    background = np.clip(state.silhouette.model.centre, 0, 255).astype(np.uint8)
     picture = np.where(person[:, :, None], 255 - background, background).astype(np.uint8)
     guide = Guide(
         frame=0,

@@ -168,12 +168,13 @@ def _doubtful_pixels(film: LabelledFilm, rng: np.random.Generator) -> Iterator[E
     settings = SilhouetteSettings()
     state = silhouette.init(learn(film.frames[: settings.empty_frames]), settings, DEFAULT)
     for count, (frame, truth) in enumerate(zip(film.frames, film.masks, strict=True)):
-        guessed = silhouette.guess(state, frame, None)
-        if guessed is None or not truth.any():
+        if not truth.any():
             continue
+        state = silhouette.in_light_of(state, frame)
+        guessed = silhouette.guess(state, frame, None)
         if count % EVERY == 0:
             rows = rng.permutation(len(guessed.places))[:PIXELS]
-            yield Examples(guessed.clues[rows], truth[tuple(guessed.places[rows].T)])
+            yield Examples(guessed.features[rows], truth[tuple(guessed.places[rows].T)])
         state = silhouette.learn_colours(state, guessed.mask, frame, guessed)
 
 

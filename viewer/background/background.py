@@ -36,6 +36,19 @@ class Background(NamedTuple):
     """(H, W, 3) largest changes between two frames likewise."""
 
 
+class BackgroundModel(NamedTuple):
+    """What every pixel of a frame is held against; compiled passes take it as it is."""
+
+    centre: Floats
+    """(H, W, 3) grey levels of the background in the slow light of the day."""
+    weight: Floats
+    """(H, W, 2) 1 / spread^2 of brightness and of colour."""
+    gain: Floats
+    """(3,) how much brighter than that the frame is."""
+    body_colours: Floats
+    """(SHADES,) from -1, only the background has this colour, to 1, only the body has it."""
+
+
 def learn(frames: Sequence[Frame]) -> Background:
     """The background from pictures of it.
 

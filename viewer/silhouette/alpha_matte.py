@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import INLINE, KERNEL
+from viewer.background.background import BackgroundModel
 from viewer.background.image_stack import Bytes, Floats, Frame
 from viewer.silhouette.difference import (
     BLUE,
@@ -50,15 +51,16 @@ SPREADS, FAR = np.float32(8.0), np.float32(20.0)
 
 
 @KERNEL
-def sides_of(
-    frame: Frame, background: Floats, gain: Floats, inside: Bytes, top: int, left: int
-) -> Bytes:
+def sides_of(frame: Frame, model: BackgroundModel, inside: Bytes, corner: tuple[int, int]) -> Bytes:
     """(h, w, SIDES): colour and a one inside the body, light seen and due inside the background.
 
-    `inside` counts the mask in every pixel's 3x3 neighbourhood, from (top, left) of the frame on.
+    `inside` counts the mask in every pixel's 3x3 neighbourhood, from a row and column of the frame
+    on.
     """
+    background, light = model.centre, light_of(model.gain)
     height, width = inside.shape
-    out, light = np.zeros((height, width, SIDES), np.uint8), light_of(gain)
+    top, left = corner
+    out = np.zeros((height, width, SIDES), np.uint8)
     for y in range(height):
         given, empty, side, row = frame[y + top], background[y + top], inside[y], out[y]
         for x in range(width):
@@ -81,10 +83,7 @@ def sides_of(
 @KERNEL
 def matte(
     frame: Frame,
-    background: Floats,
-    weight: Floats,
-    gain: Floats,
-    known: Floats,
+    model: BackgroundModel,
     sides: Floats,
     reach: Bytes,
     corner: tuple[int, int],
@@ -93,10 +92,7 @@ def matte(
 
     Args:
         frame: (H, W, 3).
-        background: (H, W, 3) what it shows when empty, grey levels.
-        weight: (H, W, 2) 1 / spread^2 of brightness and colour.
-        gain: (3,) how much brighter than the background the frame is.
-        known: (SHADES,) whose colours are whose.
+        model: What it is held against.
         sides: (h, w, SIDES) means of `sides_of` over a neighbourhood.
         reach: (h, w) 1 where to look, 2 in the band, of whose pixels more is said.
         corner: Row and column of the frame where the window of sides and reach begins.
@@ -105,12 +101,13 @@ def matte(
         (h, w, SHARES); row and column (n, 2) in the window of the pixels of the band; facts of them
         (n, FACTS).
     """
+    background, weight, light = model.centre, model.weight, light_of(model.gain)
     height, width = reach.shape
     top, left = corner
     shares = np.empty((height, width, SHARES), np.float32)
     count = np.count_nonzero(reach == 2)
     places, facts = np.empty((count, 2), np.int32), np.empty((count, FACTS), np.float32)
-    n, light = 0, light_of(gain)
+    n, body_colours = 0, model.body_colours
     for y in range(height):
         given, empty, weights = frame[y + top], background[y + top], weight[y + top]
         for x in range(width):
@@ -128,7 +125,7 @@ def matte(
                 facts[n, 4] = _spreads(np.sqrt(unshaded(given, empty, weights, light, u)))
                 facts[n, 5] = _spreads(brightness(given, empty, weights, light, u))
                 facts[n, 6] = _spreads(np.sqrt(colour(given, empty, weights, light, u)))
-                facts[n, 7] = known[shade_of(given, light, u)]
+                facts[n, 7] = body_colours[shade_of(given, light, u)]
                 places[n, 0], places[n, 1] = y, x
                 n += 1
     return shares, places, facts

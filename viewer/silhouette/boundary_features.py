@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import KERNEL
+from viewer.background.background import BackgroundModel
 from viewer.background.image_stack import Bytes, Floats, Frame
 from viewer.silhouette.alpha_matte import FACTS, SHARES, matte, sides_of
 
@@ -28,22 +29,13 @@ FEATURES: Final = SHARES * len(CROSS) + len(COUNTED) + FACTS
 
 
 def features_of(
-    frame: Frame,
-    background: Floats,
-    weight: Floats,
-    gain: Floats,
-    known: Floats,
-    mask: Bytes,
-    doubt: Bytes,
+    frame: Frame, model: BackgroundModel, mask: Bytes, doubt: Bytes
 ) -> tuple[NDArray[np.int32], Floats]:
     """The pixels to look at again, and what is known of them.
 
     Args:
         frame: (H, W, 3).
-        background: (H, W, 3) what it shows when empty, grey levels.
-        weight: (H, W, 2) 1 / spread^2 of brightness and colour.
-        gain: (3,) how much brighter than the background the frame is.
-        known: (SHADES,) whose colours are whose.
+        model: What it is held against.
         mask: (H, W) 1 where the body is guessed.
         doubt: (H, W) 1 where the guess was not sure.
 
@@ -59,10 +51,10 @@ def features_of(
     own = mask[window].copy()
     band = cv2.morphologyEx(own, cv2.MORPH_GRADIENT, _square(near)) | doubt[window]
     reach = cv2.dilate(band, _square(2 * stride)) + band
-    sides = sides_of(frame, background, gain, counts_3x3(own), top, left)
+    sides = sides_of(frame, model, counts_3x3(own), (top, left))
     size = (2 * round(SIDE_SHARE * rows) + 1,) * 2
     means = cv2.boxFilter(sides, cv2.CV_32F, size, borderType=cv2.BORDER_REPLICATE)
-    shares, places, facts = matte(frame, background, weight, gain, known, means, reach, (top, left))
+    shares, places, facts = matte(frame, model, means, reach, (top, left))
     own *= np.uint8(255)
     counts = [_mean(own, 2 * far * stride + 1) for far in COUNTED]
     features = _gathered(places, shares, facts, *counts, stride, (top, left))

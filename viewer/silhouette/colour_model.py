@@ -5,6 +5,7 @@ from typing import Final
 import numpy as np
 
 from common.compiled import KERNEL
+from viewer.background.background import BackgroundModel
 from viewer.background.image_stack import Bytes, Floats, Frame
 from viewer.silhouette.difference import light_of, shade_of, unshaded
 
@@ -24,25 +25,19 @@ def fresh() -> Floats:
 
 
 @KERNEL
-def familiar(counts: Floats) -> Floats:
+def body_colours_of(counts: Floats) -> Floats:
     """(SHADES,) from -1, only the background has this colour, to 1, only the body has it."""
     return (counts[1] - counts[0]) / (counts[0] + counts[1] + FEW)
 
 
 @KERNEL
 def counted(
-    counts: Floats,
-    inside: Bytes,
-    frame: Frame,
-    background: Floats,
-    weight: Floats,
-    gain: Floats,
-    cells: Bytes,
-    cell: int,
+    counts: Floats, inside: Bytes, frame: Frame, model: BackgroundModel, cells: Bytes, cell: int
 ) -> Floats:
     """The counts after one more frame; `inside` counts the mask in 3x3 neighbourhoods."""
+    background, weight, light = model.centre, model.weight, light_of(model.gain)
     height, width = inside.shape
-    out, light = counts * KEPT, light_of(gain)
+    out = counts * KEPT
     for i, j in np.argwhere(cells):
         for y in range(i * cell, min((i + 1) * cell, height)):
             given, empty, weights = frame[y], background[y], weight[y]

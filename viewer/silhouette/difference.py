@@ -5,6 +5,7 @@ from typing import Final
 import numpy as np
 
 from common.compiled import INLINE, KERNEL
+from viewer.background.background import BackgroundModel
 from viewer.background.image_stack import Bytes, Floats, Frame
 
 Triple = tuple[np.float32, np.float32, np.float32]
@@ -36,11 +37,11 @@ FOLLOW: Final = np.float32(0.2)
 
 
 @KERNEL
-def seeds(frame: Frame, background: Floats, weight: Floats, gain: Floats, cell: int) -> Bytes:
+def seeds(frame: Frame, model: BackgroundModel, cell: int) -> Bytes:
     """(rows, columns) of cells, 1 where one of two pixels of a cell is surely no background."""
+    background, weight, light = model.centre, model.weight, light_of(model.gain)
     height, width = frame.shape[:2]
     out = np.zeros(((height + cell - 1) // cell, (width + cell - 1) // cell), np.uint8)
-    light = light_of(gain)
     for i in range(out.shape[0]):
         for k in (0, cell // 2):
             y = min(i * cell + k, height - 1)
@@ -55,29 +56,22 @@ def seeds(frame: Frame, background: Floats, weight: Floats, gain: Floats, cell: 
 
 @KERNEL
 def label(
-    mask: Bytes,
-    doubt: Bytes,
-    frame: Frame,
-    background: Floats,
-    weight: Floats,
-    gain: Floats,
-    known: Floats,
-    cells: Bytes,
-    cell: int,
+    mask: Bytes, doubt: Bytes, frame: Frame, model: BackgroundModel, cells: Bytes, cell: int
 ) -> None:
     """Guess who is person inside the cells, by a pixel's evidence and its neighbours'.
 
     Sets the mask where they together speak for the person, and doubt where they hardly speak.
     """
+    background, weight, light = model.centre, model.weight, light_of(model.gain)
     height, width = mask.shape
     evidence = np.zeros((height, width), np.float32)
-    places, light = np.argwhere(cells), light_of(gain)
+    places, body_colours = np.argwhere(cells), model.body_colours
     for i, j in places:
         for y in range(i * cell, min((i + 1) * cell, height)):
             given, empty, weights = frame[y], background[y], weight[y]
             for x in range(j * cell, min((j + 1) * cell, width)):
                 far = np.sqrt(unshaded(given, empty, weights, light, x))
-                total = (far - DIFFERS) * STEEP + KNOWN * known[shade_of(given, light, x)]
+                total = (far - DIFFERS) * STEEP + KNOWN * body_colours[shade_of(given, light, x)]
                 evidence[y, x] = min(max(total, -MOST_EVIDENCE), MOST_EVIDENCE)
     for i, j in places:
         for y in range(i * cell, min((i + 1) * cell, height)):
@@ -92,17 +86,12 @@ def label(
 
 
 @KERNEL
-def followed(
-    frame: Frame,
-    background: Floats,
-    weight: Floats,
-    gain: Floats,
-    corners: tuple[int, int, int, int],
-) -> Floats:
+def adapted(frame: Frame, model: BackgroundModel, corners: tuple[int, int, int, int]) -> Floats:
     """The background, a little nearer to what a frame shows outside (left, right, top, bottom)."""
+    background, weight, light = model.centre, model.weight, light_of(model.gain)
     height, width = frame.shape[:2]
     left, right, top, bottom = corners
-    out, light = background.copy(), light_of(gain)
+    out = background.copy()
     for y in range(height):
         given, empty, weights, now = frame[y], background[y], weight[y], out[y]
         for x in range(width):

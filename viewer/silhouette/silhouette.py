@@ -11,15 +11,13 @@ from common.config import SilhouetteSettings
 from common.method import DEFAULT, Method
 from common.raster.bounds import box_of, is_cut
 from common.raster.similarity import Mask
-from viewer.background.background import Background, learn, light_gain
+from viewer.background.background import Background, BackgroundModel, learn, light_gain
 from viewer.background.image_stack import Bytes, Floats, Frame
 from viewer.background.moved_objects import Patch
-from viewer.silhouette.boundary_features import counts_3x3
-from viewer.silhouette.boundary_features import features_of as clues_of
-from viewer.silhouette.colour_model import counted, familiar, fresh
-from viewer.silhouette.difference import followed, label, seeds
-from viewer.silhouette.pixel_classifier import log_odds as judged
-from viewer.silhouette.pixel_classifier import redraw, shipped
+from viewer.silhouette.boundary_features import counts_3x3, features_of
+from viewer.silhouette.colour_model import body_colours_of, counted, fresh
+from viewer.silhouette.difference import adapted, label, seeds
+from viewer.silhouette.pixel_classifier import log_odds, redraw, shipped
 from viewer.silhouette.printed_silhouette import printed
 from viewer.silhouette.regions import chosen
 
@@ -29,7 +27,7 @@ HOLE_SHARE: Final = 0.001
 """Holes up to this share of the picture are closed; between arm and trunk there are larger."""
 PART_SHARE: Final = 0.0002
 """Specks below this share of the picture are dropped."""
-FOLLOW_EVERY: Final = 8
+ADAPT_EVERY: Final = 8
 """Frames between two looks at the slow light."""
 
 
@@ -53,20 +51,16 @@ class State(NamedTuple):
     method: Method
     background: Background
     """As it was learnt."""
-    room: Floats
-    """(H, W, 3) grey levels of the empty room in the slow light of the day."""
-    weight: Floats
-    """(H, W, 2) 1 / spread^2 of brightness and colour."""
+    model: BackgroundModel
+    """What frames are held against: as it has become."""
     colours: Floats
-    """Counts of the colours of room and body (see appearance)."""
+    """(2, SHADES) counts of the colours of background and body, see `colour_model`."""
     frames: int
 
 
 class Guess(NamedTuple):
     """What subtraction and known colours make of a frame."""
 
-    gain: Floats
-    """(3,) how much brighter than the room the frame is."""
     cells: Bytes
     """(rows, columns) 1 around the person."""
     cell: int
@@ -76,14 +70,16 @@ class Guess(NamedTuple):
     """(H, W) 1 where the person is."""
     places: NDArray[np.int32]
     """Row and column (n, 2) of the pixels to look at again."""
-    clues: Floats
-    """(n, CLUES) what is known of them."""
+    features: Floats
+    """(n, FEATURES) what is known of them."""
 
 
 def init(background: Background, settings: SilhouetteSettings, method: Method) -> State:
-    """Begin with the room as it was learnt."""
-    weight = np.float32(1) / background.spread**2
-    return State(settings, method, background, background.centre, weight, fresh(), 0)
+    """Begin with the background as it was learnt."""
+    weight, colours = np.float32(1) / background.spread**2, fresh()
+    even = np.ones(3, np.float32)
+    model = BackgroundModel(background.centre, weight, even, body_colours_of(colours))
+    return State(settings, method, background, model, colours, 0)
 
 
 def step(state: State, frame: Frame, near_px: tuple[float, float] | None) -> tuple[State, Seen]:
@@ -99,19 +95,21 @@ def step(state: State, frame: Frame, near_px: tuple[float, float] | None) -> tup
 
     Source: Huang & Chung 2004, section 1; requirements P3, P4, T8.
     """
-    if frame.shape != state.room.shape:
-        raise ValueError(f"a frame of {frame.shape}, the background has {state.room.shape}")
+    size = state.model.centre.shape
+    if frame.shape != size:
+        raise ValueError(f"a frame of {frame.shape}, the background has {size}")
     least_share, method = state.settings.min_height_share, state.method
+    state = in_light_of(state, frame)
     if not method.pixel_evidence:
-        gain, least_rows = _gain(state, frame), least_share * frame.shape[0]
+        gain, least_rows = state.model.gain, least_share * frame.shape[0]
         found = printed(state.background, frame, gain, least_rows, near_px)
         return state, _seen(found.mask, found.blobs, least_share)
     first = guess(state, frame, near_px)
-    mask = _outlined(first) if method.alpha_matte else first.mask
+    mask = _reclassified(first) if method.alpha_matte else first.mask
     seen = _seen(mask, first.blobs, least_share)
     if seen.box is not None and method.body_colours:
         state = learn_colours(state, mask, frame, first)
-    return _follow(state, frame, first.gain, seen.box) if method.slow_light else state, seen
+    return _adapted(state, frame, seen.box) if method.slow_light else state, seen
 
 
 def warm() -> None:
@@ -119,53 +117,56 @@ def warm() -> None:
     empty = np.full((120, 160, 3), 128, np.uint8)
     person = cv2.rectangle(empty.copy(), (60, 30), (100, 90), (0, 0, 0), cv2.FILLED)
     state = init(learn([empty]), SilhouetteSettings(), DEFAULT)
-    for _ in range(FOLLOW_EVERY):
+    for _ in range(ADAPT_EVERY):
         state, _ = step(state, person, None)
 
 
 def guess(state: State, frame: Frame, near_px: tuple[float, float] | None) -> Guess:
-    """Find the person by subtraction and known colours, and what tells the outline better."""
-    room, weight, known = state.room, state.weight, familiar(state.colours)
-    gain = _gain(state, frame)
-    cell = max(1, round(frame.shape[0] / CELLS))
-    found = seeds(frame, room, weight, gain, cell)
+    """Find the person by subtraction and known colours, and what tells the contour better.
+
+    Args:
+        state: In the light of the frame.
+        frame: (H, W, 3).
+        near_px: As for `step`.
+    """
+    model, cell = state.model, max(1, round(frame.shape[0] / CELLS))
+    found = seeds(frame, model, cell)
     near = None if near_px is None else (near_px[0] / cell, near_px[1] / cell)
     cells, blobs = chosen(found, state.settings.min_height_share, near)
     mask, doubt = np.zeros(frame.shape[:2], np.uint8), np.zeros(frame.shape[:2], np.uint8)
     if blobs:
-        label(mask, doubt, frame, room, weight, gain, known, cells, cell)
-    return Guess(
-        gain, cells, cell, blobs, mask, *clues_of(frame, room, weight, gain, known, mask, doubt)
-    )
+        label(mask, doubt, frame, model, cells, cell)
+    return Guess(cells, cell, blobs, mask, *features_of(frame, model, mask, doubt))
 
 
 def patched(state: State, patch: Patch) -> State:
     """Silhouettes in a background with a patch on it."""
-    background, weight = state.room.copy(), state.weight.copy()
-    background[patch.where] = patch.centre
+    centre, weight = state.model.centre.copy(), state.model.weight.copy()
+    centre[patch.where] = patch.centre
     weight[patch.where] = np.float32(1) / patch.spread**2
-    return state._replace(room=background, weight=weight)
+    return state._replace(model=state.model._replace(centre=centre, weight=weight))
 
 
-def _gain(state: State, frame: Frame) -> Floats:
-    """(3,) how much brighter than the background the frame is."""
+def in_light_of(state: State, frame: Frame) -> State:
+    """The background as bright as a frame is, whoever stands in it."""
     if not state.method.steady_light:
-        return np.ones(3, np.float32)
-    return light_gain(frame, state.room)
+        return state
+    gain = light_gain(frame, state.model.centre)
+    return state._replace(model=state.model._replace(gain=gain))
 
 
 def learn_colours(state: State, mask: Bytes, frame: Frame, first: Guess) -> State:
-    """Count whose colours are whose, by a mask of the body."""
-    room, weight, (gain, cells, cell) = state.room, state.weight, first[:3]
+    """Count whose colours are whose, by a mask of the body; the state is in the frame's light."""
     inside = counts_3x3(mask)
-    colours = counted(state.colours, inside, frame, room, weight, gain, cells, cell)
-    return state._replace(colours=colours)
+    colours = counted(state.colours, inside, frame, state.model, first.cells, first.cell)
+    model = state.model._replace(body_colours=body_colours_of(colours))
+    return state._replace(model=model, colours=colours)
 
 
-def _outlined(first: Guess) -> Bytes:
-    """The mask with its outline drawn again, and cleaned."""
+def _reclassified(first: Guess) -> Bytes:
+    """The mask with the pixels around its contour told by the classifier, and cleaned."""
     mask = first.mask.copy()
-    redraw(mask, first.places, judged(shipped(), first.clues))
+    redraw(mask, first.places, log_odds(shipped(), first.features))
     _tidy(mask)
     return mask
 
@@ -187,14 +188,14 @@ def _seen(mask: Bytes, blobs: int, least_share: float) -> Seen:
     return Seen(mask.view(np.bool_), box, cv2.countNonZero(mask), blobs, is_cut(box, mask.shape))
 
 
-def _follow(state: State, frame: Frame, gain: Floats, box: Box | None) -> State:
-    """Let the room take on the slow light, but nothing near the person."""
+def _adapted(state: State, frame: Frame, box: Box | None) -> State:
+    """The background takes on the slow light, but nothing near the person."""
     frames = state.frames + 1
-    if frames % FOLLOW_EVERY:
+    if frames % ADAPT_EVERY:
         return state._replace(frames=frames)
     margin = frame.shape[0] // 12
     corners = (1, 0, 1, 0)
     if box is not None:
         corners = (box.left - margin, box.right + margin, box.top - margin, box.bottom + margin)
-    room = followed(frame, state.room, state.weight, gain, corners)
-    return state._replace(room=room, frames=frames)
+    centre = adapted(frame, state.model, corners)
+    return state._replace(model=state.model._replace(centre=centre), frames=frames)
