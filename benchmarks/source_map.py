@@ -182,16 +182,17 @@ def pointing(pairs: Iterable[tuple[str, str]]) -> Graph:
 
 def circles(graph: Graph) -> list[set[str]]:
     """Sets of nodes that can all be reached from each other."""
-    reached = {node: _reached(graph, node) for node in graph}
+    ahead = {node: reached(graph, node) for node in graph}
     found: list[set[str]] = []
     for node in graph:
-        circle = {other for other in reached[node] if node in reached.get(other, set())}
+        circle = {other for other in ahead[node] if node in ahead.get(other, set())}
         if circle and circle not in found:
             found.append(circle)
     return found
 
 
-def _reached(graph: Graph, start: str) -> set[str]:
+def reached(graph: Graph, start: str) -> set[str]:
+    """Every node that can be reached from one."""
     found: set[str] = set()
     ahead = [start]
     while ahead:
