@@ -82,10 +82,9 @@ def step(
         state.opening, rig, seen, state.settings.body.opening_frames
     )
     state = state._replace(opening=opened)
-    found, seen = _posed(state, rig, seen, dt_s, settled_at, annotations)
-    state = state._replace(found=found, facing=found.facing)
-    if state.method.shape_fit:
-        fitted = shape_fit.step(state.opening, rig, seen, found.pose)
+    state, seen = _posed(state, rig, seen, dt_s, settled_at, annotations)
+    if state.method.shape_fit and state.pose is not None:
+        fitted = shape_fit.step(state.opening, rig, seen, state.pose)
         state = state._replace(opening=fitted)
     scores = _scores(state, rig, seen)
     state, angles = _smoothed(state, max(scores) >= LOST_SCORE, dt_s)
@@ -121,14 +120,18 @@ def _posed(
     dt_s: float,
     settled_at: Vector | None,
     annotations: Annotations,
-) -> tuple[Posed, Seen]:
-    """The pose of an instant, and the reports without clutter: of one view, proposed, or searched
-    for by the viewers."""
+) -> tuple[State, Seen]:
+    """The state with the pose of an instant, and the reports without clutter: of one view,
+    proposed, or searched for by the viewers."""
     if state.method.stick_lifting or (state.proposes and None in seen):
-        return _lone(state, seen, dt_s, annotations), seen
+        return _with_pose(state, _lone(state, seen, dt_s, annotations)), seen
     if state.proposes:
         return _proposed(state, rig, seen, dt_s)
-    return fused_pose.step(state, rig, seen, settled_at), seen
+    return _with_pose(state, fused_pose.step(state, rig, seen, settled_at)), seen
+
+
+def _with_pose(state: State, found: Posed) -> State:
+    return state._replace(found=found, facing=found.facing)
 
 
 def _lone(state: State, seen: Seen, dt_s: float, annotations: Annotations) -> Posed:
@@ -155,18 +158,21 @@ def _lone(state: State, seen: Seen, dt_s: float, annotations: Annotations) -> Po
     )
 
 
-def _proposed(state: State, rig: Rig, seen: Seen, dt_s: float) -> tuple[Posed, Seen]:
+def _proposed(state: State, rig: Rig, seen: Seen, dt_s: float) -> tuple[State, Seen]:
     """The pose that both silhouettes propose, and who sees its facade: beyond the paper."""
-    assert state.opening.bdp is not None
-    known = state.found
+    known, opening = state.found, state.opening
+    assert opening.bdp is not None
+    is_prior = not (opening.measured or opening.samples)
     before = proposed_pose.Before()
     if known is not None:
         before = proposed_pose.Before(known.memory, known.pose, known.matched)
-    now = proposed_pose.Instant(state.opening.bdp, rig, seen, dt_s, state.method)
+    is_first = known is None and is_prior
+    now = proposed_pose.Instant(opening.bdp, rig, seen, dt_s, state.method, is_first)
     found = proposed_pose.step(before, now)
     facing = facing_of(rig, found.pose)
     posed = Posed(found.pose, facing, found.joints_m, found.confidence, found.memory, found.matched)
-    return posed, found.seen
+    state = state._replace(opening=opening._replace(bdp=found.bdp))
+    return _with_pose(state, posed), found.seen
 
 
 def _smoothed(state: State, fits: bool, dt_s: float) -> tuple[State, Vector]:

@@ -11,6 +11,7 @@ from common.body.proportions import body_vector
 from common.method import Method
 from common.rig.camera import Rig
 from integrator.fit import pose_refinement, visual_hull
+from integrator.opening_posture import prior
 from integrator.pairing import Pair, Seen
 from integrator.proposal import pose_proposal
 from integrator.proposal.pose_proposal import Insight, Memory
@@ -36,6 +37,8 @@ class Instant(NamedTuple):
     """Both are there."""
     dt_s: float
     method: Method
+    is_first: bool = False
+    """The body is a prior, by these silhouettes."""
 
 
 class ProposedPose(NamedTuple):
@@ -51,6 +54,8 @@ class ProposedPose(NamedTuple):
     matched: bool
     seen: Seen
     """The reports that it is of: without clutter, where that was left out."""
+    bdp: Bdp
+    """The body; another than before where it was a prior by silhouettes with clutter."""
 
 
 def step(before: Before, now: Instant) -> ProposedPose:
@@ -59,10 +64,10 @@ def step(before: Before, now: Instant) -> ProposedPose:
     A pose of which the network is not sure and that fits badly is looked for in the silhouettes
     without clutter, where the network is surer of those; then it is matched to them.
     """
-    known = _proposed(before, now)
-    body, was = body_vector(now.bdp), rest_pose() if before.pose is None else before.pose
+    known, was = _proposed(before, now), rest_pose() if before.pose is None else before.pose
     if now.method.clutter_removal and not pose_refinement.is_confident(known.sure):
         now, known = _without_clutter(before, now, known)
+    body = body_vector(now.bdp)
     pose, beside_m = pose_proposal.pose_and_rest(body, was, known.joints_m)
     better, confidence = None, known.sure
     if now.method.refinement:
@@ -75,7 +80,7 @@ def step(before: Before, now: Instant) -> ProposedPose:
     if now.method.free_joints:
         joints_m += beside_m @ pose_proposal.trunk_axes(body, pose).T
     matched = better is not None
-    return ProposedPose(pose, joints_m, confidence, known.memory, matched, now.seen)
+    return ProposedPose(pose, joints_m, confidence, known.memory, matched, now.seen, now.bdp)
 
 
 def _proposed(before: Before, now: Instant) -> Insight:
@@ -91,6 +96,7 @@ def _without_clutter(before: Before, now: Instant, known: Insight) -> tuple[Inst
     cleaned = visual_hull.cleaned(now.rig, Pair(*now.seen))
     if not cleaned.clutter:
         return now, known
-    clean = now._replace(seen=cleaned.pair.detections)
+    kept = cleaned.pair.detections
+    clean = now._replace(seen=kept, bdp=prior(now.rig, kept) if now.is_first else now.bdp)
     again = _proposed(before, clean)
     return (clean, again) if again.sure.mean() > known.sure.mean() else (now, known)
