@@ -98,12 +98,12 @@ class Stage:
         method: Method | None = None,
     ) -> None:
         cameras = (None, None) if rig is None else rig.cameras
-        method = method or METHODS[settings.mode]
+        method, alone = method or METHODS[settings.mode], len(views) == 1
         self.viewers = {
-            n: track.init(n, None, cameras[n - 1], settings, method, alone=len(views) == 1)  # type: ignore[arg-type]
+            n: track.init(track.Setup(n, cameras[n - 1], settings, method, alone), None)  # type: ignore[arg-type]
             for n in views
         }
-        self.state = merge.init(rig, PERIOD_S, settings, method, alone=len(views) == 1)
+        self.state = merge.init(rig, PERIOD_S, settings, method, alone=alone)
         self.guide: Guide | None = None
         self.at = 0
 

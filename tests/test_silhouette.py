@@ -177,9 +177,8 @@ def test_step_leaves_the_state_that_it_was_given() -> None:
 def test_after_the_rehearsal_no_frame_waits_for_the_compiler() -> None:
     kernels = [light_gain, seeds, same_body, label, sides_of, matte, redraw]
     kernels += [body_colours_of, counted, adapted]
-    warm_up(
-        track.init(1, learn([shot(room(), 2.0, 9)]), None, Settings(), DEFAULT), (WIDTH, HEIGHT)
-    )
+    setup = track.Setup(1, None, Settings(), DEFAULT)
+    warm_up(track.init(setup, learn([shot(room(), 2.0, 9)])), (WIDTH, HEIGHT))
     compiled = [list(kernel.signatures) for kernel in kernels]
     assert all(compiled)
     still = [shot(dressed(room(), body()), 2.0, seed) for seed in range(5)]

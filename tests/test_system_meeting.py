@@ -161,7 +161,8 @@ def test_nobody_waits_for_a_viewer_whose_video_broke() -> None:
     bus = LocalBus()
     ended = bus.subscribe(Ended)
     view = View(1, "cam1.avi", (160, 120), (160, 120), fps=15.0, frames=10)
-    state = track.init(1, learn([np.zeros((120, 160, 3), np.uint8)]), None, Settings(), DEFAULT)
+    setup = track.Setup(1, None, Settings(), DEFAULT)
+    state = track.init(setup, learn([np.zeros((120, 160, 3), np.uint8)]))
     with pytest.raises(DecoderDied):
         viewer.run(view, state, BrokenFilm(), bus, threading.Event())  # type: ignore[arg-type]
     (said,) = ended.drain()

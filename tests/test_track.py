@@ -32,6 +32,7 @@ from common.raster.similarity import Mask
 from common.rig.camera import project
 from viewer import track
 from viewer.capture import CapturedFrame
+from viewer.paper import pose_search
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -42,7 +43,8 @@ def exact_silhouettes() -> Iterator[None]:
 
 
 def viewer(number: ViewerNumber) -> track.State:
-    return track.init(number, None, RIG.cameras[number - 1], PAPER, METHODS["paper"])  # type: ignore[arg-type]
+    setup = track.Setup(number, RIG.cameras[number - 1], PAPER, METHODS["paper"])
+    return track.init(setup, None)  # type: ignore[arg-type]
 
 
 def frame(mask: Mask, index: int = 0) -> CapturedFrame:
@@ -81,13 +83,13 @@ def test_the_stages_follow_each_other_as_in_the_paper(monkeypatch: pytest.Monkey
     called: list[str] = []
 
     def noted(name: str) -> None:
-        inner = getattr(track, name)
+        inner = getattr(pose_search, name)
 
         def noting(*given: object) -> object:
             called.append(name)
             return inner(*given)
 
-        monkeypatch.setattr(track, name, noting)
+        monkeypatch.setattr(pose_search, name, noting)
 
     for name in ("thresholds_px", "located", "facade_arms", "facade_legs"):
         noted(name)
@@ -105,7 +107,7 @@ def test_viewer_1_begins_as_the_facade_and_viewer_2_as_the_flank(
     number: ViewerNumber, vote: str
 ) -> None:
     """P47."""
-    assert viewer(number).vote == vote
+    assert viewer(number).search.vote == vote
     assert looked(number, standing(), None).vote == vote
 
 

@@ -87,7 +87,7 @@ def run(
         warnings: What is odd about the view, told with every pulse, a line each.
     """
     odd = "\n".join(warnings)
-    period_s = state.settings.every / view.fps
+    period_s = state.setup.settings.every / view.fps
     pace = Pace(period_s)
     heart = Heart(bus, f"viewer {view.number}", pace)
     guides = Guides(bus.subscribe(Guide), view.number)
@@ -102,7 +102,7 @@ def run(
             state, report = track.step(state, frame, guide)
             bus.publish(report)
             pace.done(frame.clock_s - live.offset_s, time.monotonic())
-            if state.settings.pictures:
+            if state.setup.settings.pictures:
                 bus.publish(_picture(view.number, frame))
             heart.beat("running", odd, **_lost(live, guides))
             before = frame.index
@@ -142,7 +142,8 @@ def main(
             log.warning(warning)
         camera = clip.rig.cameras[0] if clip.rig else None
         alone = len(footage_of(settings)) == 1
-        state = track.init(viewer, room, camera, settings, METHODS[settings.mode], alone=alone)
+        setup = track.Setup(viewer, camera, settings, METHODS[settings.mode], alone)
+        state = track.init(setup, room)
         warm_up(state, view.size)
         gc.collect()
         gc.freeze()

@@ -22,7 +22,7 @@ def warm_up(state: track.State, size: tuple[int, int]) -> None:
     """
     silhouette.warm()
     width, height = size
-    view = view_at(state.rotation, 0.7 * height, (width / 2, 0.55 * height))
+    view = view_at(state.search.rotation, 0.7 * height, (width / 2, 0.55 * height))
     pose = rest_pose()
     pose[POSE_INDEX["r_shoulder_z"]], pose[POSE_INDEX["l_shoulder_z"]] = 90.0, 270.0
     person = draw_body(body_vector(thesis_bdp(1.0)), pose, view, size)

@@ -135,7 +135,7 @@ def loaded_s() -> float:
     settings = Settings()
     room = learn([np.full((SMALL[1], SMALL[0], 3), 128, np.uint8)])
     for viewer in integrator_warmup.VIEWERS:
-        viewer_warmup.warm_up(track.init(viewer, room, None, settings, DEFAULT), SMALL)
+        viewer_warmup.warm_up(track.init(track.Setup(viewer, None, settings, DEFAULT), room), SMALL)
     integrator_warmup.warm_up(settings, SMALL)
     return time.perf_counter() - began
 

@@ -12,7 +12,8 @@ from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reel
 from tritrack.bench.bench_figure import Measured, least_s
-from tritrack.offline.film_passes import FilmFacts, bodies_of, follow_clip, silhouettes_of
+from tritrack.offline.film_passes import FilmFacts, bodies_of, silhouettes_of
+from tritrack.offline.film_tracking import follow_clip
 from viewer.background.background_source import background_of_film
 
 ALONE: Final = (1,)

@@ -21,7 +21,7 @@ from common.video.decoding import Decoder, DecoderDied, Undecodable
 from common.video.frame_cache import Reel
 from integrator import diagnostics, merge, merge_state, opening_posture
 from integrator.pairing import Pair
-from tritrack.offline.film_passes import follow_clip
+from tritrack.offline.film_tracking import follow_clip
 from tritrack.offline.frame_pairs import instants, rooms
 from tritrack.offline.opening_clip import body_of
 from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_files
@@ -140,7 +140,8 @@ def _prepared(
     for view, (room, odd) in zip(clip.views, learnt, strict=True):
         odd_rooms += [odd] if odd else []
         camera = None if rig is None else rig.cameras[view.number - 1]
-        viewers[view.number] = track.init(view.number, room, camera, settings, method, alone=alone)
+        setup = track.Setup(view.number, camera, settings, method, alone)
+        viewers[view.number] = track.init(setup, room)
     period_s = clip.every / clip.views[0].fps
     opening = opening_posture.init(known)
     integrator = merge.init(rig, period_s, settings, method, alone=alone, opening=opening)

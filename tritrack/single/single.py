@@ -25,7 +25,8 @@ from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied, Undecodable
 from common.video.frame_cache import Reel
-from tritrack.offline.film_passes import Followed, Watch, follow_clip, follow_masks
+from tritrack.offline.film_passes import Watch
+from tritrack.offline.film_tracking import Followed, follow_clip, follow_masks
 from tritrack.single.angle_plot import angle_plot
 from tritrack.single.ledger import facts_of, ledger
 from tritrack.single.mask_file import MaskFileError, MaskSequence, is_mask_file, read_masks
