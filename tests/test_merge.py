@@ -171,7 +171,7 @@ def test_a_pose_is_told_from_the_first_frame_on() -> None:
 
 def test_who_never_stretches_the_arms_is_tracked_by_prior_proportions() -> None:
     """P10: nothing is measured, and nothing is waited for."""
-    told = Stage().show([standing()] * 8)
+    told = Stage(settings=PAPER).show([standing()] * 8)
     assert {t.body.status for t in told} == {"tracking"}
     assert not told[-1].guide.measured
     assert errors_m(told[-1], standing()).mean() < 0.15
@@ -179,7 +179,7 @@ def test_who_never_stretches_the_arms_is_tracked_by_prior_proportions() -> None:
 
 def test_a_body_that_fits_nothing_is_predicted_then_lost_then_found() -> None:
     """L1: found again by itself, once the person is there."""
-    stage = after_opening(Stage())
+    stage = after_opening(Stage(settings=PAPER))
     stage.show([standing()])
     block = NOBODY.copy()
     block[2:14, 10:150] = True  # a banner
