@@ -31,6 +31,8 @@ IDS = [
 ROW = re.compile(r"^\| ([CMPT]\d+) \| (.+?) \| (.+?) \| (.+?) \|$", re.MULTILINE)
 PLACE = re.compile(r"`([\w/]+\.\w+)(?: \((\w+)\))?`")
 TEST = re.compile(r"`(test_\w+\.py)::(test_\w+)`")
+NAMED = re.compile(r"`((?:[\w.-]+/)+(?:\w+\.\w+)?)(?: \((\w+)\))?`")
+"""A file or folder in running text, and what in it is spoken of."""
 
 
 SYSTEM = {
@@ -163,6 +165,26 @@ def test_every_id_is_listed_once_in_order() -> None:
     assert [row[0] for row in rows()] == IDS
 
 
+def is_there(path: str, inside: str) -> bool:
+    """Whether a file, or a folder, exists, and what is named of a file is defined in it."""
+    place = ROOT / path
+    if not inside:
+        return place.is_dir() if path.endswith("/") else place.is_file()
+    defined = re.compile(rf"(def|class) {inside}\b|^{inside}\b", re.MULTILINE)
+    return place.is_file() and bool(defined.search(place.read_text()))
+
+
+@pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md", "docs/architecture.md"])
+def test_what_a_page_points_to_is_there(page: str) -> None:
+    """Every file and folder that it names, every name in a file, every link to a file of ours."""
+    text = (ROOT / page).read_text()
+    named = NAMED.findall(text)
+    assert named
+    assert [place for place in named if not is_there(*place)] == []
+    links = re.findall(r"\]\((?!http)([^)#]+)\)", text)
+    assert [link for link in links if not (ROOT / page).parent.joinpath(link).is_file()] == []
+
+
 @pytest.mark.parametrize("row", rows(), ids=[row[0] for row in rows()])
 def test_what_is_listed_of_an_id_is_there(row: tuple[str, str, str, str]) -> None:
     """Every file, function or name in it, and test that docs/requirements.md names exists."""
@@ -172,7 +194,6 @@ def test_what_is_listed_of_an_id_is_there(row: tuple[str, str, str, str]) -> Non
     assert places or where in {"later", "-"}, f"{name} says neither where nor later"
     assert tests or proof in {"later", "-"}, f"{name} has neither a test nor later"
     for path, inside in places:
-        text = (ROOT / path).read_text()
-        assert not inside or re.search(rf"(def|class) {inside}\b|^{inside}\b", text, re.MULTILINE)
+        assert is_there(path, inside), f"{path} ({inside})"
     for path, test in tests:
         assert f"def {test}(" in (ROOT / "tests" / path).read_text(), f"{path}::{test}"
