@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 
 from common import config
 from common.body.proportions import body_vector
-from common.bus.message_codec import unpack
 from common.bus.messages import Body, Report
 from common.raster.kernel import draw_body, view_of
+from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
 from common.rig.camera import Rig
 from common.video.clip_facts import both_cameras

@@ -1,5 +1,7 @@
 """Two reports in, or one, and one body out: place, body, facing, pose, in section 4's order."""
 
+from typing import Final
+
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, Vector
 from common.body.kinematics import ALL_LIMBS
 from common.body.proportions import body_vector
@@ -9,23 +11,24 @@ from common.config import Settings
 from common.method import Method
 from common.raster.bits import count
 from common.raster.kernel import match, view_of
+from common.raster.silhouette_report import words_of
 from common.rig.camera import Rig
 from integrator import opening_posture, outgoing
 from integrator.fit import proposed_pose, shape_fit
-from integrator.fit.silhouette_pair import packed
 from integrator.merge_state import Posed, ScaleSource, State
 from integrator.opening_posture import Opening
 from integrator.pairing import Pair, Seen
 from integrator.paper import fused_pose
-from integrator.paper.arbiter import facing_of
 from integrator.pose import joint_limits, smoothing
 from integrator.rig.assumed_rig import assumed_rig
+from integrator.rig.body_position import facing_of
 from integrator.rig.undistortion import undistorted_pair, undistorted_rig
 from integrator.single import single_view
 from integrator.single.sight import Annotations, Sight
-from integrator.track_status import LOST_SCORE
 
 NOTHING_SAID = Annotations()
+LOST_SCORE: Final = 0.35
+"""A body whose S is lower than this in every view is not believed."""
 
 
 def init(
@@ -206,7 +209,7 @@ def _score(body: Vector, pose: Vector, rig: Rig, n: int, report: Report | None) 
     """S of the whole body in one picture, true perspective; 0 where that view has nobody."""
     if report is None:
         return 0.0
-    seen, view = packed(report), view_of(rig.cameras[n])
+    seen, view = words_of(report), view_of(rig.cameras[n])
     return float(match(body, pose, view, ALL_LIMBS, report.width, seen, count(seen)))
 
 

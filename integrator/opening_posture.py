@@ -4,23 +4,13 @@ from typing import Final, NamedTuple
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from common.body.body import Bdp, Vector, body_of_lengths
-from common.body.proportions import thesis_bdp
-from common.bus.message_codec import unpack
-from common.bus.messages import Pixel, Report
-from common.rig.camera import Camera, Rig, project
+from common.bus.messages import Measure, Report
+from common.rig.camera import Rig
 from integrator.pairing import Seen
-from integrator.proposal.silhouette_window import UPWARDS_M
-from integrator.rig.body_position import place_of, roots_of, scales_at
-from integrator.rig.perspective import px_per_m, triangulate, universal_bdp
-
-STATURES_M: Final = (0.8, 2.3)
-"""What a silhouette's height may say of a person; beyond, it is not the whole person."""
-
-USUAL_M: Final = 1.75
-"""Stature of somebody whose outline tells none."""
+from integrator.prior_body import prior
+from integrator.rig.body_position import place_of, scales_at
 
 LEG_KEPT: Final = (0.85, 1.05)
 """Share of the measured leg that the height of the navel above the floor may leave; beyond, the
@@ -66,57 +56,6 @@ def init(body: Bdp | None) -> Opening:
     return Opening(body, True, (0.0, legs_m, 0.0))
 
 
-def prior(rig: Rig, seen: Seen) -> Bdp:
-    """The thesis's proportions at the height that the silhouettes show (T4).
-
-    The smallest: what is no part of the person makes an outline larger. The crown of somebody who
-    stands is as high above the floor, wherever their outline ends below or beside them.
-    """
-    place = place_of(rig, roots_of(seen), np.zeros(3), 0)
-    heights = [
-        height
-        for report, camera in zip(seen, rig.cameras, strict=True)
-        if report is not None
-        and not report.cut
-        and np.isfinite(height := _height_m(report, camera, place))
-    ]
-    low, high = STATURES_M
-    if None not in seen and low <= (crown := _crown_m(rig, seen, place)) <= high:
-        heights.append(crown)
-    return thesis_bdp(min(high, max(low, min(heights))) if heights else USUAL_M)
-
-
-def _height_m(report: Report, camera: Camera, place: Vector) -> float:
-    """How far an outline reaches along what is upright in its picture, metres."""
-    along, _ = _upwards(report, camera, place)
-    return float((along.max() + 1.0 - along.min()) / px_per_m(camera, place))
-
-
-def _crown_m(rig: Rig, seen: Seen, place: Vector) -> float:
-    """Height above the floor of what is highest in both outlines; inf where that is nowhere.
-
-    What touches the border of a picture may go on beyond it.
-    """
-    tops: list[Pixel] = []
-    for report, camera in zip(seen, rig.cameras, strict=True):
-        assert report is not None
-        along, pixels = _upwards(report, camera, place)
-        column, row = pixels[along.argmax()]
-        if not (0 < column < report.width - 1 and 0 < row < report.height - 1):
-            return np.inf
-        tops.append((float(column) + 0.5, float(row) + 0.5))
-    found = triangulate((rig.cameras[0], rig.cameras[1]), (tops[0], tops[1]))
-    return float(found[1]) if np.isfinite(found).all() else np.inf
-
-
-def _upwards(report: Report, camera: Camera, place: Vector) -> tuple[Vector, NDArray[np.intp]]:
-    """How far up each pixel of an outline is in its picture, (n,), and the pixels, (n, 2)."""
-    at, above = project(camera, np.stack([place, place + UPWARDS_M]))
-    rows, columns = np.nonzero(unpack(report))
-    pixels = np.stack([columns, rows], axis=1)
-    return pixels @ (above - at) / np.linalg.norm(above - at), pixels
-
-
 def step(opening: Opening, rig: Rig, seen: Seen, due: int) -> tuple[Opening, Vector | None]:
     """One pair of reports more; the navel's place where it is now settled, else None.
 
@@ -158,6 +97,29 @@ def _settled(opening: Opening, due: int) -> tuple[Opening, Vector | None]:
     x, y, z = (float(value) for value in place)
     body = _on_the_floor(body_of_lengths(lengths.tolist()), y)
     return Opening(body, True, (x, y, z)), place
+
+
+def universal_bdp(front: Measure, side: Measure, px_per_m_1: float) -> Bdp:
+    """Both views' measures of the opening posture as one body, metres.
+
+    Viewer 2's trunk depth comes into viewer 1's scale by r_t = t2 / t1, the ratio of the
+    silhouettes' heights: SR_torso,u = SR_torso,2 / r_t. The rest is viewer 1's.
+
+    Args:
+        front: Viewer 1's measure, with BDPs.
+        side: Viewer 2's measure.
+        px_per_m_1: Size of a metre at the body in picture 1.
+
+    Raises:
+        ValueError: When `front` saw no facade and so has no BDPs.
+
+    Source: section 4.2 (P46).
+    """
+    if front.bdp_px is None:
+        raise ValueError("viewer 1 measured no BDPs: it did not see the facade")
+    r_t = side.height_px / front.height_px
+    torso = msgspec.structs.replace(front.bdp_px.torso, short_radius=side.depth_px / r_t)
+    return msgspec.structs.replace(front.bdp_px, torso=torso).scaled(1 / px_per_m_1)
 
 
 def _on_the_floor(body: Bdp, navel_m: float) -> Bdp:

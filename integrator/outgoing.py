@@ -1,7 +1,7 @@
 """What is told of an instant: the body for everyone, the guide for the viewers' next frame."""
 
 import math
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,9 @@ from common.rig.camera import Rig, project
 from integrator.merge_state import State
 from integrator.pairing import Pair
 from integrator.rig.body_position import pixels_of, scales_since
-from integrator.track_status import status_of
+
+LOST_FRAMES: Final = 5
+"""After so many frames in a row that fit badly the body is lost."""
 
 
 def body_of(
@@ -159,9 +161,11 @@ def _moment(state: State, pair: Pair) -> dict[str, Any]:
 
 def _status(state: State, cut: bool) -> Status:
     """By presence, the opening and the fit together: never by S alone (M25)."""
+    if state.badly:
+        return "lost" if state.badly >= LOST_FRAMES else "predicted"
     if state.opening.under_way:
-        return status_of(state.badly, "measuring")
-    return status_of(state.badly, "predicted" if cut else "tracking")
+        return "measuring"
+    return "predicted" if cut else "tracking"
 
 
 def _views(pair: Pair) -> Views:

@@ -3,8 +3,8 @@
 from common.body.body import POSE_INDEX, Vector, rest_pose
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Box, ViewerNumber
-from common.raster.bounds import box_of
 from common.raster.kernel import draw_body
+from common.raster.silhouette_report import box_of
 from common.raster.similarity import Mask
 from viewer.paper.posed_model import Figure, figure_of, rotation_of, view_at
 

@@ -14,8 +14,8 @@ from animator.scene import Figure, Snapshot
 from common.body.body import POSE_INDEX, Vector, rest_pose
 from common.body.proportions import thesis_bdp
 from common.bus.control_messages import Pulse
-from common.bus.message_codec import pack
 from common.bus.messages import Body, Posture, Report, ViewerNumber
+from common.raster.silhouette_report import pack
 from common.rig.camera import Camera, paper_rig
 
 RATE_HZ = 15

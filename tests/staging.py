@@ -9,12 +9,11 @@ from posing import posed
 
 from common.body.body import Bdp, Vector
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.message_codec import pack
 from common.bus.messages import Body, Box, Guide, Report, ViewerNumber
 from common.config import Settings
 from common.method import METHODS, Method
-from common.raster.bounds import box_of
 from common.raster.kernel import draw_body, view_of
+from common.raster.silhouette_report import box_of, pack
 from common.raster.similarity import Mask
 from common.rig.camera import Rig, paper_rig
 from common.video.decoding import Picture

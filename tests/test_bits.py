@@ -4,8 +4,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from common.bus.message_codec import pack
 from common.raster.bits import pack_words, unpack_words, words_of_rows
+from common.raster.silhouette_report import pack
 
 
 @settings(deadline=None)

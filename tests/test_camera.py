@@ -22,6 +22,7 @@ from common.rig.camera import (
     centre,
     paper_rig,
     project,
+    px_per_m,
     ray,
 )
 from common.rig.rig_file import CalibrationError, check_rig, fitted, load_rig
@@ -227,3 +228,10 @@ def _turned(camera: Camera, yaw_deg: float) -> Camera:
 
 def _with_second(rig: Rig, camera: Camera) -> Rig:
     return msgspec.structs.replace(rig, cameras=(rig.cameras[0], camera))
+
+
+def test_a_metre_is_the_focal_length_over_the_depth() -> None:
+    rig = paper_rig((160, 120), (150.0, 180.0), (4.0, 5.0))
+    assert px_per_m(rig.cameras[0], np.array([0.3, 1.0, 1.0])) == pytest.approx(150.0 / 3.0)
+    assert px_per_m(rig.cameras[1], np.array([1.0, 1.0, 0.3])) == pytest.approx(180.0 / 6.0)
+    assert math.isnan(px_per_m(rig.cameras[0], np.array([0.0, 1.0, 4.5])))

@@ -22,9 +22,9 @@ from animator.scene import Figure
 from common.body.body import LIMBS, POSE_INDEX, Vector, rest_pose
 from common.body.kinematics import segments
 from common.body.proportions import body_vector, stature, thesis_bdp
-from common.bus.message_codec import pack
 from common.bus.messages import Picture, Report
 from common.raster.kernel import draw_body, view_of
+from common.raster.silhouette_report import pack
 from common.rig.camera import Camera, paper_rig, project
 
 BDP = thesis_bdp(1.75)

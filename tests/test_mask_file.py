@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from common.bus.message_codec import unpack
+from common.raster.silhouette_report import unpack
 from tritrack.single.mask_file import MaskFileError, is_mask_file, read_masks
 
 MASKS = np.random.default_rng(3).random((5, 20, 13)) > 0.5

@@ -30,9 +30,9 @@ from common.config import Settings
 from common.method import DEFAULT, Mode
 from common.rig.camera import project
 from integrator import merge
+from integrator.outgoing import LOST_FRAMES
 from integrator.pairing import Pair
 from integrator.rig.body_position import scales_at
-from integrator.track_status import LOST_FRAMES
 
 MODES = pytest.mark.parametrize("mode", ["paper", "default"])
 

@@ -20,9 +20,7 @@ from common.bus.message_codec import (
     decode,
     encode,
     key_of,
-    pack,
     pattern_of,
-    unpack,
 )
 from common.bus.messages import (
     PROTOCOL,
@@ -37,6 +35,7 @@ from common.bus.messages import (
     Posture,
     Report,
 )
+from common.raster.silhouette_report import pack, unpack
 from common.rig.camera import paper_rig
 
 BDP = thesis_bdp(1.75)

@@ -3,16 +3,15 @@
 import msgspec
 import numpy as np
 import pytest
-from posing import box_around, posed
-from rolling import BODY, ROLLED, outlines, told
-from staging import PERSON, RIG, opening, report, silhouettes, standing
+from posing import box_around
+from staging import PERSON, RIG, opening, report, silhouettes
 
-from common.body.body import Bdp, Vector
+from common.body.body import Bdp, Elliptic
 from common.body.proportions import stature, thesis_bdp
 from common.bus.messages import Measure, Report
 from common.rig.camera import Rig, paper_rig
 from integrator import opening_posture as stage
-from integrator.opening_posture import Opening, prior
+from integrator.opening_posture import Opening, universal_bdp
 from viewer.paper.measure import measure_front, measure_side
 
 Seen = tuple[Report | None, Report | None]
@@ -119,29 +118,6 @@ def test_the_place_of_the_opening_posture_is_where_it_was_taken() -> None:
     assert known.measured_at_m == pytest.approx(tuple(place))
 
 
-@pytest.mark.parametrize("views", [(0, 1), (0,), (1,)], ids=["both", "1", "2"])
-@pytest.mark.parametrize("stature_m", [1.5, 1.9])
-def test_the_prior_is_as_high_as_the_silhouettes(views: tuple[int, ...], stature_m: float) -> None:
-    """T4: the thesis's proportions."""
-    pose = standing()
-    pose[1] *= stature_m / 1.75
-    both = silhouettes(pose, thesis_bdp(stature_m))
-    roots = [(80.0, 60.0 + (1.0 - pose[1]) * 50.0)] * 2
-    seen = [report(n + 1, both[n], root_px=roots[n]) if n in views else None for n in (0, 1)]  # type: ignore[arg-type]
-    body = prior(RIG, (seen[0], seen[1]))
-    assert stature(body) == pytest.approx(stature_m, abs=0.06)
-    assert body.torso.height / stature(body) == pytest.approx(52 / 175)
-
-
-@pytest.mark.parametrize(("rows", "stature_m"), [(20, 0.8), (118, 2.3)])
-def test_a_prior_is_somebody(rows: int, stature_m: float) -> None:
-    """0.8 to 2.3 m: what is beyond is not the whole person."""
-    mask = np.zeros((120, 160), np.bool_)
-    mask[1 : 1 + rows, 70:90] = True
-    body = prior(RIG, (report(1, mask, root_px=(80.0, 60.0)), None))
-    assert stature(body) == pytest.approx(stature_m)
-
-
 def test_legs_reach_the_floor() -> None:
     """A silhouette's lowest row is the toes, some 50 mm below the soles in the picture."""
     good = measured()
@@ -151,32 +127,31 @@ def test_legs_reach_the_floor() -> None:
     assert isinstance(good[0] and good[0].measure, Measure)
 
 
-@pytest.mark.parametrize("to_the_border", [(), (0,), (0, 1)], ids=["no view", "1", "both"])
-def test_the_crown_tells_the_stature_where_the_outline_goes_on_below_the_feet(
-    to_the_border: tuple[int, ...],
-) -> None:
-    """A slab on the floor before the person, seen from above by rolled cameras."""
-    spoilt = []
-    for n, mask in enumerate(outlines(_stretched())):
-        rows, columns = np.nonzero(mask)
-        lowest, middle = rows.max(), int(np.median(columns))
-        end = len(mask) if n in to_the_border else lowest + 14
-        mask[lowest - 10 : end, middle - 15 : middle + 15] = True
-        spoilt.append(mask)
-    found = prior(ROLLED, (told(1, spoilt[0]), told(2, spoilt[1])))
-    assert stature(found) == pytest.approx(stature(BODY), abs=0.05)
+@pytest.mark.parametrize("distance_2_m", [4.0, 2.0, 7.0])
+def test_the_same_person_has_the_same_bdps_wherever_camera_2_stands(distance_2_m: float) -> None:
+    """P46: camera 2 at half the distance, whole pixels read: depth within a pixel."""
+    truth = thesis_bdp(1.75)
+    scale_1, scale_2 = 150.0 / 4.0, 150.0 / distance_2_m
+    first = truth.scaled(scale_1)
+    unknown = msgspec.structs.replace(first.torso, short_radius=9.9)
+    front = Measure(
+        height_px=round(1.75 * scale_1),
+        centre_px=(80.0, 60.0),
+        depth_px=first.torso.long_radius,
+        bdp_px=msgspec.structs.replace(first, torso=unknown),
+    )
+    side = Measure(
+        height_px=round(1.75 * scale_2),
+        centre_px=(80.0, 60.0),
+        depth_px=round(2 * truth.torso.short_radius * scale_2) / 2,
+    )
+    got = universal_bdp(front, side, scale_1)
+    assert np.array(got.lengths()) == pytest.approx(np.array(truth.lengths()), abs=1 / scale_1)
+    assert isinstance(got.torso, Elliptic)
+    assert got.torso.short_radius != pytest.approx(9.9 / scale_1)
 
 
-def test_what_goes_on_above_a_picture_is_no_crown() -> None:
-    """A lamp hangs over the person in view 1: view 2 alone tells how high they are."""
-    first, second = outlines(_stretched())
-    columns = np.flatnonzero(first[: first.any(axis=1).argmax() + 5].any(axis=0))
-    first[: first.any(axis=1).argmax() + 5, columns[0] : columns[-1]] = True
-    found = prior(ROLLED, (told(1, first), told(2, second)))
-    assert stature(found) == pytest.approx(stature(BODY), abs=0.08)
-
-
-def _stretched() -> Vector:
-    pose = posed(r_shoulder_z=90.0, l_shoulder_z=270.0)
-    pose[1] = BODY.r_upper_leg.height + BODY.r_lower_leg.height
-    return pose
+def test_bdps_without_a_facade_are_refused() -> None:
+    side = Measure(height_px=66.0, centre_px=(80.0, 60.0), depth_px=5.0)
+    with pytest.raises(ValueError, match="did not see the facade"):
+        universal_bdp(side, side, 37.5)

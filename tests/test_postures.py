@@ -14,9 +14,8 @@ from hmmlearn.hmm import CategoricalHMM, GaussianHMM
 from common.body.body import ANGLE_INDEX, ANGLE_NAMES
 from recognizer.codebook import symbols
 from recognizer.evaluation import Recording, folds, recognise
-from recognizer.features import features
+from recognizer.features import bearings, features
 from recognizer.forward import forward
-from recognizer.limb_directions import bearings
 from recognizer.postures import (
     POSTURES,
     DensityModel,

@@ -7,9 +7,9 @@ import pytest
 from common.body.body import JOINT_NAMES, LIMBS
 from common.body.proportions import THESIS_RATIOS, thesis_bdp
 from common.body.stick_body import ADULT, ANGLE, THESIS, Stickman, joints_px, standing
-from common.bus.message_codec import pack
 from common.bus.messages import Box, Fit, Report, ViewerNumber
 from common.method import DEFAULT, METHODS
+from common.raster.silhouette_report import pack
 from common.rig.camera import paper_rig, project
 from integrator.single import depth_signs, lifted_stick, reflection, single_view
 from integrator.single.reflection import Front

@@ -9,10 +9,11 @@ from stick_posing import STATURE_PX, drawn, in_profile, larger, stick_pose
 from common.body.body import JOINT_NAMES, LIMBS, POSE_INDEX, rest_pose
 from common.body.proportions import body_vector, thesis_bdp
 from common.body.stick_body import ADULT, ANGLE, THESIS, joints_px
-from common.bus.message_codec import decode, encode, pack
+from common.bus.message_codec import decode, encode
 from common.bus.messages import Fit, Report
 from common.method import DEFAULT, METHODS, Mode
 from common.raster.kernel import draw_body
+from common.raster.silhouette_report import pack
 from common.rig.camera import PAPER_ROTATIONS
 from viewer.paper.posed_model import view_at
 from viewer.stick.stick_fit import Stick, expected, fit, told

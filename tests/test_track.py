@@ -25,9 +25,10 @@ from staging import (
 
 from common.body.body import ANGLE_NAMES, POSE_INDEX, Vector
 from common.body.proportions import stature
-from common.bus.message_codec import decode, encode, unpack
+from common.bus.message_codec import decode, encode
 from common.bus.messages import Guide, Report, ViewerNumber
 from common.method import METHODS
+from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
 from common.rig.camera import project
 from viewer import track

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from rolling import BODY, ROLLED, on_one_leg, outlines, told
 
-from common.bus.message_codec import unpack
 from common.bus.messages import Report
+from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask, similarity
 from common.rig.camera import project
 from integrator.pairing import Pair

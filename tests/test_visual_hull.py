@@ -4,7 +4,7 @@ import numpy as np
 from posing import posed
 from rolling import ROLLED, on_one_leg, outlines, told
 
-from common.bus.message_codec import unpack
+from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
 from common.rig.camera import project
 from integrator.fit import visual_hull

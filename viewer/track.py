@@ -6,10 +6,10 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
-from common.bus.message_codec import pack
 from common.bus.messages import Box, Facing, Guide, Measure, Pixel, Report, ViewerNumber
 from common.config import Settings
 from common.method import Method
+from common.raster.silhouette_report import pack
 from common.raster.similarity import Mask
 from common.rig.camera import Camera
 from viewer import camera_fault

@@ -11,8 +11,8 @@ from animator.scene import Figure, half_sizes, limb_colours
 from common.body.body import LIMBS, Vector
 from common.body.kinematics import limb_frames
 from common.body.proportions import body_vector
-from common.bus.message_codec import unpack
 from common.bus.messages import Picture, Report
+from common.raster.silhouette_report import unpack
 from common.rig.camera import Camera, project
 
 Image = NDArray[np.uint8]

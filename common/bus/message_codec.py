@@ -5,8 +5,6 @@ from collections.abc import Iterator
 from typing import Final, NamedTuple, TypeVar
 
 import msgspec
-import numpy as np
-from numpy.typing import NDArray
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES, Bdp, Elliptic, Round
 from common.bus.control_messages import Cameras, Ended, Pulse
@@ -107,17 +105,6 @@ def refuse_size(size_bytes: int) -> None:
     """
     if size_bytes > MAX_BYTES:
         raise MalformedMessage(f"{size_bytes} bytes, at most {MAX_BYTES} are taken")
-
-
-def pack(mask: NDArray[np.bool_]) -> bytes:
-    """A mask (H, W) as the bytes of a report: rows of whole bytes, the first pixel lowest."""
-    return np.packbits(mask, axis=1, bitorder="little").tobytes()
-
-
-def unpack(report: Report) -> NDArray[np.bool_]:
-    """The silhouette of a report, (H, W), True inside the person."""
-    rows = np.frombuffer(report.silhouette, np.uint8).reshape(report.height, -1)
-    return np.unpackbits(rows, axis=1, count=report.width, bitorder="little").astype(np.bool_)
 
 
 def _refuse_what_no_process_would_say(message: Message) -> None:

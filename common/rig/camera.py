@@ -152,6 +152,15 @@ def _on_plane(points_m: Any, R: Any, t: Any) -> Any:
     return plane
 
 
+def px_per_m(camera: Camera, point_m: Vector) -> float:
+    """How many pixels a metre across the line of sight takes at a point: focal length / depth.
+
+    NaN where the point is not in front of the camera.
+    """
+    depth_m = float(arrays_of(camera).R[2] @ np.asarray(point_m) + camera.t[2])
+    return camera.K[0][0] / depth_m if depth_m > 0 else float("nan")
+
+
 def ray(camera: Camera, pixel: tuple[float, float]) -> Vector:
     """Direction in the world, shape (3,), unit length, of what a pixel shows."""
     K, R, _, _, focal_px, middle_px = arrays_of(camera)

@@ -9,8 +9,9 @@ from common.body.body import Vector
 from common.body.kinematics import ALL_LIMBS
 from common.bus.messages import Report
 from common.compiled import compiled
-from common.raster.bits import Bits, count, words_of_rows
+from common.raster.bits import Bits, count
 from common.raster.kernel import draw_limbs, match_over, view_of
+from common.raster.silhouette_report import words_of
 from common.rig.camera import Rig
 
 
@@ -32,7 +33,7 @@ def silhouettes_of(rig: Rig, seen: tuple[Report, Report]) -> Silhouettes:
 
     Pictures of two sizes are both taken to be as wide and as high as the larger is.
     """
-    each = [packed(report) for report in seen]
+    each = [words_of(report) for report in seen]
     rows, words = np.max([mask.shape for mask in each], axis=0)
     masks = np.zeros((2, rows, words), np.uint64)
     for whole, mask in zip(masks, each, strict=True):
@@ -43,11 +44,6 @@ def silhouettes_of(rig: Rig, seen: tuple[Report, Report]) -> Silhouettes:
         np.array([count(mask) for mask in masks]),
         max(report.width for report in seen),
     )
-
-
-def packed(report: Report) -> Bits:
-    """The silhouette of a report, (H, words)."""
-    return words_of_rows(report.silhouette, report.width, report.height)
 
 
 @compiled

@@ -10,14 +10,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.message_codec import unpack
 from common.compiled import compiled
 from common.raster.kernel import NEAREST_M, seen_at, view_of
-from common.raster.silhouette_report import with_silhouette
+from common.raster.silhouette_report import unpack, with_silhouette
 from common.raster.similarity import Mask
-from common.rig.camera import Camera, Rig, project
+from common.rig.camera import Camera, Rig, project, px_per_m
 from integrator.pairing import Pair
-from integrator.rig.perspective import px_per_m, triangulate
+from integrator.rig.body_position import triangulate
 from integrator.rig.undistortion import undistorted
 
 CELL_M: Final = 0.05

@@ -1,11 +1,8 @@
 """Facade or flank, settled between the two viewers: exactly one sees the facade (section 4.3)."""
 
-import math
 from typing import NamedTuple
 
-from common.body.body import POSE_INDEX, Vector
 from common.bus.messages import Facing
-from common.rig.camera import Rig, centre
 
 
 class Sight(NamedTuple):
@@ -54,13 +51,3 @@ def _strength_px(sight: Sight) -> float:
     changed = sight.vote != sight.before
     to_facade = (sight.vote == "facade") == changed
     return abs(sight.width_px - (sight.th_high_px if to_facade else sight.th_low_px))
-
-
-def facing_of(rig: Rig, pose: Vector) -> tuple[Facing, Facing]:
-    """What viewers 1 and 2 see of a pose that is known: who is more before it, or behind it."""
-    yaw = math.radians(pose[POSE_INDEX["torso_y"]])
-    shares = []
-    for camera in rig.cameras:
-        x, _, z = (centre(camera) - pose[:3]).tolist()
-        shares.append(abs(math.sin(yaw) * x + math.cos(yaw) * z) / math.hypot(x, z))
-    return ("facade", "flank") if shares[0] >= shares[1] else ("flank", "facade")

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, Bdp, Vector
 from common.body.kinematics import TORSO, joints, limb_frames
 from common.body.proportions import stature
-from common.bus.message_codec import unpack
 from common.bus.messages import Report
+from common.raster.silhouette_report import unpack
 from common.rig.camera import Rig
 from integrator.pose.inverse_kinematics import pose_of, trunk_of
 from integrator.proposal import network_weights, pose_network

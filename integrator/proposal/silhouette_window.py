@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.compiled import compiled
-from common.raster.bounds import centroid_px
 from common.raster.kernel import NEAREST_M
+from common.raster.silhouette_report import centroid_px
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig, arrays_of, centre, project, ray
-from integrator.rig.perspective import triangulate
+from integrator.rig.body_position import triangulate
 
 Floats = NDArray[np.float32]
 

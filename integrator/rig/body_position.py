@@ -1,23 +1,25 @@
-"""Where the body is, from where each view has its navel; how large a metre is there."""
+"""Where the body is, how large it is seen there and from which side (sections 4.2 and 4.4)."""
 
 import math
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
-from common.body.body import Vector
-from common.bus.message_codec import unpack
-from common.bus.messages import Pixel, Report
+from common.body.body import POSE_INDEX, Vector
+from common.bus.messages import Facing, Pixel, Report
+from common.compiled import compiled
 from common.raster.kernel import NEAREST_M
-from common.rig.camera import Camera, Rig, as_paper_rig, centre, project, ray
+from common.raster.silhouette_report import unpack
+from common.rig.camera import Camera, PaperRig, Rig, as_paper_rig, centre, project, px_per_m, ray
 from integrator.pairing import Seen
-from integrator.rig.perspective import ground_position, px_per_m, scaling_factors, triangulate
 
 Roots = tuple[Pixel | None, Pixel | None]
 
 AHEAD_M: Final = 4.0
 """Depth of somebody whom one view alone shows, where the place before is not before its camera: the
 paper's cameras stand about so far away."""
+PARALLEL: Final = 1e-9
+"""Two rays whose directions span less than this (sine squared of their angle) never meet."""
 
 
 def roots_of(seen: Seen) -> Roots:
@@ -114,3 +116,83 @@ def _at_depth(camera: Camera, pixel: Pixel, before_m: Vector) -> Vector:
     direction = ray(camera, pixel)
     point: Vector = centre(camera) + direction * (depth / float(forward @ direction))
     return point
+
+
+def facing_of(rig: Rig, pose: Vector) -> tuple[Facing, Facing]:
+    """What viewers 1 and 2 see of a pose that is known: who is more before it, or behind it."""
+    yaw = math.radians(pose[POSE_INDEX["torso_y"]])
+    shares = []
+    for camera in rig.cameras:
+        x, _, z = (centre(camera) - pose[:3]).tolist()
+        shares.append(abs(math.sin(yaw) * x + math.cos(yaw) * z) / math.hypot(x, z))
+    return ("facade", "flank") if shares[0] >= shares[1] else ("flank", "facade")
+
+
+def ground_position(x1_px: float, z2_px: float, rig: PaperRig) -> tuple[float, float]:
+    """D_X and D_Z of the point that both cameras of the paper's rig see, metres.
+
+    The two lines x1 = lambda1 X / (Zc1 - Z) and z2 = lambda2 Z / (X - Xc2), solved. The printed
+    form divides by x1 and z2, so it is 0/0 where the body starts; cleared of them it is exact
+    everywhere in view.
+
+    Args:
+        x1_px: Column in picture 1, from the centre column, right positive.
+        z2_px: Column in picture 2, from the centre column, right positive.
+        rig: Focal lengths and distances.
+
+    Source: eq. (3), with Xc2 for the printed x_c2 (P44, M3, M4).
+    """
+    focals = rig.focal_1_px * rig.focal_2_px
+    shared = focals + x1_px * z2_px
+    d_x = x1_px * (rig.distance_1_m * rig.focal_2_px - z2_px * rig.distance_2_m) / shared
+    d_z = z2_px * (x1_px * rig.distance_1_m + rig.distance_2_m * rig.focal_1_px) / shared
+    return d_x, d_z
+
+
+def scaling_factors(
+    position_m: tuple[float, float], measured_at_m: tuple[float, float], rig: PaperRig
+) -> tuple[float, float]:
+    """r_t1 and r_t2: size in each picture over the size where the BDPs were measured.
+
+    The ratio of depths, which is what eq. (4) comes to when its reference lies on the axes; off
+    them eq. (4) is some percent wrong (3 % at 1 m), so it is not used.
+
+    Args:
+        position_m: (X, Z) of the body now.
+        measured_at_m: (X0, Z0) of the body when the BDPs were measured.
+        rig: Focal lengths and distances.
+
+    Source: eq. (4) as P45 and M5 read it.
+    """
+    (x, z), (x0, z0) = position_m, measured_at_m
+    return (
+        (rig.distance_1_m - z0) / (rig.distance_1_m - z),
+        (x0 + rig.distance_2_m) / (x + rig.distance_2_m),
+    )
+
+
+def triangulate(cameras: tuple[Camera, Camera], pixels: tuple[Pixel, Pixel]) -> Vector:
+    """The point nearest to both rays (least squares), shape (3,), world metres.
+
+    It is eq. (3) for cameras that stand anywhere: the middle of the shortest line between the
+    rays. NaN where these are parallel.
+    """
+    first, second = (ray(camera, pixel) for camera, pixel in zip(cameras, pixels, strict=True))
+    middle: Vector = _meeting(centre(cameras[0]), first, centre(cameras[1]), second)
+    return middle
+
+
+@compiled
+def _meeting(one: Any, first: Any, other: Any, second: Any) -> Any:
+    """The middle of the shortest line between two rays, from their starts and directions (3,)."""
+    cosine = along = across = 0.0
+    for i in range(3):
+        cosine += first[i] * second[i]
+        along += first[i] * (one[i] - other[i])
+        across += second[i] * (one[i] - other[i])
+    sine_squared = 1.0 - cosine * cosine
+    if sine_squared < PARALLEL:
+        return np.full(3, np.nan)
+    far_first = (cosine * across - along) / sine_squared
+    far_second = (across - cosine * along) / sine_squared
+    return (one + first * far_first + other + second * far_second) / 2

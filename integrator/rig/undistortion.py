@@ -7,9 +7,8 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.message_codec import pack, unpack
 from common.bus.messages import Pixel, Report
-from common.raster.bounds import box_of, is_cut
+from common.raster.silhouette_report import box_of, is_cut, pack, unpack
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig
 from integrator.pairing import Pair

@@ -11,9 +11,9 @@ from common.body.stick_body import BREADTH, GIRTH, POSE_SIZE, STATURE
 from common.compiled import compiled
 from common.raster.bits import Bits, count, count_both
 from common.raster.kernel import NEAREST_M, score, seen_at, view_of
+from common.raster.silhouette_report import words_of
 from common.raster.stick_raster import ALL_SEGMENTS, draw_segments
 from common.rig.camera import Camera, arrays_of
-from integrator.fit.silhouette_pair import packed
 from integrator.rig.undistortion import undistorted_camera
 from integrator.single.sight import Sight
 
@@ -53,7 +53,7 @@ def stick_similarity(sight: Sight, joints_m: NDArray[np.float64]) -> float:
     """
     camera, man, report = undistorted_camera(sight.camera), sight.man, sight.report
     tall_px = _tall_px(camera, sight.stature_m, joints_m)
-    seen, broad_px = packed(report), 2 * man.lengths[10] * tall_px
+    seen, broad_px = words_of(report), 2 * man.lengths[10] * tall_px
     task = Task(view_of(camera), man.parts, man.depth, broad_px, seen, count(seen), report.width)
     stick = np.ones(POSE_SIZE)
     stick[STATURE] = tall_px

@@ -11,11 +11,11 @@ import msgspec
 import numpy as np
 
 from common.body.proportions import thesis_bdp
-from common.bus.message_codec import unpack
 from common.bus.messages import Body, Guide, Report, ViewerNumber
 from common.config import Settings
 from common.method import METHODS, Method
 from common.notes.notes import Notes, held
+from common.raster.silhouette_report import unpack
 from common.rig.camera import Camera, Rig
 from common.video.clip_facts import Clip
 from common.video.clip_sources import ClipError

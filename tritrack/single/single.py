@@ -17,10 +17,10 @@ from animator.inbetween import at, between, key_frames
 from animator.overlay import overlay
 from animator.take import take_of
 from common.atomic_file import replacing
-from common.bus.message_codec import unpack
 from common.config import CameraSettings, Settings, SettingsError, load
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path
+from common.raster.silhouette_report import unpack
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied, Undecodable

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from common.bus.messages import Box
 from common.config import SilhouetteSettings
 from common.method import DEFAULT, Method
-from common.raster.bounds import box_of, is_cut
+from common.raster.silhouette_report import box_of, is_cut
 from common.raster.similarity import Mask
 from viewer.background.background import Background, BackgroundModel, learn, light_gain
 from viewer.background.image_stack import Bytes, Floats, Frame

@@ -1,0 +1,72 @@
+"""The body before its opening posture told anything: as tall as the silhouettes say (T4)."""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Bdp, Vector
+from common.body.proportions import thesis_bdp
+from common.bus.messages import Pixel, Report
+from common.raster.silhouette_report import unpack
+from common.rig.camera import Camera, Rig, project, px_per_m
+from integrator.pairing import Seen
+from integrator.proposal.silhouette_window import UPWARDS_M
+from integrator.rig.body_position import place_of, roots_of, triangulate
+
+STATURES_M: Final = (0.8, 2.3)
+"""What a silhouette's height may say of a person; beyond, it is not the whole person."""
+
+USUAL_M: Final = 1.75
+"""Stature of somebody whose outline tells none."""
+
+
+def prior(rig: Rig, seen: Seen) -> Bdp:
+    """The thesis's proportions at the height that the silhouettes show (T4).
+
+    The smallest: what is no part of the person makes an outline larger. The crown of somebody who
+    stands is as high above the floor, wherever their outline ends below or beside them.
+    """
+    place = place_of(rig, roots_of(seen), np.zeros(3), 0)
+    heights = [
+        height
+        for report, camera in zip(seen, rig.cameras, strict=True)
+        if report is not None
+        and not report.cut
+        and np.isfinite(height := _height_m(report, camera, place))
+    ]
+    low, high = STATURES_M
+    if None not in seen and low <= (crown := _crown_m(rig, seen, place)) <= high:
+        heights.append(crown)
+    return thesis_bdp(min(high, max(low, min(heights))) if heights else USUAL_M)
+
+
+def _height_m(report: Report, camera: Camera, place: Vector) -> float:
+    """How far an outline reaches along what is upright in its picture, metres."""
+    along, _ = _upwards(report, camera, place)
+    return float((along.max() + 1.0 - along.min()) / px_per_m(camera, place))
+
+
+def _crown_m(rig: Rig, seen: Seen, place: Vector) -> float:
+    """Height above the floor of what is highest in both outlines; inf where that is nowhere.
+
+    What touches the border of a picture may go on beyond it.
+    """
+    tops: list[Pixel] = []
+    for report, camera in zip(seen, rig.cameras, strict=True):
+        assert report is not None
+        along, pixels = _upwards(report, camera, place)
+        column, row = pixels[along.argmax()]
+        if not (0 < column < report.width - 1 and 0 < row < report.height - 1):
+            return np.inf
+        tops.append((float(column) + 0.5, float(row) + 0.5))
+    found = triangulate((rig.cameras[0], rig.cameras[1]), (tops[0], tops[1]))
+    return float(found[1]) if np.isfinite(found).all() else np.inf
+
+
+def _upwards(report: Report, camera: Camera, place: Vector) -> tuple[Vector, NDArray[np.intp]]:
+    """How far up each pixel of an outline is in its picture, (n,), and the pixels, (n, 2)."""
+    at, above = project(camera, np.stack([place, place + UPWARDS_M]))
+    rows, columns = np.nonzero(unpack(report))
+    pixels = np.stack([columns, rows], axis=1)
+    return pixels @ (above - at) / np.linalg.norm(above - at), pixels
