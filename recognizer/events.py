@@ -2,16 +2,14 @@
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from recognizer.features import ROW_NAMES, Rows, with_pose
+from recognizer.features import ROW_NAMES, TRAVEL_POSES, Bearings, Rows, bearings, with_pose
 from recognizer.forward import forward
-from recognizer.limb_directions import TRAVEL_POSES, Bearings, bearings
-from recognizer.path_network import COUNT, LAST, ONSET, SCALE, advance, emissions
+from recognizer.path_network import COUNT, LAST, ONSET, SCALE, PathNetwork, advance, emissions
 from recognizer.postures import STATES, Array, DensityModel
 
 OVER_FRAMES: Final = 2
@@ -35,13 +33,6 @@ SPEED_FRAMES: Final = 3
 """Limbs' speed is the change of their directions within so many frames."""
 KEPT_FRAMES: Final = 150
 """Poses that a performance is judged by: its last ten seconds."""
-REACH: Final = 0.75
-"""Of the distance from standing at the height of a posture: whoever does not get so far does
-something else."""
-LONG_FRAMES: Final = 1000
-"""After so many, where a chain began no longer matters."""
-RARE: Final = 0.05
-"""A state in which a posture is for a smaller share of its time marks no repetition."""
 
 
 class Event(NamedTuple):
@@ -68,42 +59,6 @@ class Doing(NamedTuple):
 
 
 NOTHING: Final = Doing("", 0, None)
-
-
-class PathNetwork:
-    """What a model's network needs at every frame, computed once."""
-
-    def __init__(self, model: DensityModel) -> None:
-        """Of the postures in the order of the model."""
-        self.model = model
-        with np.errstate(divide="ignore"):
-            self.log_transition = np.log(model.transition)
-
-    @cached_property
-    def share(self) -> Array:
-        """How much of its time each posture is in each state, (p, s)."""
-        long = np.linalg.matrix_power(self.model.transition, LONG_FRAMES)
-        return np.asarray(long[:, 0])
-
-    @cached_property
-    def away(self) -> Array:
-        """How far each state is from standing, (p, s); 0 where it is rare."""
-        apart = np.linalg.norm(self.model.mean - self.model.rest_mean, axis=2)
-        return np.asarray(np.where(self.share > RARE, apart, 0.0))
-
-    @cached_property
-    def far(self) -> NDArray[np.bool_]:
-        """The states at the height of each posture, (p, s)."""
-        return np.asarray(self.away >= REACH * self.away.max(axis=1, keepdims=True))
-
-    @cached_property
-    def turn(self) -> NDArray[np.int64]:
-        """The state of each posture farthest from standing, and before it that farthest from this
-        one: a repetition goes from one to the other and back, (p, 2)."""
-        far = self.away.argmax(axis=1)
-        mean = self.model.mean
-        apart = np.linalg.norm(mean - mean[np.arange(len(far)), far][:, np.newaxis], axis=2)
-        return np.stack([np.where(self.share > RARE, apart, 0.0).argmax(axis=1), far], axis=1)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from recognizer.limb_directions import Bearings
+from recognizer.features import Bearings
 
 Array = NDArray[np.float64]
 

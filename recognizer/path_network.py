@@ -1,11 +1,14 @@
 """The network of all postures, standing and filler: its best path, frame by frame, compiled."""
 
 import math
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common.compiled import compiled
+from recognizer.postures import Array, DensityModel
 
 SCALE: Final = 0.3
 """Weight of a log density: neighbouring frames say nearly the same."""
@@ -31,6 +34,50 @@ unknown or back."""
 ONSET, COUNT, PHASE, LAST = 0, 1, 2, 3
 """What a path remembers of the posture that it is in: its first frame, how often the course was
 gone through, whether it is in its second half; and of one that is over: its last frame."""
+
+REACH: Final = 0.75
+"""Of the distance from standing at the height of a posture: whoever does not get so far does
+something else."""
+LONG_FRAMES: Final = 1000
+"""After so many, where a chain began no longer matters."""
+RARE: Final = 0.05
+"""A state in which a posture is for a smaller share of its time marks no repetition."""
+
+
+class PathNetwork:
+    """What a model's network needs at every frame, computed once."""
+
+    def __init__(self, model: DensityModel) -> None:
+        """Of the postures in the order of the model."""
+        self.model = model
+        with np.errstate(divide="ignore"):
+            self.log_transition = np.log(model.transition)
+
+    @cached_property
+    def share(self) -> Array:
+        """How much of its time each posture is in each state, (p, s)."""
+        long = np.linalg.matrix_power(self.model.transition, LONG_FRAMES)
+        return np.asarray(long[:, 0])
+
+    @cached_property
+    def away(self) -> Array:
+        """How far each state is from standing, (p, s); 0 where it is rare."""
+        apart = np.linalg.norm(self.model.mean - self.model.rest_mean, axis=2)
+        return np.asarray(np.where(self.share > RARE, apart, 0.0))
+
+    @cached_property
+    def far(self) -> NDArray[np.bool_]:
+        """The states at the height of each posture, (p, s)."""
+        return np.asarray(self.away >= REACH * self.away.max(axis=1, keepdims=True))
+
+    @cached_property
+    def turn(self) -> NDArray[np.int64]:
+        """The state of each posture farthest from standing, and before it that farthest from this
+        one: a repetition goes from one to the other and back, (p, 2)."""
+        far = self.away.argmax(axis=1)
+        mean = self.model.mean
+        apart = np.linalg.norm(mean - mean[np.arange(len(far)), far][:, np.newaxis], axis=2)
+        return np.stack([np.where(self.share > RARE, apart, 0.0).argmax(axis=1), far], axis=1)
 
 
 @compiled

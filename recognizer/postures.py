@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recognizer.codebook import Codebook, symbols
-from recognizer.features import FEATURE_NAMES, Rows, features, with_pose
+from recognizer.features import BEARING_NAMES, FEATURE_NAMES, Rows, bearings, features, with_pose
 from recognizer.forward import forward
-from recognizer.limb_directions import BEARING_NAMES, bearings
 
 Array = NDArray[np.float64]
 Topology = Literal["left-right", "ergodic"]

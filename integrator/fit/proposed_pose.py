@@ -11,8 +11,8 @@ from common.body.proportions import body_vector
 from common.method import Method
 from common.rig.camera import Rig
 from integrator.fit import pose_refinement, visual_hull
-from integrator.opening_posture import prior
 from integrator.pairing import Pair, Seen
+from integrator.prior_body import prior
 from integrator.proposal import pose_proposal
 from integrator.proposal.pose_proposal import Insight, Memory
 

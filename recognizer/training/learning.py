@@ -6,10 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from recognizer.codebook import SYMBOLS, Codebook, fit, symbols
-from recognizer.features import Rows, features, with_pose
+from recognizer.features import Rows, bearings, features, with_pose
 from recognizer.filler import fit_of, standing
 from recognizer.learning_error import LearningError
-from recognizer.limb_directions import bearings
 from recognizer.postures import (
     STATES,
     Card,
