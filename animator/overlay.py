@@ -9,9 +9,7 @@ from numpy.typing import NDArray
 
 from animator.scene import LEFT, RIGHT, TRUNK, UNSURE, Colour
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
-
-Image = NDArray[np.uint8]
-"""(H, W, 3), blue, green, red, as OpenCV's films want it."""
+from common.video.decoding import Image
 
 LEAST_HEIGHT_PX: Final = 480
 """Smaller pictures are enlarged by a whole number: a stick would hide an arm at 160x120."""

@@ -6,10 +6,10 @@ from common.bus.messages import Box, ViewerNumber
 from common.raster.kernel import draw_body
 from common.raster.silhouette_report import box_of
 from common.raster.similarity import Mask
-from viewer.paper.posed_model import Figure, figure_of, rotation_of, view_at
+from viewer.paper.posed_model import PosedModel, model_over, rotation_of, view_at
 
 BODY = body_vector(thesis_bdp(1.0))
-"""The thesis's proportions at stature 1: drawn at 100 px a unit, a figure of 100 rows."""
+"""The thesis's proportions at stature 1: drawn at 100 px a unit, a model of 100 rows."""
 SIZE = (160, 120)
 ROOT_PX = (80.0, 64.0)
 PX = 100.0
@@ -28,8 +28,8 @@ def stretched(**angles_deg: float) -> Vector:
     return posed(**{"r_shoulder_z": 90.0, "l_shoulder_z": 270.0, **angles_deg})
 
 
-def angle(figure: Figure, name: str) -> float:
-    return float(figure.pose[POSE_INDEX[name]])
+def angle(model: PosedModel, name: str) -> float:
+    return float(model.pose[POSE_INDEX[name]])
 
 
 def view(viewer: ViewerNumber, root_px: tuple[float, float] = ROOT_PX, px: float = PX) -> Vector:
@@ -48,9 +48,11 @@ def picture(
     return draw_body(body, pose, view(viewer, root_px), size)
 
 
-def laid_over(mask: Mask, pose: Vector, viewer: ViewerNumber = 1, body: Vector = BODY) -> Figure:
+def laid_over(
+    mask: Mask, pose: Vector, viewer: ViewerNumber = 1, body: Vector = BODY
+) -> PosedModel:
     """A model in a pose, where `picture` puts it, laid over a silhouette."""
-    return figure_of(mask, body, pose, view(viewer))
+    return model_over(mask, body, pose, view(viewer))
 
 
 def box_around(mask: Mask) -> Box:

@@ -16,7 +16,7 @@ from common.raster.kernel import draw_body, view_of
 from common.raster.silhouette_report import box_of, pack
 from common.raster.similarity import Mask
 from common.rig.camera import Rig, paper_rig
-from common.video.decoding import Picture
+from common.video.decoding import Image
 from integrator import merge
 from integrator.pairing import Pair
 from viewer import track
@@ -65,7 +65,7 @@ def silhouettes(pose: Vector, body: Bdp = PERSON, rig: Rig = RIG) -> tuple[Mask,
 def exact(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let viewers take the picture for the silhouette; one that stands still is no fault."""
 
-    def step(state: None, picture: Picture, _near: object) -> tuple[None, Seen]:
+    def step(state: None, picture: Image, _near: object) -> tuple[None, Seen]:
         mask, box = picture.view(np.bool_), box_of(picture)
         if box is None:
             return state, Seen(mask=mask, box=None, area_px=0, blobs=0, cut=False)

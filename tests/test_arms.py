@@ -108,12 +108,12 @@ def test_a_grid_of_shoulders_and_elbows_is_found_again(
     for outward, elbow in GRID:
         truth = posed(**arm(side, outward, elbow))
         start = posed(**arm(side, outward + 4.0, elbow + math.copysign(4.0, elbow)))
-        figure = laid_over(picture(truth), start)
+        model = laid_over(picture(truth), start)
         for _ in range(2):
-            figure = facade_arms(figure, search, wide=False)
-            assert within_range(figure.pose, side)
+            model = facade_arms(model, search, wide=False)
+            assert within_range(model.pose, side)
         for limb in ("upper_arm", "lower_arm"):
-            errors.append(off_deg(truth, figure.pose, f"{side}_{limb}"))
+            errors.append(off_deg(truth, model.pose, f"{side}_{limb}"))
     assert max(errors) <= worst + 1e-6
     assert np.mean(errors) <= mean
 
@@ -122,8 +122,8 @@ def test_a_grid_of_shoulders_and_elbows_is_found_again(
 @pytest.mark.parametrize("outward_deg", [20.0, 60.0, 100.0, 160.0])
 def test_a_straight_arm_is_found_wherever_it_was(side: str, outward_deg: float) -> None:
     """P30, `wide`: nothing is known of the angle."""
-    figure = laid_over(picture(posed(**arm(side, outward_deg, 0.0))), posed())
-    found = facade_arms(figure, PAPERS, wide=True)
+    model = laid_over(picture(posed(**arm(side, outward_deg, 0.0))), posed())
+    found = facade_arms(model, PAPERS, wide=True)
     off = angle(found, f"{side}_shoulder_z") - arm(side, outward_deg, 0.0)[f"{side}_shoulder_z"]
     assert abs(off) <= 4.0
 
@@ -152,9 +152,9 @@ def test_the_facades_search_is_the_shoulder_then_the_elbow_right_then_left(
     """P31, P41: windows of 64 degrees down to 4, and the elbow's range follows the shoulder."""
     calls = []
 
-    def recorded(figure, how, within):  # type: ignore[no-untyped-def]
+    def recorded(model, how, within):  # type: ignore[no-untyped-def]
         calls.append((how.at, *within[:3]))
-        return viewer.paper.posed_model.searched(figure, how, within)
+        return viewer.paper.posed_model.searched(model, how, within)
 
     monkeypatch.setattr("viewer.paper.arms.searched", recorded)
     seen = picture(posed(r_shoulder_z=150.0, l_shoulder_z=210.0))
@@ -206,14 +206,14 @@ def test_the_flank_has_one_angle_an_arm() -> None:
 
 def test_an_arm_is_followed_round_the_circle() -> None:
     """P30: theta_X has no end at 180, where an arm points up."""
-    figure = laid_over(picture(posed(), viewer=2), posed(), viewer=2)
+    model = laid_over(picture(posed(), viewer=2), posed(), viewer=2)
     for swing_deg in range(20, 361, 20):
         truth = posed(r_shoulder_x=float(swing_deg), l_shoulder_x=float(swing_deg))
-        figure = laid_over(picture(truth, viewer=2), figure.pose, viewer=2)
-        figure = flank_arms(figure, PAPERS, near=0, wide=False)
-        off = math.remainder(angle(figure, "r_shoulder_x") - swing_deg, 360.0)
+        model = laid_over(picture(truth, viewer=2), model.pose, viewer=2)
+        model = flank_arms(model, PAPERS, near=0, wide=False)
+        off = math.remainder(angle(model, "r_shoulder_x") - swing_deg, 360.0)
         assert abs(off) <= 8.0
-        assert -180.0 < angle(figure, "r_shoulder_x") <= 180.0
+        assert -180.0 < angle(model, "r_shoulder_x") <= 180.0
 
 
 @pytest.mark.parametrize("side", ["r", "l"])

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from common.video.decoding import Image
 from viewer.background.background import learn, light_gain
-from viewer.background.image_stack import Frame
 from viewer.background.occluded_background import learn_uncovered
 
 HEIGHT, WIDTH = 120, 160
@@ -21,7 +21,7 @@ def room() -> NDArray[np.float64]:
     return np.asarray(np.clip(walls, 40, 200), np.float64)
 
 
-def shot(picture: NDArray[np.float64], sigma: float, seed: int) -> Frame:
+def shot(picture: NDArray[np.float64], sigma: float, seed: int) -> Image:
     noise = np.random.default_rng(seed).normal(0, sigma, picture.shape)
     return np.clip(np.rint(picture + noise), 0, 255).astype(np.uint8)
 

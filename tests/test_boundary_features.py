@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from common.video.decoding import Image
 from viewer.background.background import BackgroundModel
-from viewer.background.image_stack import Frame
 from viewer.silhouette.alpha_matte import NOISE, SHARES
 from viewer.silhouette.boundary_features import CROSS, FEATURES, features_of
 from viewer.silhouette.colour_model import SHADES
@@ -20,7 +20,7 @@ FACTS = SHARES * len(CROSS) + 2
 ROWS, COLUMNS, EDGE = 120, 160, 80
 
 
-def mixed(share: float, shade: float) -> Frame:
+def mixed(share: float, shade: float) -> Image:
     """Body at the left, then a column that it covers in part, then the room in a shade."""
     picture = np.empty((ROWS, COLUMNS, 3))
     picture[:] = np.array(ROOM) * shade

@@ -22,7 +22,7 @@ from common.video.decoding import (
     STALL_S,
     Decoder,
     DecoderDied,
-    Picture,
+    Image,
     Undecodable,
 )
 from viewer.capture import WAITING, CapturedFrame, Live, RoomClock, recorded
@@ -37,7 +37,7 @@ def decoder() -> Iterator[Decoder]:
         yield shared
 
 
-def picture_of(index: int, size: tuple[int, int] = SIZE) -> Picture:
+def picture_of(index: int, size: tuple[int, int] = SIZE) -> Image:
     """Grey, brighter with every frame: it can be told from its neighbours after JPEG."""
     return np.full((size[1], size[0], 3), 5 * (index % 40) + 20, np.uint8)
 
@@ -54,7 +54,7 @@ def view_of(source: str | int, fps: float = 15.0, frames: int = FRAMES) -> View:
     return View(1, source, SIZE, SIZE, fps, frames)
 
 
-def shown(picture: Picture) -> int:
+def shown(picture: Image) -> int:
     """The index that a picture was written with."""
     return round((float(picture.mean()) - 20) / 5)
 

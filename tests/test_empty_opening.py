@@ -6,9 +6,9 @@ import cv2
 import pytest
 from test_background import HEIGHT, WIDTH, passer_by, room, shot, walker
 
+from common.video.decoding import Image
 from viewer.background.background import overlaid_opening
 from viewer.background.empty_opening import is_empty_opening, is_still
-from viewer.background.image_stack import Frame
 
 
 def test_somebody_who_runs_through_the_opening_is_no_empty_room() -> None:
@@ -28,7 +28,7 @@ def test_opening_is_empty_until_somebody_stands_in_it() -> None:
 def test_opening_of_the_development_clips(data_dir: Path, name: str, camera: int) -> None:
     """Frames 0-8 show the empty room; from frame 9 on somebody is there."""
     video = cv2.VideoCapture(str(data_dir / "dev" / name / f"cam{camera}.avi"))
-    clip: list[Frame] = []
+    clip: list[Image] = []
     while (read := video.read())[0]:
         clip.append(cv2.resize(read[1], (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA))
     assert is_empty_opening(overlaid_opening(clip[:8]), clip[::4])

@@ -45,12 +45,12 @@ def test_standing_legs_are_found_in_the_facade(right_deg: float, left_deg: float
     """P33: theta_Z of both hips alone, from 14 degrees off (the window reaches 16, P41)."""
     seen = picture(posed(r_hip_z=right_deg, l_hip_z=left_deg))
     start = posed(r_hip_z=right_deg - 14.0, l_hip_z=left_deg + 14.0)
-    figure = laid_over(seen, start)
+    model = laid_over(seen, start)
     for _ in range(2):
-        figure = facade_legs(figure, PAPERS, squatting=False)
-    assert angle(figure, "r_hip_z") == pytest.approx(right_deg, abs=4.0)
-    assert angle(figure, "l_hip_z") == pytest.approx(left_deg, abs=4.0)
-    changed = {name for name, i in POSE_INDEX.items() if figure.pose[i] != start[i]}
+        model = facade_legs(model, PAPERS, squatting=False)
+    assert angle(model, "r_hip_z") == pytest.approx(right_deg, abs=4.0)
+    assert angle(model, "l_hip_z") == pytest.approx(left_deg, abs=4.0)
+    changed = {name for name, i in POSE_INDEX.items() if model.pose[i] != start[i]}
     assert changed <= {"r_hip_z", "l_hip_z"}
 
 
@@ -65,12 +65,12 @@ def test_squats_are_found_in_the_facade_with_the_feet_under_the_hips(hip_deg: fl
     From 25 degrees on: below, the navel drops by less than 4 % and nobody squats (P33); of 10
     degrees the facade shows less than a pixel.
     """
-    figure = laid_over(picture(squat(hip_deg)), squat(hip_deg - 12.0))
-    figure = facade_legs(figure, PAPERS, squatting=True)
+    model = laid_over(picture(squat(hip_deg)), squat(hip_deg - 12.0))
+    model = facade_legs(model, PAPERS, squatting=True)
     for side in "rl":
-        assert angle(figure, f"{side}_hip_x") == pytest.approx(hip_deg, abs=4.0)
-        assert angle(figure, f"{side}_knee_x") == -2 * angle(figure, f"{side}_hip_x")
-        limbs = segments(BODY, figure.pose)
+        assert angle(model, f"{side}_hip_x") == pytest.approx(hip_deg, abs=4.0)
+        assert angle(model, f"{side}_knee_x") == -2 * angle(model, f"{side}_hip_x")
+        limbs = segments(BODY, model.pose)
         hip = limbs[LIMBS.index(f"{side}_upper_leg"), 0]
         foot = limbs[LIMBS.index(f"{side}_lower_leg"), 1]
         assert abs(hip[2] - foot[2]) <= 0.04
@@ -87,11 +87,11 @@ def test_a_squat_begins_between_20_and_25_degrees(hip_deg: float, squatting: boo
 def test_a_squat_down_and_up_is_followed_in_the_flank(speed_deg: float) -> None:
     """P35, P52: hips and knees free, both legs in one silhouette, 0 to 60 degrees and back."""
     down = np.arange(0.0, 61.0, speed_deg)
-    figure, errors = laid_over(picture(squat(0.0), 2), squat(0.0), 2), []
+    model, errors = laid_over(picture(squat(0.0), 2), squat(0.0), 2), []
     for hip_deg in [*down, *down[::-1]]:
         seen = picture(squat(hip_deg), 2)
-        figure = flank_legs(laid_over(seen, figure.pose, 2), PAPERS, near=0)
-        errors += [abs(angle(figure, f"{side}_hip_x") - hip_deg) for side in "rl"]
+        model = flank_legs(laid_over(seen, model.pose, 2), PAPERS, near=0)
+        errors += [abs(angle(model, f"{side}_hip_x") - hip_deg) for side in "rl"]
     assert np.mean(errors) <= 1.5
     assert np.mean(np.array(errors) > 4.0) <= 0.05
 
@@ -106,32 +106,32 @@ def test_a_lifted_leg_is_followed_in_the_flank_and_taken_for_the_near_one(lifted
 
     Both hips lie at one place of the flank's silhouette, which cannot tell the legs apart.
     """
-    figure = laid_over(picture(posed(), 2), posed(), 2)
+    model = laid_over(picture(posed(), 2), posed(), 2)
     for hip_deg in np.arange(0.0, 51.0, 2.0):
         seen = picture(leg_lifted(lifted, hip_deg), 2)
-        figure = flank_legs(laid_over(seen, figure.pose, 2), PAPERS, near=0)
-        assert angle(figure, "r_hip_x") == pytest.approx(hip_deg, abs=4.0)
-        assert angle(figure, "r_knee_x") == pytest.approx(-0.8 * hip_deg, abs=8.0)
-        assert angle(figure, "l_hip_x") == pytest.approx(0.0, abs=4.0)
+        model = flank_legs(laid_over(seen, model.pose, 2), PAPERS, near=0)
+        assert angle(model, "r_hip_x") == pytest.approx(hip_deg, abs=4.0)
+        assert angle(model, "r_knee_x") == pytest.approx(-0.8 * hip_deg, abs=8.0)
+        assert angle(model, "l_hip_x") == pytest.approx(0.0, abs=4.0)
 
 
 def test_knees_bend_one_way_in_the_flank() -> None:
     """P35: the range of the knee is [-150, 0], whatever is seen."""
     seen = picture(posed(r_hip_x=-30.0, r_knee_x=40.0), 2)
-    figure = laid_over(seen, posed(r_hip_x=-20.0), 2)
+    model = laid_over(seen, posed(r_hip_x=-20.0), 2)
     for _ in range(3):
-        figure = flank_legs(figure, PAPERS, near=0)
-        assert -150.0 <= angle(figure, "r_knee_x") <= 0.0
+        model = flank_legs(model, PAPERS, near=0)
+        assert -150.0 <= angle(model, "r_knee_x") <= 0.0
 
 
 def test_a_squat_ends_where_the_knee_ends() -> None:
     """P34, P35: hip at most 75, where knee = -150."""
     body = body_vector(thesis_bdp(1.0))
-    figure = laid_over(np.zeros(SIZE[::-1], np.bool_), squat(74.0), body=body)
-    figure = facade_legs(figure, PAPERS, squatting=True)
+    model = laid_over(np.zeros(SIZE[::-1], np.bool_), squat(74.0), body=body)
+    model = facade_legs(model, PAPERS, squatting=True)
     for side in "rl":
-        assert 0.0 <= angle(figure, f"{side}_hip_x") <= 75.0
-        assert -150.0 <= angle(figure, f"{side}_knee_x") <= 0.0
+        assert 0.0 <= angle(model, f"{side}_hip_x") <= 75.0
+        assert -150.0 <= angle(model, f"{side}_knee_x") <= 0.0
 
 
 def test_a_leg_window_reaches_sixteen_degrees_a_frame() -> None:

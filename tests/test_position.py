@@ -35,8 +35,8 @@ def test_every_whole_shift_up_to_ten_pixels_is_found_exactly(shift: int, axis: i
     """P27, P28, with the repeats; the body stays wholly in the picture."""
     start = (ROOT_PX[0], ROOT_PX[1] - 8.0)
     root = (start[0] + shift, start[1]) if axis == 0 else (start[0], start[1] + shift)
-    figure = laid_over(picture(stretched(), root_px=root), stretched())
-    found = located(figure._replace(view=view(1, start)))
+    model = laid_over(picture(stretched(), root_px=root), stretched())
+    found = located(model._replace(view=view(1, start)))
     assert tuple(found.view[14:16]) == root
 
 
@@ -51,7 +51,7 @@ def test_a_shift_along_both_axes_is_found_to_a_pixel(right: int, down: int) -> N
 
 def test_one_pass_would_leave_a_pixel() -> None:
     """P27: shifts of 3, 4 and 6 to 10 need a second or a third pass; so up to three are made."""
-    figure = laid_over(picture(stretched()), stretched())
+    model = laid_over(picture(stretched()), stretched())
     left_over = {}
     for shift in range(-10, 11):
         seen = picture(stretched(), root_px=place(shift, 0))
@@ -61,8 +61,8 @@ def test_one_pass_would_leave_a_pixel() -> None:
                 int(seen.sum()),
                 SIZE[0],
                 BODY,
-                figure.pose,
-                figure.view,
+                model.pose,
+                model.view,
                 np.array(SHIFTS_PX),
                 passes,
             )

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from common.config import Settings, SilhouetteSettings
 from common.method import DEFAULT
 from common.raster.similarity import Mask
+from common.video.decoding import Image
 from viewer import track
 from viewer.background.background import learn, light_gain
-from viewer.background.image_stack import Frame
 from viewer.background.occluded_background import learn_uncovered
 from viewer.silhouette.alpha_matte import matte, sides_of
 from viewer.silhouette.colour_model import body_colours_of, counted
@@ -58,7 +58,7 @@ def dressed(picture: Picture, mask: Mask) -> Picture:
     return out
 
 
-def shot(picture: Picture, sigma: float, seed: int) -> Frame:
+def shot(picture: Picture, sigma: float, seed: int) -> Image:
     noise = np.random.default_rng(seed).normal(0, sigma, picture.shape)
     return np.clip(np.rint(picture + noise), 0, 255).astype(np.uint8)
 
@@ -67,7 +67,7 @@ def begin(sigma: float = 2.0) -> State:
     return init(learn([shot(room(), sigma, seed) for seed in range(8)]), SETTINGS, DEFAULT)
 
 
-def see(frame: Frame, near_px: tuple[float, float] | None = None) -> Seen:
+def see(frame: Image, near_px: tuple[float, float] | None = None) -> Seen:
     return step(begin(), frame, near_px)[1]
 
 
@@ -219,7 +219,7 @@ def test_silhouettes_of_the_development_clips(
     assert np.mean(scores) >= least
 
 
-def clip(folder: Path, camera: int, size: tuple[int, int]) -> tuple[list[Frame], Mask]:
+def clip(folder: Path, camera: int, size: tuple[int, int]) -> tuple[list[Image], Mask]:
     """Frames and true masks at a size; a small pixel is body where half of its four are."""
     video = cv2.VideoCapture(str(folder / f"cam{camera}.avi"))
     frames = []

@@ -16,7 +16,7 @@ from common.raster.kernel import draw_body
 from common.raster.silhouette_report import pack
 from common.rig.camera import PAPER_ROTATIONS
 from viewer.paper.posed_model import view_at
-from viewer.stick.stick_fit import Stick, expected, fit, told
+from viewer.stick.stick_fit import Stick, expected, fit, fit_of
 
 TWELVE = slice(3, 15)
 POSES = {
@@ -144,7 +144,7 @@ def test_a_fit_travels_in_a_report() -> None:
     stick = fit(mask, None, STATURE_PX, DEFAULT)
     report = Report(
         frame=0, captured_s=0.0, clock_s=0.0, viewer=1, width=320, height=240,
-        silhouette=pack(mask), box=None, fit=told(stick),
+        silhouette=pack(mask), box=None, fit=fit_of(stick),
     )  # fmt: skip
     heard = decode(encode(report), Report)
     assert isinstance(heard.fit, Fit)

@@ -214,11 +214,11 @@ def test_narrow_peaks_in_clutter_are_wrong_in_one_case_of_nine_and_then_by_far()
 def test_the_compiled_search_is_the_plain_one(
     true_deg: float, before_deg: float, elbow_deg: float, seed: int
 ) -> None:
-    """P9, P36: limbs counted over a drawn rest score as the whole figure does, to 1e-12."""
+    """P9, P36: limbs counted over a drawn rest score as the whole model does, to 1e-12."""
     noise = np.random.default_rng(seed).random(SIZE[::-1]) < 0.02
     seen = picture(posed(r_shoulder_z=true_deg, r_elbow_x=elbow_deg, l_hip_z=190.0)) ^ noise
     pose = posed(r_shoulder_z=before_deg, r_elbow_x=elbow_deg / 2)
-    figure = laid_over(seen, pose)
+    model = laid_over(seen, pose)
     how = turn(ARM_LIMBS[0], r_shoulder_z=1.0)
     bounds = window(before_deg, ARM, 0.0, 180.0)
 
@@ -229,12 +229,12 @@ def test_the_compiled_search_is_the_plain_one(
 
     plain = tritree(score, bounds, STOP)
     compiled = search(
-        figure.seen,
-        figure.seen_px,
-        figure.width,
+        model.seen,
+        model.seen_px,
+        model.width,
         BODY,
         pose,
-        figure.view,
+        model.view,
         how.step,
         how.moving,
         *bounds,
@@ -248,11 +248,11 @@ def test_coupled_angles_turn_together() -> None:
     """P34: the knee bends twice as far as the hip, the other way."""
     seen = picture(posed(r_hip_x=40.0, r_knee_x=-80.0), viewer=2)
     how = turn((2, 4), r_hip_x=1.0, r_knee_x=-2.0)
-    figure = laid_over(seen, posed(r_knee_x=33.0), viewer=2)
+    model = laid_over(seen, posed(r_knee_x=33.0), viewer=2)
     angle, value, _ = search(
-        figure.seen, figure.seen_px, figure.width, BODY, figure.pose, figure.view, how.step,
+        model.seen, model.seen_px, model.width, BODY, model.pose, model.view, how.step,
         how.moving, 28, 60, STOP,
     )  # fmt: skip
     assert angle == pytest.approx(40.0, abs=2.0)
     assert value == pytest.approx(1.0, abs=1e-12)
-    assert figure.pose[POSE_INDEX["r_knee_x"]] == 33.0
+    assert model.pose[POSE_INDEX["r_knee_x"]] == 33.0

@@ -20,7 +20,7 @@ from common.video.clip_sources import footage_of
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied
 from viewer import track
-from viewer.background.background_source import room_of_run
+from viewer.background.background_source import background_of_run
 from viewer.capture import CapturedFrame, Live, RoomClock
 from viewer.jpeg import jpeg_of
 from viewer.viewer_warmup import warm_up
@@ -121,7 +121,7 @@ def run(
 def main(
     settings: Settings, viewer: ViewerNumber, context: ProcessContext = ProcessContext()
 ) -> None:
-    """Learn the room, wait for the others, look at the clip, close the doors in order.
+    """Learn the background, wait for the others, look at the clip, close the doors in order.
 
     Raises:
         ClipError: When the clip cannot be used.
@@ -136,14 +136,14 @@ def main(
         with Decoder() as decoder:
             clip = open_clip(settings, decoder, (viewer,))
             view = clip.views[0]
-            room, odd = room_of_run(view, settings.silhouette, decoder, context.kept)
+            background, odd = background_of_run(view, settings.silhouette, decoder, context.kept)
         warnings = (*clip.warnings, *([odd] if odd else []))
         for warning in warnings:
             log.warning(warning)
         camera = clip.rig.cameras[0] if clip.rig else None
         alone = len(footage_of(settings)) == 1
         setup = track.Setup(viewer, camera, settings, METHODS[settings.mode], alone)
-        state = track.init(setup, room)
+        state = track.init(setup, background)
         warm_up(state, view.size)
         gc.collect()
         gc.freeze()

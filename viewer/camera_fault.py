@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from common.bus.messages import CameraFault
 from common.compiled import compiled
+from common.video.decoding import Image
 from viewer.background.background import Background
-from viewer.background.image_stack import Frame
 
 FROZEN_AFTER: Final = 2
 """Repeats that may be no fault: files made for a faster rate hold each picture two or three times,
@@ -31,7 +31,7 @@ class State(NamedTuple):
 
     background: NDArray[np.float32]
     """Grey levels of the background, every STRIDE pixels."""
-    last: Frame | None = None
+    last: Image | None = None
     repeats: int = 0
 
 
@@ -40,7 +40,7 @@ def init(background: Background) -> State:
     return State(_grey(background.centre))
 
 
-def step(state: State, picture: Frame) -> tuple[State, CameraFault]:
+def step(state: State, picture: Image) -> tuple[State, CameraFault]:
     """One picture (H, W, 3); the fault that makes it useless, or "".
 
     A sensor's noise makes every picture of its own, so one that is the same, bit for bit, for
@@ -53,7 +53,7 @@ def step(state: State, picture: Frame) -> tuple[State, CameraFault]:
     return state, _blank(state.background, picture)
 
 
-def _blank(background: NDArray[np.float32], picture: Frame) -> CameraFault:
+def _blank(background: NDArray[np.float32], picture: Image) -> CameraFault:
     if _contrast_of(picture) > PLAIN:
         return ""
     grey = _grey(picture)
@@ -73,7 +73,7 @@ def _contrast(grey: NDArray[np.float32]) -> float:
 
 
 @compiled
-def _contrast_of(picture: Frame) -> float:
+def _contrast_of(picture: Image) -> float:
     """The same of a picture; its brightness, a sum of bytes, is counted and not sorted."""
     counts = np.zeros(3 * 255 + 1, np.int64)
     for i in range(0, picture.shape[0], STRIDE):
@@ -93,7 +93,7 @@ def _contrast_of(picture: Frame) -> float:
 
 
 @compiled
-def _grey(picture: NDArray[np.float32] | Frame) -> NDArray[np.float32]:
+def _grey(picture: NDArray[np.float32] | Image) -> NDArray[np.float32]:
     height, width = picture.shape[:2]
     rows, columns = (height + STRIDE - 1) // STRIDE, (width + STRIDE - 1) // STRIDE
     grey = np.empty((rows, columns), np.float32)
@@ -106,7 +106,7 @@ def _grey(picture: NDArray[np.float32] | Frame) -> NDArray[np.float32]:
 
 
 @compiled
-def _same(one: Frame, other: Frame) -> bool:
+def _same(one: Image, other: Image) -> bool:
     """Whether pictures are the same, bit for bit; the first pixels tell when they are not."""
     if one.shape != other.shape:
         return False

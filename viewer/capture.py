@@ -10,7 +10,7 @@ import msgspec
 from common.bus.mailbox import Mailbox
 from common.bus.rate import Clock, wait_until
 from common.video.clip_facts import View
-from common.video.decoding import Decoded, Decoder, Picture
+from common.video.decoding import Decoded, Decoder, Image
 from common.video.frame_cache import Reader
 
 WAITING: Final = 2
@@ -26,7 +26,7 @@ class CapturedFrame(msgspec.Struct, frozen=True):
     """Seconds since the clip began, or by the room's clock for a camera."""
     clock_s: float
     """The same moment by the room's clock; offline the same as `captured_s`."""
-    picture: Picture
+    picture: Image
     """(height, width, 3), BGR, at the working size."""
     next_s: float | None = None
     """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""

@@ -39,5 +39,5 @@ def warm_up(state: track.State, size: tuple[int, int]) -> None:
         root_px=((width / 2, 0.55 * height),) * 2,
         pose=tuple(pose.tolist()),
     )
-    for index, told in enumerate((None, guide, msgspec.structs.replace(guide, measured=True))):
-        state, _ = track.step(state, CapturedFrame(index, 0.0, 0.0, picture), told)
+    for index, given in enumerate((None, guide, msgspec.structs.replace(guide, measured=True))):
+        state, _ = track.step(state, CapturedFrame(index, 0.0, 0.0, picture), given)

@@ -19,7 +19,7 @@ from common.video.decoding import (
     INFO,
     MAGIC,
     REFUSED,
-    Picture,
+    Image,
     Source,
     cure,
     named,
@@ -32,7 +32,7 @@ class Grabbed:
 
     index: int
     grabbed_s: float
-    picture: Picture | None
+    picture: Image | None
 
 
 class OpenFilm(NamedTuple):
@@ -93,7 +93,7 @@ def grabs(capture: cv2.VideoCapture, every: int) -> Iterator[Grabbed]:
         yield Grabbed(index, now_s, picture)
 
 
-def reduced(picture: Picture, size: tuple[int, int]) -> Picture:
+def reduced(picture: Image, size: tuple[int, int]) -> Image:
     """A picture of another size (width, height); each pixel is the mean of what it covers (P1)."""
     if (picture.shape[1], picture.shape[0]) == size:
         return picture

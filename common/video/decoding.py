@@ -30,7 +30,7 @@ MAX_TEXT_BYTES: Final = 1 << 16
 STALL_S: Final = 10.0
 """A child that gives nothing for so long is stuck: opening a slow camera takes 3 s."""
 
-Picture = NDArray[np.uint8]
+Image = NDArray[np.uint8]
 """(height, width, 3), blue, green, red."""
 
 Source = str | int
@@ -73,7 +73,7 @@ class Decoded(msgspec.Struct, frozen=True):
     """Its place in the source, also where only every n-th is taken."""
     grabbed_s: float
     """When it was grabbed, by this host's monotonic clock."""
-    picture: Picture
+    picture: Image
 
 
 class _Answer(msgspec.Struct, frozen=True):

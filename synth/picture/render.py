@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from common.body.body import Vector
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig, project
+from common.video.decoding import Image
 from synth.motion.motions import Motion
 from synth.person.mesh import Mesh, body_mesh
 from synth.person.people import PATTERNS, Look, Person
@@ -18,8 +19,6 @@ from synth.person.rings import MATERIAL, MATERIALS
 from synth.picture.exposure import blurred, exposures
 from synth.picture.raster import cover, draw, expose, gather, shade, skin
 from synth.picture.synth_room import LIGHT_MAP_PX, Lamp, Room, furnished, lamp_pixels, lit_from
-
-Frame = NDArray[np.uint8]
 
 FINE_PX: Final = 480
 """Samples across a picture: a smaller one averages more samples a pixel."""
@@ -39,9 +38,9 @@ Body = tuple[NDArray[np.float32], Mask]
 class Shot(NamedTuple):
     """One moment in both views."""
 
-    frame1: Frame
+    frame1: Image
     """(h, w, 3) blue, green, red."""
-    frame2: Frame
+    frame2: Image
     mask1: Mask
     """(h, w) True where the person covers at least half of a pixel at the frame's time."""
     mask2: Mask
@@ -233,7 +232,7 @@ def _exposed(
     lit: NDArray[np.float32],
     gain: float,
     noise: NDArray[np.float32],
-) -> tuple[Frame, Mask]:
+) -> tuple[Image, Mask]:
     """The picture of camera n and its mask."""
     frame = np.empty((scene.rig.height, scene.rig.width, 3), np.uint8)
     expose(scene.room.pictures[n], lit, body[0], gain, noise, frame)

@@ -14,7 +14,7 @@ from common.raster.similarity import Mask
 from common.video.clip_facts import View
 from common.video.clips import open_clip
 from tritrack.offline.lockstep import Decoders
-from viewer.background.background_source import empty_room
+from viewer.background.background_source import background_of_view
 from viewer.capture import recorded
 from viewer.silhouette import silhouette
 
@@ -59,7 +59,7 @@ def _of_view(
     packed, width = truth[f"mask_cam{view.number}"], int(truth["mask_shape"][1])
     row_of = truth.get(f"frames_cam{view.number}", np.arange(len(packed)))
     decoder = decoders.of[view.number]
-    background, _ = empty_room(view, settings.silhouette, decoder)
+    background, _ = background_of_view(view, settings.silhouette, decoder)
     state = silhouette.init(background, settings.silhouette, METHODS[settings.mode])
     shares, empty, ghosts = [], 0, 0
     for frame in recorded(view, every, decoder):

@@ -14,7 +14,7 @@ from common.npz_file import Arrays
 from common.rig.camera import project
 from common.video.clip_facts import View, both_cameras
 from common.video.clips import open_clip
-from common.video.decoding import Picture
+from common.video.decoding import Image
 from tritrack.accuracy.accuracy import INDEX, JOINTS, Compared
 from tritrack.offline.lockstep import Decoders
 from viewer.capture import recorded
@@ -112,7 +112,7 @@ def draw(
 
 def _shown(
     one: WorstFrame, compared: Compared, truth: Arrays, settings: Settings, decoders: Decoders
-) -> Picture:
+) -> Image:
     clip = open_clip(msgspec.structs.replace(settings, size=SHOWN), decoders.of[1])
     rig, row, parts = both_cameras(clip), int(compared.rows[one.place]), []
     for view in clip.views:
@@ -130,7 +130,7 @@ def _shown(
     return np.concatenate(parts, axis=1)
 
 
-def _taken(view: View, index: int, decoders: Decoders) -> tuple[Picture, float]:
+def _taken(view: View, index: int, decoders: Decoders) -> tuple[Image, float]:
     """A frame of a video at HEIGHT_PX, and how many times as large as it was filmed."""
     last = None
     for frame in recorded(view, 1, decoders.of[view.number]):
@@ -143,7 +143,7 @@ def _taken(view: View, index: int, decoders: Decoders) -> tuple[Picture, float]:
     return cv2.resize(last, size, interpolation=cv2.INTER_CUBIC), enlarged
 
 
-def stick(picture: Picture, at_px: Vector, colours: tuple[Any, Any]) -> None:
+def stick(picture: Image, at_px: Vector, colours: tuple[Any, Any]) -> None:
     """Draw a person as lines between joints (12, 2), in place; left and right in their colours."""
     for start, end in STICKS:
         ends = at_px[[INDEX[start], INDEX[end]]]

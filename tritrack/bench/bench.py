@@ -24,18 +24,18 @@ from common.video.clips import open_clip
 from integrator import integrator_warmup
 from synth.write import ClipSet, write_set
 from tritrack.bench.bench_figure import Measured, least_s
-from tritrack.bench.bench_scenes import by_opencv, figure_pairs, match_all, match_placed, scene
+from tritrack.bench.bench_scenes import by_opencv, match_all, match_placed, model_pairs, scene
 from tritrack.bench.single_bench import FOLLOWED, figures
 from tritrack.live.session import free_settings, live
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.runs import VERSIONS_OF, write_run
 from viewer import track, viewer_warmup
 from viewer.background.background import learn
-from viewer.background.background_source import empty_room
+from viewer.background.background_source import background_of_view
 from viewer.capture import recorded
 from viewer.paper.arms import facade_arms, flank_arms
 from viewer.paper.legs import facade_legs, flank_legs
-from viewer.paper.posed_model import Figure
+from viewer.paper.posed_model import PosedModel
 from viewer.paper.position import located
 from viewer.silhouette import silhouette
 
@@ -107,9 +107,9 @@ def matching(size: tuple[int, int], target_us: float, repeats: int) -> Iterator[
 def searching(size: tuple[int, int], target: float, repeats: int) -> Iterator[Measured]:
     """The paper's search from two silhouettes to all angles, on one core (sections 3.2 to 3.4)."""
     at = f"{size[0]}x{size[1]}"
-    pairs, settings = figure_pairs(size), SearchSettings()
+    pairs, settings = model_pairs(size), SearchSettings()
 
-    def both(facade: Figure, flank: Figure) -> int:
+    def both(facade: PosedModel, flank: PosedModel) -> int:
         one = facade_legs(facade_arms(located(facade), settings, False), settings, False)
         other = flank_legs(flank_arms(located(flank), settings, 0, False), settings, 0)
         return one.matches + other.matches
@@ -133,9 +133,11 @@ def loaded_s() -> float:
     """Compile or load all that a viewer and the integrator run; the seconds that it took."""
     began = time.perf_counter()
     settings = Settings()
-    room = learn([np.full((SMALL[1], SMALL[0], 3), 128, np.uint8)])
+    background = learn([np.full((SMALL[1], SMALL[0], 3), 128, np.uint8)])
     for viewer in integrator_warmup.VIEWERS:
-        viewer_warmup.warm_up(track.init(track.Setup(viewer, None, settings, DEFAULT), room), SMALL)
+        viewer_warmup.warm_up(
+            track.init(track.Setup(viewer, None, settings, DEFAULT), background), SMALL
+        )
     integrator_warmup.warm_up(settings, SMALL)
     return time.perf_counter() - began
 
@@ -170,7 +172,7 @@ def _silhouettes_s(settings: Settings, decoders: Decoders) -> float:
     total_s = 0.0
     for view in open_clip(settings, decoders.of[1]).views:
         decoder = decoders.of[view.number]
-        background, _ = empty_room(view, settings.silhouette, decoder)
+        background, _ = background_of_view(view, settings.silhouette, decoder)
         state = silhouette.init(background, settings.silhouette, METHODS[settings.mode])
         for frame in recorded(view, 1, decoder):
             began = time.perf_counter()

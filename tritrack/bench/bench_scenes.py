@@ -15,7 +15,7 @@ from common.raster.bits import Bits, pack_words, unpack_words
 from common.raster.kernel import draw_body, draw_limbs, limb_primitive, score
 from common.raster.row_spans import PRIMITIVE, gain, spans
 from common.rig.camera import PAPER_ROTATIONS
-from viewer.paper.posed_model import Figure, figure_of, view_at
+from viewer.paper.posed_model import PosedModel, model_over, view_at
 
 STATURE_SHARE: Final = 0.65
 """Of a person in the picture's height, as in the development clips."""
@@ -129,7 +129,7 @@ def by_opencv(given: Scene) -> Callable[[], int]:
     return run
 
 
-def figure_pairs(size: tuple[int, int]) -> list[tuple[Figure, Figure]]:
+def model_pairs(size: tuple[int, int]) -> list[tuple[PosedModel, PosedModel]]:
     """A person in the facade and in the flank view, each with a model a little off."""
     random = np.random.default_rng(1)
     body = body_vector(thesis_bdp(1.0))
@@ -138,7 +138,7 @@ def figure_pairs(size: tuple[int, int]) -> list[tuple[Figure, Figure]]:
         pose = swayed(rest_pose(), random)
         before = swayed(pose, random)
         one, other = (
-            figure_of(
+            model_over(
                 draw_body(body, pose, _view(size, viewer), size),
                 body,
                 before,

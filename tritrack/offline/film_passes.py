@@ -93,12 +93,12 @@ def bodies_of(reports: Sequence[Report], film: FilmFacts) -> list[Body]:
     guide: Guide | None = None
     bodies: list[Body] = []
     for report in reports:
-        told = _annotations(film, report.frame)
-        if guide is not None and told.orientation is not None:
+        annotations = _annotations(film, report.frame)
+        if guide is not None and annotations.orientation is not None:
             guide = msgspec.structs.replace(guide, stick=True)
         viewer, full = track.describe(viewer, report, unpack(report), guide)
         pair = Pair(full, None) if film.number == 1 else Pair(None, full)
-        state, body, guide = merge.step(state, pair, told)
+        state, body, guide = merge.step(state, pair, annotations)
         bodies.append(body)
     return bodies
 
@@ -131,9 +131,9 @@ def _setup(film: FilmFacts) -> track.Setup:
 
 
 def _annotations(film: FilmFacts, frame: int) -> Annotations:
-    told = held(film.notes, frame)
-    places = {name: (u * film.scale, v * film.scale) for name, (u, v) in told.joints_px.items()}
-    return Annotations(told.orientation, told.depth, places)
+    note = held(film.notes, frame)
+    places = {name: (u * film.scale, v * film.scale) for name, (u, v) in note.joints_px.items()}
+    return Annotations(note.orientation, note.depth, places)
 
 
 def _refuse_a_moving_camera(reports: Sequence[Report], source: str) -> None:

@@ -1,28 +1,30 @@
-"""The pictures of a clip's views: the empty rooms, then those of one instant together."""
+"""The pictures of a clip's views: their backgrounds, then those of one instant together."""
 
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 
 from common.bus.messages import ViewerNumber
 from common.config import SilhouetteSettings
-from common.video.clip_facts import Clip
+from common.video.clip_facts import Clip, View
 from common.video.frame_cache import Reader
 from viewer.background.background import Background
-from viewer.background.background_source import empty_room
+from viewer.background.background_source import background_of_view
 from viewer.capture import CapturedFrame, recorded
 
 Readers = Mapping[ViewerNumber, Reader]
 """What reads each view, by its number."""
 
 
-def rooms(
+def backgrounds(
     clip: Clip, settings: SilhouetteSettings, readers: Readers
 ) -> list[tuple[Background, str]]:
-    """The empty room of every view, learnt side by side: mostly it is waiting for the decoders."""
+    """The background of every view, learnt side by side: mostly it is waiting for the decoders."""
+
+    def learnt(view: View) -> tuple[Background, str]:
+        return background_of_view(view, settings, readers[view.number])
+
     with ThreadPoolExecutor(len(clip.views)) as pool:
-        return list(
-            pool.map(lambda view: empty_room(view, settings, readers[view.number]), clip.views)
-        )
+        return [*pool.map(learnt, clip.views)]
 
 
 def instants(clip: Clip, readers: Readers) -> Iterator[dict[ViewerNumber, CapturedFrame]]:

@@ -22,13 +22,13 @@ from common.video.frame_cache import Reel
 from integrator import diagnostics, merge, merge_state, opening_posture
 from integrator.pairing import Pair
 from tritrack.offline.film_tracking import follow_clip
-from tritrack.offline.frame_pairs import instants, rooms
+from tritrack.offline.frame_pairs import backgrounds, instants
 from tritrack.offline.opening_clip import body_of
 from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_files
 from tritrack.store.runs import write_run
 from tritrack.terminal import bar, complain, warn
 from viewer import track
-from viewer.background.background_source import FilmBackground, empty_room
+from viewer.background.background_source import FilmBackground, background_of_view
 from viewer.capture import CapturedFrame
 
 
@@ -70,7 +70,7 @@ class Prepared(NamedTuple):
     viewers: dict[ViewerNumber, track.State]
     integrator: merge_state.State
     odd: list[str]
-    """What is odd about its rooms."""
+    """What is odd about its backgrounds."""
     seconds: float
     """What that took."""
 
@@ -122,7 +122,7 @@ def _in_two_passes(clip: Clip, settings: Settings, decoders: Decoders) -> Tracke
     """One camera whose scale all of the clip must tell, or that is followed as the thesis does."""
     view = clip.views[0]
     decoder = decoders.of[view.number]
-    learnt, odd = empty_room(view, settings.silhouette, Reel(decoder))
+    learnt, odd = background_of_view(view, settings.silhouette, Reel(decoder))
     followed = follow_clip(clip, settings, FilmBackground(learnt, [], odd), decoder)
     return Tracked(clip, followed.bodies, followed.facts)
 
@@ -135,17 +135,17 @@ def _prepared(
     known = body_of(settings, lambda own: track_clip(own, decoders).bodies)
     reels = {view.number: Reel(decoders.of[view.number]) for view in clip.views}
     viewers: dict[ViewerNumber, track.State] = {}
-    odd_rooms = []
-    learnt = rooms(clip, settings.silhouette, reels)
-    for view, (room, odd) in zip(clip.views, learnt, strict=True):
-        odd_rooms += [odd] if odd else []
+    odd: list[str] = []
+    learnt = backgrounds(clip, settings.silhouette, reels)
+    for view, (background, noted) in zip(clip.views, learnt, strict=True):
+        odd += [noted] if noted else []
         camera = None if rig is None else rig.cameras[view.number - 1]
         setup = track.Setup(view.number, camera, settings, method, alone)
-        viewers[view.number] = track.init(setup, room)
+        viewers[view.number] = track.init(setup, background)
     period_s = clip.every / clip.views[0].fps
     opening = opening_posture.init(known)
     integrator = merge.init(rig, period_s, settings, method, alone=alone, opening=opening)
-    return Prepared(clip, reels, viewers, integrator, odd_rooms, time.perf_counter() - began)
+    return Prepared(clip, reels, viewers, integrator, odd, time.perf_counter() - began)
 
 
 def _performed(ready: Prepared, watch: Watch | None) -> Performance:

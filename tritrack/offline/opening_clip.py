@@ -29,7 +29,7 @@ def body_of(settings: Settings, track: Callable[[Settings], Sequence[Body]]) -> 
     if own.opening:
         raise SettingsError(f"{settings.opening}: an opening clip has none itself: remove opening")
     own = msgspec.structs.replace(own, mode=settings.mode, size=settings.size)
-    told = [body.bdp for body in track(own) if body.bdp is not None]
-    if not told:
+    lengths = [body.bdp for body in track(own) if body.bdp is not None]
+    if not lengths:
         raise ClipError(f"nobody is seen in the opening clip {settings.opening}: name another")
-    return told[-1]
+    return lengths[-1]

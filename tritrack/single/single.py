@@ -178,11 +178,11 @@ def follow(
     return facts
 
 
-def marked(room: Background) -> NDArray[np.uint8]:
+def marked(background: Background) -> NDArray[np.uint8]:
     """The background, what was never uncovered hatched."""
-    picture = np.clip(np.rint(room.centre), 0, 255).astype(np.uint8)
-    rows, columns = np.indices(room.uncertain.shape)
-    picture[room.uncertain & ((rows + columns) % 4 < 2)] = FLAG
+    picture = np.clip(np.rint(background.centre), 0, 255).astype(np.uint8)
+    rows, columns = np.indices(background.uncertain.shape)
+    picture[background.uncertain & ((rows + columns) % 4 < 2)] = FLAG
     return picture
 
 

@@ -13,10 +13,11 @@ from rich.console import Console
 from common.config import SilhouetteSettings
 from common.method import DEFAULT
 from common.raster.similarity import Mask
+from common.video.decoding import Image
 from synth.motion.motions import EMPTY, POSTURES, Motion, performance
 from synth.person.people import Colour, Person, person
 from synth.picture.exposure import default_rig
-from synth.picture.render import Frame, render, room_of
+from synth.picture.render import render, room_of
 from synth.picture.synth_room import Room
 from tritrack.terminal import bar
 from tritrack.training.training import TrainingError
@@ -59,7 +60,7 @@ class Examples(NamedTuple):
 class LabelledFilm(NamedTuple):
     """What a camera saw."""
 
-    frames: list[Frame]
+    frames: list[Image]
     masks: list[Mask]
 
 

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import compiling
-from viewer.background.image_stack import Floats, Frame, Overlaid, median, overlaid
+from common.video.decoding import Image
+from viewer.background.image_stack import Floats, Overlaid, median, overlaid
 
 SENSOR_NOISE: Final = 2.0
 """Grey levels; taken for granted where one picture alone shows the background."""
@@ -49,7 +50,7 @@ class BackgroundModel(NamedTuple):
     """(SHADES,) from -1, only the background has this colour, to 1, only the body has it."""
 
 
-def learn(frames: Sequence[Frame]) -> Background:
+def learn(frames: Sequence[Image]) -> Background:
     """The background from pictures of it.
 
     Args:
@@ -61,7 +62,7 @@ def learn(frames: Sequence[Frame]) -> Background:
     return learnt(overlaid_opening(frames), frames)
 
 
-def learnt(empty: Overlaid, frames: Sequence[Frame]) -> Background:
+def learnt(empty: Overlaid, frames: Sequence[Image]) -> Background:
     """The background from pictures of it, laid over each other.
 
     The minimum, maximum and largest step that W4 keeps grow with the number of frames; their place
@@ -85,14 +86,14 @@ def estimated(centre: Floats, spread: Floats, uncertain: NDArray[np.bool_]) -> B
     return Background(centre, spread, uncertain, centre, centre, np.full_like(centre, SENSOR_NOISE))
 
 
-def _range(frames: Sequence[Frame]) -> tuple[Floats, Floats, Floats]:
+def _range(frames: Sequence[Image]) -> tuple[Floats, Floats, Floats]:
     """Least and greatest grey levels of every pixel, and its largest steps, (H, W, 3) each."""
     stack = np.stack(frames).astype(np.float32)
     steps = np.abs(np.diff(stack, axis=0))
     return stack.min(axis=0), stack.max(axis=0), steps.max(axis=0, initial=SENSOR_NOISE)
 
 
-def overlaid_opening(frames: Sequence[Frame]) -> Overlaid:
+def overlaid_opening(frames: Sequence[Image]) -> Overlaid:
     """Pictures laid over each other under the light of their median.
 
     Raises:
@@ -106,7 +107,7 @@ def overlaid_opening(frames: Sequence[Frame]) -> Overlaid:
 
 
 @compiling(fastmath=True)
-def light_gain(frame: Frame, background: Floats) -> Floats:
+def light_gain(frame: Image, background: Floats) -> Floats:
     """How much brighter a frame is than the background, per channel, whoever stands in it.
 
     The median of the ratio over a grid of pixels, then the mean of the ratios around it, so that
@@ -149,7 +150,7 @@ def light_gain(frame: Frame, background: Floats) -> Floats:
     return gain
 
 
-def even_light(frames: Sequence[Frame]) -> Floats:
+def even_light(frames: Sequence[Image]) -> Floats:
     """All frames under the light of their median: (n, H, W, 3) grey levels."""
     middle = median(frames)
     height, width = middle.shape[:2]

@@ -1,4 +1,4 @@
-"""The empty room of a view: from a plate, from the clip's opening frames, or from the clip."""
+"""The background of a view: from a plate, from the clip's opening frames, or from the clip."""
 
 import math
 from collections.abc import Iterator
@@ -11,11 +11,10 @@ import numpy as np
 from common.atomic_file import replacing
 from common.config import SilhouetteSettings
 from common.video.clip_facts import View
-from common.video.decoding import Decoder
+from common.video.decoding import Decoder, Image
 from common.video.frame_cache import Reader
 from viewer.background.background import Background, learn, learnt, overlaid_opening
 from viewer.background.empty_opening import is_empty_opening, is_still
-from viewer.background.image_stack import Frame
 from viewer.background.moved_objects import Patch, patches_of
 from viewer.background.occluded_background import learn_uncovered
 
@@ -40,12 +39,14 @@ class FilmBackground(NamedTuple):
     """What is odd about how that is known; "" if nothing is."""
 
 
-def empty_room(view: View, settings: SilhouetteSettings, decoder: Reader) -> tuple[Background, str]:
-    """What the room looks like without the person, and what is odd about how that is known.
+def background_of_view(
+    view: View, settings: SilhouetteSettings, decoder: Reader
+) -> tuple[Background, str]:
+    """What a view shows without the person, and what is odd about how that is known.
 
     Args:
-        view: A recorded file's, or a camera's: that one's room is taken to be empty now.
-        settings: How many opening frames show the empty room.
+        view: A recorded file's, or a camera's: nobody is taken to be before that one now.
+        settings: How many opening frames show nobody.
         decoder: Reads the file; left at its start.
 
     Raises:
@@ -58,7 +59,7 @@ def empty_room(view: View, settings: SilhouetteSettings, decoder: Reader) -> tup
         plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
         return learn(plate), ""
     opening, coming = _looked_at(view, settings.empty_frames, decoder)
-    laid_over, sample = overlaid_opening(opening), list[Frame]()
+    laid_over, sample = overlaid_opening(opening), list[Image]()
     if is_still(laid_over) and is_empty_opening(laid_over, _kept(coming, sample)):
         return learnt(laid_over, opening), ""
     return learn_uncovered([*sample, *coming]), (
@@ -67,25 +68,25 @@ def empty_room(view: View, settings: SilhouetteSettings, decoder: Reader) -> tup
     )
 
 
-def room_of_run(
+def background_of_run(
     view: View, settings: SilhouetteSettings, decoder: Decoder, kept: Path | None
 ) -> tuple[Background, str]:
     """The same in a live run, where a viewer may be started again with somebody before its camera.
 
     Args:
         view: As above; likewise `settings`, `decoder`.
-        kept: The run's folder for what was learnt of a camera's room; None: it keeps nothing.
+        kept: The run's folder for what was learnt of a camera's background; None: it keeps nothing.
     """
     if kept is None or not isinstance(view.source, int) or view.background:
-        return empty_room(view, settings, decoder)
-    path = kept / f"room_{view.number}.npz"
+        return background_of_view(view, settings, decoder)
+    path = kept / f"background_{view.number}.npz"
     if path.exists():
         with np.load(path, allow_pickle=False) as found:
             return Background(**found), ""
-    room, odd = empty_room(view, settings, decoder)
+    background, odd = background_of_view(view, settings, decoder)
     with replacing(path) as new, new.open("wb") as file:
-        np.savez(file, allow_pickle=False, **room._asdict())
-    return room, odd
+        np.savez(file, allow_pickle=False, **background._asdict())
+    return background, odd
 
 
 def background_of_film(view: View, settings: SilhouetteSettings, decoder: Reader) -> FilmBackground:
@@ -96,11 +97,11 @@ def background_of_film(view: View, settings: SilhouetteSettings, decoder: Reader
     are patches on it, also on a background that was given.
 
     Args:
-        view: Of the film; likewise `settings`, `decoder`: as for `empty_room`.
-        settings: How many opening frames show the empty room.
+        view: Of the film; likewise `settings`, `decoder`: as for `background_of_view`.
+        settings: How many opening frames show nobody.
         decoder: Reads the file; left at its start.
     """
-    background, odd = empty_room(view, settings, decoder)
+    background, odd = background_of_view(view, settings, decoder)
     if isinstance(view.source, int):
         return FilmBackground(background, [], odd)
     sample = list(_looked_at(view, settings.empty_frames, decoder)[1])
@@ -111,12 +112,12 @@ def background_of_film(view: View, settings: SilhouetteSettings, decoder: Reader
     return FilmBackground(background, patches, odd)
 
 
-def _now(view: View, due: int, decoder: Reader) -> list[Frame]:
+def _now(view: View, due: int, decoder: Reader) -> list[Image]:
     """The first frames that a camera gives."""
     return [got.picture for got in islice(decoder.frames(view.source, view.size), due)]
 
 
-def _looked_at(view: View, due: int, decoder: Reader) -> tuple[list[Frame], Iterator[Frame]]:
+def _looked_at(view: View, due: int, decoder: Reader) -> tuple[list[Image], Iterator[Image]]:
     """The opening frames, and frames from everywhere in the clip: these as they are decoded."""
     frames = islice(decoder.frames(view.source, view.size), LOOKED_AT)
     pictures = (got.picture for got in frames)
@@ -124,7 +125,7 @@ def _looked_at(view: View, due: int, decoder: Reader) -> tuple[list[Frame], Iter
     return opening, islice(chain(opening, pictures), 0, None, _stride(view))
 
 
-def _kept(frames: Iterator[Frame], keeper: list[Frame]) -> Iterator[Frame]:
+def _kept(frames: Iterator[Image], keeper: list[Image]) -> Iterator[Image]:
     """The same frames, and a list of them."""
     for frame in frames:
         keeper.append(frame)

@@ -1,4 +1,4 @@
-"""Whether the opening frames of a clip show the room without a person."""
+"""Whether the opening frames of a clip show the background without a person."""
 
 from collections.abc import Iterable
 from typing import Final
@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import INLINE, KERNEL
+from common.video.decoding import Image
 from viewer.background.background import large_regions, light_gain
-from viewer.background.image_stack import CHANGES, LUMA, Bytes, Floats, Frame, Overlaid
+from viewer.background.image_stack import CHANGES, LUMA, Bytes, Floats, Overlaid
 
 EDGE_SHARE: Final = 0.45
 """Of an empty opening the contours of what differs later keep less than this share of their
@@ -21,8 +22,8 @@ def is_still(opening: Overlaid) -> bool:
     return not any(large_regions(off).any() for off in opening.moving if off.any())
 
 
-def is_empty_opening(opening: Overlaid, sample: Iterable[Frame]) -> bool:
-    """Whether the opening frames show the room without a person.
+def is_empty_opening(opening: Overlaid, sample: Iterable[Image]) -> bool:
+    """Whether the opening frames show the background without a person.
 
     What differs between the opening and a later frame has its contour in the picture that holds
     the person: only in the later one if the opening is empty, in both if somebody stood there.
@@ -43,7 +44,7 @@ def is_empty_opening(opening: Overlaid, sample: Iterable[Frame]) -> bool:
 
 @KERNEL
 def _brightness(
-    frame: Frame, shares: Floats, background: Floats
+    frame: Image, shares: Floats, background: Floats
 ) -> tuple[Floats, NDArray[np.bool_]]:
     """The brightness of a frame, (H, W), and where it differs from the background's."""
     luma, differs = np.empty_like(background), np.empty(background.shape, np.bool_)

@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import compiled
+from common.video.decoding import Image
 
-Frame = NDArray[np.uint8]
-"""A picture at the working size: (H, W, 3), blue green red."""
 Floats = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
 
@@ -33,7 +32,7 @@ class Overlaid(NamedTuple):
     """(n, H, W) where a picture's brightness is not the median's."""
 
 
-def median(pictures: Sequence[Frame] | Floats) -> Floats:
+def median(pictures: Sequence[Image] | Floats) -> Floats:
     """The median of one or more pictures, (H, W, 3)."""
     return _median(np.stack([*pictures]))
 

@@ -8,8 +8,9 @@ import cv2
 import numpy as np
 
 from common.raster.similarity import Mask
+from common.video.decoding import Image
 from viewer.background.background import Background, even_light, spread_of
-from viewer.background.image_stack import CHANGES, LUMA, Floats, Frame, median, squares
+from viewer.background.image_stack import CHANGES, LUMA, Floats, median, squares
 
 AT_REST_S: Final = 10.0
 """Nobody who stands holds still for so long, edges and all; who lies still for longer is lost until
@@ -40,7 +41,7 @@ class Patch(NamedTuple):
 
 
 def patches_of(
-    background: Background, frames: Sequence[Frame], spacing: int, fps: float
+    background: Background, frames: Sequence[Image], spacing: int, fps: float
 ) -> list[Patch]:
     """What comes to rest in a clip, or leaves where it was at rest, in the order of time.
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.raster.similarity import Mask
+from common.video.decoding import Image
 from viewer.background.background import (
     Background,
     estimated,
@@ -17,7 +18,7 @@ from viewer.background.background import (
     spread_of,
 )
 from viewer.background.empty_opening import EDGE_SHARE
-from viewer.background.image_stack import CHANGES, LUMA, Floats, Frame, median, squares
+from viewer.background.image_stack import CHANGES, LUMA, Floats, median, squares
 
 GUESSED: Final = 4.0
 """Spread of a pixel whose background was guessed, grey levels."""
@@ -58,7 +59,7 @@ class NoSegments(RuntimeError):
     """The library that segments pictures is missing: the text tells the cure."""
 
 
-def learn_uncovered(frames: Sequence[Frame]) -> Background:
+def learn_uncovered(frames: Sequence[Image]) -> Background:
     """The background from pictures in which somebody may be always in view.
 
     What does not change is background, unless it is hidden: a place where what changes stays put

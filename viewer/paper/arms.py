@@ -6,7 +6,7 @@ from typing import Final
 from common.body.body import LIMITS_DEG, POSE_INDEX, wrapped_deg
 from common.body.kinematics import ARM_LIMBS
 from common.config import SearchSettings
-from viewer.paper.posed_model import Figure, SearchRange, matched, searched, turn
+from viewer.paper.posed_model import PosedModel, SearchRange, matched, searched, turn
 
 SIDES: Final = ("r", "l")
 BEND_MOST_DEG: Final = 140.0
@@ -44,7 +44,7 @@ def inward_limit_deg(side: str, shoulder_z_deg: float) -> float:
     return 2.0 * hanging if hanging < 70.0 else BEND_MOST_DEG
 
 
-def facade_arms(figure: Figure, settings: SearchSettings, wide: bool) -> Figure:
+def facade_arms(model: PosedModel, settings: SearchSettings, wide: bool) -> PosedModel:
     """Shoulder theta_Z, then theta_Y and elbow, of the right and then the left arm (P30, P31).
 
     theta_X keeps its value: the facade view cannot see it. The elbow is searched with the
@@ -52,40 +52,40 @@ def facade_arms(figure: Figure, settings: SearchSettings, wide: bool) -> Figure:
     """
     for i, side in enumerate(SIDES):
         outward = 90.0 if side == "r" else -90.0
-        figure = _with_elbow_outward(figure, side, outward)
+        model = _with_elbow_outward(model, side, outward)
         low, high = LIMITS_DEG[f"{side}_shoulder_z"]
-        spare = half_turn_deg(side, figure.pose[_SHOULDER_X[i].at])
+        spare = half_turn_deg(side, model.pose[_SHOULDER_X[i].at])
         limits = (low + spare, high + spare)
         width, stop = settings.arm_window_deg, settings.stop_deg
-        figure = searched(figure, _SHOULDER_Z[i], SearchRange(width, stop, limits, wide))
-        inward = inward_limit_deg(side, figure.pose[_SHOULDER_Z[i].at] - spare)
-        figure = searched(figure, _ELBOW[i], SearchRange(width, stop, (-inward, BEND_MOST_DEG)))
-        figure = _with_flexion_positive(figure, side, outward)
-    return figure
+        model = searched(model, _SHOULDER_Z[i], SearchRange(width, stop, limits, wide))
+        inward = inward_limit_deg(side, model.pose[_SHOULDER_Z[i].at] - spare)
+        model = searched(model, _ELBOW[i], SearchRange(width, stop, (-inward, BEND_MOST_DEG)))
+        model = _with_flexion_positive(model, side, outward)
+    return model
 
 
-def flank_arms(figure: Figure, settings: SearchSettings, near: int, wide: bool) -> Figure:
+def flank_arms(model: PosedModel, settings: SearchSettings, near: int, wide: bool) -> PosedModel:
     """theta_X of both shoulders from one silhouette (P32).
 
     Both arms share it: they are searched together as one swing and one after the other (the near
     arm first), and the better explanation is kept; a tie goes to the common swing.
 
     Args:
-        figure: The model so far.
+        model: The model so far.
         settings: Widths of the search.
         near: 0 where the right arm is nearer to the camera, 1 where the left is.
         wide: Nothing is known of the angles.
     """
     width, stop = settings.arm_window_deg, settings.stop_deg
-    apart = figure = matched(figure)
+    apart = model = matched(model)
     for i in (near, 1 - near):
-        within = SearchRange(width, stop, _whole_turn(figure, i), wide)
+        within = SearchRange(width, stop, _whole_turn(model, i), wide)
         apart = searched(apart, _SHOULDER_X[i], within, HIDDEN)
-    start = figure.pose.copy()
+    start = model.pose.copy()
     start[_SHOULDER_X[1 - near].at] = start[_SHOULDER_X[near].at]
-    within = SearchRange(width, stop, _whole_turn(figure, near), wide)
-    together = searched(matched(figure._replace(pose=start)), _BOTH_X, within, HIDDEN)
-    matches = apart.matches + together.matches - figure.matches
+    within = SearchRange(width, stop, _whole_turn(model, near), wide)
+    together = searched(matched(model._replace(pose=start)), _BOTH_X, within, HIDDEN)
+    matches = apart.matches + together.matches - model.matches
     better = apart if apart.score > together.score else together
     pose = better.pose.copy()
     for how in _SHOULDER_X:
@@ -93,25 +93,25 @@ def flank_arms(figure: Figure, settings: SearchSettings, near: int, wide: bool) 
     return better._replace(pose=pose, matches=matches)
 
 
-def _whole_turn(figure: Figure, i: int) -> tuple[float, float]:
+def _whole_turn(model: PosedModel, i: int) -> tuple[float, float]:
     """The range of theta_X around where it is: it has no end, arms swing in circles (P30)."""
-    angle = figure.pose[_SHOULDER_X[i].at]
+    angle = model.pose[_SHOULDER_X[i].at]
     return angle - 180.0, angle + 180.0
 
 
-def _with_elbow_outward(figure: Figure, side: str, outward_deg: float) -> Figure:
+def _with_elbow_outward(model: PosedModel, side: str, outward_deg: float) -> PosedModel:
     """theta_Y outwards, the elbow's sign turned with it: the same place of the forearm."""
-    pose = figure.pose.copy()
+    pose = model.pose.copy()
     y, elbow = POSE_INDEX[f"{side}_shoulder_y"], POSE_INDEX[f"{side}_elbow_x"]
     if pose[y] * outward_deg < 0.0:
         pose[elbow] = -pose[elbow]
     pose[y] = outward_deg
-    return figure._replace(pose=pose)
+    return model._replace(pose=pose)
 
 
-def _with_flexion_positive(figure: Figure, side: str, outward_deg: float) -> Figure:
-    pose = figure.pose.copy()
+def _with_flexion_positive(model: PosedModel, side: str, outward_deg: float) -> PosedModel:
+    pose = model.pose.copy()
     y, elbow = POSE_INDEX[f"{side}_shoulder_y"], POSE_INDEX[f"{side}_elbow_x"]
     if pose[elbow] < 0.0:
         pose[y], pose[elbow] = -outward_deg, -pose[elbow]
-    return figure._replace(pose=pose)
+    return model._replace(pose=pose)

@@ -5,7 +5,7 @@ from typing import Final
 from common.body.body import LIMITS_DEG
 from common.body.kinematics import LEG_LIMBS
 from common.config import SearchSettings
-from viewer.paper.posed_model import Figure, SearchRange, searched, turn
+from viewer.paper.posed_model import PosedModel, SearchRange, searched, turn
 
 SIDES: Final = ("r", "l")
 SQUAT_SHARE, RISE_SHARE = 0.04, 0.025
@@ -31,32 +31,32 @@ def squats(before: bool, drop_share: float) -> bool:
     return drop_share > (RISE_SHARE if before else SQUAT_SHARE)
 
 
-def facade_legs(figure: Figure, settings: SearchSettings, squatting: bool) -> Figure:
+def facade_legs(model: PosedModel, settings: SearchSettings, squatting: bool) -> PosedModel:
     """theta_Z of both hips; squatting also theta_X with knee = -2 theta_X (P33, P34).
 
     The triangle of hip, knee and foot has two equal sides, so the foot stays under the hip (C6).
     """
     width, stop = settings.leg_window_deg, settings.stop_deg
     for i, side in enumerate(SIDES):
-        figure = searched(figure, _HIP_Z[i], SearchRange(width, stop, LIMITS_DEG[f"{side}_hip_z"]))
+        model = searched(model, _HIP_Z[i], SearchRange(width, stop, LIMITS_DEG[f"{side}_hip_z"]))
     if squatting:
         for how in _SQUAT:
-            figure = searched(figure, how, SearchRange(width, stop, _SQUAT_LIMITS_DEG))
-    return figure
+            model = searched(model, how, SearchRange(width, stop, _SQUAT_LIMITS_DEG))
+    return model
 
 
-def flank_legs(figure: Figure, settings: SearchSettings, near: int) -> Figure:
+def flank_legs(model: PosedModel, settings: SearchSettings, near: int) -> PosedModel:
     """theta_X of the hip and then of the knee, the near leg first (P35).
 
     Both legs share the silhouette, and a leg alone moves behind the other unseen: they are also
     searched together as one squat, and the better explanation is kept.
     """
     width, stop = settings.leg_window_deg, settings.stop_deg
-    apart = figure
+    apart = model
     for i in (near, 1 - near):
         side = SIDES[i]
         apart = searched(apart, _HIP_X[i], SearchRange(width, stop, LIMITS_DEG[f"{side}_hip_x"]))
         apart = searched(apart, _KNEE[i], SearchRange(width, stop, LIMITS_DEG[f"{side}_knee_x"]))
-    together = searched(figure, _BOTH_SQUAT, SearchRange(width, stop, _SQUAT_LIMITS_DEG))
+    together = searched(model, _BOTH_SQUAT, SearchRange(width, stop, _SQUAT_LIMITS_DEG))
     better = apart if apart.score >= together.score else together
-    return better._replace(matches=apart.matches + together.matches - figure.matches)
+    return better._replace(matches=apart.matches + together.matches - model.matches)

@@ -17,7 +17,7 @@ from viewer.expected_body import ExpectedBody, expected_body
 from viewer.paper.arms import facade_arms, flank_arms
 from viewer.paper.facing import thresholds_px, upper_body_px, vote
 from viewer.paper.legs import facade_legs, flank_legs, squats
-from viewer.paper.posed_model import Figure, figure_of, rotation_of, view_at, yaw_of
+from viewer.paper.posed_model import PosedModel, model_over, rotation_of, view_at, yaw_of
 from viewer.paper.position import located
 
 SQUAT_ANGLES: Final = ("r_hip_x", "l_hip_x", "r_knee_x", "l_knee_x")
@@ -65,36 +65,36 @@ def step(state: State, report: Report, mask: Mask, guide: Guide | None) -> tuple
     known = expected_body(guide, state.viewer)
     facing = state.vote if guide is None else guide.facing[state.viewer - 1]
     if known is not None:
-        figure = _expected(state, mask, known)
+        model = _expected(state, mask, known)
     else:
-        figure = _at_rest(state, mask, report, guide)
-    state, width_px, limits_px = _voted(state, mask, figure, known)
-    figure = located(figure)
-    figure, squatting = _limbs(state, figure, known, facing)
+        model = _at_rest(state, mask, report, guide)
+    state, width_px, limits_px = _voted(state, mask, model, known)
+    model = located(model)
+    model, squatting = _limbs(state, model, known, facing)
     names = FACADE_ANGLES if facing == "facade" else FLANK_ANGLES
     report = msgspec.structs.replace(
         report,
         upper_body_px=width_px,
         vote=state.vote,
         thresholds_px=limits_px,
-        root_px=(float(figure.view[CENTRE_X]), float(figure.view[CENTRE_Y])),
-        angles_deg={name: float(figure.pose[POSE_INDEX[name]]) for name in names},
+        root_px=(float(model.view[CENTRE_X]), float(model.view[CENTRE_Y])),
+        angles_deg={name: float(model.pose[POSE_INDEX[name]]) for name in names},
         squatting=squatting,
-        score=float(figure.score),
-        matches=figure.matches,
+        score=float(model.score),
+        matches=model.matches,
     )
     return state._replace(squatting=squatting), report
 
 
-def _expected(state: State, mask: Mask, known: ExpectedBody) -> Figure:
+def _expected(state: State, mask: Mask, known: ExpectedBody) -> PosedModel:
     """The model where and how it is expected."""
     pose = known.pose.copy()
     pose[:3] = 0.0
     view = view_at(state.rotation, known.scale_px_per_m, known.root_px)
-    return figure_of(mask, body_vector(known.bdp), pose, view)
+    return model_over(mask, body_vector(known.bdp), pose, view)
 
 
-def _at_rest(state: State, mask: Mask, report: Report, guide: Guide | None) -> Figure:
+def _at_rest(state: State, mask: Mask, report: Report, guide: Guide | None) -> PosedModel:
     """The model at rest, laid into the silhouette's box: nothing is known of its pose.
 
     The body is the guide's if one was known before, else the thesis's proportions (T4).
@@ -110,32 +110,32 @@ def _at_rest(state: State, mask: Mask, report: Report, guide: Guide | None) -> F
     middle = float(np.average(columns, weights=mask.sum(axis=0)))
     legs_px = (bdp.r_upper_leg.height + bdp.r_lower_leg.height) * scale
     view = view_at(state.rotation, scale, (middle, sole - legs_px))
-    return figure_of(mask, body_vector(bdp), pose, view)
+    return model_over(mask, body_vector(bdp), pose, view)
 
 
 def _voted(
-    state: State, mask: Mask, figure: Figure, known: ExpectedBody | None
+    state: State, mask: Mask, model: PosedModel, known: ExpectedBody | None
 ) -> tuple[State, float, tuple[float, float]]:
     """W_u-body and this view's vote; before a guide the start stands (P24-P26, P47)."""
     if known is None:
         return state, 0.0, (0.0, 0.0)
     torso_px = known.bdp.torso.height * known.scale_px_per_m
-    width_px = upper_body_px(mask, float(figure.view[CENTRE_Y]), torso_px)
+    width_px = upper_body_px(mask, float(model.view[CENTRE_Y]), torso_px)
     limits = thresholds_px(known.bdp, known.scale_px_per_m)
     return state._replace(vote=vote(known.facing, width_px, limits)), width_px, limits
 
 
 def _limbs(
-    state: State, figure: Figure, known: ExpectedBody | None, facing: Facing
-) -> tuple[Figure, bool]:
+    state: State, model: PosedModel, known: ExpectedBody | None, facing: Facing
+) -> tuple[PosedModel, bool]:
     """Arms, then legs, as this facing sees them (P30-P35)."""
     settings, wide = state.settings, known is None
     if facing == "facade":
-        figure = facade_arms(figure, settings, wide)
+        model = facade_arms(model, settings, wide)
         squatting = False
         if known is not None and known.measured:
-            drop_m = (figure.view[CENTRE_Y] - known.rest_row_px) / known.scale_px_per_m
+            drop_m = (model.view[CENTRE_Y] - known.rest_row_px) / known.scale_px_per_m
             squatting = squats(state.squatting, float(drop_m) / stature(known.bdp))
-        return facade_legs(figure, settings, squatting), squatting
+        return facade_legs(model, settings, squatting), squatting
     near = 0 if state.rotation[0] @ [0.0, 0.0, 1.0] > 0.0 else 1
-    return flank_legs(flank_arms(figure, settings, near, wide), settings, near), False
+    return flank_legs(flank_arms(model, settings, near, wide), settings, near), False

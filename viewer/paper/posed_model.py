@@ -15,7 +15,7 @@ from common.rig.camera import PAPER_ROTATIONS, Camera
 from viewer.paper.tritree import search, window
 
 
-class Figure(NamedTuple):
+class PosedModel(NamedTuple):
     """A model laid over a silhouette."""
 
     seen: Bits
@@ -66,27 +66,29 @@ class SearchRange(NamedTuple):
     """Nothing is known of the angle: search windows that tile the whole range."""
 
 
-def searched(figure: Figure, how: Turn, within: SearchRange, least_gain: float = -1.0) -> Figure:
-    """The figure with one angle set to the best that the tritree meets.
+def searched(
+    model: PosedModel, how: Turn, within: SearchRange, least_gain: float = -1.0
+) -> PosedModel:
+    """The model with one angle set to the best that the tritree meets.
 
     Args:
-        figure: The model so far.
+        model: The model so far.
         how: What turns.
         within: Where it is searched.
-        least_gain: What must be added to the figure's score for the angle to change.
+        least_gain: What must be added to the model's score for the angle to change.
     """
     width_deg, stop_deg, (low, high), wide = within
-    centres = np.arange(low + width_deg / 2, high, width_deg) if wide else [figure.pose[how.at]]
-    best_angle, best_score, matches = figure.pose[how.at], -1.0, 0
+    centres = np.arange(low + width_deg / 2, high, width_deg) if wide else [model.pose[how.at]]
+    best_angle, best_score, matches = model.pose[how.at], -1.0, 0
     for centre in centres:
         bounds = window(float(centre), width_deg, low, high)
         angle, score, more = search(
-            figure.seen,
-            figure.seen_px,
-            figure.width,
-            figure.body,
-            figure.pose,
-            figure.view,
+            model.seen,
+            model.seen_px,
+            model.width,
+            model.body,
+            model.pose,
+            model.view,
             how.step,
             how.moving,
             *bounds,
@@ -95,19 +97,19 @@ def searched(figure: Figure, how: Turn, within: SearchRange, least_gain: float =
         matches += more
         if score > best_score:
             best_angle, best_score = angle, score
-    if best_score < figure.score + least_gain:
-        return figure._replace(matches=figure.matches + matches)
-    pose = figure.pose.copy()
+    if best_score < model.score + least_gain:
+        return model._replace(matches=model.matches + matches)
+    pose = model.pose.copy()
     for at, factor in how.parts:
         pose[at] = best_angle * factor
-    return figure._replace(pose=pose, score=best_score, matches=figure.matches + matches)
+    return model._replace(pose=pose, score=best_score, matches=model.matches + matches)
 
 
-def matched(figure: Figure) -> Figure:
-    """The figure with the score of the whole body as it stands."""
-    body, pose, view = figure.body, figure.pose, figure.view
-    value = match(body, pose, view, ALL_LIMBS, figure.width, figure.seen, figure.seen_px)
-    return figure._replace(score=value, matches=figure.matches + 1)
+def matched(model: PosedModel) -> PosedModel:
+    """The model with the score of the whole body as it stands."""
+    body, pose, view = model.body, model.pose, model.view
+    value = match(body, pose, view, ALL_LIMBS, model.width, model.seen, model.seen_px)
+    return model._replace(score=value, matches=model.matches + 1)
 
 
 def view_at(rotation: NDArray[np.float64], px_per_m: float, root_px: tuple[float, float]) -> Vector:
@@ -130,7 +132,7 @@ def yaw_of(facing: Facing, viewer: ViewerNumber) -> float:
     return YAW_DEG[0 if (facing == "facade") == (viewer == 1) else 1]
 
 
-def figure_of(mask: Mask, body: Vector, pose: Vector, view: Vector) -> Figure:
+def model_over(mask: Mask, body: Vector, pose: Vector, view: Vector) -> PosedModel:
     """A model laid over a silhouette, not yet matched."""
     bits = pack_words(mask)
-    return Figure(bits, count(bits), mask.shape[1], body, pose, view)
+    return PosedModel(bits, count(bits), mask.shape[1], body, pose, view)

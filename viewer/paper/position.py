@@ -7,7 +7,7 @@ import numpy as np
 from common.compiled import compiled
 from common.raster.bits import ONES, popcount
 from common.raster.kernel import CENTRE_X, CENTRE_Y, draw_limbs, score
-from viewer.paper.posed_model import Figure
+from viewer.paper.posed_model import PosedModel
 
 SHIFTS_PX: Final = (0, -1, 1, -2, 2, -5, 5)
 """The printed candidates and the incumbent, the least first: ties stay (P27)."""
@@ -97,22 +97,22 @@ def best_shift(
     return place[0], place[1], best, matches
 
 
-def located(figure: Figure) -> Figure:
-    """The figure shifted to where it fits best: columns first, then rows (P27, P28)."""
+def located(model: PosedModel) -> PosedModel:
+    """The model shifted to where it fits best: columns first, then rows (P27, P28)."""
     right, down, value, matches = best_shift(
-        figure.seen,
-        figure.seen_px,
-        figure.width,
-        figure.body,
-        figure.pose,
-        figure.view,
+        model.seen,
+        model.seen_px,
+        model.width,
+        model.body,
+        model.pose,
+        model.view,
         _SHIFTS,
         MOST_PASSES,
     )
-    view = figure.view.copy()
+    view = model.view.copy()
     view[CENTRE_X] += right
     view[CENTRE_Y] += down
-    return figure._replace(view=view, score=value, matches=figure.matches + matches)
+    return model._replace(view=view, score=value, matches=model.matches + matches)
 
 
 _SHIFTS = np.array(SHIFTS_PX)

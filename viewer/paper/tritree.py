@@ -195,7 +195,7 @@ def search(
         stop: Width at which to stop.
 
     Returns:
-        (angle, score of the whole figure there, matches).
+        (angle, score of the whole model there, matches).
     """
     height = seen.shape[0]
     frames = np.empty((10, FRAME))

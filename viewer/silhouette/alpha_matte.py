@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import INLINE, KERNEL
+from common.video.decoding import Image
 from viewer.background.background import BackgroundModel
-from viewer.background.image_stack import Bytes, Floats, Frame
+from viewer.background.image_stack import Bytes, Floats
 from viewer.silhouette.difference import (
     BLUE,
     GREEN,
@@ -51,7 +52,7 @@ SPREADS, FAR = np.float32(8.0), np.float32(20.0)
 
 
 @KERNEL
-def sides_of(frame: Frame, model: BackgroundModel, inside: Bytes, corner: tuple[int, int]) -> Bytes:
+def sides_of(frame: Image, model: BackgroundModel, inside: Bytes, corner: tuple[int, int]) -> Bytes:
     """(h, w, SIDES): colour and a one inside the body, light seen and due inside the background.
 
     `inside` counts the mask in every pixel's 3x3 neighbourhood, from a row and column of the frame
@@ -82,7 +83,7 @@ def sides_of(frame: Frame, model: BackgroundModel, inside: Bytes, corner: tuple[
 
 @KERNEL
 def matte(
-    frame: Frame,
+    frame: Image,
     model: BackgroundModel,
     sides: Floats,
     reach: Bytes,

@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import KERNEL
+from common.video.decoding import Image
 from viewer.background.background import BackgroundModel
-from viewer.background.image_stack import Bytes, Floats, Frame
+from viewer.background.image_stack import Bytes, Floats
 from viewer.silhouette.alpha_matte import FACTS, SHARES, matte, sides_of
 
 ROWS: Final = 240
@@ -29,7 +30,7 @@ FEATURES: Final = SHARES * len(CROSS) + len(COUNTED) + FACTS
 
 
 def features_of(
-    frame: Frame, model: BackgroundModel, mask: Bytes, doubt: Bytes
+    frame: Image, model: BackgroundModel, mask: Bytes, doubt: Bytes
 ) -> tuple[NDArray[np.int32], Floats]:
     """The pixels to look at again, and what is known of them.
 

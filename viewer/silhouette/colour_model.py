@@ -5,8 +5,9 @@ from typing import Final
 import numpy as np
 
 from common.compiled import KERNEL
+from common.video.decoding import Image
 from viewer.background.background import BackgroundModel
-from viewer.background.image_stack import Bytes, Floats, Frame
+from viewer.background.image_stack import Bytes, Floats
 from viewer.silhouette.difference import light_of, shade_of, unshaded
 
 SHADES: Final = 2048
@@ -32,7 +33,7 @@ def body_colours_of(counts: Floats) -> Floats:
 
 @KERNEL
 def counted(
-    counts: Floats, inside: Bytes, frame: Frame, model: BackgroundModel, cells: Bytes, cell: int
+    counts: Floats, inside: Bytes, frame: Image, model: BackgroundModel, cells: Bytes, cell: int
 ) -> Floats:
     """The counts after one more frame; `inside` counts the mask in 3x3 neighbourhoods."""
     background, weight, light = model.centre, model.weight, light_of(model.gain)

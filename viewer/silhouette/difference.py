@@ -5,8 +5,9 @@ from typing import Final
 import numpy as np
 
 from common.compiled import INLINE, KERNEL
+from common.video.decoding import Image
 from viewer.background.background import BackgroundModel
-from viewer.background.image_stack import Bytes, Floats, Frame
+from viewer.background.image_stack import Bytes, Floats
 
 Triple = tuple[np.float32, np.float32, np.float32]
 BLUE, GREEN, RED = np.float32(0.114), np.float32(0.587), np.float32(0.299)
@@ -37,7 +38,7 @@ FOLLOW: Final = np.float32(0.2)
 
 
 @KERNEL
-def seeds(frame: Frame, model: BackgroundModel, cell: int) -> Bytes:
+def seeds(frame: Image, model: BackgroundModel, cell: int) -> Bytes:
     """(rows, columns) of cells, 1 where one of two pixels of a cell is surely no background."""
     background, weight, light = model.centre, model.weight, light_of(model.gain)
     height, width = frame.shape[:2]
@@ -56,7 +57,7 @@ def seeds(frame: Frame, model: BackgroundModel, cell: int) -> Bytes:
 
 @KERNEL
 def label(
-    mask: Bytes, doubt: Bytes, frame: Frame, model: BackgroundModel, cells: Bytes, cell: int
+    mask: Bytes, doubt: Bytes, frame: Image, model: BackgroundModel, cells: Bytes, cell: int
 ) -> None:
     """Guess who is person inside the cells, by a pixel's evidence and its neighbours'.
 
@@ -86,7 +87,7 @@ def label(
 
 
 @KERNEL
-def adapted(frame: Frame, model: BackgroundModel, corners: tuple[int, int, int, int]) -> Floats:
+def adapted(frame: Image, model: BackgroundModel, corners: tuple[int, int, int, int]) -> Floats:
     """The background, a little nearer to what a frame shows outside (left, right, top, bottom)."""
     background, weight, light = model.centre, model.weight, light_of(model.gain)
     height, width = frame.shape[:2]

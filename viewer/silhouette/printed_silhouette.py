@@ -6,8 +6,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from common.video.decoding import Image
 from viewer.background.background import Background
-from viewer.background.image_stack import Floats, Frame
+from viewer.background.image_stack import Floats
 
 TIMES: Final = 2.0
 """How many times the flicker a pixel must leave its range by; W4's own."""
@@ -31,7 +32,7 @@ class Printed(NamedTuple):
 
 def printed(
     background: Background,
-    frame: Frame,
+    frame: Image,
     gain: Floats,
     least_rows: float,
     near_px: tuple[float, float] | None,

@@ -11,8 +11,9 @@ from common.config import SilhouetteSettings
 from common.method import DEFAULT, Method
 from common.raster.silhouette_report import box_of, is_cut
 from common.raster.similarity import Mask
+from common.video.decoding import Image
 from viewer.background.background import Background, BackgroundModel, learn, light_gain
-from viewer.background.image_stack import Bytes, Floats, Frame
+from viewer.background.image_stack import Bytes, Floats
 from viewer.background.moved_objects import Patch
 from viewer.silhouette.boundary_features import counts_3x3, features_of
 from viewer.silhouette.colour_model import body_colours_of, counted, fresh
@@ -82,7 +83,7 @@ def init(background: Background, settings: SilhouetteSettings, method: Method) -
     return State(settings, method, background, model, colours, 0)
 
 
-def step(state: State, frame: Frame, near_px: tuple[float, float] | None) -> tuple[State, Seen]:
+def step(state: State, frame: Image, near_px: tuple[float, float] | None) -> tuple[State, Seen]:
     """Find the person in a frame.
 
     Args:
@@ -121,7 +122,7 @@ def warm() -> None:
         state, _ = step(state, person, None)
 
 
-def guess(state: State, frame: Frame, near_px: tuple[float, float] | None) -> Guess:
+def guess(state: State, frame: Image, near_px: tuple[float, float] | None) -> Guess:
     """Find the person by subtraction and known colours, and what tells the contour better.
 
     Args:
@@ -147,7 +148,7 @@ def patched(state: State, patch: Patch) -> State:
     return state._replace(model=state.model._replace(centre=centre, weight=weight))
 
 
-def in_light_of(state: State, frame: Frame) -> State:
+def in_light_of(state: State, frame: Image) -> State:
     """The background as bright as a frame is, whoever stands in it."""
     if not state.method.steady_light:
         return state
@@ -155,7 +156,7 @@ def in_light_of(state: State, frame: Frame) -> State:
     return state._replace(model=state.model._replace(gain=gain))
 
 
-def learn_colours(state: State, mask: Bytes, frame: Frame, first: Guess) -> State:
+def learn_colours(state: State, mask: Bytes, frame: Image, first: Guess) -> State:
     """Count whose colours are whose, by a mask of the body; the state is in the frame's light."""
     inside = counts_3x3(mask)
     colours = counted(state.colours, inside, frame, state.model, first.cells, first.cell)
@@ -188,7 +189,7 @@ def _seen(mask: Bytes, blobs: int, least_share: float) -> Seen:
     return Seen(mask.view(np.bool_), box, cv2.countNonZero(mask), blobs, is_cut(box, mask.shape))
 
 
-def _adapted(state: State, frame: Frame, box: Box | None) -> State:
+def _adapted(state: State, frame: Image, box: Box | None) -> State:
     """The background takes on the slow light, but nothing near the person."""
     frames = state.frames + 1
     if frames % ADAPT_EVERY:

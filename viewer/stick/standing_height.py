@@ -58,8 +58,8 @@ def standing_of(rows: Sequence[tuple[float, float]], whole: Sequence[bool]) -> S
     if not rows:
         return None
     both, uncut = np.array(rows, np.float64), np.array(whole, np.bool_)
-    told = both[uncut] if uncut.any() else both
-    soles, heights = told[:, 1], told[:, 1] - told[:, 0]
+    samples = both[uncut] if uncut.any() else both
+    soles, heights = samples[:, 1], samples[:, 1] - samples[:, 0]
     slope = 0.0
     low, high = np.quantile(soles, (0.05, 0.95))
     if high - low > NEARER * np.median(heights):

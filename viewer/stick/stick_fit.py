@@ -24,8 +24,8 @@ from common.raster.kernel import CENTRE_X, CENTRE_Y, FOCAL_X
 from common.raster.similarity import Mask
 from common.raster.stick_raster import ALL_SEGMENTS, match_stick
 from viewer.stick.normalization import STATURE_PX, normalised
-from viewer.stick.thesis_fit import fit_printed
-from viewer.stick.tracked_fit import followed
+from viewer.stick.thesis_fit import fit_thesis
+from viewer.stick.tracked_fit import fit_tracked
 
 _RIGHT, _LEFT = (
     [JOINT_NAMES.index(f"{side}_{name}") for name in ("shoulder", "hip")] for side in "rl"
@@ -62,7 +62,7 @@ class Stick(NamedTuple):
         return float(self.pose[STATURE])
 
 
-class NoBody(ValueError):
+class NoFit(ValueError):
     """A silhouette to which no body can be fitted."""
 
 
@@ -78,19 +78,19 @@ def fit(mask: Mask, before: Vector | None, stature_px: float, method: Method) ->
         method: How to fit.
 
     Raises:
-        NoBody: When the mask is empty, or nothing of its stature, or that is no height.
+        NoFit: When the mask is empty, or nothing of its stature, or that is no height.
     """
     if not mask.any() or not stature_px > 0.0:
-        raise NoBody(f"no body to fit: {mask.sum()} pixels, a stature of {stature_px}")
+        raise NoFit(f"no body to fit: {mask.sum()} pixels, a stature of {stature_px}")
     normal = normalised(mask, stature_px)
     man = THESIS if method.stick_lifting else ADULT
     if not normal.mask.any():
-        raise NoBody(f"no body to fit: {mask.sum()} pixels are nothing of {stature_px}")
+        raise NoFit(f"no body to fit: {mask.sum()} pixels are nothing of {stature_px}")
     if method.stick_lifting:
-        pose, hidden, evaluations = fit_printed(normal.mask, float(STATURE_PX))
+        pose, hidden, evaluations = fit_thesis(normal.mask, float(STATURE_PX))
     else:
         expected = None if before is None else normal.inward(before)
-        pose, hidden, evaluations = followed(normal.mask, expected)
+        pose, hidden, evaluations = fit_tracked(normal.mask, expected)
     seen, width = pack_words(normal.mask), normal.mask.shape[1]
     value = match_stick(man.lengths, man.parts, man.depth, pose, ALL_SEGMENTS, width, seen)
     pose = normal.outward(pose)
@@ -113,7 +113,7 @@ def expected(body: Vector, pose: Vector, view: Vector, stature_px: float) -> Vec
     return pose_of(ADULT, seen_px[OTHER_SIDE] if mirrored else seen_px, stature_px)
 
 
-def told(stick: Stick) -> Fit:
+def fit_of(stick: Stick) -> Fit:
     """A fit as a viewer reports it."""
     return Fit(
         joints_px=tuple((float(x), float(y)) for x, y in stick.joints_px),

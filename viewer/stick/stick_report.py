@@ -42,6 +42,6 @@ def with_stick(
         stature_px = standing.at(report.box.bottom + 1)
     try:
         fitted = stick_fit.fit(mask, expected, stature_px, method)
-    except stick_fit.NoBody:
+    except stick_fit.NoFit:
         return report
-    return msgspec.structs.replace(report, fit=stick_fit.told(fitted), score=fitted.score)
+    return msgspec.structs.replace(report, fit=stick_fit.fit_of(fitted), score=fitted.score)

@@ -36,7 +36,7 @@ FOOT_SHARE: Final = 4.0 / 175.0
 """What a foot takes of the stature: scan lines end above it, for it leads to the side."""
 
 
-class Printed(NamedTuple):
+class ThesisFit(NamedTuple):
     """What the thesis's stages find."""
 
     pose: Vector
@@ -54,7 +54,7 @@ class _Fit(NamedTuple):
     matches: list[int]
 
 
-def fit_printed(mask: Mask, stature_px: float) -> Printed:
+def fit_thesis(mask: Mask, stature_px: float) -> ThesisFit:
     """Torso, head, contours of arms and lower legs, upper legs; each is then foreshortened (T11).
 
     Args:
@@ -82,7 +82,7 @@ def fit_printed(mask: Mask, stature_px: float) -> Printed:
         _turned(fit, (2 + side, 4 + side), LIMITS_DEG["hip"])
         for limb in (2 + side, 4 + side, 6 + side, 8 + side):
             _shortened(fit, limb)
-    return Printed(fit.pose, hidden, sum(fit.matches))
+    return ThesisFit(fit.pose, hidden, sum(fit.matches))
 
 
 def _turned(fit: _Fit, limbs: Sequence[int], limits_deg: tuple[float, float]) -> None:

@@ -33,7 +33,7 @@ STARTS: Final = (1.0, 0.3)
 """Breadths of the trunk with which somebody is met of whom nothing is known."""
 FIRST_TRUST: Final = 0.3
 """How much a standing body is expected then."""
-AFRESH_SCORE: Final = 0.6
+REFIT_SCORE: Final = 0.6
 """A worth below which the body is also looked for afresh."""
 HIDDEN_SHARE: Final = 0.6
 """A limb of which more lies over or behind the rest of the body is hidden."""
@@ -53,7 +53,7 @@ ARM_RANGE_DEG, LEG_RANGE_DEG = (0.0, 345.0, 140.0), (180.0, 360.0, 100.0)
 """Where upper limbs can point in the picture, and how far lower ones bend from them."""
 
 
-class Followed(NamedTuple):
+class TrackedFit(NamedTuple):
     """What the search finds."""
 
     pose: Vector
@@ -109,7 +109,7 @@ def _bounds() -> tuple[Vector, Vector]:
 _MOVES: Final = _moves()
 
 
-def followed(mask: Mask, before: Vector | None) -> Followed:
+def fit_tracked(mask: Mask, before: Vector | None) -> TrackedFit:
     """The pose that is worth most: S less what it costs.
 
     Args:
@@ -119,14 +119,14 @@ def followed(mask: Mask, before: Vector | None) -> Followed:
     seen = pack_words(mask)
     tasks = [] if before is None else [_task(seen, mask, before, 1.0)]
     found = [_searched(task) for task in tasks]
-    if not found or found[0][1] < AFRESH_SCORE:
+    if not found or found[0][1] < REFIT_SCORE:
         afresh = [_task(seen, mask, start, FIRST_TRUST) for start in _starts(mask)]
         tasks += afresh
         found += [_searched(task) for task in afresh]
     best = max(range(len(found)), key=lambda i: found[i][1])
     pose, shares = found[best][0], np.empty(len(LIMBS))
     covered(tasks[best], pose, shares)
-    return Followed(pose, shares > HIDDEN_SHARE, sum(matches for _, _, matches in found))
+    return TrackedFit(pose, shares > HIDDEN_SHARE, sum(matches for _, _, matches in found))
 
 
 def _starts(mask: Mask) -> list[Vector]:
