@@ -22,7 +22,7 @@ from tritrack.accuracy.accuracy import (
     rooted,
     summary,
 )
-from tritrack.offline.lockstep import track_all
+from tritrack.offline.batch import track_all
 
 PLACES = {"shoulder": (0.2, 1.4), "elbow": (0.5, 1.4), "wrist": (0.5, 1.1)}
 PLACES |= {"hip": (0.1, 0.9), "knee": (0.1, 0.5), "ankle": (0.1, 0.1)}

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from tritrack.offline.lockstep import track_all
+from tritrack.offline.batch import track_all
 from tritrack.store.cores import ClusterError, made, spread
 from tritrack.training.recordings import recordings
 

@@ -12,7 +12,7 @@ from spoiling import copied, edit_json
 from recognizer.evaluation import Recording
 from synth.write import ClipSet
 from tritrack.making import make_clips
-from tritrack.offline.lockstep import track_all
+from tritrack.offline.batch import track_all
 from tritrack.store.clip_paths import ClipsFailed
 from tritrack.store.runs import RunError
 from tritrack.training import recordings as stage

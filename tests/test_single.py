@@ -12,7 +12,7 @@ from spoiling import film_of, write_film
 from common.config import Settings
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import save_notes
-from tritrack.offline.lockstep import track_all
+from tritrack.offline.batch import track_all
 from tritrack.single.single import name_of, single_all
 from tritrack.store.clip_paths import ClipsFailed
 

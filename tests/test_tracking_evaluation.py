@@ -18,7 +18,7 @@ import tritrack.__main__ as door
 from tritrack.accuracy.accuracy import compare, summary
 from tritrack.accuracy.tracking_evaluation import EvaluationError, evaluate_tracking
 from tritrack.accuracy.worst_frames import TRACKED, TRUE
-from tritrack.offline.lockstep import track_all
+from tritrack.offline.batch import track_all
 from tritrack.store.clip_paths import ClipsFailed
 
 QUIET = Console(quiet=True)

@@ -9,6 +9,8 @@ from rich.console import Console
 from rich.progress import Progress
 
 Thing = TypeVar("Thing")
+Tell = Callable[[float], object]
+"""Hears how much of some work is done, in [0, 1]."""
 
 
 def warn(console: Console, text: str) -> None:
@@ -28,7 +30,7 @@ def bar(console: Console) -> Progress:
 
 def by_share(
     progress: Progress, things: Sequence[Thing], description: str
-) -> Iterator[tuple[Thing, Callable[[float], None]]]:
+) -> Iterator[tuple[Thing, Tell]]:
     """Things one after the other, each with a function that is told which share of it is done.
 
     One long video moves the bar with its frames, as many short ones do with each that is over.

@@ -19,7 +19,8 @@ from tritrack.accuracy.accuracy import Compared, Mismatch, compare, per_joint, s
 from tritrack.accuracy.limb_lengths import length_errors
 from tritrack.accuracy.reliability import trust
 from tritrack.accuracy.silhouette_iou import Overlap, overlaps
-from tritrack.offline.lockstep import Decoders, track_all
+from tritrack.offline.batch import track_all
+from tritrack.offline.lockstep import Decoders
 from tritrack.store.clip_paths import run_names, without_plain_files
 from tritrack.terminal import bar, json_text, warn
 

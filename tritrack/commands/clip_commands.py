@@ -30,7 +30,7 @@ def track(
 
     Example: tritrack track clips/*/ --mode paper --out runs
     """
-    from tritrack.offline.lockstep import track_all
+    from tritrack.offline.batch import track_all
 
     facts = track_all(clips, out, mode, VIEWERS[views], size, console)
     tell(facts, json_wanted, f"{len(facts['clips'])} clips tracked, written to {out}")
@@ -83,7 +83,7 @@ def single(
 
     Example: tritrack single dance.mp4 --out runs
     """
-    from tritrack.offline.lockstep import overridden
+    from tritrack.offline.batch import overridden
     from tritrack.single.single import single_all
 
     facts = single_all(videos, out, notes, overridden(Settings(), mode, size), console)

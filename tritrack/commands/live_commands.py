@@ -42,7 +42,7 @@ def live(
     Example: tritrack live configs/live.toml --out runs/monday
     """
     from tritrack.live.session import live as run_live
-    from tritrack.offline.lockstep import overridden
+    from tritrack.offline.batch import overridden
 
     settings = overridden(config.load(settings_file), mode, size)
     name = settings_file.stem if settings_file.is_file() else ""

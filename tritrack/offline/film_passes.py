@@ -4,7 +4,7 @@ What the thesis learns from all of a film, the background (3.1.2) and the scale 
 before the first body; from there on the steps are those of a live run.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import msgspec
@@ -26,6 +26,8 @@ from integrator.opening_posture import Opening
 from integrator.pairing import Pair
 from integrator.rig.assumed_rig import assumed_camera
 from integrator.single.sight import Annotations
+from tritrack.offline.frame_pairs import share_of
+from tritrack.terminal import Tell
 from viewer import track
 from viewer.background.background import learn
 from viewer.background.background_source import FilmBackground
@@ -36,9 +38,6 @@ MOST_FRAMES: Final = 50_000
 """Silhouettes are kept until the standing height is known, some 10 kB each."""
 MOST_COVERED: Final = 0.5
 """Share of the picture that no person covers in most frames; a camera that moves does."""
-
-Watch = Callable[[int, int], object]
-"""Hears how many frames were looked at or drawn, and of how many; 0: that is not known."""
 
 
 class FilmFacts(NamedTuple):
@@ -64,7 +63,7 @@ def silhouettes_of(
     background: FilmBackground,
     film: FilmFacts,
     reader: Reader,
-    watch: Watch = lambda *_: None,
+    tell: Tell = lambda _: None,
 ) -> list[Report]:
     """The first pass: the silhouette of every frame.
 
@@ -80,7 +79,7 @@ def silhouettes_of(
             raise ClipError(f"{view.source} has more than {MOST_FRAMES} frames: track parts of it")
         viewer, report, _ = track.look(viewer, frame, None)
         reports.append(report)
-        watch(len(reports), 2 * view.frames)
+        tell(share_of(clip, {view.number: frame}))
     _refuse_a_moving_camera(reports, str(view.source))
     return reports
 

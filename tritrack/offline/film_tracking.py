@@ -15,7 +15,8 @@ from common.rig.camera import PAPER_ROTATIONS
 from common.video.clip_facts import Clip, shortfall
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reel
-from tritrack.offline.film_passes import FilmFacts, Watch, bodies_of, silhouettes_of
+from tritrack.offline.film_passes import FilmFacts, bodies_of, silhouettes_of
+from tritrack.terminal import Tell
 from viewer.background.background import Background
 from viewer.background.background_source import FilmBackground
 
@@ -54,7 +55,7 @@ def follow_clip(
     background: FilmBackground,
     decoder: Decoder,
     notes: Notes = Notes(),
-    watch: Watch = lambda *_: None,
+    tell: Tell = lambda _: None,
 ) -> Followed:
     """Track a clip of one view whose background is known.
 
@@ -67,7 +68,7 @@ def follow_clip(
     camera = clip.rig.cameras[0] if clip.rig is not None else None
     scale = view.size[0] / view.source_size[0]
     film = FilmFacts(settings, view.number, clip.every / view.fps, camera, notes, scale)
-    reports = silhouettes_of(clip, background, film, reel, watch)
+    reports = silhouettes_of(clip, background, film, reel, tell)
     seen = time.perf_counter()
     bodies = bodies_of(reports, film)
     done = time.perf_counter()
@@ -119,11 +120,18 @@ def _times(frames: int, **spent_s: float) -> dict[str, Any]:
     }
 
 
+def unseen(bodies: Sequence[Body]) -> str:
+    """What to say where no frame shows anybody; "" otherwise."""
+    if any(body.joints_m for body in bodies):
+        return ""
+    return "nobody was seen: the person must move, and be a sixth of the picture high at least"
+
+
 def doubtful(bodies: Sequence[Body]) -> str:
     """What is odd where no frame shows anybody, or few poses fit what they show; "" otherwise."""
     scores = [max(body.score) for body in bodies if body.joints_m]
     if not scores:
-        return "nobody was seen: the person must move, and be a sixth of the picture high at least"
+        return unseen(bodies)
     fit = float(np.mean(np.array(scores) >= FITS))
     if fit >= MOSTLY:
         return ""

@@ -27,6 +27,13 @@ def backgrounds(
         return [*pool.map(learnt, clip.views)]
 
 
+def share_of(clip: Clip, frames: Mapping[ViewerNumber, CapturedFrame]) -> float:
+    """How much of a clip is over with the frames of an instant; 0 of a camera, which has no end."""
+    lengths = {view.number: view.frames for view in clip.views}
+    shares = [(one.index + 1) / lengths[n] for n, one in frames.items() if lengths[n]]
+    return min(1.0, max(shares, default=0.0))
+
+
 def instants(clip: Clip, readers: Readers) -> Iterator[dict[ViewerNumber, CapturedFrame]]:
     """The frames of all views, those of one instant together, in the order of time."""
     streams = {view.number: recorded(view, clip.every, readers[view.number]) for view in clip.views}

@@ -1,32 +1,27 @@
 """The same steps as live, in one process and in lock-step: deterministic, as fast as it goes."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import ExitStack
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import msgspec
-from rich.console import Console
 
-from common import config
 from common.body.body import Bdp
 from common.bus.messages import Body, Guide, Report, ViewerNumber
-from common.config import Settings, SettingsError
-from common.method import METHODS, Method, Mode
+from common.config import Settings
+from common.method import METHODS, Method
 from common.video.clip_facts import Clip, both_cameras, shortfall
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
-from common.video.decoding import Decoder, DecoderDied, Undecodable
+from common.video.decoding import Decoder
 from common.video.frame_cache import Reel
 from integrator import diagnostics, merge, merge_state, opening_posture
 from integrator.pairing import Pair
-from tritrack.offline.film_tracking import follow_clip
-from tritrack.offline.frame_pairs import backgrounds, instants
+from tritrack.offline.film_tracking import follow_clip, unseen
+from tritrack.offline.frame_pairs import backgrounds, instants, share_of
 from tritrack.offline.opening_clip import body_of
-from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_files
-from tritrack.store.runs import write_run
-from tritrack.terminal import bar, complain, warn
+from tritrack.terminal import Tell
 from viewer import track
 from viewer.background.background_source import FilmBackground, background_of_view
 from viewer.capture import CapturedFrame
@@ -91,6 +86,7 @@ def track_clip(
     views: tuple[ViewerNumber, ...] = (1, 2),
     watch: Watch | None = None,
     method: Method | None = None,
+    tell: Tell = lambda _: None,
 ) -> Tracked:
     """Track one clip from its videos to its bodies; `watch` is shown every instant.
 
@@ -100,6 +96,7 @@ def track_clip(
         views: The cameras to use.
         watch: Is shown every instant of a clip whose scale is known before.
         method: Instead of that of the settings' mode.
+        tell: Hears how much of the clip is over.
 
     Raises:
         ClipError: When the clip cannot be used.
@@ -112,18 +109,18 @@ def track_clip(
     if method.stick_lifting and not alone:
         raise ClipError(f"{clip.name}: the thesis's mode is for one camera: add --views 1")
     if alone and (method.stick_lifting or (method.proposals and clip.rig is None)):
-        return _in_two_passes(clip, settings, decoders)
+        return _in_two_passes(clip, settings, decoders, tell)
     ready = _prepared(clip, settings, method, decoders, began)
-    done = _performed(ready, watch)
+    done = _performed(ready, watch, tell)
     return Tracked(clip, done.bodies, _facts(ready, done))
 
 
-def _in_two_passes(clip: Clip, settings: Settings, decoders: Decoders) -> Tracked:
+def _in_two_passes(clip: Clip, settings: Settings, decoders: Decoders, tell: Tell) -> Tracked:
     """One camera whose scale all of the clip must tell, or that is followed as the thesis does."""
     view = clip.views[0]
     decoder = decoders.of[view.number]
     learnt, odd = background_of_view(view, settings.silhouette, Reel(decoder))
-    followed = follow_clip(clip, settings, FilmBackground(learnt, [], odd), decoder)
+    followed = follow_clip(clip, settings, FilmBackground(learnt, [], odd), decoder, tell=tell)
     return Tracked(clip, followed.bodies, followed.facts)
 
 
@@ -148,7 +145,7 @@ def _prepared(
     return Prepared(clip, reels, viewers, integrator, odd, time.perf_counter() - began)
 
 
-def _performed(ready: Prepared, watch: Watch | None) -> Performance:
+def _performed(ready: Prepared, watch: Watch | None, tell: Tell) -> Performance:
     """Every instant of a clip, its viewers and the integrator in lock-step."""
     viewers, state, noticed = dict(ready.viewers), ready.integrator, diagnostics.State()
     guide: Guide | None = None
@@ -167,6 +164,7 @@ def _performed(ready: Prepared, watch: Watch | None) -> Performance:
         bodies.append(body)
         if watch is not None:
             watch(frames, reports, body)
+        tell(share_of(ready.clip, frames))
         spent["viewers"] += middle - start
         spent["integrator"] += time.perf_counter() - middle
     spent["following"] = time.perf_counter() - began
@@ -177,7 +175,7 @@ def _facts(ready: Prepared, done: Performance) -> dict[str, Any]:
     """For the summary: what was tracked, how long it took, what was odd."""
     clip, acts = ready.clip, ready.clip.meta.acts
     cut_off = [shortfall(view, ready.reels[view.number].came) for view in clip.views]
-    odd = [*clip.warnings, *ready.odd, *filter(None, cut_off)]
+    odd = [*clip.warnings, *ready.odd, *filter(None, (*cut_off, unseen(done.bodies)))]
     followed_s = done.seconds["following"]
     seconds = {"preparation": ready.seconds, **done.seconds, "all": ready.seconds + followed_s}
     return {
@@ -200,61 +198,3 @@ def measured_before(settings: Settings) -> Bdp | None:
     """
     with Decoders() as decoders:
         return body_of(settings, lambda own: track_clip(own, decoders).bodies)
-
-
-def overridden(settings: Settings, mode: Mode | None, size: str | None) -> Settings:
-    """The settings with what a command line names instead; None leaves what they say.
-
-    Raises:
-        SettingsError: When the size is none.
-    """
-    try:
-        return msgspec.structs.replace(
-            settings, mode=mode or settings.mode, size=size or settings.size
-        )
-    except ValueError as error:
-        raise SettingsError(str(error)) from error
-
-
-def track_all(
-    paths: Sequence[Path],
-    out: Path,
-    mode: Mode | None,
-    views: tuple[ViewerNumber, ...],
-    size: str | None,
-    console: Console,
-) -> dict[str, Any]:
-    """Track clip after clip and write a run folder for each.
-
-    A clip that cannot be used is said and left out; the others are tracked.
-
-    Args:
-        paths: Clip folders and settings files; other plain files are said and left out.
-        out: Gets a folder for each, named after the clip or the settings file.
-        mode: Instead of what the settings say; None leaves them.
-        views: The cameras to use.
-        size: As `mode`.
-        console: For progress, warnings and errors.
-
-    Raises:
-        ClipsFailed: When there is nothing to track, when two runs would have one folder, and at
-            the end when any clip could not be used.
-        RunError: When a run folder cannot be written.
-    """
-    runs = run_names(without_plain_files(paths, console))
-    done: dict[str, Any] = {}
-    with Decoders() as decoders, bar(console) as progress:
-        for name, path in progress.track(runs.items(), description="tracking"):
-            try:
-                settings = overridden(config.load(path), mode, size)
-                tracked = track_clip(settings, decoders, views)
-            except (SettingsError, ClipError, DecoderDied, Undecodable) as error:
-                complain(console, str(error))
-                continue
-            for warning in tracked.facts["warnings"]:
-                warn(console, f"{name}: {warning}")
-            done[name] = {**tracked.facts, "clip": name}
-            write_run(out / name, tracked.bodies, settings, done[name])
-    if len(done) < len(runs):
-        raise ClipsFailed(f"{len(runs) - len(done)} of {len(runs)} clips could not be tracked")
-    return {"clips": done}

@@ -9,7 +9,6 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
-from rich.progress import Progress, TaskID
 
 from animator.bvh import NoMotion, bvh_text, steady
 from animator.film import filming
@@ -25,14 +24,13 @@ from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied, Undecodable
 from common.video.frame_cache import Reel
-from tritrack.offline.film_passes import Watch
 from tritrack.offline.film_tracking import Followed, follow_clip, follow_masks
 from tritrack.single.angle_plot import angle_plot
 from tritrack.single.ledger import facts_of, ledger
 from tritrack.single.mask_file import MaskFileError, MaskSequence, is_mask_file, read_masks
 from tritrack.store.clip_paths import ClipsFailed
 from tritrack.store.runs import RunError, poses, write_run
-from tritrack.terminal import bar, complain, json_text, warn
+from tritrack.terminal import Tell, bar, by_share, complain, json_text, warn
 from viewer.background.background import Background
 from viewer.background.background_source import background_of_film
 
@@ -74,15 +72,14 @@ def single_all(
     """
     done: dict[str, Any] = {}
     with Decoder() as decoder, bar(console) as progress:
-        for path in videos:
+        for path, tell in by_share(progress, videos, "following"):
             name = name_of(path)
             if name in done:
                 complain(console, f"{path} would be written to {out / name} too: rename it")
                 continue
             try:
                 job = job_of(path, notes, settings)
-                task = progress.add_task(name, total=None)
-                done[name] = follow(job, out / name, decoder, console, _shown(progress, task))
+                done[name] = follow(job, out / name, decoder, console, tell)
             except (
                 *(SettingsError, ClipError, DecoderDied, Undecodable),
                 *(MaskFileError, NotesError),
@@ -133,19 +130,12 @@ def job_of(path: Path, notes: Path | None, settings: Settings) -> Job:
     return Job(path, settings, None, load_notes(file) if notes or file.exists() else Notes())
 
 
-def _shown(progress: Progress, task: TaskID) -> Watch:
-    """Moves a bar by frames: each is looked at, and later drawn."""
-
-    def watch(frames: int, of: int) -> None:
-        progress.update(task, completed=frames, total=of or None)
-
-    return watch
-
-
 def follow(
-    job: Job, folder: Path, decoder: Decoder, console: Console, watch: Watch
+    job: Job, folder: Path, decoder: Decoder, console: Console, tell: Tell
 ) -> dict[str, Any]:
     """Follow one video and write its run folder; what the summary tells of it.
+
+    Half of the work is done when every frame was looked at; later each is drawn.
 
     Raises:
         ClipError, DecoderDied: When it cannot be used.
@@ -156,7 +146,9 @@ def follow(
     else:
         clip = open_clip(job.settings, decoder, (1,))
         background = background_of_film(clip.views[0], job.settings.silhouette, Reel(decoder))
-        found = follow_clip(clip, job.settings, background, decoder, job.notes, watch)
+        found = follow_clip(
+            clip, job.settings, background, decoder, job.notes, lambda share: tell(share / 2)
+        )
     arrays = poses(found.bodies)
     facts = {
         **found.facts,
@@ -170,9 +162,9 @@ def follow(
         _write_picture(folder / "background.png", marked(found.background))
     odd = _animate(folder, arrays)
     with filming(folder / "overlay.avi", found.rate_hz) as film:
-        for n, picture in enumerate(overlaid(found, decoder), 1 + len(found.reports)):
+        for n, picture in enumerate(overlaid(found, decoder), 1):
             film.write(picture)
-            watch(n, 2 * len(found.reports))
+            tell(0.5 + 0.5 * n / len(found.reports))
     for warning in (*facts["warnings"], *odd):
         warn(console, f"{folder.name}: {warning}")
     return facts

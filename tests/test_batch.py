@@ -1,0 +1,41 @@
+"""Clip after clip: what is said of each, and how a bar hears how far one is."""
+
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+from spoiling import copied, refilmed
+
+from common.bus.messages import ViewerNumber
+from common.config import Settings
+from tritrack.offline.batch import track_all
+from tritrack.offline.lockstep import Decoders, track_clip
+
+VIEWS: tuple[tuple[ViewerNumber, ...], ...] = ((1, 2), (1,))
+
+
+@pytest.mark.parametrize("views", VIEWS)
+def test_a_clip_that_shows_nobody_is_tracked_and_that_is_said(
+    clip: Path, tmp_path: Path, views: tuple[ViewerNumber, ...]
+) -> None:
+    folder = copied(clip, tmp_path / "clip")
+    refilmed(folder, lambda film: 4 * film[:8])
+    said = Console(file=StringIO(), width=500)
+    track_all([folder], tmp_path / "runs", None, views, None, said)
+    assert isinstance(said.file, StringIO)
+    assert "warning: clip: nobody was seen" in said.file.getvalue()
+
+
+@pytest.mark.parametrize("views", VIEWS)
+@pytest.mark.parametrize("calibrated", [True, False])
+def test_a_bar_hears_of_every_frame_of_a_clip(
+    clip: Path, tmp_path: Path, views: tuple[ViewerNumber, ...], calibrated: bool
+) -> None:
+    folder, shares = copied(clip, tmp_path / "clip"), list[float]()
+    if not calibrated:
+        (folder / "calibration.json").unlink()
+    with Decoders() as decoders:
+        done = track_clip(Settings(clip=str(folder)), decoders, views, tell=shares.append)
+    assert shares == sorted(shares)
+    assert (len(shares), shares[-1]) == (len(done.bodies), 1.0)
