@@ -44,7 +44,7 @@ def step(state: State, picture: Image) -> tuple[State, CameraFault]:
     """One picture (H, W, 3); the fault that makes it useless, or "".
 
     A sensor's noise makes every picture of its own, so one that is the same, bit for bit, for
-    more than FROZEN_AFTER frames is the camera's memory and not the room.
+    more than FROZEN_AFTER frames is the camera's memory and not the scene.
     """
     same = state.last is not None and _same(picture, state.last)
     state = State(state.background, picture, state.repeats + 1 if same else 0)

@@ -1,4 +1,4 @@
-"""How fast one camera's clip is followed, from its video to poses, once its room is known."""
+"""How fast one camera's clip is followed, from its video to poses, once its background is known."""
 
 import time
 from collections.abc import Iterator
@@ -36,7 +36,7 @@ class Times(NamedTuple):
 
     @property
     def frames_a_second(self) -> float:
-        """One stage after the other on one core; learning the room does not count."""
+        """One stage after the other on one core; learning the background does not count."""
         return self.frames / (self.decoding_s + self.silhouettes_s + self.poses_s)
 
 

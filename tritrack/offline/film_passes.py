@@ -114,8 +114,10 @@ def _begun(reports: Sequence[Report], film: FilmFacts) -> tuple[track.State, Sta
     viewer = track.init(_setup(film), learn([nothing]), standing=standing)
     stature_m, opening = settings.body.stature_m, Opening()
     if camera is None:
-        sole, tall = (size[1], size[1]) if standing is None else standing[:2]
-        camera = assumed_camera(size, sole, tall, stature_m)
+        sole_row, tall_px = float(size[1]), float(size[1])
+        if standing is not None:
+            sole_row, tall_px = standing.sole_row, standing.tall_px
+        camera = assumed_camera(size, sole_row, tall_px, stature_m)
         opening = Opening(bdp=thesis_bdp(stature_m))
     rig = Rig(*size, (camera, camera))
     source: ScaleSource = "assumed" if film.camera is None else "calibrated"
