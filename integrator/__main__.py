@@ -14,9 +14,9 @@ from common.bus.rate import Pace
 from common.config import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip
-from integrator import diagnostics, merge, opening_posture, pairing, presence
+from integrator import diagnostics, merge, merge_state, opening_posture, pairing, presence
 from integrator.integrator_warmup import warm_up
-from integrator.merge_state import State
+from integrator.merge_state import Start, State
 from integrator.pairing import Pair
 
 LEAD_S: Final = 0.5
@@ -176,13 +176,12 @@ def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContex
         bus.keep(Guide)
         bus.keep(Cameras)
         bus.announce("integrator")
-        state = merge.init(
+        state = merge_state.init(
             clip.rig,
             period_s,
             settings,
             METHODS[settings.mode],
-            alone=len(viewers) == 1,
-            opening=opening_posture.init(clip.body),
+            Start(len(viewers) == 1, opening=opening_posture.init(clip.body)),
         )
         warm_up(settings, clip.views[0].size)
         gc.collect()

@@ -13,7 +13,7 @@ from common.method import METHODS
 from common.raster.kernel import draw_body, view_of
 from common.raster.silhouette_report import pack, silhouette_report, unpack
 from common.rig.camera import Rig, paper_rig
-from integrator import merge
+from integrator import merge, merge_state
 from integrator.fit import pose_refinement, visual_hull
 from integrator.pairing import Pair
 
@@ -30,7 +30,7 @@ def warm_up(settings: Settings, size: tuple[int, int]) -> None:
     """
     known = _rig(size)
     for rig in (known, None):
-        state = merge.init(rig, 1.0, settings, METHODS[settings.mode])
+        state = merge_state.init(rig, 1.0, settings, METHODS[settings.mode])
         for index in range(4):
             first, second = (_report(viewer, index, size, known) for viewer in VIEWERS)
             state, _, _ = merge.step(state, Pair(first, second if index < 3 else None))
@@ -38,7 +38,7 @@ def warm_up(settings: Settings, size: tuple[int, int]) -> None:
 
 
 def _match_elsewhere(rig: Rig, seen: tuple[Report, Report]) -> None:
-    """Match a pose that nobody is sure of, beside the silhouettes, of which one has clutter."""
+    """Match a pose of little confidence, beside the silhouettes, of which one has clutter."""
     clutter = unpack(seen[0])
     clutter[: len(clutter) // 20, : len(clutter) // 20] = True
     visual_hull.cleaned(

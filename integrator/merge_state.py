@@ -5,7 +5,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import Vector
+from common.body.body import ANGLE_NAMES, Vector
 from common.bus.messages import Facing
 from common.config import Settings
 from common.method import Method
@@ -61,3 +61,33 @@ class State(NamedTuple):
     def pose(self) -> Vector | None:
         """(25,) the pose of the instant before; None while nobody is there."""
         return None if self.found is None else self.found.pose
+
+
+class Start(NamedTuple):
+    """What else is known before the first frame."""
+
+    alone: bool = False
+    """One viewer is all that the run has."""
+    source: ScaleSource | None = None
+    """Where the rig is from; None: it is calibrated, if there is one."""
+    opening: Opening = Opening()
+    """What is known of the body."""
+
+
+def init(
+    rig: Rig | None, period_s: float, settings: Settings, method: Method, start: Start = Start()
+) -> State:
+    """An integrator that has heard nothing.
+
+    Args:
+        rig: The cameras of viewer 1 and viewer 2, for the working size; None: a rig of the
+            paper's kind is assumed when somebody is seen.
+        period_s: Time between frames.
+        settings: Of the run.
+        method: What is done beyond the print.
+        start: What else is known.
+    """
+    source = start.source or ("assumed" if rig is None else "calibrated")
+    proposes = method.proposals and (start.alone or source == "calibrated")
+    smooth = smoothing.init(len(ANGLE_NAMES), period_s)
+    return State(settings, method, rig, source, proposes, smooth, start.opening)

@@ -10,28 +10,28 @@ from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, Vector, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector
 from common.bus.messages import Body, Guide, Pixel, Report, Status, Views
-from common.rig.camera import Rig, project
+from common.rig.camera import project
 from integrator.merge_state import State
 from integrator.pairing import Pair
 from integrator.rig.body_position import pixels_of, scales_since
 
+LOST_SCORE: Final = 0.35
+"""A body whose S is lower than this in every view is not believed."""
 LOST_FRAMES: Final = 5
-"""After so many frames in a row that fit badly the body is lost."""
+"""After so many frames of it in a row the body is lost."""
 
 
-def body_of(
-    state: State, rig: Rig, pair: Pair, angles_deg: Vector, scores: tuple[float, float]
-) -> Body:
+def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, float]) -> Body:
     """The body in the pose that was found, with its angles smooth.
 
     Args:
         state: Of this instant; its pose is as found.
-        rig: Two cameras.
         pair: What was heard of it.
         angles_deg: The smooth angles, ANGLE_NAMES order.
         scores: S of the pose in each view.
     """
-    found, bdp = state.found, state.opening.bdp
+    rig, found, bdp = state.rig, state.found, state.opening.bdp
+    assert rig is not None
     assert found is not None
     assert bdp is not None
     pose, in_pose = found.pose.copy(), list(ANGLES_IN_POSE)
@@ -82,18 +82,18 @@ def _confidence(state: State, scores: tuple[float, float]) -> Vector:
     return np.full(len(JOINT_NAMES), max(scores))
 
 
-def guide_of(state: State, rig: Rig, pair: Pair, settled_now: bool) -> Guide:
+def guide_of(state: State, pair: Pair, settled_now: bool) -> Guide:
     """What the viewers need for their next frame.
 
     As printed each starts where it had the body itself; beyond that where both together have it.
 
     Args:
         state: Of this instant.
-        rig: Two cameras.
         pair: What was heard of it.
         settled_now: The body has just been measured: both start where it was.
     """
-    found, known = state.found, state.opening
+    rig, found, known = state.rig, state.found, state.opening
+    assert rig is not None
     assert found is not None
     place = found.pose[:3]
     measured_at = np.array(known.measured_at_m) if known.measured else place
@@ -128,7 +128,7 @@ def _asks_for_stick(state: State) -> bool:
     return alone is not None and alone.stick and state.scale_source == "assumed"
 
 
-def nobody(state: State, pair: Pair) -> tuple[Body, Guide]:
+def no_detection(state: State, pair: Pair) -> tuple[Body, Guide]:
     """What is told while nobody is in any view."""
     known = state.opening
     body = Body(

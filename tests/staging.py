@@ -17,7 +17,8 @@ from common.raster.silhouette_report import box_of, pack
 from common.raster.similarity import Mask
 from common.rig.camera import Rig, paper_rig
 from common.video.decoding import Image
-from integrator import merge
+from integrator import merge, merge_state
+from integrator.merge_state import Start
 from integrator.pairing import Pair
 from viewer import track
 from viewer.capture import CapturedFrame
@@ -102,7 +103,7 @@ class Stage:
             n: track.init(track.Setup(n, cameras[n - 1], settings, method, alone), None)  # type: ignore[arg-type]
             for n in views
         }
-        self.state = merge.init(rig, PERIOD_S, settings, method, alone=alone)
+        self.state = merge_state.init(rig, PERIOD_S, settings, method, Start(alone))
         self.guide: Guide | None = None
         self.at = 0
 

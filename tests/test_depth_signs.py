@@ -8,7 +8,7 @@ from common.body.body import LIMBS
 from common.body.stick_body import ADULT, BREADTH, joints_px
 from common.notes.notes import Orientation
 from integrator.single import depth_signs
-from integrator.single.lifting import lift
+from integrator.single.lifting import StickPicture, lift
 from integrator.single.orientation import faced
 
 LENGTHS_M = ADULT.lengths * 1.75
@@ -25,13 +25,14 @@ def chosen(
 ) -> depth_signs.Choice:
     seen, breadth = joints_px(ADULT, pose), float(pose[BREADTH])
     memory = depth_signs.init() if memory is None else memory
-    return depth_signs.choose(memory, seen, breadth, LENGTHS_M, PX_PER_M, depth, orientation)
+    picture = StickPicture(seen, breadth, LENGTHS_M, PX_PER_M)
+    return depth_signs.choose(memory, picture, depth, orientation)
 
 
 def after(memory: depth_signs.Memory, pose: np.ndarray, way: float) -> depth_signs.Memory:
     """What is remembered of a body all of whose segments lean one way, as the user said."""
     seen = joints_px(ADULT, pose)
-    body = lift(seen, 1.0, LENGTHS_M, PX_PER_M, np.full(10, way), "forward_right")
+    body = lift(StickPicture(seen, 1.0, LENGTHS_M, PX_PER_M), np.full(10, way), "forward_right")
     bearing = faced(memory.bearing, seen, 1.0)
     choice = depth_signs.Choice(np.full(10, way), np.ones(10), "forward_right", 1.0, bearing)
     return depth_signs.remembered(memory, body.joints_m, choice)

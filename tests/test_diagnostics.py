@@ -4,7 +4,7 @@ from common.bus.messages import Box, Report
 from common.config import BodySettings, Settings
 from common.method import DEFAULT
 from common.rig.camera import paper_rig
-from integrator import diagnostics, merge, merge_state
+from integrator import diagnostics, merge_state
 from integrator.pairing import Pair
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
@@ -32,7 +32,7 @@ def noticed(*pairs: Pair) -> diagnostics.State:
 
 
 def merged(calibrated: bool = True, measured: bool = True) -> merge_state.State:
-    state = merge.init(
+    state = merge_state.init(
         RIG if calibrated else None, 1 / 15, Settings(body=BodySettings(stature_m=1.62)), DEFAULT
     )
     return state._replace(opening=state.opening._replace(measured=measured))

@@ -6,7 +6,7 @@ from stick_posing import STATURE_PX, stick_pose
 
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS
 from common.body.stick_body import ADULT, joints_px
-from integrator.single.lifting import depths_m, lift, tilt_errors_deg, yaw_of
+from integrator.single.lifting import StickPicture, depths_m, lift, tilt_errors_deg, yaw_of
 
 LENGTHS_M = ADULT.lengths * 1.75
 PX_PER_M = STATURE_PX / 1.75
@@ -64,7 +64,9 @@ def test_every_segment_has_its_length_in_space() -> None:
         pose[4:14] += rng.uniform(-60, 60, 10)
         pose[14:24] = rng.uniform(0.1, 1.0, 10)
         signs = rng.choice([-1.0, 1.0], 10)
-        lifted = lift(joints_px(ADULT, pose), 1.0, LENGTHS_M, PX_PER_M, signs, "forward_left")
+        lifted = lift(
+            StickPicture(joints_px(ADULT, pose), 1.0, LENGTHS_M, PX_PER_M), signs, "forward_left"
+        )
         along = lifted.joints_m[LIMB_ENDS[:, 1]] - lifted.joints_m[LIMB_ENDS[:, 0]]
         assert np.linalg.norm(along, axis=1) == pytest.approx(LENGTHS_M[:10])
         assert np.sign(lifted.tilt_deg) == pytest.approx(signs)
@@ -74,22 +76,22 @@ def test_the_lifted_body_is_projected_where_it_was_seen() -> None:
     """T19, eq. 2.1."""
     pose = stick_pose({"r_upper_arm": 200.0}, {"l_upper_leg": 0.6})
     seen = joints_px(ADULT, pose)
-    lifted = lift(seen, 1.0, LENGTHS_M, PX_PER_M, np.ones(10), "forward_right")
+    lifted = lift(StickPicture(seen, 1.0, LENGTHS_M, PX_PER_M), np.ones(10), "forward_right")
     assert lifted.joints_m[:, :2] * PX_PER_M * [1, -1] == pytest.approx(seen)
 
 
 def test_seen_from_behind_left_is_left() -> None:
     """3.1.5: the orientation tells the left leg from the right."""
     seen = joints_px(ADULT, stick_pose({"r_upper_arm": 180.0, "r_lower_arm": 180.0}))
-    before = lift(seen, 1.0, LENGTHS_M, PX_PER_M, np.ones(10), "forward_right")
-    behind = lift(seen, 1.0, LENGTHS_M, PX_PER_M, np.ones(10), "backward_right")
+    before = lift(StickPicture(seen, 1.0, LENGTHS_M, PX_PER_M), np.ones(10), "forward_right")
+    behind = lift(StickPicture(seen, 1.0, LENGTHS_M, PX_PER_M), np.ones(10), "backward_right")
     assert before.joints_m[AT["r_wrist"], 0] == behind.joints_m[AT["l_wrist"], 0]
 
 
 def test_who_faces_the_right_has_the_left_shoulder_away_from_the_camera() -> None:
     """T22: the shoulders lie across the way that is faced."""
     seen = joints_px(ADULT, stick_pose({}))
-    lifted = lift(seen, 0.0, LENGTHS_M, PX_PER_M, np.ones(10), "right")
+    lifted = lift(StickPicture(seen, 0.0, LENGTHS_M, PX_PER_M), np.ones(10), "right")
     left, right = (lifted.joints_m[AT[f"{side}_shoulder"], 2] for side in "lr")
     assert right - left == pytest.approx(2 * LENGTHS_M[10])
     assert lifted.yaw_deg == 90.0

@@ -29,7 +29,7 @@ from common.bus.messages import Guide
 from common.config import Settings
 from common.method import DEFAULT, Mode
 from common.rig.camera import project
-from integrator import merge
+from integrator import merge, merge_state
 from integrator.outgoing import LOST_FRAMES
 from integrator.pairing import Pair
 from integrator.rig.body_position import scales_at
@@ -303,7 +303,7 @@ def test_a_turn_to_camera_2_exchanges_facade_and_flank() -> None:
 
 def test_a_late_partner_is_not_waited_for() -> None:
     """Reports of one instant alone are told as such; the guide says who was heard last."""
-    state = merge.init(RIG, 1 / 15, Settings(), DEFAULT)
+    state = merge_state.init(RIG, 1 / 15, Settings(), DEFAULT)
     masks = silhouettes(standing())
     first = report(1, masks[0], root_px=(80.0, 61.0), frame=7)
     state, body, guide = merge.step(state, Pair(first, None))

@@ -27,21 +27,21 @@ def after(pose: np.ndarray, frames: int = 12, step_px: float = 0.0) -> Bearing:
 def test_a_broad_trunk_faces_the_camera_until_somebody_says_otherwise() -> None:
     bearing = after(stick_pose({}))
     assert bearing.orientation.startswith("forward")
-    assert bearing.sure < 0.9
+    assert bearing.confidence < 0.9
 
 
 @pytest.mark.parametrize(("turned", "side"), [(STEP, "right"), (mirrored(STEP), "left")])
 def test_knees_tell_left_from_right(turned: dict[str, float], side: str) -> None:
     bearing = after(in_profile(stick_pose(turned)))
     assert bearing.orientation == side
-    assert bearing.sure > 0.7
+    assert bearing.confidence > 0.7
 
 
 @pytest.mark.parametrize(("step_px", "side"), [(6.0, "right"), (-6.0, "left")])
 def test_people_walk_where_they_face(step_px: float, side: str) -> None:
     bearing = after(in_profile(stick_pose({})), step_px=step_px)
     assert bearing.orientation == side
-    assert bearing.sure > 0.7
+    assert bearing.confidence > 0.7
 
 
 def test_a_frame_of_a_thin_trunk_is_no_profile() -> None:

@@ -66,7 +66,7 @@ def test_somebody_in_a_mirror_is_found_there() -> None:
             )
             found.append(each)
         seen_m.append(np.abs(found[1].joints_m[OTHER_SIDES] * MIRROR - found[0].joints_m))
-        assert found[1].sure[OTHER_SIDES] == pytest.approx(found[0].sure, abs=0.05)
+        assert found[1].confidence[OTHER_SIDES] == pytest.approx(found[0].confidence, abs=0.05)
     assert np.mean(seen_m) < 0.003  # a window's edge is not where the other's is
 
 
@@ -97,7 +97,7 @@ def test_the_second_layer_adds_to_the_first() -> None:
 def test_a_silent_network_says_the_middle_and_is_undecided() -> None:
     _, found = pose_network.step(network(), None, SEEN, 1.75)
     assert found.joints_m == pytest.approx(np.tile([1.0, 2.0, 3.0], (12, 1)))
-    assert found.sure == pytest.approx(np.full(12, 0.5))
+    assert found.confidence == pytest.approx(np.full(12, 0.5))
 
 
 def test_what_is_said_is_statures_in_the_frame_of_the_proposal() -> None:

@@ -20,8 +20,8 @@ from common.raster.similarity import Mask
 from integrator.proposal import pose_proposal
 from integrator.proposal.pose_proposal import (
     AT,
-    SURENESS,
-    SURENESS_OF_MATCHED,
+    PLATT,
+    PLATT_OF_MATCHED,
     probability,
 )
 from synth.motion.footing import posed
@@ -245,7 +245,7 @@ def test_elbows_and_wrists_of_a_matched_pose_lie_on_its_own_arms() -> None:
 def proposed_of(matched: Vector) -> Vector:
     """The confidence that a matched joint's was made of: the inverse of `probability`."""
     grid = np.linspace(1e-6, 1.0 - 1e-6, 10_001)
-    found: Vector = np.interp(matched, probability(grid, SURENESS_OF_MATCHED), grid)
+    found: Vector = np.interp(matched, probability(grid, PLATT_OF_MATCHED), grid)
     return found
 
 
@@ -288,5 +288,5 @@ def test_a_probability_keeps_the_order_and_the_bounds() -> None:
     assert told[-1] == 1.0
     logit = np.log(told[:-1] / (1 - told[:-1]))
     assert logit == pytest.approx(
-        SURENESS[0] * np.log(sure[:-1] / (1 - sure[:-1])) + SURENESS[1], abs=1e-9
+        PLATT[0] * np.log(sure[:-1] / (1 - sure[:-1])) + PLATT[1], abs=1e-9
     )

@@ -19,7 +19,7 @@ from common.rig.camera import paper_rig
 from common.video.clip_facts import View
 from common.video.decoding import DecoderDied
 from integrator import __main__ as integrator
-from integrator import merge
+from integrator import merge_state
 from tritrack.live.launch import Subscriber, nothing_heard
 from tritrack.live.session import free_settings
 from viewer import __main__ as viewer
@@ -141,7 +141,7 @@ def test_what_was_lost_is_told_to_the_end() -> None:
     """Six reports too many for the inbox: the last pulse still counts them."""
     bus = Talkative()
     pulses, bodies = bus.subscribe(Pulse), bus.subscribe(Body)
-    state = merge.init(RIG, 1 / 15, Settings(), DEFAULT)
+    state = merge_state.init(RIG, 1 / 15, Settings(), DEFAULT)
     integrator.run(state, (1,), 1 / 15, bus, threading.Event())
     last = pulses.drain()[-1]
     assert (last.state, last.frames, last.dropped) == ("ended", BOUND, 6)

@@ -19,13 +19,10 @@ from integrator.pose.inverse_kinematics import HIGH_DEG, LOW_DEG
 
 POOR: Final = 0.6
 """A proposal of less S in either view is matched: of r01's and r04's every twentieth is."""
-CONFIDENT: Final = 0.75
-"""A proposal whose landmarks are surer than this on average is left as it is: cylinders that match
-better than it stand farther from the true joints of r01 and r04."""
 BETTER: Final = 1.25
 """How many times better S1 S2 must be for a matched pose to go on."""
 DOUBT: Final = 6.0
-"""How fast a proposal that fits worse is believed less, however sure it is of itself."""
+"""How fast a proposal that fits worse is believed less, however confident it is."""
 SILHOUETTE_WEIGHT: Final = 150.0
 """What the log of S1 S2 counts beside the log likelihood of what was proposed."""
 
@@ -115,11 +112,10 @@ def refined(
         seen: Both views' reports.
 
     Returns:
-        None where the proposed pose is sure or matches well, and where one view alone shows
-        somebody.
+        None where the proposed pose matches well, and where one view alone shows somebody.
     """
     first, second = seen
-    if first is None or second is None or is_confident(confidence):
+    if first is None or second is None:
         return None
     silhouettes = silhouettes_of(rig, (first, second))
     wanted = Wanted(body, silhouettes, joints(body, proposed), 0.5 / spread_m(confidence) ** 2)
@@ -135,11 +131,6 @@ def refined(
         return pose
     refuted = wanted._replace(tightness=np.zeros(len(confidence)))
     return _searched(pose, before, refuted)
-
-
-def is_confident(confidence: Vector) -> bool:
-    """Whether a proposal, by its (15,) landmarks' sureness, is left as it is."""
-    return bool(confidence.mean() >= CONFIDENT)
 
 
 def _held(proposed: Vector, before: Vector, wanted: Wanted) -> Vector | None:

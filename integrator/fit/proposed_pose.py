@@ -14,7 +14,7 @@ from integrator.fit import pose_refinement, visual_hull
 from integrator.pairing import Pair, Seen
 from integrator.prior_body import prior
 from integrator.proposal import pose_proposal
-from integrator.proposal.pose_proposal import Insight, Memory
+from integrator.proposal.pose_proposal import Memory, PoseProposal
 
 
 class Before(NamedTuple):
@@ -61,33 +61,36 @@ class ProposedPose(NamedTuple):
 def step(before: Before, now: Instant) -> ProposedPose:
     """One instant of both views.
 
-    A pose of which the network is not sure and that fits badly is looked for in the silhouettes
-    without clutter, where the network is surer of those; then it is matched to them.
+    A pose in which the network is not confident and that fits badly is looked for in the
+    silhouettes without clutter, where the network is more confident in those; then it is matched
+    to them.
     """
     known, was = _proposed(before, now), rest_pose() if before.pose is None else before.pose
-    if now.method.clutter_removal and not pose_refinement.is_confident(known.sure):
+    if now.method.clutter_removal and not known.is_confident:
         now, known = _without_clutter(before, now, known)
     body = body_vector(now.bdp)
     pose, beside_m = pose_proposal.pose_and_rest(body, was, known.joints_m)
-    better, confidence = None, known.sure
-    if now.method.refinement:
+    better, confidence = None, known.confidence
+    if now.method.refinement and not known.is_confident:
         previous = pose_refinement.Previous(before.pose, before.matched)
         better = pose_refinement.refined(pose, confidence, previous, body, now.rig, now.seen)
     if better is not None:
-        pose, beside_m[pose_proposal.ARMS] = better, 0.0
-        confidence = pose_proposal.probability(confidence, pose_proposal.SURENESS_OF_MATCHED)
+        pose, beside_m = better, pose_proposal.without_arms(beside_m)
+        confidence = pose_proposal.probability(confidence, pose_proposal.PLATT_OF_MATCHED)
     joints_m = joints(body, pose)
     if now.method.free_joints:
-        joints_m += beside_m @ pose_proposal.trunk_axes(body, pose).T
+        joints_m = joints_m + beside_m @ pose_proposal.trunk_axes(body, pose).T
     matched = better is not None
     return ProposedPose(pose, joints_m, confidence, known.memory, matched, now.seen, now.bdp)
 
 
-def _proposed(before: Before, now: Instant) -> Insight:
+def _proposed(before: Before, now: Instant) -> PoseProposal:
     return pose_proposal.step(before.memory, now.bdp, now.rig, now.seen, now.dt_s)
 
 
-def _without_clutter(before: Before, now: Instant, known: Insight) -> tuple[Instant, Insight]:
+def _without_clutter(
+    before: Before, now: Instant, known: PoseProposal
+) -> tuple[Instant, PoseProposal]:
     """The instant without what both views do not show as one piece, if that is surer."""
     body, was = body_vector(now.bdp), rest_pose() if before.pose is None else before.pose
     pose, _ = pose_proposal.pose_and_rest(body, was, known.joints_m)
@@ -99,4 +102,4 @@ def _without_clutter(before: Before, now: Instant, known: Insight) -> tuple[Inst
     kept = cleaned.pair.detections
     clean = now._replace(seen=kept, bdp=prior(now.rig, kept) if now.is_first else now.bdp)
     again = _proposed(before, clean)
-    return (clean, again) if again.sure.mean() > known.sure.mean() else (now, known)
+    return (clean, again) if again.confidence.mean() > known.confidence.mean() else (now, known)

@@ -23,7 +23,7 @@ class Proposal(NamedTuple):
 
     joints_m: NDArray[np.float64]
     """(12, 3) world."""
-    sure: Vector
+    confidence: Vector
     """(12,) how probably each is less than 50 mm off."""
 
 

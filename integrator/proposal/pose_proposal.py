@@ -38,28 +38,34 @@ JOINTS_OFF: Final = np.array(
     ]
 )
 """(12, 3) the same, to the left, up and before."""
-SURENESS: Final = (0.99, -0.64)
-"""Slope and offset of the logit by which the network's sureness, learnt with made-up people,
-becomes how often a joint of r01, of r04 and of people made up anew was less than 50 mm off."""
-
-
-SURENESS_OF_MATCHED: Final = (0.85, 0.44)
-"""As SURENESS, of poses that were matched instead: from how sure what was proposed is, so of six
+PLATT: Final = (0.99, -0.64)
+"""Platt scaling: slope and offset of the logit by which the network's confidence, learnt with
+made-up people, becomes how often a joint of r01, of r04 and of people made up anew was less than
+50 mm off."""
+PLATT_OF_MATCHED: Final = (0.85, 0.44)
+"""As PLATT, of poses that were matched instead: from the confidence in what was proposed, so of six
 other made-up people in free motion."""
-
+CONFIDENT: Final = 0.75
+"""A proposal whose landmarks are surer than this on average is left as it is: cylinders that match
+better than it stand farther from the true joints of r01 and r04."""
 
 Memory = Floats
 """What the network remembers of the instants before."""
 
 
-class Insight(NamedTuple):
+class PoseProposal(NamedTuple):
     """What was proposed of one instant."""
 
     joints_m: NDArray[np.float64]
     """(12, 3) world, in the order of JOINTS."""
-    sure: Vector
+    confidence: Vector
     """(15,) how probably each landmark is less than 50 mm off."""
     memory: Memory
+
+    @property
+    def is_confident(self) -> bool:
+        """Whether it is left as it is."""
+        return bool(self.confidence.mean() >= CONFIDENT)
 
 
 def step(
@@ -68,7 +74,7 @@ def step(
     rig: Rig,
     seen: tuple[Report | None, Report | None],
     since_s: float,
-) -> Insight:
+) -> PoseProposal:
     """The joints that silhouettes propose, whole ones where there are any.
 
     Two that no one person can cast are two things: the larger is believed to be the person.
@@ -92,18 +98,18 @@ def step(
         shown = look(larger, rig, height_m, since_s)
     assert shown is not None  # one alone stands somewhere
     memory, found = pose_network.step(network_weights.shipped(), memory, shown, height_m)
-    found.joints_m[:] -= height_m * JOINTS_OFF @ trunk_of(found.joints_m).T
-    sure, own = np.zeros(len(JOINT_NAMES)), probability(found.sure)
-    sure[AT] = own
-    sure[PELVIS] = own[pose_network.HIPS].mean()
-    sure[NECK] = sure[HEAD] = own[pose_network.SHOULDERS].mean()
-    return Insight(found.joints_m, sure, memory)
+    joints_m = found.joints_m - height_m * JOINTS_OFF @ trunk_of(found.joints_m).T
+    confidence, own = np.zeros(len(JOINT_NAMES)), probability(found.confidence)
+    confidence[AT] = own
+    confidence[PELVIS] = own[pose_network.HIPS].mean()
+    confidence[NECK] = confidence[HEAD] = own[pose_network.SHOULDERS].mean()
+    return PoseProposal(joints_m, confidence, memory)
 
 
-def probability(sure: Vector, calibrated: tuple[float, float] = SURENESS) -> Vector:
-    """How probably joints are less than 50 mm off, of the network's own sureness in (0, 1)."""
-    slope, offset = calibrated
-    found: Vector = 1.0 / (1.0 + np.exp(-offset) * ((1.0 - sure) / sure) ** slope)
+def probability(confidence: Vector, platt: tuple[float, float] = PLATT) -> Vector:
+    """How probably joints are less than 50 mm off, of the network's own confidence in (0, 1)."""
+    slope, offset = platt
+    found: Vector = 1.0 / (1.0 + np.exp(-offset) * ((1.0 - confidence) / confidence) ** slope)
     return found
 
 
@@ -121,6 +127,13 @@ def pose_and_rest(
     rest[PELVIS] = rest[AT[pose_network.HIPS]].mean(axis=0)
     rest[NECK] = rest[AT[pose_network.SHOULDERS]].mean(axis=0)
     return pose, rest
+
+
+def without_arms(rest: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What landmarks miss, (15, 3), of another pose of the arms."""
+    kept = rest.copy()
+    kept[ARMS] = 0.0
+    return kept
 
 
 def trunk_axes(body: Vector, pose: Vector) -> NDArray[np.float64]:

@@ -7,12 +7,13 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import LIMB_ENDS, LIMBS, OTHER_SIDE, Vector
+from common.body import stick_body
+from common.body.body import LIMB_ENDS, LIMBS, Vector
 from common.notes.notes import Orientation
-from integrator.single.lifting import depths_m, yaw_of
+from integrator.single.lifting import StickPicture, depths_m, yaw_of
 from integrator.single.orientation import Bearing, faced
 
-CHAINS: Final = np.array([[0, 1], [6, 8], [7, 9], [2, 4], [3, 5]])
+CHAINS: Final = np.array([(stick_body.TORSO, stick_body.HEAD), *stick_body.CHAINS])
 """Torso and head, arms, legs: of LIMBS, what hangs on what. Signs are chosen for two together."""
 WAYS: Final = np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
 """Signs of a chain's two segments."""
@@ -40,7 +41,7 @@ class Memory(NamedTuple):
 
 
 class Choice(NamedTuple):
-    """Signs and orientation, with how sure they are."""
+    """Signs and orientation, with the confidence in them."""
 
     signs: Vector
     """(10,) of LIMBS, the person's own sides: 1 far end towards the camera, -1 away."""
@@ -66,10 +67,7 @@ def directions_of(joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def choose(
     memory: Memory,
-    joints_px: NDArray[np.float64],
-    breadth: float,
-    lengths_m: Vector,
-    px_per_m: float,
+    picture: StickPicture,
     depth: Mapping[str, str] | None = None,
     orientation: Orientation | None = None,
 ) -> Choice:
@@ -77,17 +75,17 @@ def choose(
 
     Args:
         memory: Of the frame before.
-        joints_px: As for `lift`, likewise `breadth`, `lengths_m`, `px_per_m`.
+        picture: Of the stick body.
         depth: The user's: names of LIMBS to `toward` or `away`.
         orientation: The user's.
     """
-    bearing = faced(memory.bearing, joints_px, breadth)
+    bearing = faced(memory.bearing, picture.joints_px, picture.breadth)
     facing = orientation or bearing.orientation
-    pixels = joints_px[OTHER_SIDE] if facing.startswith("backward") else joints_px
+    pixels, px_per_m = picture.of_own_sides(facing), picture.px_per_m
     flat_m = (pixels[LIMB_ENDS[:, 1]] - pixels[LIMB_ENDS[:, 0]]) / px_per_m * np.array([1.0, -1.0])
     lengths_px = np.linalg.norm(flat_m, axis=1) * px_per_m
-    deep_m = depths_m(lengths_m[: len(LIMBS)], lengths_px, px_per_m)
-    yaw = math.radians(yaw_of(facing, breadth))
+    deep_m = depths_m(picture.lengths_m[: len(LIMBS)], lengths_px, px_per_m)
+    yaw = math.radians(yaw_of(facing, picture.breadth))
     costs = _costs(memory, flat_m, deep_m, np.array([math.sin(yaw), 0.0, math.cos(yaw)]))
     costs += _forbidden(depth or {})
     odds = np.exp((costs.min(axis=0) - costs) / SOFTNESS)
@@ -97,7 +95,7 @@ def choose(
         signs[chain] = WAYS[best[n]]
         same = WAYS[best[n]] == WAYS
         confidence[chain] = (odds[:, n, None] * same).sum(axis=0) / odds[:, n].sum()
-    return Choice(signs, confidence, facing, 1.0 if orientation else bearing.sure, bearing)
+    return Choice(signs, confidence, facing, 1.0 if orientation else bearing.confidence, bearing)
 
 
 def remembered(memory: Memory, joints_m: NDArray[np.float64], choice: Choice) -> Memory:
@@ -109,13 +107,13 @@ def remembered(memory: Memory, joints_m: NDArray[np.float64], choice: Choice) ->
         choice: What was chosen for it.
     """
     bearing = choice.bearing._replace(
-        orientation=choice.orientation, sure=choice.orientation_confidence
+        orientation=choice.orientation, confidence=choice.orientation_confidence
     )
     return _next(memory, joints_m, bearing)
 
 
 def witnessed(
-    memory: Memory, joints_m: NDArray[np.float64], orientation: Orientation, sure: float
+    memory: Memory, joints_m: NDArray[np.float64], orientation: Orientation, confidence: float
 ) -> Memory:
     """The memory after a frame whose body was not lifted.
 
@@ -123,9 +121,9 @@ def witnessed(
         memory: Before it.
         joints_m: (15, 3), as `Lifted` has them.
         orientation: Which way the body faces.
-        sure: How sure that is.
+        confidence: In that.
     """
-    return _next(memory, joints_m, Bearing(orientation, sure))
+    return _next(memory, joints_m, Bearing(orientation, confidence))
 
 
 def _next(memory: Memory, joints_m: NDArray[np.float64], bearing: Bearing) -> Memory:

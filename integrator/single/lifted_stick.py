@@ -6,11 +6,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import JOINT_NAMES, LIMB_ENDS, OTHER_SIDE, Vector
+from common.body.body import JOINT_NAMES, LIMB_ENDS, Vector
+from common.body.kinematics import HEAD
 from common.bus.messages import Fit, Lifting
 from common.rig.camera import centre
 from integrator.single import depth_signs
-from integrator.single.lifting import Lifted, lift
+from integrator.single.lifting import Lifted, StickPicture, lift
 from integrator.single.sight import Hypothesis, Sight, posed
 from integrator.single.stick_similarity import stick_similarity
 
@@ -21,21 +22,21 @@ TILTED_DEG: Final = 15.0
 
 
 def step(memory: depth_signs.Memory, sight: Sight) -> tuple[depth_signs.Memory, Hypothesis]:
-    """The stick body of a report in the world, its signs and orientation chosen or told.
+    """The stick body of a report in the world, its signs and orientation chosen or annotated.
 
     Args:
         memory: Of the frame before.
         sight: Its report has a fit.
     """
-    fit, told = sight.report.fit, sight.annotations
+    fit, annotations = sight.report.fit, sight.annotations
     assert fit is not None
     lengths_m = sight.man.lengths * sight.stature_m
     px_per_m = fit.stature_px / sight.stature_m
-    picture = (np.array(fit.joints_px), fit.breadth, lengths_m, px_per_m)
-    choice = depth_signs.choose(memory, *picture, told.depth, told.orientation)
-    lifted = lift(*picture, choice.signs, choice.orientation)
-    pixels = _own_sides(picture[0], choice)
-    for name, place in told.joints_px.items():
+    picture = StickPicture(np.array(fit.joints_px), fit.breadth, lengths_m, px_per_m)
+    choice = depth_signs.choose(memory, picture, annotations.depth, annotations.orientation)
+    lifted = lift(picture, choice.signs, choice.orientation)
+    pixels = picture.of_own_sides(choice.orientation)
+    for name, place in annotations.joints_px.items():
         pixels[JOINT_NAMES.index(name)] = place
     pose, joints_m = posed(sight, in_world(sight, pixels, lifted, px_per_m))
     score = fit.score if sight.method.stick_lifting else stick_similarity(sight, joints_m)
@@ -70,11 +71,6 @@ def in_world(
     return world
 
 
-def _own_sides(joints_px: NDArray[np.float64], choice: depth_signs.Choice) -> NDArray[np.float64]:
-    """The stick's joints under the person's own sides."""
-    return joints_px[OTHER_SIDE] if choice.orientation.startswith("backward") else joints_px.copy()
-
-
 def _confidence(fit: Fit, lifted: Lifted, choice: depth_signs.Choice) -> Vector:
     """Of each joint: of the fit, of what is hidden, and of the sign where it matters."""
     found = np.full(len(JOINT_NAMES), fit.score)
@@ -82,5 +78,5 @@ def _confidence(fit: Fit, lifted: Lifted, choice: depth_signs.Choice) -> Vector:
         own = UNSEEN if fit.hidden[limb] else 1.0
         if abs(lifted.tilt_deg[limb]) > TILTED_DEG:
             own *= float(choice.confidence[limb])
-        found[far] = (found[near] if limb > 1 else found[far]) * own
+        found[far] = (found[near] if limb > HEAD else found[far]) * own
     return found

@@ -6,10 +6,29 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import JOINT_NAMES, LIMB_ENDS, OTHER_SIDE, Vector
+from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, OTHER_SIDE, Vector
+from common.body.stick_body import HALF_HIPS, HALF_SHOULDERS, SHOULDERS_BELOW, TORSO
 from common.notes.notes import Orientation
 
 _AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
+
+
+class StickPicture(NamedTuple):
+    """A fitted stick body, and the body that it is taken to be the picture of."""
+
+    joints_px: NDArray[np.float64]
+    """(15, 2), JOINT_NAMES, r on the left of the picture (T10)."""
+    breadth: float
+    """How much of its breadth the trunk shows."""
+    lengths_m: Vector
+    """(13,) of LIMBS, then half the shoulders, their drop, half the hips."""
+    px_per_m: float
+    """One scale for all parts, from the height standing (T20)."""
+
+    def of_own_sides(self, orientation: Orientation) -> NDArray[np.float64]:
+        """The joints under the person's own sides, which the orientation settles (3.1.5)."""
+        backward = orientation.startswith("backward")
+        return self.joints_px[OTHER_SIDE] if backward else self.joints_px.copy()
 
 
 class Lifted(NamedTuple):
@@ -64,43 +83,39 @@ def yaw_of(orientation: Orientation, breadth: float) -> float:
     return turned_deg if orientation.endswith("right") else -turned_deg
 
 
-def lift(
-    joints_px: NDArray[np.float64],
-    breadth: float,
-    lengths_m: Vector,
-    px_per_m: float,
-    signs: Vector,
-    orientation: Orientation,
-) -> Lifted:
+def lift(picture: StickPicture, signs: Vector, orientation: Orientation) -> Lifted:
     """The body in space that a fitted stick body is the picture of.
 
     Args:
-        joints_px: (15, 2), JOINT_NAMES, r on the left of the picture (T10): the person's own sides
-            are settled here, by the orientation (3.1.5).
-        breadth: How much of its breadth the trunk shows.
-        lengths_m: (13,) of LIMBS, then half the shoulders, their drop, half the hips.
-        px_per_m: One scale for all parts, from the height standing (T20).
+        picture: Of the stick body.
         signs: (10,) of LIMBS with the person's own sides, 1: far end nearer to the camera, -1.
         orientation: Which way the person faces.
     """
-    backward = orientation.startswith("backward")
-    pixels = joints_px[OTHER_SIDE] if backward else joints_px
-    flat_m = pixels / px_per_m * np.array([1.0, -1.0])
+    pixels = picture.of_own_sides(orientation)
+    limbs_m = picture.lengths_m[: len(LIMBS)]
+    flat_m = pixels / picture.px_per_m * np.array([1.0, -1.0])
     lengths_px = np.linalg.norm(pixels[LIMB_ENDS[:, 1]] - pixels[LIMB_ENDS[:, 0]], axis=1)
-    depth_m = np.where(np.asarray(signs) < 0, -1.0, 1.0) * depths_m(
-        lengths_m[:10], lengths_px, px_per_m
-    )
-    yaw_deg = yaw_of(orientation, breadth)
+    sizes_m = depths_m(limbs_m, lengths_px, picture.px_per_m)
+    depth_m = np.where(np.asarray(signs) < 0, -1.0, 1.0) * sizes_m
+    yaw_deg = yaw_of(orientation, picture.breadth)
+    z_m = _before_m(picture.lengths_m, depth_m, yaw_deg)
+    tilt_deg = np.degrees(np.arcsin(np.clip(depth_m / limbs_m, -1.0, 1.0)))
+    errors_deg = tilt_errors_deg(limbs_m, lengths_px, picture.px_per_m)
+    joints_m = np.concatenate([flat_m, z_m[:, None]], axis=1)
+    return Lifted(joints_m, tilt_deg, errors_deg, yaw_deg)
+
+
+def _before_m(lengths_m: Vector, depth_m: Vector, yaw_deg: float) -> Vector:
+    """How far each joint is before the pelvis, towards the camera, (15,)."""
     z_m = np.zeros(len(JOINT_NAMES))
     leftwards = -math.sin(math.radians(yaw_deg))
     for limb, (near, far) in enumerate(LIMB_ENDS):
         z_m[far] = z_m[near] + depth_m[limb]
-        if limb == 0:
-            drop = lengths_m[11] / lengths_m[0] * depth_m[0]
-            for side, sign in (("l", 1.0), ("r", -1.0)):
-                z_m[_AT[f"{side}_shoulder"]] = z_m[far] - drop + sign * lengths_m[10] * leftwards
-                z_m[_AT[f"{side}_hip"]] = sign * lengths_m[12] * leftwards
-    tilt_deg = np.degrees(np.arcsin(np.clip(depth_m / lengths_m[:10], -1.0, 1.0)))
-    errors_deg = tilt_errors_deg(lengths_m[:10], lengths_px, px_per_m)
-    joints_m = np.concatenate([flat_m, z_m[:, None]], axis=1)
-    return Lifted(joints_m, tilt_deg, errors_deg, yaw_deg)
+        if limb != TORSO:
+            continue
+        drop_m = lengths_m[SHOULDERS_BELOW] / lengths_m[TORSO] * depth_m[TORSO]
+        for side, sign in (("l", 1.0), ("r", -1.0)):
+            aside_m = sign * lengths_m[HALF_SHOULDERS] * leftwards
+            z_m[_AT[f"{side}_shoulder"]] = z_m[far] - drop_m + aside_m
+            z_m[_AT[f"{side}_hip"]] = sign * lengths_m[HALF_HIPS] * leftwards
+    return z_m

@@ -6,9 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, LIMB_ENDS
+from common.body.stick_body import SHOULDERS_BELOW
 from common.bus.messages import Lifting
 from common.rig.camera import Camera, centre, ray
 from integrator.proposal import pose_network, pose_proposal
+from integrator.proposal.pose_proposal import HEAD, NECK, PELVIS
 from integrator.rig.undistortion import undistorted_rig
 from integrator.single import reflection
 from integrator.single.reflection import Front
@@ -18,7 +20,6 @@ from integrator.single.stick_similarity import stick_similarity
 CROWN: Final = 0.155
 """How far the crown lies above the neck, in statures: 0.15 to 0.17 of r01, r04 and synthetic people
 whose arms are not raised."""
-PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
 
 
 class Proposed(NamedTuple):
@@ -39,29 +40,29 @@ def step(memory: pose_proposal.Memory | None, front: Front | None, sight: Sight)
         front: What is remembered of front and back; None: the network remembers it.
         sight: What is seen.
     """
-    camera, told = sight.camera, sight.annotations
+    camera, annotations = sight.camera, sight.annotations
     seen = (sight.report, None) if sight.number == 1 else (None, sight.report)
     known = pose_proposal.step(memory, sight.bdp, undistorted_rig(sight.rig), seen, sight.dt_s)
     joints_m = _with_trunk(sight, known.joints_m)
     if sight.method.reflection and front is not None:
         yaw = reflection.yaw_deg(camera, joints_m)
-        front, behind = reflection.front_of(front, yaw, told.orientation, sight.dt_s)
+        front, behind = reflection.front_of(front, yaw, annotations.orientation, sight.dt_s)
         joints_m = reflection.seen_from_behind(camera, joints_m) if behind else joints_m
-    joints_m = reflection.leaning(camera, joints_m, told.depth)
-    for name, place in told.joints_px.items():
+    joints_m = reflection.leaning(camera, joints_m, annotations.depth)
+    for name, place in annotations.joints_px.items():
         at = JOINT_NAMES.index(name)
         joints_m[at] = _at_depth(camera, place, joints_m[at])
     yaw = reflection.yaw_deg(camera, joints_m)
-    agrees = told.orientation is None or reflection.agrees(yaw, told.orientation)
+    agrees = annotations.orientation is None or reflection.agrees(yaw, annotations.orientation)
     pose, joints_m = posed(sight, joints_m)
     lifting = Lifting(
-        told.orientation or reflection.faces(reflection.yaw_deg(camera, joints_m)),
-        1.0 if told.orientation else float(known.sure[PELVIS]),
-        tuple(known.sure[LIMB_ENDS[:, 1]].tolist()),
+        annotations.orientation or reflection.faces(reflection.yaw_deg(camera, joints_m)),
+        1.0 if annotations.orientation else float(known.confidence[PELVIS]),
+        tuple(known.confidence[LIMB_ENDS[:, 1]].tolist()),
     )
     score = stick_similarity(sight, joints_m)
     return Proposed(
-        Hypothesis(joints_m, pose, score, known.sure, lifting), agrees, known.memory, front
+        Hypothesis(joints_m, pose, score, known.confidence, lifting), agrees, known.memory, front
     )
 
 
@@ -72,7 +73,7 @@ def _with_trunk(sight: Sight, found: NDArray[np.float64]) -> NDArray[np.float64]
     joints_m[PELVIS] = found[pose_network.HIPS].mean(axis=0)
     middle = found[pose_network.SHOULDERS].mean(axis=0)
     up = (middle - joints_m[PELVIS]) / max(float(np.linalg.norm(middle - joints_m[PELVIS])), 1e-9)
-    joints_m[NECK] = middle + up * sight.man.lengths[11] * sight.stature_m
+    joints_m[NECK] = middle + up * sight.man.lengths[SHOULDERS_BELOW] * sight.stature_m
     joints_m[HEAD] = joints_m[NECK] + up * CROWN * sight.stature_m
     return joints_m
 

@@ -17,12 +17,13 @@ FADING: Final = 0.95
 """How much of the evidence for left and right a frame keeps."""
 KNEES, ELBOWS, WALKING = 1.0, 0.5, 20.0
 """What a bend of 90 degrees, and a step of a stature, say of the side that is faced."""
-SURE_AT: Final = 2.0
-"""Evidence at which the side is sure with odds of e to 1."""
+CONFIDENT_AT: Final = 2.0
+"""Evidence at which the odds of the side are e to 1."""
 UNKNOWN_FRONT: Final = 0.7
-"""How sure it is that somebody who is not in profile faces the camera: filmed people mostly do."""
+"""Confidence that somebody who is not in profile faces the camera: filmed people mostly do."""
 
 _AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
+_PELVIS, _NECK = _AT["pelvis"], _AT["neck"]
 _KNEES: Final = [[_AT[f"{s}_{j}"] for j in ("hip", "knee", "ankle")] for s in "lr"]
 _ELBOWS: Final = [[_AT[f"{s}_{j}"] for j in ("shoulder", "elbow", "wrist")] for s in "lr"]
 
@@ -31,8 +32,8 @@ class Bearing(NamedTuple):
     """What is known of the way a body faces."""
 
     orientation: Orientation = "forward_right"
-    sure: float = UNKNOWN_FRONT
-    """How sure that is, in [0, 1]."""
+    confidence: float = UNKNOWN_FRONT
+    """In that, in [0, 1]."""
     breadth: float | None = None
     """Mean of the breadth that the trunk showed; None: never seen."""
     to_right: float = 0.0
@@ -49,8 +50,8 @@ def faced(bearing: Bearing, joints_px: NDArray[np.float64], breadth: float) -> B
         joints_px: (15, 2), JOINT_NAMES, as fitted.
         breadth: How much of its breadth the trunk shows.
     """
-    trunk_px = float(np.linalg.norm(joints_px[1] - joints_px[0]))
-    at = (float(joints_px[0, 0]), max(trunk_px, 1.0))
+    trunk_px = float(np.linalg.norm(joints_px[_NECK] - joints_px[_PELVIS]))
+    at = (float(joints_px[_PELVIS, 0]), max(trunk_px, 1.0))
     mean = breadth if bearing.breadth is None else bearing.breadth
     mean = INERTIA * mean + (1.0 - INERTIA) * breadth
     to_right = FADING * bearing.to_right + (1.0 - FADING) * 10.0 * _bends(joints_px)
@@ -59,12 +60,13 @@ def faced(bearing: Bearing, joints_px: NDArray[np.float64], breadth: float) -> B
     bearing = bearing._replace(breadth=mean, to_right=to_right, at=at)
     was_profile = bearing.orientation in ("left", "right")
     if mean < (FRONTAL if was_profile else PROFILE):
-        sure = 1.0 / (1.0 + math.exp(-abs(to_right) / SURE_AT))
-        return bearing._replace(orientation="right" if to_right >= 0.0 else "left", sure=sure)
+        confidence = 1.0 / (1.0 + math.exp(-abs(to_right) / CONFIDENT_AT))
+        side: Orientation = "right" if to_right >= 0.0 else "left"
+        return bearing._replace(orientation=side, confidence=confidence)
     if not was_profile:
         return bearing
     front: Orientation = "forward_right" if to_right >= 0.0 else "forward_left"
-    return bearing._replace(orientation=front, sure=UNKNOWN_FRONT)
+    return bearing._replace(orientation=front, confidence=UNKNOWN_FRONT)
 
 
 def _bends(joints_px: NDArray[np.float64]) -> float:

@@ -53,7 +53,7 @@ def faces(yaw: float) -> Orientation:
 
 
 def front_of(
-    before: Front, yaw: float, told: Orientation | None, dt_s: float
+    before: Front, yaw: float, named: Orientation | None, dt_s: float
 ) -> tuple[Front, bool]:
     """What is remembered now, and whether a proposal is to be seen from behind for it.
 
@@ -63,14 +63,14 @@ def front_of(
     Args:
         before: At the frame before.
         yaw: Of the proposal, degrees.
-        told: The user's word, which settles it.
+        named: The user's word, which settles it.
         dt_s: Time since then.
     """
     away = abs(yaw) > 90.0
-    if told is not None and told not in ("left", "right"):
-        due = told.startswith("backward")
+    if named is not None and named not in ("left", "right"):
+        due = named.startswith("backward")
         return Front(due), due != away
-    if told is not None or abs(abs(yaw) - 90.0) <= SIDEWAYS_DEG:
+    if named is not None or abs(abs(yaw) - 90.0) <= SIDEWAYS_DEG:
         return Front(before.away, aside=True), False
     doubted_s = before.doubted_s + dt_s
     if before.aside or away == before.away or doubted_s > INSISTS_S:
@@ -78,12 +78,12 @@ def front_of(
     return Front(before.away, doubted_s=doubted_s), True
 
 
-def agrees(yaw: float, told: Orientation) -> bool:
+def agrees(yaw: float, named: Orientation) -> bool:
     """Whether somebody who is turned so can be who the user says faces that way."""
     middle = {"forward": 35.0, "left": 90.0, "right": 90.0, "backward": 145.0}
-    wide = SIDEWAYS_DEG if told in ("left", "right") else 35.0
-    side = 1.0 if told.endswith("right") else -1.0
-    off = (yaw - side * middle[told.split("_")[0]] + 180.0) % 360.0 - 180.0
+    wide = SIDEWAYS_DEG if named in ("left", "right") else 35.0
+    side = 1.0 if named.endswith("right") else -1.0
+    off = (yaw - side * middle[named.split("_")[0]] + 180.0) % 360.0 - 180.0
     return abs(off) <= wide + NEARLY_DEG
 
 
@@ -96,21 +96,22 @@ def seen_from_behind(camera: Camera, joints_m: Joints) -> Joints:
     return _at_depths(camera, joints_m, 2 * depth[PELVIS] - depth)[OTHER_SIDE]
 
 
-def leaning(camera: Camera, joints_m: Joints, told: Mapping[str, str]) -> Joints:
-    """The body whose segments lean as told, toward the camera or away, none by more than before.
+def leaning(camera: Camera, joints_m: Joints, depth: Mapping[str, str]) -> Joints:
+    """The body whose segments lean as annotated, toward the camera or away, none by more than
+    before.
 
     Args:
         camera: The view's.
         joints_m: (15, 3) world.
-        told: Names of LIMBS to toward or away (T21).
+        depth: Names of LIMBS to toward or away (T21).
     """
-    depth = _depths(camera, joints_m)
+    depths_m = _depths(camera, joints_m)
     for limb, name in enumerate(LIMBS):
         near, far = LIMB_ENDS[limb]
-        farther = depth[far] - depth[near]
-        if name in told and (farther > 0) == (told[name] == "toward"):
-            depth[_HANGS[limb]] -= 2 * farther
-    return _at_depths(camera, joints_m, depth)
+        farther = depths_m[far] - depths_m[near]
+        if name in depth and (farther > 0) == (depth[name] == "toward"):
+            depths_m[_HANGS[limb]] -= 2 * farther
+    return _at_depths(camera, joints_m, depths_m)
 
 
 def _depths(camera: Camera, joints_m: Joints) -> Joints:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, LIMB_ENDS, Vector
-from common.body.stick_body import BREADTH, GIRTH, POSE_SIZE, STATURE
+from common.body.stick_body import BREADTH, GIRTH, HALF_SHOULDERS, POSE_SIZE, SHOULDER_LINE, STATURE
 from common.compiled import compiled
 from common.raster.bits import Bits, count, count_both
 from common.raster.kernel import NEAREST_M, score, seen_at, view_of
@@ -53,7 +53,7 @@ def stick_similarity(sight: Sight, joints_m: NDArray[np.float64]) -> float:
     """
     camera, man, report = undistorted_camera(sight.camera), sight.man, sight.report
     tall_px = _tall_px(camera, sight.stature_m, joints_m)
-    seen, broad_px = words_of(report), 2 * man.lengths[10] * tall_px
+    seen, broad_px = words_of(report), 2 * man.lengths[HALF_SHOULDERS] * tall_px
     task = Task(view_of(camera), man.parts, man.depth, broad_px, seen, count(seen), report.width)
     stick = np.ones(POSE_SIZE)
     stick[STATURE] = tall_px
@@ -79,7 +79,8 @@ def _similar(task: Any, stick: Any, joints_m: Any) -> float:
             joint = _ENDS[row, end]
             x, y, z = joints_m[joint]
             ends[row, 2 * end], ends[row, 2 * end + 1], _ = seen_at(task.camera, x, y, z)
-    across_px = math.hypot(ends[10, 2] - ends[10, 0], ends[10, 3] - ends[10, 1])
+    line = ends[SHOULDER_LINE]
+    across_px = math.hypot(line[2] - line[0], line[3] - line[1])
     stick[BREADTH] = min(1.0, across_px / task.broad_px)
     bits = np.zeros_like(task.seen)
     draw_segments(ends, stick, task.parts, task.depth, ALL_SEGMENTS, task.width, bits)

@@ -20,8 +20,8 @@ from common.rig.camera import Camera, Rig
 from common.video.clip_facts import Clip
 from common.video.clip_sources import ClipError
 from common.video.frame_cache import Reader
-from integrator import merge
-from integrator.merge_state import ScaleSource, State
+from integrator import merge, merge_state
+from integrator.merge_state import ScaleSource, Start, State
 from integrator.opening_posture import Opening
 from integrator.pairing import Pair
 from integrator.rig.assumed_rig import assumed_camera
@@ -121,8 +121,8 @@ def _begun(reports: Sequence[Report], film: FilmFacts) -> tuple[track.State, Sta
         opening = Opening(bdp=thesis_bdp(stature_m))
     rig = Rig(*size, (camera, camera))
     source: ScaleSource = "assumed" if film.camera is None else "calibrated"
-    state = merge.init(
-        rig, film.period_s, settings, film.method, alone=True, source=source, opening=opening
+    state = merge_state.init(
+        rig, film.period_s, settings, film.method, Start(True, source, opening)
     )
     return viewer, state
 

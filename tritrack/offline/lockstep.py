@@ -17,6 +17,7 @@ from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reel
 from integrator import diagnostics, merge, merge_state, opening_posture
+from integrator.merge_state import Start
 from integrator.pairing import Pair
 from tritrack.offline.film_tracking import follow_clip, unseen
 from tritrack.offline.frame_pairs import backgrounds, instants, share_of
@@ -141,7 +142,7 @@ def _prepared(
         viewers[view.number] = track.init(setup, background)
     period_s = clip.every / clip.views[0].fps
     opening = opening_posture.init(known)
-    integrator = merge.init(rig, period_s, settings, method, alone=alone, opening=opening)
+    integrator = merge_state.init(rig, period_s, settings, method, Start(alone, opening=opening))
     return Prepared(clip, reels, viewers, integrator, odd, time.perf_counter() - began)
 
 
