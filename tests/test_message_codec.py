@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as shapes
 
-from common.body.body import ANGLE_NAMES, JOINT_NAMES, POSE_NAMES, rest_pose
+from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES, rest_pose
 from common.body.proportions import thesis_bdp
 from common.bus import control_messages, messages
 from common.bus.control_messages import Cameras, ClockAnswer, ClockQuestion, Ended, Pulse
@@ -28,6 +28,7 @@ from common.bus.messages import (
     Box,
     Fit,
     Guide,
+    Lifting,
     Measure,
     Message,
     Moment,
@@ -89,11 +90,14 @@ BODY = Body(
     confidence=(0.5,) * len(JOINT_NAMES),
     bdp=BDP,
 )
+LIFTING = Lifting("forward_left", 0.75, (0.5,) * len(LIMBS), (1.5,) * len(LIMBS))
+LIFTED = msgspec.structs.replace(BODY, views="1", lifting=LIFTING)
 SAID: list[Message] = [
     REPORT,
     msgspec.structs.replace(REPORT, box=None, measure=None, root_px=None),
     GUIDE,
     BODY,
+    LIFTED,
     Posture(frame=7, captured_s=0.5, clock_s=0.5, name="squat", log_likelihoods={"squat": -9.5}),
     Picture(frame=7, captured_s=0.5, clock_s=0.5, viewer=1, jpeg=b"\xff\xd8"),
     Pulse(process="viewer 1", state="running", frames=7, fps=15.0),
@@ -256,6 +260,33 @@ def test_a_stick_body_that_no_viewer_would_fit_is_refused(
     report = msgspec.structs.replace(REPORT, fit=msgspec.structs.replace(FIT, **{field: value}))
     with pytest.raises(MalformedMessage, match=says):
         decode(encode(report), Report)
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "says"),
+    [
+        ("depth_confidence", (0.5,) * 9, "depth_confidence has 9 entries, not 10"),
+        ("depth_confidence", (), "depth_confidence has 0 entries, not 10"),
+        ("depth_error_deg", (1.0,) * 11, "depth_error_deg has 11 entries, not 10"),
+        ("orientation", "upwards", "unknown orientation 'upwards'"),
+        ("orientation_confidence", 1.1, "confidences beyond 0 to 1"),
+        ("depth_confidence", (0.5,) * 9 + (-0.1,), "confidences beyond 0 to 1"),
+    ],
+)
+def test_a_lifting_that_no_integrator_would_decide_is_refused(
+    field: str, value: object, says: str
+) -> None:
+    body = msgspec.structs.replace(
+        LIFTED, lifting=msgspec.structs.replace(LIFTING, **{field: value})
+    )
+    with pytest.raises(MalformedMessage, match=says):
+        decode(encode(body), Body)
+
+
+def test_a_body_that_was_not_lifted_from_segments_has_no_errors_of_depth() -> None:
+    lifting = msgspec.structs.replace(LIFTING, depth_error_deg=())
+    body = msgspec.structs.replace(LIFTED, lifting=lifting)
+    assert decode(encode(body), Body) == body
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from common.bus.messages import (
     Body,
     Fit,
     Guide,
+    Lifting,
     Measure,
     Message,
     Performance,
@@ -20,6 +21,7 @@ from common.bus.messages import (
     Posture,
     Report,
 )
+from common.notes.notes import ORIENTATIONS
 from common.rig.camera import Camera, Rig
 
 MAX_BYTES: Final = 1_000_000
@@ -53,6 +55,8 @@ TOPICS: Final[dict[type[Message], Topic]] = {
 
 Said = TypeVar("Said", bound=Message)
 
+_CARRIERS: Final = (Measure, Fit, Lifting, Performance, Bdp, Elliptic, Round, Rig, Camera)
+"""Structs in messages whose numbers must be finite."""
 _LENGTHS: Final[dict[tuple[type[Message], str], tuple[int, ...]]] = {
     (Guide, "pose"): (0, len(POSE_NAMES)),
     (Body, "pose"): (0, len(POSE_NAMES)),
@@ -119,8 +123,8 @@ def _refuse_what_no_process_would_say(message: Message) -> None:
             raise MalformedMessage(f"{name} holds a number that is not finite")
     if isinstance(message, Report):
         _refuse_a_false_report(message)
-    if isinstance(message, Body) and any(len(own) != len(JOINT_NAMES) for own in message.joints_px):
-        raise MalformedMessage(f"joints_px has no {len(JOINT_NAMES)} joints in a camera")
+    if isinstance(message, Body):
+        _refuse_a_false_body(message)
 
 
 def _refuse_a_false_report(report: Report) -> None:
@@ -134,6 +138,28 @@ def _refuse_a_false_report(report: Report) -> None:
         raise MalformedMessage(f"unknown angle {unknown[0]!r}")
     if report.fit is not None:
         _refuse_a_false_fit(report.fit)
+
+
+def _refuse_a_false_body(body: Body) -> None:
+    if any(len(own) != len(JOINT_NAMES) for own in body.joints_px):
+        raise MalformedMessage(f"joints_px has no {len(JOINT_NAMES)} joints in a camera")
+    if body.lifting is not None:
+        _refuse_a_false_lifting(body.lifting)
+
+
+def _refuse_a_false_lifting(lifting: Lifting) -> None:
+    for name, allowed in (
+        ("depth_confidence", (len(LIMBS),)),
+        ("depth_error_deg", (0, len(LIMBS))),
+    ):
+        length = len(getattr(lifting, name))
+        if length not in allowed:
+            raise MalformedMessage(f"{name} has {length} entries, not {allowed[-1]}")
+    if lifting.orientation not in ORIENTATIONS:
+        raise MalformedMessage(f"unknown orientation {lifting.orientation!r}")
+    shares = (lifting.orientation_confidence, *lifting.depth_confidence)
+    if not all(0.0 <= share <= 1.0 for share in shares):
+        raise MalformedMessage("a lifted body of confidences beyond 0 to 1")
 
 
 def _refuse_a_false_fit(fit: Fit) -> None:
@@ -154,6 +180,8 @@ def _numbers(value: object) -> Iterator[float]:
     elif isinstance(value, dict):
         for item in value.values():
             yield from _numbers(item)
-    elif isinstance(value, Measure | Fit | Performance | Bdp | Elliptic | Round | Rig | Camera):
+    elif isinstance(
+        value, Measure | Fit | Lifting | Performance | Bdp | Elliptic | Round | Rig | Camera
+    ):
         for item in msgspec.structs.astuple(value):
             yield from _numbers(item)
