@@ -2,9 +2,7 @@
 
 from typing import Final, NamedTuple
 
-import numpy as np
-
-from common.body.body import Bdp, Vector
+from common.body.body import Bdp
 from common.bus.messages import Facing, Guide, Pixel, ViewerNumber
 
 EXPECTED: Final = ("measuring", "tracking", "predicted")
@@ -17,8 +15,8 @@ class ExpectedBody(NamedTuple):
     bdp: Bdp
     measured: bool
     """Its lengths are those of the opening posture."""
-    pose: Vector
-    """(25,) metres and degrees."""
+    pose: tuple[float, ...]
+    """POSE_NAMES order, metres and degrees."""
     facing: Facing
     scale_px_per_m: float
     root_px: Pixel
@@ -37,7 +35,7 @@ def expected_body(guide: Guide | None, viewer: ViewerNumber) -> ExpectedBody | N
     return ExpectedBody(
         guide.bdp,
         guide.measured,
-        np.array(guide.pose),
+        guide.pose,
         guide.facing[n],
         guide.scale_px_per_m[n],
         guide.root_px[n],

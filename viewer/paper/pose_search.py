@@ -88,7 +88,7 @@ def step(state: State, report: Report, mask: Mask, guide: Guide | None) -> tuple
 
 def _expected(state: State, mask: Mask, known: ExpectedBody) -> PosedModel:
     """The model where and how it is expected."""
-    pose = known.pose.copy()
+    pose = np.array(known.pose)
     pose[:3] = 0.0
     view = view_at(state.rotation, known.scale_px_per_m, known.root_px)
     return model_over(mask, body_vector(known.bdp), pose, view)

@@ -37,7 +37,8 @@ def with_stick(
     if known is not None:
         stature_px = known.scale_px_per_m * stature(known.bdp)
         view = view_at(rotation, known.scale_px_per_m, known.root_px)
-        expected = stick_fit.expected(body_vector(known.bdp), known.pose, view, stature_px)
+        body, pose = body_vector(known.bdp), np.array(known.pose)
+        expected = stick_fit.expected(body, pose, view, stature_px)
     if standing is not None:
         stature_px = standing.at(report.box.bottom + 1)
     try:
