@@ -25,6 +25,7 @@ from plausible import plausible
 from rich.console import Console
 
 from common.config import load
+from common.method import METHODS
 from common.rig.camera import Camera
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
@@ -32,7 +33,7 @@ from common.video.frame_cache import Reel
 from tritrack.accuracy.accuracy import compare, picked, summary
 from tritrack.live.table import table_of_rows
 from tritrack.offline.batch import overridden
-from tritrack.offline.film_tracking import follow_clip
+from tritrack.offline.film_tracking import Film, follow_clip
 from tritrack.store.runs import poses
 from viewer.background.background_source import background_of_film
 
@@ -78,7 +79,8 @@ def main() -> None:
             camera, width = clip.rig.cameras[0], clip.views[0].size[0]
             clip = clip if given.calibrated else msgspec.structs.replace(clip, rig=None)
             background = background_of_film(clip.views[0], settings.silhouette, Reel(decoder))
-            found = poses(follow_clip(clip, settings, background, decoder).bodies)
+            film, method = Film(clip, background), METHODS[settings.mode]
+            found = poses(follow_clip(film, settings, method, decoder).bodies)
             rows.append(row_of(path, camera, found, width))
     weights = np.array([row["limb-frames"] for row in rows])
     mean = {key: np.nanmean([row[key] for row in rows]) for key in rows[0] if key != "name"}

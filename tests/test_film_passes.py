@@ -8,7 +8,7 @@ import pytest
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Body, Report
 from common.config import Settings
-from common.method import Mode
+from common.method import METHODS, Mode
 from common.notes.notes import Note, Notes
 from common.raster.silhouette_report import silhouette_report
 from tritrack.offline.film_passes import FilmFacts, bodies_of
@@ -27,7 +27,7 @@ def silhouettes(clip: Path) -> list[Report]:
 
 
 def posed(reports: list[Report], mode: Mode = "default", notes: Notes = Notes()) -> list[Body]:
-    return bodies_of(reports, FilmFacts(Settings(mode=mode), 1, 1 / 15, None, notes))
+    return bodies_of(reports, FilmFacts(Settings(mode=mode), METHODS[mode], 1, 1 / 15, None, notes))
 
 
 def test_who_is_known_by_the_silhouette_is_not_fitted(

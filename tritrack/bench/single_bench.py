@@ -7,13 +7,13 @@ from typing import Final, NamedTuple
 import cv2
 
 from common.config import Settings
-from common.method import Mode
+from common.method import METHODS, Mode
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reel
 from tritrack.bench.bench_figure import Measured, least_s
 from tritrack.offline.film_passes import FilmFacts, bodies_of, silhouettes_of
-from tritrack.offline.film_tracking import follow_clip
+from tritrack.offline.film_tracking import Film, follow_clip
 from viewer.background.background_source import background_of_film
 
 ALONE: Final = (1,)
@@ -79,8 +79,9 @@ def _followed(settings: Settings, repeats: int, decoder: Decoder) -> Times:
     clip = open_clip(settings, decoder, ALONE)
     view, reel = clip.views[0], Reel(decoder)
     background = background_of_film(view, settings.silhouette, reel)
-    followed = follow_clip(clip, settings, background, decoder)
-    film = FilmFacts(settings, view.number, clip.every / view.fps, None)
+    method, period_s = METHODS[settings.mode], clip.every / view.fps
+    followed = follow_clip(Film(clip, background), settings, method, decoder)
+    film = FilmFacts(settings, method, view.number, period_s, None)
 
     def decoded() -> int:
         return sum(1 for _ in decoder.frames(view.source, view.size))

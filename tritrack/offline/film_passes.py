@@ -13,7 +13,7 @@ import numpy as np
 from common.body.proportions import thesis_bdp
 from common.bus.messages import Body, Guide, Report, ViewerNumber
 from common.config import Settings
-from common.method import METHODS, Method
+from common.method import Method
 from common.notes.notes import Notes, held
 from common.raster.silhouette_report import unpack
 from common.rig.camera import Camera, Rig
@@ -44,6 +44,8 @@ class FilmFacts(NamedTuple):
     """What both passes need to know of a film."""
 
     settings: Settings
+    method: Method
+    """What is done beyond the print."""
     number: ViewerNumber
     period_s: float
     camera: Camera | None
@@ -51,11 +53,6 @@ class FilmFacts(NamedTuple):
     notes: Notes = Notes()
     scale: float = 1.0
     """Pixels of the working picture in one of the video."""
-
-    @property
-    def method(self) -> Method:
-        """What is done beyond the print."""
-        return METHODS[self.settings.mode]
 
 
 def silhouettes_of(

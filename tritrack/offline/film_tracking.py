@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from common.bus.messages import Body, Report
 from common.config import Settings
+from common.method import METHODS, Method
 from common.notes.notes import Notes
 from common.raster.silhouette_report import with_silhouette
 from common.rig.camera import PAPER_ROTATIONS
@@ -49,13 +50,17 @@ class Followed(NamedTuple):
         return joints_m @ self.turn.T * (1.0, -1.0, -1.0)
 
 
+class Film(NamedTuple):
+    """What is followed: a clip of one view, and what is known of it."""
+
+    clip: Clip
+    background: FilmBackground
+    notes: Notes = Notes()
+    """The user's inputs."""
+
+
 def follow_clip(
-    clip: Clip,
-    settings: Settings,
-    background: FilmBackground,
-    decoder: Decoder,
-    notes: Notes = Notes(),
-    tell: Tell = lambda _: None,
+    film: Film, settings: Settings, method: Method, decoder: Decoder, tell: Tell = lambda _: None
 ) -> Followed:
     """Track a clip of one view whose background is known.
 
@@ -64,13 +69,15 @@ def follow_clip(
         DecoderDied: When the video broke the decoder.
     """
     began = time.perf_counter()
+    clip, background, notes = film
     view, reel = clip.views[0], Reel(decoder)
     camera = clip.rig.cameras[0] if clip.rig is not None else None
     scale = view.size[0] / view.source_size[0]
-    film = FilmFacts(settings, view.number, clip.every / view.fps, camera, notes, scale)
-    reports = silhouettes_of(clip, background, film, reel, tell)
+    period_s = clip.every / view.fps
+    known = FilmFacts(settings, method, view.number, period_s, camera, notes, scale)
+    reports = silhouettes_of(clip, background, known, reel, tell)
     seen = time.perf_counter()
-    bodies = bodies_of(reports, film)
+    bodies = bodies_of(reports, known)
     done = time.perf_counter()
     odd = (background.odd, shortfall(view, reel.came), doubtful(bodies))
     facts = {
@@ -83,7 +90,7 @@ def follow_clip(
         "warnings": [*clip.warnings, *filter(None, odd)],
     }
     turn = np.array(PAPER_ROTATIONS[0] if camera is None else camera.R)
-    return Followed(bodies, reports, 1 / film.period_s, turn, clip, background.background, facts)
+    return Followed(bodies, reports, 1 / period_s, turn, clip, background.background, facts)
 
 
 def follow_masks(name: str, reports: list[Report], settings: Settings) -> Followed:
@@ -91,7 +98,7 @@ def follow_masks(name: str, reports: list[Report], settings: Settings) -> Follow
     began, least_share = time.perf_counter(), settings.silhouette.min_height_share
     reports = [_or_nobody(report, least_share) for report in reports]
     period_s = reports[1].captured_s - reports[0].captured_s if len(reports) > 1 else 0.04
-    bodies = bodies_of(reports, FilmFacts(settings, 1, period_s, None))
+    bodies = bodies_of(reports, FilmFacts(settings, METHODS[settings.mode], 1, period_s, None))
     facts = {
         "clip": name,
         **_times(len(bodies), poses=time.perf_counter() - began),

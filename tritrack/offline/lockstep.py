@@ -19,7 +19,7 @@ from common.video.frame_cache import Reel
 from integrator import diagnostics, merge, merge_state, opening_posture
 from integrator.merge_state import Start
 from integrator.pairing import Pair
-from tritrack.offline.film_tracking import follow_clip, unseen
+from tritrack.offline.film_tracking import Film, follow_clip, unseen
 from tritrack.offline.frame_pairs import backgrounds, instants, share_of
 from tritrack.offline.opening_clip import body_of
 from tritrack.terminal import Tell
@@ -110,18 +110,21 @@ def track_clip(
     if method.stick_lifting and not alone:
         raise ClipError(f"{clip.name}: the thesis's mode is for one camera: add --views 1")
     if alone and (method.stick_lifting or (method.proposals and clip.rig is None)):
-        return _in_two_passes(clip, settings, decoders, tell)
+        return _in_two_passes(clip, settings, method, decoders, tell)
     ready = _prepared(clip, settings, method, decoders, began)
     done = _performed(ready, watch, tell)
     return Tracked(clip, done.bodies, _facts(ready, done))
 
 
-def _in_two_passes(clip: Clip, settings: Settings, decoders: Decoders, tell: Tell) -> Tracked:
+def _in_two_passes(
+    clip: Clip, settings: Settings, method: Method, decoders: Decoders, tell: Tell
+) -> Tracked:
     """One camera whose scale all of the clip must tell, or that is followed as the thesis does."""
     view = clip.views[0]
     decoder = decoders.of[view.number]
     learnt, odd = background_of_view(view, settings.silhouette, Reel(decoder))
-    followed = follow_clip(clip, settings, FilmBackground(learnt, [], odd), decoder, tell=tell)
+    film = Film(clip, FilmBackground(learnt, [], odd))
+    followed = follow_clip(film, settings, method, decoder, tell)
     return Tracked(clip, followed.bodies, followed.facts)
 
 

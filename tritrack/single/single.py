@@ -17,6 +17,7 @@ from animator.overlay import overlay
 from animator.take import take_of
 from common.atomic_file import replacing
 from common.config import CameraSettings, Settings, SettingsError, load
+from common.method import METHODS
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path
 from common.raster.silhouette_report import unpack
@@ -24,7 +25,7 @@ from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied, Undecodable
 from common.video.frame_cache import Reel
-from tritrack.offline.film_tracking import Followed, follow_clip, follow_masks
+from tritrack.offline.film_tracking import Film, Followed, follow_clip, follow_masks
 from tritrack.single.angle_plot import angle_plot
 from tritrack.single.ledger import facts_of, ledger
 from tritrack.single.mask_file import MaskFileError, MaskSequence, is_mask_file, read_masks
@@ -146,9 +147,8 @@ def follow(
     else:
         clip = open_clip(job.settings, decoder, (1,))
         background = background_of_film(clip.views[0], job.settings.silhouette, Reel(decoder))
-        found = follow_clip(
-            clip, job.settings, background, decoder, job.notes, lambda share: tell(share / 2)
-        )
+        film, method = Film(clip, background, job.notes), METHODS[job.settings.mode]
+        found = follow_clip(film, job.settings, method, decoder, lambda share: tell(share / 2))
     arrays = poses(found.bodies)
     facts = {
         **found.facts,
@@ -161,9 +161,9 @@ def follow(
     if found.background is not None:
         _write_picture(folder / "background.png", marked(found.background))
     odd = _animate(folder, arrays)
-    with filming(folder / "overlay.avi", found.rate_hz) as film:
+    with filming(folder / "overlay.avi", found.rate_hz) as writer:
         for n, picture in enumerate(overlaid(found, decoder), 1):
-            film.write(picture)
+            writer.write(picture)
             tell(0.5 + 0.5 * n / len(found.reports))
     for warning in (*facts["warnings"], *odd):
         warn(console, f"{folder.name}: {warning}")
