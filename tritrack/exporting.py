@@ -8,14 +8,13 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
-from animator.bones import joints_of
-from animator.bvh import NoMotion, bvh_text, steady
 from common.atomic_file import replacing
 from common.body.body import ANGLE_NAMES, JOINT_NAMES
 from tritrack.store.past_run import PastRun, open_run
 
 Format = Literal["bvh", "csv"]
 OWN_NAMES: Final[dict[Format, str]] = {"bvh": "body.bvh", "csv": "poses.csv"}
+"""The file in the run folder where no other is asked for."""
 
 
 class ExportError(RuntimeError):
@@ -53,6 +52,9 @@ def export_run(folder: Path, to: Format, out: Path | None) -> dict[str, Any]:
 
 
 def _bvh(run: PastRun) -> tuple[str, dict[str, Any]]:
+    from animator.bones import joints_of
+    from animator.bvh import NoMotion, bvh_text, steady
+
     joints_m, time_s = run.poses["joints_m"], run.poses["time_s"]
     try:
         skeleton, motion, step_s = steady(joints_m, time_s)

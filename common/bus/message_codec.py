@@ -180,8 +180,6 @@ def _numbers(value: object) -> Iterator[float]:
     elif isinstance(value, dict):
         for item in value.values():
             yield from _numbers(item)
-    elif isinstance(
-        value, Measure | Fit | Lifting | Performance | Bdp | Elliptic | Round | Rig | Camera
-    ):
+    elif isinstance(value, _CARRIERS):
         for item in msgspec.structs.astuple(value):
             yield from _numbers(item)

@@ -9,6 +9,7 @@ from common.bus.messages import ViewerNumber
 from common.config import Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import Out, Size, writable_file
+from tritrack.exporting import OWN_NAMES, Format, export_run
 
 VIEWERS: Final[dict[str, tuple[ViewerNumber, ...]]] = {"12": (1, 2), "1": (1,), "2": (2,)}
 
@@ -92,11 +93,11 @@ def single(
 
 def export(
     run: Annotated[Path, typer.Argument(help="A run folder.")],
-    to: Annotated[Literal["bvh", "csv"], typer.Option(help="For Blender, or for spreadsheets.")],
+    to: Annotated[Format, typer.Option(help="For Blender, or for spreadsheets.")],
     out: Annotated[
         Path | None,
         typer.Option(
-            help="The file to write; body.bvh or poses.csv in RUN by default.",
+            help=f"The file to write; {' or '.join(OWN_NAMES.values())} in RUN by default.",
             callback=writable_file,
         ),
     ] = None,
@@ -106,8 +107,6 @@ def export(
 
     Example: tritrack export runs/walk --to bvh
     """
-    from tritrack.exporting import export_run
-
     facts = export_run(run, to, out)
     tell(facts, json_wanted, f"{facts['frames']} frames written to {facts['file']}")
 
