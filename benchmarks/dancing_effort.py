@@ -20,13 +20,13 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
 import msgspec
 import numpy as np
+from dancing import dance, faced
 from rich.console import Console
 
 from animator.take import Take, take_of
 from common.body.body import JOINT_NAMES
 from common.config import Settings
 from common.rig.camera import Rig, project
-from synth.motion.dancing import dance, faced
 from synth.motion.motions import Motion
 from synth.person.people import person
 from synth.person.skeleton import JOINTS

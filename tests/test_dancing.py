@@ -4,11 +4,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from dancing import FRAMES, dance, faced
 
 from animator.take import Take, depth_of, take_of
 from common.body.body import JOINT_NAMES, LIMBS
 from common.notes.notes import Notes
-from synth.motion.dancing import FRAMES, dance, faced
 from synth.motion.motions import Motion
 from synth.person.people import person
 from synth.person.skeleton import JOINTS
