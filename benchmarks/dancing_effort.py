@@ -23,8 +23,8 @@ import numpy as np
 from dancing import dance, faced
 from rich.console import Console
 
-from animator.take import Take, take_of
-from common.body.body import JOINT_NAMES
+from animator.take import Take, depth_of, take_of
+from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS
 from common.config import Settings
 from common.rig.camera import Rig, project
 from synth.motion.motions import Motion
@@ -32,7 +32,7 @@ from synth.person.people import person
 from synth.person.skeleton import JOINTS
 from synth.picture.exposure import default_rig
 from synth.write import Filming, write_clip
-from tritrack.single.ledger import PRINTED, mending_inputs
+from tritrack.single.ledger import PRINTED, Count, inputs, stretches
 from tritrack.single.single import single_all
 
 NEAR: Final = 0.06
@@ -52,6 +52,31 @@ def truth_of(motion: Motion, rig: Rig) -> Take:
             "confidence": np.ones((n, len(JOINT_NAMES))),
             "orientation": faced(motion),
         }
+    )
+
+
+def mending_inputs(take: Take, truth: Take, near_px: float) -> Count:
+    """The inputs that would put right what is wrong, where the truth is known.
+
+    A user who knows it says the orientation where another was taken, the direction of a segment
+    that leans the other way or not at all, and the place of the joint at its far end where that
+    is off; each as long as it holds (T21).
+
+    Args:
+        take: The run.
+        truth: The same frames.
+        near_px: A joint that is off by less is where it should be.
+    """
+    posed = take.posed & truth.posed
+    lean, true_lean = depth_of(take.joints_m), depth_of(truth.joints_m)
+    wrong = posed[:, None] & (true_lean != 0) & (lean != true_lean)
+    far = LIMB_ENDS[:, 1]
+    off_px = np.linalg.norm(take.joints_px[:, far] - truth.joints_px[:, far], axis=2)
+    misplaced = posed[:, None] & (off_px > near_px)
+    return Count(
+        orientation=inputs(truth.orientation, posed & (take.orientation != truth.orientation)),
+        depth=sum(inputs(true_lean[:, i], wrong[:, i]) for i in range(len(LIMBS))),
+        joints=sum(stretches(misplaced[:, i]) for i in range(len(LIMBS))),
     )
 
 

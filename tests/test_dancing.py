@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from dancing import FRAMES, dance, faced
+from dancing_effort import mending_inputs
 
 from animator.take import Take, depth_of, take_of
 from common.body.body import JOINT_NAMES, LIMBS
@@ -12,7 +13,7 @@ from common.notes.notes import Notes
 from synth.motion.motions import Motion
 from synth.person.people import person
 from synth.person.skeleton import JOINTS
-from tritrack.single.ledger import PRINTED, Count, ledger, mending_inputs
+from tritrack.single.ledger import PRINTED, Count, ledger
 
 DANCING = PRINTED[1]
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from animator.inbetween import key_frames
 from animator.take import CONFIDENT, Take, depth_of, hidden_of
-from common.body.body import LIMB_ENDS, LIMBS
+from common.body.body import LIMBS
 from common.notes.notes import Notes
 
 JOINTS_BY_HAND: Final = 14
@@ -100,32 +100,7 @@ def open_inputs(take: Take) -> Count:
     return Count(
         orientation=inputs(take.orientation, asked),
         depth=sum(inputs(depth[:, i], unsure[:, i]) for i in range(len(LIMBS))),
-        joints=sum(_stretches(hidden[:, i]) for i in range(len(LIMBS))),
-    )
-
-
-def mending_inputs(take: Take, truth: Take, near_px: float) -> Count:
-    """The inputs that would put right what is wrong, where the truth is known.
-
-    A user who knows it says the orientation where another was taken, the direction of a segment
-    that leans the other way or not at all, and the place of the joint at its far end where that
-    is off; each as long as it holds (T21).
-
-    Args:
-        take: The run.
-        truth: The same frames.
-        near_px: A joint that is off by less is where it should be.
-    """
-    posed = take.posed & truth.posed
-    lean, true_lean = depth_of(take.joints_m), depth_of(truth.joints_m)
-    wrong = posed[:, None] & (true_lean != 0) & (lean != true_lean)
-    far = LIMB_ENDS[:, 1]
-    off_px = np.linalg.norm(take.joints_px[:, far] - truth.joints_px[:, far], axis=2)
-    misplaced = posed[:, None] & (off_px > near_px)
-    return Count(
-        orientation=inputs(truth.orientation, posed & (take.orientation != truth.orientation)),
-        depth=sum(inputs(true_lean[:, i], wrong[:, i]) for i in range(len(LIMBS))),
-        joints=sum(_stretches(misplaced[:, i]) for i in range(len(LIMBS))),
+        joints=sum(stretches(hidden[:, i]) for i in range(len(LIMBS))),
     )
 
 
@@ -144,7 +119,7 @@ def inputs(values: Sequence[Any] | NDArray[Any], wanted: NDArray[np.bool_]) -> i
     return count
 
 
-def _stretches(hidden: NDArray[np.bool_]) -> int:
+def stretches(hidden: NDArray[np.bool_]) -> int:
     """How often a joint is hidden: one place each time."""
     return int(np.count_nonzero(np.diff(hidden.astype(int), prepend=0) == 1))
 
