@@ -60,6 +60,9 @@ class Method(msgspec.Struct, frozen=True, kw_only=True):
     smoothing: bool
     """Published angles are smoothed by a Kalman filter."""
 
+    density_recognizer: bool
+    """Postures are named by densities of angles and of their course, not by 64 symbols (P57)."""
+
     stick_lifting: bool
     """The thesis's own way for one view: a stick body is fitted and lifted (T10 to T22)."""
 
@@ -80,6 +83,7 @@ THESIS: Final = msgspec.structs.replace(
     alpha_matte=True,
     slow_light=True,
     smoothing=True,
+    density_recognizer=True,
     stick_lifting=True,
 )
 """Demir 2006, as printed from the silhouette on: its own threshold has no value (T8)."""

@@ -15,6 +15,7 @@ from common.bus.messages import Body, Performance, Posture
 from common.bus.process import READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
+from common.method import METHODS
 from recognizer import events, spotting
 from recognizer.features import ROW_NAMES, rows
 from recognizer.model_file import ModelError, load
@@ -132,7 +133,7 @@ def model_of(settings: Settings, meant: str = "") -> PostureModel:
     Raises:
         ModelError: When the model cannot be used, or does not know that posture.
     """
-    shipped = SHIPPED_PAPER if settings.mode == "paper" else SHIPPED
+    shipped = SHIPPED if METHODS[settings.mode].density_recognizer else SHIPPED_PAPER
     path = Path(settings.recognizer.model) if settings.recognizer.model else shipped
     model = load(path)
     if meant and meant not in model.names:

@@ -19,6 +19,7 @@ from common.bus.control_messages import Pulse
 from common.bus.messages import Posture
 from common.bus.process import ProcessContext, logged
 from common.config import BusSettings, PageSettings, Settings
+from common.method import METHODS
 from common.video.clip_facts import Clip, both_cameras
 from common.video.clips import open_clip
 from recognizer.__main__ import model_of
@@ -145,7 +146,7 @@ def refuse_mode(settings: Settings) -> None:
     Raises:
         LiveRefused: When it is asked for.
     """
-    if settings.mode == "thesis":
+    if METHODS[settings.mode].stick_lifting:
         raise LiveRefused(
             "the thesis's mode is not for live runs: set mode = 'default' or 'paper', or follow "
             "a recorded video with: tritrack single VIDEO --mode thesis"
