@@ -30,6 +30,8 @@ class Method(msgspec.Struct, frozen=True, kw_only=True):
     """What both views do not show as one piece of space is no part of the person, where the network
     is surer of what is left."""
 
+    legs_to_floor: bool
+    """Measured legs reach from the navel to the floor: toes are nearer to a camera than soles."""
     scaled_arbiter: bool
     """The arbiter holds widths of both views against each other at one scale (P48)."""
     held_facing: bool

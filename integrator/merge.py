@@ -92,7 +92,7 @@ def _with_rig(state: State, seen: Seen) -> State:
 def _with_opening(state: State, now: Instant) -> tuple[State, Vector | None]:
     """The state with what is known of the body; the navel's place if that is now measured (4.2)."""
     due = state.settings.body.opening_frames
-    opening, settled_at = opening_posture.step(state.opening, now.rig, now.seen, due)
+    opening, settled_at = opening_posture.step(state.opening, now.rig, now.seen, due, state.method)
     return state._replace(opening=opening), settled_at
 
 

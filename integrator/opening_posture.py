@@ -7,6 +7,7 @@ import numpy as np
 
 from common.body.body import Bdp, Vector, body_of_lengths
 from common.bus.messages import Measure, Report
+from common.method import Method
 from common.rig.camera import Rig
 from integrator.pairing import Seen
 from integrator.prior_body import prior
@@ -56,7 +57,9 @@ def init(body: Bdp | None) -> Opening:
     return Opening(body, True, (0.0, legs_m, 0.0))
 
 
-def step(opening: Opening, rig: Rig, seen: Seen, due: int) -> tuple[Opening, Vector | None]:
+def step(
+    opening: Opening, rig: Rig, seen: Seen, due: int, method: Method
+) -> tuple[Opening, Vector | None]:
     """One pair of reports more; the navel's place where it is now settled, else None.
 
     A posture that is broken off for as many frames as it is due begins afresh.
@@ -66,6 +69,7 @@ def step(opening: Opening, rig: Rig, seen: Seen, due: int) -> tuple[Opening, Vec
         rig: Two cameras.
         seen: Reports with a body in them.
         due: How many accepted frames make the body (their median).
+        method: What is done beyond the print.
     """
     if opening.bdp is None:
         opening = opening._replace(bdp=prior(rig, seen))
@@ -85,17 +89,19 @@ def step(opening: Opening, rig: Rig, seen: Seen, due: int) -> tuple[Opening, Vec
     opening = opening._replace(
         bodies=(*opening.bodies, body), places_m=(*opening.places_m, (x, y, z)), refused=0
     )
-    return _settled(opening, due)
+    return _settled(opening, due, method)
 
 
-def _settled(opening: Opening, due: int) -> tuple[Opening, Vector | None]:
+def _settled(opening: Opening, due: int, method: Method) -> tuple[Opening, Vector | None]:
     """The medians, once enough frames have told."""
     if len(opening.bodies) < due:
         return opening, None
     lengths = np.median([body.lengths() for body in opening.bodies], axis=0)
     place = np.median(opening.places_m, axis=0)
     x, y, z = (float(value) for value in place)
-    body = _on_the_floor(body_of_lengths(lengths.tolist()), y)
+    body = body_of_lengths(lengths.tolist())
+    if method.legs_to_floor:
+        body = _on_the_floor(body, y)
     return Opening(body, True, (x, y, z)), place
 
 

@@ -9,6 +9,7 @@ from staging import PERSON, RIG, opening, report, silhouettes
 from common.body.body import Bdp, Elliptic
 from common.body.proportions import stature, thesis_bdp
 from common.bus.messages import Measure, Report
+from common.method import DEFAULT, PAPER
 from common.rig.camera import Rig, paper_rig
 from integrator import opening_posture as stage
 from integrator.opening_posture import Opening, universal_bdp
@@ -30,7 +31,7 @@ def measured(rig: Rig = RIG, place_m: tuple[float, float] = (0.0, 0.0)) -> Seen:
 def settled(seen: Seen, rig: Rig = RIG, due: int = 1) -> Bdp:
     known = Opening()
     for _ in range(due):
-        known, _ = stage.step(known, rig, seen, due)
+        known, _ = stage.step(known, rig, seen, due, DEFAULT)
     assert known.measured
     assert known.bdp is not None
     return known.bdp
@@ -71,7 +72,7 @@ def test_the_median_of_the_due_frames_is_taken() -> None:
     wrong: Seen = (msgspec.structs.replace(good[0], measure=odd), good[1])
     for i, seen in enumerate([good, wrong, good, good, good]):
         assert not known.measured
-        known, place = stage.step(known, RIG, seen, 5)
+        known, place = stage.step(known, RIG, seen, 5, DEFAULT)
         assert (place is not None) == (i == 4)
     assert known.bdp == settled(good)
 
@@ -84,7 +85,7 @@ def test_frames_without_both_measures_tell_nothing() -> None:
     )
     known = Opening()
     for seen in [bare, (good[0], None), (None, good[1])]:
-        known, place = stage.step(known, RIG, seen, 1)
+        known, place = stage.step(known, RIG, seen, 1, DEFAULT)
         assert place is None
     assert not known.measured
     assert not known.under_way
@@ -96,23 +97,23 @@ def test_a_posture_that_is_broken_off_begins_afresh() -> None:
     """P10, P46: five frames are due; four between do not break it off, five do."""
     good, nothing = measured(), (None, None)
     for between, kept in ((4, True), (5, False)):
-        known, _ = stage.step(Opening(), RIG, good, 5)
+        known, _ = stage.step(Opening(), RIG, good, 5, DEFAULT)
         assert known.under_way
         for _ in range(between):
-            known, _ = stage.step(known, RIG, nothing, 5)
+            known, _ = stage.step(known, RIG, nothing, 5, DEFAULT)
         assert known.under_way == kept
 
 
 def test_once_measured_it_stays() -> None:
     good = measured()
-    known, _ = stage.step(Opening(), RIG, good, 1)
+    known, _ = stage.step(Opening(), RIG, good, 1, DEFAULT)
     taller = measured(paper_rig((160, 120), (230.0, 230.0), (4.0, 4.0)))
-    assert stage.step(known, RIG, taller, 1) == (known, None)
+    assert stage.step(known, RIG, taller, 1, DEFAULT) == (known, None)
 
 
 def test_the_place_of_the_opening_posture_is_where_it_was_taken() -> None:
     """P45: the reference of the scaling factors."""
-    known, place = stage.step(Opening(), RIG, measured(place_m=(0.3, -0.4)), 1)
+    known, place = stage.step(Opening(), RIG, measured(place_m=(0.3, -0.4)), 1, DEFAULT)
     assert place is not None
     assert known.measured_at_m[::2] == pytest.approx((0.3, -0.4), abs=0.06)
     assert known.measured_at_m == pytest.approx(tuple(place))
@@ -121,10 +122,18 @@ def test_the_place_of_the_opening_posture_is_where_it_was_taken() -> None:
 def test_legs_reach_the_floor() -> None:
     """A silhouette's lowest row is the toes, some 50 mm below the soles in the picture."""
     good = measured()
-    body, place = settled(good), stage.step(Opening(), RIG, good, 1)[1]
+    body, place = settled(good), stage.step(Opening(), RIG, good, 1, DEFAULT)[1]
     assert place is not None
     assert body.r_upper_leg.height + body.r_lower_leg.height == pytest.approx(float(place[1]))
     assert isinstance(good[0] and good[0].measure, Measure)
+
+
+def test_as_printed_legs_end_where_the_silhouette_does() -> None:
+    """P16: legs are 0.6 of what is below the shoulders, wherever the floor is."""
+    body = stage.step(Opening(), RIG, measured(), 1, PAPER)[0].bdp
+    assert body is not None
+    legs_m = body.r_upper_leg.height + body.r_lower_leg.height
+    assert legs_m == pytest.approx(1.5 * body.torso.height, rel=1e-6)
 
 
 @pytest.mark.parametrize("distance_2_m", [4.0, 2.0, 7.0])
