@@ -102,18 +102,10 @@ def _with_pose(state: State, now: Instant, settled_at: Vector | None) -> tuple[S
     if state.method.stick_lifting or (state.proposes and None in now.seen):
         found = _lone(state, now)
     elif state.proposes:
-        proposed = _proposed(state, now)
-        facing = facing_of(now.rig, proposed.pose)
-        found = Posed(
-            proposed.pose,
-            facing,
-            proposed.joints_m,
-            proposed.confidence,
-            proposed.memory,
-            proposed.matched,
-        )
-        state = state._replace(opening=state.opening._replace(bdp=proposed.bdp))
-        now = now._replace(seen=proposed.seen)
+        pose, joints_m, confidence, memory, matched, seen, bdp = _proposed(state, now)
+        found = Posed(pose, facing_of(now.rig, pose), joints_m, confidence, memory, matched)
+        state = state._replace(opening=state.opening._replace(bdp=bdp))
+        now = now._replace(seen=seen)
     else:
         found = fused_pose.step(state, now.rig, now.seen, settled_at)
     return state._replace(found=found, facing=found.facing), now

@@ -1,6 +1,5 @@
 """What one view alone shows of a body at an instant, and the body that it may be."""
 
-import math
 from collections.abc import Mapping
 from typing import Final, NamedTuple
 
@@ -83,8 +82,3 @@ def posed(sight: Sight, joints_m: NDArray[np.float64]) -> tuple[Vector, NDArray[
     if not sight.method.joint_limits or sight.annotations.joints_px:
         return pose, joints_m
     return joint_limits.within(body, pose, before, joints_m)
-
-
-def share(value: float) -> float:
-    """A confidence as messages carry it: a number in [0, 1]."""
-    return min(1.0, max(0.0, float(value))) if math.isfinite(value) else 0.0
