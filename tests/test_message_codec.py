@@ -28,6 +28,7 @@ from common.bus.messages import (
     Box,
     Fit,
     Guide,
+    Landmarks,
     Lifting,
     Measure,
     Message,
@@ -52,6 +53,12 @@ FIT = Fit(
     score=0.8,
     matches=3000,
 )
+LANDMARKS = Landmarks(
+    joints_px=((6.5, 1.5),) * len(JOINT_NAMES),
+    confidence=(0.0, 1.0) + (0.5,) * (len(JOINT_NAMES) - 2),
+    facing_deg=-90.0,
+    facing_confidence=0.75,
+)
 REPORT = Report(
     frame=7,
     captured_s=0.5,
@@ -68,6 +75,7 @@ REPORT = Report(
     angles_deg={"r_shoulder_x": 17.0},
     score=0.8,
     fit=FIT,
+    landmarks=LANDMARKS,
 )
 GUIDE = Guide(
     frame=7,
@@ -263,6 +271,23 @@ def test_a_stick_body_that_no_viewer_would_fit_is_refused(
 
 
 @pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("joints_px", ((1.0, 2.0),)),
+        ("confidence", (0.5,)),
+        ("confidence", (1.1,) * len(JOINT_NAMES)),
+        ("confidence", (float("nan"),) * len(JOINT_NAMES)),
+        ("facing_deg", 181.0),
+        ("facing_confidence", -0.1),
+    ],
+)
+def test_landmarks_that_no_source_tells_are_refused(field: str, value: object) -> None:
+    told = msgspec.structs.replace(LANDMARKS, **{field: value})
+    with pytest.raises(MalformedMessage):
+        decode(encode(msgspec.structs.replace(REPORT, landmarks=told)), Report)
+
+
+@pytest.mark.parametrize(
     ("field", "value", "says"),
     [
         ("depth_confidence", (0.5,) * 9, "depth_confidence has 9 entries, not 10"),
@@ -334,5 +359,7 @@ def test_a_silhouette_of_the_papers_size_has_2400_bytes() -> None:
     """Section 2 of the design: 2.4 kB, and the whole report not much more."""
     packed = pack(np.ones((120, 160), np.bool_))
     assert len(packed) == 2400
-    report = msgspec.structs.replace(REPORT, width=160, height=120, silhouette=packed, fit=None)
+    report = msgspec.structs.replace(
+        REPORT, width=160, height=120, silhouette=packed, fit=None, landmarks=None
+    )
     assert len(encode(report)) < 3500

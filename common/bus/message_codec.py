@@ -13,6 +13,7 @@ from common.bus.messages import (
     Body,
     Fit,
     Guide,
+    Landmarks,
     Lifting,
     Measure,
     Message,
@@ -55,7 +56,18 @@ TOPICS: Final[dict[type[Message], Topic]] = {
 
 Said = TypeVar("Said", bound=Message)
 
-_CARRIERS: Final = (Measure, Fit, Lifting, Performance, Bdp, Elliptic, Round, Rig, Camera)
+_CARRIERS: Final = (
+    Measure,
+    Fit,
+    Landmarks,
+    Lifting,
+    Performance,
+    Bdp,
+    Elliptic,
+    Round,
+    Rig,
+    Camera,
+)
 """Structs in messages whose numbers must be finite."""
 _LENGTHS: Final[dict[tuple[type[Message], str], tuple[int, ...]]] = {
     (Guide, "pose"): (0, len(POSE_NAMES)),
@@ -138,6 +150,20 @@ def _refuse_a_false_report(report: Report) -> None:
         raise MalformedMessage(f"unknown angle {unknown[0]!r}")
     if report.fit is not None:
         _refuse_a_false_fit(report.fit)
+    if report.landmarks is not None:
+        _refuse_false_landmarks(report.landmarks)
+
+
+def _refuse_false_landmarks(landmarks: Landmarks) -> None:
+    for name in ("joints_px", "confidence"):
+        length = len(getattr(landmarks, name))
+        if length != len(JOINT_NAMES):
+            raise MalformedMessage(f"{name} has {length} entries, not {len(JOINT_NAMES)}")
+    shares = (*landmarks.confidence, landmarks.facing_confidence)
+    if not all(0.0 <= share <= 1.0 for share in shares):
+        raise MalformedMessage("landmarks of confidences beyond 0 to 1")
+    if not -180.0 <= landmarks.facing_deg <= 180.0:
+        raise MalformedMessage(f"landmarks that face {landmarks.facing_deg} degrees")
 
 
 def _refuse_a_false_body(body: Body) -> None:

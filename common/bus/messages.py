@@ -6,7 +6,7 @@ import msgspec
 
 from common.body.body import Bdp
 
-PROTOCOL: Final = 4
+PROTOCOL: Final = 5
 
 ViewerNumber = Literal[1, 2]
 Facing = Literal["facade", "flank"]
@@ -75,6 +75,21 @@ class Fit(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True)
     matches: int
 
 
+class Landmarks(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Where one view's picture itself shows the joints, whatever source told it."""
+
+    joints_px: tuple[Pixel, ...]
+    """JOINT_NAMES order, pixels of the reported silhouette: its first pixel's centre is (0.5, 0.5).
+    What is not seen stands anywhere, with confidence 0."""
+    confidence: tuple[float, ...]
+    """JOINT_NAMES order, in [0, 1]: how probably each is less than 0.03 statures off (50 mm)."""
+    facing_deg: float = 0.0
+    """Which way the person faces, about the vertical: 0 towards this camera, 90 to the right of its
+    picture, in (-180, 180]."""
+    facing_confidence: float = 0.0
+    """How probably that is less than 45 degrees off, in [0, 1]; 0: the source does not tell."""
+
+
 class Report(Moment, frozen=True, kw_only=True):
     """What one viewer made of one frame."""
 
@@ -111,6 +126,8 @@ class Report(Moment, frozen=True, kw_only=True):
     """How many times a model was matched for this frame."""
     fit: Fit | None = None
     """The stick body, where the guide asked for one."""
+    landmarks: Landmarks | None = None
+    """None where the source of landmarks sees nobody, or there is none."""
     next_s: float | None = None
     """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
     fault: CameraFault = ""
