@@ -31,8 +31,8 @@ def train(
         typer.Argument(help="Clips that name their posture, or their run folders."),
     ] = None,
     what: Annotated[
-        Literal["postures", "proposals", "silhouettes"],
-        typer.Option(help="What is learnt; proposals and silhouettes need no clips."),
+        Literal["postures", "proposals", "silhouettes", "landmarks"],
+        typer.Option(help="What is learnt; only postures need clips."),
     ] = "postures",
     recognizer: RecognizerName = "default",
     mode: OwnMode = None,
@@ -60,6 +60,15 @@ def train(
 
         facts = train_silhouettes(out, 0, console)
         tell(facts, json_wanted, f"{facts['pixels']} pixels learnt, written to {out}")
+        return
+    if what == "landmarks":
+        from tritrack.training.training import refuse_without_torch
+
+        refuse_without_torch()
+        from tritrack.training.landmark_training import train_landmarks
+
+        facts = train_landmarks(out, 0, console)
+        tell(facts, json_wanted, f"{facts['pictures']} pictures learnt, written to {out}")
         return
     if not runs:
         raise typer.BadParameter("name clips or run folders to learn postures from")

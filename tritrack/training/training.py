@@ -1,5 +1,6 @@
 """Posture models from clips or runs."""
 
+import importlib.util
 from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
@@ -21,6 +22,16 @@ SHIPPED_MODELS: Final[dict[Recognizer, Path]] = {"default": SHIPPED, "paper": SH
 
 class TrainingError(ValueError):
     """What cannot be learnt, tested or written; the text names the cure."""
+
+
+def refuse_without_torch() -> None:
+    """Say that PyTorch is wanted.
+
+    Raises:
+        TrainingError: When it is not installed.
+    """
+    if importlib.util.find_spec("torch") is None:
+        raise TrainingError("learning networks needs PyTorch: pip install 'tritrack[train]'")
 
 
 class Plan(NamedTuple):

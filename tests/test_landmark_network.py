@@ -1,0 +1,101 @@
+"""What the network of landmarks puts out is read as it was taught, and it knows people."""
+
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+from synth.picture.backdrops import backdrop
+from synth.picture.composites import Composite, composite
+from synth.picture.picture_examples import PictureExample, picture_examples
+from viewer.landmarks import landmark_network
+from viewer.landmarks.landmark_network import BINS, CELLS, Found, find
+from viewer.landmarks.landmark_window import GREY, SIDE, STEP
+
+OTHERS = 50_000
+"""Seeds from here on are nobody's who was learnt from."""
+
+
+@lru_cache(maxsize=1)
+def shown() -> list[Composite]:
+    """Two hundred pictures of people whom the network never saw."""
+    rng = np.random.default_rng(5)
+    people: list[PictureExample] = [
+        example for seed in range(OTHERS, OTHERS + 14) for example in picture_examples(seed)
+    ]
+    backdrops = [backdrop(seed) for seed in range(OTHERS, OTHERS + 60)]
+
+    def anybody() -> PictureExample:
+        return people[int(rng.integers(len(people)))]
+
+    return [
+        composite(one, anybody, lambda: backdrops[int(rng.integers(60))], rng)
+        for one in people[:200]
+    ]
+
+
+@lru_cache(maxsize=1)
+def found() -> list[Found]:
+    planes = [np.dstack([one.picture, one.outline]).transpose(2, 0, 1)[None] for one in shown()]
+    return [
+        find(((one - np.float32(GREY)) / np.float32(STEP)).astype(np.float32)) for one in planes
+    ]
+
+
+def off() -> np.ndarray:
+    """(n, 15) statures; NaN where a joint is not in the picture."""
+    far = [
+        np.where(one.inside, np.linalg.norm(f.joints - one.joints_px, axis=1), np.nan)
+        / one.stature_px
+        for one, f in zip(shown(), found(), strict=True)
+    ]
+    return np.stack(far)
+
+
+def test_a_map_with_one_peak_puts_the_joint_there_between_the_cells() -> None:
+    maps = np.full((15, CELLS, CELLS), -20.0, np.float32)
+    maps[:, 7, 3] = 0.0
+    maps[:, 7, 4] = 0.0
+    joints, about = landmark_network._peaks(maps)
+    assert joints == pytest.approx(np.tile([4.0, 7.5], (15, 1)) * SIDE / CELLS)
+    assert about == pytest.approx(np.ones(15))
+
+
+def test_a_map_with_two_peaks_is_half_as_sure() -> None:
+    maps = np.full((15, CELLS, CELLS), -20.0, np.float32)
+    maps[:, 3, 3] = maps[:, 20, 20] = 0.0
+    assert landmark_network._peaks(maps)[1] == pytest.approx(np.full(15, 0.5), abs=1e-4)
+
+
+@pytest.mark.parametrize("bin_", range(BINS))
+def test_the_facing_is_the_direction_of_the_likeliest_bin(bin_: int) -> None:
+    bins = np.full(BINS, -9.0)
+    bins[bin_] = 9.0
+    turned, sure = landmark_network._facing(bins)
+    assert (turned - 360.0 / BINS * bin_ + 180) % 360 - 180 == pytest.approx(0.0, abs=1e-3)
+    assert sure > 0.99
+
+
+def test_most_joints_of_people_it_never_saw_are_within_a_tenth_of_the_stature() -> None:
+    known = off()[np.isfinite(off())]
+    assert (known < 0.1).mean() > 0.7
+    assert np.median(known) < 0.05
+
+
+def test_its_confidence_is_how_often_it_is_right() -> None:
+    right, sure = off() < 0.03, np.stack([one.confidence for one in found()])
+    for low in (0.0, 0.2, 0.4, 0.6, 0.8):
+        held = (sure >= low) & (sure < low + 0.2)
+        if held.sum() >= 100:
+            assert right[held].mean() == pytest.approx(sure[held].mean(), abs=0.1)
+
+
+def test_it_tells_front_from_back() -> None:
+    turned = [
+        (np.degrees(np.arctan2(*one.facing)), f)
+        for one, f in zip(shown(), found(), strict=True)
+        if np.linalg.norm(one.facing) > 0.5 and f.facing_confidence > 0.5
+    ]
+    right = [abs((f.facing_deg - true + 180) % 360 - 180) < 45 for true, f in turned]
+    assert len(turned) > 80
+    assert np.mean(right) > 0.7

@@ -1,0 +1,95 @@
+"""Training the network of landmarks: the same wish gives the same work, stopped or not."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tritrack.training.picture_store import Part, PictureStore, draw
+
+torch = pytest.importorskip("torch", reason="the extra `train` is not installed")
+onnxruntime = pytest.importorskip("onnxruntime")
+
+
+@pytest.fixture(scope="module")
+def people(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return draw(Part(tmp_path_factory.mktemp("people") / "two", 7, 2))
+
+
+@pytest.fixture
+def training(monkeypatch: pytest.MonkeyPatch) -> Any:
+    from tritrack.training import landmark_training
+
+    monkeypatch.setattr(landmark_training, "BATCH", 4)
+    monkeypatch.setattr(landmark_training, "BACKDROPS", 5)
+    return landmark_training
+
+
+def wanted(training: Any, people: Path, batch: int) -> Any:
+    return training.composed(training.Wanted((people,), 0, batch))
+
+
+def test_what_was_drawn_is_read_as_it_was_drawn(people: Path) -> None:
+    from synth.picture.picture_examples import picture_examples
+
+    store, drawn = PictureStore([people]), [*picture_examples(7), *picture_examples(8)]
+    assert len(store) == len(drawn)
+    for at in (0, 5, len(drawn) - 1):
+        for held, made in zip(store[at], drawn[at], strict=True):
+            assert np.allclose(held, made)
+
+
+def test_the_same_batch_is_made_up_of_the_same_pictures(training: Any, people: Path) -> None:
+    first, again, other = (wanted(training, people, batch) for batch in (3, 3, 4))
+    assert all(np.array_equal(a.picture, b.picture) for a, b in zip(first, again, strict=True))
+    assert not np.array_equal(first[0].picture, other[0].picture)
+
+
+def test_work_that_was_stopped_goes_on_where_it_was(
+    training: Any, people: Path, tmp_path: Path
+) -> None:
+    straight = training._begun(tmp_path / "none", 0)
+    stopped = training._begun(tmp_path / "none", 0)
+    for batch in range(2):
+        shown = wanted(training, people, batch)
+        straight, stopped = training._step(straight, shown), training._step(stopped, shown)
+    training._keep(stopped, tmp_path / "kept.pt")
+    resumed = training._begun(tmp_path / "kept.pt", 0)
+    assert resumed.batch == 2
+    shown = wanted(training, people, 2)
+    straight, resumed = training._step(straight, shown), training._step(resumed, shown)
+    for name, value in straight.mean.state_dict().items():
+        assert torch.allclose(value.float(), resumed.mean.state_dict()[name].float(), atol=1e-6)
+
+
+def test_learning_makes_it_miss_less(training: Any, people: Path, tmp_path: Path) -> None:
+    from tritrack.training import torch_landmarks
+
+    work, shown = training._begun(tmp_path / "none", 0), wanted(training, people, 0)
+    before = torch_landmarks.loss(work.network, shown).item()
+    for _ in range(12):
+        work = training._step(work, shown)
+    assert torch_landmarks.loss(work.network, shown).item() < before - 0.5
+
+
+def test_the_file_says_what_the_network_says(training: Any, people: Path, tmp_path: Path) -> None:
+    from tritrack.training import torch_landmarks
+
+    network = torch_landmarks.LandmarkNetwork()
+    torch_landmarks.export(network, tmp_path / "landmarks.onnx")
+    planes = torch_landmarks.planes_of(wanted(training, people, 0)[:1])
+    with torch.no_grad():
+        due = network.eval()(planes)
+    session = onnxruntime.InferenceSession(tmp_path / "landmarks.onnx")
+    found = session.run(None, {"planes": planes.numpy()})
+    for own, other in zip(due, found, strict=True):
+        assert np.allclose(own.numpy(), other, rtol=1e-3, atol=1e-3)
+
+
+def test_a_map_that_peaks_at_a_joint_finds_it() -> None:
+    from tritrack.training import torch_landmarks
+
+    joints = torch.tensor([[[20.0, 50.0]] * 15])
+    due = torch_landmarks._maps_due(joints)
+    assert torch.allclose(torch_landmarks.peaks(torch.log(due)), joints, atol=0.1)

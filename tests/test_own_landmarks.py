@@ -1,0 +1,94 @@
+"""The viewer's own landmarks: found where the outline is, and where there is none."""
+
+from functools import lru_cache
+
+import cv2
+import numpy as np
+import pytest
+
+from common.body.body import JOINT_NAMES
+from common.bus.messages import Box, Landmarks
+from common.raster.similarity import Mask
+from common.rig.camera import project
+from common.video.decoding import Image
+from synth.motion.motions import MOTION, performance
+from synth.person.people import person
+from synth.person.skeleton import JOINTS
+from synth.picture.exposure import default_rig
+from synth.picture.render import Shot, render
+from viewer.landmarks.own_landmarks import own_landmarks
+from viewer.silhouette.silhouette import Seen
+
+RIG = default_rig(320, 240)
+PICK = [JOINTS.index(name) for name in JOINT_NAMES]
+
+
+@lru_cache(maxsize=1)
+def acted() -> tuple[Shot, np.ndarray, float, Image]:
+    """A moment of a performance, its joints in camera 1, the stature there, the empty room."""
+    someone = person(4321)
+    motion = performance(someone, "raise_both_lateral", 3)
+    at = int(np.flatnonzero(motion.phase == MOTION)[15])
+    shots = render(someone, motion, RIG, 77, 3)
+    empty = next(shots).frame1
+    shot = next(shot for i, shot in enumerate(shots, 1) if i == at)
+    joints_px = project(RIG.cameras[0], motion.joints_m[at, PICK])
+    focal, far_m = RIG.cameras[0].K[0][0], 4.5
+    return shot, joints_px, focal * someone.measures["stature_m"] / far_m, empty
+
+
+def seen(mask: Mask) -> Seen:
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    box = Box(left=int(columns[0]), right=int(columns[-1]), top=int(rows[0]), bottom=int(rows[-1]))
+    return Seen(mask, box, int(mask.sum()), 1, cut=False)
+
+
+def nobody() -> Seen:
+    return Seen(np.zeros((240, 320), np.bool_), None, 0, 0, cut=False)
+
+
+def off(found: Landmarks | None) -> float:
+    """Median distance of the joints, in statures."""
+    assert found is not None
+    _, joints_px, stature_px, _ = acted()
+    return float(
+        np.median(np.linalg.norm(np.array(found.joints_px) - joints_px, axis=1)) / stature_px
+    )
+
+
+def test_the_joints_of_somebody_with_an_outline_are_found() -> None:
+    shot = acted()[0]
+    assert off(own_landmarks(shot.frame1, seen(shot.mask1), None)) < 0.03
+
+
+def test_somebody_without_an_outline_is_found_in_all_of_the_picture() -> None:
+    assert off(own_landmarks(acted()[0].frame1, nobody(), None)) < 0.05
+
+
+def test_an_outline_that_is_elsewhere_does_not_lead_astray() -> None:
+    wrong = np.zeros((240, 320), np.bool_)
+    wrong[60:200, 5:50] = True
+    assert off(own_landmarks(acted()[0].frame1, seen(wrong), None)) < 0.05
+
+
+def test_in_an_empty_room_nobody_is_seen() -> None:
+    assert own_landmarks(acted()[3], nobody(), None) is None
+
+
+def test_whoever_faces_the_camera_is_told_to() -> None:
+    shot = acted()[0]
+    found = own_landmarks(shot.frame1, seen(shot.mask1), None)
+    assert found is not None
+    assert abs(found.facing_deg) < 45
+    assert found.facing_confidence > 0.5
+
+
+def test_a_grey_and_tiny_picture_is_looked_at_too() -> None:
+    shot, joints_px, stature_px, _ = acted()
+    small = cv2.resize(shot.frame1, (160, 120), interpolation=cv2.INTER_AREA)
+    grey = cv2.cvtColor(cv2.cvtColor(small, cv2.COLOR_BGR2GRAY), cv2.COLOR_GRAY2BGR)
+    mask = cv2.resize(shot.mask1.astype(np.uint8), (160, 120)) > 0
+    found = own_landmarks(np.asarray(grey, np.uint8), seen(mask), None)
+    assert found is not None
+    apart = np.linalg.norm(2 * np.array(found.joints_px) - joints_px, axis=1) / stature_px
+    assert np.median(apart) == pytest.approx(0.0, abs=0.04)

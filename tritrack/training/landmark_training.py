@@ -1,0 +1,194 @@
+"""The network of landmarks, trained on pictures of synthetic people: resumable, hours."""
+
+import copy
+import multiprocessing
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import cv2
+import numpy as np
+import torch
+from rich.console import Console
+
+from synth.picture.composites import Composite, composite
+from tritrack.terminal import bar
+from tritrack.training import torch_landmarks
+from tritrack.training.picture_store import Backdrops, Part, PictureStore, draw
+from tritrack.training.training import TrainingError
+
+PEOPLE, PART = 12_000, 500
+"""Who is learnt from, sixteen pictures each; how many of them a file holds: 400 MB."""
+BACKDROPS: Final = 8_000
+HELD_BACK: Final = 100
+"""People who are drawn to tell how good the network is, and not learnt from."""
+BATCHES, BATCH = 12_000, 128
+RATE, WARM, STEADY_SHARE, DECAY = 2e-3, 200, 0.55, 1e-4
+"""Highest rate; batches until it is reached; share of them until it falls to nothing."""
+STEEPEST: Final = 5.0
+"""Size that a slope is cut to."""
+MEAN_OVER: Final = 1000
+"""Batches over which the weights' running mean goes: that mean is what is written."""
+KEEP_EVERY: Final = 200
+"""Batches after which the work so far is kept."""
+NEAR: Final = 0.1
+"""What is told of how good it is: how many joints are within this share of the stature."""
+
+
+class Work(NamedTuple):
+    """How far a training is."""
+
+    network: Any
+    mean: Any
+    """The same, its weights' running mean."""
+    adam: Any
+    batch: int
+    """The next one."""
+
+
+def train_landmarks(out: Path, seed: int, console: Console) -> dict[str, Any]:
+    """Learn the network and write it, hours on two cores; what is drawn and learnt is kept beside
+    it in a folder, `<out>.work`, and the next call with the same file goes on from there.
+
+    Args:
+        out: The file to write, ONNX.
+        seed: The first person's, and of all choices.
+        console: For progress.
+
+    Raises:
+        TrainingError: When the file cannot be written.
+    """
+    if not out.parent.is_dir():
+        raise TrainingError(f"cannot write {out}: there is no folder {out.parent}")
+    folder = out.with_name(out.name + ".work")
+    try:
+        folders = _drawn(folder, seed, console)
+        work = _learnt(folders[:-1], folder / "learnt.pt", seed, console)
+        torch_landmarks.export(work.mean, out)
+    except OSError as error:
+        raise TrainingError(f"cannot write {folder}: {error.strerror}") from error
+    right = _right(work.mean, folders[-1:], seed)
+    return {"model": str(out), "pictures": work.batch * BATCH, "within_a_tenth": right}
+
+
+def _drawn(folder: Path, seed: int, console: Console) -> list[Path]:
+    """The folders of all people, those who are held back last."""
+    first = seed * 2 * PEOPLE
+    parts = [
+        Part(folder / f"people{at}", first + at, min(PART, PEOPLE - at))
+        for at in range(0, PEOPLE, PART)
+    ]
+    parts.append(Part(folder / "held_back", first + PEOPLE, HELD_BACK))
+    with multiprocessing.get_context("spawn").Pool() as pool, bar(console) as progress:
+        drawn = pool.imap(draw, parts)
+        return list(progress.track(drawn, total=len(parts), description="drawing"))
+
+
+class Wanted(NamedTuple):
+    """A batch that is to be made up; the same wish gives the same batch."""
+
+    folders: tuple[Path, ...]
+    seed: int
+    batch: int
+
+
+def composed(wanted: Wanted) -> list[Composite]:
+    """One batch of pictures."""
+    cv2.setNumThreads(1)
+    store, backdrops = _opened(wanted.folders), _backdrops(wanted.seed)
+    rng = np.random.default_rng([wanted.seed, wanted.batch, 81])
+    return [
+        composite(store.any(rng), lambda: store.any(rng), lambda: backdrops.any(rng), rng)
+        for _ in range(BATCH)
+    ]
+
+
+@lru_cache(maxsize=1)
+def _opened(folders: tuple[Path, ...]) -> PictureStore:
+    return PictureStore(list(folders))
+
+
+@lru_cache(maxsize=1)
+def _backdrops(seed: int) -> Backdrops:
+    return Backdrops.drawn(range(seed * BACKDROPS, (seed + 1) * BACKDROPS))
+
+
+def _learnt(folders: list[Path], kept: Path, seed: int, console: Console) -> Work:
+    """The network after all batches; what was kept before is not done again."""
+    work = _begun(kept, seed)
+    wishes = (Wanted(tuple(folders), seed, at) for at in range(work.batch, BATCHES))
+    with multiprocessing.get_context("spawn").Pool(1) as pool, bar(console) as progress:
+        task = progress.add_task("learning", total=BATCHES, completed=work.batch)
+        for shown in _ahead(pool, wishes):
+            work = _step(work, shown)
+            progress.advance(task)
+            if work.batch % KEEP_EVERY == 0 or work.batch == BATCHES:
+                _keep(work, kept)
+    return work
+
+
+def _ahead(pool: Any, wishes: Iterator[Wanted], ahead: int = 4) -> Iterator[list[Composite]]:
+    """Batches in their order, a few made before they are asked for."""
+    coming = []
+    for wanted in wishes:
+        coming.append(pool.apply_async(composed, (wanted,)))
+        if len(coming) > ahead:
+            yield coming.pop(0).get()
+    for last in coming:
+        yield last.get()
+
+
+def _begun(kept: Path, seed: int) -> Work:
+    """What was kept, or a fresh start."""
+    torch.manual_seed(seed)
+    network = torch_landmarks.LandmarkNetwork().to(memory_format=torch.channels_last)
+    mean = copy.deepcopy(network)
+    adam = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=DECAY)
+    if not kept.exists():
+        return Work(network, mean, adam, 0)
+    held = torch.load(kept, weights_only=True)
+    network.load_state_dict(held["network"])
+    mean.load_state_dict(held["mean"])
+    adam.load_state_dict(held["adam"])
+    return Work(network, mean, adam, int(held["batch"]))
+
+
+def _keep(work: Work, kept: Path) -> None:
+    """Write it, then put it in the place of what was kept before."""
+    parts = {name: getattr(work, name).state_dict() for name in ("network", "mean", "adam")}
+    new = kept.with_name("new.pt")
+    torch.save({**parts, "batch": work.batch}, new)
+    new.rename(kept)
+
+
+def _step(work: Work, shown: list[Composite]) -> Work:
+    """One batch more."""
+    network, mean, adam, at = work
+    for group in adam.param_groups:
+        group["lr"] = _rate(at)
+    network.train()
+    adam.zero_grad()
+    torch_landmarks.loss(network, shown).backward()
+    torch.nn.utils.clip_grad_norm_(network.parameters(), STEEPEST)
+    adam.step()
+    share = max(1.0 / MEAN_OVER, 1.0 / (1.0 + 0.1 * at))
+    with torch.no_grad():
+        own, running = network.state_dict(), mean.state_dict()
+        for name, value in running.items():
+            if value.is_floating_point():
+                value.lerp_(own[name], share)
+    return work._replace(batch=at + 1)
+
+
+def _rate(at: int) -> float:
+    """Rises, stays, and falls to nothing."""
+    left = (1.0 - at / BATCHES) / (1.0 - STEADY_SHARE)
+    return RATE * min(1.0, (at + 1) / WARM, max(left, 0.01))
+
+
+def _right(network: Any, folders: list[Path], seed: int) -> float:
+    """Share of the joints of people who were held back that are nearly right."""
+    shown = composed(Wanted(tuple(folders), seed, BATCHES))
+    off = torch_landmarks.joints_off(network, shown)
+    return float((off[np.isfinite(off)] < NEAR).mean())

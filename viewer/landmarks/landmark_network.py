@@ -1,0 +1,114 @@
+"""The network that finds landmarks in a window of the picture, and what its outputs mean."""
+
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+import onnxruntime
+from numpy.typing import NDArray
+
+from common.body.body import Vector
+from common.compiled import compiled
+from viewer.landmarks.landmark_window import PLANES, SIDE, Planes
+
+CELLS: Final = 24
+"""Cells of a joint's map, each way."""
+BINS: Final = 16
+"""Directions that the facing is told apart in."""
+FARTHEST: Final = 0.8
+"""No peak is farther from the middle of its highest cell, in cells."""
+SHIPPED: Final = Path(__file__).with_name("landmarks.onnx")
+PLATT: Final = (1.0, 0.0, 0.0)
+"""Of the network's own confidence, of how much of a joint's map lies about its peak, and 1: the
+logit of how often a joint was less than 0.03 statures off."""
+
+
+class Found(NamedTuple):
+    """What the network makes of a window."""
+
+    joints: NDArray[np.float64]
+    """(15, 2) JOINT_NAMES order; pixels of the planes, the first's centre at 0.5."""
+    confidence: Vector
+    """(15,) how probably each is less than 0.03 statures off."""
+    facing_deg: float
+    facing_confidence: float
+    nobody: float
+    """How probably there is no person in the window."""
+
+
+@lru_cache(maxsize=1)
+def shipped() -> Any:
+    """The network that is installed with the program, on one core."""
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    return onnxruntime.InferenceSession(SHIPPED, options, providers=["CPUExecutionProvider"])
+
+
+def find(planes: Planes) -> Found:
+    """The joints in a window, (1, PLANES, SIDE, SIDE)."""
+    assert planes.shape == (1, PLANES, SIDE, SIDE)
+    maps, told = shipped().run(None, {"planes": planes})
+    joints, about = _peaks(maps[0])
+    bins, nobody, sure = told[0, :BINS], told[0, BINS], told[0, BINS + 1 :]
+    confidence = _sigmoid(PLATT[0] * sure + PLATT[1] * _logit(about) + PLATT[2])
+    facing_deg, facing_confidence = _facing(bins.astype(np.float64))
+    return Found(joints, confidence, facing_deg, facing_confidence, float(_sigmoid(nobody)))
+
+
+@compiled
+def _peaks(maps: Any) -> tuple[Any, Any]:
+    """Where each map of logits (15, CELLS, CELLS) is highest, and its share about there.
+
+    Between cells the peak is that of the bell through the three sums of cells about the highest:
+    maps are taught to be bells, and a mean over few cells would lean to the middle one.
+    """
+    joints, about = np.empty((len(maps), 2)), np.empty(len(maps))
+    for j in range(len(maps)):
+        best, row, column = -np.inf, 0, 0
+        for i in range(CELLS):
+            for k in range(CELLS):
+                if maps[j, i, k] > best:
+                    best, row, column = maps[j, i, k], i, k
+        total, near = 0.0, 0.0
+        rows, columns = np.full(3, 1e-9), np.full(3, 1e-9)
+        for i in range(CELLS):
+            for k in range(CELLS):
+                share = np.exp(maps[j, i, k] - best)
+                total += share
+                if abs(i - row) <= 1 and abs(k - column) <= 1:
+                    near += share
+                    rows[i - row + 1] += share
+                    columns[k - column + 1] += share
+        joints[j, 0] = (column + 0.5 + _between(columns)) * SIDE / CELLS
+        joints[j, 1] = (row + 0.5 + _between(rows)) * SIDE / CELLS
+        about[j] = near / total
+    return joints, about
+
+
+@compiled
+def _between(three: Any) -> float:
+    """Where a bell through three neighbours has its peak, from the middle one, in cells."""
+    low, middle, high = np.log(three[0]), np.log(three[1]), np.log(three[2])
+    bent = min(low - 2.0 * middle + high, -1e-3)
+    return min(max(0.5 * (low - high) / bent, -FARTHEST), FARTHEST)
+
+
+def _facing(bins: Vector) -> tuple[float, float]:
+    """The direction and how probably it is less than 45 degrees off, of BINS logits."""
+    share = np.exp(bins - bins.max())
+    share /= share.sum()
+    turn = 2 * np.pi * np.arange(BINS) / BINS
+    best = int(share.argmax())
+    near = np.cos(turn - turn[best]) > 0.9
+    mean = np.arctan2((share * np.sin(turn))[near].sum(), (share * np.cos(turn))[near].sum())
+    return float(np.degrees(mean)), float(share[np.cos(turn - mean) > np.sqrt(0.5)].sum())
+
+
+def _logit(share: Vector) -> Vector:
+    kept = np.clip(share, 1e-4, 1.0 - 1e-4)
+    return np.asarray(np.log(kept / (1.0 - kept)))
+
+
+def _sigmoid(values: Any) -> Any:
+    return 1.0 / (1.0 + np.exp(-np.clip(values, -60.0, 60.0)))

@@ -1,0 +1,91 @@
+"""The part of a picture that the network of landmarks looks at."""
+
+from typing import Any, Final, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from common.bus.messages import Box
+from common.compiled import compiled
+from common.raster.similarity import Mask
+from common.video.decoding import Image
+
+SIDE: Final = 96
+"""Pixels across what the network sees."""
+FRAMED: Final = 1.25
+"""Side of the window over the longer side of what it is to hold."""
+PLANES: Final = 4
+"""Blue, green, red, outline."""
+GREY, STEP = 128.0, 64.0
+"""What is taken for 0 and for 1; an outline that is not known is GREY."""
+
+Planes = NDArray[np.float32]
+
+
+class Window(NamedTuple):
+    """A square, whole pixels of the picture; it may reach beyond it."""
+
+    left: int
+    top: int
+    side: int
+
+
+def window_about(left: float, right: float, top: float, bottom: float) -> Window:
+    """The window of what reaches from one pixel to another."""
+    side = max(8, round(FRAMED * max(right - left, bottom - top)))
+    return Window(round((left + right - side) / 2), round((top + bottom - side) / 2), side)
+
+
+def window_of(box: Box) -> Window:
+    """The window of an outline."""
+    return window_about(box.left, box.right + 1, box.top, box.bottom + 1)
+
+
+def whole(shape: tuple[int, ...]) -> Window:
+    """The window that holds all of a picture (H, W, ...)."""
+    side = max(shape[:2])
+    return Window((shape[1] - side) // 2, (shape[0] - side) // 2, side)
+
+
+def planes_of(picture: Image, mask: Mask | None, window: Window) -> Planes:
+    """What the network sees, (1, PLANES, SIDE, SIDE); black beyond the picture.
+
+    Args:
+        picture: (H, W, 3)
+        mask: (H, W) the outline; None: not known.
+        window: Of the picture.
+    """
+    planes = np.zeros((1, PLANES, SIDE, SIDE), np.float32)
+    colours = _cut(picture, window)
+    outline = None if mask is None else _cut(mask.view(np.uint8) * np.uint8(255), window)
+    _spread(colours, colours[..., 0] if outline is None else outline, outline is not None, planes)
+    return planes
+
+
+def _cut(picture: NDArray[np.uint8], window: Window) -> NDArray[np.uint8]:
+    """(SIDE, SIDE, ...) of the picture."""
+    left, top, side = window
+    high, wide = picture.shape[:2]
+    rows, columns = (max(top, 0), min(top + side, high)), (max(left, 0), min(left + side, wide))
+    inside = picture[slice(*rows), slice(*columns)]
+    if inside.shape[:2] != (side, side):
+        held = np.zeros((side, side, *picture.shape[2:]), np.uint8)
+        if rows[0] < rows[1] and columns[0] < columns[1]:
+            held[slice(*np.subtract(rows, top)), slice(*np.subtract(columns, left))] = inside
+        inside = held
+    how = cv2.INTER_AREA if side > SIDE else cv2.INTER_LINEAR
+    return np.asarray(cv2.resize(inside, (SIDE, SIDE), interpolation=how), np.uint8)
+
+
+@compiled
+def _spread(colours: Any, outline: Any, known: bool, planes: Any) -> None:
+    """Bytes (SIDE, SIDE, 3) and (SIDE, SIDE) as planes."""
+    one = np.float32(1.0 / STEP)
+    for row in range(SIDE):
+        for column in range(SIDE):
+            for k in range(3):
+                planes[0, k, row, column] = (np.float32(colours[row, column, k]) - GREY) * one
+            if known:
+                inside = outline[row, column] > 127
+                planes[0, 3, row, column] = (255.0 if inside else 0.0) * one - GREY * one

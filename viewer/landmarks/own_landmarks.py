@@ -1,0 +1,88 @@
+"""Our own source of landmarks: a small network that looks at the working picture."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Vector
+from common.bus.messages import Landmarks
+from common.raster.similarity import Mask
+from common.video.decoding import Image
+from viewer.landmarks.landmark_network import find
+from viewer.landmarks.landmark_window import SIDE, Window, planes_of, whole, window_about, window_of
+from viewer.silhouette.silhouette import Seen
+
+SURE: Final = 0.5
+"""Landmarks that are surer than this on average are not looked for elsewhere too."""
+LEAST: Final = 0.3
+"""Where no outline says that somebody is there, they must be surer than this on average."""
+COUNTS: Final = 0.15
+"""Joints that are surer than this tell where the next window is."""
+MARGIN: Final = 0.06
+"""How far a body reaches beyond its joints, in sides of what holds them."""
+
+
+class _Look(NamedTuple):
+    joints_px: NDArray[np.float64]
+    confidence: Vector
+    facing: tuple[float, float]
+    """Degrees, and how sure."""
+    nobody: float
+
+    @property
+    def surety(self) -> float:
+        return float(self.confidence.mean())
+
+
+def own_landmarks(picture: Image, seen: Seen, before: Landmarks | None) -> Landmarks | None:
+    """What the network makes of a picture; None where it sees nobody.
+
+    It looks where the outline is. Where it is not sure there it also looks, without the outline,
+    where it saw somebody the frame before, or in all of the picture, and believes the surest look.
+
+    Args:
+        picture: (H, W, 3) the working picture.
+        seen: The outline in it.
+        before: Of the frame before.
+    """
+    looks = []
+    if seen.box is not None:
+        looks.append(_look(picture, seen.mask, window_of(seen.box)))
+    if not looks or looks[0].surety < SURE:
+        known = None if before is None else _about(np.array(before.joints_px), before.confidence)
+        looks.append(_search(picture) if known is None else _look(picture, None, known))
+    best = max(looks, key=lambda look: look.surety)
+    if seen.box is None and (best.nobody > 0.5 or best.surety < LEAST):
+        return None
+    return Landmarks(
+        joints_px=tuple((float(x), float(y)) for x, y in best.joints_px),
+        confidence=tuple(best.confidence.tolist()),
+        facing_deg=best.facing[0],
+        facing_confidence=best.facing[1],
+    )
+
+
+def _look(picture: Image, mask: Mask | None, window: Window) -> _Look:
+    found = find(planes_of(picture, mask, window))
+    joints_px = found.joints * (window.side / SIDE) + (window.left, window.top)
+    facing = (found.facing_deg, found.facing_confidence)
+    return _Look(joints_px, found.confidence, facing, found.nobody)
+
+
+def _search(picture: Image) -> _Look:
+    """Somebody anywhere: first in all of the picture, then closer."""
+    far = _look(picture, None, whole(picture.shape))
+    window = _about(far.joints_px, tuple(far.confidence))
+    return far if window is None else _look(picture, None, window)
+
+
+def _about(joints_px: NDArray[np.float64], confidence: tuple[float, ...]) -> Window | None:
+    """The window about the joints that count; None where they are few."""
+    sure = joints_px[np.array(confidence) > COUNTS]
+    if len(sure) < len(joints_px) // 2:
+        return None
+    low, high = sure.min(axis=0), sure.max(axis=0)
+    beyond = MARGIN * float((high - low).max())
+    (left, top), (right, bottom) = low - beyond, high + beyond
+    return window_about(left, right, top, bottom)
