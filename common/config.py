@@ -9,7 +9,6 @@ import msgspec
 
 from common.method import Mode
 
-
 LANDMARK_SOURCES: Final = ("own", "none", "mediapipe")
 """What `landmarks` may say instead of a folder."""
 

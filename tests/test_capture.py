@@ -99,6 +99,19 @@ def test_a_pixel_is_the_mean_of_what_it_covers(tmp_path: Path, decoder: Decoder)
     assert np.abs(still.picture - means).max() <= 0.5
 
 
+def test_a_second_larger_picture_comes_beside_the_first(tmp_path: Path, decoder: Decoder) -> None:
+    video = written(tmp_path / "cam1.avi", size=(128, 96))
+    both = list(decoder.frames(video, SIZE, large=(128, 96)))
+    alone = list(decoder.frames(video, SIZE))
+    for one, same in zip(both, alone, strict=True):
+        assert one.large is not None
+        assert same.large is None
+        assert one.large.shape == (96, 128, 3)
+        np.testing.assert_array_equal(one.picture, same.picture)
+        means = one.large.reshape(48, 2, 64, 2, 3).mean(axis=(1, 3))
+        assert np.abs(one.picture - means).max() <= 0.5
+
+
 def test_every_third_frame_keeps_its_index_and_the_rest_is_counted(
     tmp_path: Path, decoder: Decoder
 ) -> None:
