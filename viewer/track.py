@@ -17,6 +17,7 @@ from viewer.background.background import Background
 from viewer.background.moved_objects import Patch
 from viewer.capture import CapturedFrame
 from viewer.expected_body import expected_body
+from viewer.landmarks.reported_landmarks import reported_landmarks
 from viewer.paper import pose_search
 from viewer.paper.measure import measure_front, measure_side, refusal_of
 from viewer.silhouette import silhouette
@@ -100,7 +101,7 @@ def step(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
 
 
 def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State, Report, Mask]:
-    """The silhouette of a frame, as a report that tells nothing else, and as a mask (H, W).
+    """The silhouette and the landmarks of a frame, as a report, and the mask (H, W).
 
     Args:
         state: What this viewer remembers.
@@ -116,7 +117,10 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
     state = _patched(state, frame.index)
     remembered, seen = silhouette.step(state.silhouette, frame.picture, _near_px(state, guide))
     state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box))
-    return state, _report_of(state.setup.viewer, frame, seen), seen.mask
+    source = state.setup.settings.landmarks
+    landmarks = reported_landmarks(source, frame.picture, frame.landmarks, seen)
+    report = _report_of(state.setup.viewer, frame, seen)
+    return state, msgspec.structs.replace(report, landmarks=landmarks), seen.mask
 
 
 def describe(state: State, report: Report, mask: Mask, guide: Guide | None) -> tuple[State, Report]:
