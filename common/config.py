@@ -3,10 +3,14 @@
 import math
 import os
 from pathlib import Path
+from typing import Final
 
 import msgspec
 
 from common.method import Mode
+
+LANDMARK_SOURCES: Final = ("own", "none", "mediapipe")
+"""What `landmarks` may say instead of a folder."""
 
 
 class SettingsError(ValueError):
@@ -129,6 +133,9 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     measured there. Its cameras may stand elsewhere."""
     size: str = "160x120"
     """Bound of the working picture: aspect kept."""
+    landmarks: str = "own"
+    """What tells the joints that the picture itself shows: the network in the package ("own"),
+    nothing ("none"), "mediapipe", or a folder of keypoint files."""
     every: int = 1
     """Take every n-th frame of a recorded clip."""
     fps: float = 0.0
@@ -149,6 +156,8 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         if not self.room or set(self.room) & set("/*$#? "):
             raise ValueError(f"room must be a plain word, got {self.room!r}")
         size_of(self.size)
+        if not self.landmarks:
+            raise ValueError(f"landmarks must be {', '.join(LANDMARK_SOURCES)} or a folder")
         _within("every", self.every, 1, 1000)
         _within("fps", self.fps, 0.0, 1000.0)
 
@@ -159,7 +168,8 @@ def load(path: Path) -> Settings:
     Relative paths in the file are relative to the file.
 
     Raises:
-        SettingsError: When it cannot be read, or holds an unknown or ill-typed setting.
+        SettingsError: When it cannot be read, holds an unknown or ill-typed setting, or its
+            landmarks name no folder.
     """
     if path.is_dir():
         return Settings(clip=str(path))
@@ -216,8 +226,19 @@ def _with_full_paths(settings: Settings, path: Path) -> Settings:
             given, source=full(given.source), background=full(given.background)
         )
 
+    def landmarks(given: str) -> str:
+        if given in LANDMARK_SOURCES:
+            return given
+        if not Path(full(given)).is_dir():
+            known = ", ".join(LANDMARK_SOURCES)
+            raise SettingsError(
+                f"{path}: there is no folder {full(given)} of landmarks: write its path, or {known}"
+            )
+        return full(given)
+
     return msgspec.structs.replace(
         settings,
+        landmarks=landmarks(settings.landmarks),
         clip=full(settings.clip),
         calibration=full(settings.calibration),
         opening=full(settings.opening),

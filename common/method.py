@@ -26,6 +26,8 @@ class Method(msgspec.Struct, frozen=True, kw_only=True):
     slow_light: bool
     """The background takes on the slow changes of the light."""
 
+    landmarks: bool
+    """The viewer looks for joints in the picture itself; the body is made of those and outlines."""
     clutter_removal: bool
     """What both views do not show as one piece of space is no part of the person, where the network
     is surer of what is left."""

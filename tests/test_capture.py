@@ -13,6 +13,7 @@ import numpy as np
 import psutil
 import pytest
 
+from common.bus.messages import Landmarks
 from common.video.clip_facts import View
 from common.video.decoding import (
     FRAME,
@@ -20,6 +21,7 @@ from common.video.decoding import (
     INFO,
     MAGIC,
     STALL_S,
+    Decoded,
     Decoder,
     DecoderDied,
     Image,
@@ -97,6 +99,19 @@ def test_a_pixel_is_the_mean_of_what_it_covers(tmp_path: Path, decoder: Decoder)
     (still,) = decoder.frames(str(tmp_path / "plate.png"), SIZE)
     means = full.reshape(48, 3, 64, 3, 3).mean(axis=(1, 3))
     assert np.abs(still.picture - means).max() <= 0.5
+
+
+def test_a_second_larger_picture_comes_beside_the_first(tmp_path: Path, decoder: Decoder) -> None:
+    video = written(tmp_path / "cam1.avi", size=(128, 96))
+    both = list(decoder.frames(video, SIZE, large=(128, 96)))
+    alone = list(decoder.frames(video, SIZE))
+    for one, same in zip(both, alone, strict=True):
+        assert one.large is not None
+        assert same.large is None
+        assert one.large.shape == (96, 128, 3)
+        np.testing.assert_array_equal(one.picture, same.picture)
+        means = one.large.reshape(48, 2, 64, 2, 3).mean(axis=(1, 3))
+        assert np.abs(one.picture - means).max() <= 0.5
 
 
 def test_every_third_frame_keeps_its_index_and_the_rest_is_counted(
@@ -251,6 +266,72 @@ def test_a_recorded_view_is_as_fast_as_it_can_and_keeps_the_cameras_times(
     frames = list(recorded(view, 2, decoder))
     assert [frame.captured_s for frame in frames] == [n / 15 for n in range(0, FRAMES, 2)]
     assert [frame.clock_s for frame in frames] == [frame.captured_s for frame in frames]
+
+
+class Pointing:
+    """A source outside that tells of each frame the shade of its larger picture."""
+
+    large = (128, 96)
+
+    def __init__(self, pause_s: float = 0.0) -> None:
+        self.odd: tuple[str, ...] = ()
+        self.asked: list[tuple[int, float]] = []
+        self._pause_s = pause_s
+
+    def people(self, decoded: Decoded, wait_s: float) -> tuple[Landmarks, ...]:
+        assert decoded.large is not None
+        assert decoded.large.shape == (96, 128, 3)
+        self.asked.append((decoded.index, wait_s))
+        time.sleep(self._pause_s)
+        return (pointing(shown(decoded.large)),)
+
+
+def pointing(shade: float) -> Landmarks:
+    return Landmarks(joints_px=((shade, shade),) * 15, confidence=(1.0,) * 15)
+
+
+def test_a_recorded_frame_comes_with_what_the_source_outside_sees_in_it(
+    tmp_path: Path, decoder: Decoder
+) -> None:
+    view = view_of(written(tmp_path / "cam1.avi", size=(128, 96)))
+    source = Pointing()
+    frames = list(recorded(view, 2, decoder, source))
+    assert [frame.landmarks for frame in frames] == [(pointing(n),) for n in range(0, FRAMES, 2)]
+    assert [index for index, _ in source.asked] == [*range(0, FRAMES, 2)]
+    assert {frame.picture.shape for frame in frames} == {(48, 64, 3)}
+
+
+def test_without_a_source_outside_there_are_no_landmarks(tmp_path: Path, decoder: Decoder) -> None:
+    view = view_of(written(tmp_path / "cam1.avi"))
+    assert {frame.landmarks for frame in recorded(view, 1, decoder)} == {()}
+
+
+def test_live_frames_have_the_landmarks_of_the_recording(tmp_path: Path, decoder: Decoder) -> None:
+    view = view_of(written(tmp_path / "cam1.avi", size=(128, 96)), fps=100.0)
+    source = Pointing()
+    offline = {frame.index: frame.landmarks for frame in recorded(view, 1, decoder, Pointing())}
+    with Live(view, 1, RoomClock(time.monotonic() + 0.2), source) as live:
+        came = all_of(live)
+    assert came
+    assert all(frame.landmarks == offline[frame.index] for frame in came)
+    assert {wait_s for _, wait_s in source.asked} == {1 / 100.0}  # no longer than to the next
+
+
+def test_a_source_that_takes_its_time_costs_frames_and_not_their_order(tmp_path: Path) -> None:
+    view = view_of(written(tmp_path / "cam1.avi", size=(128, 96)), fps=1000.0)
+    with Live(view, 1, RoomClock(time.monotonic() + 0.2), Pointing(pause_s=0.01)) as live:
+        came = all_of(live)
+    assert [frame.landmarks for frame in came] == [(pointing(frame.index),) for frame in came]
+    assert [frame.index for frame in came] == sorted(frame.index for frame in came)
+    assert len(came) + live.dropped == FRAMES
+
+
+def test_what_went_wrong_with_a_source_is_told_of_a_live_view(tmp_path: Path) -> None:
+    source = Pointing()
+    with Live(view_of(written(tmp_path / "a.avi")), 1, RoomClock(0.0), source) as live:
+        before = live.odd
+        source.odd = ("it is gone",)
+        assert (before, live.odd) == ((), ("it is gone",))
 
 
 def all_of(live: Live) -> list[CapturedFrame]:

@@ -53,6 +53,17 @@ def test_settings_and_the_tracker_change_the_key_the_truth_does_not(own: Setting
     assert key_of(own, "tracker") == before
 
 
+def test_keypoints_from_files_are_of_the_clip(own: Settings, tmp_path: Path) -> None:
+    told = tmp_path / "pose" / "cam1" / "0.json"
+    told.parent.mkdir(parents=True)
+    told.write_text('{"people": []}')
+    with_files = msgspec.structs.replace(own, landmarks=str(tmp_path / "pose"))
+    before = key_of(with_files, "tracker")
+    assert before != key_of(own, "tracker")
+    changed(told)
+    assert key_of(with_files, "tracker") != before
+
+
 def test_a_clip_that_moved_keeps_its_key(own: Settings, tmp_path: Path) -> None:
     before = key_of(own, "tracker")
     moved = tmp_path / "elsewhere" / "own"

@@ -80,6 +80,9 @@ def test_what_is_misspelt_or_ill_typed_is_refused_with_its_place(
         ("size = '160'", "look like 160x120"),
         ("size = '16x120'", "width must be from 32"),
         ("[page]\nport = 70000", "got 70000"),
+        ("landmarks = ''", "must be own, none, mediapipe or a folder"),
+        ("landmarks = 'mediapip'", "no folder .*mediapip of landmarks.*own, none, mediapipe"),
+        ("landmarks = '$NO_SUCH_VARIABLE/x'", "export it"),
         ("[body]\nstature_m = 3.0", "got 3.0"),
         ("[body]\nopening_frames = 0", "got 0"),
         ("[silhouette]\nmin_height_share = nan", "nan"),
@@ -135,6 +138,21 @@ def test_paths_are_relative_to_the_file_and_variables_are_filled_in(
     assert settings.camera_1.background == "/plates/empty.png"
     assert settings.recognizer.model == str(tmp_path / "own.model")
     assert settings.camera_2 is None
+
+
+def test_landmarks_are_a_word_or_a_folder_beside_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TAKE", "pose_1")
+    (tmp_path / "pose_1").mkdir()
+    for word in ("own", "none", "mediapipe"):
+        assert load(written(tmp_path, f"landmarks = '{word}'")).landmarks == word
+    folder = load(written(tmp_path, "landmarks = '$TAKE'")).landmarks
+    assert folder == str(tmp_path / "pose_1")
+
+
+def test_a_clip_folder_has_our_own_landmarks(tmp_path: Path) -> None:
+    assert load(tmp_path).landmarks == "own"
 
 
 @given(sizes)

@@ -4,8 +4,10 @@ import importlib
 import io
 import json
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
+from fake_mediapipe import install_fake
 from rich.console import Console
 
 import tritrack.__main__ as door
@@ -34,7 +36,18 @@ def test_a_missing_package_is_named_with_its_cure(monkeypatch: pytest.MonkeyPatc
 
 def test_every_extra_that_a_command_needs_is_looked_at(findings: dict[str, Finding]) -> None:
     told = {name.rpartition("(")[2].rstrip(")") for name, one in findings.items() if not one.needed}
-    assert {"viser", "tomlkit", "scikit-image", "matplotlib"} <= told
+    assert {"viser", "tomlkit", "scikit-image", "matplotlib", "mediapipe"} <= told
+
+
+def test_a_mediapipe_is_tried(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One that stands there may still not work: what it says is shown, and how it is installed."""
+    install_fake(monkeypatch, tmp_path, born="raise OSError('no model here')")
+    found = doctor._mediapipe()
+    assert not found.ok
+    assert not found.needed
+    assert "no model here" in found.detail
+    assert "pip install" not in found.detail
+    assert found.cure.startswith("pip install --no-deps mediapipe==0.10.21 && pip install")
 
 
 def test_a_look_that_fails_does_not_keep_the_others_from_it(

@@ -5,7 +5,7 @@ from itertools import islice
 
 import numpy as np
 
-from common.video.decoding import Decoded, Source
+from common.video.decoding import Decoded, Size, Source
 from common.video.frame_cache import Reel
 
 SIZE = (4, 3)
@@ -18,11 +18,13 @@ class Counting:
     def __init__(self) -> None:
         self.came, self.readings = 0, 0
 
-    def frames(self, source: Source, size: tuple[int, int], every: int = 1) -> Iterator[Decoded]:
+    def frames(
+        self, source: Source, size: Size, every: int = 1, large: Size | None = None
+    ) -> Iterator[Decoded]:
         self.readings += 1
         for index in range(0, 10, every):
             picture = np.full((size[1], size[0], 3), hash(source) % 7 + index, np.uint8)
-            yield Decoded(index, 0.1 * index, picture)
+            yield Decoded(index, 0.1 * index, picture, picture if large else None)
         self.came = 10
 
 
@@ -77,3 +79,13 @@ def test_another_source_or_size_is_decoded() -> None:
     indices(reel, "a.avi")
     assert next(iter(reel.frames("a.avi", (8, 6)))).picture.shape == (6, 8, 3)
     assert decoder.readings == 3
+
+
+def test_larger_pictures_are_decoded_for_whoever_asks_and_are_not_kept() -> None:
+    decoder = Counting()
+    reel = Reel(decoder)
+    indices(reel)
+    asked = list(reel.frames("a.avi", SIZE, large=(8, 6)))
+    assert all(got.large is not None for got in asked)
+    assert all(got.large is None for got in reel.frames("a.avi", SIZE))
+    assert decoder.readings == 2

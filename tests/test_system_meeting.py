@@ -151,7 +151,7 @@ def test_what_was_lost_is_told_to_the_end() -> None:
 class BrokenFilm:
     """Frames of a view whose decoder breaks on the first."""
 
-    over, offset_s, dropped, came = False, 0.0, 0, 0
+    over, offset_s, dropped, came, odd = False, 0.0, 0, 0, ()
 
     def take(self, _timeout_s: float) -> None:
         raise DecoderDied("cam1.avi", 0, "killed by SIGABRT")

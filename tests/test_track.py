@@ -26,7 +26,7 @@ from staging import (
 from common.body.body import ANGLE_NAMES, POSE_INDEX, Vector
 from common.body.proportions import stature
 from common.bus.message_codec import decode, encode
-from common.bus.messages import Guide, Report, ViewerNumber
+from common.bus.messages import Guide, Landmarks, Report, ViewerNumber
 from common.method import METHODS
 from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
@@ -260,6 +260,31 @@ def test_the_count_of_matches_is_the_papers_cost() -> None:
     """P27, P40: position, four arm searches of at most 9, two legs of at most 7."""
     report = looked(1, standing(), guide(standing()))
     assert 13 + 4 * 6 + 2 * 5 <= report.matches <= 2 * (1 + 3 * 6) + 4 * 9 + 2 * 7
+
+
+@pytest.mark.parametrize("seen", [True, False], ids=["with an outline", "without one"])
+def test_what_a_source_outside_sees_is_in_the_report_and_stays_there(seen: bool) -> None:
+    person = Landmarks(joints_px=((80.0, 60.0),) * 15, confidence=(0.9,) * 15, facing_deg=30.0)
+    setup = viewer(1).setup
+    outside = msgspec.structs.replace(setup.settings, landmarks="mediapipe")
+    state = viewer(1)._replace(setup=setup._replace(settings=outside))
+    picture = frame(silhouettes(standing())[0] if seen else NOBODY)
+    shown = msgspec.structs.replace(picture, landmarks=(person,))
+    assert track.step(state, shown, None)[1].landmarks == person
+    assert track.step(state, shown, guide(standing()))[1].landmarks == person
+    assert track.step(state, picture, None)[1].landmarks is None
+
+
+def test_landmarks_change_nothing_else_of_a_report() -> None:
+    setup = viewer(1).setup
+    outside = msgspec.structs.replace(setup.settings, landmarks="mediapipe")
+    state = viewer(1)._replace(setup=setup._replace(settings=outside))
+    person = Landmarks(joints_px=((80.0, 60.0),) * 15, confidence=(0.9,) * 15)
+    picture = frame(silhouettes(standing())[0])
+    shown = msgspec.structs.replace(picture, landmarks=(person,))
+    _, with_them = track.step(state, shown, guide(standing()))
+    _, without = track.step(state, picture, guide(standing()))
+    assert msgspec.structs.replace(with_them, landmarks=None) == without
 
 
 def test_a_viewer_is_a_value() -> None:

@@ -59,6 +59,7 @@ def examine() -> list[Finding]:
         _bus,
         _model,
         *(lambda row=row: _extra(*row) for row in EXTRAS),
+        _mediapipe,
         _browser,
         _cores,
     ]
@@ -171,6 +172,21 @@ def _extra(use: str, package: str, extra: str) -> Finding:
         return Finding(what, True, version(package), needed=False)
     except PackageNotFoundError:
         return Finding(what, False, "not installed", f"pip install 'tritrack[{extra}]'", False)
+
+
+def _mediapipe() -> Finding:
+    from common.config import SettingsError
+    from common.video.clip_facts import View
+    from viewer.landmarks.mediapipe_source import INSTALL, MediaPipe
+
+    what = "landmarks = 'mediapipe' (mediapipe)"
+    try:
+        with MediaPipe(View(1, "", (64, 48), (64, 48), 15.0, 0)) as source:
+            source.ready()
+        return Finding(what, True, version("mediapipe"), needed=False)
+    except (SettingsError, PackageNotFoundError) as error:
+        why, _, _ = str(error).partition(f": {INSTALL}")
+        return Finding(what, False, why, INSTALL, needed=False)
 
 
 def _browser() -> Finding:

@@ -4,7 +4,7 @@ import gc
 import logging
 import threading
 import time
-from typing import Final
+from typing import Any, Final
 
 from common.bus import clock
 from common.bus.bus import Bus, open_client
@@ -23,6 +23,7 @@ from viewer import track
 from viewer.background.background_source import background_of_run
 from viewer.capture import CapturedFrame, Live, RoomClock
 from viewer.jpeg import jpeg_of
+from viewer.landmarks.landmark_sources import outside_sources
 from viewer.viewer_warmup import warm_up
 
 WAIT_SHARE: Final = 0.5
@@ -86,7 +87,6 @@ def run(
         stop: Ends it early.
         warnings: What is odd about the view, told with every pulse, a line each.
     """
-    odd = "\n".join(warnings)
     period_s = state.setup.settings.every / view.fps
     pace = Pace(period_s)
     heart = Heart(bus, f"viewer {view.number}", pace)
@@ -96,7 +96,7 @@ def run(
         while not stop.is_set() and not live.over:
             frame = live.take(period_s)
             if frame is None:
-                heart.beat("running", odd, **_lost(live, guides))
+                heart.beat("running", **_news(live, guides, warnings))
                 continue
             guide = guides.of_frame(before, WAIT_SHARE * period_s)
             state, report = track.step(state, frame, guide)
@@ -104,7 +104,7 @@ def run(
             pace.done(frame.clock_s - live.offset_s, time.monotonic())
             if state.setup.settings.pictures:
                 bus.publish(_picture(view.number, frame))
-            heart.beat("running", odd, **_lost(live, guides))
+            heart.beat("running", **_news(live, guides, warnings))
             before = frame.index
     except DecoderDied as error:
         why = str(error)
@@ -114,8 +114,8 @@ def run(
     cut_off = shortfall(view, live.came) if live.over else ""
     if cut_off:
         log.warning(cut_off)
-    odd = "\n".join(filter(None, (*warnings, cut_off)))
-    heart.beat("ended", odd, **_lost(live, guides))
+        warnings = (*warnings, cut_off)
+    heart.beat("ended", **_news(live, guides, warnings))
 
 
 def main(
@@ -128,31 +128,40 @@ def main(
         BusError: When the integrator does not answer.
         DecoderDied: When the video broke the decoder.
         StartError: When the other viewer never got ready.
+        SettingsError: When the source of landmarks cannot be used.
     """
     name = f"viewer {viewer}"
     with process(name, context) as stop, open_client(settings.bus, settings.room, READY_S) as bus:
         heart = Heart(bus, name, Pace(1.0))
         heart.beat("starting")
-        with Decoder() as decoder:
-            clip = open_clip(settings, decoder, (viewer,))
-            view = clip.views[0]
-            background, odd = background_of_run(view, settings.silhouette, decoder, context.kept)
-        warnings = (*clip.warnings, *([odd] if odd else []))
-        for warning in warnings:
-            log.warning(warning)
-        camera = clip.rig.cameras[0] if clip.rig else None
-        alone = len(footage_of(settings)) == 1
-        setup = track.Setup(viewer, camera, settings, METHODS[settings.mode], alone)
-        state = track.init(setup, background)
-        warm_up(state, view.size)
-        gc.collect()
-        gc.freeze()
-        bus.announce(name)
-        heart.beat("ready", "\n".join(warnings))
-        room_clock = met(bus, viewer, stop)
-        if room_clock is not None:
-            with Live(view, settings.every, room_clock) as live:
-                run(view, state, live, bus, stop, warnings)
+        view, state, warnings = _prepared(settings, viewer, context)
+        with outside_sources(settings, (view,)) as sources:
+            warm_up(state, view.size)
+            gc.collect()
+            gc.freeze()
+            bus.announce(name)
+            heart.beat("ready", "\n".join(warnings))
+            room_clock = met(bus, viewer, stop)
+            if room_clock is not None:
+                with Live(view, settings.every, room_clock, sources.get(viewer)) as live:
+                    run(view, state, live, bus, stop, warnings)
+
+
+def _prepared(
+    settings: Settings, viewer: ViewerNumber, context: ProcessContext
+) -> tuple[View, track.State, tuple[str, ...]]:
+    """The view, a viewer that knows its background, and what is odd about them."""
+    with Decoder() as decoder:
+        clip = open_clip(settings, decoder, (viewer,))
+        view = clip.views[0]
+        background, odd = background_of_run(view, settings.silhouette, decoder, context.kept)
+    warnings = (*clip.warnings, *([odd] if odd else []))
+    for warning in warnings:
+        log.warning(warning)
+    camera = clip.rig.cameras[0] if clip.rig else None
+    alone = len(footage_of(settings)) == 1
+    setup = track.Setup(viewer, camera, settings, METHODS[settings.mode], alone)
+    return view, track.init(setup, background), warnings
 
 
 def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | None:
@@ -183,9 +192,10 @@ def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | No
     return RoomClock(start_s, offset.offset_s)
 
 
-def _lost(live: Live, guides: Guides) -> dict[str, int]:
-    """What was lost so far, as a Pulse tells it."""
+def _news(live: Live, guides: Guides, warnings: tuple[str, ...]) -> dict[str, Any]:
+    """What is odd and what was lost so far, as a Pulse tells it."""
     return {
+        "detail": "\n".join((*warnings, *live.odd)),
         "dropped": live.dropped,
         "guide_misses": guides.misses,
         "malformed": guides.malformed,

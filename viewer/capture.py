@@ -8,13 +8,18 @@ from typing import Final, NamedTuple, Self
 import msgspec
 
 from common.bus.mailbox import Mailbox
+from common.bus.messages import Landmarks
 from common.bus.rate import Clock, wait_until
 from common.video.clip_facts import View
 from common.video.decoding import Decoded, Decoder, Image
 from common.video.frame_cache import Reader
+from viewer.landmarks.outside_source import OutsideSource
 
 WAITING: Final = 2
 """Frames that may wait for a late viewer: one hides a short delay, more would only be stale."""
+
+PATIENCE_S: Final = 30.0
+"""How long a recorded frame's landmarks are waited for, where nothing is late."""
 
 
 class CapturedFrame(msgspec.Struct, frozen=True):
@@ -30,19 +35,31 @@ class CapturedFrame(msgspec.Struct, frozen=True):
     """(height, width, 3), BGR, at the working size."""
     next_s: float | None = None
     """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
+    landmarks: tuple[Landmarks, ...] = ()
+    """Of every person that a source outside sees in it, in pixels of `picture`."""
 
 
-def recorded(view: View, every: int, decoder: Reader) -> Iterator[CapturedFrame]:
+def recorded(
+    view: View, every: int, decoder: Reader, source: OutsideSource | None = None
+) -> Iterator[CapturedFrame]:
     """Every n-th frame of a video, as fast as they come.
+
+    Args:
+        view: Of the video.
+        every: The n.
+        decoder: Reads it.
+        source: Is asked for the landmarks of every frame, and waited for.
 
     Raises:
         Undecodable: When there is none.
         DecoderDied: When the decoder broke; the frames before that are good.
     """
-    for decoded in decoder.frames(view.source, view.size, every):
-        captured_s = view.captured_s(decoded.index)
+    large = source.large if source else None
+    for decoded in decoder.frames(view.source, view.size, every, large):
+        moment_s = view.captured_s(decoded.index)
         next_s = view.captured_s(decoded.index + every)
-        yield CapturedFrame(decoded.index, captured_s, captured_s, decoded.picture, next_s)
+        people = source.people(decoded, PATIENCE_S) if source else ()
+        yield CapturedFrame(decoded.index, moment_s, moment_s, decoded.picture, next_s, people)
 
 
 class RoomClock(NamedTuple):
@@ -62,10 +79,19 @@ class Live:
     """
 
     def __init__(
-        self, view: View, every: int, room: RoomClock, clock: Clock = time.monotonic
+        self,
+        view: View,
+        every: int,
+        room: RoomClock,
+        source: OutsideSource | None = None,
+        clock: Clock = time.monotonic,
     ) -> None:
-        """Begin to decode at once; the first frame of a video comes at the room's start."""
+        """Begin to decode at once; the first frame of a video comes at the room's start.
+
+        The source is asked for the landmarks of every frame, and waited for until the next is due.
+        """
         self._view = view
+        self._source = source
         self._room = room
         self._clock = clock
         self._began_s = clock()
@@ -92,6 +118,11 @@ class Live:
     def offset_s(self) -> float:
         """The room's clock less this host's monotonic one."""
         return self._room.offset_s
+
+    @property
+    def odd(self) -> tuple[str, ...]:
+        """What went wrong with its source of landmarks so far, a line each."""
+        return self._source.odd if self._source else ()
 
     @property
     def dropped(self) -> int:
@@ -122,7 +153,8 @@ class Live:
 
     def _run(self) -> None:
         """Hand on each frame at its moment; in a thread of its own."""
-        frames = self._decoder.frames(self._view.source, self._view.size, self._every)
+        view, large = self._view, self._source.large if self._source else None
+        frames = self._decoder.frames(view.source, view.size, self._every, large)
         try:
             for decoded in frames:
                 frame = self._timed(decoded)
@@ -132,13 +164,19 @@ class Live:
                 if due_s < self._began_s:
                     self._missed += 1
                 else:
-                    self._waiting.put(frame)
+                    self._waiting.put(self._with_landmarks(frame, decoded))
         except Exception as error:  # Whatever ended this thread is the reader's to hear.
             self._failure = error
         finally:
             frames.close()
             self._decoder.close()
             self._waiting.close()
+
+    def _with_landmarks(self, frame: CapturedFrame, decoded: Decoded) -> CapturedFrame:
+        if self._source is None:
+            return frame
+        people = self._source.people(decoded, self._every / self._view.fps)
+        return msgspec.structs.replace(frame, landmarks=people)
 
     def _timed(self, decoded: Decoded) -> CapturedFrame:
         if isinstance(self._view.source, int):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
-from common.bus.messages import Box, Facing, Guide, Measure, Pixel, Report, ViewerNumber
+from common.bus.messages import Box, Facing, Guide, Landmarks, Measure, Pixel, Report, ViewerNumber
 from common.config import Settings
 from common.method import Method
 from common.raster.silhouette_report import pack
@@ -17,6 +17,8 @@ from viewer.background.background import Background
 from viewer.background.moved_objects import Patch
 from viewer.capture import CapturedFrame
 from viewer.expected_body import expected_body
+from viewer.landmarks.nearest_landmarks import nearest_landmarks
+from viewer.landmarks.own_landmarks import own_landmarks
 from viewer.paper import pose_search
 from viewer.paper.measure import measure_front, measure_side, refusal_of
 from viewer.silhouette import silhouette
@@ -56,6 +58,8 @@ class State(NamedTuple):
     search: pose_search.State
     standing: Standing | None
     """How tall the person stands; None: not known before."""
+    landmarks: Landmarks | None = None
+    """Of the last frame."""
     near_px: Pixel | None = None
     """The middle of the last silhouette, where no guide tells where the body is expected."""
 
@@ -100,7 +104,7 @@ def step(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
 
 
 def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State, Report, Mask]:
-    """The silhouette of a frame, as a report that tells nothing else, and as a mask (H, W).
+    """The silhouette and the landmarks of a frame, as a report, and the mask (H, W).
 
     Args:
         state: What this viewer remembers.
@@ -116,7 +120,9 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
     state = _patched(state, frame.index)
     remembered, seen = silhouette.step(state.silhouette, frame.picture, _near_px(state, guide))
     state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box))
-    return state, _report_of(state.setup.viewer, frame, seen), seen.mask
+    state = state._replace(landmarks=_landmarks(state, frame, seen))
+    report = _report_of(state.setup.viewer, frame, seen)
+    return state, msgspec.structs.replace(report, landmarks=state.landmarks), seen.mask
 
 
 def describe(state: State, report: Report, mask: Mask, guide: Guide | None) -> tuple[State, Report]:
@@ -160,6 +166,16 @@ def _report_of(viewer: ViewerNumber, frame: CapturedFrame, seen: Seen) -> Report
         cut=seen.cut,
         next_s=frame.next_s,
     )
+
+
+def _landmarks(state: State, frame: CapturedFrame, seen: Seen) -> Landmarks | None:
+    """The joints that the picture itself shows, where the method asks for them."""
+    if not state.setup.method.landmarks:
+        return None
+    source = state.setup.settings.landmarks
+    if source == "own":
+        return own_landmarks(frame.picture, seen, state.landmarks)
+    return nearest_landmarks(frame.landmarks, seen.box)
 
 
 def _patched(state: State, index: int) -> State:

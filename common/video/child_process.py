@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from typing import Final, cast
 
 PIPE_BYTES: Final = 1 << 20
@@ -25,22 +26,31 @@ class Broken(RuntimeError):
 class Child:
     """A process that answers lines with bytes; it has nothing to save and is ended by a kill.
 
-    It gets the number of the pipe that it answers on as its argument.
+    It gets the number of the pipe that it answers on as its argument, then `told`.
     """
 
-    def __init__(self, module: str, stall_s: float) -> None:
-        """Start it; when it gives nothing for `stall_s` it counts as stuck."""
+    def __init__(
+        self, module: str, stall_s: float, told: Sequence[str] = (), files: Sequence[int] = ()
+    ) -> None:
+        """Start it; when it gives nothing for `stall_s` it counts as stuck.
+
+        Args:
+            module: What it runs.
+            stall_s: How long `read_into` waits for it.
+            told: Further arguments.
+            files: Open files that it shares, by their numbers.
+        """
         self._stall_s = stall_s
         # A pipe of its own: what libraries print from their import on must not mix with answers.
         read_end, write_end = os.pipe()
         # -P: a stranger's numpy.py in the working directory is not ours to run.
         self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", module, str(write_end)],
+            [sys.executable, "-P", "-m", module, str(write_end), *told],
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             bufsize=0,
-            pass_fds=[write_end],
+            pass_fds=[write_end, *files],
         )
         os.close(write_end)
         self._requests = cast(io.FileIO, self._process.stdin)
@@ -84,6 +94,10 @@ class Child:
             elif not self._poll.poll(max(0.0, 1000 * (until_s - time.monotonic()))):
                 self.kill()
                 raise Broken(f"it gave nothing for {self._stall_s:g} s")
+
+    def answers_within(self, wait_s: float) -> bool:
+        """Whether something can be read in time: an answer, or that it died."""
+        return bool(self._poll.poll(max(0.0, 1000 * wait_s)))
 
     def kill(self) -> None:
         """End it, from any thread; who reads then meets Broken."""

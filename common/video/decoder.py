@@ -55,22 +55,23 @@ def main() -> None:
 
 
 def serve(request: dict[str, Any], answers: IO[bytes]) -> None:
-    """Say what a source is, send its frames if a size is given, say how many came."""
-    source, size = request["source"], request["size"]
+    """Say what a source is, send its frames at each size that is given, say how many came."""
+    source, sizes = request["source"], request["sizes"]
     film = opened(source, request["every"])
     first = next((grab for grab in film.grabs if grab.picture is not None), None)
     if first is None or first.picture is None:
         refusal = f"{named(source)} gives no picture: {cure(source)}"
-        say(answers, REFUSED, payload=refusal.encode())
+        say(answers, REFUSED, None, refusal.encode())
         return
     height, width = first.picture.shape[:2]
     info = {"width": width, "height": height, "fps": film.fps, "frames": film.frames}
-    say(answers, INFO, payload=json.dumps(info).encode())
+    say(answers, INFO, None, json.dumps(info).encode())
     came = first.index + 1
-    for grab in itertools.chain([first], film.grabs) if size else ():
+    for grab in itertools.chain([first], film.grabs) if sizes else ():
         came = grab.index + 1
         if grab.picture is not None:
-            say(answers, FRAME, grab, reduced(grab.picture, (size[0], size[1])).data)
+            pictures = [reduced(grab.picture, (width, height)) for width, height in sizes]
+            say(answers, FRAME, grab, *(picture.data for picture in pictures))
     say(answers, END, Grabbed(came, time.monotonic(), None))
 
 
@@ -101,13 +102,14 @@ def reduced(picture: Image, size: tuple[int, int]) -> Image:
 
 
 def say(
-    answers: IO[bytes], kind: bytes, grab: Grabbed | None = None, payload: bytes | memoryview = b""
+    answers: IO[bytes], kind: bytes, grab: Grabbed | None = None, *parts: bytes | memoryview
 ) -> None:
-    """Send one answer; a picture at once, so that a live one does not wait."""
+    """Send one answer; pictures at once, so that a live one does not wait."""
     index, grabbed_s = (grab.index, grab.grabbed_s) if grab else (0, 0.0)
-    length = payload.nbytes if isinstance(payload, memoryview) else len(payload)
+    length = sum(memoryview(part).nbytes for part in parts)
     answers.write(HEADER.pack(MAGIC, kind, index, grabbed_s, length))
-    answers.write(payload)
+    for part in parts:
+        answers.write(part)
     if kind == FRAME:
         answers.flush()
 

@@ -36,6 +36,9 @@ Image = NDArray[np.uint8]
 Source = str | int
 """A file, or the number of a camera of this host."""
 
+Size = tuple[int, int]
+"""Width and height, pixels."""
+
 
 class Undecodable(ValueError):
     """A source without a single picture; the text names it and the cure."""
@@ -74,6 +77,8 @@ class Decoded(msgspec.Struct, frozen=True):
     grabbed_s: float
     """When it was grabbed, by this host's monotonic clock."""
     picture: Image
+    large: Image | None = None
+    """The same picture at the second size, where one was asked for."""
 
 
 class _Answer(msgspec.Struct, frozen=True):
@@ -117,23 +122,23 @@ class Decoder:
             Undecodable: When it has none.
             DecoderDied: When the child broke on it.
         """
-        info, *_ = self._answers(source, None, 1)
+        info, *_ = self._answers(source, [], 1)
         return msgspec.json.decode(info.payload.tobytes(), type=VideoInfo)
 
     def frames(
-        self, source: Source, size: tuple[int, int], every: int = 1
+        self, source: Source, size: Size, every: int = 1, large: Size | None = None
     ) -> Generator[Decoded, None, None]:
-        """Every n-th picture of a source, reduced to `size` (width, height).
+        """Every n-th picture of a source, reduced to `size` (width, height), and to `large` too.
 
         Raises:
             Undecodable: When it has none.
             DecoderDied: When the child broke on it; what came before is good.
         """
-        width, height = size
-        for answer in self._answers(source, size, every):
+        sizes = [size] if large is None else [size, large]
+        for answer in self._answers(source, sizes, every):
             if answer.kind == FRAME:
-                picture = answer.payload.reshape(height, width, 3)
-                yield Decoded(answer.index, answer.grabbed_s, picture)
+                pictures = _pictures(answer.payload, sizes)
+                yield Decoded(answer.index, answer.grabbed_s, *pictures)
             elif answer.kind == END:
                 self.came = answer.index
 
@@ -149,16 +154,17 @@ class Decoder:
             self._child = None
 
     def _answers(
-        self, source: Source, size: tuple[int, int] | None, every: int
+        self, source: Source, sizes: list[Size], every: int
     ) -> Generator[_Answer, None, None]:
-        """INFO, then FRAMEs if a size is asked for, then END."""
+        """INFO, then FRAMEs if any size is asked for, then END."""
         if self._child is None:
             self._child = Child("common.video.decoder", self._stall_s)
         frames, whole = 0, False
         try:
-            self._child.ask(json.dumps({"source": source, "size": size, "every": every}).encode())
+            request = {"source": source, "sizes": sizes, "every": every}
+            self._child.ask(json.dumps(request).encode())
             while not whole:
-                answer = _next_answer(self._child, size)
+                answer = _next_answer(self._child, sizes)
                 whole = answer.kind in (END, REFUSED)
                 if answer.kind == REFUSED:
                     raise Undecodable(answer.payload.tobytes().decode())
@@ -183,13 +189,20 @@ def cure(source: Source) -> str:
     return "convert it, for example to MJPEG: ffmpeg -i IN -c:v mjpeg -q:v 2 OUT.avi"
 
 
-def _next_answer(child: Child, size: tuple[int, int] | None) -> _Answer:
+def _pictures(payload: NDArray[np.uint8], sizes: list[Size]) -> list[Image]:
+    """The pictures that stand one after the other in the payload of a FRAME."""
+    ends = np.cumsum([3 * width * height for width, height in sizes])
+    parts = np.split(payload, ends[:-1])
+    return [part.reshape(h, w, 3) for part, (w, h) in zip(parts, sizes, strict=True)]
+
+
+def _next_answer(child: Child, sizes: list[Size]) -> _Answer:
     head = bytearray(HEADER.size)
     child.read_into(memoryview(head))
     magic, kind, index, grabbed_s, length = HEADER.unpack(head)
     due = length <= MAX_TEXT_BYTES
     if kind == FRAME:
-        due = size is not None and length == 3 * size[0] * size[1]
+        due = bool(sizes) and length == sum(3 * width * height for width, height in sizes)
     if magic != MAGIC or not due:
         raise Broken("it sent what is no answer")
     payload: Any = np.empty(length, np.uint8)

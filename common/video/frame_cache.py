@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Final, Protocol
 
-from common.video.decoding import Decoded, Source
+from common.video.decoding import Decoded, Size, Source
 
 MOST_BYTES: Final = 1 << 27
 """What a reel keeps at most: 38 s at 320x240 and 15 frames a second, 2.5 minutes at 160x120."""
@@ -16,8 +16,10 @@ class Reader(Protocol):
     def came(self) -> int:
         """How many frames the source that was last read to its end really had."""
 
-    def frames(self, source: Source, size: tuple[int, int], every: int = 1) -> Iterator[Decoded]:
-        """Every n-th picture of a source, reduced to `size` (width, height)."""
+    def frames(
+        self, source: Source, size: Size, every: int = 1, large: Size | None = None
+    ) -> Iterator[Decoded]:
+        """Every n-th picture of a source, reduced to `size`, and to `large` too."""
 
 
 class Reel:
@@ -31,7 +33,7 @@ class Reel:
         """Nothing kept yet."""
         self._decoder = decoder
         self._most_bytes = most_bytes
-        self._named: tuple[Source, tuple[int, int]] | None = None
+        self._named: tuple[Source, Size] | None = None
         self._kept: list[Decoded] = []
 
     @property
@@ -39,20 +41,24 @@ class Reel:
         """How many frames the source that was last decoded to its end really had."""
         return self._decoder.came
 
-    def frames(self, source: Source, size: tuple[int, int], every: int = 1) -> Iterator[Decoded]:
-        """Every n-th picture of a source, reduced to `size` (width, height).
+    def frames(
+        self, source: Source, size: Size, every: int = 1, large: Size | None = None
+    ) -> Iterator[Decoded]:
+        """Every n-th picture of a source, reduced to `size`; what is asked for larger is not kept.
 
         Raises:
             Undecodable: When it has none.
             DecoderDied: When the decoder broke on it; what came before is good.
         """
+        if large is not None:
+            return self._decoder.frames(source, size, every, large)
         if (source, size) == self._named:
             return (got for got in self._kept if got.index % every == 0)
         pictures = self._decoder.frames(source, size, every)
         return self._keeping(pictures, source, size) if every == 1 else pictures
 
     def _keeping(
-        self, pictures: Iterator[Decoded], source: Source, size: tuple[int, int]
+        self, pictures: Iterator[Decoded], source: Source, size: Size
     ) -> Iterator[Decoded]:
         """Hand all pictures on, and keep them once they are known to be all and to fit."""
         kept: list[Decoded] = []

@@ -29,6 +29,7 @@ from tritrack.live.table import table_of
 from tritrack.offline.lockstep import measured_before
 from tritrack.store.runs import write_postures, write_run
 from tritrack.terminal import warn
+from viewer.landmarks.landmark_sources import refuse_landmarks
 
 NO_POSTURE: Final = -1
 """posture_id of a clip that shows none of the postures: free motion, a test of the tracker."""
@@ -51,8 +52,8 @@ def live(settings: Settings, out: Path, console: Console, name: str = "") -> dic
         What the run's summary tells.
 
     Raises:
-        ClipError, ModelError, PageError, LiveRefused: When something cannot be worked with; no
-            process was started.
+        ClipError, ModelError, PageError, SettingsError, LiveRefused: When something cannot be
+            worked with; no process was started.
         PartFailed, BusError, RunError: When something failed; what was tracked until then is
             written first.
     """
@@ -157,6 +158,7 @@ def _refuse_what_would_fail(settings: Settings, clip: Clip) -> None:
     """Say before any process starts what one of them would fail on."""
     meant = "" if clip.meta.posture_id == NO_POSTURE else clip.meta.posture
     model_of(settings, meant)
+    refuse_landmarks(settings, clip.views)
     if settings.page.port:
         try:
             from animator.page.door import refuse_port

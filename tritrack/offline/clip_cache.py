@@ -13,7 +13,7 @@ import numpy as np
 
 from common.atomic_file import replacing
 from common.cache_folder import DIGEST, PACKAGES, ROOT, add
-from common.config import Settings
+from common.config import LANDMARK_SOURCES, Settings
 from common.npz_file import Arrays, read_arrays
 from common.video.clip_sources import ClipError, companions_folder, footage_of
 from common.video.clips import find_calibration
@@ -113,4 +113,6 @@ def _files(settings: Settings) -> Iterator[Path]:
     folder = companions_folder(settings, named)
     calibration = find_calibration(settings, folder)
     notes = folder / "meta.json"
+    if settings.landmarks not in LANDMARK_SOURCES:
+        yield from sorted(Path(settings.landmarks).rglob("*.json"))
     yield from (path for path in (calibration, notes) if path is not None and path.is_file())

@@ -32,6 +32,7 @@ from viewer import track
 from viewer.background.background import learn
 from viewer.background.background_source import FilmBackground
 from viewer.capture import recorded
+from viewer.landmarks.outside_source import OutsideSource
 from viewer.stick.standing_height import standing_of, standing_rows
 
 MOST_FRAMES: Final = 50_000
@@ -60,9 +61,10 @@ def silhouettes_of(
     background: FilmBackground,
     film: FilmFacts,
     reader: Reader,
+    source: OutsideSource | None = None,
     tell: Tell = lambda _: None,
 ) -> list[Report]:
-    """The first pass: the silhouette of every frame.
+    """The first pass: the silhouette and the landmarks of every frame.
 
     Raises:
         ClipError: When the clip is too long, or its camera moves.
@@ -71,7 +73,7 @@ def silhouettes_of(
     view = clip.views[0]
     viewer = track.init(_setup(film), background.background, patches=background.patches)
     reports: list[Report] = []
-    for frame in recorded(view, clip.every, reader):
+    for frame in recorded(view, clip.every, reader, source):
         if len(reports) >= MOST_FRAMES:
             raise ClipError(f"{view.source} has more than {MOST_FRAMES} frames: track parts of it")
         viewer, report, _ = track.look(viewer, frame, None)

@@ -20,6 +20,7 @@ from tritrack.offline.film_passes import FilmFacts, bodies_of, silhouettes_of
 from tritrack.terminal import Tell
 from viewer.background.background import Background
 from viewer.background.background_source import FilmBackground
+from viewer.landmarks.landmark_sources import oddities, outside_sources
 
 FITS: Final = 0.6
 """S from which a pose fits its silhouette."""
@@ -67,6 +68,7 @@ def follow_clip(
     Raises:
         ClipError: When it is too long, or its camera moves.
         DecoderDied: When the video broke the decoder.
+        SettingsError: When the source of landmarks cannot be used.
     """
     began = time.perf_counter()
     clip, background, notes = film
@@ -75,11 +77,14 @@ def follow_clip(
     scale = view.size[0] / view.source_size[0]
     period_s = clip.every / view.fps
     known = FilmFacts(settings, method, view.number, period_s, camera, notes, scale)
-    reports = silhouettes_of(clip, background, known, reel, tell)
+    with outside_sources(settings, clip.views) as sources:
+        outside = sources.get(view.number)
+        reports = silhouettes_of(clip, background, known, reel, outside, tell)
+        unlooked = oddities(sources)
     seen = time.perf_counter()
     bodies = bodies_of(reports, known)
     done = time.perf_counter()
-    odd = (background.odd, shortfall(view, reel.came), doubtful(bodies))
+    odd = (background.odd, shortfall(view, reel.came), doubtful(bodies), *unlooked)
     facts = {
         "clip": clip.name,
         "performer": clip.meta.performer,

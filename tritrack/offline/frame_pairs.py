@@ -10,6 +10,7 @@ from common.video.frame_cache import Reader
 from viewer.background.background import Background
 from viewer.background.background_source import background_of_view
 from viewer.capture import CapturedFrame, recorded
+from viewer.landmarks.landmark_sources import Sources
 
 Readers = Mapping[ViewerNumber, Reader]
 """What reads each view, by its number."""
@@ -34,9 +35,14 @@ def share_of(clip: Clip, frames: Mapping[ViewerNumber, CapturedFrame]) -> float:
     return min(1.0, max(shares, default=0.0))
 
 
-def instants(clip: Clip, readers: Readers) -> Iterator[dict[ViewerNumber, CapturedFrame]]:
+def instants(
+    clip: Clip, readers: Readers, sources: Sources
+) -> Iterator[dict[ViewerNumber, CapturedFrame]]:
     """The frames of all views, those of one instant together, in the order of time."""
-    streams = {view.number: recorded(view, clip.every, readers[view.number]) for view in clip.views}
+    streams = {
+        view.number: recorded(view, clip.every, readers[view.number], sources.get(view.number))
+        for view in clip.views
+    }
     waiting = {number: next(stream, None) for number, stream in streams.items()}
     tolerance_s = 0.5 * clip.every / clip.views[0].fps
     while any(waiting.values()):

@@ -26,6 +26,7 @@ from tritrack.terminal import Tell
 from viewer import track
 from viewer.background.background_source import FilmBackground, background_of_view
 from viewer.capture import CapturedFrame
+from viewer.landmarks.landmark_sources import Sources, oddities, outside_sources
 
 
 class Tracked(NamedTuple):
@@ -102,6 +103,7 @@ def track_clip(
     Raises:
         ClipError: When the clip cannot be used.
         DecoderDied: When a video broke the decoder.
+        SettingsError: When the source of landmarks cannot be used.
     """
     began = time.perf_counter()
     clip = open_clip(settings, decoders.of[1], views)
@@ -111,9 +113,10 @@ def track_clip(
         raise ClipError(f"{clip.name}: the thesis's mode is for one camera: add --views 1")
     if alone and (method.stick_lifting or (method.proposals and clip.rig is None)):
         return _in_two_passes(clip, settings, method, decoders, tell)
-    ready = _prepared(clip, settings, method, decoders, began)
-    done = _performed(ready, watch, tell)
-    return Tracked(clip, done.bodies, _facts(ready, done))
+    with outside_sources(settings, clip.views) as sources:
+        ready = _prepared(clip, settings, method, decoders, began)
+        done = _performed(ready, sources, watch, tell)
+        return Tracked(clip, done.bodies, _facts(ready, done, sources))
 
 
 def _in_two_passes(
@@ -149,14 +152,14 @@ def _prepared(
     return Prepared(clip, reels, viewers, integrator, odd, time.perf_counter() - began)
 
 
-def _performed(ready: Prepared, watch: Watch | None, tell: Tell) -> Performance:
+def _performed(ready: Prepared, sources: Sources, watch: Watch | None, tell: Tell) -> Performance:
     """Every instant of a clip, its viewers and the integrator in lock-step."""
     viewers, state, noticed = dict(ready.viewers), ready.integrator, diagnostics.State()
     guide: Guide | None = None
     bodies: list[Body] = []
     spent = {"viewers": 0.0, "integrator": 0.0}
     began = time.perf_counter()
-    for frames in instants(ready.clip, ready.reels):
+    for frames in instants(ready.clip, ready.reels, sources):
         start = time.perf_counter()
         reports: dict[int, Report] = {}
         for number, frame in frames.items():
@@ -175,11 +178,12 @@ def _performed(ready: Prepared, watch: Watch | None, tell: Tell) -> Performance:
     return Performance(bodies, state, noticed, spent)
 
 
-def _facts(ready: Prepared, done: Performance) -> dict[str, Any]:
+def _facts(ready: Prepared, done: Performance, sources: Sources) -> dict[str, Any]:
     """For the summary: what was tracked, how long it took, what was odd."""
     clip, acts = ready.clip, ready.clip.meta.acts
     cut_off = [shortfall(view, ready.reels[view.number].came) for view in clip.views]
-    odd = [*clip.warnings, *ready.odd, *filter(None, (*cut_off, unseen(done.bodies)))]
+    seen_odd = (*cut_off, unseen(done.bodies), *oddities(sources))
+    odd = [*clip.warnings, *ready.odd, *filter(None, seen_odd)]
     followed_s = done.seconds["following"]
     seconds = {"preparation": ready.seconds, **done.seconds, "all": ready.seconds + followed_s}
     return {

@@ -1,0 +1,39 @@
+"""Whose landmarks a report tells, where a source outside sees several people."""
+
+import numpy as np
+import pytest
+
+from common.body.body import JOINT_NAMES
+from common.bus.messages import Box, Landmarks
+from viewer.landmarks.nearest_landmarks import nearest_landmarks
+
+
+def person(left: float, top: float, right: float, bottom: float, seen: int = 15) -> Landmarks:
+    """Of whom so many joints are seen, on the diagonal of a box; the others stand anywhere."""
+    steps = np.linspace(0.0, 1.0, seen)
+    places = [(left + (right - left) * at, top + (bottom - top) * at) for at in steps]
+    rest = len(JOINT_NAMES) - seen
+    return Landmarks(
+        joints_px=(*places, *[(0.0, 0.0)] * rest), confidence=(*[0.9] * seen, *[0.0] * rest)
+    )
+
+
+NEAR = person(10, 10, 60, 110)
+FAR = person(100, 40, 120, 80)
+PARTLY_SEEN = person(100, 40, 120, 80, seen=9)
+
+
+@pytest.mark.parametrize("followed", [FAR, PARTLY_SEEN], ids=["whole", "partly seen"])
+def test_of_several_people_it_is_the_one_in_the_outlines_box(followed: Landmarks) -> None:
+    box = Box(left=97, right=122, top=36, bottom=84)
+    assert nearest_landmarks((NEAR, followed), box) is followed
+    box = Box(left=5, right=70, top=5, bottom=115)
+    assert nearest_landmarks((NEAR, followed), box) is NEAR
+
+
+def test_without_an_outline_it_is_the_largest() -> None:
+    assert nearest_landmarks((FAR, NEAR), None) is NEAR
+
+
+def test_where_nobody_is_seen_there_are_no_landmarks() -> None:
+    assert nearest_landmarks((), None) is None

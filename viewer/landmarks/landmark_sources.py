@@ -1,0 +1,62 @@
+"""Which source outside a run's settings name, for each of its views."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+from common.bus.messages import ViewerNumber
+from common.config import Settings
+from common.video.clip_facts import View
+from common.video.clip_sources import footage_of
+from viewer.landmarks.keypoint_files import KeypointFiles
+from viewer.landmarks.mediapipe_source import MediaPipe, refuse_where_missing
+from viewer.landmarks.outside_source import OutsideSource
+
+Sources = Mapping[ViewerNumber, OutsideSource]
+"""Those of some views; empty where no source outside is named."""
+
+
+@contextmanager
+def outside_sources(settings: Settings, views: Sequence[View]) -> Iterator[Sources]:
+    """The sources of these views, ready to be asked, and ended when all is done.
+
+    Args:
+        settings: Of the run; `landmarks` names the source.
+        views: Those that are looked at in this process.
+
+    Raises:
+        SettingsError: When MediaPipe is not there or does not work, or the keypoint files are not.
+    """
+    with ExitStack() as doors:
+        if settings.landmarks in ("own", "none"):
+            yield {}
+        elif settings.landmarks == "mediapipe":
+            asked = {view.number: doors.enter_context(MediaPipe(view)) for view in views}
+            for source in asked.values():
+                source.ready()
+            yield asked
+        else:
+            yield _files(settings, views)
+
+
+def refuse_landmarks(settings: Settings, views: Sequence[View]) -> None:
+    """Say before any process starts what `outside_sources` would fail on in one of them.
+
+    Raises:
+        SettingsError: As there; that an installed MediaPipe does not work is not found out.
+    """
+    if settings.landmarks == "mediapipe":
+        refuse_where_missing()
+    elif settings.landmarks not in ("own", "none"):
+        _files(settings, views)
+
+
+def _files(settings: Settings, views: Sequence[View]) -> dict[ViewerNumber, KeypointFiles]:
+    alone = len(footage_of(settings)) == 1
+    folder = Path(settings.landmarks)
+    return {view.number: KeypointFiles(folder, view, alone) for view in views}
+
+
+def oddities(sources: Sources) -> list[str]:
+    """What went wrong with any of them, a line each."""
+    return [line for source in sources.values() for line in source.odd]

