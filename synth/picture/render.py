@@ -70,7 +70,7 @@ def render(someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int)
     scale = max(2, round(FINE_PX / rig.width))
     look = someone.look
     pattern = (float(PATTERNS.index(look.pattern)), look.pitch_m, float(MATERIAL["shirt"]))
-    scene = _Scene(body_mesh(someone), _palette(look), pattern, room_of(room_seed, rig), rig, scale)
+    scene = _Scene(body_mesh(someone), palette(look), pattern, room_of(room_seed, rig), rig, scale)
     places = _placed(scene.mesh, motion)
     gains, smeared = exposures(len(motion.phase), seed, motion.fps), blurred(motion)
     rng = np.random.default_rng([seed, 3])
@@ -96,7 +96,7 @@ def room_of(seed: int, rig: Rig) -> Room:
     return furnished(seed, rig)
 
 
-def _palette(look: Look) -> NDArray[np.float64]:
+def palette(look: Look) -> NDArray[np.float64]:
     """Colours of MATERIALS, then the shirt's second colour."""
     colours = {
         "skin": look.skin,

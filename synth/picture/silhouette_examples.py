@@ -99,8 +99,8 @@ AT_LARGE: Final = Manner(0.65, 0.8, 0.3, 20.0, 0.25, 0.4, (2.3, 5.6))
 def silhouette_examples(seed: int, manner: Manner = ORDINARY) -> Iterator[SilhouetteExample]:
     """The instants of one performance by one person before two cameras; a seed is a performance."""
     rng = np.random.default_rng([seed, 77])
-    someone = _differing(person(int(rng.integers(*PEOPLE))), rng)
-    angles = _angles(someone, manner, rng)
+    someone = differing(person(int(rng.integers(*PEOPLE))), rng)
+    angles = course(someone, manner, rng)
     leash = rng.uniform(-ROOM_M, ROOM_M, 2)
     body = posed(someone.measures, angles, leash, np.tile(leash, (len(angles), 1)))
     mesh, rig = body_mesh(someone), random_rig(rng, manner.slanted, manner.distances_m)
@@ -120,7 +120,7 @@ def silhouette_examples(seed: int, manner: Manner = ORDINARY) -> Iterator[Silhou
         since_s = 1.0 / FPS
 
 
-def _differing(someone: Person, rng: np.random.Generator) -> Person:
+def differing(someone: Person, rng: np.random.Generator) -> Person:
     """The same person with other proportions; the stature stays about the same."""
     measures = {
         name: value
@@ -135,7 +135,7 @@ def _differing(someone: Person, rng: np.random.Generator) -> Person:
     return someone._replace(measures=measures, look=look)
 
 
-def _angles(someone: Person, manner: Manner, rng: np.random.Generator) -> NDArray[np.float64]:
+def course(someone: Person, manner: Manner, rng: np.random.Generator) -> NDArray[np.float64]:
     """(n, 27) of a performance, made more various."""
     chance = rng.random()
     name = "free" if chance < manner.free else POSTURES[int(rng.integers(len(POSTURES)))]
