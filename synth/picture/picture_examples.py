@@ -9,14 +9,15 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, Vector
 from synth.motion.footing import Posed, posed
 from synth.person.mesh import Mesh, body_mesh
-from synth.person.people import PATTERNS, Person, person
+from synth.person.people import PATTERNS, Look, Person, person
 from synth.person.rings import MATERIAL
-from synth.person.skeleton import ANGLES, BONE_INDEX, JOINTS, turned
+from synth.person.skeleton import BONE_INDEX, JOINTS, turned
 from synth.person.wardrobe import dressed
+from synth.picture.example_poses import poses_deg
 from synth.picture.mask_flaws import flaw, spoilt
 from synth.picture.raster import draw, gather, shade, skin
 from synth.picture.render import palette
-from synth.picture.silhouette_examples import AT_LARGE, PEOPLE, course, differing
+from synth.picture.silhouette_examples import PEOPLE, differing
 
 SIDE_PX: Final = 96
 """Of a picture: as large as the network sees it."""
@@ -24,35 +25,6 @@ FINER: Final = 2
 """Samples across a pixel."""
 PICTURES: Final = 16
 """Of one person."""
-WILD_SHARE: Final = 0.5
-"""Of the people: how many hold poses that have nothing to do with each other."""
-FALLEN_SHARE: Final = 0.3
-"""Of the wild poses: how many lie, crawl or fall."""
-WILD_DEG: Final[dict[str, tuple[float, float]]] = {
-    "torso_pitch": (-20.0, 75.0),
-    "torso_roll": (-25.0, 25.0),
-    "torso_yaw": (-40.0, 40.0),
-    "head_pitch": (-35.0, 40.0),
-    "head_yaw": (-60.0, 60.0),
-    "head_roll": (-20.0, 20.0),
-    "sh_abd": (-10.0, 165.0),
-    "sh_flex": (-55.0, 175.0),
-    "sh_twist": (-60.0, 80.0),
-    "elbow": (0.0, 145.0),
-    "hip_abd": (-5.0, 50.0),
-    "hip_flex": (-25.0, 125.0),
-    "hip_twist": (-10.0, 35.0),
-    "knee": (0.0, 140.0),
-    "foot": (0.0, 1.0),
-    "root_pitch": (-12.0, 25.0),
-    "root_roll": (-12.0, 12.0),
-    "root_yaw": (-180.0, 180.0),
-}
-"""How far the joints of a wild pose go, by their names in ANGLES without the side."""
-CALM: Final = 1.3
-"""Wild angles gather about what is held at rest: the power of a chance that is at most 1."""
-REST_DEG: Final = {"sh_abd": 10.0, "sh_flex": 5.0, "elbow": 15.0, "hip_flex": 3.0, "knee": 5.0}
-FALLEN_DEG: Final = (50.0, 110.0)
 DISTANCE_M, RISE_DEG, ROLL_DEG = (1.6, 7.0), (-12.0, 55.0), 8.0
 """Range of the cameras, how far above the body's middle they stand, and how they are rolled."""
 ANYHOW_SHARE: Final = 0.08
@@ -85,6 +57,27 @@ class PictureExample(NamedTuple):
     """Of the person upright, at that distance."""
 
 
+class Shown(NamedTuple):
+    """A body that is drawn, and what is true of it."""
+
+    places_m: NDArray[np.float64]
+    """(v, 3) world."""
+    rest_m: NDArray[np.float64]
+    """(v, 3) at rest, where patterns are woven."""
+    faces: NDArray[np.int64]
+    """(f, 3) seen from outside anticlockwise."""
+    materials: NDArray[np.int64]
+    """(f,) indices in MATERIALS."""
+    colours: NDArray[np.float64]
+    """Of MATERIALS, then the shirt's second colour."""
+    pattern: tuple[float, float, float]
+    joints_m: NDArray[np.float64]
+    """(15, 3) JOINT_NAMES order, world."""
+    front: Vector
+    """(3,) whereto the chest points."""
+    stature_m: float
+
+
 class _View(NamedTuple):
     """One picture's camera: rows of its axes in the world, and where it stands."""
 
@@ -96,67 +89,62 @@ def picture_examples(seed: int) -> Iterator[PictureExample]:
     """The pictures of one person; a seed is a person."""
     rng = np.random.default_rng([seed, 79])
     someone = dressed(differing(person(int(rng.integers(*PEOPLE))), rng), rng)
-    mesh, body = body_mesh(someone), _poses(someone, rng)
+    mesh, angles = body_mesh(someone), poses_deg(someone, PICTURES, rng)
+    body = posed(someone.measures, angles, np.zeros(2), np.zeros((PICTURES, 2)))
     for i in range(PICTURES):
-        shown = _example(someone, mesh, body, i, rng)
-        if shown is not None:
-            yield shown
+        example = pictured(_moved(someone, mesh, body, i), rng)
+        if example is not None:
+            yield example
 
 
-def _poses(someone: Person, rng: np.random.Generator) -> Posed:
-    """PICTURES poses."""
-    if rng.random() < WILD_SHARE:
-        angles = _wild(rng)
-    else:
-        moved = course(someone, AT_LARGE, rng)
-        angles = moved[rng.integers(len(moved), size=PICTURES)]
-        angles[:, ANGLES.index("root_yaw")] += rng.uniform(-180.0, 180.0)
-    return posed(someone.measures, angles, np.zeros(2), np.zeros((PICTURES, 2)))
+def shirt_pattern(look: Look) -> tuple[float, float, float]:
+    """Kind, pitch in metres and material, as `draw` wants it."""
+    return (float(PATTERNS.index(look.pattern)), look.pitch_m, float(MATERIAL["shirt"]))
 
 
-def _wild(rng: np.random.Generator) -> NDArray[np.float64]:
-    """(PICTURES, 27) angles of poses without order."""
-    columns = []
-    for name in ANGLES:
-        low, high = WILD_DEG[name[2:] if name[1] == "_" else name]
-        rest = REST_DEG.get(name[2:], 0.5 * (low + high) if name[1] == "_" else 0.0)
-        reach = rng.uniform(low, high, PICTURES)
-        if name != "root_yaw":
-            reach = rest + (reach - rest) * rng.random(PICTURES) ** CALM
-        columns.append(reach)
-    angles = np.stack(columns, axis=1)
-    fallen = rng.random(PICTURES) < FALLEN_SHARE
-    for name in ("root_pitch", "root_roll"):
-        lying = rng.uniform(*FALLEN_DEG, PICTURES) * rng.choice([-1.0, 0.0, 1.0], PICTURES)
-        angles[fallen, ANGLES.index(name)] += lying[fallen]
-    return angles
-
-
-def _example(
-    someone: Person, mesh: Mesh, body: Posed, i: int, rng: np.random.Generator
-) -> PictureExample | None:
-    """One picture; None where the body is partly behind the camera."""
+def _moved(someone: Person, mesh: Mesh, body: Posed, i: int) -> Shown:
+    """One of our own people in a pose."""
     places = np.empty_like(mesh.vertices_m)
     skin(mesh.vertices_m, mesh.origins_m, mesh.bones, mesh.shares, body.bones[i], places)
-    view = _looking(places.mean(axis=0), rng)
-    seen = (places - view.place_m) @ view.axes.T
+    return Shown(
+        places,
+        mesh.vertices_m,
+        mesh.faces,
+        mesh.materials,
+        palette(someone.look),
+        shirt_pattern(someone.look),
+        body.joints_m[i, SEEN_AS],
+        body.bones[i, BONE_INDEX["chest"], :, 2],
+        someone.measures["stature_m"],
+    )
+
+
+def pictured(shown: Shown, rng: np.random.Generator) -> PictureExample | None:
+    """A picture of a body from anywhere; None where it is partly behind the camera.
+
+    Args:
+        shown: The body.
+        rng: Source of camera, frame, light and flaws.
+    """
+    view = _looking(shown.places_m.mean(axis=0), rng)
+    seen = (shown.places_m - view.place_m) @ view.axes.T
     if seen[:, 2].min() < 0.3:
         return None
     flat = seen[:, :2] / seen[:, 2:]
     corner, side = _framed(flat, rng)
     light = rng.normal((0.0, 1.2, 0.0), 1.0)
-    shaded = np.empty(len(places))
-    shade(places, mesh.faces, light / np.linalg.norm(light), np.empty_like(places), shaded)
-    drawn = _drawn(someone, mesh, (flat - corner) / side * SIDE_PX, seen[:, 2], shaded)
+    shaded, normals = np.empty(len(flat)), np.empty_like(shown.places_m)
+    shade(shown.places_m, shown.faces, light / np.linalg.norm(light), normals, shaded)
+    drawn = _drawn(shown, (flat - corner) / side * SIDE_PX, seen[:, 2], shaded)
     outline = spoilt((drawn[..., 3] >= 0.5).astype(np.uint8), flaw(1, rng), 0)
-    joints = (body.joints_m[i, SEEN_AS] - view.place_m) @ view.axes.T
-    front = view.axes @ body.bones[i, BONE_INDEX["chest"], :, 2]
+    joints = (shown.joints_m - view.place_m) @ view.axes.T
+    front = view.axes @ shown.front
     return PictureExample(
         np.rint(np.clip(drawn * [1.0, 1.0, 1.0, 255.0], 0, 255)).astype(np.uint8),
         outline,
         ((joints[:, :2] / joints[:, 2:] - corner) / side * SIDE_PX).astype(np.float32),
         np.array([front[0], -front[2]], np.float32),
-        float(someone.measures["stature_m"] / joints[0, 2] / side * SIDE_PX),
+        float(shown.stature_m / joints[0, 2] / side * SIDE_PX),
     )
 
 
@@ -184,23 +172,19 @@ def _framed(flat: NDArray[np.float64], rng: np.random.Generator) -> tuple[Vector
     return (low + high) / 2 - side * (0.5 + aside), side
 
 
-def _drawn(
-    someone: Person, mesh: Mesh, pixels: Vector, depths: Vector, shaded: Vector
-) -> NDArray[np.float32]:
+def _drawn(shown: Shown, pixels: Vector, depths: Vector, shaded: Vector) -> NDArray[np.float32]:
     """Colours times coverage, and coverage, (SIDE_PX, SIDE_PX, 4)."""
-    look = someone.look
-    pattern = (float(PATTERNS.index(look.pattern)), look.pitch_m, float(MATERIAL["shirt"]))
     fine = SIDE_PX * FINER
     nearest, colours = np.zeros((fine, fine)), np.zeros((fine, fine, 3), np.float32)
     draw(
         pixels * FINER,
         depths,
         shaded,
-        mesh.vertices_m,
-        mesh.faces,
-        mesh.materials,
-        palette(look),
-        pattern,
+        shown.rest_m,
+        shown.faces,
+        shown.materials,
+        shown.colours,
+        shown.pattern,
         nearest,
         colours,
     )

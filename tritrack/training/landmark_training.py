@@ -18,8 +18,11 @@ from tritrack.training import torch_landmarks
 from tritrack.training.picture_store import Backdrops, Part, PictureStore, draw
 from tritrack.training.training import TrainingError
 
-PEOPLE, PART = 12_000, 500
-"""Who is learnt from, sixteen pictures each; how many of them a file holds: 400 MB."""
+PEOPLE, ANNY_PEOPLE, PART = 12_000, 4_000, 500
+"""Who is learnt from, sixteen pictures each: our own people, and bodies of the Anny model; how many
+of them a file holds: 300 MB."""
+ANNY_TIMES: Final = 2
+"""How much more often than one of our own a person of that model is shown."""
 BACKDROPS: Final = 8_000
 HELD_BACK: Final = 100
 """People who are drawn to tell how good the network is, and not learnt from."""
@@ -75,14 +78,18 @@ def train_landmarks(out: Path, seed: int, console: Console) -> dict[str, Any]:
 def _drawn(folder: Path, seed: int, console: Console) -> list[Path]:
     """The folders of all people, those who are held back last."""
     first = seed * 2 * PEOPLE
+    kinds = (("own", PEOPLE, False), ("anny", ANNY_PEOPLE, True))
     parts = [
-        Part(folder / f"people{at}", first + at, min(PART, PEOPLE - at))
-        for at in range(0, PEOPLE, PART)
+        Part(folder / f"{name}{at}", first + at, min(PART, people - at), anny)
+        for name, people, anny in kinds
+        for at in range(0, people, PART)
     ]
     parts.append(Part(folder / "held_back", first + PEOPLE, HELD_BACK))
     with multiprocessing.get_context("spawn").Pool() as pool, bar(console) as progress:
         drawn = pool.imap(draw, parts)
-        return list(progress.track(drawn, total=len(parts), description="drawing"))
+        folders = list(progress.track(drawn, total=len(parts), description="drawing"))
+    own = -(-PEOPLE // PART)
+    return [*folders[:own], *folders[own:-1] * ANNY_TIMES, folders[-1]]
 
 
 class Wanted(NamedTuple):

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.lib.format import open_memmap
 from numpy.typing import NDArray
 
+from synth.anny_people.anny_examples import anny_examples
 from synth.picture.backdrops import Backdrop, backdrop
 from synth.picture.picture_examples import PICTURES, SIDE_PX, PictureExample, picture_examples
 
@@ -20,6 +21,8 @@ class Part(NamedTuple):
     folder: Path
     first: int
     people: int
+    anny: bool = False
+    """Of the Anny body model instead of our own."""
 
 
 class PictureStore:
@@ -70,8 +73,12 @@ class Backdrops(NamedTuple):
 
 
 def draw(part: Part) -> Path:
-    """Draw a part where it is not drawn yet; its folder."""
-    folder, first, people = part
+    """Draw a part where it is not drawn yet; its folder.
+
+    Raises:
+        NoAnny: When people of that model are wanted, and it is not installed.
+    """
+    folder, first, people, anny = part
     if (folder / DRAWN).exists():
         return folder
     folder.mkdir(parents=True, exist_ok=True)
@@ -80,7 +87,7 @@ def draw(part: Part) -> Path:
     outlines: list[NDArray[np.uint8]] = []
     labels: list[list[float]] = []
     for seed in range(first, first + people):
-        for shown in picture_examples(seed):
+        for shown in (anny_examples if anny else picture_examples)(seed):
             bodies[len(labels)] = shown.body
             outlines.append(np.packbits(shown.outline, axis=1))
             labels.append([*shown.joints_px.ravel(), *shown.facing, shown.stature_px])
