@@ -20,12 +20,15 @@ HEADER: Final = struct.Struct("<4scIdI")
 """What goes before every answer: magic, kind, index, grabbed_s, bytes that follow."""
 MAGIC: Final = b"ttf1"
 INFO: Final = b"i"
+TIMES: Final = b"t"
 FRAME: Final = b"f"
 END: Final = b"e"
 REFUSED: Final = b"r"
 
 MAX_TEXT_BYTES: Final = 1 << 16
 """No answer but a picture is longer."""
+TIMES_AT_ONCE: Final = 4096
+"""So many times of packets are in one answer: a long film's take a while to read."""
 
 STALL_S: Final = 10.0
 """A child that gives nothing for so long is stuck: opening a slow camera takes 3 s."""
@@ -64,6 +67,8 @@ class VideoInfo(msgspec.Struct, frozen=True):
     """0 where it names none."""
     frames: int
     """0 where it names none, as a camera."""
+    shown_s: tuple[float, ...] = ()
+    """When a file's pictures are to be shown, by its packets: in their order, not in time's."""
 
 
 class Decoded(msgspec.Struct, frozen=True):
@@ -117,8 +122,11 @@ class Decoder:
             Undecodable: When it has none.
             DecoderDied: When the child broke on it.
         """
-        info, *_ = self._answers(source, None, 1)
-        return msgspec.json.decode(info.payload.tobytes(), type=VideoInfo)
+        info, *after = self._answers(source, None, 1)
+        told = msgspec.json.decode(info.payload.tobytes(), type=VideoInfo)
+        shown = [np.frombuffer(one.payload, "<f8") for one in after if one.kind == TIMES]
+        shown_s = tuple(np.concatenate(shown).tolist()) if shown else ()
+        return msgspec.structs.replace(told, shown_s=shown_s)
 
     def frames(
         self, source: Source, size: tuple[int, int], every: int = 1
@@ -151,7 +159,7 @@ class Decoder:
     def _answers(
         self, source: Source, size: tuple[int, int] | None, every: int
     ) -> Generator[_Answer, None, None]:
-        """INFO, then FRAMEs if a size is asked for, then END."""
+        """INFO, then FRAMEs if a size is asked for, else TIMES; then END."""
         if self._child is None:
             self._child = Child("common.video.decoder", self._stall_s)
         frames, whole = 0, False
