@@ -6,7 +6,7 @@ from itertools import islice
 import numpy as np
 
 from common.video.decoding import Decoded, Source
-from common.video.frame_cache import Reel
+from common.video.frame_cache import Reel, Told
 
 SIZE = (4, 3)
 BYTES = 3 * SIZE[0] * SIZE[1]
@@ -77,3 +77,11 @@ def test_another_source_or_size_is_decoded() -> None:
     indices(reel, "a.avi")
     assert next(iter(reel.frames("a.avi", (8, 6)))).picture.shape == (6, 8, 3)
     assert decoder.readings == 3
+
+
+def test_who_waits_is_told_which_share_of_the_due_frames_has_come() -> None:
+    heard: list[float] = []
+    told = Told(Counting(), 4, heard.append)
+    assert [got.index for got in told.frames("a.avi", SIZE)] == list(range(10))
+    assert heard == [0.25, 0.5, 0.75, *[1.0] * 7]
+    assert told.came == 10

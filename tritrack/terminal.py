@@ -45,6 +45,25 @@ def by_share(
         progress.update(task, completed=before + 1)
 
 
+def by_pass(
+    progress: Progress, things: Sequence[Thing], passes: Sequence[str]
+) -> Iterator[tuple[Thing, Callable[[str], Tell]]]:
+    """Things one after the other, each gone through several times.
+
+    With each comes a function that begins a pass, by its name, and gives another one that is told
+    which share of it is done. A pass that is left out counts as done.
+    """
+    task = progress.add_task("", total=len(things) * len(passes))
+    for before, thing in enumerate(things):
+
+        def begun(name: str, before: int = before) -> Tell:
+            done = before * len(passes) + passes.index(name)
+            return lambda share: progress.update(task, completed=done + share, description=name)
+
+        yield thing, begun
+        progress.update(task, completed=(before + 1) * len(passes))
+
+
 def json_text(value: Any) -> str:
     """Strict JSON: a number that is not finite, which JSON cannot say, becomes null."""
     return json.dumps(_finite(value), indent=1, allow_nan=False)

@@ -100,7 +100,7 @@ def _meta(folder: Path) -> Meta:
 def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> View:
     info = timed(_probed(named.source, decoder))
     if named.settings.background:
-        _probed(named.settings.background, decoder)
+        _refuse_another_scene(named, _probed(named.settings.background, decoder), info)
     of_a_file = isinstance(named.source, str)
     told_hz = settings.fps or meta.fps
     fps = (told_hz or info.fps) if of_a_file else (info.fps or CAMERA_HZ)
@@ -137,6 +137,16 @@ def _probed(source: Source, decoder: Decoder) -> VideoInfo:
     if isinstance(source, str):
         _refuse_a_lost_head(Path(source))
     return info
+
+
+def _refuse_another_scene(named: Footage, plate: VideoInfo, info: VideoInfo) -> None:
+    """A picture of another size was cropped, or is of another camera."""
+    if (plate.width, plate.height) != (info.width, info.height):
+        raise ClipError(
+            f"the background {named.settings.background} has {plate.width}x{plate.height} pixels, "
+            f"{named.source} {info.width}x{info.height}: take an empty frame of the same camera, "
+            "uncropped"
+        )
 
 
 def _refuse_a_lost_head(path: Path) -> None:

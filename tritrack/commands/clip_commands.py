@@ -78,6 +78,9 @@ def single(
         Literal["default", "thesis"], typer.Option(help="The best known, or as printed.")
     ] = "default",
     size: Annotated[str, typer.Option(help="Bound of the working picture.")] = "320x240",
+    background: Annotated[
+        Path | None, typer.Option(help="A picture of the scene without anybody, if there is one.")
+    ] = None,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Animate a body from any video of one camera: no calibration, no empty room is needed.
@@ -85,10 +88,12 @@ def single(
     Example: tritrack single dance.mp4 --out runs
     """
     from tritrack.offline.batch import overridden
-    from tritrack.single.single import single_all
+    from tritrack.single.single import Given, line_of, single_all
 
-    facts = single_all(videos, out, notes, overridden(Settings(), mode, size), console)
-    tell(facts, json_wanted, f"{len(facts['clips'])} videos followed, written to {out}")
+    given = Given(notes, background)
+    facts = single_all(videos, out, given, overridden(Settings(), mode, size), console)
+    lines = [line_of(name, each) for name, each in facts["clips"].items()]
+    tell(facts, json_wanted, "\n".join(lines))
 
 
 def export(

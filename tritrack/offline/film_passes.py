@@ -81,7 +81,9 @@ def silhouettes_of(
     return reports
 
 
-def bodies_of(reports: Sequence[Report], film: FilmFacts) -> list[Body]:
+def bodies_of(
+    reports: Sequence[Report], film: FilmFacts, tell: Tell = lambda _: None
+) -> list[Body]:
     """The second pass: the viewer tells more of each silhouette, the integrator lifts it."""
     if not reports:
         return []
@@ -96,6 +98,7 @@ def bodies_of(reports: Sequence[Report], film: FilmFacts) -> list[Body]:
         pair = Pair(full, None) if film.number == 1 else Pair(None, full)
         state, body, guide = merge.step(state, pair, annotations)
         bodies.append(body)
+        tell(len(bodies) / len(reports))
     return bodies
 
 
