@@ -14,7 +14,7 @@ from common.config import Settings
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import save_notes
 from tritrack.offline.batch import track_all
-from tritrack.single.single import Given, line_of, name_of, single_all
+from tritrack.single.single import UNUSABLE, Given, line_of, name_of, single_all
 from tritrack.store.clip_paths import ClipsFailed
 
 QUIET = Console(quiet=True)
@@ -128,10 +128,30 @@ def test_the_last_line_tells_what_was_followed_how_well_and_what_to_open(
 
 
 def refusal(path: Path, out: Path, capsys: pytest.CaptureFixture[str]) -> str:
-    with pytest.raises(ClipsFailed):
+    """Of the only video, in one line; nothing is written."""
+    with pytest.raises(UNUSABLE) as caught:
         single_all([path], out, Given(), SMALL, Console(stderr=True))
     assert not (out / name_of(path)).exists()
-    return " ".join(capsys.readouterr().err.split())
+    assert capsys.readouterr().err == ""
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def test_of_several_videos_the_good_ones_are_followed_and_said(
+    video: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Also under a name with spaces; one name is given to one run."""
+    (tmp_path / "my films").mkdir()
+    first, twin = tmp_path / "my films" / "a wave.avi", tmp_path / "a wave.avi"
+    first.write_bytes(video.read_bytes())
+    twin.write_bytes(video.read_bytes())
+    videos = [tmp_path / "missing.avi", first, twin]
+    with pytest.raises(ClipsFailed, match="2 of 3 videos could not be followed"):
+        single_all(videos, tmp_path / "my runs", Given(), SMALL, Console(stderr=True, width=999))
+    said = capsys.readouterr().err.splitlines()
+    assert [line.split(":")[0] for line in said] == ["error", "a wave", "error"]
+    assert "a wave.avi would be written to" in said[2]
+    assert (tmp_path / "my runs" / "a wave" / "overlay.mp4").is_file()
 
 
 def test_a_camera_that_moves_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -13,6 +13,11 @@ Tell = Callable[[float], object]
 """Hears how much of some work is done, in [0, 1]."""
 
 
+def say(console: Console, text: str) -> None:
+    """What was done."""
+    _line(console, text, "")
+
+
 def warn(console: Console, text: str) -> None:
     """What is odd but does not stop the work."""
     _line(console, f"warning: {text}", "yellow")

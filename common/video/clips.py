@@ -104,6 +104,8 @@ def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> V
     of_a_file = isinstance(named.source, str)
     told_hz = settings.fps or meta.fps
     fps = (told_hz or info.fps) if of_a_file else (info.fps or CAMERA_HZ)
+    if fps <= 0 and info.frames == 1:
+        raise ClipError(f"{named.source} is one picture: name a video")
     if fps <= 0:
         raise ClipError(f"{named.source} has no frame rate: set fps in a meta.json beside it")
     size = (info.width, info.height)

@@ -188,7 +188,10 @@ def cure(source: Source) -> str:
     """What to do about a source that cannot be read."""
     if isinstance(source, int):
         return "see that it is plugged in and that no other program holds it"
-    return "convert it, for example to MJPEG: ffmpeg -i IN -c:v mjpeg -q:v 2 OUT.avi"
+    return (
+        "convert it, for example to MJPEG: ffmpeg -i IN -c:v mjpeg -q:v 2 OUT.avi, or copy it "
+        "again where it was cut off"
+    )
 
 
 def _next_answer(child: Child, size: tuple[int, int] | None) -> _Answer:

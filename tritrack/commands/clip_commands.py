@@ -10,6 +10,7 @@ from common.config import Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import Out, Size, writable_file
 from tritrack.exporting import OWN_NAMES, Format, export_run
+from tritrack.terminal import json_text
 
 VIEWERS: Final[dict[str, tuple[ViewerNumber, ...]]] = {"12": (1, 2), "1": (1,), "2": (2,)}
 
@@ -88,12 +89,12 @@ def single(
     Example: tritrack single dance.mp4 --out runs
     """
     from tritrack.offline.batch import overridden
-    from tritrack.single.single import Given, line_of, single_all
+    from tritrack.single.single import Given, single_all
 
     given = Given(notes, background)
     facts = single_all(videos, out, given, overridden(Settings(), mode, size), console)
-    lines = [line_of(name, each) for name, each in facts["clips"].items()]
-    tell(facts, json_wanted, "\n".join(lines))
+    if json_wanted:
+        print(json_text(facts))
 
 
 def export(

@@ -24,11 +24,16 @@ from tritrack.single.mask_file import MaskFileError, MaskSequence, is_mask_file,
 from tritrack.single.overlay_film import write_overlay
 from tritrack.store.clip_paths import ClipsFailed
 from tritrack.store.runs import poses, write_run
-from tritrack.terminal import Tell, bar, by_pass, complain, warn
+from tritrack.terminal import Tell, bar, by_pass, complain, say, warn
 from viewer.background.background_source import LOOKED_AT, background_of_film
 
 PASSES: Final = ("learning the room", "cutting out", "posing", "drawing")
 """What is done with all frames of a film, one after the other."""
+UNUSABLE: Final = (
+    *(SettingsError, ClipError, DecoderDied, Undecodable),
+    *(MaskFileError, NotesError),
+)
+"""What is wrong with one video, and lets the others be followed."""
 
 
 class Given(NamedTuple):
@@ -56,9 +61,9 @@ def single_all(
     settings: Settings,
     console: Console,
 ) -> dict[str, Any]:
-    """Follow the person in video after video, and write a run folder for each.
+    """Follow the person in video after video, write a run folder for each, and say what it has.
 
-    A video that cannot be used is said and left out; the others are followed.
+    Of several, one that cannot be used is said and left out; the others are followed.
 
     Args:
         videos: Videos of one camera, clip folders, settings files, or masks (`mask_file`).
@@ -68,24 +73,24 @@ def single_all(
         console: For progress, warnings and errors.
 
     Raises:
-        ClipsFailed: At the end, when any video could not be used, or shows nobody: what it shows
-            is written all the same.
+        SettingsError, ClipError, DecoderDied, Undecodable, MaskFileError, NotesError: When the only
+            video cannot be used.
+        ClipsFailed: At the end, when any of several could not be used, or one shows nobody: what it
+            shows is written all the same.
         RunError, FilmError: When the results cannot be written.
     """
     done: dict[str, Any] = {}
     with Decoder() as decoder, bar(console) as progress:
         for path, begun in by_pass(progress, videos, PASSES):
             name = name_of(path)
-            if name in done:
-                complain(console, f"{path} would be written to {out / name} too: rename it")
-                continue
             try:
+                _refuse_the_same(path, out / name, name in done)
                 job = job_of(path, given, settings)
                 done[name] = follow(job, out / name, decoder, console, begun)
-            except (
-                *(SettingsError, ClipError, DecoderDied, Undecodable),
-                *(MaskFileError, NotesError),
-            ) as error:
+                say(console, line_of(name, done[name]))
+            except UNUSABLE as error:
+                if len(videos) == 1:
+                    raise
                 complain(console, str(error))
     if len(done) < len(videos):
         raise ClipsFailed(
@@ -93,6 +98,11 @@ def single_all(
         )
     _refuse_the_empty(done)
     return {"clips": done}
+
+
+def _refuse_the_same(path: Path, folder: Path, there: bool) -> None:
+    if there:
+        raise ClipError(f"{path} would be written to {folder} too: rename it")
 
 
 def _refuse_the_empty(done: dict[str, Any]) -> None:
