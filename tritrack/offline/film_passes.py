@@ -26,6 +26,7 @@ from integrator.opening_posture import Opening
 from integrator.pairing import Pair
 from integrator.rig.assumed_rig import assumed_camera
 from integrator.single.sight import Annotations
+from tritrack.offline.film_smoothing import calmed
 from tritrack.offline.frame_pairs import share_of
 from tritrack.terminal import Tell
 from viewer import track
@@ -99,6 +100,8 @@ def bodies_of(
         state, body, guide = merge.step(state, pair, annotations)
         bodies.append(body)
         tell(len(bodies) / len(reports))
+    if film.method.film_smoothing and state.rig is not None:
+        return calmed(bodies, state.rig, film.notes)
     return bodies
 
 
