@@ -1,6 +1,7 @@
 """The overlay: picture, silhouette and stick, and beside them the lifted body from the side."""
 
 import math
+from functools import lru_cache
 from typing import Final, NamedTuple
 
 import cv2
@@ -11,7 +12,9 @@ from animator.scene import LEFT, RIGHT, TRUNK, UNSURE, Colour
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
 from common.video.decoding import Image
 
-LEAST_HEIGHT_PX: Final = 480
+SHOWN: Final = (640, 480)
+"""Larger pictures are not needed to see who is followed and how."""
+LEAST_HEIGHT_PX: Final = 360
 """Smaller pictures are enlarged by a whole number: a stick would hide an arm at 160x120."""
 SIDE_SHARE: Final = 0.7
 """Width of the view from the side over its height: arms reach 0.8 m to the front and back."""
@@ -73,8 +76,10 @@ def overlay(
         caption: Beside the picture.
     """
     times = math.ceil(LEAST_HEIGHT_PX / picture.shape[0])
-    size = (picture.shape[1] * times, picture.shape[0] * times)
-    left = cv2.resize(picture, size, interpolation=cv2.INTER_CUBIC)
+    # encoders take whole pairs of rows and columns
+    size = (picture.shape[1] * times // 2 * 2, picture.shape[0] * times // 2 * 2)
+    left = cv2.resize(picture, None, fx=times, fy=times, interpolation=cv2.INTER_LINEAR)
+    left = np.ascontiguousarray(left[: size[1], : size[0]])
     if silhouette is not None:
         _tint(left, silhouette)
     draw_stick(left, joints_px * times, confidence)
@@ -99,19 +104,15 @@ def draw_stick(image: Image, joints_px: Vector, confidence: Vector) -> None:
 
 def side_view(joints_m: Vector, confidence: Vector, height_px: int, caption: str = "") -> Image:
     """The body seen from the right of the camera, which stands at the left of this view."""
-    width_px = 2 * round(SIDE_SHARE * height_px / 2)
-    view: Image = np.full((height_px, width_px, 3), PAPER, np.uint8)
+    view = _stage(height_px).copy()
+    cv2.putText(view, caption, (8, 36), cv2.FONT_HERSHEY_SIMPLEX, 0.45, INK, 1, cv2.LINE_AA)
+    height_px, width_px = view.shape[:2]
     px = height_px / TALL_M
-    floor_px = round(height_px - BELOW_M * px)
-    cv2.line(view, (0, floor_px), (width_px, floor_px), (205, 200, 195), 1, cv2.LINE_AA)
-    _camera(view, floor_px)
-    for i, line in enumerate(("from the side", caption)):
-        where = (8, 18 + 18 * i)
-        cv2.putText(view, line, where, cv2.FONT_HERSHEY_SIMPLEX, 0.45, INK, 1, cv2.LINE_AA)
     if np.isfinite(joints_m).all():
         across_m = joints_m[:, 2] - joints_m[_AT["pelvis"], 2]
         flat = np.stack(
-            [width_px / 2 - px * across_m, floor_px - px * _above_floor_m(joints_m)], axis=1
+            [width_px / 2 - px * across_m, _floor_px(height_px) - px * _above_floor_m(joints_m)],
+            axis=1,
         )
         tall_px = px * max(0.5, float(np.ptp(joints_m[:, 1])))
         nearest_last = sorted(STROKES, key=lambda s: joints_m[[s.near, s.far], 0].sum())
@@ -121,6 +122,23 @@ def side_view(joints_m: Vector, confidence: Vector, height_px: int, caption: str
             cv2.line(view, near, far, PAPER, thick + 3, cv2.LINE_AA)
             cv2.line(view, near, far, _paint(stroke, confidence), thick, cv2.LINE_AA)
     return view
+
+
+@lru_cache(maxsize=4)
+def _stage(height_px: int) -> Image:
+    """The view from the side without anybody."""
+    width_px = 2 * round(SIDE_SHARE * height_px / 2)
+    view: Image = np.full((height_px, width_px, 3), PAPER, np.uint8)
+    floor_px = _floor_px(height_px)
+    cv2.line(view, (0, floor_px), (width_px, floor_px), (205, 200, 195), 1, cv2.LINE_AA)
+    _camera(view, floor_px)
+    said, font = "from the side", cv2.FONT_HERSHEY_SIMPLEX
+    cv2.putText(view, said, (8, 18), font, 0.45, INK, 1, cv2.LINE_AA)
+    return view
+
+
+def _floor_px(height_px: int) -> int:
+    return round(height_px * (1 - BELOW_M / TALL_M))
 
 
 def _above_floor_m(joints_m: Vector) -> Vector:
@@ -142,9 +160,12 @@ def _camera(view: Image, floor_px: int) -> None:
 def _tint(image: Image, silhouette: NDArray[np.bool_]) -> None:
     """Colour the silhouette and draw its contour, in place."""
     size = (image.shape[1], image.shape[0])
-    mask = cv2.resize(silhouette.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST)
-    inside = mask.astype(np.bool_)
-    image[inside] = ((1 - TINT) * image[inside] + TINT * np.array(SEEN)).astype(np.uint8)
+    mask = cv2.resize(silhouette.view(np.uint8), size, interpolation=cv2.INTER_NEAREST)
+    x, y, width, height = cv2.boundingRect(mask)
+    part = image[y : y + height, x : x + width]
+    if part.size:
+        tinted = cv2.addWeighted(part, 1 - TINT, np.full_like(part, SEEN), TINT, 0)
+        cv2.copyTo(tinted, mask[y : y + height, x : x + width], part)
     contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     cv2.drawContours(image, contours, -1, SEEN, 1, cv2.LINE_AA)
 

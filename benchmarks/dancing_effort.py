@@ -33,7 +33,7 @@ from synth.person.skeleton import JOINTS
 from synth.picture.exposure import default_rig
 from synth.write import Filming, write_clip
 from tritrack.single.ledger import PRINTED, Count, inputs, stretches
-from tritrack.single.single import single_all
+from tritrack.single.single import Given, single_all
 
 NEAR: Final = 0.06
 """Of the body's height in the picture."""
@@ -89,7 +89,7 @@ def measured(performer: int) -> dict[str, Any]:
         folder = Path(name)
         write_clip(folder / "dance", someone, motion, Filming(rig, performer, performer), 0)
         video = folder / "dance" / "cam1.avi"
-        facts = single_all([video], folder, None, Settings(size="320x240"), Console(quiet=True))
+        facts = single_all([video], folder, Given(), Settings(size="320x240"), Console(quiet=True))
         with np.load(folder / "cam1" / "poses.npz") as poses:
             take = take_of(dict(poses))
     tall_px = float(np.median(np.ptp(truth.joints_px[..., 1], axis=1)))

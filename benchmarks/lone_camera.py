@@ -21,7 +21,6 @@ import cv2
 import msgspec
 import numpy as np
 from camera_loss import signs_of
-from plausible import plausible
 from rich.console import Console
 
 from common.config import load
@@ -58,7 +57,6 @@ def row_of(path: Path, camera: Camera, found: dict[str, Any], width: int) -> dic
         "root mm": told["root_mm"]["mean"],
         "signs": signs.mean() if len(signs) else np.nan,
         "limb-frames": len(signs),
-        "plausible": plausible(found)[at].mean(),
     }
 
 

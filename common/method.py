@@ -63,6 +63,9 @@ class Method(msgspec.Struct, frozen=True, kw_only=True):
     """One view's limbs are held within the limits of their joints in space (P30, P35)."""
     smoothing: bool
     """Published angles are smoothed by a Kalman filter."""
+    film_smoothing: bool
+    """Joints of a film that is followed in passes are smoothed by what comes after as well, and its
+    limbs keep their lengths."""
 
     density_recognizer: bool
     """Postures are named by densities of angles and of their course, not by 64 symbols (P57)."""

@@ -37,6 +37,17 @@ def write_film(video: Path, film: Sequence[np.ndarray], fps: float = 15.0) -> No
     writer.release()
 
 
+def write_uneven(video: Path, film: Sequence[np.ndarray], ticks: Sequence[int], hz: int) -> None:
+    """A film in MP4, MOV or MKV whose frames are to be shown at whole numbers of ticks."""
+    height, width = film[0].shape[:2]
+    code, packets = cv2.VideoWriter.fourcc(*"MJPG"), [cv2.VIDEOWRITER_PROP_RAW_VIDEO, 1]
+    writer = cv2.VideoWriter(str(video), cv2.CAP_FFMPEG, code, hz, (width, height), packets)
+    for frame, tick in zip(film, ticks, strict=True):
+        writer.set(cv2.VIDEOWRITER_PROP_PTS, int(tick))
+        writer.write(cv2.imencode(".jpg", frame)[1])
+    writer.release()
+
+
 def refilmed(folder: Path, change: Callable[[Film], Film], cameras: Sequence[int] = (1, 2)) -> None:
     for number in cameras:
         video = folder / f"cam{number}.avi"

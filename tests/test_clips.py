@@ -206,6 +206,23 @@ def test_a_missing_folder_file_or_source_is_named(tmp_path: Path, decoder: Decod
     assert "plate.png: check the path" in refusal(Settings(camera_1=plate), decoder)
 
 
+def test_a_picture_is_no_film(tmp_path: Path, decoder: Decoder) -> None:
+    cv2.imwrite(str(tmp_path / "room.png"), np.zeros((SIZE[1], SIZE[0], 3), np.uint8))
+    camera = CameraSettings(source=str(tmp_path / "room.png"))
+    assert "room.png is one picture: name a video" in refusal(Settings(camera_1=camera), decoder)
+
+
+def test_a_background_of_another_size_is_refused(tmp_path: Path, decoder: Decoder) -> None:
+    source, plate = film(tmp_path / "cam1.avi"), tmp_path / "empty.png"
+    camera = CameraSettings(source=source, background=str(plate))
+    cv2.imwrite(str(plate), np.zeros((SIZE[1], SIZE[0], 3), np.uint8))
+    assert open_clip(Settings(camera_1=camera), decoder).views[0].background == str(plate)
+    cv2.imwrite(str(plate), np.zeros((180, 320, 3), np.uint8))
+    said = refusal(Settings(camera_1=camera), decoder)
+    assert "empty.png has 320x180 pixels" in said
+    assert "cam1.avi 320x240: take an empty frame of the same camera" in said
+
+
 @pytest.mark.parametrize(
     ("content", "word"), [(b"", "is empty"), (b"text\n" * 50, "no picture")], ids=["empty", "text"]
 )

@@ -16,7 +16,7 @@ places = arrays(np.float64, (17, 2), elements=st.floats(-100.0, 100.0))
 
 
 def of(joints: Floats, name: str) -> Floats:
-    return joints[JOINT_NAMES.index(name)]
+    return np.asarray(joints[JOINT_NAMES.index(name)])
 
 
 def standing(width: float = 1.0, ahead: float = 0.0) -> Floats:

@@ -2,59 +2,71 @@
 
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from animator.film import FilmError, filming
+from animator.film import Film, FilmError, write_film
+from animator.film_codec import CODECS, Codec, works
 from common.video.decoding import Decoder
 
+SIZE = (122, 90)
 PICTURES = [np.full((90, 122, 3), 20 * i, np.uint8) for i in range(6)]
+CAPABLE = [codec for codec in CODECS if works(codec, SIZE)]
+"""Of this machine, the best first."""
 
 
-def filmed(path: Path, pictures: list[np.ndarray]) -> None:
-    with filming(path, 15.0) as film:
-        for picture in pictures:
-            film.write(picture)
-
-
-def test_every_picture_can_be_read_again(tmp_path: Path) -> None:
-    path = tmp_path / "made" / "overlay.avi"
-    filmed(path, PICTURES)
+def read(film: Film) -> list[np.ndarray]:
     with Decoder() as decoder:
-        assert decoder.probe(str(path)).fps == 15.0
-        read = [decoded.picture for decoded in decoder.frames(str(path), (122, 90))]
-    assert [round(float(picture.mean()) / 20) for picture in read] == [0, 1, 2, 3, 4, 5]
+        assert decoder.probe(str(film.path)).fps == 15.0
+        return [decoded.picture for decoded in decoder.frames(str(film.path), SIZE)]
+
+
+@pytest.mark.parametrize("codec", CAPABLE, ids=[codec.name for codec in CAPABLE])
+def test_every_picture_can_be_read_again(
+    tmp_path: Path, codec: Codec, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("animator.film.best_codec", lambda size: codec)
+    film = write_film(tmp_path / "made" / "an overlay", PICTURES, 15.0)
+    assert film.path == tmp_path / "made" / f"an overlay{codec.suffix}"
+    assert [round(float(picture.mean()) / 20) for picture in read(film)] == [0, 1, 2, 3, 4, 5]
+
+
+def test_a_film_of_another_codec_does_not_outlive_its_successor(tmp_path: Path) -> None:
+    """Who opens the run's folder would see the film of an earlier run."""
+    for codec in CODECS:
+        (tmp_path / f"overlay{codec.suffix}").write_bytes(b"older")
+    film = write_film(tmp_path / "overlay", PICTURES, 15.0)
+    assert list(tmp_path.iterdir()) == [film.path]
 
 
 def test_a_film_that_broke_leaves_what_stood_there(tmp_path: Path) -> None:
-    path = tmp_path / "overlay.avi"
+    path = tmp_path / "overlay.mp4"
     path.write_bytes(b"older")
-    with pytest.raises(FilmError, match=r"overlay\.avi.*does not follow"):
-        filmed(path, [PICTURES[0], PICTURES[0][:50]])
+    with pytest.raises(FilmError, match=r"overlay.*does not follow"):
+        write_film(tmp_path / "overlay", [PICTURES[0], PICTURES[0][:50]], 15.0)
     assert path.read_bytes() == b"older"
-    assert [each.name for each in tmp_path.iterdir()] == ["overlay.avi"]
+    assert [each.name for each in tmp_path.iterdir()] == ["overlay.mp4"]
 
 
 def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(FilmError, match=r"file/overlay\.avi.*free"):
-        filmed(tmp_path / "file" / "overlay.avi", PICTURES)
+    with pytest.raises(FilmError, match=r"file/overlay.*free"):
+        write_film(tmp_path / "file" / "overlay", PICTURES, 15.0)
 
 
 FULL_DISK = """
 import resource, signal, sys
 import numpy as np
 from pathlib import Path
-from animator.film import FilmError, filming
+from animator.film import FilmError, write_film
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
+resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
 noise = np.random.default_rng(0).integers(0, 255, (240, 320, 3), np.uint8)
 try:
-    with filming(Path(sys.argv[1]), 15.0) as film:
-        for _ in range(20):
-            film.write(noise)
+    write_film(Path(sys.argv[1]), [noise] * 20, 15.0)
 except FilmError as error:
     print(error)
 """
@@ -62,22 +74,26 @@ except FilmError as error:
 
 def test_a_disk_that_is_full_is_told(tmp_path: Path) -> None:
     """OpenCV's writer says nothing by itself; a limit on the file's size stands for the disk."""
-    path = tmp_path / "overlay.avi"
+    path = tmp_path / "overlay"
     said = subprocess.run(
         [sys.executable, "-c", FULL_DISK, str(path)], capture_output=True, text=True, check=True
     ).stdout
-    assert "overlay.avi" in said
+    assert "overlay" in said
     assert "free some space" in said
     assert not list(tmp_path.iterdir())
 
 
 def test_a_film_without_a_picture_is_none(tmp_path: Path) -> None:
     with pytest.raises(FilmError, match="no picture"):
-        filmed(tmp_path / "none.avi", [])
+        write_film(tmp_path / "none", [], 15.0)
     assert not list(tmp_path.iterdir())
 
 
 def test_what_goes_wrong_while_filming_is_told_as_it_is(tmp_path: Path) -> None:
-    with pytest.raises(ZeroDivisionError), filming(tmp_path / "film.avi", 15.0):
+    def broken() -> Iterator[np.ndarray]:
+        yield PICTURES[0]
         raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        write_film(tmp_path / "film", broken(), 15.0)
     assert not list(tmp_path.iterdir())

@@ -6,7 +6,7 @@ from itertools import islice
 import numpy as np
 
 from common.video.decoding import Decoded, Size, Source
-from common.video.frame_cache import Reel
+from common.video.frame_cache import Reel, Told
 
 SIZE = (4, 3)
 BYTES = 3 * SIZE[0] * SIZE[1]
@@ -89,3 +89,11 @@ def test_larger_pictures_are_decoded_for_whoever_asks_and_are_not_kept() -> None
     assert all(got.large is not None for got in asked)
     assert all(got.large is None for got in reel.frames("a.avi", SIZE))
     assert decoder.readings == 2
+
+
+def test_who_waits_is_told_which_share_of_the_due_frames_has_come() -> None:
+    heard: list[float] = []
+    told = Told(Counting(), 4, heard.append)
+    assert [got.index for got in told.frames("a.avi", SIZE)] == list(range(10))
+    assert heard == [0.25, 0.5, 0.75, *[1.0] * 7]
+    assert told.came == 10

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from synth.picture.picture_examples import PictureExample, picture_examples
 from tritrack.training.picture_store import Part, PictureStore, draw
 
 torch = pytest.importorskip("torch", reason="the extra `train` is not installed")
@@ -31,13 +32,11 @@ def wanted(training: Any, people: Path, batch: int) -> Any:
 
 
 def test_what_was_drawn_is_read_as_it_was_drawn(people: Path) -> None:
-    from synth.picture.picture_examples import picture_examples
-
     store, drawn = PictureStore([people]), [*picture_examples(7), *picture_examples(8)]
     assert len(store) == len(drawn)
     for at in (0, 5, len(drawn) - 1):
-        for held, made in zip(store[at], drawn[at], strict=True):
-            assert np.allclose(held, made)
+        for name in PictureExample._fields:
+            assert np.allclose(getattr(store[at], name), getattr(drawn[at], name))
 
 
 def test_the_same_batch_is_made_up_of_the_same_pictures(training: Any, people: Path) -> None:

@@ -35,8 +35,8 @@ def in_picture(joints_m: np.ndarray) -> np.ndarray:
 
 def test_small_pictures_are_enlarged_and_the_body_stands_beside_them() -> None:
     image = overlay(GREY, None, NOBODY_PX, NOBODY_M, SURE)
-    assert image.shape == (LEAST_HEIGHT_PX, 640 + 336, 3)
-    assert (image[:, :640] == 90).all()
+    assert image.shape == (LEAST_HEIGHT_PX, 480 + 252, 3)
+    assert (image[:, :480] == 90).all()
 
 
 @pytest.mark.parametrize("size", [(144, 180), (480, 720), (1080, 1920)])
@@ -69,8 +69,15 @@ def test_the_silhouette_is_tinted_whatever_its_size() -> None:
     mask = np.zeros((60, 80), bool)
     mask[20:40, 30:50] = True
     image = overlay(GREY, mask, NOBODY_PX, NOBODY_M, SURE)
-    assert (image[240, 320] != 90).any()
-    assert (image[100, 100] == 90).all()
+    assert (image[180, 240] != 90).any()
+    assert (image[75, 75] == 90).all()
+
+
+def test_a_picture_of_odd_size_loses_its_last_row_and_column() -> None:
+    """Encoders take whole pairs."""
+    picture = np.zeros((361, 641, 3), np.uint8)
+    mask = np.ones((361, 641), bool)
+    assert overlay(picture, mask, NOBODY_PX, NOBODY_M, SURE).shape == (360, 640 + 252, 3)
 
 
 def test_from_the_side_the_camera_is_at_the_left() -> None:

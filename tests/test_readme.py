@@ -50,7 +50,7 @@ RESULTS: Final = {
     ),
     "tritrack live configs": Result(("runs/1/poses.npz", "runs/1/posture.json"), "posture: squat"),
     "tritrack single": Result(
-        ("runs/cam1/poses.npz", "runs/cam1/body.bvh", "runs/cam1/overlay.avi")
+        ("runs/cam1/poses.npz", "runs/cam1/body.bvh", "runs/cam1/overlay.mp4")
     ),
     "tritrack retouch": Result(says="then fit the video again"),
     "tritrack export": Result(("runs/cam1/poses.csv",), "frames written"),

@@ -1,19 +1,20 @@
 """Videos of one camera followed to their animations, and what is refused (T1, T2)."""
 
 import json
+import re
 from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
 from rich.console import Console
-from spoiling import film_of, write_film
+from spoiling import film_of, write_film, write_uneven
 
 from common.config import Settings
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import save_notes
 from tritrack.offline.batch import track_all
-from tritrack.single.single import name_of, single_all
+from tritrack.single.single import UNUSABLE, Given, line_of, name_of, single_all
 from tritrack.store.clip_paths import ClipsFailed
 
 QUIET = Console(quiet=True)
@@ -31,21 +32,22 @@ def video(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def run(video: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("runs")
-    single_all([video], out, None, SMALL, QUIET)
+    single_all([video], out, Given(), SMALL, QUIET)
     return out / "waving"
 
 
 def test_a_run_has_all_that_the_thesis_shows(run: Path) -> None:
     """T1: background, silhouettes, poses, key frames, animation."""
     assert {path.name for path in run.iterdir()} == {
-        *("poses.npz", "summary.json", "background.png", "overlay.avi", "angles.png"),
+        *("poses.npz", "summary.json", "background.png", "overlay.mp4", "angles.png"),
         *("body.bvh", "keyframes.bvh", "keyframes.json"),
     }
     summary = json.loads((run / "summary.json").read_text())
     assert summary["scale_source"] == "assumed"
     assert summary["effort"]["inputs"]["all"] == 0
-    film = cv2.VideoCapture(str(run / "overlay.avi"))
+    film = cv2.VideoCapture(str(run / "overlay.mp4"))
     assert film.get(cv2.CAP_PROP_FRAME_COUNT) == summary["frames"] == 40
+    assert film.get(cv2.CAP_PROP_FPS) == pytest.approx(15.0)
 
 
 def test_poses_follow_the_person_in_the_picture(run: Path, clip: Path) -> None:
@@ -79,18 +81,77 @@ def test_the_notes_beside_a_video_are_obeyed(video: Path, tmp_path: Path) -> Non
     path = tmp_path / "waving.avi"
     path.write_bytes(video.read_bytes())
     save_notes(tmp_path / "notes.toml", Notes(note=(Note(20, orientation="backward_left"),)))
-    facts = single_all([path], tmp_path / "runs", None, SMALL, QUIET)
+    facts = single_all([path], tmp_path / "runs", Given(), SMALL, QUIET)
     with np.load(tmp_path / "runs/waving/poses.npz") as poses:
         assert set(poses["orientation"][20:]) == {"backward_left"}
         assert "backward_left" not in poses["orientation"][:20]
     assert facts["clips"]["waving"]["effort"]["inputs"]["orientation"] == 1
 
 
+def test_a_film_whose_rate_varies_is_told_in_true_time(video: Path, tmp_path: Path) -> None:
+    """Each third frame is missing: poses keep their moments, the overlay its length."""
+    ticks = [n for n in range(40) if n % 3]
+    pictures = [picture for n, picture in enumerate(film_of(video)) if n % 3]
+    write_uneven(tmp_path / "waving.mp4", pictures, ticks, 15)
+    single_all([tmp_path / "waving.mp4"], tmp_path / "runs", Given(), SMALL, QUIET)
+    with np.load(tmp_path / "runs" / "waving" / "poses.npz") as poses:
+        assert poses["time_s"] == pytest.approx((np.array(ticks) - ticks[0]) / 15, abs=1e-4)
+    film = cv2.VideoCapture(str(tmp_path / "runs" / "waving" / "overlay.mp4"))
+    lasts_s = film.get(cv2.CAP_PROP_FRAME_COUNT) / film.get(cv2.CAP_PROP_FPS)
+    assert lasts_s == pytest.approx((ticks[-1] - ticks[0] + 1) / 15, abs=0.1)
+
+
+def test_an_empty_picture_is_the_background_where_it_is_given(video: Path, tmp_path: Path) -> None:
+    """Of somebody who never leaves a film alone does not tell what is behind."""
+    pictures = film_of(video)
+    cv2.imwrite(str(tmp_path / "empty room.png"), pictures[0])
+    write_film(tmp_path / "waving.avi", pictures[9:])
+    given = Given(background=tmp_path / "empty room.png")
+    facts = single_all([tmp_path / "waving.avi"], tmp_path / "runs", given, SMALL, QUIET)
+    assert facts["clips"]["waving"]["never_uncovered"] == 0.0
+    assert facts["clips"]["waving"]["warnings"] == []
+    found = np.array(cv2.imread(str(tmp_path / "runs" / "waving" / "background.png")), int)
+    assert np.abs(found - pictures[0]).max() <= 1
+
+
+def test_the_last_line_tells_what_was_followed_how_well_and_what_to_open(
+    video: Path, tmp_path: Path
+) -> None:
+    facts = single_all([video], tmp_path, Given(), SMALL, QUIET)["clips"]["waving"]
+    line = line_of("waving", facts)
+    assert re.fullmatch(
+        r"waving: a pose in 31 of 40 frames \(7\d%\), mean confidence 0\.\d\d; open "
+        rf"{tmp_path}/waving/overlay\.mp4 \((H\.264|MPEG-4)\)",
+        line,
+    )
+    assert ", believed in 60%, mean" in line_of("waving", {**facts, "believed": 0.6})
+
+
 def refusal(path: Path, out: Path, capsys: pytest.CaptureFixture[str]) -> str:
-    with pytest.raises(ClipsFailed):
-        single_all([path], out, None, SMALL, Console(stderr=True))
+    """Of the only video, in one line; nothing is written."""
+    with pytest.raises(UNUSABLE) as caught:
+        single_all([path], out, Given(), SMALL, Console(stderr=True))
     assert not (out / name_of(path)).exists()
-    return " ".join(capsys.readouterr().err.split())
+    assert capsys.readouterr().err == ""
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def test_of_several_videos_the_good_ones_are_followed_and_said(
+    video: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Also under a name with spaces; one name is given to one run."""
+    (tmp_path / "my films").mkdir()
+    first, twin = tmp_path / "my films" / "a wave.avi", tmp_path / "a wave.avi"
+    first.write_bytes(video.read_bytes())
+    twin.write_bytes(video.read_bytes())
+    videos = [tmp_path / "missing.avi", first, twin]
+    with pytest.raises(ClipsFailed, match="2 of 3 videos could not be followed"):
+        single_all(videos, tmp_path / "my runs", Given(), SMALL, Console(stderr=True, width=999))
+    said = capsys.readouterr().err.splitlines()
+    assert [line.split(":")[0] for line in said] == ["error", "a wave", "error"]
+    assert "a wave.avi would be written to" in said[2]
+    assert (tmp_path / "my runs" / "a wave" / "overlay.mp4").is_file()
 
 
 def test_a_camera_that_moves_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -120,7 +181,7 @@ def test_a_speck_among_silhouettes_is_nobody(tmp_path: Path) -> None:
     masks[3] = False
     masks[3, 50, 50] = True
     np.savez(tmp_path / "speck.npz", masks=masks)
-    single_all([tmp_path / "speck.npz"], tmp_path / "runs", None, SMALL, QUIET)
+    single_all([tmp_path / "speck.npz"], tmp_path / "runs", Given(), SMALL, QUIET)
     with np.load(tmp_path / "runs" / "speck" / "poses.npz") as poses:
         assert (poses["status"] == "empty").tolist() == [row == 3 for row in range(24)]
 
@@ -130,9 +191,9 @@ def test_where_nobody_is_seen_that_is_said(tmp_path: Path) -> None:
     """It is a failure, but what the video shows is written all the same."""
     np.savez(tmp_path / "empty.npz", masks=np.zeros((3, 120, 160), np.bool_))
     with pytest.raises(ClipsFailed, match="nobody was found in 1 of 1 videos: look for an outline"):
-        single_all([tmp_path / "empty.npz"], tmp_path / "runs", None, SMALL, QUIET)
+        single_all([tmp_path / "empty.npz"], tmp_path / "runs", Given(), SMALL, QUIET)
     written = tmp_path / "runs" / "empty"
     facts = json.loads((written / "summary.json").read_text())
     assert "nobody was seen" in facts["warnings"][0]
     assert (facts["frames"], facts["frames_with_pose"]) == (3, 0)
-    assert (written / "overlay.avi").is_file()
+    assert (written / "overlay.mp4").is_file()

@@ -2,7 +2,7 @@
 
 from rich.console import Console
 
-from tritrack.terminal import bar, by_share
+from tritrack.terminal import bar, by_pass, by_share
 
 
 def test_a_bar_moves_with_the_frames_of_the_one_video_that_there_is() -> None:
@@ -22,4 +22,27 @@ def test_a_bar_moves_with_each_of_several_even_if_nothing_is_told_of_them() -> N
             (thing, progress.tasks[0].percentage) for thing, _ in by_share(progress, "abcd", "")
         ]
     assert steps == [("a", 0.0), ("b", 25.0), ("c", 50.0), ("d", 75.0)]
+    assert progress.finished
+
+
+def test_a_bar_moves_with_the_frames_of_every_pass_over_a_video() -> None:
+    with bar(Console(quiet=True)) as progress:
+        seen = []
+        for _, begun in by_pass(progress, ["dance.mp4", "walk.mp4"], ("cutting out", "drawing")):
+            for name in ("cutting out", "drawing"):
+                tell = begun(name)
+                for share in (0.5, 1.0):
+                    tell(share)
+                    seen.append((progress.tasks[0].description, progress.tasks[0].percentage))
+    assert seen[:4] == [
+        *(("cutting out", 12.5), ("cutting out", 25.0)),
+        *(("drawing", 37.5), ("drawing", 50.0)),
+    ]
+    assert seen[-1] == ("drawing", 100.0)
+
+
+def test_a_video_that_fails_in_its_first_pass_is_over() -> None:
+    with bar(Console(quiet=True)) as progress:
+        for _, begun in by_pass(progress, "ab", ("cutting out", "drawing")):
+            begun("cutting out")(0.5)
     assert progress.finished

@@ -13,6 +13,11 @@ Tell = Callable[[float], object]
 """Hears how much of some work is done, in [0, 1]."""
 
 
+def say(console: Console, text: str) -> None:
+    """What was done."""
+    _line(console, text, "")
+
+
 def warn(console: Console, text: str) -> None:
     """What is odd but does not stop the work."""
     _line(console, f"warning: {text}", "yellow")
@@ -43,6 +48,25 @@ def by_share(
 
         yield thing, tell
         progress.update(task, completed=before + 1)
+
+
+def by_pass(
+    progress: Progress, things: Sequence[Thing], passes: Sequence[str]
+) -> Iterator[tuple[Thing, Callable[[str], Tell]]]:
+    """Things one after the other, each gone through several times.
+
+    With each comes a function that begins a pass, by its name, and gives another one that is told
+    which share of it is done. A pass that is left out counts as done.
+    """
+    task = progress.add_task("", total=len(things) * len(passes))
+    for before, thing in enumerate(things):
+
+        def begun(name: str, before: int = before) -> Tell:
+            done = before * len(passes) + passes.index(name)
+            return lambda share: progress.update(task, completed=done + share, description=name)
+
+        yield thing, begun
+        progress.update(task, completed=(before + 1) * len(passes))
 
 
 def json_text(value: Any) -> str:

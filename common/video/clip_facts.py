@@ -44,6 +44,7 @@ class View(msgspec.Struct, frozen=True):
     frames: int
     """How many its file claims; 0 for a camera."""
     capture_s: tuple[float, ...] = ()
+    """When each frame of a file was taken, where its rate varies."""
     background: str = ""
     """A picture or video of the empty room; "" where there is none."""
 

@@ -16,6 +16,7 @@ from common.rig.rig_file import CalibrationError, fitted, load_rig
 from common.video.clip_facts import Clip, Meta, View
 from common.video.clip_sources import ClipError, Footage, companions_folder, footage_of
 from common.video.decoding import Decoder, DecoderDied, Source, Undecodable, VideoInfo
+from common.video.frame_times import timed
 
 SAME_RATE: Final = 0.01
 """Frame rates that differ by less drift apart by less than a frame in a clip of 100."""
@@ -57,7 +58,7 @@ def open_clip(
         every=settings.every,
         rig=_rig(settings, folder, named, views),
         meta=meta,
-        warnings=tuple(_oddities(views)),
+        warnings=tuple(_oddities(views, meta)),
     )
 
 
@@ -97,11 +98,14 @@ def _meta(folder: Path) -> Meta:
 
 
 def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> View:
-    info = _probed(named.source, decoder)
+    info = timed(_probed(named.source, decoder))
     if named.settings.background:
-        _probed(named.settings.background, decoder)
+        _refuse_another_scene(named, _probed(named.settings.background, decoder), info)
     of_a_file = isinstance(named.source, str)
-    fps = (settings.fps or meta.fps or info.fps) if of_a_file else (info.fps or CAMERA_HZ)
+    told_hz = settings.fps or meta.fps
+    fps = (told_hz or info.fps) if of_a_file else (info.fps or CAMERA_HZ)
+    if fps <= 0 and info.frames == 1:
+        raise ClipError(f"{named.source} is one picture: name a video")
     if fps <= 0:
         raise ClipError(f"{named.source} has no frame rate: set fps in a meta.json beside it")
     size = (info.width, info.height)
@@ -112,9 +116,14 @@ def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> V
         size=working_size(size, size_of(settings.size)),
         fps=fps,
         frames=info.frames if of_a_file else 0,
-        capture_s=meta.capture_s.get(f"cam{named.number}", ()) if of_a_file else (),
+        capture_s=_told_s(meta, named) or (() if told_hz else info.shown_s),
         background=named.settings.background,
     )
+
+
+def _told_s(meta: Meta, named: Footage) -> tuple[float, ...]:
+    """When a file's frames were taken, by what stands beside it."""
+    return meta.capture_s.get(f"cam{named.number}", ()) if isinstance(named.source, str) else ()
 
 
 def _probed(source: Source, decoder: Decoder) -> VideoInfo:
@@ -130,6 +139,16 @@ def _probed(source: Source, decoder: Decoder) -> VideoInfo:
     if isinstance(source, str):
         _refuse_a_lost_head(Path(source))
     return info
+
+
+def _refuse_another_scene(named: Footage, plate: VideoInfo, info: VideoInfo) -> None:
+    """A picture of another size was cropped, or is of another camera."""
+    if (plate.width, plate.height) != (info.width, info.height):
+        raise ClipError(
+            f"the background {named.settings.background} has {plate.width}x{plate.height} pixels, "
+            f"{named.source} {info.width}x{info.height}: take an empty frame of the same camera, "
+            "uncropped"
+        )
 
 
 def _refuse_a_lost_head(path: Path) -> None:
@@ -185,11 +204,12 @@ def _calibrated(rig: Rig, named: Footage, view: View, path: Path, alone: bool) -
     return fitted(seen, view.size, str(path)).cameras[place]
 
 
-def _oddities(views: tuple[View, ...]) -> Iterator[str]:
+def _oddities(views: tuple[View, ...], meta: Meta) -> Iterator[str]:
     for view in views:
-        if view.capture_s and view.frames and len(view.capture_s) != view.frames:
+        told_s = meta.capture_s.get(f"cam{view.number}", ())
+        if told_s and view.frames and len(told_s) != view.frames:
             yield (
-                f"meta.json has {len(view.capture_s)} capture times for camera {view.number}, "
+                f"meta.json has {len(told_s)} capture times for camera {view.number}, "
                 f"{view.source} has {view.frames} frames"
             )
     for first, second in pairwise(views):

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import IO, Any, NamedTuple
 
 import cv2
+import numpy as np
 
 from common.video.decoding import (
     END,
@@ -19,6 +20,8 @@ from common.video.decoding import (
     INFO,
     MAGIC,
     REFUSED,
+    TIMES,
+    TIMES_AT_ONCE,
     Image,
     Source,
     cure,
@@ -55,7 +58,7 @@ def main() -> None:
 
 
 def serve(request: dict[str, Any], answers: IO[bytes]) -> None:
-    """Say what a source is, send its frames at each size that is given, say how many came."""
+    """Say what a source is, send its frames at each size given, else their times; then END."""
     source, sizes = request["source"], request["sizes"]
     film = opened(source, request["every"])
     first = next((grab for grab in film.grabs if grab.picture is not None), None)
@@ -66,6 +69,8 @@ def serve(request: dict[str, Any], answers: IO[bytes]) -> None:
     height, width = first.picture.shape[:2]
     info = {"width": width, "height": height, "fps": film.fps, "frames": film.frames}
     say(answers, INFO, None, json.dumps(info).encode())
+    if not sizes:
+        say_times(source, answers)
     came = first.index + 1
     for grab in itertools.chain([first], film.grabs) if sizes else ():
         came = grab.index + 1
@@ -73,6 +78,20 @@ def serve(request: dict[str, Any], answers: IO[bytes]) -> None:
             pictures = [reduced(grab.picture, (width, height)) for width, height in sizes]
             say(answers, FRAME, grab, *(picture.data for picture in pictures))
     say(answers, END, Grabbed(came, time.monotonic(), None))
+
+
+def say_times(source: Source, answers: IO[bytes]) -> None:
+    """Send when each packet of a file is to be shown, seconds; none of a camera or a picture."""
+    if not isinstance(source, str) or cv2.haveImageReader(source):
+        return
+    packets = cv2.VideoCapture(source, cv2.CAP_FFMPEG, [cv2.CAP_PROP_FORMAT, -1])
+    going = True
+    while going:
+        some: list[float] = []
+        while len(some) < TIMES_AT_ONCE and (going := packets.grab()):
+            some.append(packets.get(cv2.CAP_PROP_POS_MSEC) / 1e3)
+        say(answers, TIMES, None, np.array(some, "<f8").tobytes())
+        answers.flush()
 
 
 def opened(source: Source, every: int) -> OpenFilm:

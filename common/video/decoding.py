@@ -20,12 +20,15 @@ HEADER: Final = struct.Struct("<4scIdI")
 """What goes before every answer: magic, kind, index, grabbed_s, bytes that follow."""
 MAGIC: Final = b"ttf1"
 INFO: Final = b"i"
+TIMES: Final = b"t"
 FRAME: Final = b"f"
 END: Final = b"e"
 REFUSED: Final = b"r"
 
 MAX_TEXT_BYTES: Final = 1 << 16
 """No answer but a picture is longer."""
+TIMES_AT_ONCE: Final = 4096
+"""So many times of packets are in one answer: a long film's take a while to read."""
 
 STALL_S: Final = 10.0
 """A child that gives nothing for so long is stuck: opening a slow camera takes 3 s."""
@@ -67,6 +70,8 @@ class VideoInfo(msgspec.Struct, frozen=True):
     """0 where it names none."""
     frames: int
     """0 where it names none, as a camera."""
+    shown_s: tuple[float, ...] = ()
+    """When a file's pictures are to be shown, by its packets: in their order, not in time's."""
 
 
 class Decoded(msgspec.Struct, frozen=True):
@@ -122,8 +127,11 @@ class Decoder:
             Undecodable: When it has none.
             DecoderDied: When the child broke on it.
         """
-        info, *_ = self._answers(source, [], 1)
-        return msgspec.json.decode(info.payload.tobytes(), type=VideoInfo)
+        info, *after = self._answers(source, [], 1)
+        told = msgspec.json.decode(info.payload.tobytes(), type=VideoInfo)
+        shown = [np.frombuffer(one.payload, "<f8") for one in after if one.kind == TIMES]
+        shown_s = tuple(np.concatenate(shown).tolist()) if shown else ()
+        return msgspec.structs.replace(told, shown_s=shown_s)
 
     def frames(
         self, source: Source, size: Size, every: int = 1, large: Size | None = None
@@ -156,7 +164,7 @@ class Decoder:
     def _answers(
         self, source: Source, sizes: list[Size], every: int
     ) -> Generator[_Answer, None, None]:
-        """INFO, then FRAMEs if any size is asked for, then END."""
+        """INFO, then FRAMEs if any size is asked for, else TIMES; then END."""
         if self._child is None:
             self._child = Child("common.video.decoder", self._stall_s)
         frames, whole = 0, False
@@ -186,7 +194,10 @@ def cure(source: Source) -> str:
     """What to do about a source that cannot be read."""
     if isinstance(source, int):
         return "see that it is plugged in and that no other program holds it"
-    return "convert it, for example to MJPEG: ffmpeg -i IN -c:v mjpeg -q:v 2 OUT.avi"
+    return (
+        "convert it, for example to MJPEG: ffmpeg -i IN -c:v mjpeg -q:v 2 OUT.avi, or copy it "
+        "again where it was cut off"
+    )
 
 
 def _pictures(payload: NDArray[np.uint8], sizes: list[Size]) -> list[Image]:

@@ -1,6 +1,6 @@
 """What was decoded of a source, kept for the next reading of it where it is small enough."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Final, Protocol
 
 from common.video.decoding import Decoded, Size, Source
@@ -69,3 +69,24 @@ class Reel:
             yield got
         if len(kept) <= fits:
             self._named, self._kept = (source, size), kept
+
+
+class Told:
+    """Reads through another reader, and tells which share of a number of frames has come."""
+
+    def __init__(self, reader: Reader, due: int, tell: Callable[[float], object]) -> None:
+        """Nothing told yet; of more frames than are `due` nothing more is."""
+        self._reader, self._due, self._tell = reader, max(1, due), tell
+
+    @property
+    def came(self) -> int:
+        """How many frames the source that was last read to its end really had."""
+        return self._reader.came
+
+    def frames(
+        self, source: Source, size: Size, every: int = 1, large: Size | None = None
+    ) -> Iterator[Decoded]:
+        """Every n-th picture of a source, reduced to `size`, and to `large` too."""
+        for got in self._reader.frames(source, size, every, large):
+            self._tell(min(1.0, (got.index + 1) / self._due))
+            yield got

@@ -10,6 +10,7 @@ from common.config import Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import Out, Size, writable_file
 from tritrack.exporting import OWN_NAMES, Format, export_run
+from tritrack.terminal import json_text
 
 VIEWERS: Final[dict[str, tuple[ViewerNumber, ...]]] = {"12": (1, 2), "1": (1,), "2": (2,)}
 
@@ -78,6 +79,9 @@ def single(
         Literal["default", "thesis"], typer.Option(help="The best known, or as printed.")
     ] = "default",
     size: Annotated[str, typer.Option(help="Bound of the working picture.")] = "320x240",
+    background: Annotated[
+        Path | None, typer.Option(help="A picture of the scene without anybody, if there is one.")
+    ] = None,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Animate a body from any video of one camera: no calibration, no empty room is needed.
@@ -85,10 +89,12 @@ def single(
     Example: tritrack single dance.mp4 --out runs
     """
     from tritrack.offline.batch import overridden
-    from tritrack.single.single import single_all
+    from tritrack.single.single import Given, single_all
 
-    facts = single_all(videos, out, notes, overridden(Settings(), mode, size), console)
-    tell(facts, json_wanted, f"{len(facts['clips'])} videos followed, written to {out}")
+    given = Given(notes, background)
+    facts = single_all(videos, out, given, overridden(Settings(), mode, size), console)
+    if json_wanted:
+        print(json_text(facts))
 
 
 def export(

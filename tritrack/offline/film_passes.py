@@ -26,6 +26,7 @@ from integrator.opening_posture import Opening
 from integrator.pairing import Pair
 from integrator.rig.assumed_rig import assumed_camera
 from integrator.single.sight import Annotations
+from tritrack.offline.film_smoothing import calmed
 from tritrack.offline.frame_pairs import share_of
 from tritrack.terminal import Tell
 from viewer import track
@@ -83,7 +84,9 @@ def silhouettes_of(
     return reports
 
 
-def bodies_of(reports: Sequence[Report], film: FilmFacts) -> list[Body]:
+def bodies_of(
+    reports: Sequence[Report], film: FilmFacts, tell: Tell = lambda _: None
+) -> list[Body]:
     """The second pass: the viewer tells more of each silhouette, the integrator lifts it."""
     if not reports:
         return []
@@ -98,6 +101,9 @@ def bodies_of(reports: Sequence[Report], film: FilmFacts) -> list[Body]:
         pair = Pair(full, None) if film.number == 1 else Pair(None, full)
         state, body, guide = merge.step(state, pair, annotations)
         bodies.append(body)
+        tell(len(bodies) / len(reports))
+    if film.method.film_smoothing and state.rig is not None:
+        return calmed(bodies, state.rig, film.notes)
     return bodies
 
 

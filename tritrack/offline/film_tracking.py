@@ -14,8 +14,7 @@ from common.notes.notes import Notes
 from common.raster.silhouette_report import with_silhouette
 from common.rig.camera import PAPER_ROTATIONS
 from common.video.clip_facts import Clip, shortfall
-from common.video.decoding import Decoder
-from common.video.frame_cache import Reel
+from common.video.frame_cache import Reader
 from tritrack.offline.film_passes import FilmFacts, bodies_of, silhouettes_of
 from tritrack.terminal import Tell
 from viewer.background.background import Background
@@ -33,7 +32,8 @@ class Followed(NamedTuple):
 
     bodies: list[Body]
     reports: list[Report]
-    rate_hz: float
+    period_s: float
+    """From a frame to the next, where the rate does not vary."""
     turn: NDArray[np.float64]
     """World to camera, (3, 3)."""
     clip: Clip | None
@@ -60,8 +60,15 @@ class Film(NamedTuple):
     """The user's inputs."""
 
 
+class Heard(NamedTuple):
+    """Who is told which share of each pass is done."""
+
+    silhouettes: Tell = lambda _: None
+    poses: Tell = lambda _: None
+
+
 def follow_clip(
-    film: Film, settings: Settings, method: Method, decoder: Decoder, tell: Tell = lambda _: None
+    film: Film, settings: Settings, method: Method, reader: Reader, heard: Heard = Heard()
 ) -> Followed:
     """Track a clip of one view whose background is known.
 
@@ -72,19 +79,19 @@ def follow_clip(
     """
     began = time.perf_counter()
     clip, background, notes = film
-    view, reel = clip.views[0], Reel(decoder)
+    view = clip.views[0]
     camera = clip.rig.cameras[0] if clip.rig is not None else None
     scale = view.size[0] / view.source_size[0]
     period_s = clip.every / view.fps
     known = FilmFacts(settings, method, view.number, period_s, camera, notes, scale)
     with outside_sources(settings, clip.views) as sources:
         outside = sources.get(view.number)
-        reports = silhouettes_of(clip, background, known, reel, outside, tell)
+        reports = silhouettes_of(clip, background, known, reader, outside, heard.silhouettes)
         unlooked = oddities(sources)
     seen = time.perf_counter()
-    bodies = bodies_of(reports, known)
+    bodies = bodies_of(reports, known, heard.poses)
     done = time.perf_counter()
-    odd = (background.odd, shortfall(view, reel.came), doubtful(bodies), *unlooked)
+    odd = (background.odd, shortfall(view, reader.came), doubtful(bodies), *unlooked)
     facts = {
         "clip": clip.name,
         "performer": clip.meta.performer,
@@ -95,22 +102,25 @@ def follow_clip(
         "warnings": [*clip.warnings, *filter(None, odd)],
     }
     turn = np.array(PAPER_ROTATIONS[0] if camera is None else camera.R)
-    return Followed(bodies, reports, 1 / period_s, turn, clip, background.background, facts)
+    return Followed(bodies, reports, period_s, turn, clip, background.background, facts)
 
 
-def follow_masks(name: str, reports: list[Report], settings: Settings) -> Followed:
+def follow_masks(
+    name: str, reports: list[Report], settings: Settings, tell: Tell = lambda _: None
+) -> Followed:
     """The same for silhouettes that were cut out before."""
     began, least_share = time.perf_counter(), settings.silhouette.min_height_share
     reports = [_or_nobody(report, least_share) for report in reports]
     period_s = reports[1].captured_s - reports[0].captured_s if len(reports) > 1 else 0.04
-    bodies = bodies_of(reports, FilmFacts(settings, METHODS[settings.mode], 1, period_s, None))
+    film = FilmFacts(settings, METHODS[settings.mode], 1, period_s, None)
+    bodies = bodies_of(reports, film, tell)
     facts = {
         "clip": name,
         **_times(len(bodies), poses=time.perf_counter() - began),
         "scale_source": "assumed",
         "warnings": list(filter(None, (doubtful(bodies),))),
     }
-    return Followed(bodies, reports, 1 / period_s, np.array(PAPER_ROTATIONS[0]), None, None, facts)
+    return Followed(bodies, reports, period_s, np.array(PAPER_ROTATIONS[0]), None, None, facts)
 
 
 def _or_nobody(report: Report, least_share: float) -> Report:

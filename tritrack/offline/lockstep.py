@@ -19,7 +19,7 @@ from common.video.frame_cache import Reel
 from integrator import diagnostics, merge, merge_state, opening_posture
 from integrator.merge_state import Start
 from integrator.pairing import Pair
-from tritrack.offline.film_tracking import Film, follow_clip, unseen
+from tritrack.offline.film_tracking import Film, Heard, follow_clip, unseen
 from tritrack.offline.frame_pairs import backgrounds, instants, share_of
 from tritrack.offline.opening_clip import body_of
 from tritrack.terminal import Tell
@@ -124,10 +124,10 @@ def _in_two_passes(
 ) -> Tracked:
     """One camera whose scale all of the clip must tell, or that is followed as the thesis does."""
     view = clip.views[0]
-    decoder = decoders.of[view.number]
-    learnt, odd = background_of_view(view, settings.silhouette, Reel(decoder))
+    reel = Reel(decoders.of[view.number])
+    learnt, odd = background_of_view(view, settings.silhouette, reel)
     film = Film(clip, FilmBackground(learnt, [], odd))
-    followed = follow_clip(film, settings, method, decoder, tell)
+    followed = follow_clip(film, settings, method, reel, Heard(tell))
     return Tracked(clip, followed.bodies, followed.facts)
 
 

@@ -1,0 +1,76 @@
+"""The files of a followed film that are looked at or animated: curves, background, BVH."""
+
+from pathlib import Path
+from typing import Any, Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from animator.bvh import NoMotion, bvh_text, steady
+from animator.inbetween import at, between, key_frames
+from common.atomic_file import replacing
+from tritrack.single.angle_plot import angle_plot
+from tritrack.store.runs import RunError
+from tritrack.terminal import json_text
+from viewer.background.background import Background
+
+FLAG: Final = (0, 0, 255)
+"""Pixels that were never uncovered are hatched in this colour."""
+
+
+def write_files(folder: Path, arrays: dict[str, Any], background: Background | None) -> list[str]:
+    """Write the angles' curves, the background if there is one, and the animation.
+
+    Args:
+        folder: Of the run.
+        arrays: Of its `poses.npz`.
+        background: None of a sequence of masks.
+
+    Returns:
+        What stood in the way of an animation.
+
+    Raises:
+        RunError: When a file cannot be written.
+    """
+    try:
+        _write(folder / "angles.png", angle_plot(arrays))
+        if background is not None:
+            _write(folder / "background.png", cv2.imencode(".png", marked(background))[1].tobytes())
+        return _animate(folder, arrays)
+    except OSError as error:
+        raise RunError(f"cannot write {folder}: {error.strerror}; free some space") from error
+
+
+def marked(background: Background) -> NDArray[np.uint8]:
+    """The background, what was never uncovered hatched."""
+    picture = np.clip(np.rint(background.centre), 0, 255).astype(np.uint8)
+    rows, columns = np.indices(background.uncertain.shape)
+    picture[background.uncertain & ((rows + columns) % 4 < 2)] = FLAG
+    return picture
+
+
+def _animate(folder: Path, arrays: dict[str, Any]) -> list[str]:
+    """Write the animation and that of the key frames alone; what stood in the way."""
+    joints_m, time_s = arrays["joints_m"], arrays["time_s"]
+    try:
+        skeleton, motion, step_s = steady(joints_m, time_s)
+    except NoMotion as error:
+        return [f"there is no animation: {error}"]
+    posed = np.flatnonzero(np.isfinite(joints_m).all(axis=(1, 2)))
+    rows = np.rint((time_s[posed] - time_s[posed[0]]) / step_s).astype(np.int64)
+    clarity = np.full(len(motion.root_m), np.nan)
+    clarity[rows] = arrays["confidence"][posed].mean(axis=1)
+    keys = key_frames(clarity)
+    drawn = between(keys, at(motion, keys), np.arange(len(clarity)))
+    frame_of = dict(zip(rows.tolist(), arrays["frame"][posed].tolist(), strict=True))
+    told = {"frames": [frame_of[key] for key in keys.tolist()], "of": len(clarity)}
+    _write(folder / "body.bvh", bvh_text(skeleton, motion, step_s).encode())
+    _write(folder / "keyframes.bvh", bvh_text(skeleton, drawn, step_s).encode())
+    _write(folder / "keyframes.json", f"{json_text(told)}\n".encode())
+    return []
+
+
+def _write(path: Path, content: bytes) -> None:
+    with replacing(path) as new:
+        new.write_bytes(content)

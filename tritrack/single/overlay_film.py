@@ -1,0 +1,92 @@
+"""The overlay of a run as a film: what was followed, drawn on the pictures that it was found in."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from animator.film import Film, Picture, write_film
+from animator.overlay import SHOWN, overlay
+from common.body.body import Vector
+from common.bus.messages import Body, Report
+from common.config import working_size
+from common.raster.silhouette_report import unpack
+from common.video.decoding import Decoder
+from tritrack.offline.film_tracking import Followed
+from tritrack.terminal import Tell
+
+STANDS_S: Final = 5.0
+"""No picture stands for longer in the overlay, however long none was taken."""
+
+
+def write_overlay(found: Followed, path: Path, decoder: Decoder, tell: Tell) -> Film:
+    """Write the overlay beside the other files of a run.
+
+    A film is written at one rate, and lasts as long as the one that was followed: where that one's
+    rate varies, pictures are shown several times, or left out.
+
+    Args:
+        found: What one camera gave.
+        path: Of the film, without a suffix.
+        decoder: Reads the video once more.
+        tell: Hears which share of the frames is drawn.
+
+    Raises:
+        FilmError: When it cannot be written.
+        DecoderDied: When the video broke the decoder.
+    """
+    time_s = np.array([report.captured_s for report in found.reports])
+    gaps_s = np.diff(time_s)
+    period_s = float(np.median(gaps_s)) if len(gaps_s) else found.period_s
+    times = shown_times(time_s, period_s)
+
+    def repeated() -> Iterator[Picture]:
+        for n, picture in enumerate(overlaid(found, decoder)):
+            yield from [picture] * int(times[n])
+            tell((n + 1) / len(found.reports))
+
+    return write_film(path, repeated(), 1 / period_s)
+
+
+def shown_times(time_s: Vector, period_s: float) -> NDArray[np.int64]:
+    """How often a film of one rate shows each picture, (n,).
+
+    Args:
+        time_s: (n,) when each was taken, increasing.
+        period_s: From a picture to the next in the film.
+    """
+    places = np.rint((time_s - time_s[0]) / period_s).astype(np.int64)
+    most = max(1, round(STANDS_S / period_s))
+    return np.minimum(np.diff(places, append=places[-1] + 1), most)
+
+
+def overlaid(found: Followed, decoder: Decoder) -> Iterator[Picture]:
+    """Every frame with its silhouette and stick, the lifted body beside it."""
+    pictures = _pictures(found, decoder)
+    for report, body, picture in zip(found.reports, found.bodies, pictures, strict=False):
+        yield _drawn(found, report, body, picture)
+
+
+def _drawn(found: Followed, report: Report, body: Body, picture: Picture) -> Picture:
+    joints_px, joints_m, confidence = np.full((15, 2), np.nan), np.full((15, 3), np.nan), [0.0] * 15
+    if body.joints_m:
+        joints_px = np.array(body.joints_px[0]) * (picture.shape[1] / report.width)
+        joints_m, confidence = found.to_camera(np.array(body.joints_m)), list(body.confidence)
+    told = f"{body.frame}  {body.captured_s:.2f} s  {body.status}"
+    if body.joints_m:
+        told += f"  {np.mean(confidence):.2f}"
+    return overlay(picture, unpack(report), joints_px, joints_m, np.array(confidence), told)
+
+
+def _pictures(found: Followed, decoder: Decoder) -> Iterator[Picture]:
+    """The frames that were followed; of masks: nothing but paper."""
+    if found.clip is None:
+        paper = np.full((found.size[1], found.size[0], 3), 255, np.uint8)
+        yield from [paper] * len(found.reports)
+        return
+    view = found.clip.views[0]
+    size = working_size(view.source_size, SHOWN)
+    for decoded in decoder.frames(view.source, size, found.clip.every):
+        yield decoded.picture
