@@ -62,9 +62,9 @@ def train(
         tell(facts, json_wanted, f"{facts['pixels']} pixels learnt, written to {out}")
         return
     if what == "landmarks":
-        from tritrack.training.training import refuse_without_torch
+        from tritrack.training.training import refuse_without
 
-        refuse_without_torch()
+        refuse_without("torch", "onnx", "onnxscript", "anny")
         from tritrack.training.landmark_training import train_landmarks
 
         facts = train_landmarks(out, 0, console)

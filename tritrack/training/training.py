@@ -24,14 +24,17 @@ class TrainingError(ValueError):
     """What cannot be learnt, tested or written; the text names the cure."""
 
 
-def refuse_without_torch() -> None:
-    """Say that PyTorch is wanted.
+def refuse_without(*packages: str) -> None:
+    """Say which packages are wanted.
 
     Raises:
-        TrainingError: When it is not installed.
+        TrainingError: When one is not installed.
     """
-    if importlib.util.find_spec("torch") is None:
-        raise TrainingError("learning networks needs PyTorch: pip install 'tritrack[train]'")
+    missing = [name for name in packages if importlib.util.find_spec(name) is None]
+    if missing:
+        raise TrainingError(
+            f"learning networks needs {', '.join(missing)}: pip install 'tritrack[train]'"
+        )
 
 
 class Plan(NamedTuple):
