@@ -82,8 +82,8 @@ class Landmarks(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """JOINT_NAMES order, pixels of the reported silhouette: its first pixel's centre is (0.5, 0.5).
     What is not seen stands anywhere, with confidence 0."""
     confidence: tuple[float, ...]
-    """JOINT_NAMES order, in [0, 1]: how probably each is less than 0.03 statures off (50 mm), if left
-    and right are not exchanged: that is another question, and `facing` tells more of it."""
+    """JOINT_NAMES order, in [0, 1]: how probably each is less than 0.03 statures off (50 mm), where
+    left and right are not exchanged: that is another question, and the facing tells more of it."""
     facing_deg: float = 0.0
     """Which way the person faces, about the vertical: 0 towards this camera, 90 to the right of its
     picture, in (-180, 180]."""
