@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+import msgspec
 import numpy as np
 import pytest
 from posing import posed
@@ -98,6 +99,7 @@ class Stage:
         method: Method | None = None,
     ) -> None:
         cameras = (None, None) if rig is None else rig.cameras
+        settings = msgspec.structs.replace(settings, landmarks="none")  # outlines have no picture
         method, alone = method or METHODS[settings.mode], len(views) == 1
         self.viewers = {
             n: track.init(track.Setup(n, cameras[n - 1], settings, method, alone), None)  # type: ignore[arg-type]

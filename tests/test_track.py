@@ -48,6 +48,14 @@ def viewer(number: ViewerNumber) -> track.State:
     return track.init(setup, None)  # type: ignore[arg-type]
 
 
+def told_from_outside() -> track.State:
+    """Of a viewer whose landmarks another source tells."""
+    setup = viewer(1).setup
+    method = msgspec.structs.replace(setup.method, landmarks=True)
+    outside = msgspec.structs.replace(setup.settings, landmarks="mediapipe")
+    return viewer(1)._replace(setup=setup._replace(settings=outside, method=method))
+
+
 def frame(mask: Mask, index: int = 0) -> CapturedFrame:
     return CapturedFrame(index, index / 15, index / 15, mask)  # type: ignore[arg-type]
 
@@ -265,9 +273,7 @@ def test_the_count_of_matches_is_the_papers_cost() -> None:
 @pytest.mark.parametrize("seen", [True, False], ids=["with an outline", "without one"])
 def test_what_a_source_outside_sees_is_in_the_report_and_stays_there(seen: bool) -> None:
     person = Landmarks(joints_px=((80.0, 60.0),) * 15, confidence=(0.9,) * 15, facing_deg=30.0)
-    setup = viewer(1).setup
-    outside = msgspec.structs.replace(setup.settings, landmarks="mediapipe")
-    state = viewer(1)._replace(setup=setup._replace(settings=outside))
+    state = told_from_outside()
     picture = frame(silhouettes(standing())[0] if seen else NOBODY)
     shown = msgspec.structs.replace(picture, landmarks=(person,))
     assert track.step(state, shown, None)[1].landmarks == person
@@ -276,9 +282,7 @@ def test_what_a_source_outside_sees_is_in_the_report_and_stays_there(seen: bool)
 
 
 def test_landmarks_change_nothing_else_of_a_report() -> None:
-    setup = viewer(1).setup
-    outside = msgspec.structs.replace(setup.settings, landmarks="mediapipe")
-    state = viewer(1)._replace(setup=setup._replace(settings=outside))
+    state = told_from_outside()
     person = Landmarks(joints_px=((80.0, 60.0),) * 15, confidence=(0.9,) * 15)
     picture = frame(silhouettes(standing())[0])
     shown = msgspec.structs.replace(picture, landmarks=(person,))
