@@ -102,10 +102,18 @@ def _with_pose(state: State, now: Instant, settled_at: Vector | None) -> tuple[S
     if state.method.stick_lifting or (state.proposes and None in now.seen):
         found = _lone(state, now)
     elif state.proposes:
-        pose, joints_m, confidence, memory, matched, seen, bdp = _proposed(state, now)
-        found = Posed(pose, facing_of(now.rig, pose), joints_m, confidence, memory, matched)
-        state = state._replace(opening=state.opening._replace(bdp=bdp))
-        now = now._replace(seen=seen)
+        both = _proposed(state, now)
+        found = Posed(
+            both.pose,
+            facing_of(now.rig, both.pose),
+            both.joints_m,
+            both.confidence,
+            both.memory,
+            both.matched,
+            both.landmarks,
+        )
+        state = state._replace(opening=state.opening._replace(bdp=both.bdp))
+        now = now._replace(seen=both.seen)
     else:
         found = fused_pose.step(state, now.rig, now.seen, settled_at)
     return state._replace(found=found, facing=found.facing), now
@@ -141,7 +149,7 @@ def _proposed(state: State, now: Instant) -> ProposedPose:
     assert opening.bdp is not None
     before = proposed_pose.Before()
     if known is not None:
-        before = proposed_pose.Before(known.memory, known.pose, known.matched)
+        before = proposed_pose.Before(known.memory, known.pose, known.matched, known.landmarks)
     is_first = known is None and not (opening.measured or opening.samples)
     given = proposed_pose.Instant(opening.bdp, now.rig, now.seen, now.dt_s, state.method, is_first)
     return proposed_pose.step(before, given)

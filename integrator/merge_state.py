@@ -10,6 +10,7 @@ from common.bus.messages import Facing
 from common.config import Settings
 from common.method import Method
 from common.rig.camera import Rig
+from integrator.landmarks import landmark_fusion
 from integrator.opening_posture import Opening
 from integrator.pose import smoothing
 from integrator.proposal.pose_proposal import Memory
@@ -32,6 +33,8 @@ class Posed(NamedTuple):
     """Of the network that proposed it."""
     matched: bool = False
     """It was matched to both silhouettes, as the proposed one fitted badly."""
+    landmarks: landmark_fusion.Memory | None = None
+    """What is remembered of the views' landmarks."""
     alone: Alone | None = None
     """Where one view alone shows the body."""
 

@@ -7,10 +7,12 @@ from numpy.typing import NDArray
 
 from common.body.body import Bdp, Vector, rest_pose
 from common.body.kinematics import joints
-from common.body.proportions import body_vector
+from common.body.proportions import body_vector, stature
 from common.method import Method
 from common.rig.camera import Rig
 from integrator.fit import pose_refinement, visual_hull
+from integrator.landmarks import landmark_fusion
+from integrator.landmarks.landmark_rays import rays_of
 from integrator.pairing import Pair, Seen
 from integrator.prior_body import prior
 from integrator.proposal import pose_proposal
@@ -25,6 +27,7 @@ class Before(NamedTuple):
     """(25,); None at the first."""
     matched: bool = False
     """That pose was matched to the silhouettes."""
+    landmarks: landmark_fusion.Memory | None = None
 
 
 class Instant(NamedTuple):
@@ -51,6 +54,7 @@ class ProposedPose(NamedTuple):
     confidence: Vector
     """(15,) how probably each joint is less than 50 mm off."""
     memory: Memory
+    landmarks: landmark_fusion.Memory | None
     matched: bool
     seen: Seen
     """The reports that it is of: without clutter, where that was left out."""
@@ -62,12 +66,14 @@ def step(before: Before, now: Instant) -> ProposedPose:
     """One instant of both views.
 
     A pose in which the network is not confident and that fits badly is looked for in the
-    silhouettes without clutter, where the network is more confident in those; then it is matched
-    to them.
+    silhouettes without clutter, where the network is more confident in those. What the pictures
+    show of the joints is made one with it; where even that is not confident and fits badly, the
+    pose is matched to the silhouettes.
     """
     known, was = _proposed(before, now), rest_pose() if before.pose is None else before.pose
     if now.method.clutter_removal and not known.is_confident:
         now, known = _without_clutter(before, now, known)
+    known, landmarks = _with_landmarks(before, now, known)
     body = body_vector(now.bdp)
     pose, beside_m = pose_proposal.pose_and_rest(body, was, known.joints_m)
     better, confidence = None, known.confidence
@@ -80,12 +86,33 @@ def step(before: Before, now: Instant) -> ProposedPose:
     joints_m = joints(body, pose)
     if now.method.free_joints:
         joints_m = joints_m + beside_m @ pose_proposal.trunk_axes(body, pose).T
-    matched = better is not None
-    return ProposedPose(pose, joints_m, confidence, known.memory, matched, now.seen, now.bdp)
+    return ProposedPose(
+        pose,
+        joints_m,
+        confidence,
+        known.memory,
+        landmarks,
+        better is not None,
+        now.seen,
+        now.bdp,
+    )
 
 
 def _proposed(before: Before, now: Instant) -> PoseProposal:
     return pose_proposal.step(before.memory, now.bdp, now.rig, now.seen, now.dt_s)
+
+
+def _with_landmarks(
+    before: Before, now: Instant, known: PoseProposal
+) -> tuple[PoseProposal, landmark_fusion.Memory | None]:
+    """The proposal made one with what the pictures show of the joints, where they show any."""
+    rays = rays_of(now.rig, now.seen)
+    if rays is None:
+        return known, before.landmarks
+    sure = known.confidence[pose_proposal.AT]
+    fused = landmark_fusion.step(before.landmarks, known.joints_m, sure, rays, stature(now.bdp))
+    confidence = pose_proposal.of_landmarks(fused.confidence)
+    return known._replace(joints_m=fused.joints_m, confidence=confidence), fused.memory
 
 
 def _without_clutter(

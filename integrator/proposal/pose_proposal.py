@@ -99,11 +99,16 @@ def step(
     assert shown is not None  # one alone stands somewhere
     memory, found = pose_network.step(network_weights.shipped(), memory, shown, height_m)
     joints_m = found.joints_m - height_m * JOINTS_OFF @ trunk_of(found.joints_m).T
-    confidence, own = np.zeros(len(JOINT_NAMES)), probability(found.confidence)
+    return PoseProposal(joints_m, of_landmarks(probability(found.confidence)), memory)
+
+
+def of_landmarks(own: Vector) -> Vector:
+    """The confidence in all landmarks, (15,), of that in the joints, (12,)."""
+    confidence = np.zeros(len(JOINT_NAMES))
     confidence[AT] = own
     confidence[PELVIS] = own[pose_network.HIPS].mean()
     confidence[NECK] = confidence[HEAD] = own[pose_network.SHOULDERS].mean()
-    return PoseProposal(joints_m, confidence, memory)
+    return confidence
 
 
 def probability(confidence: Vector, platt: tuple[float, float] = PLATT) -> Vector:

@@ -7,7 +7,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.messages import Pixel, Report
+from common.bus.messages import Landmarks, Pixel, Report
 from common.raster.silhouette_report import box_of, is_cut, pack, unpack
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig
@@ -39,7 +39,7 @@ def undistorted_pair(rig: Rig | None, pair: Pair) -> Pair:
 
 
 def undistorted_report(report: Report, camera: Camera) -> Report:
-    """A report with silhouette, box, area and navel as without distortion.
+    """A report with silhouette, box, area, navel and landmarks as without distortion.
 
     What the lens shows beyond the border of that picture is cut off; somebody of whom nothing
     would be left stays as they are, as does everything where nothing is bent.
@@ -57,6 +57,7 @@ def undistorted_report(report: Report, camera: Camera) -> Report:
         area_px=int(mask.sum()),
         cut=report.cut or is_cut(box, mask.shape),
         root_px=_undistorted_px(report.root_px, camera),
+        landmarks=_undistorted_landmarks(report.landmarks, camera),
     )
 
 
@@ -66,6 +67,14 @@ def _undistorted_px(place: Pixel | None, camera: Camera) -> Pixel | None:
     K = np.array(camera.K)
     u, v = cv2.undistortPoints(np.array([[place]]), K, np.array(camera.distortion), P=K)[0, 0]
     return float(u), float(v)
+
+
+def _undistorted_landmarks(shown: Landmarks | None, camera: Camera) -> Landmarks | None:
+    if shown is None:
+        return None
+    K, places_px = np.array(camera.K), np.array([shown.joints_px])
+    straight = cv2.undistortPoints(places_px, K, np.array(camera.distortion), P=K)[:, 0]
+    return msgspec.structs.replace(shown, joints_px=tuple((u, v) for u, v in straight.tolist()))
 
 
 def undistorted(mask: Mask, camera: Camera) -> Mask:

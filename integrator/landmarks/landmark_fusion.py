@@ -1,0 +1,177 @@
+"""One body of what the outlines propose and what each view's picture shows of the joints."""
+
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Vector
+from common.compiled import compiled
+from integrator.landmarks import exchanged_sides, limb_springs, turned_about
+from integrator.landmarks.exchanged_sides import Exchanged, Exchanges
+from integrator.landmarks.joint_mixture import (
+    LEAST,
+    MOST,
+    PROPOSED,
+    SHOWN,
+    Witnesses,
+    most_probable,
+)
+from integrator.landmarks.landmark_rays import Rays
+from integrator.proposal import pose_network
+from integrator.proposal.pose_network import OTHER_SIDES
+from integrator.proposal.network_weights import JOINTS
+
+ARMS, LEGS = slice(0, 6), slice(6, 12)
+"""Of JOINTS."""
+PROPOSED_RIGHT: Final = (0.18, 0.9)
+"""Confidence in a proposed joint at which it is never, and always, taken for right."""
+SHOWN_RIGHT: Final = (0.02, 0.91)
+"""Likewise of a landmark."""
+FIRM_M: Final = 0.02
+PLATT: Final = (2.25, 5.87)
+"""The logit of the confidence in a joint whose standard deviation is FIRM_M, and how much it falls
+as that grows by e times: how often joints of r01, r04 and made-up people were less than 50 mm off.
+"""
+_DIAGONAL: Final = [0, 3, 5]
+
+
+class Memory(NamedTuple):
+    """What is remembered between instants."""
+
+    turned: tuple[float, bool]
+    """How probably proposals are turned about, and whether they are taken for it."""
+    exchanges: Exchanges
+    lengths_m: Vector
+    """(10,) of `limb_springs.ENDS`."""
+
+
+class Fused(NamedTuple):
+    """The joints of an instant."""
+
+    joints_m: NDArray[np.float64]
+    """(12, 3) world."""
+    confidence: Vector
+    """(12,) how probably each is less than 50 mm off."""
+    exchanged: Exchanged
+    memory: Memory
+
+
+def step(
+    before: Memory | None,
+    proposed_m: NDArray[np.float64],
+    confidence: Vector,
+    rays: Rays,
+    stature_m: float,
+) -> Fused:
+    """One instant: each joint where the proposal and both views together most probably have it.
+
+    Where faces say that the proposal is turned about, its sides are exchanged. Which sides a view exchanged is decided for arms and legs as wholes, by all that is said of
+    their joints; then limbs are given their lengths.
+
+    Args:
+        before: Of the instant before; None at the first.
+        proposed_m: (12, 3) world, of JOINTS.
+        confidence: (12,) how probably each is less than 50 mm off.
+        rays: Of both views' landmarks.
+        stature_m: Of the person.
+    """
+    turned = turned_about.step(None if before is None else before.turned, proposed_m, rays)
+    known = None if before is None else before.exchanges
+    if turned[1]:
+        proposed_m, confidence = proposed_m[OTHER_SIDES], confidence[OTHER_SIDES]
+    if before is not None and known is not None and turned[1] != before.turned[1]:
+        known = known[::-1, ::-1, ::-1, ::-1]
+    sure = (_share(confidence, PROPOSED_RIGHT), _share(rays.confidence, SHOWN_RIGHT))
+    spreads = (
+        PROPOSED.right + PROPOSED.unsure * (1.0 - confidence),
+        stature_m * (SHOWN.right + SHOWN.unsure * (1.0 - rays.confidence)),
+    )
+    seen = np.where(rays.confidence > 0.0, sure[1], 0.0)
+    values, places_m, precisions = _modes(
+        proposed_m,
+        sure[0],
+        spreads[0],
+        rays.centres_m,
+        rays.directions,
+        seen,
+        spreads[1],
+        stature_m,
+    )
+    exchanges, decided = exchanged_sides.step(
+        known,
+        values[ARMS].sum(axis=0),
+        values[LEGS].sum(axis=0),
+        _aside(proposed_m, rays.centres_m),
+    )
+    joints_m = np.concatenate([places_m[(ARMS, *decided.arms)], places_m[(LEGS, *decided.legs)]])
+    tight = np.concatenate([precisions[(ARMS, *decided.arms)], precisions[(LEGS, *decided.legs)]])
+    lengths_m = None if before is None else before.lengths_m
+    if lengths_m is not None:
+        joints_m = limb_springs.sprung(joints_m, tight, lengths_m)
+    memory = Memory(turned, exchanges, limb_springs.lengths_m(lengths_m, joints_m))
+    return Fused(joints_m, _confidence(tight), decided, memory)
+
+
+def _confidence(precisions: NDArray[np.float64]) -> Vector:
+    """How probably joints are less than 50 mm off, of how tightly they are held, (12, 6)."""
+    spreads_m = np.sqrt(3.0 / precisions[:, _DIAGONAL].sum(axis=1))
+    certain, steep = PLATT
+    found: Vector = 1.0 / (1.0 + np.exp(-certain) * (spreads_m / FIRM_M) ** steep)
+    return found
+
+
+def _share(confidence: Vector, between: tuple[float, float]) -> Vector:
+    never, always = between
+    found: Vector = ((confidence - never) / (always - never)).clip(LEAST, MOST)
+    return found
+
+
+def _aside(joints_m: NDArray[np.float64], centres_m: NDArray[np.float64]) -> tuple[float, float]:
+    """How far each camera sees a profile, in [0, 1]."""
+    lefts, rights = joints_m[0::2], joints_m[1::2]
+    girdles = [pose_network.SHOULDERS.start // 2, pose_network.HIPS.start // 2]
+    across = (lefts - rights)[girdles].sum(axis=0)
+    away = centres_m - joints_m.mean(axis=0)
+    away[:, 1] = 0.0
+    long = np.linalg.norm(away, axis=1) * np.linalg.norm(across) + 1e-9
+    first, second = (np.abs(away @ across) / long).tolist()
+    return first, second
+
+
+@compiled
+def _modes(
+    proposed_m: Any,
+    sure: Any,
+    spreads_m: Any,
+    centres_m: Any,
+    directions: Any,
+    seen: Any,
+    seen_m: Any,
+    stature_m: float,
+) -> tuple[Any, Any, Any]:
+    """Of each joint, exchanged by view 1 and by view 2: how probable its place is, log
+    (12, 2, 2), the place (12, 2, 2, 3) and its precision (12, 2, 2, 6)."""
+    n = len(proposed_m)
+    values, places_m = np.empty((n, 2, 2)), np.empty((n, 2, 2, 3))
+    precisions = np.empty((n, 2, 2, 6))
+    along, sureties, spreads = np.empty((2, 3)), np.empty(2), np.empty(3)
+    for joint in range(n):
+        spreads[0] = spreads_m[joint]
+        for first in range(2):
+            for second in range(2):
+                for view in range(2):
+                    own = joint ^ (first if view == 0 else second)
+                    along[view] = directions[view, own]
+                    sureties[view] = seen[view, own]
+                    spreads[1 + view] = seen_m[view, own]
+                told = Witnesses(
+                    proposed_m[joint], sure[joint], centres_m, along, sureties, spreads, stature_m
+                )
+                values[joint, first, second] = most_probable(
+                    told, places_m[joint, first, second], precisions[joint, first, second]
+                )
+    return values, places_m, precisions
+
+
+assert len(JOINTS) == LEGS.stop

@@ -1,0 +1,69 @@
+"""Landmarks as rays in the room."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import JOINT_NAMES
+from common.bus.messages import Landmarks, Report
+from common.rig.camera import Camera, Rig, arrays_of
+from integrator.proposal.network_weights import JOINTS
+
+AT: Final = [JOINT_NAMES.index(name) for name in JOINTS]
+"""Where the twelve joints that are proposed stand among the landmarks."""
+
+
+class Rays(NamedTuple):
+    """Where both views see the twelve joints that are proposed too."""
+
+    centres_m: NDArray[np.float64]
+    """(2, 3) the cameras."""
+    directions: NDArray[np.float64]
+    """(2, 12, 3) unit length."""
+    confidence: NDArray[np.float64]
+    """(2, 12) of `Landmarks.confidence`; 0: that view has no landmarks."""
+    rotations: NDArray[np.float64]
+    """(2, 3, 3) from the world to each camera."""
+    facing_deg: tuple[float, float]
+    """0 towards the camera, 90 to the right of its picture."""
+    facing_confidence: tuple[float, float]
+    """0: that view does not tell."""
+
+
+def rays_of(rig: Rig, seen: tuple[Report | None, Report | None]) -> Rays | None:
+    """The rays of an instant; None where no view reports landmarks.
+
+    Args:
+        rig: Two cameras without distortion.
+        seen: Of each view, as without distortion; None where it has nobody.
+    """
+    shown = [None if report is None else report.landmarks for report in seen]
+    if shown == [None, None]:
+        return None
+    directions, confidence = np.zeros((2, len(AT), 3)), np.zeros((2, len(AT)))
+    for view, (camera, landmarks) in enumerate(zip(rig.cameras, shown, strict=True)):
+        if landmarks is not None:
+            directions[view] = _directions(camera, landmarks)
+            confidence[view] = np.array(landmarks.confidence)[AT]
+    cameras = [arrays_of(camera) for camera in rig.cameras]
+    facings = [
+        (0.0, 0.0) if each is None else (each.facing_deg, each.facing_confidence) for each in shown
+    ]
+    (facing_1, sure_1), (facing_2, sure_2) = facings
+    return Rays(
+        np.stack([camera.centre for camera in cameras]),
+        directions,
+        confidence,
+        np.stack([camera.R for camera in cameras]),
+        (facing_1, facing_2),
+        (sure_1, sure_2),
+    )
+
+
+def _directions(camera: Camera, landmarks: Landmarks) -> NDArray[np.float64]:
+    known, places_px = arrays_of(camera), np.array(landmarks.joints_px)[AT]
+    plane = np.ones((len(AT), 3))
+    plane[:, :2] = (places_px - known.middle_px) / known.focal_px
+    found: NDArray[np.float64] = plane @ known.R
+    return found / np.linalg.norm(found, axis=1, keepdims=True)

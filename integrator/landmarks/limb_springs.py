@@ -1,0 +1,94 @@
+"""Limbs keep their lengths: joints that were found one by one are drawn to where they do."""
+
+import math
+from typing import Any, Final
+
+import numpy as np
+
+from common.body.body import Vector
+from common.compiled import compiled
+from integrator.proposal.network_weights import JOINTS
+
+SPRING_M: Final = 0.028
+"""Standard deviation of a limb's length about what it was before."""
+LEARNT: Final = 0.05
+"""Share of what is remembered of lengths that one instant replaces."""
+ROUNDS: Final = 2
+
+_PAIRS: Final = (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
+ENDS: Final = np.array(
+    [
+        *([JOINTS.index(f"{side}_{end}") for end in pair] for pair in _PAIRS for side in "lr"),
+        [JOINTS.index("l_shoulder"), JOINTS.index("r_shoulder")],
+        [JOINTS.index("l_hip"), JOINTS.index("r_hip")],
+    ]
+)
+"""(10, 2) the joints at both ends of each spring: limbs, left and right in turn, and two girdles."""
+_LIMBS: Final = 2 * len(_PAIRS)
+
+
+def lengths_m(before: Vector | None, joints_m: Vector) -> Vector:
+    """What is remembered of the lengths of the springs, (10,): both sides have the same.
+
+    Args:
+        before: At the instant before; None at the first.
+        joints_m: (12, 3)
+    """
+    found = np.linalg.norm(joints_m[ENDS[:, 0]] - joints_m[ENDS[:, 1]], axis=1)
+    found[:_LIMBS] = np.repeat(found[:_LIMBS].reshape(-1, 2).mean(axis=1), 2)
+    return found if before is None else before + LEARNT * (found - before)
+
+
+@compiled
+def sprung(joints_m: Any, precisions: Any, lengths: Any) -> Any:
+    """The joints (n, 3) that are the likeliest where their distances are known.
+
+    Args:
+        joints_m: Each where it is likeliest by itself.
+        precisions: (n, 6) xx, xy, xz, yy, yz, zz of their inverse covariances, 1 / m^2.
+        lengths: (springs,) metres.
+    """
+    n = len(joints_m)
+    found = joints_m.copy()
+    stiff = 1.0 / (SPRING_M * SPRING_M)
+    for _ in range(ROUNDS):
+        normal, right = np.zeros((3 * n, 3 * n)), np.zeros(3 * n)
+        for joint in range(n):
+            k = 0
+            for i in range(3):
+                for j in range(i, 3):
+                    a, b = 3 * joint + i, 3 * joint + j
+                    tight = precisions[joint, k]
+                    normal[a, b] = normal[b, a] = tight
+                    right[a] -= tight * (found[joint, j] - joints_m[joint, j])
+                    if i != j:
+                        right[b] -= tight * (found[joint, i] - joints_m[joint, i])
+                    k += 1
+        for spring in range(len(ENDS)):
+            _pull(ENDS[spring, 0], ENDS[spring, 1], lengths[spring], stiff, found, normal, right)
+        found += np.linalg.solve(normal, right).reshape(n, 3)
+    return found
+
+
+@compiled
+def _pull(
+    near: int, far: int, length: float, stiff: float, joints_m: Any, normal: Any, right: Any
+) -> None:
+    """One spring's share of the normal equations."""
+    x, y, z = (
+        joints_m[near, 0] - joints_m[far, 0],
+        joints_m[near, 1] - joints_m[far, 1],
+        joints_m[near, 2] - joints_m[far, 2],
+    )
+    long = math.sqrt(x * x + y * y + z * z) + 1e-9
+    axis = (x / long, y / long, z / long)
+    over = long - length
+    for i in range(3):
+        right[3 * near + i] -= stiff * over * axis[i]
+        right[3 * far + i] += stiff * over * axis[i]
+        for j in range(3):
+            pull = stiff * axis[i] * axis[j]
+            normal[3 * near + i, 3 * near + j] += pull
+            normal[3 * far + i, 3 * far + j] += pull
+            normal[3 * near + i, 3 * far + j] -= pull
+            normal[3 * far + i, 3 * near + j] -= pull

@@ -1,0 +1,73 @@
+"""Whether a proposal has front for back: outlines hardly tell, faces and feet do."""
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from integrator.landmarks.landmark_rays import Rays
+from integrator.proposal import pose_network
+
+WIDE_DEG: Final = 30.0
+"""Standard deviation of the facing that a view tells."""
+CONFUSED: Final = 0.15
+"""How often a view takes front for back; a profile stays the same profile then."""
+ANYHOW: Final = 0.02
+"""How often it tells any other facing."""
+RARELY: Final = 0.01
+"""How often proposals are turned about ..."""
+ANEW: Final = 0.1
+"""... and how often it is decided anew whether they are."""
+TRUST: Final = 0.3
+"""How much of what an instant says is believed: the next says nearly the same."""
+INSISTS: Final = 0.9
+"""A proposal is turned where that is so probable, and turned no more where it is as improbable."""
+
+
+def step(
+    before: tuple[float, bool] | None, joints_m: NDArray[np.float64], rays: Rays
+) -> tuple[float, bool]:
+    """How probably the proposal of an instant is turned about, and whether it is taken for it.
+
+    Args:
+        before: Of the instant before; None at the first.
+        joints_m: (12, 3) world, as proposed.
+        rays: Their facings.
+    """
+    was, turned = (RARELY, False) if before is None else before
+    now = (1.0 - ANEW) * was + ANEW * RARELY
+    odds = math.log(now / (1.0 - now))
+    for view in range(2):
+        if rays.facing_confidence[view] > 0.0:
+            facing = yaw_deg(rays.rotations[view], joints_m)
+            said = rays.facing_deg[view]
+            odds += TRUST * math.log(_told(said, facing + 180.0) / _told(said, facing))
+    now = 1.0 / (1.0 + math.exp(-odds))
+    return now, now > (1.0 - INSISTS if turned else INSISTS)
+
+
+def yaw_deg(rotation: NDArray[np.float64], joints_m: NDArray[np.float64]) -> float:
+    """Which way shoulders and hips face: 0 the camera, 90 the right of its picture.
+
+    Args:
+        rotation: (3, 3) from the world to the camera.
+        joints_m: (12, 3)
+    """
+    across = np.zeros(3)
+    for girdle in (pose_network.SHOULDERS, pose_network.HIPS):
+        left, right = joints_m[girdle]
+        across += left - right
+    to_right, _, away = rotation @ across
+    return math.degrees(math.atan2(away, to_right))
+
+
+def _told(said_deg: float, facing_deg: float) -> float:
+    """How probably a view says so of somebody who faces there."""
+    plain = (1.0 - CONFUSED) * _near(said_deg - facing_deg)
+    return plain + CONFUSED * _near(said_deg - (180.0 - facing_deg)) + ANYHOW
+
+
+def _near(off_deg: float) -> float:
+    off_deg = (off_deg + 180.0) % 360.0 - 180.0
+    return math.exp(-0.5 * (off_deg / WIDE_DEG) ** 2)
