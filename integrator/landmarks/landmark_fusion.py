@@ -19,8 +19,8 @@ from integrator.landmarks.joint_mixture import (
 )
 from integrator.landmarks.landmark_rays import Rays
 from integrator.proposal import pose_network
-from integrator.proposal.pose_network import OTHER_SIDES
 from integrator.proposal.network_weights import JOINTS
+from integrator.proposal.pose_network import OTHER_SIDES
 
 ARMS, LEGS = slice(0, 6), slice(6, 12)
 """Of JOINTS."""
@@ -66,8 +66,9 @@ def step(
 ) -> Fused:
     """One instant: each joint where the proposal and both views together most probably have it.
 
-    Where faces say that the proposal is turned about, its sides are exchanged. Which sides a view exchanged is decided for arms and legs as wholes, by all that is said of
-    their joints; then limbs are given their lengths.
+    Where faces say that the proposal is turned about, its sides are exchanged. Which sides a view
+    exchanged is decided for arms and legs as wholes, by all that is said of their joints; then
+    limbs are given their lengths.
 
     Args:
         before: Of the instant before; None at the first.

@@ -23,7 +23,7 @@ ENDS: Final = np.array(
         [JOINTS.index("l_hip"), JOINTS.index("r_hip")],
     ]
 )
-"""(10, 2) the joints at both ends of each spring: limbs, left and right in turn, and two girdles."""
+"""(10, 2) the joints at both ends of springs: limbs, left and right in turn, and two girdles."""
 _LIMBS: Final = 2 * len(_PAIRS)
 
 

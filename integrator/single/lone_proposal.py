@@ -5,10 +5,12 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import JOINT_NAMES, LIMB_ENDS
+from common.body.body import JOINT_NAMES, LIMB_ENDS, Vector
 from common.body.stick_body import SHOULDERS_BELOW
 from common.bus.messages import Lifting
 from common.rig.camera import Camera, centre, ray
+from integrator.landmarks import landmark_fusion, turned_about
+from integrator.landmarks.landmark_rays import rays_of
 from integrator.proposal import pose_network, pose_proposal
 from integrator.proposal.pose_proposal import HEAD, NECK, PELVIS
 from integrator.rig.undistortion import undistorted_rig
@@ -21,6 +23,10 @@ CROWN: Final = 0.155
 """How far the crown lies above the neck, in statures: 0.15 to 0.17 of r01, r04 and synthetic people
 whose arms are not raised."""
 
+BESIDE: Final = 1 / 3
+"""Exponent by which the confidence in a joint that one outline proposes becomes that in its place
+in the picture: chosen on r01 and r04."""
+
 
 class Proposed(NamedTuple):
     """What a silhouette proposes, and what is remembered of it."""
@@ -30,24 +36,41 @@ class Proposed(NamedTuple):
     """It faces the side that the user names, if they name one."""
     memory: pose_proposal.Memory
     front: Front | None
+    landmarks: landmark_fusion.Memory | None
 
 
-def step(memory: pose_proposal.Memory | None, front: Front | None, sight: Sight) -> Proposed:
-    """One instant of one view.
+class Before(NamedTuple):
+    """What is remembered of the instant before."""
+
+    memory: pose_proposal.Memory | None
+    """Of the network; None at the first."""
+    front: Front | None
+    """Of front and back; None: the network remembers it."""
+    landmarks: landmark_fusion.Memory | None
+
+
+def step(before: Before, sight: Sight) -> Proposed:
+    """One instant of one view: what the outline proposes, and what the picture shows with it.
 
     Args:
-        memory: Of the network; None at the first.
-        front: What is remembered of front and back; None: the network remembers it.
+        before: What is remembered.
         sight: What is seen.
     """
+    front = before.front
     camera, annotations = sight.camera, sight.annotations
     seen = (sight.report, None) if sight.number == 1 else (None, sight.report)
-    known = pose_proposal.step(memory, sight.bdp, undistorted_rig(sight.rig), seen, sight.dt_s)
+    known = pose_proposal.step(
+        before.memory, sight.bdp, undistorted_rig(sight.rig), seen, sight.dt_s
+    )
     joints_m = _with_trunk(sight, known.joints_m)
     if sight.method.reflection and front is not None:
         yaw = reflection.yaw_deg(camera, joints_m)
-        front, behind = reflection.front_of(front, yaw, annotations.orientation, sight.dt_s)
+        shown = sight.report.landmarks
+        tells = shown is not None and shown.facing_confidence > 0.0
+        says = turned_about.away_says(shown.facing_deg, yaw) if shown and tells else 0.0
+        front, behind = reflection.front_of(front, yaw, annotations.orientation, sight.dt_s, says)
         joints_m = reflection.seen_from_behind(camera, joints_m) if behind else joints_m
+    joints_m, confidence, landmarks = _with_landmarks(before, sight, joints_m, known.confidence)
     joints_m = reflection.leaning(camera, joints_m, annotations.depth)
     for name, place in annotations.joints_px.items():
         at = JOINT_NAMES.index(name)
@@ -57,13 +80,30 @@ def step(memory: pose_proposal.Memory | None, front: Front | None, sight: Sight)
     pose, joints_m = posed(sight, joints_m)
     lifting = Lifting(
         annotations.orientation or reflection.faces(reflection.yaw_deg(camera, joints_m)),
-        1.0 if annotations.orientation else float(known.confidence[PELVIS]),
-        tuple(known.confidence[LIMB_ENDS[:, 1]].tolist()),
+        1.0 if annotations.orientation else float(confidence[PELVIS]),
+        tuple(confidence[LIMB_ENDS[:, 1]].tolist()),
     )
     score = stick_similarity(sight, joints_m)
-    return Proposed(
-        Hypothesis(joints_m, pose, score, known.confidence, lifting), agrees, known.memory, front
-    )
+    found = Hypothesis(joints_m, pose, score, confidence, lifting)
+    return Proposed(found, agrees, known.memory, front, landmarks)
+
+
+def _with_landmarks(
+    before: Before, sight: Sight, joints_m: NDArray[np.float64], confidence: Vector
+) -> tuple[NDArray[np.float64], Vector, landmark_fusion.Memory | None]:
+    """Joints (15, 3) and the confidence in them, with what the picture shows.
+
+    It says nothing of their depth, which is what one outline mostly gets wrong.
+    """
+    seen = (sight.report, None) if sight.number == 1 else (None, sight.report)
+    rays = rays_of(undistorted_rig(sight.rig), seen)
+    if rays is None:
+        return joints_m, confidence, before.landmarks
+    at = pose_proposal.AT
+    beside = confidence[at] ** BESIDE
+    fused = landmark_fusion.step(before.landmarks, joints_m[at], beside, rays, sight.stature_m)
+    sure = pose_proposal.of_landmarks(fused.confidence * confidence[at] / beside)
+    return _with_trunk(sight, fused.joints_m), sure, fused.memory
 
 
 def _with_trunk(sight: Sight, found: NDArray[np.float64]) -> NDArray[np.float64]:

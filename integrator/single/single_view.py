@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from common.bus.messages import Lifting
 from common.rig.camera import arrays_of
+from integrator.landmarks import landmark_fusion
 from integrator.proposal.pose_proposal import Memory
 from integrator.single import depth_signs, lifted_stick, lone_proposal, reflection
 from integrator.single.reflection import Front
@@ -29,6 +30,8 @@ class Alone(NamedTuple):
     front: Front | None
     """Front or back; None where the network's own memory has it from both views."""
     signs: depth_signs.Memory
+    landmarks: landmark_fusion.Memory | None
+    """What is remembered of the landmarks."""
     stick: bool
     """A stick body is asked for at the next instant: what is proposed fits badly."""
 
@@ -50,8 +53,9 @@ def begun(sight: Sight, joints_m: NDArray[np.float64] | None) -> Alone:
     """
     nothing, signs = Lifting("", 1.0, ()), depth_signs.init()
     if joints_m is None:
-        return Alone(0.0, nothing, Front(), signs, stick=False)
-    return Alone(0.0, nothing, None, _witnessed(sight, signs, joints_m), stick=False)
+        return Alone(0.0, nothing, Front(), signs, None, stick=False)
+    signs = _witnessed(sight, signs, joints_m)
+    return Alone(0.0, nothing, None, signs, None, stick=False)
 
 
 def step(memory: Memory | None, alone: Alone, sight: Sight) -> Found:
@@ -65,9 +69,10 @@ def step(memory: Memory | None, alone: Alone, sight: Sight) -> Found:
     if sight.method.stick_lifting:
         signs, lifted = lifted_stick.step(alone.signs, sight)
         return _found(lifted, memory, alone._replace(signs=signs))
-    seen = lone_proposal.step(memory, alone.front, sight)
+    before = lone_proposal.Before(memory, alone.front, alone.landmarks)
+    seen = lone_proposal.step(before, sight)
     body, suffices = seen.found, seen.agrees and seen.found.score >= GOOD
-    alone = alone._replace(front=seen.front, stick=not suffices)
+    alone = alone._replace(front=seen.front, landmarks=seen.landmarks, stick=not suffices)
     if suffices or sight.report.fit is None:
         signs = _witnessed(sight, alone.signs, body.joints_m, body.lifting.orientation_confidence)
         return _found(body, seen.memory, alone._replace(signs=signs))
