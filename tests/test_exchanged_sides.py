@@ -1,0 +1,40 @@
+"""Who took left for right, held against made-up instants of which it is known."""
+
+import numpy as np
+
+from integrator.landmarks.exchanged_sides import Exchanged, step
+
+FACADE_AND_FLANK = (0.0, 1.0)
+NOTHING = np.zeros((2, 2))
+
+
+def says(first: int, second: int, by: float) -> np.ndarray:
+    """Log probability in favour of one way in which the two views exchanged sides."""
+    said = NOTHING.copy()
+    said[first, second] = by
+    return said
+
+
+def test_nobody_is_taken_to_exchange_anything_unless_something_says_so() -> None:
+    probable, decided = step(None, NOTHING, NOTHING, FACADE_AND_FLANK)
+    assert decided == Exchanged((0, 0), (0, 0))
+    assert np.isclose(probable.sum(), 1.0)
+
+
+def test_legs_that_fit_only_exchanged_are_exchanged_and_the_arms_are_not() -> None:
+    _, decided = step(None, says(0, 0, 10.0), says(0, 1, 10.0), FACADE_AND_FLANK)
+    assert decided == Exchanged((0, 0), (0, 1))
+
+
+def test_an_exchange_lasts_over_an_instant_that_tells_nothing() -> None:
+    before, _ = step(None, NOTHING, says(0, 1, 20.0), FACADE_AND_FLANK)
+    after, decided = step(before, NOTHING, NOTHING, FACADE_AND_FLANK)
+    assert decided.legs == (0, 1)
+    for _ in range(30):
+        after, decided = step(after, NOTHING, NOTHING, FACADE_AND_FLANK)
+    assert decided == Exchanged((0, 0), (0, 0))
+
+
+def test_a_profile_exchanges_arms_or_legs_alone_more_often_than_a_front() -> None:
+    probable, _ = step(None, NOTHING, NOTHING, FACADE_AND_FLANK)
+    assert probable[:, 0, :, 1].sum() > probable[0, :, 1, :].sum()

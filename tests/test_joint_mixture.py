@@ -1,0 +1,77 @@
+"""Where a joint most probably is, held against places that are known."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from integrator.landmarks.joint_mixture import Witnesses, most_probable
+
+CENTRES_M = np.array([[0.0, 1.0, 4.0], [-4.0, 1.0, 0.0]])
+TRUE_M = np.array([0.1, 1.2, -0.2])
+places = st.tuples(st.floats(-1, 1), st.floats(0, 2), st.floats(-1, 1)).map(np.array)
+
+
+def rays_through(*places_m: np.ndarray) -> np.ndarray:
+    along = np.stack(places_m) - CENTRES_M
+    return np.asarray(along / np.linalg.norm(along, axis=1, keepdims=True))
+
+
+def told(
+    proposed_m: np.ndarray,
+    directions: np.ndarray,
+    surety: float = 0.8,
+    sureties: tuple[float, float] = (0.8, 0.8),
+) -> Witnesses:
+    spreads_m = np.array([0.02, 0.03, 0.03])
+    return Witnesses(proposed_m, surety, CENTRES_M, directions, np.array(sureties), spreads_m, 1.75)
+
+
+def place_of(witnesses: Witnesses) -> tuple[np.ndarray, float, np.ndarray]:
+    place_m, precision = np.empty(3), np.empty(6)
+    return place_m, most_probable(witnesses, place_m, precision), precision
+
+
+@given(places)
+def test_witnesses_who_agree_are_believed(true_m: np.ndarray) -> None:
+    place_m, _, _ = place_of(told(true_m, rays_through(true_m, true_m)))
+    assert np.linalg.norm(place_m - true_m) < 1e-6
+
+
+def test_two_rays_that_meet_outvote_a_proposal_that_is_far_away() -> None:
+    place_m, _, _ = place_of(told(TRUE_M + 0.4, rays_through(TRUE_M, TRUE_M)))
+    assert np.linalg.norm(place_m - TRUE_M) < 0.02
+
+
+def test_a_ray_that_leads_elsewhere_does_not_pull() -> None:
+    elsewhere = TRUE_M - np.array([0.0, 0.5, 0.0])
+    place_m, _, _ = place_of(told(TRUE_M, rays_through(TRUE_M, elsewhere)))
+    assert np.linalg.norm(place_m - TRUE_M) < 0.005
+
+
+def test_a_proposal_that_is_unsure_gives_way_across_a_sure_ray_and_keeps_its_depth() -> None:
+    proposed_m = TRUE_M + np.array([0.15, 0.0, 0.0])
+    rays = rays_through(TRUE_M, TRUE_M)
+    place_m, _, _ = place_of(told(proposed_m, rays, surety=0.2, sureties=(0.9, 0.0)))
+    off = place_m - proposed_m
+    assert off @ rays[0] < 0.05
+    assert np.linalg.norm(np.cross(place_m - CENTRES_M[0], rays[0])) < 0.03
+
+
+def test_agreement_is_more_probable_and_held_more_tightly() -> None:
+    _, agreed, tight = place_of(told(TRUE_M, rays_through(TRUE_M, TRUE_M)))
+    apart = rays_through(TRUE_M + 0.3, TRUE_M - 0.3)
+    _, disputed, loose = place_of(told(TRUE_M, apart))
+    assert agreed > disputed
+    assert tight[[0, 3, 5]].sum() > loose[[0, 3, 5]].sum()
+
+
+@given(places, places, places)
+def test_the_place_is_never_beyond_what_was_said(
+    proposed_m: np.ndarray, first_m: np.ndarray, second_m: np.ndarray
+) -> None:
+    """Finite whatever is said, and in the room in which it was said."""
+    place_m, value, precision = place_of(told(proposed_m, rays_through(first_m, second_m)))
+    assert np.isfinite(place_m).all()
+    assert np.isfinite(value)
+    assert np.isfinite(precision).all()
+    assert np.abs(place_m).max() < 4.0

@@ -1,0 +1,159 @@
+"""Outlines' proposals and pictures' landmarks made one, held against bodies that are known."""
+
+import msgspec
+import numpy as np
+import pytest
+from staging import PERSON, RIG, report, silhouettes, standing
+
+from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
+from common.body.kinematics import joints
+from common.body.proportions import body_vector
+from common.bus.messages import Landmarks
+from common.rig.camera import Camera, project
+from integrator.landmarks import landmark_fusion, turned_about
+from integrator.landmarks.landmark_rays import AT, Rays, rays_of
+from integrator.proposal.pose_network import OTHER_SIDES
+from integrator.rig.undistortion import undistorted_camera, undistorted_report
+
+BODY = body_vector(PERSON)
+FAR = np.array([0.25, -0.2, 0.1])
+LEGS = [i for i, name in enumerate(JOINT_NAMES) if name[2:] in ("hip", "knee", "ankle")]
+OTHER_LEGS = [
+    JOINT_NAMES.index(("r" if JOINT_NAMES[i][0] == "l" else "l") + JOINT_NAMES[i][1:]) for i in LEGS
+]
+
+
+def walking(yaw_deg: float = 0.0) -> np.ndarray:
+    pose = standing(l_hip_x=40.0, l_knee_x=-60.0, r_shoulder_x=50.0)
+    pose[POSE_INDEX["torso_y"]] = yaw_deg
+    return np.asarray(joints(BODY, pose))
+
+
+def shown(
+    camera: Camera, joints_m: np.ndarray, facing_deg: float = 0.0, sure: float = 0.85
+) -> Landmarks:
+    places_px = project(camera, joints_m)
+    return Landmarks(
+        joints_px=tuple((float(x), float(y)) for x, y in places_px),
+        confidence=(sure,) * len(JOINT_NAMES),
+        facing_deg=facing_deg,
+        facing_confidence=0.9,
+    )
+
+
+def rays(
+    joints_1_m: np.ndarray, joints_2_m: np.ndarray, facings: tuple[float, float] = (0.0, 90.0)
+) -> Rays:
+    masks = silhouettes(standing())
+    first, second = (
+        shown(camera, joints_m, facing)
+        for camera, joints_m, facing in zip(
+            RIG.cameras, (joints_1_m, joints_2_m), facings, strict=True
+        )
+    )
+    seen = report(1, masks[0], landmarks=first), report(2, masks[1], landmarks=second)
+    found = rays_of(RIG, seen)
+    assert found is not None
+    return found
+
+
+def fused(
+    proposed_m: np.ndarray, seen: Rays, confidence: float, instants: int = 1
+) -> landmark_fusion.Fused:
+    memory = None
+    for _ in range(instants):
+        found = landmark_fusion.step(memory, proposed_m, np.full(12, confidence), seen, 1.75)
+        memory = found.memory
+    return found
+
+
+def test_rays_lead_from_the_cameras_through_the_joints() -> None:
+    true_m = walking()
+    found = rays(true_m, true_m)
+    for view in range(2):
+        away = true_m[AT] - found.centres_m[view]
+        assert np.cross(away, found.directions[view]) == pytest.approx(np.zeros((12, 3)), abs=1e-9)
+        assert ((away * found.directions[view]).sum(axis=1) > 0.0).all()
+
+
+def test_no_view_with_landmarks_gives_no_rays() -> None:
+    mask = silhouettes(standing())[0]
+    assert rays_of(RIG, (report(1, mask), None)) is None
+
+
+def test_an_arm_that_the_outline_has_wrong_is_where_both_pictures_show_it() -> None:
+    true_m = walking()
+    proposed_m = true_m[AT].copy()
+    wrists = [i for i, at in enumerate(AT) if JOINT_NAMES[at].endswith("wrist")]
+    proposed_m[wrists] += FAR
+    found = fused(proposed_m, rays(true_m, true_m), 0.6)
+    off_m = np.linalg.norm(found.joints_m - true_m[AT], axis=1)
+    assert off_m.max() < 0.2 * np.linalg.norm(FAR)
+    assert found.confidence.min() > 0.5
+
+
+def test_a_view_that_exchanges_the_legs_is_found_out() -> None:
+    """The other view and the proposal agree: its legs are taken the other way round."""
+    true_m = walking()
+    mistaken_m = true_m.copy()
+    mistaken_m[LEGS] = true_m[OTHER_LEGS]
+    found = fused(true_m[AT], rays(true_m, mistaken_m), 0.8)
+    assert found.exchanged.arms == (0, 0)
+    assert found.exchanged.legs == (0, 1)
+    assert np.linalg.norm(found.joints_m - true_m[AT], axis=1).max() < 0.02
+
+
+def test_what_speaks_against_each_other_is_less_sure() -> None:
+    true_m = walking()
+    agreed = fused(true_m[AT], rays(true_m, true_m), 0.8)
+    disputed = fused(true_m[AT], rays(true_m + 0.3, true_m - (0.2, 0.0, 0.2)), 0.8)
+    assert agreed.confidence.mean() > 0.9
+    assert disputed.confidence.mean() < agreed.confidence.mean()
+
+
+@pytest.mark.parametrize("yaw_deg", [0.0, 40.0, -30.0])
+def test_a_proposal_that_both_faces_contradict_is_turned_and_one_that_they_confirm_is_not(
+    yaw_deg: float,
+) -> None:
+    true_m = walking(yaw_deg)
+    facings = [turned_about.yaw_deg(np.array(camera.R), true_m[AT]) for camera in RIG.cameras]
+    seen = rays(true_m, true_m, (facings[0], facings[1]))
+    assert not fused(true_m[AT], seen, 0.8, instants=10).memory.turned[1]
+    found = fused(true_m[AT][OTHER_SIDES], seen, 0.8, instants=10)
+    assert found.memory.turned[1]
+    assert np.linalg.norm(found.joints_m - true_m[AT], axis=1).max() < 0.02
+
+
+def test_a_camera_that_takes_front_for_back_by_itself_turns_nobody() -> None:
+    """Front and back are confused by one view often, a profile's left and right by none."""
+    true_m = walking()
+    facing_2 = turned_about.yaw_deg(np.array(RIG.cameras[1].R), true_m[AT])
+    found = fused(true_m[AT], rays(true_m, true_m, (180.0, facing_2)), 0.8, instants=30)
+    assert not found.memory.turned[1]
+
+
+def test_facing_is_zero_towards_the_camera_and_ninety_to_the_right_of_its_picture() -> None:
+    pose = rest_pose()
+    first = RIG.cameras[0]
+    assert turned_about.yaw_deg(np.array(first.R), joints(BODY, pose)[AT]) == pytest.approx(
+        0.0, abs=1.0
+    )
+    pose[POSE_INDEX["torso_y"]] = 90.0
+    turned_m = joints(BODY, pose)[AT]
+    nose_m = turned_m.mean(axis=0) + np.array([1.0, 0.0, 0.0])
+    to_right = (
+        project(first, nose_m[None])[0, 0] > project(first, turned_m.mean(axis=0)[None])[0, 0]
+    )
+    assert turned_about.yaw_deg(np.array(first.R), turned_m) == pytest.approx(
+        90.0 if to_right else -90.0, abs=1.0
+    )
+
+
+def test_landmarks_of_a_lens_that_bends_are_straightened_with_the_outline() -> None:
+    bent = msgspec.structs.replace(RIG.cameras[0], distortion=(-0.2, 0.05, 0.0, 0.0, 0.0))
+    true_m = walking()
+    told = report(1, silhouettes(standing())[0], landmarks=shown(bent, true_m))
+    straight = undistorted_report(told, bent).landmarks
+    assert straight is not None
+    expected = project(undistorted_camera(bent), true_m)
+    assert np.array(straight.joints_px) == pytest.approx(expected, abs=0.05)
