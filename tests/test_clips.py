@@ -212,7 +212,7 @@ def test_a_picture_is_no_film(tmp_path: Path, decoder: Decoder) -> None:
     assert "room.png is one picture: name a video" in refusal(Settings(camera_1=camera), decoder)
 
 
-def test_a_background_of_another_size_is_refused(tmp_path: Path, decoder: Decoder) -> None:
+def test_a_background_of_another_shape_is_refused(tmp_path: Path, decoder: Decoder) -> None:
     source, plate = film(tmp_path / "cam1.avi"), tmp_path / "empty.png"
     camera = CameraSettings(source=source, background=str(plate))
     cv2.imwrite(str(plate), np.zeros((SIZE[1], SIZE[0], 3), np.uint8))

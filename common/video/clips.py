@@ -20,7 +20,8 @@ from common.video.frame_times import timed
 
 SAME_RATE: Final = 0.01
 """Frame rates that differ by less drift apart by less than a frame in a clip of 100."""
-
+SAME_ASPECT: Final = 0.02
+"""Pictures whose sides have ratios that differ by less show the same, at two sizes."""
 AVI_HEAD: Final = b"RIFF"
 
 CAMERA_HZ: Final = 15.0
@@ -142,8 +143,9 @@ def _probed(source: Source, decoder: Decoder) -> VideoInfo:
 
 
 def _refuse_another_scene(named: Footage, plate: VideoInfo, info: VideoInfo) -> None:
-    """A picture of another size was cropped, or is of another camera."""
-    if (plate.width, plate.height) != (info.width, info.height):
+    """A picture of another shape was cropped, or is of another camera; its size does not matter."""
+    aspect = plate.width * info.height / (plate.height * info.width)
+    if abs(aspect - 1.0) > SAME_ASPECT:
         raise ClipError(
             f"the background {named.settings.background} has {plate.width}x{plate.height} pixels, "
             f"{named.source} {info.width}x{info.height}: take an empty frame of the same camera, "

@@ -47,17 +47,6 @@ def step(
     return now, now > (1.0 - INSISTS if turned else INSISTS)
 
 
-def away_says(said_deg: float, facing_deg: float) -> float:
-    """What a view's facing adds to the log odds that somebody faces away, not towards it.
-
-    Args:
-        said_deg: As the view has it.
-        facing_deg: As the outline has it, front for back perhaps.
-    """
-    away = facing_deg if abs(facing_deg) > 90.0 else 180.0 - facing_deg
-    return TRUST * math.log(_told(said_deg, away) / _told(said_deg, 180.0 - away))
-
-
 def yaw_deg(rotation: NDArray[np.float64], joints_m: NDArray[np.float64]) -> float:
     """Which way shoulders and hips face: 0 the camera, 90 the right of its picture.
 

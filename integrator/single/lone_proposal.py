@@ -9,7 +9,7 @@ from common.body.body import JOINT_NAMES, LIMB_ENDS, Vector
 from common.body.stick_body import SHOULDERS_BELOW
 from common.bus.messages import Lifting
 from common.rig.camera import Camera, centre, ray
-from integrator.landmarks import landmark_fusion, turned_about
+from integrator.landmarks import landmark_fusion
 from integrator.landmarks.landmark_rays import rays_of
 from integrator.proposal import pose_network, pose_proposal
 from integrator.proposal.pose_proposal import HEAD, NECK, PELVIS
@@ -65,10 +65,7 @@ def step(before: Before, sight: Sight) -> Proposed:
     joints_m = _with_trunk(sight, known.joints_m)
     if sight.method.reflection and front is not None:
         yaw = reflection.yaw_deg(camera, joints_m)
-        shown = sight.report.landmarks
-        tells = shown is not None and shown.facing_confidence > 0.0
-        says = turned_about.away_says(shown.facing_deg, yaw) if shown and tells else 0.0
-        front, behind = reflection.front_of(front, yaw, annotations.orientation, sight.dt_s, says)
+        front, behind = reflection.front_of(front, yaw, annotations.orientation, sight.dt_s)
         joints_m = reflection.seen_from_behind(camera, joints_m) if behind else joints_m
     joints_m, confidence, landmarks = _with_landmarks(before, sight, joints_m, known.confidence)
     joints_m = reflection.leaning(camera, joints_m, annotations.depth)

@@ -15,11 +15,6 @@ SIDEWAYS_DEG: Final = 20.0
 """Somebody who is turned so near to a right angle is seen from the side."""
 INSISTS_S: Final = 3.0
 """Proposals that differ for so long from what is remembered of front and back are believed."""
-SURELY: Final = 3.0
-"""Beyond these odds face and feet settle it."""
-MOST_ODDS: Final = 6.0
-LASTS: Final = 0.97
-"""What is left of the odds at the next instant."""
 NEARLY_DEG: Final = 40.0
 """How far a proposal may face beside the sector that the user named."""
 PELVIS: Final = JOINT_NAMES.index("pelvis")
@@ -39,8 +34,6 @@ class Front(NamedTuple):
     """Whether the person was seen from the side just before."""
     doubted_s: float = 0.0
     """For how long proposals have said otherwise."""
-    odds: float = 0.0
-    """Log odds that the person faces away, by their face and feet."""
 
 
 def yaw_deg(camera: Camera, joints_m: Joints) -> float:
@@ -60,7 +53,7 @@ def faces(yaw: float) -> Orientation:
 
 
 def front_of(
-    before: Front, yaw: float, named: Orientation | None, dt_s: float, says: float = 0.0
+    before: Front, yaw: float, named: Orientation | None, dt_s: float
 ) -> tuple[Front, bool]:
     """What is remembered now, and whether a proposal is to be seen from behind for it.
 
@@ -72,20 +65,17 @@ def front_of(
         yaw: Of the proposal, degrees.
         named: The user's word, which settles it.
         dt_s: Time since then.
-        says: What face and feet add to the log odds that the person faces away.
     """
-    away, odds = abs(yaw) > 90.0, float(np.clip(LASTS * before.odds + says, -MOST_ODDS, MOST_ODDS))
+    away = abs(yaw) > 90.0
     if named is not None and named not in ("left", "right"):
         due = named.startswith("backward")
         return Front(due), due != away
     if named is not None or abs(abs(yaw) - 90.0) <= SIDEWAYS_DEG:
-        return Front(before.away, aside=True, odds=odds), False
-    if abs(odds) > SURELY:
-        return Front(odds > 0.0, odds=odds), (odds > 0.0) != away
+        return Front(before.away, aside=True), False
     doubted_s = before.doubted_s + dt_s
     if before.aside or away == before.away or doubted_s > INSISTS_S:
-        return Front(away, odds=odds), False
-    return Front(before.away, doubted_s=doubted_s, odds=odds), True
+        return Front(away), False
+    return Front(before.away, doubted_s=doubted_s), True
 
 
 def agrees(yaw: float, named: Orientation) -> bool:

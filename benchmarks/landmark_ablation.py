@@ -2,7 +2,7 @@
 
 Run from the checkout, on calibrated clips with a truth:
 
-    .venv/bin/python benchmarks/landmark_sources.py clips/*/ [--sources own mediapipe]
+    .venv/bin/python benchmarks/landmark_ablation.py clips/*/ [--sources own mediapipe]
         [--size 320x240]
 
 "Alone" are landmarks whose rays of both views are brought together joint by joint (the point
