@@ -90,5 +90,7 @@ def _draw(
     region: Bytes, start: NDArray[np.float64], end: NDArray[np.float64], radius_px: float
 ) -> None:
     """A capsule, its ends round."""
-    near, far = (np.round((place - 0.5) * (1 << FINE)).astype(int).tolist() for place in (start, end))
+    near, far = (
+        np.round((place - 0.5) * (1 << FINE)).astype(int).tolist() for place in (start, end)
+    )
     cv2.line(region, near, far, 1, max(1, round(2 * radius_px)), cv2.LINE_8, FINE)

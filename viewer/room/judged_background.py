@@ -80,9 +80,7 @@ def fit(mask: Mask, look: Look) -> float:
 
     What is far from the body does not count: that is told from it in every frame.
     """
-    outline = cv2.bitwise_and(
-        mask.view(np.uint8), body_region(look.landmarks, mask.shape, FAR)
-    )
+    outline = cv2.bitwise_and(mask.view(np.uint8), body_region(look.landmarks, mask.shape, FAR))
     body = body_region(look.landmarks, mask.shape, 0.0)
     near = body_region(look.landmarks, mask.shape, BESIDE)
     covered = cv2.countNonZero(cv2.bitwise_and(outline, body)) / max(1, cv2.countNonZero(body))
