@@ -26,7 +26,7 @@ BONES: Final = tuple(
         *((f"{s}_elbow", f"{s}_wrist", 0.024) for s in _SIDES),
     )
 )
-"""Near and far end, and how thick it is about its axis, in statures (`people.MEASURES`' middles)."""
+"""Near and far end, and radius, in statures: about as people are."""
 LENGTHS: Final = {(_AT["pelvis"], _AT["neck"]): 0.29} | {
     (_AT[f"{s}_{near}"], _AT[f"{s}_{far}"]): length
     for s in _SIDES

@@ -12,8 +12,8 @@ from viewer.silhouette.silhouette import Seen, seen_of
 
 TRUSTED: Final = 0.5
 """Landmarks that are surer than this on average are held against an outline."""
-SURE: Final = 0.5
-"""A bone both of whose ends are surer than this is in the outline, or is put into it."""
+SURE: Final = 0.6
+"""A bone both of whose ends are surer than this is in the outline, or is missing there."""
 FAR: Final = 0.2
 """Statures from the body at which an outline is a thing's: a door's, a shadow's."""
 TIGHT: Final = 0.06
@@ -24,8 +24,10 @@ SPECK: Final = 0.02
 """So much of an outline far from the body is noise, and stays ..."""
 MUCH: Final = 0.15
 """... and so much of it tells that there is more nearby."""
-COVERED: Final = 0.5
+COVERED: Final = 0.35
 """A bone with less of its axis in the outline is missing there."""
+FEW: Final = 1
+"""No more than this is missing of whole outlines: a shank or a forearm whose side was mistaken."""
 ALONG: Final = 9
 """Places along a bone where that is asked."""
 STRIDE: Final = 3
@@ -111,11 +113,11 @@ def _distance_2(x: float, y: float, ends: Any) -> float:
 
 
 def _missing(mask: Bytes, landmarks: Landmarks) -> list[int]:
-    """Which of BONES are surely there, and not in the outline."""
+    """Which of BONES are surely there, and not in the outline; none where they are FEW."""
     confidence = np.array(landmarks.confidence)[_ENDS].min(axis=1)
     covered = _covered(mask, np.array(landmarks.joints_px)[_ENDS])
     missing: list[int] = np.flatnonzero((confidence > SURE) & (covered < COVERED)).tolist()
-    return missing
+    return missing if len(missing) > FEW else []
 
 
 @compiled

@@ -20,7 +20,7 @@ Maker = Callable[[], Background]
 GOOD: Final = 0.6
 """An outline that has as much of the body, and hardly anything else, needs no other to be tried."""
 BESIDE: Final = 0.08
-"""Statures around the body in which an outline may lie: loose clothes, hair, landmarks a bit off."""
+"""Statures around the body in which an outline may lie: clothes, hair, landmarks a bit off."""
 FAR: Final = 0.2
 """Statures from the body at which an outline is somebody else's, or a thing's."""
 JUDGED: Final = 5
