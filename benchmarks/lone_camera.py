@@ -34,7 +34,7 @@ from tritrack.live.table import table_of_rows
 from tritrack.offline.batch import overridden
 from tritrack.offline.film_tracking import Film, follow_clip
 from tritrack.store.runs import poses
-from viewer.background.background_source import background_of_film
+from viewer.room.background_source import background_of_film
 
 
 def row_of(path: Path, camera: Camera, found: dict[str, Any], width: int) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from common.video.clip_facts import View
 from common.video.clips import open_clip
 from common.video.decoding import Decoded, Decoder
 from viewer.background.background import Background
-from viewer.background.background_source import background_of_run, background_of_view
+from viewer.room.background_source import background_of_run, background_of_view
 
 GREY_LEVELS = 5
 """T7's bound of what a learnt background may be off."""

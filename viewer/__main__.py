@@ -20,10 +20,10 @@ from common.video.clip_sources import footage_of
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied
 from viewer import track
-from viewer.background.background_source import background_of_run
 from viewer.capture import CapturedFrame, Live, RoomClock
 from viewer.jpeg import jpeg_of
 from viewer.landmarks.landmark_sources import outside_sources
+from viewer.room.background_source import background_of_run
 from viewer.viewer_warmup import warm_up
 
 WAIT_SHARE: Final = 0.5

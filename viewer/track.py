@@ -1,11 +1,12 @@
 """One viewer's thinking, frame by frame: the stages of section 3 in their order."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import msgspec
 import numpy as np
 
+from common.body.body import JOINT_NAMES
 from common.bus.messages import Box, Facing, Guide, Landmarks, Measure, Pixel, Report, ViewerNumber
 from common.config import Settings
 from common.method import Method
@@ -18,6 +19,7 @@ from viewer.background.moved_objects import Patch
 from viewer.capture import CapturedFrame
 from viewer.expected_body import expected_body
 from viewer.landmarks.nearest_landmarks import nearest_landmarks
+from viewer.landmarks.outline_correction import corrected, is_trusted
 from viewer.landmarks.own_landmarks import own_landmarks
 from viewer.paper import pose_search
 from viewer.paper.measure import measure_front, measure_side, refusal_of
@@ -25,6 +27,8 @@ from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen
 from viewer.stick.standing_height import Standing
 from viewer.stick.stick_report import with_stick
+
+PELVIS: Final = JOINT_NAMES.index("pelvis")
 
 
 class Setup(NamedTuple):
@@ -119,8 +123,14 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
         return state, msgspec.structs.replace(report, fault=fault), nobody.mask
     state = _patched(state, frame.index)
     remembered, seen = silhouette.step(state.silhouette, frame.picture, _near_px(state, guide))
-    state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box))
-    state = state._replace(landmarks=_landmarks(state, frame, seen))
+    landmarks = _landmarks(state, frame, seen)
+    held = corrected(seen, landmarks, state.setup.settings.silhouette.min_height_share)
+    if held.is_changed:
+        remembered = silhouette.without_things(
+            remembered, state.silhouette, frame.picture, held.things
+        )
+    seen = held.seen
+    state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box), landmarks=landmarks)
     report = _report_of(state.setup.viewer, frame, seen)
     return state, msgspec.structs.replace(report, landmarks=state.landmarks), seen.mask
 
@@ -187,7 +197,10 @@ def _patched(state: State, index: int) -> State:
 
 
 def _near_px(state: State, guide: Guide | None) -> Pixel | None:
-    """Where the body is expected: by the integrator, or in the one view where it was last."""
+    """Where the body is expected: where landmarks were, by the integrator, or in the one view where
+    it was last."""
+    if state.landmarks is not None and is_trusted(state.landmarks):
+        return state.landmarks.joints_px[PELVIS]
     known = expected_body(guide, state.setup.viewer)
     if known is not None:
         return known.root_px

@@ -14,7 +14,7 @@ from common.raster.similarity import Mask
 from common.video.clip_facts import View
 from common.video.clips import open_clip
 from tritrack.offline.lockstep import Decoders
-from viewer.background.background_source import background_of_view
+from viewer.room.background_source import background_of_view
 from viewer.capture import recorded
 from viewer.silhouette import silhouette
 

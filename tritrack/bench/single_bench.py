@@ -14,7 +14,7 @@ from common.video.frame_cache import Reel
 from tritrack.bench.bench_figure import Measured, least_s
 from tritrack.offline.film_passes import FilmFacts, bodies_of, silhouettes_of
 from tritrack.offline.film_tracking import Film, follow_clip
-from viewer.background.background_source import background_of_film
+from viewer.room.background_source import background_of_film
 
 ALONE: Final = (1,)
 """The view that is followed."""

@@ -8,7 +8,7 @@ from common.config import SilhouetteSettings
 from common.video.clip_facts import Clip, View
 from common.video.frame_cache import Reader
 from viewer.background.background import Background
-from viewer.background.background_source import background_of_view
+from viewer.room.background_source import background_of_view
 from viewer.capture import CapturedFrame, recorded
 from viewer.landmarks.landmark_sources import Sources
 

@@ -24,7 +24,7 @@ from tritrack.offline.frame_pairs import backgrounds, instants, share_of
 from tritrack.offline.opening_clip import body_of
 from tritrack.terminal import Tell
 from viewer import track
-from viewer.background.background_source import FilmBackground, background_of_view
+from viewer.room.background_source import FilmBackground, background_of_view
 from viewer.capture import CapturedFrame
 from viewer.landmarks.landmark_sources import Sources, oddities, outside_sources
 

@@ -25,7 +25,7 @@ from tritrack.single.overlay_film import write_overlay
 from tritrack.store.clip_paths import ClipsFailed
 from tritrack.store.runs import poses, write_run
 from tritrack.terminal import Tell, bar, by_pass, complain, say, warn
-from viewer.background.background_source import LOOKED_AT, background_of_film
+from viewer.room.background_source import LOOKED_AT, background_of_film
 
 PASSES: Final = ("learning the room", "cutting out", "posing", "drawing")
 """What is done with all frames of a film, one after the other."""

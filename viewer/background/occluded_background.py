@@ -51,6 +51,8 @@ INSIDE: Final = 0.3
 """A segment that is not, and lies inside to this share, is person as a whole: legs that stand."""
 SHOWN: Final = 0.1
 """What frames show in less than this share may as well be clothes of the wall's brightness."""
+LEAST_SHOWN: Final = 2
+"""Fewer frames than this do not show a pixel."""
 ALIKE: Final = 2.5
 """Spreads of a segment's colour within which a pixel of it is believed to be background too."""
 
@@ -90,8 +92,44 @@ def learn_uncovered(frames: Sequence[Image]) -> Background:
         background, uncertain = _filled(even, centre, held)
         if uncertain.mean() <= MOST_HIDDEN:
             break
-    calm = np.where((away < CHANGES)[..., None], even - centre, 0.0).astype(np.float32)
-    spread = spread_of(squares(calm), len(frames))
+    return _estimated(even - centre, away, background, held, uncertain)
+
+
+def learn_around(frames: Sequence[Image], covered: Sequence[NDArray[np.uint8]]) -> Background:
+    """The background from pictures of which it is known where somebody is.
+
+    A pixel shows the room in the frames in which nobody is near it; where there are none, it is
+    drawn from both sides.
+
+    Args:
+        frames: Pictures from all over a clip, of one size.
+        covered: Of each (H, W), 1 where somebody may be.
+    """
+    even, hidden = even_light(frames), np.stack(covered) > 0
+    shown = np.count_nonzero(~hidden, axis=0)
+    centre = _shown_median(even, hidden, shown)
+    held = shown < LEAST_SHOWN
+    away = np.abs(even - centre).max(axis=3)
+    away[hidden] = np.inf
+    return _estimated(even - centre, away, _bridge(centre, held), held, held)
+
+
+def _shown_median(even: Floats, hidden: Mask, shown: NDArray[np.int64]) -> Floats:
+    """(H, W, 3) the median of the frames that show a pixel; of all where none does."""
+    centre = median(even)
+    some = hidden.any(axis=0) & (shown > 0)
+    values = np.where(hidden[:, some][..., None], np.inf, even[:, some])
+    middle = (shown[some] - 1) // 2
+    centre[some] = np.take_along_axis(np.sort(values, axis=0), middle[None, :, None], axis=0)[0]
+    return centre
+
+
+def _estimated(
+    off: Floats, away: Floats, background: Floats, held: Mask, uncertain: Mask
+) -> Background:
+    """A background with how far frames stay from its centre while nobody changes them."""
+    calm = np.where((away < CHANGES)[..., None], off, 0.0).astype(np.float32)
+    spread = spread_of(squares(calm), len(off))
     if held.any() and not held.all():
         spread[held] = np.median(spread[~held], axis=0)
     spread[uncertain] = np.maximum(spread[uncertain], GUESSED)

@@ -55,6 +55,16 @@ def own_landmarks(picture: Image, seen: Seen, before: Landmarks | None) -> Landm
     best = max(looks, key=lambda look: look.surety)
     if seen.box is None and (best.nobody > 0.5 or best.surety < LEAST):
         return None
+    return _told(best)
+
+
+def found_anywhere(picture: Image) -> tuple[Landmarks, float]:
+    """Somebody in a picture (H, W, 3) of which nothing is known, and how probably nobody is."""
+    best = _search(picture)
+    return _told(best), best.nobody
+
+
+def _told(best: _Look) -> Landmarks:
     return Landmarks(
         joints_px=tuple((float(x), float(y)) for x, y in best.joints_px),
         confidence=tuple(best.confidence.tolist()),

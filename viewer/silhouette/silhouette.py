@@ -26,6 +26,8 @@ CELLS: Final = 60
 """Rows of the coarse picture on which regions are told apart."""
 HOLE_SHARE: Final = 0.001
 """Holes up to this share of the picture are closed; between arm and trunk there are larger."""
+SETTLES: Final = 10
+"""Frames after which what the landmarks say is a thing is background: two thirds of a second."""
 PART_SHARE: Final = 0.0002
 """Specks below this share of the picture are dropped."""
 ADAPT_EVERY: Final = 8
@@ -57,6 +59,8 @@ class State(NamedTuple):
     colours: Floats
     """(2, SHADES) counts of the colours of background and body, see `colour_model`."""
     frames: int
+    doubted: Bytes | None = None
+    """(H, W) for how many frames each pixel has been a thing's, by the landmarks; None: none."""
 
 
 class Guess(NamedTuple):
@@ -104,10 +108,10 @@ def step(state: State, frame: Image, near_px: tuple[float, float] | None) -> tup
     if not method.pixel_evidence:
         gain, least_rows = state.model.gain, least_share * frame.shape[0]
         found = printed(state.background, frame, gain, least_rows, near_px)
-        return state, _seen(found.mask, found.blobs, least_share)
+        return state, seen_of(found.mask, found.blobs, least_share)
     first = guess(state, frame, near_px)
     mask = _reclassified(first) if method.alpha_matte else first.mask
-    seen = _seen(mask, first.blobs, least_share)
+    seen = seen_of(mask, first.blobs, least_share)
     if seen.box is not None and method.body_colours:
         state = learn_colours(state, mask, frame, first)
     return _adapted(state, frame, seen.box) if method.slow_light else state, seen
@@ -156,6 +160,33 @@ def in_light_of(state: State, frame: Image) -> State:
     return state._replace(model=state.model._replace(gain=gain))
 
 
+def without_things(state: State, before: State, frame: Image, things: Bytes | None) -> State:
+    """The state after a frame whose outline was not the body's alone.
+
+    What it told of colours is forgotten. A thing that stays, a door that was opened, somebody's
+    place when the room was learnt with them in it, becomes background.
+
+    Args:
+        state: After the frame, in its light.
+        before: Before it.
+        frame: (H, W, 3).
+        things: (H, W) 1 where the outline is not the body's; None: the body's is not whole.
+    """
+    model = state.model._replace(body_colours=before.model.body_colours)
+    state = state._replace(colours=before.colours, model=model)
+    if things is None:
+        return state._replace(doubted=None)
+    known = np.zeros_like(things) if state.doubted is None else state.doubted
+    doubted = (known + np.uint8(1)) * things
+    stays = doubted >= SETTLES
+    if not stays.any():
+        return state._replace(doubted=doubted)
+    centre = model.centre.copy()
+    centre[stays] = frame[stays] / model.gain
+    doubted[stays] = 0
+    return state._replace(doubted=doubted, model=model._replace(centre=centre))
+
+
 def learn_colours(state: State, mask: Bytes, frame: Image, first: Guess) -> State:
     """Count whose colours are whose, by a mask of the body; the state is in the frame's light."""
     inside = counts_3x3(mask)
@@ -182,7 +213,8 @@ def _tidy(mask: Bytes) -> None:
             cv2.drawContours(mask, contours, number, int(hole), cv2.FILLED)
 
 
-def _seen(mask: Bytes, blobs: int, least_share: float) -> Seen:
+def seen_of(mask: Bytes, blobs: int, least_share: float) -> Seen:
+    """What a mask (H, W) tells; nothing where it is lower than a person."""
     box = box_of(mask)
     if box is None or box.bottom + 1 - box.top < least_share * mask.shape[0]:
         return Seen(np.zeros(mask.shape, np.bool_), None, 0, 0, cut=False)

@@ -1,7 +1,7 @@
 """The background of a view: from a plate, from the clip's opening frames, or from the clip."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
 from typing import NamedTuple
@@ -16,7 +16,9 @@ from common.video.frame_cache import Reader
 from viewer.background.background import Background, learn, learnt, overlaid_opening
 from viewer.background.empty_opening import is_empty_opening, is_still
 from viewer.background.moved_objects import Patch, patches_of
-from viewer.background.occluded_background import learn_uncovered
+from viewer.background.occluded_background import learn_around, learn_uncovered
+from viewer.room.judged_background import best_of
+from viewer.room.room_people import AROUND, looked_at
 
 SAMPLE = 40
 """How many frames at most, spread over a clip, tell whether its opening is empty."""
@@ -24,6 +26,9 @@ SAMPLE = 40
 LOOKED_AT = 1500
 """How many frames of a clip are looked at for that: a long recording is judged by its start."""
 
+
+PEOPLE = 20
+"""How many of these frames are searched for people, where the opening is in doubt."""
 
 LEFT_HIDDEN = 0.01
 """Who stays on a spot hides 2 to 20 % of the picture all through a clip, who roams up to 0.4 %."""
@@ -59,10 +64,42 @@ def background_of_view(
         plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
         return learn(plate), ""
     opening, coming = _looked_at(view, settings.empty_frames, decoder)
-    laid_over, sample = overlaid_opening(opening), list[Image]()
-    if is_still(laid_over) and is_empty_opening(laid_over, _kept(coming, sample)):
+    return of_clip(opening, list(coming), settings, view)
+
+
+def of_clip(
+    opening: Sequence[Image], sample: Sequence[Image], settings: SilhouetteSettings, view: View
+) -> tuple[Background, str]:
+    """The background of a clip, and what is odd about how that is known.
+
+    Contours and the network of landmarks both say whether somebody is in the opening. Where they
+    agree that nobody is, that is the room; else the backgrounds of both cases are made, the
+    likelier first, until one has the outlines that the landmarks in later frames ask for.
+
+    Args:
+        opening: The first frames.
+        sample: Frames from all over the clip.
+        settings: How a person is told from the room.
+        view: Is named in what is odd.
+    """
+    laid_over = overlaid_opening(opening)
+    still, somebody = is_still(laid_over), looked_at(opening[:1])[0].is_somebody
+    empty = still and is_empty_opening(laid_over, sample)
+    if empty and not somebody:
         return learnt(laid_over, opening), ""
-    return learn_uncovered([*sample, *coming]), (
+    judges = sample[:: max(1, math.ceil(len(sample) / PEOPLE))]
+    looks = looked_at(judges)
+    regions = [look.region(judges[0].shape, AROUND) for look in looks]
+    opened = learnt(laid_over, opening)
+    makers: list[Callable[[], Background]] = [lambda: learn_uncovered(sample)]
+    if any(look.is_somebody for look in looks):
+        makers.insert(0, lambda: learn_around(judges, regions))
+        if still:
+            makers.insert(len(makers) if somebody else 0, lambda: opened)
+    best = best_of(makers, judges, looks, settings)
+    if best is opened:
+        return best, ""
+    return best, (
         f"{view.source} does not open with an empty room: the background is estimated from the "
         f"clip (name an empty picture with camera_{view.number}.background)"
     )
@@ -123,13 +160,6 @@ def _looked_at(view: View, due: int, decoder: Reader) -> tuple[list[Image], Iter
     pictures = (got.picture for got in frames)
     opening = list(islice(pictures, due))
     return opening, islice(chain(opening, pictures), 0, None, _stride(view))
-
-
-def _kept(frames: Iterator[Image], keeper: list[Image]) -> Iterator[Image]:
-    """The same frames, and a list of them."""
-    for frame in frames:
-        keeper.append(frame)
-        yield frame
 
 
 def _stride(view: View) -> int:

@@ -1,0 +1,138 @@
+"""An outline held against the landmarks: what is far from the body goes, what is missing comes."""
+
+from typing import Any, Final, NamedTuple
+
+import cv2
+import numpy as np
+
+from common.bus.messages import Landmarks
+from common.compiled import compiled
+from viewer.landmarks.body_region import BONES, Bytes, body_region, bone_region, stature_px
+from viewer.silhouette.silhouette import Seen, seen_of
+
+TRUSTED: Final = 0.5
+"""Landmarks that are surer than this on average are held against an outline."""
+SURE: Final = 0.6
+"""A bone both of whose ends are surer than this is in the outline, or is missing there."""
+FAR: Final = 0.2
+"""Statures from the body at which an outline is a thing's: a door's, a shadow's."""
+TIGHT: Final = 0.06
+"""Statures around the body that are left of an outline that holds much of a thing."""
+REACH: Final = 0.1
+"""Statures from a bone's axis to the farthest of the body: a hand, a hem."""
+SPECK: Final = 0.02
+"""So much of an outline far from the body is noise, and stays ..."""
+MUCH: Final = 0.15
+"""... and so much of it tells that there is more nearby."""
+COVERED: Final = 0.35
+"""A bone with less of its axis in the outline is missing there."""
+FEW: Final = 1
+"""No more than this is missing of whole outlines: a shank or a forearm whose side was mistaken."""
+ALONG: Final = 9
+"""Places along a bone where that is asked."""
+STRIDE: Final = 3
+"""Of an outline's rows and columns so many are passed over between two that are looked at."""
+_ENDS: Final = np.array([(near, far) for near, far, _ in BONES])
+
+
+class Corrected(NamedTuple):
+    """An outline, as the landmarks let it stand."""
+
+    seen: Seen
+    things: Bytes | None
+    """(H, W) 1 where the outline was not the body's; None where it all may be."""
+    is_changed: bool
+
+
+def corrected(seen: Seen, landmarks: Landmarks | None, least_share: float) -> Corrected:
+    """An outline without what the landmarks say is no body, and with what is missing of it.
+
+    Args:
+        seen: The outline of a frame.
+        landmarks: Of the same frame; None, or unsure: the outline stands.
+        least_share: Of the picture's height; a lower outline is nobody's.
+    """
+    if not is_trusted(landmarks):
+        return Corrected(seen, None, is_changed=False)
+    assert landmarks is not None
+    mask, things = _without_things(seen, landmarks)
+    missing = _missing(mask, landmarks)
+    if things is None and not missing:
+        return Corrected(seen, None, is_changed=False)
+    for bone in missing:
+        mask = cv2.bitwise_or(mask, bone_region(landmarks, mask.shape, bone))
+    blobs = max(seen.blobs, 1)
+    return Corrected(seen_of(mask, blobs, least_share), things, is_changed=True)
+
+
+def is_trusted(landmarks: Landmarks | None) -> bool:
+    """Whether they may overrule an outline."""
+    if landmarks is None:
+        return False
+    return sum(landmarks.confidence) > TRUSTED * len(landmarks.confidence)
+
+
+def _without_things(seen: Seen, landmarks: Landmarks) -> tuple[Bytes, Bytes | None]:
+    """The outline (H, W) without what is far from the body, and that; None if it is hardly any."""
+    mask, ends = seen.mask.view(np.uint8), np.array(landmarks.joints_px)[_ENDS]
+    share = _far_share(mask, ends, (FAR + REACH) * stature_px(landmarks))
+    if share < SPECK:
+        return mask, None
+    beyond = FAR if share < MUCH else TIGHT
+    near = cv2.bitwise_and(mask, body_region(landmarks, mask.shape, beyond))
+    return np.asarray(near), np.asarray(cv2.subtract(mask, near))
+
+
+@compiled
+def _far_share(mask: Any, ends: Any, reach_px: float) -> float:
+    """Share of an outline (H, W) farther than that from all of the bones (n, 2, 2)."""
+    all_of, far = 0, 0
+    for y in range(0, mask.shape[0], STRIDE):
+        for x in range(0, mask.shape[1], STRIDE):
+            if not mask[y, x]:
+                continue
+            all_of += 1
+            near = False
+            for n in range(len(ends)):
+                if _distance_2(x + 0.5, y + 0.5, ends[n]) <= reach_px * reach_px:
+                    near = True
+                    break
+            far += not near
+    return far / max(1, all_of)
+
+
+@compiled
+def _distance_2(x: float, y: float, ends: Any) -> float:
+    """Squared distance of a place from a bone (2, 2)."""
+    along_x, along_y = ends[1, 0] - ends[0, 0], ends[1, 1] - ends[0, 1]
+    from_x, from_y = x - ends[0, 0], y - ends[0, 1]
+    length_2 = max(along_x * along_x + along_y * along_y, 1e-9)
+    share = min(max((from_x * along_x + from_y * along_y) / length_2, 0.0), 1.0)
+    off_x, off_y = from_x - share * along_x, from_y - share * along_y
+    return off_x * off_x + off_y * off_y
+
+
+def _missing(mask: Bytes, landmarks: Landmarks) -> list[int]:
+    """Which of BONES are surely there, and not in the outline; none where they are FEW."""
+    confidence = np.array(landmarks.confidence)[_ENDS].min(axis=1)
+    covered = _covered(mask, np.array(landmarks.joints_px)[_ENDS])
+    missing: list[int] = np.flatnonzero((confidence > SURE) & (covered < COVERED)).tolist()
+    return missing if len(missing) > FEW else []
+
+
+@compiled
+def _covered(mask: Any, ends: Any) -> Any:
+    """Share of the axis of each bone (n, 2, 2) that an outline covers; 1 outside of the picture."""
+    out = np.ones(len(ends))
+    for n in range(len(ends)):
+        shown, inside = 0, 0
+        for k in range(ALONG):
+            share = (k + 1.0) / (ALONG + 1.0)
+            x = int(ends[n, 0, 0] + share * (ends[n, 1, 0] - ends[n, 0, 0]))
+            y = int(ends[n, 0, 1] + share * (ends[n, 1, 1] - ends[n, 0, 1]))
+            if 0 <= x < mask.shape[1] and 0 <= y < mask.shape[0]:
+                shown += 1
+                inside += mask[y, x] > 0
+        if shown:
+            out[n] = inside / shown
+    return out

@@ -1,0 +1,1 @@
+"""What a view shows without people: which of several backgrounds explains what is seen."""

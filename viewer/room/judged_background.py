@@ -1,0 +1,88 @@
+"""Which of several backgrounds explains what the landmarks show: none of them is taken on trust."""
+
+from collections.abc import Callable, Sequence
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+
+from common.config import SilhouetteSettings
+from common.method import DEFAULT
+from common.raster.similarity import Mask
+from common.video.decoding import Image
+from viewer.background.background import Background
+from viewer.landmarks.body_region import body_region
+from viewer.room.room_people import Look
+from viewer.silhouette import silhouette
+
+Maker = Callable[[], Background]
+
+GOOD: Final = 0.6
+"""An outline that has as much of the body, and hardly anything else, needs no other to be tried."""
+BESIDE: Final = 0.08
+"""Statures around the body in which an outline may lie: clothes, hair, landmarks a bit off."""
+FAR: Final = 0.2
+"""Statures from the body at which an outline is somebody else's, or a thing's."""
+JUDGED: Final = 5
+"""Frames, spread over those that were looked at."""
+
+
+class Judged(NamedTuple):
+    """A background, and how well the outlines in it fit the landmarks."""
+
+    background: Background
+    worth: float
+    """In [0, 1]; 0 where no frame told."""
+
+
+def best_of(
+    makers: Sequence[Maker],
+    pictures: Sequence[Image],
+    looks: Sequence[Look],
+    settings: SilhouetteSettings,
+) -> Background:
+    """The background whose outlines fit the landmarks best; the first that is good is taken.
+
+    Args:
+        makers: Make the backgrounds, the likeliest first.
+        pictures: Of the clip, (H, W, 3) each.
+        looks: What the network makes of each.
+        settings: How a person is told from the room.
+    """
+    shown = [pair for pair in zip(pictures, looks, strict=True) if pair[1].is_somebody]
+    told = shown[:: max(1, -(-len(shown) // JUDGED))]
+    best: Judged | None = None
+    for make in makers:
+        background = make()
+        now = Judged(background, _worth(background, told, settings))
+        best = now if best is None or now.worth > best.worth else best
+        if best.worth >= GOOD or not told:
+            break
+    assert best is not None
+    return best.background
+
+
+def _worth(
+    background: Background, told: Sequence[tuple[Image, Look]], settings: SilhouetteSettings
+) -> float:
+    """How well outlines in a background fit the landmarks, in [0, 1], the mean over frames."""
+    state = silhouette.init(background, settings, DEFAULT)
+    worth = []
+    for picture, look in told:
+        middle = np.mean(look.landmarks.joints_px, axis=0)
+        near_px = (float(middle[0]), float(middle[1]))
+        worth.append(fit(silhouette.step(state, picture, near_px)[1].mask, look))
+    return float(np.mean(worth)) if worth else 0.0
+
+
+def fit(mask: Mask, look: Look) -> float:
+    """Share of the body that an outline (H, W) covers, times the share of it that is body's.
+
+    What is far from the body does not count: that is told from it in every frame.
+    """
+    outline = cv2.bitwise_and(mask.view(np.uint8), body_region(look.landmarks, mask.shape, FAR))
+    body = body_region(look.landmarks, mask.shape, 0.0)
+    near = body_region(look.landmarks, mask.shape, BESIDE)
+    covered = cv2.countNonZero(cv2.bitwise_and(outline, body)) / max(1, cv2.countNonZero(body))
+    own = cv2.countNonZero(cv2.bitwise_and(outline, near)) / max(1, cv2.countNonZero(outline))
+    return covered * own
