@@ -36,6 +36,11 @@ def pair(joints_m: np.ndarray, confidence: float = 0.8) -> Pair:
     return Pair(report(0, joints_m, confidence), report(1, joints_m, confidence))
 
 
+def moved(x_m: float, z_m: float) -> np.ndarray:
+    """The same body elsewhere."""
+    return BODY + np.array([x_m, 0.0, z_m])
+
+
 def turned() -> np.ndarray:
     """The same body, turned about in its place."""
     return (BODY - BODY[0]) * (-1.0, 1.0, -1.0) + BODY[0]
@@ -53,11 +58,11 @@ def test_a_body_on_its_landmarks_is_believed() -> None:
 
 def test_a_body_beside_its_landmarks_is_not() -> None:
     """However well it fits an outline: that may be a door's."""
-    assert not is_believed(BODY + (0.6, 0.0, 0.0), RIG, pair(BODY), (0.9, 0.9))
+    assert not is_believed(moved(0.6, 0.0), RIG, pair(BODY), (0.9, 0.9))
 
 
 def test_one_view_that_sees_it_elsewhere_is_enough() -> None:
-    seen = Pair(report(0, BODY), report(1, BODY + (0.0, 0.0, 0.6)))
+    seen = Pair(report(0, BODY), report(1, moved(0.0, 0.6)))
     assert not is_believed(BODY, RIG, seen, FITS)
 
 
@@ -67,7 +72,7 @@ def test_a_body_that_is_turned_about_is_not_believed() -> None:
 
 
 def test_where_landmarks_are_unsure_both_views_must_fit() -> None:
-    unsure = pair(BODY + (0.6, 0.0, 0.0), 0.2)
+    unsure = pair(moved(0.6, 0.0), 0.2)
     assert is_believed(BODY, RIG, unsure, FITS)
     assert not is_believed(BODY, RIG, unsure, (0.7, 0.4))
 
