@@ -33,11 +33,10 @@ from synth.write import Filming, write_clip, write_rig
 from tritrack.accuracy.accuracy import compare
 from tritrack.live.table import table_of_rows
 from tritrack.offline.lockstep import Decoders, Tracked, track_clip
-from tritrack.store.runs import poses
+from tritrack.store.runs import believed, poses
 
 LOST_MM: Final = 60.0
 NO_POSE_MM: Final = 500.0
-BELIEVED: Final = ("measuring", "tracking")
 KINDS: Final = ("edge", "wall", "floor", "door")
 """A cupboard's edge behind the person; clothes of the wall's colour, trousers of the floor's; a
 door that moves. Every second clip of each begins with the person there."""
@@ -134,7 +133,7 @@ def _paneled(folder: Path, camera: int, rig: Rig, moved: Motion, wanted: Cruel) 
     side = int(rng.choice([-1, 1]))
     frames = []
     for i, (picture, mask) in enumerate(zip(_film(folder, camera), masks, strict=True)):
-        at, open_ = pelvis[0] + rng.normal(0, 0) - (wide if side < 0 else 0), 1.0
+        at, open_ = pelvis[0] - (wide if side < 0 else 0), 1.0
         if wanted.kind == "door":
             away = (40 + wide) if side > 0 else -(40 + wide)
             at, open_ = pelvis[0] + away - wide / 2, _swung(i / len(masks), reach)
@@ -190,7 +189,7 @@ def row_of(clip: Path, tracked: Tracked) -> dict[str, Any]:
     off_mm = 1000 * np.linalg.norm(compared.tracked_m - compared.true_m, axis=2).mean(axis=1)
     due = int(truth["present"].sum())
     off_mm = np.append(off_mm, np.full(due - len(off_mm), NO_POSE_MM))
-    sure = np.mean([body.status in BELIEVED for body in tracked.bodies if body.joints_m] or [0.0])
+    sure = believed(tracked.bodies) or 0.0
     return {"name": clip.name, "mm": off_mm.mean(), "worst mm": off_mm.max(), "believed": sure}
 
 
@@ -213,7 +212,6 @@ def main() -> None:
             clip = make(given.folder, wanted)
             settings = msgspec.structs.replace(Settings(), clip=str(clip), size="320x240")
             rows.append(row_of(clip, track_clip(settings, decoders)))
-            print(rows[-1], flush=True)
     console = Console(width=100)
     console.print(table_of_rows(rows))
     for kind in (*KINDS, ""):

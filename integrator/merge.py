@@ -12,6 +12,7 @@ from common.raster.kernel import match, view_of
 from common.raster.silhouette_report import words_of
 from common.rig.camera import Camera, Rig
 from integrator import opening_posture, outgoing
+from integrator.belief import LOST_SCORE
 from integrator.fit import proposed_pose, shape_fit
 from integrator.fit.proposed_pose import ProposedPose
 from integrator.merge_state import Posed, State
@@ -62,7 +63,8 @@ def step(
     state, now = _with_pose(state, now, settled_at)
     state = _with_shape(state, now)
     scores = _scores(state, now)
-    state, angles = _smoothed(state, max(scores) >= outgoing.LOST_SCORE, dt_s)
+    state = outgoing.weighed(state, pair, scores)
+    state, angles = _smoothed(state, max(scores) >= LOST_SCORE, dt_s)
     body = outgoing.body_of(state, pair, angles, scores)
     guide = outgoing.guide_of(state, pair, settled_at is not None)
     return state, body, guide
@@ -190,7 +192,6 @@ def _smoothed(state: State, fits: bool, dt_s: float) -> tuple[State, Vector]:
     """The smooth angles; a pose that fits badly is not believed."""
     found = state.found
     assert found is not None
-    state = state._replace(badly=0 if fits else state.badly + 1)
     raw: Vector = found.pose[list(ANGLES_IN_POSE)]
     if not state.method.smoothing:
         return state, raw
@@ -204,4 +205,4 @@ def _smoothed(state: State, fits: bool, dt_s: float) -> tuple[State, Vector]:
 def _without_pose(state: State) -> State:
     """Nobody is in any view: what was learnt of the body is kept, its pose is not."""
     fresh = smoothing.init(len(ANGLE_NAMES), state.smooth.period_s)
-    return state._replace(found=None, badly=0, smooth=fresh)
+    return state._replace(found=None, doubted=0, smooth=fresh)

@@ -57,8 +57,8 @@ class State(NamedTuple):
     frames: tuple[int, int] = (-1, -1)
     """The last frame that was heard of each viewer."""
     last_s: float | None = None
-    badly: int = 0
-    """For how many frames the model has fitted badly."""
+    doubted: int = 0
+    """For how many frames the body has not been believed."""
 
     @property
     def pose(self) -> Vector | None:

@@ -11,14 +11,13 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector
 from common.bus.messages import Body, Guide, Pixel, Report, Status, Views
 from common.rig.camera import project
+from integrator.belief import is_believed
 from integrator.merge_state import State
 from integrator.pairing import Pair
 from integrator.rig.body_position import pixels_of, scales_since
 
-LOST_SCORE: Final = 0.35
-"""A body whose S is lower than this in every view is not believed."""
 LOST_FRAMES: Final = 5
-"""After so many frames of it in a row the body is lost."""
+"""After so many frames in a row in which it is not believed the body is lost."""
 
 
 def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, float]) -> Body:
@@ -36,7 +35,7 @@ def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, f
     assert bdp is not None
     pose, in_pose = found.pose.copy(), list(ANGLES_IN_POSE)
     pose[in_pose] = angles_deg
-    places_m = joints(body_vector(bdp), pose) if found.joints_m is None else found.joints_m
+    places_m = _places_m(state, pose)
     pixels = tuple(project(camera, places_m) for camera in rig.cameras)
     outside = _outside(pair, pixels)
     confidence = np.where(outside, 0.0, _confidence(state, scores))
@@ -57,6 +56,32 @@ def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, f
     )
 
 
+def weighed(state: State, pair: Pair, scores: tuple[float, float]) -> State:
+    """The state with how long the body has not been believed; one that is lost is forgotten.
+
+    What the network remembers of a wrong body it would go on with.
+    """
+    found = state.found
+    assert found is not None
+    assert state.rig is not None
+    places_m = _places_m(state, found.pose)
+    if is_believed(places_m, state.rig, pair, scores):
+        return state._replace(doubted=0)
+    state = state._replace(doubted=state.doubted + 1)
+    if state.doubted % LOST_FRAMES:
+        return state
+    return state._replace(found=found._replace(memory=None))
+
+
+def _places_m(state: State, pose: Vector) -> NDArray[np.float64]:
+    """The joints (15, 3) of the instant, in the world."""
+    assert state.found is not None
+    assert state.opening.bdp is not None
+    if state.found.joints_m is not None:
+        return state.found.joints_m
+    return np.asarray(joints(body_vector(state.opening.bdp), pose))
+
+
 def _matches(report: Report) -> int:
     return report.matches + (0 if report.fit is None else report.fit.matches)
 
@@ -75,7 +100,7 @@ def _outside(pair: Pair, pixels: tuple[NDArray[np.float64], ...]) -> NDArray[np.
 def _confidence(state: State, scores: tuple[float, float]) -> Vector:
     """Of each joint, (15,): what was found with the pose, or how well the whole body fits."""
     assert state.found is not None
-    if state.badly:
+    if state.doubted:
         return np.zeros(len(JOINT_NAMES))
     if state.found.confidence is not None:
         return state.found.confidence
@@ -160,9 +185,9 @@ def _moment(state: State, pair: Pair) -> dict[str, Any]:
 
 
 def _status(state: State, cut: bool) -> Status:
-    """By presence, the opening and the fit together: never by S alone (M25)."""
-    if state.badly:
-        return "lost" if state.badly >= LOST_FRAMES else "predicted"
+    """By presence, the opening and what bears the body out: never by S alone (M25)."""
+    if state.doubted:
+        return "lost" if state.doubted >= LOST_FRAMES else "predicted"
     if state.opening.under_way:
         return "measuring"
     return "predicted" if cut else "tracking"

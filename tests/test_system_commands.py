@@ -241,7 +241,21 @@ def test_what_can_be_worked_with_runs_on_with_one_line(
 def test_a_good_clip_gives_no_warning(tritrack: Commands, clip: Path, tmp_path: Path) -> None:
     said = tritrack("track", clip, "--out", tmp_path)
     assert (said.code, said.out) == (0, "")
-    assert said.err == f"1 clips tracked, written to {tmp_path}\n"
+    told = f"1 clips tracked, written to {tmp_path}; believed in 100% of the frames with a person\n"
+    assert said.err == told
+
+
+def test_a_clip_that_is_hardly_followed_ends_with_a_code_of_its_own(
+    tritrack: Commands, clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was found is written all the same, and says so."""
+    monkeypatch.setattr("integrator.outgoing.is_believed", lambda *_: False)
+    said = tritrack("track", clip, "--out", tmp_path)
+    assert said.code == 3
+    assert "believed in less than half" in said.errors[0]
+    summary = json.loads((tmp_path / clip.name / "summary.json").read_text())
+    assert summary["believed"] == 0.0
+    assert summary["status"]["lost"] > summary["status"]["predicted"]
 
 
 def test_json_stands_alone_on_stdout(tritrack: Commands, clip: Path, tmp_path: Path) -> None:

@@ -3,7 +3,8 @@
 import errno
 import tempfile
 import traceback
-from typing import Final
+from collections.abc import Mapping
+from typing import Any, Final
 
 OURS: Final = ("animator", "common", "integrator", "recognizer", "synth", "tritrack", "viewer")
 """What is raised by a class of ours is meant for the user; all else is a fault."""
@@ -15,6 +16,14 @@ FAULTY: Final = 1
 """Exit code of a fault."""
 MENDABLE: Final = 2
 """Exit code of what a user can mend."""
+
+UNFOLLOWED: Final = 3
+"""Exit code of a run whose results are written, and hardly to be believed."""
+HALF: Final = 0.5
+
+
+class Unfollowed(RuntimeError):
+    """Films in less than half of which the person was followed; what was found is written."""
 
 
 class Fault(RuntimeError):
@@ -35,7 +44,28 @@ def told(error: Exception) -> str:
 
 def code_of(error: Exception) -> int:
     """The exit code of a process that ends by it."""
+    if isinstance(error, Unfollowed):
+        return UNFOLLOWED
     return FAULTY if isinstance(error, Fault) or not _is_for_the_user(error) else MENDABLE
+
+
+def refuse_unfollowed(clips: Mapping[str, Mapping[str, Any]]) -> None:
+    """End a run with a code of its own where a clip's bodies are mostly not believed.
+
+    Raises:
+        Unfollowed: When one is believed in less than half of its frames with a person.
+    """
+    poor = {
+        name: facts["believed"] for name, facts in clips.items() if facts["believed"] is not None
+    }
+    poor = {name: share for name, share in poor.items() if share < HALF}
+    if poor:
+        worst = min(poor, key=lambda name: poor[name])
+        raise Unfollowed(
+            f"in {len(poor)} of {len(clips)} clips the body is believed in less than half of the "
+            f"frames ({worst}: {poor[worst]:.0%}): name an empty picture of the room, or light it "
+            "better"
+        )
 
 
 def _is_for_the_user(error: Exception) -> bool:

@@ -14,8 +14,8 @@ from common.raster.similarity import Mask
 from common.video.clip_facts import View
 from common.video.clips import open_clip
 from tritrack.offline.lockstep import Decoders
-from viewer.room.background_source import background_of_view
 from viewer.capture import recorded
+from viewer.room.background_source import background_of_view
 from viewer.silhouette import silhouette
 
 HALF: Final = 0.5

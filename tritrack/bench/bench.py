@@ -31,12 +31,12 @@ from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.runs import VERSIONS_OF, write_run
 from viewer import track, viewer_warmup
 from viewer.background.background import learn
-from viewer.room.background_source import background_of_view
 from viewer.capture import recorded
 from viewer.paper.arms import facade_arms, flank_arms
 from viewer.paper.legs import facade_legs, flank_legs
 from viewer.paper.posed_model import PosedModel
 from viewer.paper.position import located
+from viewer.room.background_source import background_of_view
 from viewer.silhouette import silhouette
 
 SMALL, LARGE = (160, 120), (640, 480)

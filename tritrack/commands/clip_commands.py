@@ -1,7 +1,8 @@
 """The commands for recorded clips: make, track, follow, retouch and export them."""
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Final, Literal
+from typing import Annotated, Any, Final, Literal
 
 import typer
 
@@ -10,6 +11,7 @@ from common.config import Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import Out, Size, writable_file
 from tritrack.exporting import OWN_NAMES, Format, export_run
+from tritrack.faults import refuse_unfollowed
 from tritrack.terminal import json_text
 
 VIEWERS: Final[dict[str, tuple[ViewerNumber, ...]]] = {"12": (1, 2), "1": (1,), "2": (2,)}
@@ -30,12 +32,22 @@ def track(
 ) -> None:
     """Track clips offline: the same as live, deterministic, as fast as it goes.
 
+    Ends with exit code 3 where a clip's body is believed in less than half of its frames.
+
     Example: tritrack track clips/*/ --mode paper --out runs
     """
     from tritrack.offline.batch import track_all
 
     facts = track_all(clips, out, mode, VIEWERS[views], size, console)
-    tell(facts, json_wanted, f"{len(facts['clips'])} clips tracked, written to {out}")
+    tell(facts, json_wanted, line_of_runs(facts["clips"], out))
+    refuse_unfollowed(facts["clips"])
+
+
+def line_of_runs(clips: Mapping[str, Mapping[str, Any]], out: Path) -> str:
+    """How many clips were tracked, and in how many of their frames the body is believed."""
+    shares = [facts["believed"] for facts in clips.values() if facts["believed"] is not None]
+    sure = f"; believed in {sum(shares) / len(shares):.0%} of the frames with a person"
+    return f"{len(clips)} clips tracked, written to {out}" + (sure if shares else "")
 
 
 def synth(
@@ -86,6 +98,8 @@ def single(
 ) -> None:
     """Animate a body from any video of one camera: no calibration, no empty room is needed.
 
+    Ends with exit code 3 where a video's body is believed in less than half of its frames.
+
     Example: tritrack single dance.mp4 --out runs
     """
     from tritrack.offline.batch import overridden
@@ -95,6 +109,7 @@ def single(
     facts = single_all(videos, out, given, overridden(Settings(), mode, size), console)
     if json_wanted:
         print(json_text(facts))
+    refuse_unfollowed(facts["clips"])
 
 
 def export(

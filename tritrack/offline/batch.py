@@ -15,7 +15,7 @@ from common.video.clip_sources import ClipError
 from common.video.decoding import DecoderDied, Undecodable
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_files
-from tritrack.store.runs import write_run
+from tritrack.store.runs import believed, write_run
 from tritrack.terminal import bar, by_share, complain, warn
 
 
@@ -70,7 +70,7 @@ def track_all(
                 continue
             for warning in tracked.facts["warnings"]:
                 warn(console, f"{name}: {warning}")
-            done[name] = {**tracked.facts, "clip": name}
+            done[name] = {**tracked.facts, "clip": name, "believed": believed(tracked.bodies)}
             write_run(out / name, tracked.bodies, settings, done[name])
     if len(done) < len(runs):
         raise ClipsFailed(f"{len(runs) - len(done)} of {len(runs)} clips could not be tracked")

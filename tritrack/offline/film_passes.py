@@ -31,9 +31,9 @@ from tritrack.offline.frame_pairs import share_of
 from tritrack.terminal import Tell
 from viewer import track
 from viewer.background.background import learn
-from viewer.room.background_source import FilmBackground
 from viewer.capture import recorded
 from viewer.landmarks.outside_source import OutsideSource
+from viewer.room.background_source import FilmBackground
 from viewer.stick.standing_height import standing_of, standing_rows
 
 MOST_FRAMES: Final = 50_000

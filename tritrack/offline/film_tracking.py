@@ -18,8 +18,8 @@ from common.video.frame_cache import Reader
 from tritrack.offline.film_passes import FilmFacts, bodies_of, silhouettes_of
 from tritrack.terminal import Tell
 from viewer.background.background import Background
-from viewer.room.background_source import FilmBackground
 from viewer.landmarks.landmark_sources import oddities, outside_sources
+from viewer.room.background_source import FilmBackground
 
 FITS: Final = 0.6
 """S from which a pose fits its silhouette."""

@@ -8,9 +8,9 @@ from common.config import SilhouetteSettings
 from common.video.clip_facts import Clip, View
 from common.video.frame_cache import Reader
 from viewer.background.background import Background
-from viewer.room.background_source import background_of_view
 from viewer.capture import CapturedFrame, recorded
 from viewer.landmarks.landmark_sources import Sources
+from viewer.room.background_source import background_of_view
 
 Readers = Mapping[ViewerNumber, Reader]
 """What reads each view, by its number."""

@@ -24,9 +24,9 @@ from tritrack.offline.frame_pairs import backgrounds, instants, share_of
 from tritrack.offline.opening_clip import body_of
 from tritrack.terminal import Tell
 from viewer import track
-from viewer.room.background_source import FilmBackground, background_of_view
 from viewer.capture import CapturedFrame
 from viewer.landmarks.landmark_sources import Sources, oddities, outside_sources
+from viewer.room.background_source import FilmBackground, background_of_view
 
 
 class Tracked(NamedTuple):

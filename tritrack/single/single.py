@@ -23,7 +23,7 @@ from tritrack.single.ledger import facts_of, ledger
 from tritrack.single.mask_file import MaskFileError, MaskSequence, is_mask_file, read_masks
 from tritrack.single.overlay_film import write_overlay
 from tritrack.store.clip_paths import ClipsFailed
-from tritrack.store.runs import poses, write_run
+from tritrack.store.runs import believed, poses, write_run
 from tritrack.terminal import Tell, bar, by_pass, complain, say, warn
 from viewer.room.background_source import LOOKED_AT, background_of_film
 
@@ -162,6 +162,7 @@ def follow(
     facts = {
         **found.facts,
         "frames_with_pose": sum(bool(body.joints_m) for body in found.bodies),
+        "believed": believed(found.bodies),
         "effort": facts_of(ledger(take_of(arrays), job.notes)),
         "notes": msgspec.to_builtins(job.notes),
     }

@@ -18,6 +18,9 @@ from tritrack.terminal import json_text
 
 VERSIONS_OF: Final = ("tritrack", "numpy", "opencv-python-headless", "numba", "eclipse-zenoh")
 
+BELIEVED: Final = ("measuring", "tracking")
+"""Of a body's status: what the views show bears it out."""
+
 
 class RunError(RuntimeError):
     """A run folder that cannot be written; the text names it and the cure."""
@@ -129,6 +132,14 @@ def _liftings(told: Sequence[Lifting | None]) -> dict[str, Any]:
     }
 
 
+def believed(bodies: Sequence[Body]) -> float | None:
+    """Share of the frames with a person in which the body is believed; None where nobody is."""
+    seen = [body.status for body in bodies if body.status != "empty"]
+    if not seen:
+        return None
+    return round(sum(status in BELIEVED for status in seen) / len(seen), 4)
+
+
 def _summary(bodies: Sequence[Body], settings: Settings, facts: dict[str, Any]) -> dict[str, Any]:
     with_pose = [body for body in bodies if body.joints_m]
     return {
@@ -138,6 +149,7 @@ def _summary(bodies: Sequence[Body], settings: Settings, facts: dict[str, Any]) 
             status: sum(body.status == status for body in bodies)
             for status in ("empty", "measuring", "tracking", "predicted", "lost")
         },
+        "believed": believed(bodies),
         "matches_a_frame": round(float(np.mean([b.matches for b in with_pose])), 1)
         if with_pose
         else 0.0,

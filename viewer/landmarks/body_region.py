@@ -27,7 +27,7 @@ BONES: Final = tuple(
     )
 )
 """Near and far end, and radius, in statures: about as people are."""
-LENGTHS: Final = {(_AT["pelvis"], _AT["neck"]): 0.29} | {
+LENGTHS: Final = {(_AT["pelvis"], _AT["neck"]): 0.32} | {
     (_AT[f"{s}_{near}"], _AT[f"{s}_{far}"]): length
     for s in _SIDES
     for near, far, length in (("hip", "knee", 0.25), ("knee", "ankle", 0.24))

@@ -1,0 +1,112 @@
+"""Whether a body is believed with reason: the landmarks in its pictures stand where it does."""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import JOINT_NAMES, OTHER_SIDE
+from common.bus.messages import Landmarks, Report
+from common.rig.camera import Camera, Rig, centre, project
+from integrator.pairing import Pair
+
+LOST_SCORE: Final = 0.35
+"""A body whose S is lower than this in every view is not believed."""
+TRUSTED: Final = 0.5
+"""Landmarks that are surer than this on average are held against a body."""
+SURE: Final = 0.5
+"""Of a landmark that counts then."""
+LEAST: Final = 5
+"""Fewer of them tell nothing."""
+ASTRAY: Final = 0.13
+"""Half of the sure landmarks are so many heights of the body from its joints: 0.03 at most in 99 %
+of the frames of r01 and r04, 0.17 in the middle of those that are more than 200 mm off."""
+FACES: Final = 0.8
+"""So sure must a view be of which way somebody faces ..."""
+TURNED_DEG: Final = 100.0
+"""... for a body that is turned so far from it not to be believed."""
+UNTOLD_SCORE: Final = 0.45
+"""Where the landmarks of no view are trusted, S must be this in each: 0.6 in 99 % of the frames of
+r01 and r04."""
+_SIDES: Final = [
+    (JOINT_NAMES.index(f"l_{name}"), JOINT_NAMES.index(f"r_{name}")) for name in ("hip", "shoulder")
+]
+
+
+def is_believed(
+    joints_m: NDArray[np.float64], rig: Rig, pair: Pair, scores: tuple[float, float]
+) -> bool:
+    """Whether what the views show bears a body out.
+
+    Args:
+        joints_m: (15, 3) world, JOINT_NAMES.
+        rig: The cameras.
+        pair: What was heard of the instant.
+        scores: S of the body in each view.
+    """
+    if max(scores) < LOST_SCORE:
+        return False
+    views = [
+        (report, camera, score)
+        for report, camera, score in zip(pair, rig.cameras, scores, strict=True)
+        if report is not None and report.box is not None
+    ]
+    told = [(report, camera) for report, camera, _ in views if _is_trusted(report)]
+    if told:
+        astray = any(
+            _astray(joints_m, camera, report.landmarks) > ASTRAY for report, camera in told
+        )
+        return not (astray or _is_turned_about(joints_m, told))
+    unsure = all(report.landmarks is not None for report, _, _ in views)
+    return not unsure or min(score for _, _, score in views) >= UNTOLD_SCORE
+
+
+def _is_trusted(report: Report) -> bool:
+    found = report.landmarks
+    if found is None or np.mean(found.confidence) < TRUSTED:
+        return False
+    return int(np.count_nonzero(np.array(found.confidence) > SURE)) >= LEAST
+
+
+def _astray(joints_m: NDArray[np.float64], camera: Camera, found: Landmarks | None) -> float:
+    """How far half of the sure landmarks are at least from a body's joints, in its heights.
+
+    Left and right may be exchanged: which way somebody faces is asked apart.
+    """
+    assert found is not None
+    joints_px, seen_px = project(camera, joints_m), np.array(found.joints_px)
+    if np.isnan(joints_px).any():  # it is behind the camera that sees somebody
+        return np.inf
+    tall_px = max(float(np.linalg.norm(np.ptp(joints_px, axis=0))), 1.0)
+    sure = np.array(found.confidence) > SURE
+    same, other = (
+        float(np.median(np.linalg.norm(places - seen_px, axis=1)[sure]))
+        for places in (joints_px, joints_px[OTHER_SIDE])
+    )
+    return min(same, other) / tall_px
+
+
+def _is_turned_about(joints_m: NDArray[np.float64], told: list[tuple[Report, Camera]]) -> bool:
+    """Whether all views that are sure which way somebody faces see another one than the body's."""
+    off_deg = [
+        _off_deg(facing_deg(joints_m, camera), report.landmarks.facing_deg)
+        for report, camera in told
+        if report.landmarks is not None and report.landmarks.facing_confidence > FACES
+    ]
+    return bool(off_deg) and min(off_deg) > TURNED_DEG
+
+
+def facing_deg(joints_m: NDArray[np.float64], camera: Camera) -> float:
+    """Which way a body faces: 0 towards the camera, 90 to the right of its picture."""
+    across = sum((joints_m[right] - joints_m[left] for left, right in _SIDES), np.zeros(3))
+    front = np.cross(across, [0.0, -1.0, 0.0])
+    towards = centre(camera) - joints_m[0]
+    right_hand = np.array(camera.R)[0]
+    towards, right_hand = (way * (1.0, 0.0, 1.0) for way in (towards, right_hand))
+    ahead = float(front @ towards) / max(float(np.linalg.norm(towards)), 1e-9)
+    aside = float(front @ right_hand) / max(float(np.linalg.norm(right_hand)), 1e-9)
+    return float(np.degrees(np.arctan2(aside, ahead)))
+
+
+def _off_deg(one_deg: float, other_deg: float) -> float:
+    return abs((one_deg - other_deg + 180.0) % 360.0 - 180.0)

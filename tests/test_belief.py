@@ -1,0 +1,83 @@
+"""Whether a body is believed, held against bodies that stand, face or fit otherwise."""
+
+import msgspec
+import numpy as np
+import pytest
+from staging import RIG, standing
+
+from common.body.kinematics import joints
+from common.body.proportions import body_vector, thesis_bdp
+from common.bus.messages import Box, Landmarks, Report
+from common.rig.camera import project
+from integrator.belief import facing_deg, is_believed
+from integrator.pairing import Pair
+
+BODY = np.asarray(joints(body_vector(thesis_bdp(1.75)), standing()))
+FITS = (0.7, 0.7)
+
+
+def report(n: int, joints_m: np.ndarray, confidence: float = 0.8) -> Report:
+    """What a view tells whose picture shows these joints."""
+    camera = RIG.cameras[n]
+    seen = Landmarks(
+        tuple((float(x), float(y)) for x, y in project(camera, joints_m)),
+        (confidence,) * 15,
+        facing_deg(joints_m, camera),
+        0.95,
+    )
+    box = Box(left=60, right=100, top=20, bottom=110)
+    return Report(
+        frame=0, captured_s=0.0, clock_s=0.0, viewer=1 if n == 0 else 2, width=160, height=120,
+        silhouette=b"", box=box, landmarks=seen,
+    )  # fmt: skip
+
+
+def pair(joints_m: np.ndarray, confidence: float = 0.8) -> Pair:
+    return Pair(report(0, joints_m, confidence), report(1, joints_m, confidence))
+
+
+def moved(x_m: float, z_m: float) -> np.ndarray:
+    """The same body elsewhere."""
+    return BODY + np.array([x_m, 0.0, z_m])
+
+
+def turned() -> np.ndarray:
+    """The same body, turned about in its place."""
+    return (BODY - BODY[0]) * (-1.0, 1.0, -1.0) + BODY[0]
+
+
+def test_who_stands_before_camera_1_faces_it_and_shows_camera_2_the_flank() -> None:
+    assert facing_deg(BODY, RIG.cameras[0]) == pytest.approx(0.0, abs=1.0)
+    assert abs(facing_deg(BODY, RIG.cameras[1])) == pytest.approx(90.0, abs=1.0)
+    assert abs(facing_deg(turned(), RIG.cameras[0])) == pytest.approx(180.0, abs=1.0)
+
+
+def test_a_body_on_its_landmarks_is_believed() -> None:
+    assert is_believed(BODY, RIG, pair(BODY), FITS)
+
+
+def test_a_body_beside_its_landmarks_is_not() -> None:
+    """However well it fits an outline: that may be a door's."""
+    assert not is_believed(moved(0.6, 0.0), RIG, pair(BODY), (0.9, 0.9))
+
+
+def test_one_view_that_sees_it_elsewhere_is_enough() -> None:
+    seen = Pair(report(0, BODY), report(1, moved(0.0, 0.6)))
+    assert not is_believed(BODY, RIG, seen, FITS)
+
+
+def test_a_body_that_is_turned_about_is_not_believed() -> None:
+    """Both outlines fit it as well."""
+    assert not is_believed(turned(), RIG, pair(BODY), FITS)
+
+
+def test_where_landmarks_are_unsure_both_views_must_fit() -> None:
+    unsure = pair(moved(0.6, 0.0), 0.2)
+    assert is_believed(BODY, RIG, unsure, FITS)
+    assert not is_believed(BODY, RIG, unsure, (0.7, 0.4))
+
+
+def test_without_landmarks_the_better_view_speaks() -> None:
+    first, second = (msgspec.structs.replace(report(n, BODY), landmarks=None) for n in (0, 1))
+    assert is_believed(BODY, RIG, Pair(first, second), (0.4, 0.1))
+    assert not is_believed(BODY, RIG, Pair(first, second), (0.3, 0.3))

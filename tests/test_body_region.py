@@ -1,0 +1,31 @@
+"""The body's region in a picture, held against the silhouette of a rendered person."""
+
+import numpy as np
+import pytest
+from test_own_landmarks import acted
+
+from common.bus.messages import Landmarks
+from viewer.landmarks.body_region import BONES, body_region, bone_region, stature_px
+
+
+def true_landmarks() -> Landmarks:
+    joints_px = acted()[1]
+    return Landmarks(tuple((float(x), float(y)) for x, y in joints_px), (1.0,) * 15)
+
+
+def test_the_stature_is_that_of_the_person() -> None:
+    assert stature_px(true_landmarks()) == pytest.approx(acted()[2], rel=0.1)
+
+
+def test_the_region_is_nearly_the_silhouette_and_a_little_more_holds_it() -> None:
+    mask = acted()[0].mask1
+    own = body_region(true_landmarks(), mask.shape, 0.0) > 0
+    assert (own & mask).sum() / (own | mask).sum() > 0.7
+    assert (mask & ~(body_region(true_landmarks(), mask.shape, 0.06) > 0)).mean() < 0.0005
+
+
+def test_all_bones_together_are_no_more_than_the_region() -> None:
+    mask = acted()[0].mask1
+    bones = [bone_region(true_landmarks(), mask.shape, n) for n in range(len(BONES))]
+    whole = body_region(true_landmarks(), mask.shape, 0.01) > 0
+    assert not (np.any(bones, axis=0) & ~whole).any()
