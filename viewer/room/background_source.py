@@ -72,9 +72,10 @@ def of_clip(
 ) -> tuple[Background, str]:
     """The background of a clip, and what is odd about how that is known.
 
-    Contours and the network of landmarks both say whether somebody is in the opening. Where they
-    agree that nobody is, that is the room; else the backgrounds of both cases are made, the
-    likelier first, until one has the outlines that the landmarks in later frames ask for.
+    Where contours say that nobody is in the opening, that is the room: they were never wrong in
+    that. They do take furniture for somebody: then the network of landmarks is asked, and the
+    backgrounds of both cases are made, the likelier first, until one has the outlines that the
+    landmarks in later frames ask for.
 
     Args:
         opening: The first frames.
@@ -83,10 +84,10 @@ def of_clip(
         view: Is named in what is odd.
     """
     laid_over = overlaid_opening(opening)
-    still, somebody = is_still(laid_over), looked_at(opening[:1])[0].is_somebody
-    empty = still and is_empty_opening(laid_over, sample)
-    if empty and not somebody:
+    still = is_still(laid_over)
+    if still and is_empty_opening(laid_over, sample):
         return learnt(laid_over, opening), ""
+    somebody = looked_at(opening[:1])[0].is_somebody
     judges = sample[:: max(1, math.ceil(len(sample) / PEOPLE))]
     looks = looked_at(judges)
     regions = [look.region(judges[0].shape, AROUND) for look in looks]

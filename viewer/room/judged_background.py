@@ -21,6 +21,8 @@ GOOD: Final = 0.6
 """An outline that has as much of the body, and hardly anything else, needs no other to be tried."""
 BESIDE: Final = 0.08
 """Statures around the body in which an outline may lie: clothes, hair, landmarks a bit off."""
+SURELY: Final = 0.1
+"""By so much one that is less likely must fit better."""
 FAR: Final = 0.2
 """Statures from the body at which an outline is somebody else's, or a thing's."""
 JUDGED: Final = 5
@@ -55,7 +57,7 @@ def best_of(
     for make in makers:
         background = make()
         now = Judged(background, _worth(background, told, settings))
-        best = now if best is None or now.worth > best.worth else best
+        best = now if best is None or now.worth > best.worth + SURELY else best
         if best.worth >= GOOD or not told:
             break
     assert best is not None
