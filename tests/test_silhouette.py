@@ -234,9 +234,9 @@ def clip(folder: Path, camera: int, size: tuple[int, int]) -> tuple[list[Image],
 
 def test_a_door_that_stays_is_background_within_a_second() -> None:
     """Told to be no body's; the body is not, however long it stands."""
-    state, changed = init(learn([shot(room())]), SETTINGS, DEFAULT), room()
+    state, changed = begin(), room()
     changed[40:180, 20:60] = (40, 60, 120)
-    frame = shot(dressed(changed, body()))
+    frame = shot(dressed(changed, body()), 2.0, 9)
     door = np.zeros((HEIGHT, WIDTH), np.uint8)
     door[40:180, 20:60] = 1
     for _ in range(SETTLES):
@@ -249,8 +249,8 @@ def test_a_door_that_stays_is_background_within_a_second() -> None:
 
 
 def test_things_that_come_and_go_do_not_settle() -> None:
-    state = init(learn([shot(room())]), SETTINGS, DEFAULT)
-    frame, thing = shot(dressed(room(), body())), body().view(np.uint8)
+    state = begin()
+    frame, thing = shot(dressed(room(), body()), 2.0, 9), body().view(np.uint8)
     for n in range(2 * SETTLES):
         after = step(state, frame, None)[0]
         state = without_things(after, state, frame, thing if n % SETTLES else None)
