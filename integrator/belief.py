@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, OTHER_SIDE
 from common.bus.messages import Landmarks, Report
-from common.rig.camera import Camera, Rig, centre, project
+from common.rig.camera import Camera, Rig, project
 from integrator.pairing import Pair
+from integrator.single.reflection import yaw_deg
 
 LOST_SCORE: Final = 0.35
 """A body whose S is lower than this in every view is not believed."""
@@ -28,9 +29,6 @@ TURNED_DEG: Final = 100.0
 UNTOLD_SCORE: Final = 0.45
 """Where the landmarks of no view are trusted, S must be this in each: 0.6 in 99 % of the frames of
 r01 and r04."""
-_SIDES: Final = [
-    (JOINT_NAMES.index(f"l_{name}"), JOINT_NAMES.index(f"r_{name}")) for name in ("hip", "shoulder")
-]
 
 
 def is_believed(
@@ -89,23 +87,11 @@ def _astray(joints_m: NDArray[np.float64], camera: Camera, found: Landmarks | No
 def _is_turned_about(joints_m: NDArray[np.float64], told: list[tuple[Report, Camera]]) -> bool:
     """Whether all views that are sure which way somebody faces see another one than the body's."""
     off_deg = [
-        _off_deg(facing_deg(joints_m, camera), report.landmarks.facing_deg)
+        _off_deg(yaw_deg(camera, joints_m), report.landmarks.facing_deg)
         for report, camera in told
         if report.landmarks is not None and report.landmarks.facing_confidence > FACES
     ]
     return bool(off_deg) and min(off_deg) > TURNED_DEG
-
-
-def facing_deg(joints_m: NDArray[np.float64], camera: Camera) -> float:
-    """Which way a body faces: 0 towards the camera, 90 to the right of its picture."""
-    across = sum((joints_m[right] - joints_m[left] for left, right in _SIDES), np.zeros(3))
-    front = np.cross(across, [0.0, -1.0, 0.0])
-    towards = centre(camera) - joints_m[0]
-    right_hand = np.array(camera.R)[0]
-    towards, right_hand = (way * (1.0, 0.0, 1.0) for way in (towards, right_hand))
-    ahead = float(front @ towards) / max(float(np.linalg.norm(towards)), 1e-9)
-    aside = float(front @ right_hand) / max(float(np.linalg.norm(right_hand)), 1e-9)
-    return float(np.degrees(np.arctan2(aside, ahead)))
 
 
 def _off_deg(one_deg: float, other_deg: float) -> float:

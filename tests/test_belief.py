@@ -9,8 +9,9 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Box, Landmarks, Report
 from common.rig.camera import project
-from integrator.belief import facing_deg, is_believed
+from integrator.belief import is_believed
 from integrator.pairing import Pair
+from integrator.single.reflection import yaw_deg
 
 BODY = np.asarray(joints(body_vector(thesis_bdp(1.75)), standing()))
 FITS = (0.7, 0.7)
@@ -22,7 +23,7 @@ def report(n: int, joints_m: np.ndarray, confidence: float = 0.8) -> Report:
     seen = Landmarks(
         tuple((float(x), float(y)) for x, y in project(camera, joints_m)),
         (confidence,) * 15,
-        facing_deg(joints_m, camera),
+        yaw_deg(camera, joints_m),
         0.95,
     )
     box = Box(left=60, right=100, top=20, bottom=110)
@@ -47,9 +48,9 @@ def turned() -> np.ndarray:
 
 
 def test_who_stands_before_camera_1_faces_it_and_shows_camera_2_the_flank() -> None:
-    assert facing_deg(BODY, RIG.cameras[0]) == pytest.approx(0.0, abs=1.0)
-    assert abs(facing_deg(BODY, RIG.cameras[1])) == pytest.approx(90.0, abs=1.0)
-    assert abs(facing_deg(turned(), RIG.cameras[0])) == pytest.approx(180.0, abs=1.0)
+    assert yaw_deg(RIG.cameras[0], BODY) == pytest.approx(0.0, abs=1.0)
+    assert abs(yaw_deg(RIG.cameras[1], BODY)) == pytest.approx(90.0, abs=1.0)
+    assert abs(yaw_deg(RIG.cameras[0], turned())) == pytest.approx(180.0, abs=1.0)
 
 
 def test_a_body_on_its_landmarks_is_believed() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from common.config import SettingsError
-from tritrack.faults import Fault, code_of, told
+from tritrack.faults import Fault, Unfollowed, code_of, refuse_unfollowed, told
 
 
 @pytest.mark.parametrize(
@@ -39,3 +39,12 @@ def test_a_fault_that_another_process_met_is_told_once(
     error = Fault("viewer 1: a fault of tritrack itself")
     assert (code_of(error), told(error)) == (1, "viewer 1: a fault of tritrack itself")
     assert not list(tmp_path.iterdir())
+
+
+def test_clips_that_are_mostly_not_believed_end_a_run_with_code_3() -> None:
+    """One in which nobody is seen has nobody to believe in."""
+    refuse_unfollowed({"good": {"believed": 0.5}, "empty": {"believed": None}})
+    with pytest.raises(Unfollowed, match=r"in 1 of 2 clips .* \(bad: 49%\)") as raised:
+        refuse_unfollowed({"good": {"believed": 1.0}, "bad": {"believed": 0.49}})
+    assert code_of(raised.value) == 3
+    assert told(raised.value) == str(raised.value)

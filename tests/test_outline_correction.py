@@ -7,7 +7,7 @@ from test_own_landmarks import acted, nobody, seen
 
 from common.bus.messages import Landmarks
 from common.raster.similarity import Mask
-from viewer.landmarks.outline_correction import corrected
+from viewer.room.outline_correction import corrected
 
 
 def iou(one: Mask, other: Mask) -> float:

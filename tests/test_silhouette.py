@@ -19,7 +19,7 @@ from viewer.silhouette.colour_model import body_colours_of, counted
 from viewer.silhouette.difference import adapted, label, seeds
 from viewer.silhouette.pixel_classifier import redraw
 from viewer.silhouette.regions import same_body
-from viewer.silhouette.silhouette import Seen, State, init, step
+from viewer.silhouette.silhouette import SETTLES, Seen, State, init, step, without_things
 from viewer.viewer_warmup import warm_up
 
 HEIGHT, WIDTH = 240, 320
@@ -230,3 +230,28 @@ def clip(folder: Path, camera: int, size: tuple[int, int]) -> tuple[list[Image],
     each = WIDTH // size[0]
     blocks = masks.reshape(len(masks), size[1], each, size[0], each)
     return frames, blocks.mean(axis=(2, 4)) >= 0.5
+
+
+def test_a_door_that_stays_is_background_within_a_second() -> None:
+    """Told to be no body's; the body is not, however long it stands."""
+    state, changed = begin(), room()
+    changed[40:180, 20:60] = (40, 60, 120)
+    frame = shot(dressed(changed, body()), 2.0, 9)
+    door = np.zeros((HEIGHT, WIDTH), np.uint8)
+    door[40:180, 20:60] = 1
+    for _ in range(SETTLES):
+        after, seen = step(state, frame, (40.0, 110.0))
+        assert seen.mask[100, 40]
+        state = without_things(after, state, frame, door)
+    seen = step(state, frame, (160.0, 120.0))[1]
+    assert not seen.mask[40:180, 20:60].any()
+    assert (seen.mask & body()).sum() / body().sum() > 0.9
+
+
+def test_things_that_come_and_go_do_not_settle() -> None:
+    state = begin()
+    frame, thing = shot(dressed(room(), body()), 2.0, 9), body().view(np.uint8)
+    for n in range(2 * SETTLES):
+        after = step(state, frame, None)[0]
+        state = without_things(after, state, frame, thing if n % SETTLES else None)
+    assert np.abs(state.model.centre - room()).mean() < 1

@@ -254,7 +254,7 @@ def test_a_clip_that_is_hardly_followed_ends_with_a_code_of_its_own(
     assert said.code == 3
     assert "believed in less than half" in said.errors[0]
     summary = json.loads((tmp_path / clip.name / "summary.json").read_text())
-    assert summary["believed"] == 0.0
+    assert summary["believed"] < 0.2
     assert summary["status"]["lost"] > summary["status"]["predicted"]
 
 

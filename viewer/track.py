@@ -19,10 +19,10 @@ from viewer.background.moved_objects import Patch
 from viewer.capture import CapturedFrame
 from viewer.expected_body import expected_body
 from viewer.landmarks.nearest_landmarks import nearest_landmarks
-from viewer.landmarks.outline_correction import corrected, is_trusted
 from viewer.landmarks.own_landmarks import own_landmarks
 from viewer.paper import pose_search
 from viewer.paper.measure import measure_front, measure_side, refusal_of
+from viewer.room.outline_correction import corrected, is_trusted
 from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen
 from viewer.stick.standing_height import Standing

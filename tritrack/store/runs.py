@@ -18,8 +18,8 @@ from tritrack.terminal import json_text
 
 VERSIONS_OF: Final = ("tritrack", "numpy", "opencv-python-headless", "numba", "eclipse-zenoh")
 
-BELIEVED: Final = ("measuring", "tracking")
-"""Of a body's status: what the views show bears it out."""
+BELIEVED: Final = ("measuring", "tracking", "predicted")
+"""Of a body's status: what the views show bears it out, or did a moment ago."""
 
 
 class RunError(RuntimeError):

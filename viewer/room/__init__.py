@@ -1,1 +1,1 @@
-"""What a view shows without people: which of several backgrounds explains what is seen."""
+"""What a view shows, held against its landmarks: the room without people, and the outline."""
