@@ -39,12 +39,12 @@ def pair(joints_m: np.ndarray, confidence: float = 0.8) -> Pair:
 
 def moved(x_m: float, z_m: float) -> np.ndarray:
     """The same body elsewhere."""
-    return BODY + np.array([x_m, 0.0, z_m])
+    return np.asarray(BODY + np.array([x_m, 0.0, z_m]))
 
 
 def turned() -> np.ndarray:
     """The same body, turned about in its place."""
-    return (BODY - BODY[0]) * (-1.0, 1.0, -1.0) + BODY[0]
+    return np.asarray((BODY - BODY[0]) * (-1.0, 1.0, -1.0) + BODY[0])
 
 
 def test_who_stands_before_camera_1_faces_it_and_shows_camera_2_the_flank() -> None:
