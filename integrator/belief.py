@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import JOINT_NAMES, OTHER_SIDE
+from common.body.body import OTHER_SIDE
 from common.bus.messages import Landmarks, Report
 from common.rig.camera import Camera, Rig, project
 from integrator.pairing import Pair
