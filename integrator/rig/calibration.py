@@ -37,11 +37,20 @@ def run_poles(path: Path, out: Path, replace: bool = False) -> Quality:
         CalibrationError: When a file cannot be read or written, or would be lost, or the poles do
             not suffice.
     """
-    if out.exists() and not replace:
-        raise CalibrationError(f"{out} is there already: name another --out, or add --force")
+    refuse_to_replace(out, replace)
     rig, quality = poles(_read(path, Poles))
     write_rig(out, rig, quality)
     return quality
+
+
+def refuse_to_replace(out: Path, replace: bool) -> None:
+    """Say that a file is there already, unless it may be lost.
+
+    Raises:
+        CalibrationError: When it is there and may not.
+    """
+    if out.exists() and not replace:
+        raise CalibrationError(f"{out} is there already: name another --out, or add --force")
 
 
 def write_rig(path: Path, rig: Rig, quality: msgspec.Struct) -> None:

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args
 
 import msgspec
 
@@ -22,6 +22,7 @@ from integrator.pairing import Pair
 from tritrack.offline.film_tracking import Film, Heard, follow_clip, unseen
 from tritrack.offline.frame_pairs import backgrounds, instants, share_of
 from tritrack.offline.opening_clip import body_of
+from tritrack.offline.rig_from_person import Looked, by_person, calibration_facts
 from tritrack.terminal import Tell
 from viewer import track
 from viewer.background.background_source import FilmBackground, background_of_view
@@ -48,7 +49,9 @@ class Decoders:
     def __init__(self) -> None:
         """None started yet."""
         self._doors = ExitStack()
-        self.of = {number: self._doors.enter_context(Decoder()) for number in (1, 2)}
+        self.of: dict[ViewerNumber, Decoder] = {
+            number: self._doors.enter_context(Decoder()) for number in get_args(ViewerNumber)
+        }
 
     def __enter__(self) -> "Decoders":
         """Nothing to do before the first clip."""
@@ -114,9 +117,11 @@ def track_clip(
     if alone and (method.stick_lifting or (method.proposals and clip.rig is None)):
         return _in_two_passes(clip, settings, method, decoders, tell)
     with outside_sources(settings, clip.views) as sources:
-        ready = _prepared(clip, settings, method, decoders, began)
+        looked = by_person(clip, settings, method, decoders.of, sources)
+        ready = _prepared(looked, settings, method, decoders, began)
         done = _performed(ready, sources, watch, tell)
-        return Tracked(clip, done.bodies, _facts(ready, done, sources))
+        facts = _facts(ready, done, sources) | calibration_facts(looked)
+        return Tracked(looked.clip, done.bodies, facts)
 
 
 def _in_two_passes(
@@ -132,14 +137,14 @@ def _in_two_passes(
 
 
 def _prepared(
-    clip: Clip, settings: Settings, method: Method, decoders: Decoders, began: float
+    looked: Looked, settings: Settings, method: Method, decoders: Decoders, began: float
 ) -> Prepared:
     """Viewers that know their backgrounds and an integrator that knows the rig."""
+    clip, odd = looked.clip, [looked.warning] if looked.warning else []
     rig, alone = both_cameras(clip), len(clip.views) == 1
     known = body_of(settings, lambda own: track_clip(own, decoders).bodies)
     reels = {view.number: Reel(decoders.of[view.number]) for view in clip.views}
     viewers: dict[ViewerNumber, track.State] = {}
-    odd: list[str] = []
     learnt = backgrounds(clip, settings.silhouette, reels)
     for view, (background, noted) in zip(clip.views, learnt, strict=True):
         odd += [noted] if noted else []
@@ -148,7 +153,8 @@ def _prepared(
         viewers[view.number] = track.init(setup, background)
     period_s = clip.every / clip.views[0].fps
     opening = opening_posture.init(known)
-    integrator = merge_state.init(rig, period_s, settings, method, Start(alone, opening=opening))
+    start = Start(alone, "person" if looked.found else None, opening)
+    integrator = merge_state.init(rig, period_s, settings, method, start)
     return Prepared(clip, reels, viewers, integrator, odd, time.perf_counter() - began)
 
 

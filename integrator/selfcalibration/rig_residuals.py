@@ -1,0 +1,151 @@
+"""How badly a rig explains what both views saw, in sigmas: what the fit makes small."""
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Vector
+from integrator.selfcalibration import person_prior as prior
+from integrator.selfcalibration.joint_tracks import JointTrack, at_times
+from integrator.selfcalibration.rig_evidence import (
+    ClipEvidence,
+    Evidence,
+    Known,
+    Sides,
+    exchanged,
+    sigma_px,
+)
+from integrator.selfcalibration.rig_guess import BODY, FOCALS, LATE, pinholes
+from integrator.selfcalibration.sight_lines import Meeting, Numbers, directions, meeting
+
+LENGTH_ERROR: Final = 0.012
+"""What a segment's ends move about in the body, statures: landmarks are no bones."""
+FACING_DEG: Final = 20.0
+UPRIGHT_DEG: Final = 1.5
+TALL_SHARE: Final = 0.93
+"""Whose neck is at least so far from the ankles, of the most that it is, stands upright."""
+FLOOR_M: Final = 0.02
+FOCALS_ALIKE: Final = 0.15
+"""How far the focal lengths of both cameras differ, mostly (of their logarithm)."""
+STATURE_ERROR: Final = 0.01
+INDEPENDENT: Final = 0.06
+"""Share of all landmarks that err by themselves: the network errs alike in neighbouring frames."""
+FLOOR_FRAMES, FACING_FRAMES = 6.0, 4.0
+"""For so many independent ones all lowest feet, and all facings, of a clip count."""
+BEHIND: Final = 10.0
+"""Sigmas by which a landmark misses that lies behind a camera."""
+
+
+class Explained(NamedTuple):
+    """What a rig makes of one clip."""
+
+    met: Meeting
+    """(n, 15)"""
+    used: NDArray[np.bool_]
+    """(n, 15)"""
+    lengths: Numbers
+    """(n, 12) misfit of the segments, sigmas."""
+    lengths_used: NDArray[np.bool_]
+    second: JointTrack
+    """View 2 at the same times, sides exchanged."""
+
+
+def softened(residual: Numbers) -> Numbers:
+    """Residuals whose squares are Cauchy's loss: what is far off says that it is wrong, no more."""
+    soft: Numbers = np.sign(residual) * np.sqrt(2.0 * np.log1p(residual**2 / 2.0))
+    return soft
+
+
+def misfits(guess: Vector, evidence: Evidence, sides: tuple[Sides, ...]) -> Vector:
+    """All that is made small: what is believed, and what each clip shows."""
+    rows = prior_misfits(guess, evidence.known)
+    for n, clip in enumerate(evidence.clips):
+        one = explained(guess, clip, float(guess[LATE + n]), sides[n], evidence.size_px)
+        rows += data_misfits(one)
+        rows += standing_misfits(one, evidence.known.stature_m)
+        rows.append(facing_misfits(guess, one, clip.first))
+    return np.concatenate(rows)
+
+
+def explained(
+    guess: Vector, clip: ClipEvidence, late_s: float, sides: Sides, size_px: tuple[int, int]
+) -> Explained:
+    """Points, and how well segments keep their lengths, of one clip."""
+    cameras, middle_px = pinholes(guess), np.array(size_px) / 2
+    second = exchanged(at_times(clip.second, clip.first.times_s + late_s), sides)
+    rays = (
+        directions(cameras[0], middle_px, clip.first.joints_px),
+        directions(cameras[1], middle_px, second.joints_px),
+    )
+    sigmas = (sigma_px(clip.first, clip.units_px[0]), sigma_px(second, clip.units_px[1]))
+    used = np.isfinite(sigmas[0]) & np.isfinite(sigmas[1])
+    met = meeting(cameras, rays, (np.where(used, sigmas[0], 1e3), np.where(used, sigmas[1], 1e3)))
+    near, far = prior.ENDS.T
+    both = (used & met.before)[:, near] & (used & met.before)[:, far]
+    return Explained(met, used, _length_misfits(met, np.exp(guess[BODY])), both, second)
+
+
+def _length_misfits(met: Meeting, lengths_m: Vector) -> Numbers:
+    """(n, 12) sigmas."""
+    near, far = (met.of_joints(ends) for ends in prior.ENDS.T)
+    along = far.points_m - near.points_m
+    long_m = np.maximum(np.sqrt((along**2).sum(axis=-1)), 1e-6)
+    unit = along / long_m[..., None]
+    variance = near.variance_m2(unit) + far.variance_m2(unit)
+    own_m = LENGTH_ERROR / prior.CROWN_SHARE * float(lengths_m[prior.UPRIGHT].sum())
+    misfit: Numbers = (long_m - lengths_m[prior.LENGTH_OF]) / np.sqrt(variance + own_m**2)
+    return misfit
+
+
+def data_misfits(one: Explained) -> list[Vector]:
+    """What landmarks say: lines that miss each other, segments of another length."""
+    gaps = np.where(one.met.before, one.met.gap, BEHIND)
+    share = math.sqrt(INDEPENDENT)
+    return [
+        share * softened(np.where(one.used, gaps, 0.0)).ravel(),
+        share * softened(np.where(one.lengths_used, one.lengths, 0.0)).ravel(),
+    ]
+
+
+def standing_misfits(one: Explained, stature_m: float) -> list[Vector]:
+    """The floor under the lower foot, and the vertical along who stands upright."""
+    points, used = one.met.points_m, one.used & one.met.before
+    height = np.where(used[:, prior.ANKLES], points[:, prior.ANKLES, 1], np.inf).min(axis=1)
+    seen = np.isfinite(height)
+    above = np.where(seen, height - prior.ANKLE_SHARE * stature_m, 0.0)
+    few = math.sqrt(FLOOR_FRAMES / max(float(seen.sum()), FLOOR_FRAMES))
+    axis = points[:, prior.NECK] - points[:, prior.ANKLES].mean(axis=1)
+    tall = np.sqrt((axis**2).sum(axis=-1))
+    stands = used[:, prior.ANKLES].all(axis=1) & used[:, prior.NECK]
+    lean = np.zeros(2)
+    if stands.any():
+        stands &= tall >= TALL_SHARE * np.percentile(tall[stands], 80)
+        lean = np.degrees(np.median(axis[stands] / tall[stands, None], axis=0)[[0, 2]])
+    return [few * softened(above / FLOOR_M), lean / UPRIGHT_DEG]
+
+
+def facing_misfits(guess: Vector, one: Explained, first: JointTrack) -> Vector:
+    """(n,) how far both views disagree which way in the world the person faces."""
+    place = one.met.points_m[:, prior.PELVIS]
+    turned = np.zeros(len(place))
+    sure = np.minimum(first.facing_confidence, one.second.facing_confidence)
+    for sign, camera, track in zip((1, -1), pinholes(guess), (first, one.second), strict=True):
+        to = camera.centre_m - place
+        turned += sign * (np.arctan2(to[:, 0], to[:, 2]) + np.radians(track.facing_deg))
+    off = 2.0 * np.sin(turned / 2.0) / math.radians(FACING_DEG)
+    few = FACING_FRAMES / max(float(sure.sum()), FACING_FRAMES)
+    misfit: Vector = np.sqrt(few * sure) * softened(off)
+    return misfit
+
+
+def prior_misfits(guess: Vector, known: Known) -> list[Vector]:
+    """What is believed of any rig and any person."""
+    believed = np.isfinite(known.sigma)
+    off = (guess[believed] - known.mean[believed]) / known.sigma[believed]
+    alike = float(guess[FOCALS][0] - guess[FOCALS][1]) / FOCALS_ALIKE
+    high_m = float(np.exp(guess[BODY])[prior.UPRIGHT].sum())
+    stature = math.log(high_m / (prior.CROWN_SHARE * known.stature_m)) / STATURE_ERROR
+    soft = softened(np.array([*off[known.soft[believed]], alike]))
+    return [off[~known.soft[believed]], soft, np.array([stature])]
