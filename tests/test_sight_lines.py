@@ -31,7 +31,7 @@ def met(pictures: tuple[np.ndarray, np.ndarray], sigmas: tuple[float, float]) ->
 
 def test_exact_pixels_give_the_points_themselves() -> None:
     points = np.random.default_rng(1).uniform((-0.8, 0.0, -0.8), (0.8, 1.8, 0.8), (5, 15, 3))
-    found = met(shown(points), (1.0, 1.0))
+    found = met(shown(points), (0.01, 0.01))
     assert found.points_m == pytest.approx(points, abs=1e-9)
     assert np.abs(found.gap).max() < 1e-6
     assert found.before.all()
@@ -41,9 +41,9 @@ def test_errors_are_as_large_as_the_variances_say() -> None:
     """Drawn 20,000 times: along three directions, and of the gap, within 5 %."""
     rng, n = np.random.default_rng(2), 20_000
     point = np.broadcast_to([0.2, 1.1, -0.3], (n, 1, 3))
-    sigmas = (0.8, 1.7)
-    spoiled = [p + rng.normal(0, s, p.shape) for p, s in zip(shown(point), sigmas, strict=True)]
-    found = met((spoiled[0], spoiled[1]), sigmas)
+    sigmas_px, sigmas_m = (0.8, 1.7), (0.8 * 4.25 / 200, 1.7 * 4.08 / 240)
+    spoiled = [p + rng.normal(0, s, p.shape) for p, s in zip(shown(point), sigmas_px, strict=True)]
+    found = met((spoiled[0], spoiled[1]), sigmas_m)
     assert found.gap.std() == pytest.approx(1.0, rel=0.05)
     for axis in np.eye(3):
         said = found.variance_m2(np.broadcast_to(axis, point.shape)).mean()

@@ -1,6 +1,6 @@
 """What both views saw of one person over time, as arrays."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -40,9 +40,17 @@ class Sighting(NamedTuple):
     """Width and height of both pictures."""
 
 
+Row = tuple[float, Vector, Vector, float, float]
+"""Of one frame, what a JointTrack has of each."""
+
+
 def track_of(reports: Iterable[Report]) -> JointTrack:
     """The landmarks of one view's reports; what is cut off or not seen has confidence 0."""
-    rows = [_row(report) for report in reports]
+    return track_of_rows([row_of(report) for report in reports])
+
+
+def track_of_rows(rows: Sequence[Row]) -> JointTrack:
+    """The same of what was kept of them."""
     times, joints, confidence, facing, sure = zip(*rows, strict=True) if rows else ([],) * 5
     return JointTrack(
         np.array(times, float),
@@ -53,7 +61,8 @@ def track_of(reports: Iterable[Report]) -> JointTrack:
     )
 
 
-def _row(report: Report) -> tuple[float, Vector, Vector, float, float]:
+def row_of(report: Report) -> Row:
+    """What is kept of a report."""
     seen = report.landmarks
     if seen is None or report.box is None:
         return report.captured_s, np.zeros((JOINTS, 2)), np.zeros(JOINTS), 0.0, 0.0

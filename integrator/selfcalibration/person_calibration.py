@@ -9,6 +9,7 @@ from common.rig.camera import Rig, centre
 from common.rig.rig_file import CalibrationError
 from integrator.selfcalibration import person_prior as prior
 from integrator.selfcalibration.joint_tracks import Sighting
+from integrator.selfcalibration.lateness import likely_lateness_s
 from integrator.selfcalibration.rig_evidence import Evidence, gathered
 from integrator.selfcalibration.rig_fit import Fit, fitted, sides_of
 from integrator.selfcalibration.rig_guess import FOCALS, LATE, RIG, pinholes
@@ -21,6 +22,8 @@ FEWEST: Final = 12
 """Moments in which both views must see the person."""
 FEW: Final = 24
 """As many tell which start is right."""
+STARTS: Final = 5
+"""As many of the likeliest starts are followed."""
 AT_FIRST: Final = 15
 """Moments that tell where the person was at first."""
 STEP: Final = 1e-4
@@ -48,7 +51,7 @@ def calibrated_by_person(
             f"both cameras see the same person in {moments} moments only: film somebody, whole in "
             f"both pictures, who moves for some seconds"
         )
-    found = best_fit(evidence)
+    found = best_fit(evidence, sightings)
     seen = _explained(found, evidence)
     places = seen[0].met.points_m[:AT_FIRST, prior.PELVIS]
     person_m = np.median(places, axis=0)
@@ -58,26 +61,24 @@ def calibrated_by_person(
     return PersonCalibration(rig, tuple(found.guess[LATE:].tolist()), quality)
 
 
-def best_fit(evidence: Evidence) -> Fit:
+def best_fit(evidence: Evidence, sightings: tuple[Sighting, ...]) -> Fit:
     """The best of all starts: cameras alone first, then all, then with all moments."""
     few, every = evidence.thinned(FEW), np.ones(len(evidence.known.mean), np.bool_)
     cameras = every & (np.arange(len(every)) < RIG)
     cameras[FOCALS] = False
-    starts = sorted(
-        level_starts(evidence, 0.0),
-        key=lambda start: float((misfits(start, few, sides_of(start, few)) ** 2).sum()),
-    )
-    rough = [fitted(start, few, cameras, 1, 8) for start in starts[:4]]
+    late_s = np.array([likely_lateness_s(one.first, one.second) for one in sightings])
+    starts = level_starts(evidence, late_s)
+    if late_s.any():
+        starts += level_starts(evidence, np.zeros(len(late_s)))
+    starts.sort(key=lambda start: float((misfits(start, few, sides_of(start, few)) ** 2).sum()))
+    rough = [fitted(start, few, cameras, 1, 8) for start in starts[:STARTS]]
     rough.sort(key=lambda each: each.cost)
     better = [fitted(each.guess, few, every, 2, 8) for each in rough[:2]]
     return fitted(min(better, key=lambda each: each.cost).guess, evidence, every, 2, 12)
 
 
 def _explained(found: Fit, evidence: Evidence) -> list[Explained]:
-    return [
-        explained(found.guess, clip, float(found.guess[LATE + n]), found.sides[n], evidence.size_px)
-        for n, clip in enumerate(evidence.clips)
-    ]
+    return [explained(found.guess, evidence, n, sides) for n, sides in enumerate(found.sides)]
 
 
 def _quality(

@@ -35,6 +35,8 @@ class Known(NamedTuple):
     soft: NDArray[np.bool_]
     """What is mostly so, but may be quite otherwise."""
     stature_m: float
+    stature_error: float = 0.01
+    """How far the person's lengths may add up to another (sigma of its logarithm)."""
 
 
 class ClipEvidence(NamedTuple):
@@ -80,10 +82,10 @@ def gathered(sightings: tuple[Sighting, ...], known: Known) -> Evidence:
     return Evidence(tuple(clips), sightings[0].size_px, known)
 
 
-def sigma_px(track: JointTrack, unit_px: float) -> NDArray[np.float64]:
+def sigma_m(track: JointTrack, stature_m: float) -> NDArray[np.float64]:
     """(n, 15) how far landmarks err along each axis, by their confidence; inf for unsure ones."""
     sure = np.clip(track.confidence, 1e-6, 0.98)
-    spread = CLOSE * unit_px / np.sqrt(-2.0 * np.log1p(-sure))
+    spread = CLOSE * stature_m / np.sqrt(-2.0 * np.log1p(-sure))
     return np.where(track.confidence >= LEAST_SURE, spread, np.inf)
 
 

@@ -9,7 +9,6 @@ from scipy.optimize import least_squares
 from common.body.body import Vector
 from integrator.selfcalibration import person_prior as prior
 from integrator.selfcalibration.rig_evidence import Evidence, Sides
-from integrator.selfcalibration.rig_guess import LATE
 from integrator.selfcalibration.rig_residuals import Explained, explained, misfits
 from integrator.selfcalibration.sight_lines import Numbers
 
@@ -62,11 +61,10 @@ def sides_of(guess: Vector, evidence: Evidence) -> tuple[Sides, ...]:
     """Of each clip, where one view must have the sides of a part the other way round."""
     found = []
     for n, clip in enumerate(evidence.clips):
-        late_s = float(guess[LATE + n])
         costs = []
         for other in (False, True):
             sides = np.full((len(clip.first.times_s), 3), other)
-            costs.append(_costs(explained(guess, clip, late_s, sides, evidence.size_px)))
+            costs.append(_costs(explained(guess, evidence, n, sides)))
         found.append((costs[1] + EXCHANGE_COST < costs[0]) & (np.arange(3) != prior.TRUNK))
     return tuple(found)
 

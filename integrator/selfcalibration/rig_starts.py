@@ -14,13 +14,13 @@ from integrator.selfcalibration.sight_lines import Numbers
 
 FOCAL_SHARE: Final = 1.25
 """Focal length over the picture's width: a lens of 44 degrees, common for room cameras."""
-FOCAL_SPREAD: Final = 0.2
+FOCAL_SPREAD: Final = 0.22
 STATED_SPREAD: Final = 0.02
 """How far focal lengths are from that, mostly (of their logarithm), and from a stated one."""
 LEVEL_DEG: Final = {"pitch": 6.0, "roll": 2.5}
 """How far cameras on stands are from level, mostly."""
 HEIGHT_M: Final = (1.2, 0.6)
-LATE_S: Final = 0.02
+LATE_S: Final = 0.1
 YAWS_DEG: Final = tuple(range(-165, 180, 30))
 MIDDLE_SHARE: Final = 0.65
 """Height of the middle between pelvis and neck, in statures."""
@@ -50,10 +50,15 @@ def known_of(width_px: int, stature_m: float, clips: int, fov_deg: float | None 
     return Known(mean, sigma, soft, stature_m)
 
 
-def level_starts(evidence: Evidence, late_s: float) -> list[Vector]:
-    """A guess for each yaw: cameras without pitch and roll, about where they see the person."""
+def level_starts(evidence: Evidence, late_s: Vector) -> list[Vector]:
+    """A guess for each yaw: cameras without pitch and roll, about where they see the person.
+
+    Args:
+        evidence: What is seen.
+        late_s: By how much view 2 is late in each clip.
+    """
     clip, known = evidence.clips[0], evidence.known
-    tracks = (clip.first, at_times(clip.second, clip.first.times_s + late_s))
+    tracks = (clip.first, at_times(clip.second, clip.first.times_s + late_s[0]))
     places = []
     for n, track in enumerate(tracks):
         focal = math.exp(known.mean[n])
@@ -63,7 +68,7 @@ def level_starts(evidence: Evidence, late_s: float) -> list[Vector]:
     return [_around(math.radians(yaw), places, known, late_s) for yaw in YAWS_DEG]
 
 
-def _around(yaw: float, places: list[Numbers], known: Known, late_s: float) -> Vector:
+def _around(yaw: float, places: list[Numbers], known: Known, late_s: Vector) -> Vector:
     """Cameras that have the person at these places of their own, (3,) each, metres."""
     guess = known.mean.copy()
     one, other = (rotation(turn, 0.0, 0.0) for turn in (0.0, yaw))

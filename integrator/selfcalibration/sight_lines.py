@@ -1,6 +1,6 @@
 """Where the sight lines of both views pass each other, and how well that is known."""
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +10,12 @@ from integrator.selfcalibration.rig_guess import Pinhole
 
 Numbers = NDArray[np.float64]
 
-NEAREST_M, FARTHEST_M = 0.3, 50.0
-"""Where a camera can see somebody."""
+NEAREST_M: Final = 0.3
+"""Nobody is seen nearer to a camera."""
+
+NARROW: Final = 0.2
+"""Squared sine of the angle between rays below which depths are not called less certain: views
+that are nearly one would seem to agree about anything."""
 
 
 class Meeting(NamedTuple):
@@ -59,9 +63,9 @@ def directions(camera: Pinhole, middle_px: Vector, pixels: Numbers) -> Numbers:
 def meeting(
     cameras: tuple[Pinhole, Pinhole],
     rays: tuple[Numbers, Numbers],
-    sigmas_px: tuple[Numbers, Numbers],
+    sigmas_m: tuple[Numbers, Numbers],
 ) -> Meeting:
-    """Triangulate points from their rays (..., 3) and how far each pixel errs (...).
+    """Triangulate points from their rays (..., 3) and how far each ray errs there (...).
 
     In the plane of both rays each fixes what the other leaves open; across it both vote.
     """
@@ -74,24 +78,15 @@ def meeting(
     far_2 = (cosine * along_1 - along_2) / sine_2
     normal = np.cross(first, second) / np.sqrt(sine_2)[..., None]
     gap_m = normal @ base
-    spread_1 = _spread_m2(one, far_1, sigmas_px[0])
-    spread_2 = _spread_m2(other, far_2, sigmas_px[1])
-    both = spread_1 + spread_2
+    spread_1, spread_2 = sigmas_m[0] ** 2, sigmas_m[1] ** 2
+    both, told = spread_1 + spread_2, np.maximum(sine_2, NARROW)
     points = one.centre_m + far_1[..., None] * first
     points += (spread_1 / both * gap_m)[..., None] * normal
     return Meeting(
         points,
         np.stack([first, second, normal]),
-        np.stack([spread_2 / sine_2, spread_1 / sine_2, spread_1 * spread_2 / both]),
+        np.stack([spread_2 / told, spread_1 / told, spread_1 * spread_2 / both]),
         gap_m / np.sqrt(both),
         gap_m,
         (far_1 > NEAREST_M) & (far_2 > NEAREST_M),
     )
-
-
-def _spread_m2(camera: Pinhole, far_m: Numbers, sigma_px: Numbers) -> Numbers:
-    """Variance (...) of a sight line at a distance."""
-    spread: Numbers = (
-        sigma_px * np.clip(np.abs(far_m), NEAREST_M, FARTHEST_M) / camera.focal_px
-    ) ** 2
-    return spread

@@ -1,7 +1,7 @@
 """The same steps as live, in one process and in lock-step: deterministic, as fast as it goes."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from typing import Any, NamedTuple, get_args
 
@@ -22,6 +22,7 @@ from integrator.pairing import Pair
 from tritrack.offline.film_tracking import Film, Heard, follow_clip, unseen
 from tritrack.offline.frame_pairs import backgrounds, instants, share_of
 from tritrack.offline.opening_clip import body_of
+from tritrack.offline.rig_check import Witness, doubts, refuse_absurd_rig, trust_facts
 from tritrack.offline.rig_from_person import Looked, by_person, calibration_facts
 from tritrack.terminal import Tell
 from viewer import track
@@ -110,6 +111,8 @@ def track_clip(
     """
     began = time.perf_counter()
     clip = open_clip(settings, decoders.of[1], views)
+    if not settings.trust_calibration:
+        refuse_absurd_rig(clip)
     method = method or METHODS[settings.mode]
     alone = len(clip.views) == 1
     if method.stick_lifting and not alone:
@@ -119,8 +122,12 @@ def track_clip(
     with outside_sources(settings, clip.views) as sources:
         looked = by_person(clip, settings, method, decoders.of, sources)
         ready = _prepared(looked, settings, method, decoders, began)
-        done = _performed(ready, sources, watch, tell)
-        facts = _facts(ready, done, sources) | calibration_facts(looked)
+        witness = Witness()
+        watches = (witness, watch) if watch else (witness,)
+        done = _performed(ready, sources, watches, tell)
+        trust = trust_facts(looked.clip, witness, insisted=settings.trust_calibration)
+        facts = _facts(ready, done, sources) | calibration_facts(looked) | trust
+        facts["warnings"] += doubts(facts)
         return Tracked(looked.clip, done.bodies, facts)
 
 
@@ -158,7 +165,9 @@ def _prepared(
     return Prepared(clip, reels, viewers, integrator, odd, time.perf_counter() - began)
 
 
-def _performed(ready: Prepared, sources: Sources, watch: Watch | None, tell: Tell) -> Performance:
+def _performed(
+    ready: Prepared, sources: Sources, watches: Sequence[Watch], tell: Tell
+) -> Performance:
     """Every instant of a clip, its viewers and the integrator in lock-step."""
     viewers, state, noticed = dict(ready.viewers), ready.integrator, diagnostics.State()
     guide: Guide | None = None
@@ -175,7 +184,7 @@ def _performed(ready: Prepared, sources: Sources, watch: Watch | None, tell: Tel
         state, body, guide = merge.step(state, pair)
         noticed = diagnostics.step(noticed, pair)
         bodies.append(body)
-        if watch is not None:
+        for watch in watches:
             watch(frames, reports, body)
         tell(share_of(ready.clip, frames))
         spent["viewers"] += middle - start

@@ -19,7 +19,7 @@ from viewer.landmarks.landmark_sources import Sources
 
 MOST_FRAMES: Final = 3_000
 """So much of a clip is looked at."""
-LEAST_LATE: Final = 0.35
+LEAST_LATE: Final = 0.6
 """Share of a frame by which view 2 must be late before its clock is set."""
 
 
