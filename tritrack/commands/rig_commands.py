@@ -1,7 +1,7 @@
 """The calibrate commands: where the cameras are, from a person, or from markers and poles (4.1)."""
 
 from pathlib import Path
-from typing import Annotated, Final
+from typing import Annotated, Final, Literal
 
 import typer
 
@@ -81,4 +81,50 @@ def poles(
     from integrator.rig.calibration import run_poles
 
     tell_rows(run_poles(measured, out, force).cameras, json_wanted)
+    console.print(f"written to {out}", highlight=False, soft_wrap=True)
+
+
+@calibrate_app.command("import")
+def import_(
+    theirs: Annotated[
+        Path, typer.Argument(help="Pose2Sim, Caliscope or anipose TOML; Qualisys .qca.txt.")
+    ],
+    camera: Annotated[
+        list[str] | None, typer.Option(help="Only this camera; give both, in their order.")
+    ] = None,
+    out: Written = OUT,
+    force: Forced = False,
+) -> None:
+    """Take the calibration of another program.
+
+    Example: tritrack calibrate import Calib.toml --camera cam01 --camera cam04
+    """
+    from integrator.foreign_rigs.imported_rig import imported_rig
+    from integrator.rig.calibration import refuse_to_replace, write_rig
+
+    refuse_to_replace(out, force)
+    rig = imported_rig(theirs, tuple(camera or ()))
+    write_rig(out, rig)
+    console.print(f"{len(rig.cameras)} cameras written to {out}", highlight=False, soft_wrap=True)
+
+
+@calibrate_app.command("export")
+def export_(
+    ours: Annotated[Path, typer.Argument(help="A calibration.json.")],
+    to: Annotated[Literal["pose2sim", "caliscope"], typer.Option(help="The other program.")],
+    out: Annotated[Path, typer.Option(help="The file to write.", callback=writable_file)] = Path(
+        "Calib.toml"
+    ),
+    force: Forced = False,
+) -> None:
+    """Write a calibration for another program, its world with z up.
+
+    Example: tritrack calibrate export calibration.json --to pose2sim --out Calib.toml
+    """
+    from common.rig.rig_file import load_rig
+    from integrator.foreign_rigs.toml_rig import toml_text
+    from integrator.rig.calibration import refuse_to_replace, write_text
+
+    refuse_to_replace(out, force)
+    write_text(out, toml_text(load_rig(ours), to))
     console.print(f"written to {out}", highlight=False, soft_wrap=True)
