@@ -10,10 +10,10 @@ import pytest
 from test_person_calibration import PAPER, filmed_by_the_papers_rig
 
 from common.rig.camera import Rig, as_matrix, as_row, centre
-from integrator.selfcalibration.known_rig import guess_of
-from integrator.selfcalibration.rig_fault import advice_on, exchanged_rig
+from integrator.rig_gate.known_rig import guess_of
+from integrator.rig_gate.rig_fault import advice_on, exchanged_rig
+from integrator.rig_gate.rig_trust import Trust, trust_of
 from integrator.selfcalibration.rig_guess import RIG, pinholes, rotation
-from integrator.selfcalibration.rig_trust import Trust, trust_of
 
 PERIOD_S = 1 / 15
 SHOWN = filmed_by_the_papers_rig(6, "walk_toward").sighting

@@ -45,8 +45,8 @@ def trust_facts(clip: Clip, witness: Witness, *, insisted: bool) -> dict[str, An
         witness: What both views saw in it.
         insisted: The user trusts the calibration: nothing is advised.
     """
-    from integrator.selfcalibration.rig_fault import advice_on
-    from integrator.selfcalibration.rig_trust import trust_of
+    from integrator.rig_gate.rig_fault import advice_on
+    from integrator.rig_gate.rig_trust import trust_of
 
     sighting = witness.sighting(clip)
     if clip.rig is None or len(clip.views) < 2 or len(sighting.second.times_s) < 2:

@@ -69,13 +69,14 @@ def by_person(
 ) -> Looked:
     """A recorded clip of two views that has no rig with the one that the person in it tells.
 
-    It is left as it is where it has one, where the method asks for no landmarks, and where too
-    little of anybody is seen.
+    It is left as it is where it has one, where the method asks for no landmarks, where too little
+    of anybody is seen, and where the views' pictures differ in size.
     """
     from integrator.selfcalibration.person_calibration import calibrated_by_person
 
-    recorded = all(view.frames for view in clip.views)
-    if clip.rig is not None or len(clip.views) < 2 or not recorded:
+    of_files = all(view.frames for view in clip.views)
+    of_one_size = len({view.size for view in clip.views}) == 1
+    if clip.rig is not None or len(clip.views) < 2 or not (of_files and of_one_size):
         return Looked(clip)
     if not (method.landmarks and method.proposals):
         return Looked(clip)

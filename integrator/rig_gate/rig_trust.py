@@ -8,9 +8,9 @@ import numpy as np
 
 from common.body.body import Vector
 from common.rig.camera import Rig
+from integrator.rig_gate.known_rig import as_ideal, guess_of
 from integrator.selfcalibration import person_prior as prior
 from integrator.selfcalibration.joint_tracks import Sighting
-from integrator.selfcalibration.known_rig import as_ideal, guess_of
 from integrator.selfcalibration.lateness import likely_lateness_s
 from integrator.selfcalibration.rig_evidence import Evidence, Known, gathered
 from integrator.selfcalibration.rig_fit import Fit, fitted, sides_of

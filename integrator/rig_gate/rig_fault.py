@@ -8,10 +8,10 @@ import numpy as np
 
 from common.body.body import Vector
 from common.rig.camera import Camera, Rig, as_matrix
+from integrator.rig_gate.rig_trust import Case, Trust, case_of, trust_of, with_lateness
 from integrator.selfcalibration.joint_tracks import Sighting
 from integrator.selfcalibration.rig_fit import fitted
 from integrator.selfcalibration.rig_guess import BODY, FOCALS, LATE, PLACE
-from integrator.selfcalibration.rig_trust import Case, Trust, case_of, trust_of, with_lateness
 
 SIZES: Final = (0.25, 1 / 3, 0.5, 2 / 3, 0.75, 4 / 3, 1.5, 2.0, 3.0, 4.0)
 """How much larger pictures are that a calibration may have been made for."""
