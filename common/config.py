@@ -128,6 +128,8 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A clip folder with cam1.*, cam2.*; environment variables are filled in."""
     calibration: str = ""
     """A calibration.json; the one beside the clip or one folder up when empty."""
+    trust_calibration: bool = False
+    """Go on with a calibration that no room has, and advise nothing on one that seems wrong."""
     opening: str = ""
     """A clip folder, or a settings file, that shows the person in a T before the run: the body is
     measured there. Its cameras may stand elsewhere."""

@@ -27,6 +27,11 @@ def assumed(merged: merge_state.State) -> list[str]:
     """What is known to be odd from the start: no calibration."""
     if merged.scale_source == "calibrated":
         return []
+    if merged.scale_source == "person":
+        return [
+            "no calibration: the cameras are calibrated by the person, the scale by a stature of "
+            f"{merged.settings.body.stature_m:g} m (keep it: tritrack calibrate person)"
+        ]
     return [
         "no calibration: a rig of the paper's kind is assumed, its scale from a stature of "
         f"{merged.settings.body.stature_m:g} m (make one: tritrack calibrate poles)"

@@ -16,7 +16,7 @@ from integrator.pose import smoothing
 from integrator.proposal.pose_proposal import Memory
 from integrator.single.single_view import Alone
 
-ScaleSource = Literal["calibrated", "assumed"]
+ScaleSource = Literal["calibrated", "person", "assumed"]
 
 
 class Posed(NamedTuple):
@@ -91,6 +91,6 @@ def init(
         start: What else is known.
     """
     source = start.source or ("assumed" if rig is None else "calibrated")
-    proposes = method.proposals and (start.alone or source == "calibrated")
+    proposes = method.proposals and (start.alone or source != "assumed")
     smooth = smoothing.init(len(ANGLE_NAMES), period_s)
     return State(settings, method, rig, source, proposes, smooth, start.opening)

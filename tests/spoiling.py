@@ -162,7 +162,7 @@ WORKED_WITH: dict[str, tuple[Callable[[Path], None], str]] = {
     "other size": (larger, "differ in size: 160x120 and 320x240"),
     "no empty frames": (never_empty, "cam1.avi does not open with an empty room: the background"),
     "no T-pose": (no_opening_posture, "nobody took the opening posture, .*thesis's proportions"),
-    "no calibration": (uncalibrated, "no calibration: a rig of the paper's kind is assumed"),
+    "no calibration": (uncalibrated, "no calibration: the cameras are calibrated by the person"),
     "partly outside": (partly_outside, "viewer 1 saw the person partly outside its picture"),
     "cut off": (cut_off, r"cam2.avi ends after \d+ of 69 frames: it was cut off"),
     "capture times": (odd_capture_times, "60 capture times for camera 1, .* has 69 frames"),

@@ -135,6 +135,6 @@ def test_a_pair_filmed_without_calibration_is_tracked(data_dir: Path, tmp_path: 
         pytest.skip("the settings name the clips by TRITRACK_DATA")
     done = track_all([config], tmp_path, None, (1, 2), None, QUIET)
     assert list(done["clips"]) == ["frontside_walk"]
-    assert done["clips"]["frontside_walk"]["scale_source"] == "assumed"
+    assert done["clips"]["frontside_walk"]["scale_source"] == "person"
     with np.load(tmp_path / "frontside_walk" / "poses.npz", allow_pickle=False) as found:
         assert np.isfinite(found["joints_m"]).all(axis=(1, 2)).mean() > 0.9

@@ -58,6 +58,7 @@ RESULTS: Final = {
     "tritrack train clips/*/": Result(("postures.npz",), "2 postures learnt, 2 known"),
     "tritrack train clips/*squat/": Result(("mine.npz",), "1 postures learnt, 15 known"),
     "tritrack evaluate postures": Result(("report/postures/report.html",), r"all: \d/2"),
+    "tritrack calibrate person": Result(("calibration.json",), "cam2"),
     "tritrack calibrate markers": Result(says="cam2"),
     "tritrack calibrate poles": Result(("configs/calibration.json",), "cam2"),
     "tritrack bench": Result(says="limb match"),

@@ -263,7 +263,7 @@ def test_json_stands_alone_on_stdout(tritrack: Commands, clip: Path, tmp_path: P
     WORKED_WITH["no calibration"][0](folder)
     said = tritrack("track", folder, "--out", tmp_path / "out", "--json")
     told = json.loads(said.out)["clips"]["clip"]
-    assert told["scale_source"] == "assumed"
+    assert told["scale_source"] == "person"
     assert len(said.warnings) == len(told["warnings"]) == 1
 
 

@@ -28,7 +28,7 @@ class Cameras(Message, frozen=True, kw_only=True):
     """The rig that a run uses, once it is known."""
 
     rig: Rig
-    scale_source: Literal["calibrated", "assumed"]
+    scale_source: Literal["calibrated", "person", "assumed"]
 
 
 class Ended(Message, frozen=True, kw_only=True):

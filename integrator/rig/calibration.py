@@ -37,24 +37,44 @@ def run_poles(path: Path, out: Path, replace: bool = False) -> Quality:
         CalibrationError: When a file cannot be read or written, or would be lost, or the poles do
             not suffice.
     """
-    if out.exists() and not replace:
-        raise CalibrationError(f"{out} is there already: name another --out, or add --force")
+    refuse_to_replace(out, replace)
     rig, quality = poles(_read(path, Poles))
     write_rig(out, rig, quality)
     return quality
 
 
-def write_rig(path: Path, rig: Rig, quality: msgspec.Struct) -> None:
+def refuse_to_replace(out: Path, replace: bool) -> None:
+    """Say that a file is there already, unless it may be lost.
+
+    Raises:
+        CalibrationError: When it is there and may not.
+    """
+    if out.exists() and not replace:
+        raise CalibrationError(f"{out} is there already: name another --out, or add --force")
+
+
+def write_rig(path: Path, rig: Rig, quality: msgspec.Struct | None = None) -> None:
     """Write a rig as `calibration.json`, its quality beside it; its folder where there is none.
 
     Raises:
         CalibrationError: When the file cannot be written.
     """
-    content = msgspec.to_builtins(rig) | {"quality": msgspec.to_builtins(quality)}
+    content = msgspec.to_builtins(rig)
+    if quality is not None:
+        content |= {"quality": msgspec.to_builtins(quality)}
+    write_text(path, msgspec.json.format(msgspec.json.encode(content), indent=1).decode())
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a calibration's text; its folder where there is none.
+
+    Raises:
+        CalibrationError: When the file cannot be written.
+    """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with replacing(path) as new:
-            new.write_bytes(msgspec.json.format(msgspec.json.encode(content), indent=1))
+            new.write_text(text)
     except OSError as error:
         raise CalibrationError(f"cannot write the calibration {path}: {error.strerror}") from error
 

@@ -28,6 +28,9 @@ def track(
         Literal["12", "1", "2"], typer.Option(help="Both cameras, or only one of them.")
     ] = "12",
     size: Size = None,
+    trust_calibration: Annotated[
+        bool, typer.Option("--trust-calibration", help="Go on with a calibration that seems wrong.")
+    ] = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Track clips offline: the same as live, deterministic, as fast as it goes.
@@ -38,7 +41,7 @@ def track(
     """
     from tritrack.offline.batch import track_all
 
-    facts = track_all(clips, out, mode, VIEWERS[views], size, console)
+    facts = track_all(clips, out, mode, VIEWERS[views], size, console, trusted=trust_calibration)
     tell(facts, json_wanted, line_of_runs(facts["clips"], out))
     refuse_unfollowed(facts["clips"])
 

@@ -1,7 +1,7 @@
-"""The calibrate commands: where the cameras are, from line markers, then from poles (4.1)."""
+"""The calibrate commands: where the cameras are, from a person, or from markers and poles (4.1)."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final, Literal
 
 import typer
 
@@ -9,9 +9,48 @@ from tritrack.commands.command_output import JsonWanted, console, tell_rows
 from tritrack.commands.options import writable_file
 
 calibrate_app = typer.Typer(
-    help="Find out where the cameras are: from line markers, then from poles (section 4.1).",
+    help="Find out where the cameras are: from a person, or from line markers, then poles (4.1).",
     no_args_is_help=True,
 )
+
+
+Written = Annotated[Path, typer.Option(help="The file to write.", callback=writable_file)]
+Forced = Annotated[bool, typer.Option("--force", help="Replace a file that is there.")]
+OUT: Final = Path("calibration.json")
+
+
+@calibrate_app.command()
+def person(
+    clips: Annotated[list[Path], typer.Argument(help="Clips of one rig, or settings files.")],
+    stature: Annotated[
+        float, typer.Option(min=0.5, max=2.6, help="How tall the person is, metres.")
+    ] = 1.75,
+    fov: Annotated[
+        float | None,
+        typer.Option(min=10.0, max=150.0, help="How wide the cameras see, degrees, if known."),
+    ] = None,
+    out: Written = OUT,
+    force: Forced = False,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Calibrate both cameras by a person who moves before them: nothing is printed or measured.
+
+    Example: tritrack calibrate person clips/*/ --stature 1.82 --out clips/calibration.json
+    """
+    from integrator.rig.calibration import refuse_to_replace, write_rig
+    from tritrack.offline.rig_of_clips import Given, calibrated_by_clips
+
+    refuse_to_replace(out, force)
+    rig, quality = calibrated_by_clips(clips, Given(stature, fov))
+    write_rig(out, rig, quality)
+    tell_rows(quality.cameras, json_wanted)
+    console.print(
+        f"both views agree to {quality.gap_mm:.0f} mm in {quality.moments} moments; "
+        f"view 2 is late by {', '.join(f'{late:+.1f}' for late in quality.late_frames)} frames",
+        highlight=False,
+        soft_wrap=True,
+    )
+    console.print(f"written to {out}", highlight=False, soft_wrap=True)
 
 
 @calibrate_app.command()
@@ -31,10 +70,8 @@ def markers(
 @calibrate_app.command()
 def poles(
     measured: Annotated[Path, typer.Argument(help="Tops of the poles in both pictures (TOML).")],
-    out: Annotated[Path, typer.Option(help="The file to write.", callback=writable_file)] = Path(
-        "calibration.json"
-    ),
-    force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
+    out: Written = OUT,
+    force: Forced = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Find focal lengths and distances from poles at known places, with error bars.
@@ -44,4 +81,50 @@ def poles(
     from integrator.rig.calibration import run_poles
 
     tell_rows(run_poles(measured, out, force).cameras, json_wanted)
+    console.print(f"written to {out}", highlight=False, soft_wrap=True)
+
+
+@calibrate_app.command("import")
+def import_(
+    theirs: Annotated[
+        Path, typer.Argument(help="Pose2Sim, Caliscope or anipose TOML; Qualisys .qca.txt.")
+    ],
+    camera: Annotated[
+        list[str] | None, typer.Option(help="Only this camera; give both, in their order.")
+    ] = None,
+    out: Written = OUT,
+    force: Forced = False,
+) -> None:
+    """Take the calibration of another program.
+
+    Example: tritrack calibrate import Calib.toml --camera cam01 --camera cam04
+    """
+    from integrator.foreign_rigs.imported_rig import imported_rig
+    from integrator.rig.calibration import refuse_to_replace, write_rig
+
+    refuse_to_replace(out, force)
+    rig = imported_rig(theirs, tuple(camera or ()))
+    write_rig(out, rig)
+    console.print(f"{len(rig.cameras)} cameras written to {out}", highlight=False, soft_wrap=True)
+
+
+@calibrate_app.command("export")
+def export_(
+    ours: Annotated[Path, typer.Argument(help="A calibration.json.")],
+    to: Annotated[Literal["pose2sim", "caliscope"], typer.Option(help="The other program.")],
+    out: Annotated[Path, typer.Option(help="The file to write.", callback=writable_file)] = Path(
+        "Calib.toml"
+    ),
+    force: Forced = False,
+) -> None:
+    """Write a calibration for another program, its world with z up.
+
+    Example: tritrack calibrate export calibration.json --to pose2sim --out Calib.toml
+    """
+    from common.rig.rig_file import load_rig
+    from integrator.foreign_rigs.toml_rig import toml_text
+    from integrator.rig.calibration import refuse_to_replace, write_text
+
+    refuse_to_replace(out, force)
+    write_text(out, toml_text(load_rig(ours), to))
     console.print(f"written to {out}", highlight=False, soft_wrap=True)

@@ -40,6 +40,8 @@ def track_all(
     views: tuple[ViewerNumber, ...],
     size: str | None,
     console: Console,
+    *,
+    trusted: bool = False,
 ) -> dict[str, Any]:
     """Track clip after clip and write a run folder for each.
 
@@ -52,6 +54,7 @@ def track_all(
         views: The cameras to use.
         size: As `mode`.
         console: For progress, warnings and errors.
+        trusted: A calibration is trusted even where it seems wrong.
 
     Raises:
         ClipsFailed: When there is nothing to track, when two runs would have one folder, and at
@@ -64,6 +67,8 @@ def track_all(
         for (name, path), tell in by_share(progress, [*runs.items()], "tracking"):
             try:
                 settings = overridden(config.load(path), mode, size)
+                if trusted:
+                    settings = msgspec.structs.replace(settings, trust_calibration=True)
                 tracked = track_clip(settings, decoders, views, tell=tell)
             except (SettingsError, ClipError, DecoderDied, Undecodable) as error:
                 complain(console, str(error))

@@ -1,9 +1,9 @@
 """The same steps as live, in one process and in lock-step: deterministic, as fast as it goes."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args
 
 import msgspec
 
@@ -22,6 +22,8 @@ from integrator.pairing import Pair
 from tritrack.offline.film_tracking import Film, Heard, follow_clip, unseen
 from tritrack.offline.frame_pairs import backgrounds, instants, share_of
 from tritrack.offline.opening_clip import body_of
+from tritrack.offline.rig_check import Witness, doubts, refuse_absurd_rig, trust_facts
+from tritrack.offline.rig_from_person import Looked, by_person, calibration_facts
 from tritrack.terminal import Tell
 from viewer import track
 from viewer.capture import CapturedFrame
@@ -48,7 +50,9 @@ class Decoders:
     def __init__(self) -> None:
         """None started yet."""
         self._doors = ExitStack()
-        self.of = {number: self._doors.enter_context(Decoder()) for number in (1, 2)}
+        self.of: dict[ViewerNumber, Decoder] = {
+            number: self._doors.enter_context(Decoder()) for number in get_args(ViewerNumber)
+        }
 
     def __enter__(self) -> "Decoders":
         """Nothing to do before the first clip."""
@@ -107,6 +111,8 @@ def track_clip(
     """
     began = time.perf_counter()
     clip = open_clip(settings, decoders.of[1], views)
+    if not settings.trust_calibration:
+        refuse_absurd_rig(clip)
     method = method or METHODS[settings.mode]
     alone = len(clip.views) == 1
     if method.stick_lifting and not alone:
@@ -114,9 +120,15 @@ def track_clip(
     if alone and (method.stick_lifting or (method.proposals and clip.rig is None)):
         return _in_two_passes(clip, settings, method, decoders, tell)
     with outside_sources(settings, clip.views) as sources:
-        ready = _prepared(clip, settings, method, decoders, began)
-        done = _performed(ready, sources, watch, tell)
-        return Tracked(clip, done.bodies, _facts(ready, done, sources))
+        looked = by_person(clip, settings, method, decoders.of, sources)
+        ready = _prepared(looked, settings, method, decoders, began)
+        witness = Witness()
+        watches = (witness, watch) if watch else (witness,)
+        done = _performed(ready, sources, watches, tell)
+        trust = trust_facts(looked.clip, witness, insisted=settings.trust_calibration)
+        facts = _facts(ready, done, sources) | calibration_facts(looked) | trust
+        facts["warnings"] += doubts(facts)
+        return Tracked(looked.clip, done.bodies, facts)
 
 
 def _in_two_passes(
@@ -132,14 +144,14 @@ def _in_two_passes(
 
 
 def _prepared(
-    clip: Clip, settings: Settings, method: Method, decoders: Decoders, began: float
+    looked: Looked, settings: Settings, method: Method, decoders: Decoders, began: float
 ) -> Prepared:
     """Viewers that know their backgrounds and an integrator that knows the rig."""
+    clip, odd = looked.clip, [looked.warning] if looked.warning else []
     rig, alone = both_cameras(clip), len(clip.views) == 1
     known = body_of(settings, lambda own: track_clip(own, decoders).bodies)
     reels = {view.number: Reel(decoders.of[view.number]) for view in clip.views}
     viewers: dict[ViewerNumber, track.State] = {}
-    odd: list[str] = []
     learnt = backgrounds(clip, settings.silhouette, reels)
     for view, (background, noted) in zip(clip.views, learnt, strict=True):
         odd += [noted] if noted else []
@@ -148,11 +160,14 @@ def _prepared(
         viewers[view.number] = track.init(setup, background)
     period_s = clip.every / clip.views[0].fps
     opening = opening_posture.init(known)
-    integrator = merge_state.init(rig, period_s, settings, method, Start(alone, opening=opening))
+    start = Start(alone, "person" if looked.found else None, opening)
+    integrator = merge_state.init(rig, period_s, settings, method, start)
     return Prepared(clip, reels, viewers, integrator, odd, time.perf_counter() - began)
 
 
-def _performed(ready: Prepared, sources: Sources, watch: Watch | None, tell: Tell) -> Performance:
+def _performed(
+    ready: Prepared, sources: Sources, watches: Sequence[Watch], tell: Tell
+) -> Performance:
     """Every instant of a clip, its viewers and the integrator in lock-step."""
     viewers, state, noticed = dict(ready.viewers), ready.integrator, diagnostics.State()
     guide: Guide | None = None
@@ -169,7 +184,7 @@ def _performed(ready: Prepared, sources: Sources, watch: Watch | None, tell: Tel
         state, body, guide = merge.step(state, pair)
         noticed = diagnostics.step(noticed, pair)
         bodies.append(body)
-        if watch is not None:
+        for watch in watches:
             watch(frames, reports, body)
         tell(share_of(ready.clip, frames))
         spent["viewers"] += middle - start

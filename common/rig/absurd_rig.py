@@ -1,0 +1,64 @@
+"""Rigs that no room has: refused before a run, unless the user insists."""
+
+from typing import Final
+
+import numpy as np
+
+from common.rig.camera import Rig, centre
+from common.rig.rig_file import CalibrationError
+
+FOCALS: Final = (0.2, 20.0)
+"""Focal lengths in widths of the picture: a fisheye, a telescope."""
+TOGETHER_M, APART_M = 0.05, 60.0
+DEEP_M: Final = 1.0
+"""A camera this deep under the floor has another floor."""
+NO_UP: Final = 0.2
+"""How much of a camera's own up, at least, is up in the world; less where y is not up at all."""
+ALIKE: Final = 0.8
+"""Two cameras whose ups agree by this are level, whatever way the world's y goes."""
+INSIST: Final = "calibrate again, or add --trust-calibration"
+
+
+def refuse_absurd(rig: Rig, where: str) -> None:
+    """Refuse a rig of two cameras that could stand in no room.
+
+    Raises:
+        CalibrationError: With the camera's name, what is absurd and what to do.
+    """
+    if len(rig.cameras) == 2:
+        _refuse_absurd_pair(rig, where)
+    for camera in rig.cameras:
+        share, across, down = camera.K[0][0] / rig.width, camera.K[0][2], camera.K[1][2]
+        if not FOCALS[0] <= share <= FOCALS[1]:
+            raise CalibrationError(
+                f"{where}: the focal length of {camera.name} is {share:.2g} widths of the picture, "
+                f"as if it were for another size; {INSIST}"
+            )
+        if not (0 < across < rig.width and 0 < down < rig.height):
+            raise CalibrationError(
+                f"{where}: {camera.name} has its middle at ({across:.0f}, {down:.0f}), outside its "
+                f"{rig.width}x{rig.height} picture; {INSIST}"
+            )
+        deep_m = -float(centre(camera)[1])
+        if deep_m > DEEP_M:
+            raise CalibrationError(
+                f"{where}: {camera.name} stands {deep_m:.1f} m below the floor, y = 0; {INSIST}"
+            )
+
+
+def _refuse_absurd_pair(rig: Rig, where: str) -> None:
+    first, second = rig.cameras
+    apart_m = float(np.linalg.norm(centre(first) - centre(second)))
+    if apart_m < TOGETHER_M:
+        raise CalibrationError(f"{where}: both cameras stand at one place; {INSIST}")
+    if apart_m > APART_M:
+        raise CalibrationError(
+            f"{where}: the cameras are {apart_m:.0f} m apart: is t in millimetres? it must be in "
+            f"metres; {INSIST}"
+        )
+    ups = [-np.array(camera.R)[1] for camera in rig.cameras]
+    if max(up[1] for up in ups) < NO_UP and ups[0] @ ups[1] > ALIKE:
+        raise CalibrationError(
+            f"{where}: y does not point up in its world, {'xyz'[int(np.abs(ups[0]).argmax())]} "
+            f"seems to: turn it; {INSIST}"
+        )

@@ -1,0 +1,1 @@
+"""Whether a rig that is given is believable, and what is likeliest wrong with it."""

@@ -1,0 +1,168 @@
+"""Is a rig believable, by what both views show of the person alone?"""
+
+import math
+from typing import Final, NamedTuple
+
+import msgspec
+import numpy as np
+
+from common.body.body import Vector
+from common.rig.camera import Rig
+from integrator.rig_gate.known_rig import as_ideal, guess_of
+from integrator.selfcalibration import person_prior as prior
+from integrator.selfcalibration.joint_tracks import Sighting
+from integrator.selfcalibration.lateness import likely_lateness_s
+from integrator.selfcalibration.rig_evidence import Evidence, Known, gathered
+from integrator.selfcalibration.rig_fit import Fit, fitted, sides_of
+from integrator.selfcalibration.rig_guess import BODY, LATE, RIG
+from integrator.selfcalibration.rig_residuals import (
+    Explained,
+    explained,
+    facing_off_deg,
+)
+from integrator.selfcalibration.rig_starts import known_of
+
+FEWEST, ENOUGH = 12, 40
+"""Moments in which both views must see the person, and as many as are looked at."""
+MOST_APART_MM: Final = 32.0
+"""Views of a good rig place the joints less far apart, in the mean over a clip: r01 and r04."""
+FLOOR_MM: Final = (-35.0, 45.0)
+"""Where a good rig has the soles."""
+STATURES_M: Final = (0.9, 2.3)
+MOST_LATE_FRAMES: Final = 0.75
+MOST_FACING_DEG: Final = 90.0
+
+
+class Trust(msgspec.Struct, frozen=True):
+    """How far two cameras and their clocks are to be believed."""
+
+    believed: bool
+    apart_mm: float
+    """How far both views place the joints from each other, errors that change left out."""
+    apart_px: float
+    late_frames: float
+    """By how many frames view 2 is late."""
+    soles_mm: float
+    """Height of the lower foot's sole above the calibration's floor, mostly."""
+    stature_m: float
+    """Of the person, by the calibration's lengths."""
+    facing_deg: float
+    """How far both views disagree which way in the room the person faces, mostly."""
+    moments: int
+    odd: tuple[str, ...] = ()
+    """What is not believable: words of WORDS."""
+    advice: str = ""
+    """What is the likeliest cause, and what to do; "" where all is well."""
+
+
+class Case(NamedTuple):
+    """A rig and what is held against it."""
+
+    guess: Vector
+    evidence: Evidence
+
+
+def case_of(rig: Rig, sighting: Sighting) -> Case | None:
+    """A rig and the person before it, whose stature is as the rig has it; None where both views
+    see too little of anybody."""
+    ideal = as_ideal(sighting, rig)
+    known = _held(guess_of(rig), known_of(rig.width, 1.75, 1))
+    evidence = gathered((ideal,), known).thinned(ENOUGH)
+    clip = evidence.clips[0]
+    if len(clip.first.times_s) < FEWEST or not all(clip.units_px):
+        return None
+    guess = known.mean.copy()
+    for _ in range(2):
+        stature_m = _stature_m(explained(guess, evidence, 0, sides_of(guess, evidence)[0]))
+        guess[BODY] = np.log(prior.SHARES * stature_m)
+        mean = known.mean.copy()
+        mean[BODY] = guess[BODY]
+        evidence = evidence._replace(known=known._replace(mean=mean, stature_m=stature_m))
+    return Case(guess, evidence)
+
+
+def _held(rig: Vector, known: Known) -> Known:
+    """What is believed where a rig is given: it."""
+    mean, sigma, soft = known.mean.copy(), known.sigma.copy(), known.soft.copy()
+    mean[:RIG] = rig
+    sigma[:RIG] = (0.3, 0.3, 0.2, 0.2, 0.5, 0.3, 0.2, 0.2, 1.0, 0.5, 1.0)
+    soft[:RIG] = False
+    sigma[BODY] = 0.3
+    return Known(mean, sigma, soft, known.stature_m, 0.3)
+
+
+def _stature_m(one: Explained) -> float:
+    """How tall the person is by a rig: the lengths that stand upon each other."""
+    near, far = prior.ENDS.T
+    long_m = np.linalg.norm(one.met.points_m[:, far] - one.met.points_m[:, near], axis=-1)
+    total = 0.0
+    for length in np.flatnonzero(prior.UPRIGHT):
+        seen = one.lengths_used & (length == prior.LENGTH_OF)
+        share = prior.SHARES[length] / prior.CROWN_SHARE
+        total += float(np.median(long_m[seen])) if seen.any() else 1.75 * share
+    return max(total / prior.CROWN_SHARE, 0.05)
+
+
+def with_lateness(case: Case, sighting: Sighting) -> Fit:
+    """The rig with the lateness of view 2 that explains most; all else is kept."""
+    free = np.zeros(len(case.guess), np.bool_)
+    free[LATE] = True
+    fits = []
+    for late_s in {0.0, likely_lateness_s(sighting.first, sighting.second)}:
+        start = case.guess.copy()
+        start[LATE] = late_s
+        fits.append(fitted(start, case.evidence, free, 2, 8))
+    return min(fits, key=lambda fit: fit.cost)
+
+
+def trust_of(rig: Rig, sighting: Sighting, period_s: float) -> Trust | None:
+    """Whether a rig and its clocks are believable; None where too little is seen to say."""
+    case = case_of(rig, sighting)
+    if case is None:
+        return None
+    fit = with_lateness(case, sighting)
+    one = explained(fit.guess, case.evidence, 0, fit.sides[0])
+    stature_m = case.evidence.known.stature_m
+    apart_m = apart(one)
+    trust = Trust(
+        True,
+        1e3 * apart_m,
+        apart_m / stature_m * float(np.mean(case.evidence.clips[0].units_px)),
+        float(fit.guess[LATE]) / period_s,
+        1e3 * _soles_m(one, stature_m),
+        stature_m,
+        facing_off_deg(fit.guess, one, case.evidence.clips[0].first),
+        len(one.used),
+    )
+    odd = tuple(_odd(trust))
+    return msgspec.structs.replace(trust, believed=not odd, odd=odd)
+
+
+def apart(one: Explained) -> float:
+    """How far views place the joints from each other, metres: of each joint the median, with its
+    sign, so that errors that change do not count; then the mean square over the joints."""
+    medians = [
+        float(np.median(one.met.gap_m[used, joint]))
+        for joint, used in enumerate(one.used.T)
+        if used.sum() >= FEWEST // 2
+    ]
+    return math.sqrt(float(np.mean(np.square(medians)))) if medians else 0.0
+
+
+def _soles_m(one: Explained, stature_m: float) -> float:
+    ankles = np.where(one.used[:, prior.ANKLES], one.met.points_m[:, prior.ANKLES, 1], np.inf).min(
+        axis=1
+    )
+    seen = np.isfinite(ankles)
+    return float(np.median(ankles[seen])) - prior.ANKLE_SHARE * stature_m if seen.any() else 0.0
+
+
+def _odd(trust: Trust) -> list[str]:
+    odd = {
+        "apart": trust.apart_mm > MOST_APART_MM,
+        "late": abs(trust.late_frames) > MOST_LATE_FRAMES,
+        "floor": not FLOOR_MM[0] <= trust.soles_mm <= FLOOR_MM[1],
+        "stature": not STATURES_M[0] <= trust.stature_m <= STATURES_M[1],
+        "facing": trust.facing_deg > MOST_FACING_DEG,
+    }
+    return [word for word, is_odd in odd.items() if is_odd]

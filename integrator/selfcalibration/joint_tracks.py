@@ -1,0 +1,132 @@
+"""What both views saw of one person over time, as arrays."""
+
+from collections.abc import Iterable, Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import JOINT_NAMES, Vector
+from common.bus.messages import Report
+
+JOINTS: Final = len(JOINT_NAMES)
+LEAST_SURE: Final = 0.4
+"""A view whose landmarks are less sure on average tells nothing of a frame."""
+MOST_FRAMES: Final = 80
+"""As many of a clip are enough: neighbours err alike."""
+
+
+class JointTrack(NamedTuple):
+    """One view's landmarks, frame after frame."""
+
+    times_s: Vector
+    """(n,) increasing."""
+    joints_px: NDArray[np.float64]
+    """(n, 15, 2)"""
+    confidence: NDArray[np.float64]
+    """(n, 15) in [0, 1]; 0 where nobody is seen."""
+    facing_deg: Vector
+    """(n,) towards the camera 0, to the right of its picture 90."""
+    facing_confidence: Vector
+    """(n,)"""
+
+
+class Sighting(NamedTuple):
+    """Both views of one clip."""
+
+    first: JointTrack
+    second: JointTrack
+    size_px: tuple[int, int]
+    """Width and height of both pictures."""
+
+
+Row = tuple[float, Vector, Vector, float, float]
+"""Of one frame, what a JointTrack has of each."""
+
+
+def track_of(reports: Iterable[Report]) -> JointTrack:
+    """The landmarks of one view's reports; what is cut off or not seen has confidence 0."""
+    return track_of_rows([row_of(report) for report in reports])
+
+
+def track_of_rows(rows: Sequence[Row]) -> JointTrack:
+    """The same of what was kept of them."""
+    times, joints, confidence, facing, sure = zip(*rows, strict=True) if rows else ([],) * 5
+    return JointTrack(
+        np.array(times, float),
+        np.array(joints, float).reshape(-1, JOINTS, 2),
+        np.array(confidence, float).reshape(-1, JOINTS),
+        np.array(facing, float),
+        np.array(sure, float),
+    )
+
+
+def row_of(report: Report) -> Row:
+    """What is kept of a report."""
+    seen = report.landmarks
+    if seen is None or report.box is None:
+        return report.captured_s, np.zeros((JOINTS, 2)), np.zeros(JOINTS), 0.0, 0.0
+    joints, confidence = np.array(seen.joints_px), np.array(seen.confidence)
+    outside = (joints < 1).any(axis=1) | (joints > (report.width - 1, report.height - 1)).any(
+        axis=1
+    )
+    confidence[outside] = 0.0
+    return report.captured_s, joints, confidence, seen.facing_deg, seen.facing_confidence
+
+
+def useful_times(sighting: Sighting) -> Vector:
+    """(n,) Moments of the first view at which both are sure of somebody, evenly thinned."""
+    sure = sighting.first.confidence.mean(axis=1) >= LEAST_SURE
+    other = sighting.second
+    at = sighting.first.times_s
+    if not len(at) or not len(other.times_s):
+        return np.empty(0)
+    also = np.interp(at, other.times_s, other.confidence.mean(axis=1)) >= LEAST_SURE
+    times = at[sure & also]
+    picked = np.unique(np.linspace(0, len(times) - 1, min(MOST_FRAMES, len(times))).astype(int))
+    kept: Vector = times[picked]
+    return kept
+
+
+def at_times(track: JointTrack, times_s: Vector) -> JointTrack:
+    """The track between its frames, linearly; as sure as the less sure neighbour."""
+    last = len(track.times_s) - 1
+    after = np.clip(np.searchsorted(track.times_s, times_s), 1, max(last, 1))
+    before = after - 1
+    gap = track.times_s[after] - track.times_s[before]
+    share = np.clip((times_s - track.times_s[before]) / gap, 0.0, 1.0)[:, None]
+    confidence = np.minimum(
+        np.where(share < 1.0, track.confidence[before], 1.0),
+        np.where(share > 0.0, track.confidence[after], 1.0),
+    )
+    outside = (times_s < track.times_s[0] - gap) | (times_s > track.times_s[last] + gap)
+    confidence[outside] = 0.0
+    nearest = np.where(share[:, 0] < 0.5, before, after)
+    way = share[..., None]
+    joints = (1 - way) * track.joints_px[before] + way * track.joints_px[after]
+    return JointTrack(
+        times_s, joints, confidence, track.facing_deg[nearest], track.facing_confidence[nearest]
+    )
+
+
+def smoothed(track: JointTrack) -> JointTrack:
+    """The track with each landmark weighed with its neighbours in time, 1 : 2 : 1.
+
+    A landmark between two frames would otherwise err less than one at a frame, and views that
+    are half a frame apart would seem to agree best.
+    """
+    weight = track.confidence[..., None]
+    padded = np.pad(weight, ((1, 1), (0, 0), (0, 0)))
+    joints = np.pad(track.joints_px * weight, ((1, 1), (0, 0), (0, 0)))
+    total = 2 * padded[1:-1] + padded[:-2] + padded[2:]
+    mean = (2 * joints[1:-1] + joints[:-2] + joints[2:]) / np.maximum(total, 1e-9)
+    return track._replace(joints_px=np.where(weight > 0, mean, track.joints_px))
+
+
+def height_px(track: JointTrack) -> float:
+    """How high the crown stands above the ankles in most frames, pixels; 0 where nobody is seen."""
+    ankles = [JOINT_NAMES.index("l_ankle"), JOINT_NAMES.index("r_ankle")]
+    crown = track.joints_px[:, JOINT_NAMES.index("head_top")]
+    tall = np.linalg.norm(crown - track.joints_px[:, ankles].mean(axis=1), axis=-1)
+    seen = track.confidence.mean(axis=1) >= LEAST_SURE
+    return float(np.percentile(tall[seen], 70)) if seen.any() else 0.0

@@ -1,0 +1,68 @@
+"""By how much one view is late, from how the person moves up and down in both."""
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import JOINT_NAMES, OTHER_SIDE
+from integrator.selfcalibration.joint_tracks import JointTrack, at_times
+from integrator.selfcalibration.sight_lines import Numbers
+
+MOST_S: Final = 1.0
+"""Views are not searched farther apart."""
+FINE: Final = 2
+"""Places between two frames that are tried."""
+AS_GOOD: Final = 0.01
+"""Correlations that differ by less say the same."""
+LEAST_SHARED: Final = 15
+"""Frames that both views must have, moved against each other."""
+LEFT: Final = [n for n, name in enumerate(JOINT_NAMES) if name.startswith("l_")]
+RIGHT: Final = OTHER_SIDE[LEFT]
+MIDDLE: Final = [n for n, other in enumerate(OTHER_SIDE) if n == other]
+
+
+def likely_lateness_s(first: JointTrack, second: JointTrack) -> float:
+    """How late the second view is, seconds; 0 where that is as likely as anything.
+
+    What is up in the room is mostly up in any picture: the rows of the joints rise and fall
+    together, wherever the cameras stand. Sides do not count.
+    """
+    period_s = float(np.median(np.diff(first.times_s))) if len(first.times_s) > 1 else 1.0
+    shifts = np.arange(0.0, MOST_S, period_s / FINE)
+    shifts = np.concatenate([-shifts[:0:-1], shifts])
+    here = _rows(first)
+    scores = np.array([_alike(here, _rows(at_times(second, first.times_s + s))) for s in shifts])
+    best = int(np.argmax(scores))
+    as_it_is = scores[len(shifts) // 2]
+    return 0.0 if as_it_is >= scores[best] - AS_GOOD else float(shifts[best])
+
+
+def _rows(track: JointTrack) -> Numbers:
+    """(n, 15) rows of the middle joints, the middles of pairs and how far these are apart, pixels;
+    NaN where somebody is not seen well."""
+    rows = track.joints_px[..., 1].copy()
+    rows[track.confidence < 0.1] = np.nan
+    left, right = rows[:, LEFT], rows[:, RIGHT]
+    return np.hstack([rows[:, MIDDLE], (left + right) / 2, np.abs(left - right)])
+
+
+def _alike(one: Numbers, other: Numbers) -> float:
+    """The correlation of all signals together, where both views have them, less where these are
+    few; -1 where they have none."""
+    shared = np.isfinite(one) & np.isfinite(other)
+    enough = shared.sum(axis=0) >= LEAST_SHARED
+    if not enough.any():
+        return -1.0
+    pairs = [_centred(signal, shared) for signal in (one, other)]
+    sizes = [np.sqrt((signal**2).sum()) for signal in pairs]
+    correlation = float((pairs[0] * pairs[1]).sum() / max(sizes[0] * sizes[1], 1e-9))
+    return correlation * math.sqrt(float(shared.sum()) / max(float(np.isfinite(one).sum()), 1.0))
+
+
+def _centred(signal: Numbers, shared: NDArray[np.bool_]) -> Numbers:
+    kept = np.where(shared, signal, 0.0)
+    mean = kept.sum(axis=0) / np.maximum(shared.sum(axis=0), 1)
+    centred: Numbers = np.where(shared, signal - mean, 0.0)
+    return centred

@@ -1,0 +1,134 @@
+"""From what both views saw of a person to a calibration, its quality and its error bars."""
+
+from typing import Final
+
+import numpy as np
+
+from common.body.body import Vector
+from common.rig.camera import Rig, centre
+from common.rig.rig_file import CalibrationError
+from integrator.selfcalibration import person_prior as prior
+from integrator.selfcalibration.joint_tracks import Sighting
+from integrator.selfcalibration.lateness import likely_lateness_s
+from integrator.selfcalibration.rig_evidence import Evidence, gathered
+from integrator.selfcalibration.rig_fit import Fit, fitted, sides_of
+from integrator.selfcalibration.rig_guess import FOCALS, LATE, RIG, pinholes
+from integrator.selfcalibration.rig_quality import CameraQuality, PersonCalibration, Quality
+from integrator.selfcalibration.rig_residuals import Explained, explained, misfits
+from integrator.selfcalibration.rig_starts import known_of, level_starts
+from integrator.selfcalibration.world_axes import origin_of, published_rig
+
+FEWEST: Final = 12
+"""Moments in which both views must see the person."""
+FEW: Final = 24
+"""As many tell which start is right."""
+STARTS: Final = 5
+"""As many of the likeliest starts are followed."""
+AT_FIRST: Final = 15
+"""Moments that tell where the person was at first."""
+STEP: Final = 1e-4
+"""By which numbers are moved to see what moves with them."""
+
+
+def calibrated_by_person(
+    sightings: tuple[Sighting, ...], stature_m: float, fov_deg: float | None = None
+) -> PersonCalibration:
+    """Find both cameras from clips of one rig and one person.
+
+    Args:
+        sightings: What both views saw in each clip.
+        stature_m: Of the person: the measure of all lengths.
+        fov_deg: How wide the cameras see, where it is known.
+
+    Raises:
+        CalibrationError: When both views see too little of anybody.
+    """
+    known = known_of(sightings[0].size_px[0], stature_m, len(sightings), fov_deg)
+    evidence = gathered(sightings, known)
+    moments = sum(len(clip.first.times_s) for clip in evidence.clips)
+    if moments < FEWEST or not all(all(clip.units_px) for clip in evidence.clips):
+        raise CalibrationError(
+            f"both cameras see the same person in {moments} moments only: film somebody, whole in "
+            f"both pictures, who moves for some seconds"
+        )
+    found = best_fit(evidence, sightings)
+    seen = _explained(found, evidence)
+    places = seen[0].met.points_m[:AT_FIRST, prior.PELVIS]
+    person_m = np.median(places, axis=0)
+    rig = published_rig(found.guess, evidence.size_px, person_m)
+    period_s = float(np.median(np.diff(sightings[0].second.times_s)))
+    quality = _quality(found, evidence, rig, person_m, seen, period_s)
+    return PersonCalibration(rig, tuple(found.guess[LATE:].tolist()), quality)
+
+
+def best_fit(evidence: Evidence, sightings: tuple[Sighting, ...]) -> Fit:
+    """The best of all starts: cameras alone first, then all, then with all moments."""
+    few, every = evidence.thinned(FEW), np.ones(len(evidence.known.mean), np.bool_)
+    cameras = every & (np.arange(len(every)) < RIG)
+    cameras[FOCALS] = False
+    late_s = np.array([likely_lateness_s(one.first, one.second) for one in sightings])
+    starts = level_starts(evidence, late_s)
+    if late_s.any():
+        starts += level_starts(evidence, np.zeros(len(late_s)))
+    starts.sort(key=lambda start: float((misfits(start, few, sides_of(start, few)) ** 2).sum()))
+    rough = [fitted(start, few, cameras, 1, 8) for start in starts[:STARTS]]
+    rough.sort(key=lambda each: each.cost)
+    better = [fitted(each.guess, few, every, 2, 8) for each in rough[:2]]
+    return fitted(min(better, key=lambda each: each.cost).guess, evidence, every, 2, 12)
+
+
+def _explained(found: Fit, evidence: Evidence) -> list[Explained]:
+    return [explained(found.guess, evidence, n, sides) for n, sides in enumerate(found.sides)]
+
+
+def _quality(
+    found: Fit,
+    evidence: Evidence,
+    rig: Rig,
+    person_m: Vector,
+    seen: list[Explained],
+    period_s: float,
+) -> Quality:
+    covariance = np.linalg.pinv(found.jacobian.T @ found.jacobian)
+    told = _told(found.guess, person_m)
+    moved = np.stack(
+        [
+            (_told(found.guess + step, person_m) - told) / STEP
+            for step in STEP * np.eye(len(covariance))
+        ]
+    )
+    errors = np.sqrt(np.diag(moved.T @ covariance @ moved)).reshape(2, 7).tolist()
+    cameras = tuple(
+        CameraQuality(
+            camera.name,
+            camera.K[0][0],
+            error[0],
+            tuple(centre(camera).tolist()),
+            tuple(error[1:4]),
+            tuple(error[4:]),
+        )
+        for camera, error in zip(rig.cameras, errors, strict=True)
+    )
+    gaps_m = np.concatenate([np.abs(one.met.gap_m[one.used]) for one in seen])
+    unit_px = np.mean([clip.units_px for clip in evidence.clips])
+    late = found.guess[LATE:] / period_s
+    late_error = np.sqrt(np.diag(covariance)[LATE:]) / period_s
+    return Quality(
+        cameras,
+        evidence.known.stature_m,
+        sum(len(clip.first.times_s) for clip in evidence.clips),
+        1e3 * float(np.median(gaps_m)),
+        float(np.median(gaps_m) / evidence.known.stature_m * unit_px),
+        tuple(late.tolist()),
+        tuple(late_error.tolist()),
+    )
+
+
+def _told(guess: Vector, person_m: Vector) -> Vector:
+    """(14,) what is published of a rig: of each camera focal length, position, turn in degrees."""
+    cameras = pinholes(guess)
+    origin = origin_of(cameras, person_m)
+    rows = []
+    for camera, turn in zip(cameras, (np.array([0.0, *guess[2:4]]), guess[5:8]), strict=True):
+        rows += [camera.focal_px, *(camera.centre_m - origin), *np.degrees(turn)]
+    return np.array(rows)

@@ -1,0 +1,59 @@
+"""What is known of any person before seeing them: shares of the stature, and how one stands."""
+
+from typing import Final
+
+import numpy as np
+
+from common.body.body import JOINT_NAMES
+
+AT: Final = {name: n for n, name in enumerate(JOINT_NAMES)}
+PELVIS, NECK = AT["pelvis"], AT["neck"]
+ANKLES: Final = [AT["l_ankle"], AT["r_ankle"]]
+LENGTHS: Final = (
+    ("trunk", 0.322, 0.03),
+    ("head", 0.137, 0.05),
+    ("upper_arm", 0.154, 0.04),
+    ("lower_arm", 0.141, 0.06),
+    ("upper_leg", 0.244, 0.04),
+    ("lower_leg", 0.249, 0.04),
+    ("shoulders", 0.203, 0.12),
+    ("hips", 0.092, 0.2),
+)
+"""Name, share of the stature, and how far people differ in it (sigma of its logarithm)."""
+SHARES: Final = np.array([share for _, share, _ in LENGTHS])
+SPREADS: Final = np.array([spread for _, _, spread in LENGTHS])
+
+TRUNK, ARMS, LEGS = 0, 1, 2
+"""Parts whose sides a view may exchange by themselves; the trunk has none."""
+_SEGMENTS: Final = (
+    ("pelvis", "neck", 0, TRUNK),
+    ("neck", "head_top", 1, TRUNK),
+    *((f"{s}_shoulder", f"{s}_elbow", 2, ARMS) for s in "lr"),
+    *((f"{s}_elbow", f"{s}_wrist", 3, ARMS) for s in "lr"),
+    *((f"{s}_hip", f"{s}_knee", 4, LEGS) for s in "lr"),
+    *((f"{s}_knee", f"{s}_ankle", 5, LEGS) for s in "lr"),
+    ("l_shoulder", "r_shoulder", 6, ARMS),
+    ("l_hip", "r_hip", 7, LEGS),
+)
+ENDS: Final = np.array([[AT[a], AT[b]] for a, b, _, _ in _SEGMENTS])
+"""(12, 2) the joints at both ends of each segment."""
+LENGTH_OF: Final = np.array([length for _, _, length, _ in _SEGMENTS])
+"""(12,) which of LENGTHS a segment has."""
+PART_OF_SEGMENT: Final = np.array([part for _, _, _, part in _SEGMENTS])
+PART_OF_JOINT: Final = np.array(
+    [
+        ARMS
+        if name.endswith(("shoulder", "elbow", "wrist"))
+        else LEGS
+        if name.endswith(("hip", "knee", "ankle"))
+        else TRUNK
+        for name in JOINT_NAMES
+    ]
+)
+
+UPRIGHT: Final = np.array([1, 1, 0, 0, 1, 1, 0, 0], bool)
+"""The lengths that add up to the height of the crown above the ankles."""
+CROWN_SHARE: Final = 0.952
+"""What they add up to, in statures."""
+ANKLE_SHARE: Final = 0.050
+"""Height of a standing foot's ankle above the floor, in statures."""

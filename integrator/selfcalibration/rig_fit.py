@@ -1,0 +1,80 @@
+"""The rig, the person's lengths and the latenesses that explain best what both views saw."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from common.body.body import Vector
+from integrator.selfcalibration import person_prior as prior
+from integrator.selfcalibration.rig_evidence import Evidence, Sides
+from integrator.selfcalibration.rig_residuals import Explained, explained, misfits
+from integrator.selfcalibration.sight_lines import Numbers
+
+EXCHANGE_COST: Final = 0.5
+"""By how much (log likelihood) exchanged sides must explain a part better."""
+
+
+class Fit(NamedTuple):
+    """What was found."""
+
+    guess: Vector
+    cost: float
+    sides: tuple[Sides, ...]
+    jacobian: Numbers
+    """(misfits, free)"""
+
+
+def fitted(start: Vector, evidence: Evidence, free: Sides, rounds: int, steps: int) -> Fit:
+    """The best guess near a start.
+
+    Args:
+        start: A guess.
+        evidence: What it is held against.
+        free: (guess,) which of its numbers may change.
+        rounds: How often it is asked which view has exchanged sides.
+        steps: Of the fit in each round.
+    """
+    guess = start.copy()
+
+    def with_free(values: Vector) -> Vector:
+        whole = guess.copy()
+        whole[free] = values
+        return whole
+
+    for _ in range(rounds):
+        sides = sides_of(guess, evidence)
+        found = least_squares(
+            lambda values, at=sides: misfits(with_free(values), evidence, at),
+            guess[free],
+            x_scale="jac",
+            max_nfev=steps,
+            ftol=1e-5,
+            xtol=1e-6,
+        )
+        guess = with_free(found.x)
+    return Fit(guess, float(found.cost), sides, found.jac)
+
+
+def sides_of(guess: Vector, evidence: Evidence) -> tuple[Sides, ...]:
+    """Of each clip, where one view must have the sides of a part the other way round."""
+    found = []
+    for n, clip in enumerate(evidence.clips):
+        costs = []
+        for other in (False, True):
+            sides = np.full((len(clip.first.times_s), 3), other)
+            costs.append(_costs(explained(guess, evidence, n, sides)))
+        found.append((costs[1] + EXCHANGE_COST < costs[0]) & (np.arange(3) != prior.TRUNK))
+    return tuple(found)
+
+
+def _costs(one: Explained) -> NDArray[np.float64]:
+    """(n, 3) how badly each part is explained."""
+    gaps = np.where(one.used, np.where(one.met.before, np.log1p(one.met.gap**2 / 2), 5.0), 0.0)
+    lengths = np.where(one.lengths_used, np.log1p(one.lengths**2 / 2), 0.0)
+    costs = np.zeros((len(gaps), 3))
+    for part in range(3):
+        costs[:, part] = gaps[:, part == prior.PART_OF_JOINT].sum(axis=1)
+        costs[:, part] += lengths[:, part == prior.PART_OF_SEGMENT].sum(axis=1)
+    return costs

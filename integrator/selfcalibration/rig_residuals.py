@@ -1,0 +1,175 @@
+"""How badly a rig explains what both views saw, in sigmas: what the fit makes small."""
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Vector
+from integrator.selfcalibration import person_prior as prior
+from integrator.selfcalibration.joint_tracks import JointTrack, at_times
+from integrator.selfcalibration.rig_evidence import (
+    Evidence,
+    Known,
+    Sides,
+    exchanged,
+    sigma_m,
+)
+from integrator.selfcalibration.rig_guess import BODY, FOCALS, LATE, pinholes
+from integrator.selfcalibration.sight_lines import Meeting, Numbers, directions, meeting
+
+LENGTH_ERROR: Final = 0.012
+"""What a segment's ends move about in the body, statures: landmarks are no bones."""
+FACING_DEG: Final = 20.0
+UPRIGHT_DEG: Final = 1.5
+TALL_SHARE: Final = 0.93
+"""Whose neck is at least so far from the ankles, of the most that it is, stands upright."""
+FLOOR_M: Final = 0.02
+FOCALS_ALIKE: Final = 0.1
+"""How far the focal lengths of both cameras differ, mostly (of their logarithm)."""
+INDEPENDENT_HZ: Final = 1.0
+"""How often in a second a landmark errs anew: the network errs alike in neighbouring frames."""
+FLOOR_FRAMES, FACING_FRAMES = 6.0, 8.0
+"""For so many independent ones all lowest feet, and all facings, of a clip count."""
+UNSEEN: Final = 1.0
+"""Sigmas of what one view does not show: no clock is right because then less is seen."""
+BEHIND: Final = 10.0
+"""Sigmas by which a landmark misses that lies behind a camera."""
+
+
+class Explained(NamedTuple):
+    """What a rig makes of one clip."""
+
+    met: Meeting
+    """(n, 15)"""
+    used: NDArray[np.bool_]
+    """(n, 15)"""
+    lengths: Numbers
+    """(n, 12) misfit of the segments, sigmas."""
+    lengths_used: NDArray[np.bool_]
+    second: JointTrack
+    """View 2 at the same times, sides exchanged."""
+
+
+def softened(residual: Numbers) -> Numbers:
+    """Residuals whose squares are Cauchy's loss: what is far off says that it is wrong, no more."""
+    soft: Numbers = np.sign(residual) * np.sqrt(2.0 * np.log1p(residual**2 / 2.0))
+    return soft
+
+
+def misfits(guess: Vector, evidence: Evidence, sides: tuple[Sides, ...]) -> Vector:
+    """All that is made small: what is believed, and what each clip shows."""
+    rows = prior_misfits(guess, evidence.known)
+    for n, clip in enumerate(evidence.clips):
+        one = explained(guess, evidence, n, sides[n])
+        rows += data_misfits(one, own_share(clip.first.times_s))
+        rows += standing_misfits(one, evidence.known.stature_m)
+        rows.append(facing_misfits(guess, one, clip.first))
+    return np.concatenate(rows)
+
+
+def explained(guess: Vector, evidence: Evidence, number: int, sides: Sides) -> Explained:
+    """Points, and how well segments keep their lengths, of one of the clips."""
+    clip, stature_m = evidence.clips[number], evidence.known.stature_m
+    cameras, middle_px = pinholes(guess), np.array(evidence.size_px) / 2
+    times_s = clip.first.times_s + float(guess[LATE + number])
+    second = exchanged(at_times(clip.second, times_s), sides)
+    rays = (
+        directions(cameras[0], middle_px, clip.first.joints_px),
+        directions(cameras[1], middle_px, second.joints_px),
+    )
+    sigmas = (sigma_m(clip.first, stature_m), sigma_m(second, stature_m))
+    used = np.isfinite(sigmas[0]) & np.isfinite(sigmas[1])
+    met = meeting(cameras, rays, (np.where(used, sigmas[0], 1.0), np.where(used, sigmas[1], 1.0)))
+    near, far = prior.ENDS.T
+    both = (used & met.before)[:, near] & (used & met.before)[:, far]
+    return Explained(met, used, _length_misfits(met, np.exp(guess[BODY])), both, second)
+
+
+def _length_misfits(met: Meeting, lengths_m: Vector) -> Numbers:
+    """(n, 12) sigmas."""
+    near, far = (met.of_joints(ends) for ends in prior.ENDS.T)
+    along = far.points_m - near.points_m
+    long_m = np.maximum(np.sqrt((along**2).sum(axis=-1)), 1e-6)
+    unit = along / long_m[..., None]
+    variance = near.variance_m2(unit) + far.variance_m2(unit)
+    own_m = LENGTH_ERROR / prior.CROWN_SHARE * float(lengths_m[prior.UPRIGHT].sum())
+    misfit: Numbers = (long_m - lengths_m[prior.LENGTH_OF]) / np.sqrt(variance + own_m**2)
+    return misfit
+
+
+def own_share(times_s: Vector) -> float:
+    """Share of all landmarks that err by themselves."""
+    apart_s = (float(times_s[-1]) - float(times_s[0])) / max(len(times_s) - 1, 1)
+    return min(1.0, INDEPENDENT_HZ * apart_s)
+
+
+def data_misfits(one: Explained, own: float) -> list[Vector]:
+    """What landmarks say: lines that miss each other, segments of another length.
+
+    Args:
+        one: What a rig makes of a clip.
+        own: Share of the landmarks that err by themselves.
+    """
+    gaps = np.where(one.met.before, one.met.gap, BEHIND)
+    share = math.sqrt(own)
+    return [
+        share * softened(np.where(one.used, gaps, UNSEEN)).ravel(),
+        share * softened(np.where(one.lengths_used, one.lengths, UNSEEN)).ravel(),
+    ]
+
+
+def standing_misfits(one: Explained, stature_m: float) -> list[Vector]:
+    """The floor under the lower foot, and the vertical along who stands upright."""
+    points, used = one.met.points_m, one.used & one.met.before
+    height = np.where(used[:, prior.ANKLES], points[:, prior.ANKLES, 1], np.inf).min(axis=1)
+    seen = np.isfinite(height)
+    above = np.where(seen, height - prior.ANKLE_SHARE * stature_m, 0.0)
+    few = math.sqrt(FLOOR_FRAMES / max(float(seen.sum()), FLOOR_FRAMES))
+    axis = points[:, prior.NECK] - points[:, prior.ANKLES].mean(axis=1)
+    tall = np.sqrt((axis**2).sum(axis=-1))
+    stands = used[:, prior.ANKLES].all(axis=1) & used[:, prior.NECK]
+    lean = np.zeros(2)
+    if stands.any():
+        stands &= tall >= TALL_SHARE * np.percentile(tall[stands], 80)
+        lean = np.degrees(np.median(axis[stands] / tall[stands, None], axis=0)[[0, 2]])
+    return [few * softened(above / FLOOR_M), lean / UPRIGHT_DEG]
+
+
+def facing_misfits(guess: Vector, one: Explained, first: JointTrack) -> Vector:
+    """(n,) how far both views disagree which way in the world the person faces."""
+    turned, sure = _turned(guess, one, first)
+    off = 2.0 * np.sin(turned / 2.0) / math.radians(FACING_DEG)
+    few = FACING_FRAMES / max(float(sure.sum()), FACING_FRAMES)
+    misfit: Vector = np.sqrt(few * sure) * softened(off)
+    return misfit
+
+
+def facing_off_deg(guess: Vector, one: Explained, first: JointTrack) -> float:
+    """The same in degrees, in [0, 180], half of the time; 0 where views are not sure."""
+    turned, sure = _turned(guess, one, first)
+    off = np.degrees(np.abs(np.angle(np.exp(1j * turned[sure > 0.5]))))
+    return float(np.median(off)) if len(off) else 0.0
+
+
+def _turned(guess: Vector, one: Explained, first: JointTrack) -> tuple[Vector, Vector]:
+    """(n,) by how much view 1 has the person turned against view 2, and how sure both are."""
+    place = one.met.points_m[:, prior.PELVIS]
+    turned = np.zeros(len(place))
+    for sign, camera, track in zip((1, -1), pinholes(guess), (first, one.second), strict=True):
+        to = camera.centre_m - place
+        turned += sign * (np.arctan2(to[:, 0], to[:, 2]) + np.radians(track.facing_deg))
+    return turned, np.minimum(first.facing_confidence, one.second.facing_confidence)
+
+
+def prior_misfits(guess: Vector, known: Known) -> list[Vector]:
+    """What is believed of any rig and any person."""
+    believed = np.isfinite(known.sigma)
+    off = (guess[believed] - known.mean[believed]) / known.sigma[believed]
+    focals = (guess - known.mean)[FOCALS]
+    alike = float(focals[0] - focals[1]) / FOCALS_ALIKE
+    high_m = float(np.exp(guess[BODY])[prior.UPRIGHT].sum())
+    stature = math.log(high_m / (prior.CROWN_SHARE * known.stature_m)) / known.stature_error
+    soft = softened(np.array([*off[known.soft[believed]], alike]))
+    return [off[~known.soft[believed]], soft, np.array([stature])]

@@ -1,0 +1,56 @@
+"""Rigs that no room has."""
+
+from collections.abc import Callable
+
+import msgspec
+import numpy as np
+import pytest
+
+from common.rig.absurd_rig import refuse_absurd
+from common.rig.camera import Rig, as_matrix, as_row, paper_rig
+from common.rig.rig_file import CalibrationError
+
+GOOD = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
+
+
+def in_millimetres(rig: Rig) -> Rig:
+    return _each(rig, lambda R, t: (R, 1000.0 * t))
+
+
+def with_z_up(rig: Rig) -> Rig:
+    turn = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+    return _each(rig, lambda R, t: (R @ turn, t))
+
+
+def far_below(rig: Rig) -> Rig:
+    return _each(rig, lambda R, t: (R, t + R @ [0.0, 3.0, 0.0]))
+
+
+def _each(
+    rig: Rig, change: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+) -> Rig:
+    cameras = []
+    for camera in rig.cameras:
+        R, t = change(np.array(camera.R), np.array(camera.t))
+        cameras.append(msgspec.structs.replace(camera, R=as_matrix(R), t=as_row(t)))
+    return msgspec.structs.replace(rig, cameras=tuple(cameras))
+
+
+@pytest.mark.parametrize(
+    ("rig", "named"),
+    [
+        (in_millimetres(GOOD), "is t in millimetres"),
+        (with_z_up(GOOD), "y does not point up in its world, z seems to"),
+        (far_below(GOOD), "cam1 stands 2.0 m below the floor"),
+        (paper_rig((160, 120), (5000.0, 200.0), (4.5, 4.5)), "31 widths of the picture"),
+        (msgspec.structs.replace(GOOD, width=70), r"outside its 70x120 picture"),
+    ],
+    ids=["millimetres", "z up", "below the floor", "focal length", "another size"],
+)
+def test_an_absurd_rig_is_named_with_what_to_do(rig: Rig, named: str) -> None:
+    with pytest.raises(CalibrationError, match=f"{named}.*--trust-calibration"):
+        refuse_absurd(rig, "calibration.json")
+
+
+def test_the_papers_rig_is_not_absurd() -> None:
+    refuse_absurd(GOOD, "calibration.json")

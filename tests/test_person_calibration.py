@@ -1,0 +1,54 @@
+"""Rigs found by the person before them, held against rigs that are known."""
+
+import math
+
+import numpy as np
+import pytest
+from wild_rigs import Trial, filmed, missed
+
+from common.rig.camera import paper_rig
+from common.rig.rig_file import CalibrationError, check_rig
+from integrator.selfcalibration.person_calibration import calibrated_by_person
+from synth.motion.motions import performance
+from synth.person.people import person
+
+PAPER = paper_rig((160, 120), (200.0, 190.0), (4.5, 4.2), (1.0, 1.2))
+
+
+def filmed_by_the_papers_rig(seed: int, posture: str) -> Trial:
+    someone = person(seed)
+    motion = performance(someone, posture, seed)
+    sighting = filmed(motion, PAPER, 0.0, np.random.default_rng(seed))
+    return Trial(PAPER, sighting, someone.measures["stature_m"], 0.0)
+
+
+@pytest.mark.parametrize(("seed", "posture"), [(3, "walk_toward"), (4, "swing_both_backforth")])
+def test_the_papers_rig_is_found_from_one_short_clip_whose_sides_are_exchanged_at_times(
+    seed: int, posture: str
+) -> None:
+    shown = filmed_by_the_papers_rig(seed, posture)
+    found = calibrated_by_person((shown.sighting,), shown.stature_m)
+    check_rig(found.rig, "found")
+    off = missed(found, shown)
+    assert off.turn_deg < 5.0
+    assert off.focal < 0.10
+    assert off.late_frames < 0.5
+    assert found.quality.gap_mm < 40.0
+
+
+def test_a_persons_stature_is_the_measure_of_all_lengths() -> None:
+    shown = filmed_by_the_papers_rig(5, "squat")
+    small, tall = (calibrated_by_person((shown.sighting,), m).quality for m in (1.5, 1.8))
+    for one, other in zip(small.cameras, tall.cameras, strict=True):
+        assert math.dist(other.position_m, (0, 0, 0)) == pytest.approx(
+            1.2 * math.dist(one.position_m, (0, 0, 0)), rel=0.03
+        )
+
+
+def test_somebody_seen_by_one_camera_alone_calibrates_nothing() -> None:
+    shown = filmed_by_the_papers_rig(3, "squat")
+    blind = shown.sighting.second._replace(
+        confidence=np.zeros_like(shown.sighting.second.confidence)
+    )
+    with pytest.raises(CalibrationError, match="in 0 moments only"):
+        calibrated_by_person((shown.sighting._replace(second=blind),), 1.75)

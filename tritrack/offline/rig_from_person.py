@@ -1,0 +1,106 @@
+"""A first pass over clips without a calibration: their cameras, by the person who moves there."""
+
+from collections.abc import Mapping
+from typing import Any, Final, NamedTuple
+
+import msgspec
+
+from common.bus.messages import Report, ViewerNumber
+from common.config import Settings
+from common.method import Method
+from common.rig.rig_file import CalibrationError
+from common.video.clip_facts import Clip, View
+from common.video.frame_cache import Reader
+from integrator.selfcalibration.joint_tracks import Sighting, track_of
+from integrator.selfcalibration.rig_quality import PersonCalibration
+from tritrack.offline.frame_pairs import backgrounds, instants
+from viewer import track
+from viewer.landmarks.landmark_sources import Sources
+
+MOST_FRAMES: Final = 3_000
+"""So much of a clip is looked at."""
+LEAST_LATE: Final = 0.6
+"""Share of a frame by which view 2 must be late before its clock is set."""
+
+
+class Looked(NamedTuple):
+    """What the first pass gave."""
+
+    clip: Clip
+    """With the rig, where one was found, and with the clock of view 2 set right."""
+    found: PersonCalibration | None = None
+    warning: str = ""
+
+
+def sighting_of(
+    clip: Clip,
+    settings: Settings,
+    method: Method,
+    readers: Mapping[ViewerNumber, Reader],
+    sources: Sources,
+) -> Sighting:
+    """What both views see of the person in a clip, looked at without a rig.
+
+    Raises:
+        DecoderDied: When a video broke the decoder.
+    """
+    learnt = backgrounds(clip, settings.silhouette, readers)
+    viewers = {
+        view.number: track.init(track.Setup(view.number, None, settings, method), background)
+        for view, (background, _) in zip(clip.views, learnt, strict=True)
+    }
+    reports: dict[ViewerNumber, list[Report]] = {view.number: [] for view in clip.views}
+    for n, frames in enumerate(instants(clip, readers, sources)):
+        for number, frame in frames.items():
+            viewers[number], report, _ = track.look(viewers[number], frame, None)
+            reports[number].append(report)
+        if n + 1 == MOST_FRAMES:
+            break
+    first, second = (track_of(reports[number]) for number in (1, 2))
+    return Sighting(first, second, clip.views[0].size)
+
+
+def by_person(
+    clip: Clip,
+    settings: Settings,
+    method: Method,
+    readers: Mapping[ViewerNumber, Reader],
+    sources: Sources,
+) -> Looked:
+    """A recorded clip of two views that has no rig with the one that the person in it tells.
+
+    It is left as it is where it has one, where the method asks for no landmarks, where too little
+    of anybody is seen, and where the views' pictures differ in size.
+    """
+    from integrator.selfcalibration.person_calibration import calibrated_by_person
+
+    of_files = all(view.frames for view in clip.views)
+    of_one_size = len({view.size for view in clip.views}) == 1
+    if clip.rig is not None or len(clip.views) < 2 or not (of_files and of_one_size):
+        return Looked(clip)
+    if not (method.landmarks and method.proposals):
+        return Looked(clip)
+    sighting = sighting_of(clip, settings, method, readers, sources)
+    try:
+        found = calibrated_by_person((sighting,), settings.body.stature_m)
+    except CalibrationError as error:
+        return Looked(clip, warning=f"not calibrated by the person: {error}")
+    first, second = clip.views
+    views = (first, _on_time(second, found.late_s[0]))
+    return Looked(msgspec.structs.replace(clip, rig=found.rig, views=views), found)
+
+
+def calibration_facts(looked: Looked) -> dict[str, Any]:
+    """For the summary: the calibration that was found, and how good it is."""
+    if looked.found is None:
+        return {}
+    rig, quality = (msgspec.to_builtins(part) for part in (looked.found.rig, looked.found.quality))
+    return {"calibration": {**rig, "quality": quality}}
+
+
+def _on_time(view: View, late_s: float) -> View:
+    """The view with its clock set by its lateness."""
+    if abs(late_s) < LEAST_LATE / view.fps:
+        return view
+    times = tuple(view.captured_s(n) - late_s for n in range(view.frames))
+    return msgspec.structs.replace(view, capture_s=times)
