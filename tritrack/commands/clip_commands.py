@@ -9,7 +9,7 @@ from common.bus.messages import ViewerNumber
 from common.config import Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import Out, Size, writable_file
-from tritrack.exporting import OWN_NAMES, Format, export_run
+from tritrack.exporting import OWN_NAMES, Format, Scale, export_run
 from tritrack.terminal import json_text
 
 VIEWERS: Final[dict[str, tuple[ViewerNumber, ...]]] = {"12": (1, 2), "1": (1,), "2": (2,)}
@@ -99,22 +99,25 @@ def single(
 
 def export(
     run: Annotated[Path, typer.Argument(help="A run folder.")],
-    to: Annotated[Format, typer.Option(help="For Blender, or for spreadsheets.")],
+    to: Annotated[Format, typer.Option(help="Animation, movement laboratory, spreadsheet.")],
     out: Annotated[
         Path | None,
         typer.Option(
-            help=f"The file to write; {' or '.join(OWN_NAMES.values())} in RUN by default.",
+            help=f"The file to write; by default in RUN: {', '.join(OWN_NAMES.values())}.",
             callback=writable_file,
         ),
     ] = None,
+    scale: Annotated[Scale, typer.Option(help="Unit of a BVH file.")] = "m",
     json_wanted: JsonWanted = False,
 ) -> None:
     """Write a run as a file for other programs.
 
     Example: tritrack export runs/walk --to bvh
     """
-    facts = export_run(run, to, out)
-    tell(facts, json_wanted, f"{facts['frames']} frames written to {facts['file']}")
+    facts = export_run(run, to, out, scale)
+    off = facts.get("off_mm")
+    told = f"; fixed bones: {off['median']} mm off, 95 % within {off['p95']} mm" if off else ""
+    tell(facts, json_wanted, f"{facts['frames']} frames written to {facts['file']}{told}")
 
 
 def retouch(
