@@ -8,7 +8,7 @@ import typer
 from common.bus.messages import ViewerNumber
 from common.config import Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
-from tritrack.commands.options import Out, Size, writable_file
+from tritrack.commands.options import Out, Record, Size, writable, writable_file
 from tritrack.exporting import OWN_NAMES, Format, Scale, export_run
 from tritrack.terminal import json_text
 
@@ -26,6 +26,7 @@ def track(
         Literal["12", "1", "2"], typer.Option(help="Both cameras, or only one of them.")
     ] = "12",
     size: Size = None,
+    record: Record = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Track clips offline: the same as live, deterministic, as fast as it goes.
@@ -34,7 +35,7 @@ def track(
     """
     from tritrack.offline.batch import track_all
 
-    facts = track_all(clips, out, mode, VIEWERS[views], size, console)
+    facts = track_all(clips, out, mode, VIEWERS[views], size, console, record)
     tell(facts, json_wanted, f"{len(facts['clips'])} clips tracked, written to {out}")
 
 
@@ -118,6 +119,35 @@ def export(
     off = facts.get("off_mm")
     told = f"; fixed bones: {off['median']} mm off, 95 % within {off['p95']} mm" if off else ""
     tell(facts, json_wanted, f"{facts['frames']} frames written to {facts['file']}{told}")
+
+
+def replay(
+    run: Annotated[Path, typer.Argument(help="A run folder that was written with --record.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Write what the reports give now as a run.", callback=writable),
+    ] = None,
+    bus: Annotated[
+        str, typer.Option(help="Say it all again at this endpoint, tcp/127.0.0.1:7447.")
+    ] = "",
+    speed: Annotated[
+        float, typer.Option(min=0.1, max=100.0, help="On the bus: 2 is twice as fast.")
+    ] = 1.0,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Send a recorded run through the integrator again, or say it again on a bus.
+
+    Example: tritrack replay runs/walk
+    """
+    from tritrack.replaying import replay_on_bus, replay_run
+
+    if bus:
+        facts = replay_on_bus(run, bus, speed, console)
+        tell(facts, json_wanted, f"{facts['said']} messages said")
+        return
+    facts = replay_run(run, out)
+    line = f"{facts['bodies']} bodies, {facts['same']} of them the same byte for byte"
+    tell(facts, json_wanted, line)
 
 
 def retouch(
