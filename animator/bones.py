@@ -149,6 +149,15 @@ def offset_m(skeleton: Skeleton, bone: int) -> Vector:
     return -tip if mirrored else tip
 
 
+def rest_origins_m(skeleton: Skeleton) -> Vector:
+    """Where each bone's joint is at rest, (13, 3), the hips at the origin."""
+    origins = np.zeros((len(BONES), 3))
+    for i, bone in enumerate(BONES):
+        if bone.parent >= 0:
+            origins[i] = origins[bone.parent] + offset_m(skeleton, i)
+    return origins
+
+
 def _origin(
     skeleton: Skeleton, bone: int, origins: list[NDArray[np.float64]], world: list[Rotation]
 ) -> NDArray[np.float64]:

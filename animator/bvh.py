@@ -1,27 +1,24 @@
 """BVH: a run's motion for Blender and other animation programs (T28)."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from animator.bones import BONES, Joints, Motion, Skeleton, motion_of, offset_m, skeleton_of
+from animator.even_steps import EvenSteps, even_steps
 from animator.inbetween import at, between
 from common.body.body import Vector
 
 ROOT_CHANNELS: Final = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
 CHANNELS: Final = "CHANNELS 3 Zrotation Xrotation Yrotation"
-MOST_FRAMES: Final = 1_000_000
-"""Longer files are a mistake in the times: a gap that is filled has no end."""
+METRES_IN: Final = {"m": 1.0, "cm": 0.01}
+"""Units that a file may be written in."""
 
 
-class NoMotion(ValueError):
-    """There is nothing to animate: the text says why."""
-
-
-def steady(joints_m: Joints, time_s: Vector) -> tuple[Skeleton, Motion, float]:
+def steady(joints_m: Joints, time_s: Vector) -> tuple[Skeleton, Motion, EvenSteps]:
     """A run as a skeleton that moves in even steps, from its first pose to its last.
 
     Frames that are missing or have no pose lie between their neighbours. Lengths are fixed
@@ -32,33 +29,30 @@ def steady(joints_m: Joints, time_s: Vector) -> tuple[Skeleton, Motion, float]:
         time_s: (n,) of the rows.
 
     Returns:
-        Skeleton, motion, and seconds a frame.
+        Skeleton, motion, and how the rows lie in the file.
 
     Raises:
         NoMotion: When there are no two poses, or the times make no even steps.
     """
-    posed = np.flatnonzero(np.isfinite(joints_m).all(axis=(1, 2)))
-    if len(posed) < 2:
-        raise NoMotion(f"{len(posed)} frames have a pose, an animation needs two")
-    step_s = float(np.median(np.diff(time_s)))
-    if not (np.isfinite(time_s).all() and (np.diff(time_s) > 0).all()):
-        raise NoMotion("the times of the frames do not increase")
+    steps = even_steps(joints_m, time_s)
     skeleton = skeleton_of(joints_m)
-    motion = motion_of(skeleton, joints_m[posed])
-    places = np.rint((time_s[posed] - time_s[posed[0]]) / step_s).astype(np.int64)
-    if places[-1] >= MOST_FRAMES:
-        raise NoMotion(f"it would have {places[-1] + 1} frames, at most {MOST_FRAMES} are written")
-    keys, first = np.unique(places, return_index=True)
-    return skeleton, between(keys, at(motion, first), np.arange(places[-1] + 1)), step_s
+    motion = motion_of(skeleton, joints_m[steps.posed])
+    keys, first = np.unique(steps.places, return_index=True)
+    return skeleton, between(keys, at(motion, first), np.arange(steps.frames)), steps
 
 
-def bvh_text(skeleton: Skeleton, motion: Motion, step_s: float) -> str:
-    """A BVH file: metres, degrees, +y up, the body faces +z.
+def bvh_text(
+    skeleton: Skeleton, motion: Motion, step_s: float, scale: Literal["m", "cm"] = "m"
+) -> str:
+    """A BVH file: metres or centimetres, degrees, +y up, the body faces +z.
 
     Rotations are applied in the order in which their channels stand, R = R_z R_x R_y.
     """
+    skeleton = Skeleton(skeleton.tips_m / METRES_IN[scale])
     angles = euler_zxy_deg(motion.turns)
-    rows = np.concatenate([motion.root_m, angles.reshape(len(angles), -1)], axis=1)
+    rows = np.concatenate(
+        [motion.root_m / METRES_IN[scale], angles.reshape(len(angles), -1)], axis=1
+    )
     order = _file_order(0)
     columns = [0, 1, 2, *(3 + 3 * bone + axis for bone in order for axis in range(3))]
     body = "\n".join(" ".join(f"{value:.6f}" for value in row) for row in rows[:, columns])

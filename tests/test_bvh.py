@@ -1,31 +1,19 @@
 """BVH, read back by a reader of its own: a hierarchy, turns in channel order, landmarks (T28)."""
 
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import pytest
+from clients import answer_of
+from moving import BODY, random_joints
 from scipy.spatial.transform import Rotation
 
-from animator.bvh import NoMotion, bvh_text, euler_zxy_deg, steady
-from common.body.body import DOF_NAMES, JOINT_NAMES, LIMITS_DEG, POSE_INDEX, rest_pose
+from animator.bones import BONES, joints_of
+from animator.bvh import bvh_text, euler_zxy_deg, steady
+from animator.even_steps import NoMotion
+from common.body.body import JOINT_NAMES, rest_pose
 from common.body.kinematics import joints
-from common.body.proportions import body_vector, thesis_bdp
-
-
-def rigid_body() -> np.ndarray:
-    """A body that bends where its cylinders meet, so that its landmarks keep their distances.
-
-    The published landmarks lie at mean adult heights beside the bends, and their distances change
-    by centimetres with them (common/body/body.py, HIP_SHARE and its like).
-    """
-    bdp = thesis_bdp(1.75)
-    body = body_vector(bdp)
-    body[29:31], body[33:35] = bdp.r_upper_arm.height, bdp.r_upper_leg.height
-    body[37] = 0.0
-    return body
-
-
-BODY = rigid_body()
 
 LANDMARKS = {
     "Hips": "pelvis",
@@ -97,27 +85,12 @@ def read_bvh(text: str) -> Read:
     return Read(places, {name: parent for name, parent, *_ in joints_found}, table[:, 3:], step_s)
 
 
-def random_joints(seed: int, n: int = 40) -> np.ndarray:
-    """Smooth poses within the limits of the joints."""
-    rng = np.random.default_rng(seed)
-    ends = []
-    for _ in range(2):
-        pose = rest_pose()
-        pose[:3] = rng.uniform(-1, 1, 3)
-        for name in DOF_NAMES:
-            low, high = LIMITS_DEG.get(name, (-40.0, 40.0))
-            pose[POSE_INDEX[name]] = rng.uniform(low, high)
-        ends.append(pose)
-    shares = np.linspace(0.0, 1.0, n)
-    return np.array([joints(BODY, (1 - s) * ends[0] + s * ends[1]) for s in shares])
-
-
 @pytest.mark.parametrize("seed", range(8))
 def test_the_skeleton_passes_through_the_joints_of_a_rigid_body(seed: int) -> None:
     """Within 1 mm, whatever the posture: lengths from the body, turns from its joints."""
     joints_m = random_joints(seed)
-    skeleton, motion, step_s = steady(joints_m, np.arange(40) / 15)
-    read = read_bvh(bvh_text(skeleton, motion, step_s))
+    skeleton, motion, steps = steady(joints_m, np.arange(40) / 15)
+    read = read_bvh(bvh_text(skeleton, motion, steps.step_s))
     assert read.step_s == pytest.approx(1 / 15)
     for bone, landmark in LANDMARKS.items():
         off = np.linalg.norm(read.places[bone] - joints_m[:, JOINT_NAMES.index(landmark)], axis=1)
@@ -128,8 +101,8 @@ def test_the_bones_have_the_lengths_of_the_body() -> None:
     """Offsets come from the BDPs: at rest the landmarks lie as far apart as the body's own."""
     joints_m = random_joints(3)
     rest = joints(BODY, rest_pose())
-    skeleton, motion, step_s = steady(joints_m, np.arange(40) / 15)
-    read = read_bvh(bvh_text(skeleton, motion, step_s))
+    skeleton, motion, steps = steady(joints_m, np.arange(40) / 15)
+    read = read_bvh(bvh_text(skeleton, motion, steps.step_s))
     for bone in ("Head end", "LeftForeArm", "RightForeArm end", "LeftLeg", "RightLeg end"):
         ends = [JOINT_NAMES.index(LANDMARKS[name]) for name in (bone, read.parents[bone])]
         own = np.linalg.norm(read.places[bone] - read.places[read.parents[bone]], axis=1)
@@ -143,8 +116,8 @@ def test_a_body_whose_lengths_change_is_followed_joint_by_joint() -> None:
     shoulder = JOINT_NAMES.index("l_shoulder")
     arm = joints_m[20, elbow] - joints_m[20, shoulder]
     joints_m[20, [elbow, wrist]] += 0.03 * arm / np.linalg.norm(arm)
-    skeleton, motion, step_s = steady(joints_m, np.arange(40) / 15)
-    read = read_bvh(bvh_text(skeleton, motion, step_s))
+    skeleton, motion, steps = steady(joints_m, np.arange(40) / 15)
+    read = read_bvh(bvh_text(skeleton, motion, steps.step_s))
     assert np.linalg.norm(read.places["LeftForeArm"][20] - joints_m[20, elbow]) < 0.0301
     assert np.linalg.norm(read.places["LeftForeArm end"][20] - joints_m[20, wrist]) < 0.0301
     assert np.linalg.norm(read.places["LeftForeArm"][21] - joints_m[21, elbow]) < 1e-3
@@ -156,8 +129,8 @@ def test_frames_without_a_pose_lie_between_their_neighbours_and_keep_the_time() 
     holed = whole.copy()
     holed[[0, 1, 15, 16, 39]] = np.nan
     rows = np.delete(np.arange(40), [20, 21])
-    skeleton, motion, step_s = steady(holed[rows], rows / 15)
-    read = read_bvh(bvh_text(skeleton, motion, step_s))
+    skeleton, motion, steps = steady(holed[rows], rows / 15)
+    read = read_bvh(bvh_text(skeleton, motion, steps.step_s))
     assert len(read.angles) == 37
     knee = JOINT_NAMES.index("r_knee")
     off = np.linalg.norm(read.places["RightLeg"] - whole[2:39, knee], axis=1)
@@ -167,8 +140,8 @@ def test_frames_without_a_pose_lie_between_their_neighbours_and_keep_the_time() 
 
 def test_turns_in_the_file_do_not_jump() -> None:
     """Programs draw curves through the frames: a jump of 360 degrees would spin a limb."""
-    skeleton, motion, step_s = steady(random_joints(2), np.arange(40) / 15)
-    read = read_bvh(bvh_text(skeleton, motion, step_s))
+    skeleton, motion, steps = steady(random_joints(2), np.arange(40) / 15)
+    read = read_bvh(bvh_text(skeleton, motion, steps.step_s))
     assert np.abs(np.diff(read.angles, axis=0)).max() < 60.0
 
 
@@ -199,3 +172,28 @@ def test_what_cannot_be_animated_is_refused(
 ) -> None:
     with pytest.raises(NoMotion, match=why):
         steady(poses, np.array(times))
+
+
+BLENDER = """
+import bpy, json, sys
+bpy.ops.wm.read_factory_settings(use_empty=True)
+bpy.ops.import_anim.bvh(filepath=sys.argv[1], global_scale=0.01, update_scene_fps=True)
+body, said = bpy.context.object, []
+for frame in (1, 21, 40):
+    bpy.context.scene.frame_set(frame)
+    said.append({b.name: list(body.matrix_world @ b.head) for b in body.pose.bones})
+print(json.dumps(said))
+"""
+
+
+@pytest.mark.slow
+def test_blender_opens_it_in_centimetres(tmp_path: Path) -> None:
+    """Its axes are +z up: (x, y, z) of the file is (x, -z, y) there."""
+    skeleton, motion, steps = steady(random_joints(3), np.arange(40) / 15)
+    (tmp_path / "body.bvh").write_text(bvh_text(skeleton, motion, steps.step_s, "cm"))
+    said = answer_of("bpy", BLENDER, str(tmp_path / "body.bvh"))
+    for frame, heads in zip((0, 20, 39), said, strict=True):
+        expected = joints_of(skeleton, motion)[frame]
+        for bone in BONES:
+            x, y, z = expected[JOINT_NAMES.index(bone.starts)]
+            assert heads[bone.name] == pytest.approx([x, -z, y], abs=1e-3)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from common.body.body import JOINT_NAMES, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body
-from tritrack.exporting import ExportError, export_run
+from tritrack.exporting import OWN_NAMES, ExportError, Format, export_run
 from tritrack.store.past_run import PastRunError, open_run
 from tritrack.store.runs import poses
 
@@ -67,6 +68,32 @@ def test_an_animation_is_written_where_it_is_asked_for(run: Path, tmp_path: Path
     assert facts["off_mm"]["p95"] < 1.0
     assert (tmp_path / "new" / "dance.bvh").read_text().startswith("HIERARCHY\nROOT Hips\n")
     assert open_run(run).poses["frame"].tolist() == [0, 1, 2, 3, 4, 5]
+
+
+@pytest.mark.parametrize("to", ["bvh", "gltf", "trc", "mot", "c3d", "csv"])
+def test_every_format_is_written_beside_the_run(run: Path, to: Format) -> None:
+    if to == "c3d":
+        pytest.importorskip("ezc3d", reason="pip install 'tritrack[export]'")
+    facts = export_run(run, to, None)
+    assert Path(facts["file"]) == run / OWN_NAMES[to]
+    assert facts["frames"] == (6 if to == "csv" else 5)
+    assert Path(facts["file"]).stat().st_size > 1000
+    assert (run / "body.osim").is_file() == (to == "mot")
+
+
+def test_centimetres_are_for_bvh_alone(run: Path) -> None:
+    facts = export_run(run, "bvh", None, "cm")
+    first = Path(facts["file"]).read_text().split("Frame Time")[1].splitlines()[1].split()
+    pelvis = open_run(run).poses["joints_m"][1, 0]
+    assert [float(word) for word in first[:3]] == pytest.approx((100 * pelvis).tolist(), abs=1e-3)
+    with pytest.raises(ExportError, match="--scale is for bvh: gltf has a unit of its own"):
+        export_run(run, "gltf", None, "cm")
+
+
+def test_c3d_without_its_library_names_the_cure(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "ezc3d", None)
+    with pytest.raises(ExportError, match=r"C3D needs ezc3d: pip install 'tritrack\[export\]'"):
+        export_run(run, "c3d", None)
 
 
 def test_a_folder_that_cannot_be_written_is_named(run: Path, tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
 import typer
 
-from tritrack.commands.clip_commands import export, retouch, single, synth, track
+from tritrack.commands.clip_commands import export, replay, retouch, single, synth, track
 from tritrack.commands.command_output import JsonWanted, console, results
 from tritrack.commands.live_commands import animate, demo, integrate, live, recognize, view
 from tritrack.commands.model_commands import evaluate_app, train
@@ -89,7 +89,7 @@ def bench(
 
 COMMANDS: Final = (
     *(demo, live, view, integrate, recognize, animate),
-    *(track, synth, train, single, export, retouch),
+    *(track, synth, train, single, export, replay, retouch),
     *(doctor, bench),
 )
 """In the order of the help."""

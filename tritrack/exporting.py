@@ -1,10 +1,10 @@
-"""A run as a file for other programs: BVH for Blender, a table for spreadsheets."""
+"""A run as a file for other programs: animation, movement laboratories, spreadsheets."""
 
 import csv
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
@@ -12,8 +12,16 @@ from common.atomic_file import replacing
 from common.body.body import ANGLE_NAMES, JOINT_NAMES
 from tritrack.store.past_run import PastRun, open_run
 
-Format = Literal["bvh", "csv"]
-OWN_NAMES: Final[dict[Format, str]] = {"bvh": "body.bvh", "csv": "poses.csv"}
+Format = Literal["bvh", "gltf", "trc", "mot", "c3d", "csv"]
+Scale = Literal["m", "cm"]
+OWN_NAMES: Final[dict[Format, str]] = {
+    "bvh": "body.bvh",
+    "gltf": "body.glb",
+    "trc": "markers.trc",
+    "mot": "body.mot",
+    "c3d": "markers.c3d",
+    "csv": "poses.csv",
+}
 """The file in the run folder where no other is asked for."""
 
 
@@ -21,62 +29,149 @@ class ExportError(RuntimeError):
     """A run that cannot be exported: the text says why and what to do."""
 
 
-def export_run(folder: Path, to: Format, out: Path | None) -> dict[str, Any]:
+class Written(NamedTuple):
+    """What an export comes to."""
+
+    content: bytes
+    facts: dict[str, Any]
+    """What the command tells; `frames` is among them."""
+    beside: tuple[str, bytes] | None = None
+    """Ending and content of a second file."""
+
+
+def export_run(folder: Path, to: Format, out: Path | None, scale: Scale = "m") -> dict[str, Any]:
     """Write a run in another format.
 
     Args:
         folder: That of the run.
         to: Which format.
         out: The file to write; None: that of OWN_NAMES in the run folder.
+        scale: Unit of a BVH file; of all others the format says it.
 
     Returns:
-        The file, its frames, and for BVH how far its joints are from the run's.
+        The file, its frames, and of a skeleton of fixed bones how far its joints are from the
+        run's.
 
     Raises:
         PastRunError: When there is no such run.
         ExportError: When it has no poses, or the file cannot be written.
     """
+    if scale != "m" and to != "bvh":
+        raise ExportError(f"--scale is for bvh: {to} has a unit of its own, leave it out")
     run = open_run(folder)
     path = out or folder / OWN_NAMES[to]
-    text, facts = _bvh(run) if to == "bvh" else _csv(run)
+    written = _WRITERS[to](run, path.name, scale)
+    files = {path: written.content}
+    if written.beside is not None:
+        files[path.with_suffix(written.beside[0])] = written.beside[1]
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(path) as new:
-            new.write_text(text, "utf-8")
+        for place, content in files.items():
+            with replacing(place) as new:
+                new.write_bytes(content)
     except OSError as error:
         reason = error.strerror or str(error)
         raise ExportError(
             f"cannot write {path}: {reason}; free some space or name another --out"
         ) from error
-    return {"file": str(path), **facts}
+    return {"file": str(path), "files": [str(place) for place in files], **written.facts}
 
 
-def _bvh(run: PastRun) -> tuple[str, dict[str, Any]]:
+class _Animated(NamedTuple):
+    """A run as a skeleton that moves."""
+
+    skeleton: Any
+    motion: Any
+    step_s: float
+    facts: dict[str, Any]
+
+
+def _animated(run: PastRun) -> _Animated:
     from animator.bones import joints_of
-    from animator.bvh import NoMotion, bvh_text, steady
+    from animator.bvh import steady
+    from animator.even_steps import NoMotion
 
-    joints_m, time_s = run.poses["joints_m"], run.poses["time_s"]
+    joints_m = run.poses["joints_m"]
     try:
-        skeleton, motion, step_s = steady(joints_m, time_s)
+        skeleton, motion, steps = steady(joints_m, run.poses["time_s"])
     except NoMotion as error:
-        raise ExportError(
-            f"{run.folder} cannot be animated: {error}; export another run"
-        ) from error
-    posed = np.flatnonzero(np.isfinite(joints_m).all(axis=(1, 2)))
-    rows = np.rint((time_s[posed] - time_s[posed[0]]) / step_s).astype(np.int64)
-    off_mm = 1e3 * np.linalg.norm(joints_of(skeleton, motion)[rows] - joints_m[posed], axis=2)
-    return bvh_text(skeleton, motion, step_s), {
-        "frames": len(motion.root_m),
-        "first_frame": int(run.poses["frame"][posed[0]]),
-        "filled": int(len(motion.root_m) - len(posed)),
+        raise _motionless(run, error) from error
+    made_m = joints_of(skeleton, motion)[steps.places]
+    off_mm = 1e3 * np.linalg.norm(made_m - joints_m[steps.posed], axis=2)
+    facts = {
+        "frames": steps.frames,
+        "first_frame": int(run.poses["frame"][steps.posed[0]]),
+        "filled": steps.frames - len(np.unique(steps.places)),
         "off_mm": {
             "median": round(float(np.median(off_mm)), 2),
             "p95": round(float(np.percentile(off_mm, 95)), 2),
         },
     }
+    return _Animated(skeleton, motion, steps.step_s, facts)
 
 
-def _csv(run: PastRun) -> tuple[str, dict[str, Any]]:
+def _bvh(run: PastRun, _name: str, scale: Scale) -> Written:
+    from animator.bvh import bvh_text
+
+    made = _animated(run)
+    text = bvh_text(made.skeleton, made.motion, made.step_s, scale)
+    return Written(text.encode(), {**made.facts, "unit": scale})
+
+
+def _gltf(run: PastRun, _name: str, _scale: Scale) -> Written:
+    from animator.exchange.gltf import gltf_bytes
+
+    made = _animated(run)
+    return Written(gltf_bytes(made.skeleton, made.motion, made.step_s), made.facts)
+
+
+def _mot(run: PastRun, name: str, _scale: Scale) -> Written:
+    from animator.exchange.opensim_model import mot_text, osim_text
+
+    made = _animated(run)
+    text = mot_text(made.motion, made.step_s, name)
+    return Written(text.encode(), made.facts, (".osim", osim_text(made.skeleton).encode()))
+
+
+def _trc(run: PastRun, name: str, _scale: Scale) -> Written:
+    from animator.exchange.marker_files import trc_text
+
+    joints_m, step_s, facts = _markers(run)
+    return Written(trc_text(joints_m, step_s, name).encode(), facts)
+
+
+def _c3d(run: PastRun, _name: str, _scale: Scale) -> Written:
+    from animator.exchange.marker_files import LibraryMissing, c3d_bytes
+
+    joints_m, step_s, facts = _markers(run)
+    try:
+        return Written(c3d_bytes(joints_m, step_s), facts)
+    except LibraryMissing as error:
+        raise ExportError(str(error)) from error
+
+
+def _markers(run: PastRun) -> tuple[Any, float, dict[str, Any]]:
+    """The run's joints in even steps with its gaps, seconds a frame, and what is told of them."""
+    from animator.even_steps import NoMotion, even_steps, with_gaps
+
+    joints_m = run.poses["joints_m"]
+    try:
+        steps = even_steps(joints_m, run.poses["time_s"])
+    except NoMotion as error:
+        raise _motionless(run, error) from error
+    facts = {
+        "frames": steps.frames,
+        "first_frame": int(run.poses["frame"][steps.posed[0]]),
+        "empty": steps.frames - len(np.unique(steps.places)),
+    }
+    return with_gaps(joints_m, steps), steps.step_s, facts
+
+
+def _motionless(run: PastRun, error: Exception) -> ExportError:
+    return ExportError(f"{run.folder} cannot be animated: {error}; export another run")
+
+
+def _csv(run: PastRun, _name: str, _scale: Scale) -> Written:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(
@@ -88,7 +183,7 @@ def _csv(run: PastRun) -> tuple[str, dict[str, Any]]:
         ]
     )
     writer.writerows(_csv_rows(run.poses))
-    return text.getvalue(), {"frames": len(run.poses["frame"])}
+    return Written(text.getvalue().encode(), {"frames": len(run.poses["frame"])})
 
 
 def _csv_rows(poses: dict[str, Any]) -> Iterator[list[Any]]:
@@ -106,3 +201,13 @@ def _csv_rows(poses: dict[str, Any]) -> Iterator[list[Any]]:
 def _cells(values: Any, digits: int) -> list[str]:
     """Numbers as a spreadsheet takes them; one that is not known is an empty cell."""
     return [f"{value:.{digits}f}" if np.isfinite(value) else "" for value in np.ravel(values)]
+
+
+_WRITERS: Final[dict[Format, Callable[[PastRun, str, Scale], Written]]] = {
+    "bvh": _bvh,
+    "gltf": _gltf,
+    "trc": _trc,
+    "mot": _mot,
+    "c3d": _c3d,
+    "csv": _csv,
+}

@@ -9,8 +9,8 @@ import typer
 from common.bus.messages import ViewerNumber
 from common.config import Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
-from tritrack.commands.options import Out, Size, writable_file
-from tritrack.exporting import OWN_NAMES, Format, export_run
+from tritrack.commands.options import Out, Record, Size, writable, writable_file
+from tritrack.exporting import OWN_NAMES, Format, Scale, export_run
 from tritrack.faults import refuse_unfollowed
 from tritrack.terminal import json_text
 
@@ -31,6 +31,7 @@ def track(
     trust_calibration: Annotated[
         bool, typer.Option("--trust-calibration", help="Go on with a calibration that seems wrong.")
     ] = False,
+    record: Record = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Track clips offline: the same as live, deterministic, as fast as it goes.
@@ -41,7 +42,10 @@ def track(
     """
     from tritrack.offline.batch import track_all
 
-    facts = track_all(clips, out, mode, VIEWERS[views], size, console, trusted=trust_calibration)
+    seen = VIEWERS[views]
+    facts = track_all(
+        clips, out, mode, seen, size, console, trusted=trust_calibration, record=record
+    )
     tell(facts, json_wanted, line_of_runs(facts["clips"], out))
     refuse_unfollowed(facts["clips"])
 
@@ -117,22 +121,54 @@ def single(
 
 def export(
     run: Annotated[Path, typer.Argument(help="A run folder.")],
-    to: Annotated[Format, typer.Option(help="For Blender, or for spreadsheets.")],
+    to: Annotated[Format, typer.Option(help="Animation, movement laboratory, spreadsheet.")],
     out: Annotated[
         Path | None,
         typer.Option(
-            help=f"The file to write; {' or '.join(OWN_NAMES.values())} in RUN by default.",
+            help=f"The file to write; by default in RUN: {', '.join(OWN_NAMES.values())}.",
             callback=writable_file,
         ),
     ] = None,
+    scale: Annotated[Scale, typer.Option(help="Unit of a BVH file.")] = "m",
     json_wanted: JsonWanted = False,
 ) -> None:
     """Write a run as a file for other programs.
 
     Example: tritrack export runs/walk --to bvh
     """
-    facts = export_run(run, to, out)
-    tell(facts, json_wanted, f"{facts['frames']} frames written to {facts['file']}")
+    facts = export_run(run, to, out, scale)
+    off = facts.get("off_mm")
+    told = f"; fixed bones: {off['median']} mm off, 95 % within {off['p95']} mm" if off else ""
+    tell(facts, json_wanted, f"{facts['frames']} frames written to {facts['file']}{told}")
+
+
+def replay(
+    run: Annotated[Path, typer.Argument(help="A run folder that was written with --record.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Write what the reports give now as a run.", callback=writable),
+    ] = None,
+    bus: Annotated[
+        str, typer.Option(help="Say it all again at this endpoint, tcp/127.0.0.1:7447.")
+    ] = "",
+    speed: Annotated[
+        float, typer.Option(min=0.1, max=100.0, help="On the bus: 2 is twice as fast.")
+    ] = 1.0,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Send a recorded run through the integrator again, or say it again on a bus.
+
+    Example: tritrack replay runs/walk
+    """
+    from tritrack.replaying import replay_on_bus, replay_run
+
+    if bus:
+        facts = replay_on_bus(run, bus, speed, console)
+        tell(facts, json_wanted, f"{facts['said']} messages said")
+        return
+    facts = replay_run(run, out)
+    line = f"{facts['bodies']} bodies, {facts['same']} of them the same byte for byte"
+    tell(facts, json_wanted, line)
 
 
 def retouch(

@@ -10,7 +10,7 @@ from common import config
 from common.bus.messages import ViewerNumber
 from common.config import Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
-from tritrack.commands.options import ModeName, Out, Size
+from tritrack.commands.options import ModeName, Out, Record, Size
 
 ConfigPath = Annotated[Path, typer.Argument(help="A settings file (TOML), or a clip folder.")]
 
@@ -35,6 +35,7 @@ def live(
     out: Out = Path("runs/live"),
     mode: ModeName = None,
     size: Size = None,
+    record: Record = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Track live: on recorded clips at their own pace, or on cameras. Ctrl-C ends it.
@@ -46,7 +47,7 @@ def live(
 
     settings = overridden(config.load(settings_file), mode, size)
     name = settings_file.stem if settings_file.is_file() else ""
-    facts = run_live(settings, out, console, name)
+    facts = run_live(settings, out, console, name, record)
     tell(facts, json_wanted, f"posture: {facts['posture'] or 'none'}; written to {out}")
 
 

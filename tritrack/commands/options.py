@@ -52,6 +52,10 @@ Cache = Annotated[
         help="Keeps what tracking made of clips, 56 kB each; may be deleted.", callback=writable
     ),
 ]
+Record = Annotated[
+    bool,
+    typer.Option(help="Keep outlines and joints as recording.mcap: tritrack replay, Foxglove."),
+]
 Size = Annotated[
     str | None, typer.Option(help="Bound of the working picture, instead of the settings'.")
 ]

@@ -5,16 +5,17 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from common.bus.bus import Bus, BusError, open_client
 from common.bus.control_messages import Cameras, Pulse
-from common.bus.messages import Body, Posture
+from common.bus.messages import Body, Posture, Report
 from common.bus.process import READY_S
 from common.config import Settings
 from tritrack.live.process_table import Part
 from tritrack.live.recorded import MessageLog
 from tritrack.live.supervise import Watched, watched
+from tritrack.store.recording import Keep
 
 LOOK_S: Final = 0.1
 LAST_WORDS_S: Final = 0.4
@@ -32,6 +33,8 @@ class Heard(NamedTuple):
     cameras: list[Cameras]
     notes: list[str]
     """What the supervisor says itself: which part died, and what becomes of it."""
+    keep: Keep | None = None
+    """Takes every report, body, posture and rig, where the run is recorded."""
 
 
 def nothing_heard() -> Heard:
@@ -118,17 +121,28 @@ class Subscriber:
         self._cameras = bus.subscribe(Cameras)
         told = bus.latest(Cameras, LAST_WORDS_S)
         heard.cameras.extend([] if told is None else [told])
+        self._reports = [bus.subscribe(Report)] if heard.keep is not None else []
 
     @property
     def dropped(self) -> int:
-        """How many bodies and postures never came here."""
-        return self._bodies.dropped + self._postures.dropped
+        """How many reports, bodies and postures never came here."""
+        reports = sum(box.dropped for box in self._reports)
+        return self._bodies.dropped + self._postures.dropped + reports
 
     def catch_up(self) -> None:
         """Take in all that was said since."""
-        self._heard.bodies.add(self._bodies.drain())
-        self._heard.postures.add(self._postures.drain())
-        self._heard.cameras.extend(self._cameras.drain())
+        said: list[list[Any]] = [box.drain() for box in self._reports]
+        bodies, postures, cameras = (
+            self._bodies.drain(),
+            self._postures.drain(),
+            self._cameras.drain(),
+        )
+        self._heard.bodies.add(bodies)
+        self._heard.postures.add(postures)
+        self._heard.cameras.extend(cameras)
+        for message in [each for some in [*said, bodies, postures, cameras] for each in some]:
+            if self._heard.keep is not None:
+                self._heard.keep(message)
         for pulse in self._pulses.drain():
             self._heard.pulses[pulse.process] = pulse
 

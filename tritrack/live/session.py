@@ -5,7 +5,7 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import FrameType
@@ -26,7 +26,9 @@ from recognizer.__main__ import model_of
 from tritrack.live.launch import Heard, nothing_heard, run
 from tritrack.live.process_table import live_parts
 from tritrack.live.table import table_of
+from tritrack.offline.batch import head_of
 from tritrack.offline.lockstep import measured_before
+from tritrack.store.recording import recording_to, refuse_without_library
 from tritrack.store.runs import write_postures, write_run
 from tritrack.terminal import warn
 from viewer.landmarks.landmark_sources import refuse_landmarks
@@ -39,7 +41,9 @@ class LiveRefused(ValueError):
     """A live run that cannot begin; the text says why and what to do."""
 
 
-def live(settings: Settings, out: Path, console: Console, name: str = "") -> dict[str, Any]:
+def live(
+    settings: Settings, out: Path, console: Console, name: str = "", record: bool = False
+) -> dict[str, Any]:
     """Run the processes on a clip or on cameras until it ends or Ctrl-C; write the run folder.
 
     Args:
@@ -47,6 +51,7 @@ def live(settings: Settings, out: Path, console: Console, name: str = "") -> dic
         out: The run folder; nothing is written elsewhere.
         console: Shows the live table, each warning once, and the page's address.
         name: Of the run; the clip's when empty.
+        record: Keep what the viewers report, so that it can be replayed.
 
     Returns:
         What the run's summary tells.
@@ -66,6 +71,8 @@ def live(settings: Settings, out: Path, console: Console, name: str = "") -> dic
         body=measured_before(settings),
     )
     _refuse_what_would_fail(settings, clip)
+    if record:
+        refuse_without_library()
     began = time.monotonic()
     heard = nothing_heard()
     screen = _Screen(clip, settings, console)
@@ -75,8 +82,12 @@ def live(settings: Settings, out: Path, console: Console, name: str = "") -> dic
             with TemporaryDirectory(prefix=".kept-", dir=out) as kept:
                 parts = live_parts(settings, clip, ProcessContext(True, path, Path(kept)))
                 names = [part.name for part in parts]
-                with screen.shown(names) as show, logged("supervisor", path):
-                    run(parts, settings, stop, show, heard)
+                with (
+                    screen.shown(names) as show,
+                    logged("supervisor", path),
+                    recording_to(out, head_of(clip, settings)) if record else nullcontext() as keep,
+                ):
+                    run(parts, settings, stop, show, heard._replace(keep=keep))
         finally:
             postures = heard.postures.all()
             facts = _facts(heard, performed(postures), clip, time.monotonic() - began)

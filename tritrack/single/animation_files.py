@@ -7,7 +7,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.bvh import NoMotion, bvh_text, steady
+from animator.bones import joints_of
+from animator.bvh import bvh_text, steady
+from animator.even_steps import NoMotion
 from animator.inbetween import at, between, key_frames
 from common.atomic_file import replacing
 from tritrack.single.angle_plot import angle_plot
@@ -54,19 +56,27 @@ def _animate(folder: Path, arrays: dict[str, Any]) -> list[str]:
     """Write the animation and that of the key frames alone; what stood in the way."""
     joints_m, time_s = arrays["joints_m"], arrays["time_s"]
     try:
-        skeleton, motion, step_s = steady(joints_m, time_s)
+        skeleton, motion, steps = steady(joints_m, time_s)
     except NoMotion as error:
         return [f"there is no animation: {error}"]
-    posed = np.flatnonzero(np.isfinite(joints_m).all(axis=(1, 2)))
-    rows = np.rint((time_s[posed] - time_s[posed[0]]) / step_s).astype(np.int64)
-    clarity = np.full(len(motion.root_m), np.nan)
-    clarity[rows] = arrays["confidence"][posed].mean(axis=1)
+    clarity = np.full(steps.frames, np.nan)
+    clarity[steps.places] = arrays["confidence"][steps.posed].mean(axis=1)
     keys = key_frames(clarity)
-    drawn = between(keys, at(motion, keys), np.arange(len(clarity)))
-    frame_of = dict(zip(rows.tolist(), arrays["frame"][posed].tolist(), strict=True))
-    told = {"frames": [frame_of[key] for key in keys.tolist()], "of": len(clarity)}
-    _write(folder / "body.bvh", bvh_text(skeleton, motion, step_s).encode())
-    _write(folder / "keyframes.bvh", bvh_text(skeleton, drawn, step_s).encode())
+    drawn = between(keys, at(motion, keys), np.arange(steps.frames))
+    off_m = np.linalg.norm(joints_of(skeleton, drawn) - joints_of(skeleton, motion), axis=2)
+    frame_of = dict(zip(steps.places.tolist(), arrays["frame"][steps.posed].tolist(), strict=True))
+    told = {
+        "frames": [frame_of[key] for key in keys.tolist()],
+        "of": steps.frames,
+        "keyframes.bvh": "interpolated between these frames; body.bvh has every frame",
+        "interpolated": steps.frames - len(keys),
+        "off_body_bvh_mm": {
+            "median": round(1e3 * float(np.median(off_m)), 2),
+            "p95": round(1e3 * float(np.percentile(off_m, 95)), 2),
+        },
+    }
+    _write(folder / "body.bvh", bvh_text(skeleton, motion, steps.step_s).encode())
+    _write(folder / "keyframes.bvh", bvh_text(skeleton, drawn, steps.step_s).encode())
     _write(folder / "keyframes.json", f"{json_text(told)}\n".encode())
     return []
 

@@ -1,0 +1,1 @@
+"""Files of motion for other programs than those that read BVH."""

@@ -1,0 +1,181 @@
+"""glTF: a skinned figure of sticks that moves, one binary file, for browsers and engines.
+
+Source: Khronos glTF 2.0 specification, sections 3.6 (accessors), 3.7.3 (skins), 3.11 (animations),
+4 (GLB). Metres, +y up, the figure faces +z, as the specification has it.
+"""
+
+import struct
+from typing import Any, Final, NamedTuple
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from animator.bones import BONES, Motion, Skeleton, offset_m, rest_origins_m
+from animator.solids import unit_cylinder
+from animator.turns import arc
+from common.body.body import Vector
+
+FLOAT, USHORT, UINT = 5126, 5123, 5125
+VERTICES, INDICES = 34962, 34963
+"""What the specification calls ARRAY_BUFFER and ELEMENT_ARRAY_BUFFER."""
+KINDS: Final = {(): "SCALAR", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4"}
+DTYPES: Final = {"float32": FLOAT, "uint16": USHORT, "uint32": UINT}
+THICKNESS: Final = 0.12
+"""Radius of a stick as a share of its length."""
+COLOUR: Final = [0.55, 0.6, 0.65, 1.0]
+_UP: Final = np.array([0.0, 1.0, 0.0])
+
+
+class _Buffer:
+    """The binary half of the file, and what lies where in it."""
+
+    def __init__(self) -> None:
+        self.data = bytearray()
+        self.views: list[dict[str, Any]] = []
+        self.accessors: list[dict[str, Any]] = []
+
+    def add(self, values: NDArray[Any], target: int | None = None) -> int:
+        """Lay an array into the buffer; its accessor's number."""
+        start, content = len(self.data), np.ascontiguousarray(values).tobytes()
+        self.data += content + b"\0" * (-len(content) % 4)
+        view = {"buffer": 0, "byteOffset": start, "byteLength": len(content)}
+        self.views.append(view | ({"target": target} if target else {}))
+        flat = values.reshape(len(values), -1)
+        self.accessors.append(
+            {
+                "bufferView": len(self.views) - 1,
+                "componentType": DTYPES[values.dtype.name],
+                "count": len(values),
+                "type": KINDS[values.shape[1:]],
+                "min": flat.min(axis=0).tolist(),
+                "max": flat.max(axis=0).tolist(),
+            }
+        )
+        return len(self.accessors) - 1
+
+
+class _Sticks(NamedTuple):
+    """The figure at rest: a cylinder along each bone."""
+
+    places_m: NDArray[np.float32]
+    """(n, 3)"""
+    faces: NDArray[np.uint32]
+    """(m, 3)"""
+    bones: NDArray[np.uint16]
+    """(n,) which bone a point goes with."""
+
+
+def gltf_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
+    """A GLB file.
+
+    Args:
+        skeleton: A body.
+        motion: (n,) of it.
+        step_s: Seconds a frame.
+    """
+    buffer = _Buffer()
+    figure = _figure(buffer, _sticks(skeleton))
+    moves = _animation(buffer, motion, step_s)
+    inverse = np.tile(np.eye(4, dtype=np.float32), (len(BONES), 1, 1))
+    inverse[:, 3, :3] = -rest_origins_m(skeleton)  # a matrix is written column by column
+    content = {
+        "asset": {"version": "2.0", "generator": "tritrack"},
+        "scene": 0,
+        "scenes": [{"nodes": [0, len(_nodes(skeleton)) - 1]}],
+        "nodes": _nodes(skeleton),
+        "meshes": [{"name": "Body", "primitives": [figure]}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": COLOUR, "metallicFactor": 0.0}}],
+        "skins": [
+            {
+                "joints": [*range(len(BONES))],
+                "skeleton": 0,
+                "inverseBindMatrices": buffer.add(inverse),
+            }
+        ],
+        "animations": [moves],
+        "accessors": buffer.accessors,
+        "bufferViews": buffer.views,
+        "buffers": [{"byteLength": len(buffer.data)}],
+    }
+    return _glb(msgspec.json.encode(content), bytes(buffer.data))
+
+
+def _nodes(skeleton: Skeleton) -> list[dict[str, Any]]:
+    """The bones, then a node at the end of each that carries no other, then the skinned mesh."""
+    nodes: list[dict[str, Any]] = []
+    for i, bone in enumerate(BONES):
+        children = [n for n, other in enumerate(BONES) if other.parent == i]
+        nodes.append(
+            {"name": bone.name, "translation": offset_m(skeleton, i).tolist()}
+            | ({"children": children} if children else {})
+        )
+    for i, node in enumerate(nodes[:]):
+        if "children" not in node:
+            node["children"] = [len(nodes)]
+            end = {"name": f"{BONES[i].name}_end", "translation": skeleton.tips_m[i].tolist()}
+            nodes.append(end)
+    return [*nodes, {"name": "Body", "mesh": 0, "skin": 0}]
+
+
+def _sticks(skeleton: Skeleton) -> _Sticks:
+    unit, origins_m = unit_cylinder(), rest_origins_m(skeleton)
+    places, faces, bones = [], [], []
+    for i, tip_m in enumerate(skeleton.tips_m):
+        length_m = max(float(np.linalg.norm(tip_m)), 1e-3)
+        scaled = unit.vertices * (THICKNESS * length_m, length_m, THICKNESS * length_m)
+        turned = arc(_UP, tip_m[None] / length_m).apply(scaled)
+        faces.append(unit.faces + i * len(unit.vertices))
+        places.append(origins_m[i] + turned)
+        bones.append(np.full(len(turned), i))
+    return _Sticks(
+        np.concatenate(places).astype(np.float32),
+        np.concatenate(faces).astype(np.uint32),
+        np.concatenate(bones).astype(np.uint16),
+    )
+
+
+def _figure(buffer: _Buffer, sticks: _Sticks) -> dict[str, Any]:
+    joints = np.zeros((len(sticks.bones), 4), np.uint16)
+    joints[:, 0] = sticks.bones
+    weights = np.zeros((len(sticks.bones), 4), np.float32)
+    weights[:, 0] = 1.0
+    return {
+        "attributes": {
+            "POSITION": buffer.add(sticks.places_m, VERTICES),
+            "JOINTS_0": buffer.add(joints, VERTICES),
+            "WEIGHTS_0": buffer.add(weights, VERTICES),
+        },
+        "indices": buffer.add(sticks.faces.reshape(-1), INDICES),
+        "material": 0,
+    }
+
+
+def _animation(buffer: _Buffer, motion: Motion, step_s: float) -> dict[str, Any]:
+    times = buffer.add((np.arange(len(motion.root_m)) * step_s).astype(np.float32))
+    tracks = [(0, "translation", motion.root_m)]
+    tracks += [(i, "rotation", _unbroken(own.as_quat())) for i, own in enumerate(motion.turns)]
+    samplers = [
+        {"input": times, "output": buffer.add(values.astype(np.float32))}
+        for _node, _path, values in tracks
+    ]
+    channels = [
+        {"sampler": i, "target": {"node": node, "path": path}}
+        for i, (node, path, _) in enumerate(tracks)
+    ]
+    return {"name": "Motion", "samplers": samplers, "channels": channels}
+
+
+def _unbroken(xyzw: Vector) -> Vector:
+    """Of q and -q, which are one turn, the one next to the frame before: players interpolate."""
+    turned = (xyzw[1:] * xyzw[:-1]).sum(axis=1) < 0
+    signs = np.where(np.logical_xor.accumulate(np.concatenate([[False], turned])), -1.0, 1.0)
+    unbroken: Vector = xyzw * signs[:, None]
+    return unbroken
+
+
+def _glb(content: bytes, data: bytes) -> bytes:
+    content += b" " * (-len(content) % 4)
+    chunks = struct.pack("<I4s", len(content), b"JSON") + content
+    chunks += struct.pack("<I4s", len(data), b"BIN\0") + data
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks

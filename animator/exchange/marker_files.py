@@ -1,0 +1,85 @@
+"""TRC and C3D: the joints of a run as markers, for movement laboratories."""
+
+import math
+import tempfile
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from animator.bones import Joints
+from common.body.body import JOINT_NAMES, Vector
+
+MM_IN_M: Final = 1000.0
+TO_FORWARD_X: Final = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+"""From a run's axes (+x left of who faces camera 1, +y up, +z towards it) to OpenSim's (+x forward,
++y up, +z right): a quarter turn about the vertical."""
+
+
+class LibraryMissing(RuntimeError):
+    """A format whose library is not installed; the text says how to get it."""
+
+
+def forward_x(places_m: Vector) -> Vector:
+    """Places (..., 3) of a run in OpenSim's axes."""
+    turned: Vector = places_m @ TO_FORWARD_X.T
+    return turned
+
+
+def trc_text(joints_m: Joints, step_s: float, name: str) -> str:
+    """A TRC file: the 15 joints as markers of the same names, mm, OpenSim's axes.
+
+    Args:
+        joints_m: (n, 15, 3) in even steps; NaN, an empty cell in the file, where nothing was seen.
+        step_s: Seconds a frame.
+        name: Of the file, which its first line repeats.
+    """
+    rate_hz, frames, markers = f"{1.0 / step_s:.6f}", len(joints_m), len(JOINT_NAMES)
+    head = [
+        f"PathFileType\t4\t(X/Y/Z)\t{name}",
+        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits"
+        "\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames",
+        f"{rate_hz}\t{rate_hz}\t{frames}\t{markers}\tmm\t{rate_hz}\t1\t{frames}",
+        "Frame#\tTime\t" + "\t".join(f"{joint}\t\t" for joint in JOINT_NAMES),
+        "\t\t" + "\t".join(f"{axis}{n}" for n in range(1, markers + 1) for axis in "XYZ"),
+        "",
+    ]
+    places_mm = (MM_IN_M * forward_x(joints_m)).reshape(frames, -1)
+    rows = (
+        "\t".join([str(i + 1), f"{i * step_s:.6f}", *map(_cell, row.tolist())])
+        for i, row in enumerate(places_mm)
+    )
+    return "\n".join([*head, *rows, ""])
+
+
+def _cell(value: float) -> str:
+    return "" if math.isnan(value) else f"{value:.3f}"
+
+
+def c3d_bytes(joints_m: Joints, step_s: float) -> bytes:
+    """A C3D file: the 15 joints as points of the same names, mm, OpenSim's axes.
+
+    Args:
+        joints_m: (n, 15, 3) in even steps; NaN, an invalid point in the file, where nothing was
+            seen.
+        step_s: Seconds a frame.
+
+    Raises:
+        LibraryMissing: Without ezc3d.
+    """
+    try:
+        import ezc3d
+    except ImportError as error:
+        raise LibraryMissing("C3D needs ezc3d: pip install 'tritrack[export]'") from error
+    places_mm = MM_IN_M * forward_x(joints_m)
+    points = np.ones((4, len(JOINT_NAMES), len(joints_m)))
+    points[:3] = places_mm.transpose(2, 1, 0)
+    content: Any = ezc3d.c3d()
+    content["parameters"]["POINT"]["RATE"]["value"] = [1.0 / step_s]
+    content["parameters"]["POINT"]["LABELS"]["value"] = list(JOINT_NAMES)
+    content["parameters"]["POINT"]["UNITS"]["value"] = ["mm"]
+    content["data"]["points"] = points
+    with tempfile.TemporaryDirectory() as folder:  # it writes to paths alone
+        path = Path(folder) / "points.c3d"
+        content.write(str(path))
+        return path.read_bytes()

@@ -1,0 +1,132 @@
+"""glTF, opened by readers that are not ours: the skeleton stands where ours does."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from clients import answer_of
+from moving import random_joints
+from scipy.spatial.transform import Rotation
+
+from animator.bones import BONES, joints_of
+from animator.bvh import steady
+from animator.exchange.gltf import gltf_bytes
+from common.body.body import JOINT_NAMES
+
+WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+DTYPES = {5126: "<f4", 5123: "<u2", 5125: "<u4"}
+
+BLENDER = """
+import bpy, json, sys
+bpy.ops.wm.read_factory_settings(use_empty=True)
+bpy.context.scene.render.fps = 15
+bpy.ops.import_scene.gltf(filepath=sys.argv[1])
+body = next(each for each in bpy.data.objects if each.type == "ARMATURE")
+mesh = next(each for each in bpy.data.objects if each.name == "Body")
+said = {"skinned": any(each.type == "ARMATURE" for each in mesh.modifiers), "frames": []}
+for frame in (0, 20, 39):
+    bpy.context.scene.frame_set(frame)
+    said["frames"].append({b.name: list(body.matrix_world @ b.head) for b in body.pose.bones})
+print(json.dumps(said))
+"""
+
+
+def made(seed: int = 3) -> tuple[Any, Any, bytes]:
+    skeleton, motion, steps = steady(random_joints(seed), np.arange(40) / 15)
+    return skeleton, motion, gltf_bytes(skeleton, motion, steps.step_s)
+
+
+def array_of(file: Any, number: int) -> np.ndarray:
+    accessor = file.accessors[number]
+    view = file.bufferViews[accessor.bufferView]
+    dtype = np.dtype(DTYPES[accessor.componentType])
+    count = accessor.count * WIDTHS[accessor.type]
+    values = np.frombuffer(file.binary_blob(), dtype, count, view.byteOffset or 0)
+    return values.reshape(accessor.count, -1).copy()
+
+
+def places_of(file: Any) -> tuple[dict[str, np.ndarray], dict[str, Rotation]]:
+    """(n, 3) of every node of the skeleton, by its parents and the animation."""
+    tracks = {
+        (channel.target.node, channel.target.path): array_of(
+            file, file.animations[0].samplers[channel.sampler].output
+        )
+        for channel in file.animations[0].channels
+    }
+    places: dict[str, np.ndarray] = {}
+    turns: dict[str, Rotation] = {}
+
+    def walk(number: int, place: np.ndarray, turn: Rotation) -> None:
+        node = file.nodes[number]
+        shift = tracks.get((number, "translation"), np.array(node.translation)[None])
+        own = tracks.get((number, "rotation"))
+        places[node.name] = place + turn.apply(shift + np.zeros((40, 3)))
+        turns[node.name] = turn if own is None else turn * Rotation.from_quat(own)
+        for child in node.children or ():
+            walk(child, places[node.name], turns[node.name])
+
+    walk(0, np.zeros((40, 3)), Rotation.identity(40))
+    return places, turns
+
+
+def test_the_animated_nodes_stand_where_the_skeleton_does() -> None:
+    """Within 1 mm, joints and ends, as the specification multiplies nodes."""
+    pygltflib = pytest.importorskip("pygltflib", reason="pip install pygltflib")
+    skeleton, motion, content = made()
+    places, _ = places_of(pygltflib.GLTF2.load_from_bytes(content))
+    expected = joints_of(skeleton, motion)
+    for bone in BONES:
+        off = places[bone.name] - expected[:, JOINT_NAMES.index(bone.starts)]
+        assert np.linalg.norm(off, axis=1).max() < 1e-3
+        if f"{bone.name}_end" in places:
+            off = places[f"{bone.name}_end"] - expected[:, JOINT_NAMES.index(bone.ends)]
+            assert np.linalg.norm(off, axis=1).max() < 1e-3
+
+
+def test_every_stick_is_bound_to_its_bone_and_goes_with_it() -> None:
+    """A point of the skin, moved as the specification moves it, keeps its place on the bone."""
+    pygltflib = pytest.importorskip("pygltflib", reason="pip install pygltflib")
+    skeleton, motion, content = made(5)
+    file = pygltflib.GLTF2.load_from_bytes(content)
+    places, turns = places_of(file)
+    attributes = file.meshes[0].primitives[0].attributes
+    skin = array_of(file, attributes.POSITION)
+    owner = array_of(file, attributes.JOINTS_0)[:, 0]
+    inverse = array_of(file, file.skins[0].inverseBindMatrices).reshape(-1, 4, 4)
+    expected = joints_of(skeleton, motion)[20]
+    for i, bone in enumerate(BONES):
+        at_bone = skin[owner == i] + inverse[i, 3, :3]
+        moved = places[bone.name][20] + turns[bone.name][20].apply(at_bone)
+        ends = [expected[JOINT_NAMES.index(name)] for name in (bone.starts, bone.ends)]
+        along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+        heights = (moved - ends[0]) @ along
+        assert heights.min() == pytest.approx(0.0, abs=1e-3)
+        assert heights.max() == pytest.approx(float(np.linalg.norm(ends[1] - ends[0])), abs=1e-3)
+
+
+def test_a_viewer_of_meshes_opens_it(tmp_path: Path) -> None:
+    trimesh = pytest.importorskip("trimesh", reason="pip install trimesh")
+    path = tmp_path / "body.glb"
+    skeleton, _, content = made()
+    path.write_bytes(content)
+    scene = trimesh.load(path)
+    (mesh,) = scene.geometry.values()
+    assert len(mesh.faces) > 13 * 100
+    wrists = [BONES.index(each) for each in BONES if each.name.endswith("Arm")]
+    span_m = np.abs(skeleton.tips_m[wrists, 0]).sum() + abs(skeleton.tips_m[[3, 6], 0]).sum()
+    assert np.ptp(mesh.vertices[:, 0]) == pytest.approx(span_m, abs=1e-3)
+
+
+@pytest.mark.slow
+def test_blender_opens_it_as_a_skinned_armature(tmp_path: Path) -> None:
+    """Its axes are +z up: (x, y, z) of the file is (x, -z, y) there."""
+    skeleton, motion, content = made()
+    (tmp_path / "body.glb").write_bytes(content)
+    said = answer_of("bpy", BLENDER, str(tmp_path / "body.glb"))
+    assert said["skinned"]
+    for frame, heads in zip((0, 20, 39), said["frames"], strict=True):
+        expected = joints_of(skeleton, motion)[frame]
+        for bone in BONES:
+            x, y, z = expected[JOINT_NAMES.index(bone.starts)]
+            assert heads[bone.name] == pytest.approx([x, -z, y], abs=1e-3)

@@ -1,0 +1,90 @@
+"""OpenSim's model and motion: coordinates in the right order, and OpenSim itself agrees."""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from clients import answer_of
+from moving import random_joints
+
+from animator.bones import joints_of
+from animator.bvh import steady
+from animator.exchange.marker_files import forward_x, trc_text
+from animator.exchange.opensim_model import mot_text, osim_text
+from common.body.body import JOINT_NAMES
+
+PLAYED = """
+import json, sys, opensim
+opensim.Logger.setLevelString("off")
+model = opensim.Model(sys.argv[1])
+state = model.initSystem()
+table = opensim.TimeSeriesTable(sys.argv[2])
+names, said = table.getColumnLabels(), []
+turning = opensim.Coordinate.Rotational
+for row in (0, 20, 39):
+    values = table.getRowAtIndex(row)
+    for i, name in enumerate(names):
+        coordinate = model.getCoordinateSet().get(name)
+        turns = coordinate.getMotionType() == turning
+        coordinate.setValue(state, values[i] * (0.017453292519943295 if turns else 1.0), False)
+    model.realizePosition(state)
+    markers = [model.getMarkerSet().get(i) for i in range(model.getMarkerSet().getSize())]
+    said.append({m.getName(): m.getLocationInGround(state).to_numpy().tolist() for m in markers})
+print(json.dumps(said))
+"""
+SOLVED = """
+import json, sys, opensim
+opensim.Logger.setLevelString("off")
+tool = opensim.InverseKinematicsTool()
+model = opensim.Model(sys.argv[1])
+tool.setModel(model)
+tool.setMarkerDataFileName(sys.argv[2])
+tool.setStartTime(0.0)
+tool.setEndTime(39 / 15)
+tool.setResultsDir(sys.argv[3])
+tool.setOutputMotionFileName(sys.argv[3] + "/solved.mot")
+tool.run()
+errors = opensim.TimeSeriesTable(sys.argv[3] + "/_ik_marker_errors.sto")
+print(json.dumps(max(errors.getDependentColumn("marker_error_max").to_numpy().tolist())))
+"""
+
+
+def written(folder: Path) -> np.ndarray:
+    """The files of a moving body; the joints that they hold, in OpenSim's axes."""
+    joints_m = random_joints(4)
+    skeleton, motion, steps = steady(joints_m, np.arange(40) / 15)
+    (folder / "body.osim").write_text(osim_text(skeleton))
+    (folder / "body.mot").write_text(mot_text(motion, steps.step_s, "body.mot"))
+    (folder / "body.trc").write_text(trc_text(joints_m, steps.step_s, "body.trc"))
+    return forward_x(joints_of(skeleton, motion))
+
+
+def test_every_coordinate_of_the_motion_is_one_of_the_model(tmp_path: Path) -> None:
+    written(tmp_path)
+    model = ElementTree.parse(tmp_path / "body.osim")
+    known = [each.get("name") for each in model.iter("Coordinate")]
+    lines = (tmp_path / "body.mot").read_text().splitlines()
+    head = lines.index("endheader")
+    columns = lines[head + 1].split("\t")
+    assert columns[0] == "time"
+    assert sorted(columns[1:]) == sorted(str(name) for name in known)
+    assert "inDegrees=yes" in lines[:head]
+    assert f"nRows={len(lines) - head - 2}" in lines[:head]
+    assert [each.get("name") for each in model.iter("Marker")] == list(JOINT_NAMES)
+
+
+@pytest.mark.slow
+def test_opensim_plays_the_motion_through_the_joints(tmp_path: Path) -> None:
+    expected = written(tmp_path)
+    said = answer_of("opensim", PLAYED, str(tmp_path / "body.osim"), str(tmp_path / "body.mot"))
+    for row, markers in zip((0, 20, 39), said, strict=True):
+        for n, joint in enumerate(JOINT_NAMES):
+            assert markers[joint] == pytest.approx(expected[row, n].tolist(), abs=1e-3)
+
+
+@pytest.mark.slow
+def test_opensims_inverse_kinematics_runs_on_the_markers(tmp_path: Path) -> None:
+    written(tmp_path)
+    paths = [str(tmp_path / name) for name in ("body.osim", "body.trc")]
+    assert answer_of("opensim", SOLVED, *paths, str(tmp_path)) < 1e-3

@@ -1,0 +1,147 @@
+"""A recorded run again: its reports through the integrator, or all that was said onto a bus."""
+
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import msgspec
+from rich.console import Console
+
+from common.bus.bus import Bus, open_hub
+from common.bus.control_messages import Cameras
+from common.bus.message_codec import encode
+from common.bus.messages import Body, Message, Moment, Report
+from common.bus.rate import wait_until
+from common.config import BusSettings
+from common.method import METHODS
+from integrator import merge, merge_state, opening_posture
+from integrator.merge_state import Start
+from integrator.pairing import Pair
+from tritrack.store.recording import Recording, read_recording
+from tritrack.store.runs import write_run
+
+LISTEN_S: Final = 1.0
+"""Time for those who wait for the bus to come, before the first message."""
+
+
+class Replayed(NamedTuple):
+    """What the recorded reports give now."""
+
+    bodies: list[Body]
+    same: int
+    """How many of them are the recorded ones, byte for byte."""
+    scale_source: str
+
+
+def replay_run(folder: Path, out: Path | None) -> dict[str, Any]:
+    """Send a run's recorded reports through the integrator again.
+
+    Args:
+        folder: That of the run.
+        out: A folder that gets what they give as a run of its own; None: nothing is written.
+
+    Raises:
+        RecordingError: When there is no recording.
+        RunError: When `out` cannot be written.
+    """
+    recording = read_recording(folder)
+    done = integrated(recording)
+    facts = {"clip": recording.head.name, "bodies": len(done.bodies), "same": done.same}
+    if out is not None:
+        told = {**facts, "scale_source": done.scale_source, "warnings": []}
+        write_run(out, done.bodies, recording.head.settings, told)
+    return facts
+
+
+def integrated(recording: Recording) -> Replayed:
+    """The bodies that the recorded reports give, in the recorded pairs."""
+    head = recording.head
+    opening = opening_posture.init(head.body)
+    state = merge_state.init(
+        head.rig,
+        head.period_s,
+        head.settings,
+        METHODS[head.settings.mode],
+        Start(head.alone, opening=opening),
+    )
+    bodies, same = [], 0
+    for before, pair in pairs(recording):
+        state, body, _guide = merge.step(state, pair)
+        bodies.append(body)
+        same += encode(body) == encode(before)
+    return Replayed(bodies, same, state.scale_source)
+
+
+def pairs(recording: Recording) -> Iterator[tuple[Body, Pair]]:
+    """Each recorded body with the reports that it was made of; one whose reports are lost is not.
+
+    A body tells the frame of viewer 1 that it is made of, -1 for none, and when the newer of its
+    reports was taken.
+    """
+    first = {report.frame: report for report in recording.reports[0]}
+    second, tolerance_s = list(recording.reports[1]), 0.5 * recording.head.period_s
+    at = 0
+    for body in recording.bodies:
+        one = first.get(body.frame)
+        if one is not None and not _meets(one, body, tolerance_s):
+            one = None
+        while at < len(second) and second[at].captured_s < body.captured_s - tolerance_s:
+            at += 1
+        other = second[at] if at < len(second) else None
+        if other is not None and not _meets(other, body, tolerance_s):
+            other = None
+        at += other is not None
+        if one is not None or other is not None:
+            yield body, Pair(one, other)
+
+
+def _meets(report: Report, body: Body, tolerance_s: float) -> bool:
+    near = abs(report.captured_s - body.captured_s) <= tolerance_s + 1e-9
+    return near and report.clock_s <= body.clock_s
+
+
+def replay_on_bus(folder: Path, endpoint: str, speed: float, console: Console) -> dict[str, Any]:
+    """Say again all that a recorded run said, at its pace, to whoever listens at an endpoint.
+
+    Messages are as recorded but for `clock_s`, which is when they are said.
+
+    Args:
+        folder: That of the run.
+        endpoint: Where others connect to, as `[bus] endpoint` of the settings has it.
+        speed: 2.0 is twice as fast.
+        console: Is told where to listen.
+
+    Raises:
+        RecordingError: When there is no recording.
+        BusError: When the endpoint is taken or is none.
+    """
+    recording = read_recording(folder)
+    room = recording.head.settings.room
+    with open_hub(BusSettings(endpoint=endpoint), room) as bus:
+        bus.keep(Cameras)
+        console.print(f"{recording.head.name}: room {room} at {endpoint}", highlight=False)
+        time.sleep(LISTEN_S)
+        said = say(recording, bus, speed)
+        time.sleep(LISTEN_S)
+    return {"clip": recording.head.name, "said": said}
+
+
+def say(recording: Recording, bus: Bus, speed: float) -> int:
+    """Publish all messages at their pace; how many."""
+    for told in recording.cameras:
+        bus.publish(told)
+    moments: list[Moment] = [*recording.reports[0], *recording.reports[1]]
+    moments += [*recording.bodies, *recording.postures]
+    moments.sort(key=lambda message: message.captured_s)  # stable: reports, body, posture
+    begin_s, stop = time.monotonic(), threading.Event()
+    first_s = moments[0].captured_s if moments else 0.0
+    for message in moments:
+        wait_until(begin_s + (message.captured_s - first_s) / speed, stop)
+        bus.publish(_now(message))
+    return len(recording.cameras) + len(moments)
+
+
+def _now(message: Moment) -> Message:
+    return msgspec.structs.replace(message, clock_s=time.monotonic())

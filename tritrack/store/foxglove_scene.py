@@ -1,0 +1,154 @@
+"""A body for Foxglove: a stick figure in its 3-D panel, and numbers that its plots take by name.
+
+Source: Foxglove's message schemas (SceneUpdate, SceneEntity, LinePrimitive, SpherePrimitive). Its
+axes are x forward, y left, z up: a run's z, x and y.
+"""
+
+from typing import Any, Final
+
+import msgspec
+
+from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES, LIMB_ENDS
+from common.bus.messages import Body, Point
+
+SCENE: Final = "foxglove.SceneUpdate"
+NUMBERS: Final = "tritrack.BodyNumbers"
+FRAME_ID: Final = "room"
+RADIUS_M: Final = 0.05
+LINE_LIST: Final = 2
+_NUMBER: Final = {"type": "number"}
+_ZERO: Final = {"sec": 0, "nsec": 0}
+_STILL: Final = {
+    "position": {"x": 0.0, "y": 0.0, "z": 0.0},
+    "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0},
+}
+_GIRDLES: Final = [
+    [JOINT_NAMES.index(f"{side}_{joint}") for side in "lr"] for joint in ("shoulder", "hip")
+]
+_LINES: Final = [*LIMB_ENDS.tolist(), *_GIRDLES]
+
+
+def scene_of(body: Body) -> bytes:
+    """A SceneUpdate as JSON: the lines between a body's joints, and balls coloured by confidence.
+
+    A body without a pose takes the figure away.
+    """
+    if not body.joints_m:
+        gone = {"timestamp": time_of(body.captured_s), "type": 0, "id": "body"}
+        return msgspec.json.encode({"deletions": [gone], "entities": []})
+    lines = {
+        "type": LINE_LIST,
+        "pose": _STILL,
+        "thickness": RADIUS_M / 2,
+        "scale_invariant": False,
+        "points": [_place(body.joints_m[end]) for ends in _LINES for end in ends],
+        "color": _colour(1.0),
+        "colors": [],
+        "indices": [],
+    }
+    entity = {
+        "timestamp": time_of(body.captured_s),
+        "frame_id": FRAME_ID,
+        "id": "body",
+        "lifetime": _ZERO,
+        "frame_locked": False,
+        "metadata": [],
+        **{name: [] for name in ("arrows", "cubes", "cylinders", "triangles", "texts", "models")},
+        "lines": [lines],
+        "spheres": [
+            {
+                "pose": {**_STILL, "position": _place(place_m)},
+                "size": dict.fromkeys("xyz", 2 * RADIUS_M),
+                "color": _colour(sure),
+            }
+            for place_m, sure in zip(body.joints_m, body.confidence, strict=True)
+        ],
+    }
+    return msgspec.json.encode({"deletions": [], "entities": [entity]})
+
+
+def numbers_of(body: Body) -> bytes:
+    """A body's numbers by name, as JSON: angles_deg.l_elbow_x, joints_m.l_wrist.y and so on."""
+    joints = {
+        name: _xyz(place) for name, place in zip(JOINT_NAMES, body.joints_m or (), strict=False)
+    }
+    angles = {
+        name: body.pose[i] for name, i in zip(ANGLE_NAMES, ANGLES_IN_POSE, strict=True) if body.pose
+    }
+    told = {"frame": body.frame, "status": body.status, "views": body.views}
+    confidence = dict(zip(JOINT_NAMES, body.confidence, strict=False))
+    return msgspec.json.encode(
+        told | {"joints_m": joints, "angles_deg": angles, "confidence": confidence}
+    )
+
+
+def schemas() -> dict[str, bytes]:
+    """JSON Schema of both, without references: not all readers follow them."""
+    xyz = _object(dict.fromkeys("xyz", _NUMBER))
+    time = _object({"sec": {"type": "integer"}, "nsec": {"type": "integer"}})
+    turn = _object(dict.fromkeys("xyzw", _NUMBER))
+    pose = _object({"position": xyz, "orientation": turn})
+    colour = _object(dict.fromkeys("rgba", _NUMBER))
+    lines = _object(
+        {
+            "type": {"type": "integer"},
+            "pose": pose,
+            "thickness": _NUMBER,
+            "scale_invariant": {"type": "boolean"},
+            "points": _list(xyz),
+            "color": colour,
+            "colors": _list(colour),
+            "indices": _list({"type": "integer"}),
+        }
+    )
+    entity = _object(
+        {
+            "timestamp": time,
+            "frame_id": {"type": "string"},
+            "id": {"type": "string"},
+            "lifetime": time,
+            "frame_locked": {"type": "boolean"},
+            "spheres": _list(_object({"pose": pose, "size": xyz, "color": colour})),
+            "lines": _list(lines),
+        }
+    )
+    gone = _object({"timestamp": time, "type": {"type": "integer"}, "id": {"type": "string"}})
+    scene = _object({"deletions": _list(gone), "entities": _list(entity)})
+    numbers = _object(
+        {
+            "frame": {"type": "integer"},
+            "status": {"type": "string"},
+            "views": {"type": "string"},
+            "joints_m": _object(dict.fromkeys(JOINT_NAMES, xyz)),
+            "angles_deg": _object(dict.fromkeys(ANGLE_NAMES, _NUMBER)),
+            "confidence": _object(dict.fromkeys(JOINT_NAMES, _NUMBER)),
+        }
+    )
+    return {SCENE: msgspec.json.encode(scene), NUMBERS: msgspec.json.encode(numbers)}
+
+
+def time_of(seconds: float) -> dict[str, int]:
+    """Seconds as Foxglove writes a time."""
+    whole = int(seconds)
+    return {"sec": whole, "nsec": round((seconds - whole) * 1e9)}
+
+
+def _object(properties: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "object", "properties": properties}
+
+
+def _list(of: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "array", "items": of}
+
+
+def _xyz(place: Point) -> dict[str, float]:
+    return dict(zip("xyz", place, strict=True))
+
+
+def _place(place_m: Point) -> dict[str, float]:
+    x, y, z = place_m
+    return {"x": z, "y": x, "z": y}
+
+
+def _colour(sure: float) -> dict[str, float]:
+    return {"r": 1.0 - sure, "g": 0.3 + 0.5 * sure, "b": 0.3, "a": 1.0}
