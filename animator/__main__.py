@@ -6,7 +6,7 @@ import os
 import threading
 import time
 from multiprocessing.connection import Connection
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 from animator.page.inset import limb_contours, limb_ends
 from animator.page.live import LivePage
@@ -15,13 +15,16 @@ from common.body.body import rest_pose
 from common.body.proportions import thesis_bdp
 from common.bus.bus import Bus, BusError, open_client
 from common.bus.control_messages import Answer, Cameras, Command, Pulse
+from common.bus.message_codec import TOPICS
 from common.bus.messages import Body, Performance, Picture, Posture, Report
 from common.bus.process import READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
-from common.rig.camera import Rig
+from common.rig.camera import paper_rig
 
 HEAR_S: Final = 0.05
+PERIOD_S: Final = 1 / TOPICS[Body].hz
+"""A body that is shown later than this was late."""
 BEHIND: Final = 10
 """How far the page stands back when cores are scarce: a pose must never wait for its picture."""
 MOST_REPORTS: Final = 16
@@ -34,14 +37,6 @@ MOST_LINGER_S: Final = 3600.0
 """How long the page of a run that is over stays for who looks at it."""
 
 log = logging.getLogger(__name__)
-
-
-class Told(NamedTuple):
-    """What the page of a run is given beside the settings."""
-
-    title: str = "tritrack"
-    ending: Connection | None = None
-    """On which a supervisor tells what came of the run, when it is over; None: there is none."""
 
 
 class Subscriber:
@@ -83,14 +78,14 @@ class Subscriber:
 
 
 def run(
-    page: LivePage, bus: Bus, period_s: float, stop: threading.Event, ending: Connection | None
+    page: LivePage, bus: Bus, stop: threading.Event, ending: Connection | None
 ) -> dict[str, Any] | None:
     """Show every body that is published, newest only when late; hand on what browsers ask for.
 
     Returns:
         What came of the run, from its supervisor; None where it was stopped.
     """
-    subscriber, pace = Subscriber(bus), Pace(period_s)
+    subscriber, pace = Subscriber(bus), Pace(PERIOD_S)
     kept = bus.latest(Cameras, HEAR_S)
     if kept is not None:
         page.set_rig(kept.rig)
@@ -144,22 +139,28 @@ def linger(page: LivePage, stop: threading.Event) -> None:
         left_s = 0.0 if page.watched else left_s + HEAR_S
 
 
-def warm_up(rig: Rig | None) -> None:
+def warm_up() -> None:
     """Load or compile all that draws a body: the first one that is heard must not wait for it."""
     standing = Figure(thesis_bdp(1.75), rest_pose(), ())
     limb_shapes(standing)
-    for camera in rig.cameras if rig else ():
+    for camera in paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5)).cameras:
         limb_contours(camera, limb_ends(standing))
 
 
 def main(
     settings: Settings,
-    rig: Rig | None,
-    period_s: float,
     context: ProcessContext = ProcessContext(),
-    told: Told = Told(),
+    title: str = "tritrack",
+    ending: Connection | None = None,
 ) -> None:
     """Open the page at once, show until stopped or until who looks at the end has left, close.
+
+    Args:
+        settings: Of the run.
+        context: How this process runs.
+        title: Of the run.
+        ending: On which a supervisor tells what came of the run, when it is over; None: there is
+            none.
 
     Raises:
         PageError: When the port is taken.
@@ -167,14 +168,12 @@ def main(
     """
     with process("animator", context) as stop:
         os.nice(BEHIND)
-        page = LivePage(told.title, settings.page.port, commands=context.supervised)
+        page = LivePage(title, settings.page.port, commands=context.supervised)
         log.info("the page is at %s", page.address)
         try:
-            if rig is not None:
-                page.set_rig(rig)
-            warm_up(rig)
+            warm_up()
             gc.freeze()
-            facts = _shown(page, settings, period_s, stop, told.ending)
+            facts = _shown(page, settings, stop, ending)
             if facts is not None:
                 page.end(facts)
                 linger(page, stop)
@@ -183,11 +182,7 @@ def main(
 
 
 def _shown(
-    page: LivePage,
-    settings: Settings,
-    period_s: float,
-    stop: threading.Event,
-    ending: Connection | None,
+    page: LivePage, settings: Settings, stop: threading.Event, ending: Connection | None
 ) -> dict[str, Any] | None:
     """Show a run, from the moment when its bus is there."""
     until_s = time.monotonic() + READY_S
@@ -195,7 +190,7 @@ def _shown(
         try:
             with open_client(settings.bus, settings.room, HEAR_S) as bus:
                 bus.announce("animator")
-                return run(page, bus, period_s, stop, ending)
+                return run(page, bus, stop, ending)
         except BusError:
             if ending is not None and ending.poll():
                 return _told(ending)

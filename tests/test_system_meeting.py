@@ -193,7 +193,7 @@ def test_viewers_agree_on_a_start_by_a_clock_that_is_not_theirs() -> None:
 def test_a_start_that_never_comes_names_the_other_viewer(monkeypatch: pytest.MonkeyPatch) -> None:
     bus = LocalBus()
     bus.answer(ClockQuestion, lambda _: ClockAnswer(now_s=0.0, start_s=None))
-    monkeypatch.setattr(viewer, "READY_S", 0.1)
+    monkeypatch.setattr(viewer, "BEGIN_S", 0.1)
     with pytest.raises(viewer.StartError, match=r"viewer 1 is ready, .*start the other viewer"):
         viewer.met(bus, 1, threading.Event())
 
