@@ -21,7 +21,7 @@ SAVED: Final = "saved"
 """Folder of what the person at the page saved, below the run's."""
 LAST_S: Final = 15.0
 ANSWERS_S: Final = 0.2
-GONE_S: Final = 1.0
+GONE_S: Final = 2.0
 """A page at which nobody looks has closed by then."""
 
 Facts = Callable[[], dict[str, Any]]
