@@ -87,8 +87,9 @@ def test_a_recording_that_nobody_ended_is_written_when_the_run_is_over(
     sitting.run(1.0)
     sitting.ask("record")
     sitting.run(2.0)
-    sitting.desk.finish(sitting.heard)
+    sitting.desk.leave(sitting.heard)
     assert len(open_run(saved(tmp_path)).poses["frame"]) == 2 * RATE_HZ + 1
+    assert sitting.ask("save") is None, "its bus is closed"
 
 
 def test_what_cannot_be_saved_is_said(sitting: Sitting, tmp_path: Path) -> None:

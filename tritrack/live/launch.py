@@ -87,6 +87,9 @@ def run(
                     desk.serve(heard, stop)
             time.sleep(LAST_WORDS_S)
         finally:
+            listening.catch_up()
+            if desk is not None:
+                desk.leave(heard)
             for one in reversed(crew):
                 one.end()
             listening.catch_up()

@@ -85,9 +85,14 @@ class PageDesk:
                 first_s = _newest_s(heard.bodies) - LAST_S
                 self._write("save", first_s, f"last_{LAST_S:.0f}_s", heard)
             elif command.what == "end_record":
-                self.finish(heard)
+                self._finish(heard)
 
-    def finish(self, heard: Any) -> None:
+    def leave(self, heard: Any) -> None:
+        """The run is over, and its bus about to close: write what is recorded, hear no more."""
+        self._finish(heard)
+        self._bus = self._commands = None
+
+    def _finish(self, heard: Any) -> None:
         """Write what was recorded, if anything is."""
         if self._began_s is not None:
             first_s, self._began_s = self._began_s, None

@@ -76,7 +76,6 @@ def live(settings: Settings, out: Path, console: Console, name: str = "") -> dic
                 with screen.shown(names) as show, logged("supervisor", log):
                     run(parts, settings, stop, show, heard, desk)
         finally:
-            desk.finish(heard)
             told = facts()
             write_run(out, heard.bodies.all(), settings, told)
             write_postures(out, heard.postures.all(), told["posture"])

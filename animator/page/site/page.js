@@ -27,7 +27,7 @@ const heard = {
     at("title").textContent = told.title;
     document.title = `${told.title} · tritrack`;
     room = new Room(at("room"), told.cylinders);
-    actions = new Actions(told.commands, (what) => socket.send(JSON.stringify({ what })));
+    actions = new Actions(told.commands, (what) => { if (socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ what })); });
     chooser(told.angles);
   },
   room(told) {

@@ -76,7 +76,9 @@ export function showHealth(pulses) {
       `${Math.max(...running.map((pulse) => pulse.latency_p50_ms)).toFixed(0)} ms from camera to pose`,
       missed ? `${missed} deadlines missed` : "no deadline missed",
       ...(lost ? [`${lost} messages lost`] : [])]
-    : [`${pulses.length} processes, ${pulses.filter((pulse) => pulse.state === "ready").length} ready`];
+    : pulses.every((pulse) => pulse.state === "ended" || pulse.process === "animator")
+      ? ["all processes have ended", missed ? `${missed} deadlines missed` : "no deadline missed"]
+      : [`${pulses.length} processes, ${pulses.filter((pulse) => pulse.state === "ready").length} ready`];
   if (waits) words.unshift(`${waits.process} is ${waits.state}`);
   set("pulse", words.join(" · "));
   at("processes").replaceChildren(...pulses.map((pulse) => {
