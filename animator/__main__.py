@@ -5,28 +5,36 @@ import logging
 import os
 import threading
 import time
-from typing import Final
+from multiprocessing.connection import Connection
+from typing import Any, Final
 
 from animator.page.inset import limb_contours, limb_ends
 from animator.page.live import LivePage
 from animator.scene import Figure, Snapshot, limb_shapes
 from common.body.body import rest_pose
 from common.body.proportions import thesis_bdp
-from common.bus.bus import Bus, open_client
-from common.bus.control_messages import Cameras, Pulse
-from common.bus.messages import Body, Picture, Posture, Report
+from common.bus.bus import Bus, BusError, open_client
+from common.bus.control_messages import Answer, Cameras, Command, Pulse
+from common.bus.message_codec import TOPICS
+from common.bus.messages import Body, Performance, Picture, Posture, Report
 from common.bus.process import READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
-from common.rig.camera import Rig
+from common.rig.camera import paper_rig
 
 HEAR_S: Final = 0.05
+PERIOD_S: Final = 1 / TOPICS[Body].hz
+"""A body that is shown later than this was late."""
 BEHIND: Final = 10
 """How far the page stands back when cores are scarce: a pose must never wait for its picture."""
-MOST_PERFORMANCES: Final = 4
-"""So many of those that are over are listed."""
 MOST_REPORTS: Final = 16
 """Reports that wait for their body: it comes within a frame or two."""
+START_S: Final = 0.2
+"""So often the run is told that the page is there, until it begins."""
+LEFT_S: Final = 3.0
+"""A browser that is gone for so long has left; one that loads the page anew is back sooner."""
+MOST_LINGER_S: Final = 3600.0
+"""How long the page of a run that is over stays for who looks at it."""
 
 log = logging.getLogger(__name__)
 
@@ -37,15 +45,19 @@ class Subscriber:
     def __init__(self, bus: Bus) -> None:
         """Listen from now on."""
         self.bodies = bus.subscribe(Body)
+        self.answers = bus.subscribe(Answer)
+        self.cameras = bus.subscribe(Cameras)
         self._reports = bus.subscribe(Report)
         self._pictures = bus.subscribe(Picture)
         self._postures = bus.subscribe(Posture)
         self._pulses = bus.subscribe(Pulse)
         self._waiting: list[Report] = []
         self._snapshot = Snapshot()
+        self._by_process: dict[str, Pulse] = {}
 
-    def with_body(self, body: Body) -> Snapshot:
-        """The newest of everything, with the reports that the body was made of."""
+    def with_body(self, body: Body) -> tuple[Snapshot, list[Performance]]:
+        """The newest of everything, with the reports that the body was made of, and what is over
+        since."""
         self._waiting = [*self._waiting, *self._reports.drain()][-MOST_REPORTS:]
         reports = dict(self._snapshot.reports)
         for report in self._waiting:
@@ -53,80 +65,135 @@ class Subscriber:
                 reports[report.viewer] = report
         pictures = dict(self._snapshot.pictures)
         pictures.update((picture.viewer, picture) for picture in self._pictures.drain())
-        pulses = {pulse.process: pulse for pulse in self._pulses.drain()}
         postures = self._postures.drain()
-        over = [posture.event for posture in postures if posture.event]
-        before = self._snapshot
-        self._snapshot = Snapshot(
-            body=body,
-            reports=reports,
-            pictures=pictures,
-            posture=postures[-1] if postures else before.posture,
-            performances=(*before.performances, *over)[-MOST_PERFORMANCES:],
-            pulses={**before.pulses, **pulses},
-        )
-        return self._snapshot
+        newest = postures[-1] if postures else self._snapshot.posture
+        self._snapshot = Snapshot(body, reports, pictures, newest)
+        return self._snapshot, [posture.event for posture in postures if posture.event]
+
+    def pulses(self) -> list[Pulse]:
+        """The newest of each process, if any is new."""
+        new = self._pulses.drain()
+        self._by_process.update((pulse.process, pulse) for pulse in new)
+        return list(self._by_process.values()) if new else []
 
 
 def run(
-    page: LivePage, subscriber: Subscriber, bus: Bus, period_s: float, stop: threading.Event
-) -> None:
-    """Show every body that is published; when late, the newest only."""
-    pace = Pace(period_s)
+    page: LivePage, bus: Bus, stop: threading.Event, ending: Connection | None
+) -> dict[str, Any] | None:
+    """Show every body that is published, newest only when late; hand on what browsers ask for.
+
+    Returns:
+        What came of the run, from its supervisor; None where it was stopped.
+    """
+    subscriber, pace = Subscriber(bus), Pace(PERIOD_S)
+    kept = bus.latest(Cameras, HEAR_S)
+    if kept is not None:
+        page.set_rig(kept.rig)
     heart = Heart(bus, "animator", pace)
     heart.beat("ready", page.address)
+    begun, again_s = False, 0.0
     while not stop.is_set():
         body = subscriber.bodies.take(HEAR_S)
+        for cameras in subscriber.cameras.drain():
+            page.set_rig(cameras.rig)
         if body is not None:
-            page.show(subscriber.with_body((subscriber.bodies.drain() or [body])[-1]))
+            begun = True
+            page.show(*subscriber.with_body((subscriber.bodies.drain() or [body])[-1]))
             pace.done(body.clock_s, time.monotonic())
             heart.beat("running", page.address, dropped=subscriber.bodies.dropped)
+        elif not begun and page.watched and time.monotonic() > again_s:
+            again_s = time.monotonic() + START_S
+            bus.publish(Command(what="start"))
+        _exchange(page, subscriber, bus)
+        if ending is not None and ending.poll():
+            heart.beat("ended", page.address)
+            return _told(ending)
     heart.beat("ended", page.address)
+    return None
 
 
-def warm_up(rig: Rig) -> None:
+def _exchange(page: LivePage, subscriber: Subscriber, bus: Bus) -> None:
+    """Wishes to the bus, answers and pulses to the browsers."""
+    for asked in page.asked():
+        bus.publish(Command(what=asked.what))
+    for answer in subscriber.answers.drain():
+        page.answer(answer)
+    pulses = subscriber.pulses()
+    if pulses:
+        page.show_health(pulses)
+
+
+def _told(ending: Connection) -> dict[str, Any]:
+    try:
+        facts: dict[str, Any] = ending.recv()
+    except EOFError:  # the supervisor is gone
+        facts = {}
+    return facts
+
+
+def linger(page: LivePage, stop: threading.Event) -> None:
+    """Stay for whoever looks at a run that is over, until they have left."""
+    until_s = time.monotonic() + MOST_LINGER_S
+    left_s = 0.0 if page.was_watched else LEFT_S
+    while left_s < LEFT_S and time.monotonic() < until_s and not stop.wait(HEAR_S):
+        left_s = 0.0 if page.watched else left_s + HEAR_S
+
+
+def warm_up() -> None:
     """Load or compile all that draws a body: the first one that is heard must not wait for it."""
     standing = Figure(thesis_bdp(1.75), rest_pose(), ())
     limb_shapes(standing)
-    for camera in rig.cameras:
+    for camera in paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5)).cameras:
         limb_contours(camera, limb_ends(standing))
 
 
-def known_rig(bus: Bus, given: Rig | None, stop: threading.Event) -> Rig | None:
-    """The calibrated rig, or the assumed one once the integrator tells it."""
-    told = bus.subscribe(Cameras)
-    kept = bus.latest(Cameras, HEAR_S) if given is None else None
-    rig = given if kept is None else kept.rig
-    while rig is None and not stop.is_set():
-        heard = told.take(HEAR_S)
-        rig = None if heard is None else heard.rig
-    return rig
-
-
 def main(
-    settings: Settings, rig: Rig | None, period_s: float, context: ProcessContext = ProcessContext()
+    settings: Settings,
+    context: ProcessContext = ProcessContext(),
+    title: str = "tritrack",
+    ending: Connection | None = None,
 ) -> None:
-    """Open the page, show until stopped, close.
+    """Open the page at once, show until stopped or until who looks at the end has left, close.
+
+    Args:
+        settings: Of the run.
+        context: How this process runs.
+        title: Of the run.
+        ending: On which a supervisor tells what came of the run, when it is over; None: there is
+            none.
 
     Raises:
         PageError: When the port is taken.
         BusError: When the integrator does not answer.
     """
-    with (
-        process("animator", context) as stop,
-        open_client(settings.bus, settings.room, READY_S) as bus,
-    ):
+    with process("animator", context) as stop:
         os.nice(BEHIND)
-        bus.announce("animator")
-        subscriber = Subscriber(bus)
-        known = known_rig(bus, rig, stop)
-        if known is None:
-            return
-        warm_up(known)
-        page = LivePage(known, settings.page.port)
+        page = LivePage(title, settings.page.port, commands=context.supervised)
         log.info("the page is at %s", page.address)
-        gc.freeze()
         try:
-            run(page, subscriber, bus, period_s, stop)
+            warm_up()
+            gc.freeze()
+            facts = _shown(page, settings, stop, ending)
+            if facts is not None:
+                page.end(facts)
+                linger(page, stop)
         finally:
             page.close()
+
+
+def _shown(
+    page: LivePage, settings: Settings, stop: threading.Event, ending: Connection | None
+) -> dict[str, Any] | None:
+    """Show a run, from the moment when its bus is there."""
+    until_s = time.monotonic() + READY_S
+    while not stop.is_set():
+        try:
+            with open_client(settings.bus, settings.room, HEAR_S) as bus:
+                bus.announce("animator")
+                return run(page, bus, stop, ending)
+        except BusError:
+            if ending is not None and ending.poll():
+                return _told(ending)
+            if time.monotonic() > until_s:
+                raise
+    return None

@@ -12,8 +12,7 @@ from scipy.spatial.transform import Rotation
 from common.body.body import JOINT_NAMES, LIMBS, Bdp, Elliptic, Round, Vector
 from common.body.kinematics import HEAD, TORSO, limb_frames
 from common.body.proportions import body_vector
-from common.bus.control_messages import Pulse
-from common.bus.messages import Body, Performance, Picture, Posture, Report
+from common.bus.messages import Body, Picture, Posture, Report
 from common.rig.camera import Camera, Rig, centre
 
 Colour = tuple[int, int, int]
@@ -58,10 +57,6 @@ class Snapshot(msgspec.Struct, frozen=True):
     pictures: Mapping[int, Picture] = {}
     """By viewer."""
     posture: Posture | None = None
-    performances: tuple[Performance, ...] = ()
-    """The last few that are over."""
-    pulses: Mapping[str, Pulse] = {}
-    """By process."""
 
 
 class Figure(NamedTuple):

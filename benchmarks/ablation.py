@@ -33,8 +33,8 @@ from common import config
 from common.bus.messages import ViewerNumber
 from common.method import DEFAULT, PAPER, Method, departures
 from tritrack.accuracy.accuracy import compare, summary
-from tritrack.offline.batch import overridden
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.overrides import overridden
 from tritrack.store.runs import poses
 
 SILHOUETTE_FIELDS = ("steady_light", "pixel_evidence", "body_colours", "alpha_matte", "slow_light")

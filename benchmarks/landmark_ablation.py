@@ -34,8 +34,8 @@ from common.video.clips import open_clip
 from integrator.rig.body_position import triangulate
 from integrator.rig.undistortion import undistorted_rig
 from tritrack.accuracy.accuracy import Compared, compare, summary
-from tritrack.offline.batch import overridden
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.overrides import overridden
 from tritrack.store.runs import poses
 from viewer.landmarks import own_landmarks
 

@@ -31,8 +31,8 @@ from common.video.decoding import Decoder
 from common.video.frame_cache import Reel
 from tritrack.accuracy.accuracy import compare, picked, summary
 from tritrack.live.table import table_of_rows
-from tritrack.offline.batch import overridden
 from tritrack.offline.film_tracking import Film, follow_clip
+from tritrack.overrides import overridden
 from tritrack.store.runs import poses
 from viewer.room.background_source import background_of_film
 

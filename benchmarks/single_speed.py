@@ -21,7 +21,7 @@ from common.video.clip_sources import ClipError
 from common.video.decoding import DecoderDied, Undecodable
 from tritrack.bench.single_bench import followed, parts_ms
 from tritrack.live.table import table_of_rows
-from tritrack.offline.batch import overridden
+from tritrack.overrides import overridden
 
 REPEATS: Final = 3
 

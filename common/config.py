@@ -104,6 +104,8 @@ class PageSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     port: int = 8080
     """0: no page."""
+    wait: bool = True
+    """A recorded clip begins when somebody looks at the page, or half a minute later."""
 
     def __post_init__(self) -> None:
         """Refuse what no run could mean."""

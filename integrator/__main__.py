@@ -7,17 +7,18 @@ import time
 from typing import Final
 
 from common.bus.bus import Bus, open_hub
-from common.bus.control_messages import Cameras, ClockAnswer, ClockQuestion, Ended
+from common.bus.control_messages import Cameras, ClockAnswer, ClockQuestion, Command, Ended
 from common.bus.messages import Guide, Report, ViewerNumber
-from common.bus.process import Heart, ProcessContext, process
+from common.bus.process import PAGE_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip
-from integrator import diagnostics, merge, merge_state, opening_posture, pairing, presence
+from integrator import commands, diagnostics, merge, merge_state, opening_posture, pairing, presence
 from integrator.integrator_warmup import warm_up
 from integrator.merge_state import Start, State
 from integrator.pairing import Pair
+from integrator.single.sight import Annotations
 
 LEAD_S: Final = 0.5
 """From the last viewer's being ready to the first frame: time for all to hear of it."""
@@ -35,21 +36,31 @@ log = logging.getLogger(__name__)
 
 
 class Starter:
-    """Answers what the room's clock says, and fixes the start once every viewer is ready."""
+    """Answers what the room's clock says, and fixes the start once every viewer is ready, and
+    somebody looks, where that is waited for."""
 
-    def __init__(self, expected: frozenset[ViewerNumber]) -> None:
-        """Viewers that belong to the run."""
+    def __init__(self, expected: frozenset[ViewerNumber], wait_s: float = 0.0) -> None:
+        """Viewers that belong to the run, and how long they wait for somebody to look."""
         self._missing = set(expected)
         self._start_s: float | None = None
+        self._wait_s = wait_s
+        self._ready_s: float | None = None
 
     def answer(self, question: ClockQuestion) -> ClockAnswer:
         """What the clock says now; the start, if it is fixed. Called by the bus's own thread."""
         now_s = time.monotonic()
         if question.ready:
             self._missing.discard(question.viewer)
-        if not self._missing and self._start_s is None:
-            self._start_s = now_s + LEAD_S
+        if not self._missing and self._ready_s is None:
+            self._ready_s = now_s
+        if self._ready_s is not None and self._start_s is None:
+            looked_for = now_s - self._ready_s >= self._wait_s
+            self._start_s = now_s + LEAD_S if looked_for else None
         return ClockAnswer(now_s=now_s, start_s=self._start_s)
+
+    def looked_at(self) -> None:
+        """Somebody looks: nothing else is waited for."""
+        self._wait_s = 0.0
 
     def begun(self, report: Report) -> None:
         """The run has begun: this process was started again, and its viewers were not."""
@@ -60,9 +71,12 @@ class Starter:
 class Subscriber:
     """What the viewers say, in pairs of one instant, and who of them is there."""
 
-    def __init__(self, bus: Bus, viewers: tuple[ViewerNumber, ...], period_s: float) -> None:
+    def __init__(
+        self, bus: Bus, viewers: tuple[ViewerNumber, ...], period_s: float, wait_s: float
+    ) -> None:
         """Listen from now on."""
-        self.starter = Starter(frozenset(viewers))
+        self.starter = Starter(frozenset(viewers), wait_s)
+        self._commands = bus.subscribe(Command)
         self._numbers = {f"viewer {number}": number for number in viewers}
         self._reports, self._ended = bus.subscribe(Report), bus.subscribe(Ended)
         self._alive = bus.watch_alive()
@@ -101,6 +115,13 @@ class Subscriber:
             log.warning(line)
         return complete + alone
 
+    def commands(self) -> list[Command]:
+        """What the person at the page asks for since; that they are there is asked for too."""
+        asked = self._commands.drain()
+        if any(command.what == "start" for command in asked):
+            self.starter.looked_at()
+        return asked
+
     def counts(self) -> dict[str, int]:
         """What was lost so far, as a Pulse tells it."""
         return {
@@ -133,17 +154,24 @@ def run(
     period_s: float,
     bus: Bus,
     stop: threading.Event,
+    wait_s: float = 0.0,
 ) -> None:
-    """Pair and merge what the viewers report, until each has ended."""
+    """Pair and merge what the viewers report, until each has ended; wait so long for the page."""
     pace = Pace(period_s)
     heart = Heart(bus, "integrator", pace)
-    subscriber = Subscriber(bus, viewers, period_s)
+    subscriber = Subscriber(bus, viewers, period_s, wait_s)
     noticed, odd = diagnostics.State(), diagnostics.assumed(state)
     told_rig, news = False, subscriber.news
     heart.beat("ready", "\n".join(odd))
+    said = Annotations()
     while subscriber.going and not stop.is_set():
+        for command in subscriber.commands():
+            state, said, answer = commands.step(state, said, command)
+            if answer is not None:
+                bus.publish(answer)
         for pair in subscriber.pairs():
-            state, body, guide = merge.step(state, pair)
+            state, body, guide = merge.step(state, pair, said)
+            said = Annotations()
             noticed = diagnostics.step(noticed, pair)
             bus.publish(guide)
             bus.publish(body)
@@ -186,5 +214,12 @@ def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContex
         warm_up(settings, clip.views[0].size)
         gc.collect()
         gc.freeze()
-        run(state, viewers, period_s, bus, stop)
+        run(state, viewers, period_s, bus, stop, page_wait_s(settings, clip, context))
         stop.wait(SUPERVISED_S if context.supervised else LAST_WORDS_S)
+
+
+def page_wait_s(settings: Settings, clip: Clip, context: ProcessContext) -> float:
+    """How long a run waits for somebody to open its page: a camera waits for nobody."""
+    recorded = not any(isinstance(view.source, int) for view in clip.views)
+    waits = context.supervised and settings.page.port and settings.page.wait and recorded
+    return PAGE_S if waits else 0.0

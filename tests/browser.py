@@ -16,12 +16,11 @@ import numpy as np
 from websockets.sync.client import connect
 from websockets.sync.connection import Connection
 
+WEBGL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+"""For pages with a scene of their own in 3-D; others are drawn sooner without."""
 FLAGS = (
     "--headless",
     "--no-sandbox",
-    "--use-gl=angle",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
     "--disable-background-networking",
     "--no-first-run",
     "--disable-component-update",
@@ -104,10 +103,10 @@ def waited(tab: Tab, until: Callable[[np.ndarray, str], bool], seconds: float = 
 
 
 @contextmanager
-def open_tab(chromium: str) -> Iterator[Tab]:
+def open_tab(chromium: str, drawn_by: tuple[str, ...] = WEBGL) -> Iterator[Tab]:
     """A fresh browser with one empty page; gone afterwards."""
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        command = [chromium, *FLAGS, f"--user-data-dir={profile}", "about:blank"]
+        command = [chromium, *FLAGS, *drawn_by, f"--user-data-dir={profile}", "about:blank"]
         with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as browser:
             try:
                 assert browser.stderr is not None

@@ -12,11 +12,12 @@ from animator.page.inset import limb_contours, limb_ends
 from animator.page.live import LivePage
 from animator.scene import Figure, Snapshot
 from common.body.body import POSE_INDEX, Vector, rest_pose
-from common.body.proportions import thesis_bdp
+from common.body.kinematics import joints
+from common.body.proportions import body_vector, thesis_bdp
 from common.bus.control_messages import Pulse
 from common.bus.messages import Body, Posture, Report, ViewerNumber
 from common.raster.silhouette_report import pack
-from common.rig.camera import Camera, paper_rig
+from common.rig.camera import Camera, paper_rig, project
 
 RATE_HZ = 15
 BDP = thesis_bdp(1.72)
@@ -30,6 +31,8 @@ def snapshot_at(frame: int) -> Snapshot:
     seconds = frame / RATE_HZ
     pose = pose_at(seconds)
     masks = [silhouette(camera, pose) for camera in RIG.cameras]
+    joints_m = joints(body_vector(BDP), pose)
+    in_pictures = [project(camera, joints_m) for camera in RIG.cameras]
     return Snapshot(
         body=Body(
             frame=frame,
@@ -37,6 +40,9 @@ def snapshot_at(frame: int) -> Snapshot:
             clock_s=seconds,
             status="tracking",
             views="both",
+            joints_m=tuple(tuple(place) for place in joints_m.tolist()),
+            joints_px=tuple(tuple(map(tuple, seen.tolist())) for seen in in_pictures),
+            confidence=(0.9,) * 9 + (0.9, 0.5, 0.2, 0.9, 0.9, 0.9),
             pose=tuple(pose.tolist()),
             score=(0.86, 0.79),
             bdp=BDP,
@@ -62,11 +68,14 @@ def snapshot_at(frame: int) -> Snapshot:
             log_likelihoods={"walk_in_place": -61.0, "squat": -142.5, "kick_left_side": -171.2},
             segment=(max(0, frame - 39), frame),
         ),
-        pulses={
-            name: Pulse(process=name, state="running", fps=15.0, latency_p50_ms=ms)
-            for name, ms in (("viewer 1", 4.0), ("viewer 2", 4.5), ("integrator", 11.0))
-        },
     )
+
+
+def pulses() -> list[Pulse]:
+    return [
+        Pulse(process=name, state="running", fps=15.0, latency_p50_ms=ms)
+        for name, ms in (("viewer 1", 4.0), ("viewer 2", 4.5), ("integrator", 11.0))
+    ]
 
 
 def pose_at(seconds: float) -> Vector:
@@ -90,11 +99,13 @@ def silhouette(camera: Camera, pose: Vector) -> np.ndarray:
 
 
 def main(port: int) -> None:
-    page = LivePage(RIG, port)
+    page = LivePage("a body that moves by formula", port, commands=False)
+    page.set_rig(RIG)
     print(f"open {page.address} in a browser; Ctrl-C ends")
     try:
         for frame in itertools.count():
             page.show(snapshot_at(frame))
+            page.show_health(pulses())
             time.sleep(1.0 / RATE_HZ)
     except KeyboardInterrupt:
         page.close()

@@ -1,150 +1,145 @@
-"""The page over a real server, and in a real browser where there is one."""
+"""The live page: what a browser is told, and what is seen in a real one where there is one."""
 
+import base64
+import json
 import shutil
-import socket
-import urllib.request
+import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
+import cv2
+import msgspec
 import numpy as np
 import pytest
 
-pytest.importorskip("viser", reason="the page is an extra: install tritrack[page]")
+pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
-import psutil
-import viser
-from browser import open_tab, saved, waited
-from show_page import RIG, snapshot_at
-from websockets.exceptions import ConnectionClosed
+from browser import Tab, open_tab, saved
+from show_page import RIG, pulses, snapshot_at
+from test_page_server import free_port
 from websockets.sync.client import connect
-from websockets.typing import Origin, Subprotocol
 
-from animator.page.door import PageError, is_own
+from animator.page import live
 from animator.page.live import LivePage
-from animator.scene import LEFT, RIGHT, Snapshot
+from animator.scene import LEFT, RIGHT
+from common.bus.control_messages import Answer
+from common.bus.messages import Performance
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-
-
-def free_port() -> int:
-    with socket.socket() as trial:
-        trial.bind(("127.0.0.1", 0))
-        return int(trial.getsockname()[1])
+SOFT = ("--disable-gpu",)
+SIZES = {"desk": (1400, 900), "phone": (390, 844)}
 
 
 @pytest.fixture
 def page() -> Iterator[LivePage]:
-    live = LivePage(RIG, free_port())
-    yield live
-    live.close()
+    one = LivePage("a body that moves", free_port(), commands=True)
+    yield one
+    one.close()
 
 
-def test_the_page_answers_on_this_machine(page: LivePage) -> None:
-    with urllib.request.urlopen(page.address) as answer:
-        assert answer.status == 200
-        assert b"<html" in answer.read().lower()
+def told(page: LivePage, count: int) -> list[dict[str, Any]]:
+    """The first things that a browser is told that comes now."""
+    with connect(page.address.replace("http", "ws") + "/live", max_size=None) as browser:
+        return [json.loads(browser.recv(timeout=10)) for _ in range(count)]
 
 
-def test_the_page_listens_on_the_loopback_interface_alone(page: LivePage) -> None:
-    port = int(page.address.rsplit(":", 1)[1])
-    listening = [
-        connection.laddr.ip
-        for connection in psutil.Process().net_connections()
-        if connection.status == psutil.CONN_LISTEN and connection.laddr.port == port
-    ]
-    assert listening == ["127.0.0.1"]
+def test_who_comes_late_is_told_the_run_so_far_and_its_end_last(page: LivePage) -> None:
+    page.show(snapshot_at(0))  # no cameras yet: nothing could be drawn
+    page.set_rig(RIG)
+    for frame in range(3):
+        page.show(snapshot_at(frame))
+    page.show_health(pulses())
+    page.end({"clip": "walk"})
+    heard = told(page, 7)
+    assert heard[0]["title"] == "a body that moves"
+    assert [each["kind"] for each in heard[1:]] == [*("room", "health"), *["frame"] * 3, "over"]
+    assert [each["number"] for each in heard[3:6]] == [0, 1, 2]
 
 
-def test_a_busy_port_is_refused_with_its_number_and_the_cure(page: LivePage) -> None:
-    """Viser alone would take the next port, and nobody would find the page."""
-    port = int(page.address.rsplit(":", 1)[1])
-    with pytest.raises(PageError, match=rf"port {port}: .*in use; .*set page\.port"):
-        LivePage(RIG, port)
-
-
-def test_port_zero_means_no_page() -> None:
-    with pytest.raises(PageError, match=r"page\.port is 0"):
-        LivePage(RIG, 0)
-
-
-def test_a_closed_page_frees_its_port() -> None:
-    port = free_port()
-    LivePage(RIG, port).close()
-    LivePage(RIG, port).close()
-
-
-def test_opening_and_closing_says_nothing_on_the_terminal(
-    capfd: pytest.CaptureFixture[str],
+def test_what_is_kept_of_a_long_run_is_bounded(
+    page: LivePage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    LivePage(RIG, free_port()).close()
-    assert capfd.readouterr().out == ""
+    page.set_rig(RIG)
+    monkeypatch.setattr(live, "MOST_BYTES", 60_000)
+    for frame in range(12):
+        page.show(snapshot_at(frame))
+    heard = told(page, 3)
+    assert heard[2]["number"] > 0, "the oldest gave way"
 
 
-@pytest.mark.parametrize(
-    ("host", "origin", "own"),
-    [
-        ("127.0.0.1:8080", "http://127.0.0.1:8080", True),
-        ("localhost:9000", "http://localhost:9000", True),
-        ("127.0.0.1:8080", "", True),
-        ("127.0.0.1:8080", "https://evil.example", False),
-        ("127.0.0.1:8080", "null", False),
-        ("127.0.0.1:8080", "http://127.0.0.1:3000", False),
-        ("evil.example:8080", "http://evil.example:8080", False),
-        ("127.0.0.1.evil.example", "", False),
-        ("", "", False),
-    ],
-)
-def test_only_the_pages_own_browser_tab_may_connect(host: str, origin: str, own: bool) -> None:
-    """Neither another web page nor a foreign name that points here (DNS rebinding)."""
-    assert is_own(host, origin) is own
+def test_only_what_the_page_can_ask_is_heard(page: LivePage) -> None:
+    wishes = ['{"what": "save"}', '{"what": "format the disk"}', "[", '{"what": "stop", "a": 1}']
+    with connect(page.address.replace("http", "ws") + "/live") as browser:
+        browser.recv(timeout=10)
+        for wish in wishes:
+            browser.send(wish)
+        heard: list[str] = []
+        until_s = time.monotonic() + 10
+        while not heard and time.monotonic() < until_s:
+            time.sleep(0.05)
+            heard += [asked.what for asked in page.asked()]
+        time.sleep(0.2)
+        heard += [asked.what for asked in page.asked()]
+    assert heard == ["save"]
 
 
-def test_a_foreign_web_page_is_shown_nothing(page: LivePage) -> None:
-    """It would else read the silhouettes of whoever stands before the cameras."""
-    where = page.address.replace("http", "ws")
-    speaks = [Subprotocol(f"viser-v{viser.__version__}")]
-    with connect(where, origin=Origin(page.address), subprotocols=speaks) as own:
-        assert own.recv(timeout=10)
-    with (
-        connect(where, origin=Origin("https://evil.example"), subprotocols=speaks) as foreign,
-        pytest.raises(ConnectionClosed) as closed,
-    ):
-        foreign.recv(timeout=10)
-    assert closed.value.rcvd is not None
-    assert closed.value.rcvd.code == 1008
+class Looking:
+    """A browser that looks at a page in a window of some size."""
+
+    def __init__(self, tab: Tab, address: str, size: tuple[int, int]) -> None:
+        self.tab, (width, self._height) = tab, size
+        tab.call(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=self._height,
+            deviceScaleFactor=1,
+            mobile=width < 600,
+        )
+        tab.call("Page.navigate", url=address)
+
+    def ask(self, script: str) -> Any:
+        """What a piece of JavaScript gives in the page."""
+        answer = self.tab.call("Runtime.evaluate", expression=script)["result"]
+        return answer.get("value")
+
+    def until(self, script: str, seconds: float = 30.0) -> Any:
+        """What it gives once that is true, or in the end."""
+        patience_s = time.monotonic() + seconds
+        while not (found := self.ask(script)) and time.monotonic() < patience_s:
+            time.sleep(0.05)
+        return found
+
+    def key(self, key: str, code: int = 0) -> None:
+        """Press a key, as a person does."""
+        for kind in ("keyDown", "keyUp"):
+            text = {"text": key} if len(key) == 1 and kind == "keyDown" else {}
+            self.tab.call(
+                "Input.dispatchKeyEvent", type=kind, key=key, windowsVirtualKeyCode=code, **text
+            )
+
+    def seen(self, selector: str) -> np.ndarray:
+        """The pixels of an element."""
+        box = self.ask(
+            f"(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView();"
+            "const b = e.getBoundingClientRect();"
+            "return [b.x + scrollX, b.y + scrollY, b.width, b.height].join() })()"
+        )
+        x, y, width, height = (float(value) for value in box.split(","))
+        clip = {"x": x, "y": y, "width": width, "height": height, "scale": 1}
+        png = self.tab.call("Page.captureScreenshot", format="png", clip=clip)["data"]
+        picture = cv2.imdecode(np.frombuffer(base64.b64decode(png), np.uint8), cv2.IMREAD_COLOR_RGB)
+        assert picture is not None
+        return np.asarray(picture)
 
 
-def test_a_body_appears_moves_and_goes_again(page: LivePage) -> None:
-    """What a browser that joins late is sent: viser's own table of the newest values."""
-    limbs = page._server.scene.get_handle_by_name("/body/cylinders")
-    assert not limbs.visible
-    page.show(snapshot_at(0))
-    assert limbs.visible
-    before = limbs.batched_wxyzs.copy()
-    page.show(snapshot_at(4))
-    assert not np.allclose(limbs.batched_wxyzs, before)
-    page.show(Snapshot())
-    assert not limbs.visible
-
-
-def test_a_cameras_picture_hangs_in_the_room_while_its_viewer_speaks(page: LivePage) -> None:
-    frustum = page._server.scene.get_handle_by_name("/camera 2")
-    before = frustum.image
-    page.show(snapshot_at(0))
-    assert before is None
-    assert frustum.image.shape == (240, 320, 3)
-    page.show(Snapshot())
-    assert frustum.image is None
-
-
-def test_a_run_with_one_camera_has_one_frustum() -> None:
-    rig = type(RIG)(RIG.width, RIG.height, RIG.cameras[:1])
-    page = LivePage(rig, free_port())
-    page.show(snapshot_at(0))
-    names = [f"/camera {n}" for n in (1, 2)]
-    shown = [page._server.scene.get_handle_by_name(name) is not None for name in names]
-    page.close()
-    assert shown == [True, False]
+@pytest.fixture(params=SIZES)
+def looking(page: LivePage, request: pytest.FixtureRequest) -> Iterator[Looking]:
+    if CHROMIUM is None:
+        pytest.skip("no Chromium here: the page is not looked at")
+    page.set_rig(RIG)
+    with open_tab(CHROMIUM, SOFT) as tab:
+        yield Looking(tab, page.address, SIZES[request.param])
 
 
 def hue_deg(colours: np.ndarray) -> np.ndarray:
@@ -156,32 +151,115 @@ def hue_deg(colours: np.ndarray) -> np.ndarray:
 
 
 def share_like(picture: np.ndarray, colour: tuple[int, int, int]) -> float:
-    """Share of the room's middle, where the body stands, that has about a colour's hue."""
-    middle = picture[230:620, 380:640]
-    return float(np.mean(np.abs(hue_deg(middle) - hue_deg(np.array(colour))) < 12.0))
-
-
-def share_dark(picture: np.ndarray) -> float:
-    """Share of the room that is as dark as the background of a silhouette."""
-    return float(np.mean(picture[230:, :1000].max(axis=2) < 70))
+    """Share of a picture that has about a colour's hue."""
+    return float(np.mean(np.abs(hue_deg(picture) - hue_deg(np.array(colour))) < 12.0))
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here: the page is not looked at")
-def test_a_browser_shows_the_body_and_asks_nobody_else(page: LivePage, tmp_path: Path) -> None:
-    with open_tab(str(CHROMIUM)) as tab:
-        tab.call("Page.navigate", url=page.address)
-        empty = waited(tab, lambda _, text: "nobody in view" in text)
-        assert share_like(empty, LEFT) + share_like(empty, RIGHT) < 0.002
-        page.show(snapshot_at(4))
-        body = waited(tab, lambda seen, _: share_like(seen, LEFT) > 0.01 and share_dark(seen) > 0.1)
-        text = tab.text()
-        asked = tab.asked
-    where = saved(body, tmp_path / "page.png")
-    assert share_like(body, LEFT) > 0.01, f"no left side drawn: look at {where}"
-    assert share_like(body, RIGHT) > 0.01, f"no right side drawn: look at {where}"
-    assert share_dark(body) > 0.1, f"no silhouettes hang in the room: look at {where}"
+def test_a_browser_shows_the_body_both_views_and_asks_nobody_else(
+    page: LivePage, looking: Looking, tmp_path: Path
+) -> None:
+    page.show(snapshot_at(4))
+    page.show_health(pulses())
+    assert looking.until("document.body.dataset.drawn")
+    time.sleep(0.5)
+    whole = saved(looking.tab.screenshot(), tmp_path / "page.png")
+    room = looking.seen("#room")
+    assert share_like(room, LEFT) > 0.005, f"no left side drawn: look at {whole}"
+    assert share_like(room, RIGHT) > 0.005, f"no right side drawn: look at {whole}"
+    for n in (1, 2):
+        view = looking.seen(f"#views figure:nth-child({n}) canvas")
+        assert np.mean(view.max(axis=2) < 70) > 0.5, f"no night in view {n}: look at {whole}"
+        assert share_like(view, RIGHT) > 0.001, f"no body over view {n}: look at {whole}"
+    text = looking.tab.text()
     assert "walk in place" in text
-    assert "15.0 fps · 11 ms latency" in text
+    assert "15.0 frames a second · 11 ms from camera to pose · no deadline missed" in text
+    assert looking.ask("document.documentElement.scrollWidth <= innerWidth"), "it is too wide"
     own = (page.address, page.address.replace("http", "ws"), "data:", "blob:")
-    assert [address for address in asked if not address.startswith(own)] == []
+    assert [address for address in looking.tab.asked if not address.startswith(own)] == []
+
+
+@pytest.mark.slow
+def test_pictures_and_body_move_an_event_appears_and_the_end_is_played(
+    page: LivePage, looking: Looking
+) -> None:
+    over = Performance("squat", 3, 9, 0.2, 0.6, 1.0, 2)
+    for frame in range(30):
+        page.show(snapshot_at(frame), [over] if frame == 9 else [])
+        time.sleep(1 / 30)
+    assert looking.until("document.body.dataset.frame === '29'")
+    assert "squat × 2" in looking.ask("document.querySelector('#events').innerText")
+    page.end({"clip": "walk", "warnings": ["it was dark <b>"], "out": "runs/1"})
+    assert looking.until("!document.querySelector('#ending').hidden")
+    assert "it was dark <b>" in looking.ask("document.querySelector('#ending').innerText")
+    assert "over" in looking.ask("document.querySelector('#words').innerText")
+    looking.key("Home", 36)
+    assert looking.until("document.body.dataset.frame === '0'")
+    first = looking.seen("#room")
+    for _ in range(4):
+        looking.key("ArrowRight", 39)
+    assert looking.until("document.body.dataset.frame === '4'")
+    assert np.mean(np.abs(looking.seen("#room").astype(int) - first) > 30) > 0.001
+    looking.ask("document.querySelector('#speed').focus()")
+    looking.ask("document.activeElement.blur()")
+    looking.key(" ", 32)
+    assert looking.until("document.body.dataset.frame === '29'"), "the player does not play"
+    looking.ask("document.querySelector('#events button').click()")
+    assert looking.until("document.body.dataset.frame === '3'"), "an event leads to its begin"
+
+
+@pytest.mark.slow
+def test_a_pause_holds_the_page_while_the_run_goes_on(page: LivePage, looking: Looking) -> None:
+    for frame in range(5):
+        page.show(snapshot_at(frame))
+    assert looking.until("document.body.dataset.frame === '4'")
+    looking.ask("document.querySelector('#play').click()")
+    assert looking.until("document.querySelector('#live').ariaPressed === 'false'")
+    for frame in range(5, 9):
+        page.show(snapshot_at(frame))
+    assert looking.until("document.querySelector('#scrub').max >= 4")
+    assert looking.ask("document.body.dataset.frame") == "4"
+    looking.key("l", 76)
+    assert looking.until("document.body.dataset.frame === '8'")
+
+
+@pytest.mark.slow
+def test_buttons_ask_and_answers_are_shown(page: LivePage, looking: Looking) -> None:
+    page.show(snapshot_at(0))
+    assert looking.until("!document.querySelector('#actions').hidden")
+    looking.ask("document.querySelector('#record').click()")
+    asked: list[str] = []
+    until_s = time.monotonic() + 10
+    while not asked and time.monotonic() < until_s:
+        asked += [each.what for each in page.asked()]
+        time.sleep(0.05)
+    assert asked == ["record"]
+    page.answer(Answer(what="record", well=True, text="recording <i>"))
+    assert looking.until("document.querySelector('#record').ariaPressed === 'true'")
+    assert looking.ask("document.querySelector('#told').textContent") == "recording <i>"
+
+
+@pytest.mark.slow
+def test_all_that_can_be_pressed_has_a_name_and_is_reached_by_keyboard(
+    page: LivePage, looking: Looking
+) -> None:
+    frame = snapshot_at(0)
+    assert frame.posture is not None
+    evil = msgspec.structs.replace(frame.posture, name='<img src=x onerror="alert(1)">')
+    page.show(msgspec.structs.replace(frame, posture=evil))
+    assert looking.until("document.body.dataset.drawn")
+    assert looking.ask("document.querySelectorAll('#posture img').length") == 0
+    tree = looking.tab.call("Accessibility.getFullAXTree")["nodes"]
+    pressed = [
+        node
+        for node in tree
+        if node.get("role", {}).get("value") in ("button", "slider", "combobox", "checkbox")
+        and not node.get("ignored")
+    ]
+    assert len(pressed) > 10
+    assert [node for node in pressed if not node.get("name", {}).get("value")] == []
+    reached = set()
+    for _ in range(40):
+        looking.key("Tab", 9)
+        reached.add(looking.ask("document.activeElement.id"))
+    assert {"room", "record", "save", "stop", "play", "live", "scrub", "speed"} <= reached

@@ -14,8 +14,9 @@ from rich.console import Console
 from spoiling import Film, copied, cut_off, edit_json, refilmed
 
 from common.config import Settings, SettingsError
-from tritrack.offline.batch import overridden, track_all
+from tritrack.offline.batch import track_all
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.overrides import overridden
 from tritrack.store.runs import poses
 
 QUIET = Console(quiet=True)

@@ -12,7 +12,15 @@ from hypothesis.extra import numpy as shapes
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES, rest_pose
 from common.body.proportions import thesis_bdp
 from common.bus import control_messages, messages
-from common.bus.control_messages import Cameras, ClockAnswer, ClockQuestion, Ended, Pulse
+from common.bus.control_messages import (
+    Answer,
+    Cameras,
+    ClockAnswer,
+    ClockQuestion,
+    Command,
+    Ended,
+    Pulse,
+)
 from common.bus.message_codec import (
     MAX_BYTES,
     TOPICS,
@@ -109,6 +117,8 @@ SAID: list[Message] = [
     Posture(frame=7, captured_s=0.5, clock_s=0.5, name="squat", log_likelihoods={"squat": -9.5}),
     Picture(frame=7, captured_s=0.5, clock_s=0.5, viewer=1, jpeg=b"\xff\xd8"),
     Pulse(process="viewer 1", state="running", frames=7, fps=15.0),
+    Command(what="measure"),
+    Answer(what="save", well=True, text="15.0 s written"),
     Cameras(rig=paper_rig((160, 120), (200.0, 200.0), (4.0, 4.0)), scale_source="calibrated"),
     Ended(viewer=1, frames=69),
     ClockQuestion(viewer=1, ready=True),

@@ -18,7 +18,8 @@ from spoiling import copied, cut_off, uncalibrated
 from common.bus.control_messages import Pulse
 from common.bus.messages import Posture
 from common.config import PageSettings, Settings
-from tritrack.live.session import LiveRefused, free_settings, live, performed, warnings_of
+from tritrack.live.screen import warnings_of
+from tritrack.live.session import LiveRefused, free_settings, live, performed
 
 
 def settings_of(clip: Path) -> Settings:

@@ -9,7 +9,7 @@ import pytest
 from local_bus import LocalBus
 from staging import report
 
-from common.bus.bus import Bus, open_client, open_hub
+from common.bus.bus import open_client, open_hub
 from common.bus.control_messages import Cameras, ClockAnswer, ClockQuestion, Ended, Pulse
 from common.bus.inbox import BOUND
 from common.bus.messages import Body, Guide, Message
@@ -122,6 +122,20 @@ def test_the_start_is_fixed_once_when_every_viewer_is_ready(
         assert starter.answer(question(number)) == ClockAnswer(now_s=1007.0, start_s=fixed_s)
 
 
+def test_a_clip_waits_for_who_looks_at_its_page_but_not_for_ever(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    now = Clock(monkeypatch, "integrator.__main__")
+    starters = [integrator.Starter(frozenset((1,)), wait_s=30.0) for _ in range(2)]
+    assert [each.answer(question(1)).start_s for each in starters] == [None, None]
+    now.wait(3.0)
+    starters[0].looked_at()
+    started = [each.answer(question(1)).start_s for each in starters]
+    assert started == [1003.0 + integrator.LEAD_S, None]
+    now.wait(27.0)
+    assert starters[1].answer(question(1)).start_s == 1030.0 + integrator.LEAD_S
+
+
 def test_a_run_with_one_viewer_waits_for_no_other() -> None:
     assert integrator.Starter(frozenset((2,))).answer(question(2)).start_s is not None
 
@@ -193,7 +207,7 @@ def test_viewers_agree_on_a_start_by_a_clock_that_is_not_theirs() -> None:
 def test_a_start_that_never_comes_names_the_other_viewer(monkeypatch: pytest.MonkeyPatch) -> None:
     bus = LocalBus()
     bus.answer(ClockQuestion, lambda _: ClockAnswer(now_s=0.0, start_s=None))
-    monkeypatch.setattr(viewer, "READY_S", 0.1)
+    monkeypatch.setattr(viewer, "BEGIN_S", 0.1)
     with pytest.raises(viewer.StartError, match=r"viewer 1 is ready, .*start the other viewer"):
         viewer.met(bus, 1, threading.Event())
 
@@ -232,26 +246,3 @@ def test_who_comes_late_gets_the_newest(settings: BusSettings, message: Message)
         hub.publish(message)
         with open_client(settings, "room", 5.0) as late:
             assert soon(lambda: late.latest(type(message), 1.0)) == message
-
-
-def test_a_page_that_opens_late_learns_the_rig(settings: BusSettings) -> None:
-    from animator.__main__ import known_rig
-
-    with open_hub(settings, "room") as hub:
-        hub.keep(Cameras)
-        hub.publish(Cameras(rig=RIG, scale_source="assumed"))
-        with open_client(settings, "room", 5.0) as late:
-            assert known_rig(late, None, threading.Event()) == RIG
-            assert known_rig(late, RIG, threading.Event()) is RIG
-
-
-def test_a_page_that_opens_early_waits_for_the_rig() -> None:
-    from animator.__main__ import known_rig
-
-    bus: Bus = LocalBus()
-    told = threading.Timer(0.1, bus.publish, (Cameras(rig=RIG, scale_source="assumed"),))
-    told.start()
-    assert known_rig(bus, None, threading.Event()) == RIG
-    stop = threading.Event()
-    stop.set()
-    assert known_rig(LocalBus(), None, stop) is None

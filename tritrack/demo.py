@@ -43,8 +43,14 @@ def made_clip(folder: Path) -> Path:
     return clip
 
 
-def run_demo(out: Path, page: bool, console: Console) -> dict[str, Any]:
+def run_demo(out: Path, page: bool, console: Console, wait: bool = True) -> dict[str, Any]:
     """Render a clip, run the whole system on it, and check what it says.
+
+    Args:
+        out: The run folder.
+        page: Whether it is shown on the live page.
+        console: As for `live`.
+        wait: Whether the clip waits until the page is opened.
 
     Raises:
         DemoFailed: When another posture was named than was performed.
@@ -53,8 +59,8 @@ def run_demo(out: Path, page: bool, console: Console) -> dict[str, Any]:
         console.print(f"making a person who performs {POSTURE} ...")
         clip = made_clip(Path(folder))
         settings = free_settings(Settings(clip=str(clip), pictures=True))
-        if not page:
-            settings = msgspec.structs.replace(settings, page=PageSettings(port=0))
+        port = settings.page.port if page else 0
+        settings = msgspec.structs.replace(settings, page=PageSettings(port, wait))
         facts = live(settings, out, console)
     if facts["posture"] != POSTURE:
         raise DemoFailed(f"performed {POSTURE}, named {facts['posture'] or 'nothing'}")

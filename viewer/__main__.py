@@ -8,10 +8,10 @@ from typing import Any, Final
 
 from common.bus import clock
 from common.bus.bus import Bus, open_client
-from common.bus.control_messages import ClockAnswer, ClockQuestion, Ended
+from common.bus.control_messages import ClockAnswer, ClockQuestion, Command, Ended
 from common.bus.inbox import Inbox
 from common.bus.messages import Guide, Picture, ViewerNumber
-from common.bus.process import READY_S, Heart, ProcessContext, process
+from common.bus.process import BEGIN_S, READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
 from common.method import METHODS
@@ -20,6 +20,7 @@ from common.video.clip_sources import footage_of
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied
 from viewer import track
+from viewer.background.new_background import Learning
 from viewer.capture import CapturedFrame, Live, RoomClock
 from viewer.jpeg import jpeg_of
 from viewer.landmarks.landmark_sources import outside_sources
@@ -91,6 +92,7 @@ def run(
     pace = Pace(period_s)
     heart = Heart(bus, f"viewer {view.number}", pace)
     guides = Guides(bus.subscribe(Guide), view.number)
+    learning = Learning(bus.subscribe(Command), view.number, state.setup.settings)
     before, why = -1, ""
     try:
         while not stop.is_set() and not live.over:
@@ -105,6 +107,11 @@ def run(
             if state.setup.settings.pictures:
                 bus.publish(_picture(view.number, frame))
             heart.beat("running", **_news(live, guides, warnings))
+            background, answer = learning.step(frame.picture)
+            if background is not None:
+                state = track.with_background(state, background)
+            if answer is not None:
+                bus.publish(answer)
             before = frame.index
     except DecoderDied as error:
         why = str(error)
@@ -171,14 +178,14 @@ def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | No
         StartError: When that takes too long.
     """
     asked, offset = clock.init(), clock.Offset(0.0, 0.0)
-    until_s = time.monotonic() + READY_S
+    until_s = time.monotonic() + BEGIN_S
     start_s: float | None = None
     while start_s is None or len(asked) < EXCHANGES:
         if stop.is_set():
             return None
         if time.monotonic() > until_s:
             raise StartError(
-                f"viewer {viewer} is ready, but the run did not begin within {READY_S:g} s: "
+                f"viewer {viewer} is ready, but the run did not begin within {BEGIN_S:g} s: "
                 "start the other viewer, or take it out of the settings"
             )
         sent_s = time.monotonic()

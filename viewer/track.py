@@ -93,6 +93,16 @@ def init(
     )
 
 
+def with_background(state: State, background: Background) -> State:
+    """The viewer before another background: nothing of the old one is kept."""
+    setup = state.setup
+    return state._replace(
+        fault=camera_fault.init(background),
+        silhouette=silhouette.init(background, setup.settings.silhouette, setup.method),
+        coming=(),
+    )
+
+
 def step(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State, Report]:
     """One frame: silhouette, opening posture, facing, position, arms, legs (P23).
 

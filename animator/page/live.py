@@ -1,183 +1,117 @@
-"""The live page: a viser server of this machine alone that shows the newest snapshot."""
+"""The live page: what is shown to every browser, what was shown before, and what they ask for."""
 
-import math
-from typing import Final
+import queue
+import threading
+from collections import deque
+from collections.abc import Sequence
+from typing import Any, Final
 
-import numpy as np
+import msgspec
 
-from animator.page import panel
-from animator.page.door import HOST, close_server, open_server
-from animator.page.inset import draw_contours, inset, limb_contours, limb_ends
-from animator.page.shapes import add_shapes, place_shapes
-from animator.scene import (
-    BALLS,
-    Snapshot,
-    figure,
-    frustum,
-    limb_shapes,
-    round_shapes,
-    rows_of,
-    viewpoint,
-)
-from animator.solids import unit_ball, unit_cylinder
-from common.body.body import LIMBS
-from common.body.kinematics import HEAD
-from common.bus.messages import Body
+from animator.page.page_messages import Asked, Greeting, Over, ShownHealth, Told
+from animator.page.page_server import PageServer
+from animator.page.shown import shown_frame, shown_room
+from animator.scene import Snapshot
+from common.bus.control_messages import Answer, Pulse
+from common.bus.messages import Performance
 from common.rig.camera import Rig
 
-FLOOR_M: Final = 8.0
-"""Side of the floor that is drawn round the middle of the room: a person's range and more."""
-CELL_M: Final = 0.5
-PLANE_SHARE: Final = 0.6
-"""Where a camera's picture hangs on the way from the camera to the middle of the room."""
-FOV_RAD: Final = math.radians(38.0)
-"""The spectator's angle of view: narrow, so that upright bodies stay upright at the edges."""
-PANEL_PX: Final = 360
-SKY_LIGHT, SUN_LIGHT = 1.1, 1.3
-"""Together they show a colour about as it was given; viser's own lights wash it out."""
-SUN_AT: Final = (-1.5, 4.0, 2.5)
-
-INK: Final = (150, 159, 170)
-CYLINDERS: Final = [i for i in range(len(LIMBS)) if i != HEAD]
-"""The limbs that are drawn as cylinders; the head is round."""
+MOST_BYTES: Final = 32_000_000
+"""Of frames that are kept for a browser that comes late: some minutes, with pictures one."""
 
 
 class LivePage:
     """What a browser on this machine sees at `address`, until `close`.
 
     Args:
-        rig: The cameras of this run, one or two, in the order of the viewers.
+        title: Of the run.
         port: Of this machine, free.
+        commands: Whether somebody hears what the person asks for.
 
     Raises:
         PageError: When the port is 0, taken or not allowed.
     """
 
-    def __init__(self, rig: Rig, port: int) -> None:
-        self._rig = rig
-        self._server = open_server(port)
-        self._build_room()
-        self._build_body()
-        self._build_cameras()
-        self._build_panel()
-        self.show(Snapshot())
+    def __init__(self, title: str, port: int, commands: bool) -> None:
+        self._hello = Greeting(title, commands)
+        self._lock = threading.Lock()
+        self._frames: deque[bytes] = deque()
+        self._bytes = self._shown = 0
+        self._rig: Rig | None = None
+        self._last: dict[type, bytes] = {}
+        self._server = PageServer(port, self._greeting)
+        self.address = self._server.address
+        """Where a browser finds the page."""
 
     @property
-    def address(self) -> str:
-        """Where a browser finds the page."""
-        return f"http://{HOST}:{self._server.get_port()}"
+    def watched(self) -> bool:
+        """Whether any browser looks."""
+        return self._server.watched
 
-    def show(self, snapshot: Snapshot) -> None:
-        """Bring the page up to date; every browser that is connected follows."""
-        with self._server.atomic():
-            self._show_body(snapshot.body)
-            self._show_cameras(snapshot)
-            self._show_panel(snapshot)
+    @property
+    def was_watched(self) -> bool:
+        """Whether any browser ever looked."""
+        return self._server.came > 0
+
+    def set_rig(self, rig: Rig) -> None:
+        """Draw the room of these cameras from now on."""
+        self._rig = rig
+        self._tell(shown_room(rig))
+
+    def show(self, snapshot: Snapshot, events: Sequence[Performance] = ()) -> None:
+        """Tell every browser the newest body, once the cameras are known."""
+        if self._rig is None:
+            return
+        frame = shown_frame(snapshot, events, self._rig, self._shown)
+        if frame is None:
+            return
+        self._shown += 1
+        said = msgspec.json.encode(frame)
+        with self._lock:
+            self._frames.append(said)
+            self._bytes += len(said)
+            while self._bytes > MOST_BYTES:
+                self._bytes -= len(self._frames.popleft())
+        self._server.tell(said)
+
+    def show_health(self, pulses: Sequence[Pulse]) -> None:
+        """Tell how the processes are doing."""
+        self._tell(ShownHealth(sorted(pulses, key=lambda each: each.process)))
+
+    def answer(self, answer: Answer) -> None:
+        """Tell what became of a wish."""
+        self._server.tell(msgspec.json.encode(Told(answer.what, answer.well, answer.text)))
+
+    def end(self, facts: dict[str, Any]) -> None:
+        """The run is over: the page becomes its player."""
+        self._tell(Over(facts))
+
+    def asked(self) -> list[Asked]:
+        """What browsers asked for since; what no page of ours would say is left out."""
+        wishes = []
+        while True:
+            try:
+                wishes.append(msgspec.json.decode(self._server.asked.get_nowait(), type=Asked))
+            except queue.Empty:
+                return wishes
+            except msgspec.DecodeError:
+                continue
 
     def close(self) -> None:
         """Take the page down and free the port."""
-        close_server(self._server)
+        self._server.close()
 
-    def _build_room(self) -> None:
-        server, scene = self._server, self._server.scene
-        server.gui.configure_theme(
-            show_logo=False, show_share_button=False, brand_color=panel.ACCENT
-        )
-        server.gui.main_panel.dock_right()
-        server.gui.main_panel.set_width(PANEL_PX)
-        scene.set_up_direction("+y")
-        scene.world_axes.visible = False
-        spectator = viewpoint(self._rig)
-        server.initial_camera.position = spectator.position
-        server.initial_camera.look_at = spectator.look_at
-        server.initial_camera.fov = FOV_RAD
-        scene.configure_default_lights(enabled=False)
-        scene.configure_environment_map(None)
-        scene.add_light_hemisphere("/sky", ground_color=(170, 178, 188), intensity=SKY_LIGHT)
-        scene.add_light_directional(
-            "/sun",
-            intensity=SUN_LIGHT,
-            cast_shadow=True,
-            position=tuple(spectator.look_at + SUN_AT),
-        )
-        scene.add_grid(
-            "/floor",
-            FLOOR_M,
-            FLOOR_M,
-            position=tuple(np.rint(spectator.look_at) * (1.0, 0.0, 1.0)),
-            plane="xz",
-            cell_size=CELL_M,
-            section_size=2 * CELL_M,
-            cell_color=(226, 230, 234),
-            section_color=(196, 203, 210),
-            plane_color=(246, 247, 248),
-            plane_opacity=1.0,
-            shadow_opacity=0.25,
-        )
+    def _tell(self, message: msgspec.Struct) -> None:
+        """Tell every browser, and those that come later."""
+        said = msgspec.json.encode(message)
+        with self._lock:
+            self._last[type(message)] = said
+        self._server.tell(said)
 
-    def _build_body(self) -> None:
-        scene = self._server.scene
-        self._cylinders = add_shapes(scene, "/body/cylinders", unit_cylinder(), len(CYLINDERS))
-        self._balls = add_shapes(scene, "/body/balls", unit_ball(), BALLS)
-
-    def _build_cameras(self) -> None:
-        self._frustums = []
-        middle = viewpoint(self._rig).look_at
-        for n, camera in enumerate(self._rig.cameras, start=1):
-            seen = frustum(camera, (self._rig.width, self._rig.height))
-            handle = self._server.scene.add_camera_frustum(
-                f"/camera {n}",
-                seen.fov_rad,
-                seen.aspect,
-                thickness=0.008,
-                color=INK,
-                wxyz=seen.wxyz,
-                position=seen.position,
-                format="jpeg",
-                cast_shadow=False,
-            )
-            plane_m = PLANE_SHARE * float(np.linalg.norm(seen.position - middle))
-            handle.scale = plane_m / handle.compute_canonical_frustum_size()[2]
-            above = (0.0, -1.03 * plane_m * math.tan(seen.fov_rad / 2), plane_m)
-            self._server.scene.add_label(
-                f"/camera {n}/name", f"camera {n}", position=above, anchor="bottom-center"
-            )
-            self._frustums.append(handle)
-
-    def _build_panel(self) -> None:
-        gui = self._server.gui
-        self._headline = gui.add_html("")
-        self._events = gui.add_html("")
-        self._status = gui.add_html("")
-        self._views = gui.add_html("")
-        self._bars = gui.add_html("")
-        gui.add_html(panel.legend())
-        with gui.add_folder("Processes"):
-            self._pulses = gui.add_html("")
-
-    def _show_body(self, body: Body | None) -> None:
-        standing = figure(body)
-        self._cylinders.visible = self._balls.visible = standing is not None
-        if standing is not None:
-            limbs = limb_shapes(standing)
-            place_shapes(self._cylinders, rows_of(limbs, CYLINDERS))
-            place_shapes(self._balls, round_shapes(limbs))
-
-    def _show_cameras(self, snapshot: Snapshot) -> None:
-        standing = figure(snapshot.body)
-        ends = None if standing is None else limb_ends(standing)
-        for n, camera in enumerate(self._rig.cameras, start=1):
-            report = snapshot.reports.get(n)
-            image = None if report is None else inset(report, snapshot.pictures.get(n))
-            if image is not None and ends is not None:
-                draw_contours(image, limb_contours(camera, ends), self._rig.width)
-            self._frustums[n - 1].image = image
-
-    def _show_panel(self, snapshot: Snapshot) -> None:
-        body, pulses = snapshot.body, snapshot.pulses.values()
-        self._headline.content = panel.posture_headline(snapshot.posture)
-        self._events.content = panel.events_list(snapshot.performances)
-        self._status.content = panel.status_line(body, pulses)
-        self._views.content = panel.views_table(body, snapshot.reports, len(self._rig.cameras))
-        self._bars.content = panel.likelihood_bars(snapshot.posture)
-        self._pulses.content = panel.pulse_table(pulses)
+    def _greeting(self) -> list[bytes]:
+        """What a browser is told that comes now: all of the run that is kept."""
+        with self._lock:
+            last = dict(self._last)
+            over = last.pop(Over, None)
+            ending = [] if over is None else [over]
+            return [msgspec.json.encode(self._hello), *last.values(), *self._frames, *ending]

@@ -7,9 +7,10 @@ from typing import Any, Final
 import numpy as np
 import viser
 
-from animator.page.door import HOST, close_server, open_server
+from animator.page.door import HOST
 from animator.page.easel import Easel, Picture
 from animator.page.panel import ACCENT, piece
+from animator.page.viser_door import close_server, open_server
 from animator.take import Take, doubts_at, next_doubtful, with_notes
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS
 from common.notes.notes import ORIENTATIONS, WAYS, Depth, Note, Notes, held, noted, placed_once

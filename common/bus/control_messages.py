@@ -1,6 +1,8 @@
 """What processes tell each other of themselves and of the run."""
 
-from typing import Literal
+from typing import Annotated, Literal
+
+import msgspec
 
 from common.bus.messages import Message, ViewerNumber
 from common.rig.camera import Rig
@@ -52,3 +54,24 @@ class ClockAnswer(Message, frozen=True, kw_only=True):
 
     now_s: float
     start_s: float | None = None
+
+
+Wish = Literal[
+    "start", "stop", "record", "end_record", "save", "measure", "background", "front", "back"
+]
+"""What a person at the page may ask of a run."""
+
+
+class Command(Message, frozen=True, kw_only=True):
+    """The person at the page wants something; whoever can do it does, and answers."""
+
+    what: Wish
+
+
+class Answer(Message, frozen=True, kw_only=True):
+    """What became of a command; each process that took part says so."""
+
+    what: Wish
+    well: bool
+    text: Annotated[str, msgspec.Meta(max_length=400)]
+    """For the person, one sentence."""

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple, TypeVar
 import msgspec
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES, Bdp, Elliptic, Round
-from common.bus.control_messages import Cameras, Ended, Pulse
+from common.bus.control_messages import Answer, Cameras, Command, Ended, Pulse
 from common.bus.messages import (
     PROTOCOL,
     Body,
@@ -52,6 +52,8 @@ TOPICS: Final[dict[type[Message], Topic]] = {
     Pulse: Topic("tritrack/{room}/pulse/{process}", 1.0, newest_only=False),
     Cameras: Topic("tritrack/{room}/cameras", 0.0, newest_only=False),
     Ended: Topic("tritrack/{room}/viewer/{viewer}/ended", 0.0, newest_only=False),
+    Command: Topic("tritrack/{room}/command", 0.0, newest_only=False),
+    Answer: Topic("tritrack/{room}/answer", 0.0, newest_only=False),
 }
 
 Said = TypeVar("Said", bound=Message)

@@ -21,6 +21,10 @@ from common.bus.rate import Pace
 BEAT_S: Final = 1.0
 READY_S: Final = 60.0
 """How long processes wait for each other at the start: a first run compiles for some seconds."""
+PAGE_S: Final = 30.0
+"""How long a clip waits for somebody to open the page, once all else is ready."""
+BEGIN_S: Final = READY_S + PAGE_S
+"""How long a viewer that is ready waits for the run to begin."""
 
 
 class ProcessContext(NamedTuple):

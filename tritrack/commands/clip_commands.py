@@ -109,7 +109,7 @@ def single(
 
     Example: tritrack single dance.mp4 --out runs
     """
-    from tritrack.offline.batch import overridden
+    from tritrack.overrides import overridden
     from tritrack.single.single import Given, single_all
 
     given = Given(notes, background)

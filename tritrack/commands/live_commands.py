@@ -11,13 +11,18 @@ from common.bus.messages import ViewerNumber
 from common.config import Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import ModeName, Out, Record, Size
+from tritrack.overrides import overridden
 
+Wait = Annotated[
+    bool, typer.Option(help="A clip begins when the page is opened, or half a minute later.")
+]
 ConfigPath = Annotated[Path, typer.Argument(help="A settings file (TOML), or a clip folder.")]
 
 
 def demo(
     out: Out = Path("runs/demo"),
     page: Annotated[bool, typer.Option(help="Show it on the live page too.")] = True,
+    wait: Wait = True,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Run the whole system on a synthetic person: two viewers, integrator, recognizer, page.
@@ -26,7 +31,7 @@ def demo(
     """
     from tritrack.demo import run_demo
 
-    facts = run_demo(out, page, console)
+    facts = run_demo(out, page, console, wait)
     tell(facts, json_wanted, f"posture: {facts['posture']}; written to {out}")
 
 
@@ -36,6 +41,7 @@ def live(
     mode: ModeName = None,
     size: Size = None,
     record: Record = False,
+    wait: Wait = True,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Track live: on recorded clips at their own pace, or on cameras. Ctrl-C ends it.
@@ -43,9 +49,8 @@ def live(
     Example: tritrack live configs/live.toml --out runs/monday
     """
     from tritrack.live.session import live as run_live
-    from tritrack.offline.batch import overridden
 
-    settings = overridden(config.load(settings_file), mode, size)
+    settings = waiting(overridden(config.load(settings_file), mode, size), wait)
     name = settings_file.stem if settings_file.is_file() else ""
     facts = run_live(settings, out, console, name, record)
     tell(facts, json_wanted, f"posture: {facts['posture'] or 'none'}; written to {out}")
@@ -99,9 +104,13 @@ def animate(settings_file: ConfigPath) -> None:
     """
     from animator.__main__ import main as animator_main
 
-    settings = live_settings(settings_file)
-    clip = two_camera_clip(settings)
-    animator_main(settings, clip.rig, clip.every / clip.views[0].fps)
+    animator_main(live_settings(settings_file))
+
+
+def waiting(settings: Settings, wait: bool) -> Settings:
+    """The settings of a run that waits for its page only where both say so."""
+    page = msgspec.structs.replace(settings.page, wait=settings.page.wait and wait)
+    return msgspec.structs.replace(settings, page=page)
 
 
 def live_settings(path: Path) -> Settings:

@@ -12,12 +12,15 @@ from common.bus.control_messages import Cameras, Pulse
 from common.bus.messages import Body, Posture, Report
 from common.bus.process import READY_S
 from common.config import Settings
+from tritrack.live.page_desk import PageDesk
 from tritrack.live.process_table import Part
 from tritrack.live.recorded import MessageLog
 from tritrack.live.supervise import Watched, watched
 from tritrack.store.recording import Keep
 
 LOOK_S: Final = 0.1
+TRY_S: Final = 0.3
+"""How long each try to reach the integrator lasts."""
 LAST_WORDS_S: Final = 0.4
 """What was said last is on its way for no longer than this."""
 
@@ -48,6 +51,7 @@ def run(
     stop: threading.Event,
     show: Callable[[Heard], None],
     heard: Heard,
+    desk: PageDesk | None = None,
 ) -> None:
     """Start the parts, listen to them, and end them all when the run is over or stopped.
 
@@ -60,6 +64,7 @@ def run(
         stop: Ends the run early.
         show: Called ten times a second with what was heard so far.
         heard: Filled as the run goes, so that a failure loses nothing that was said.
+        desk: Of the page, which runs already and goes on when the run is over.
 
     Raises:
         PartFailed: When a process fails before it has worked at all, or was given up; the others
@@ -68,18 +73,26 @@ def run(
     """
     with ExitStack() as doors:
         hub = doors.enter_context(watched(parts[0]))
-        bus = doors.enter_context(_client(settings, hub, stop))
+        bus = doors.enter_context(_client(settings, hub, stop, lambda: show(heard)))
         if bus is None:
             return
         listening = Subscriber(bus, heard)
         crew = [hub, *(doors.enter_context(watched(part)) for part in parts[1:])]
+        page = [] if desk is None or desk.watched is None else [desk.watched]
+        if desk is not None:
+            desk.listen(bus)
         try:
             while not stop.wait(LOOK_S) and not _over(crew):
                 listening.catch_up()
-                _look_after(crew, heard)
+                _look_after([*crew, *page], heard)
                 show(heard)
+                if desk is not None:
+                    desk.serve(heard, stop)
             time.sleep(LAST_WORDS_S)
         finally:
+            listening.catch_up()
+            if desk is not None:
+                desk.leave(heard)
             for one in reversed(crew):
                 one.end()
             listening.catch_up()
@@ -148,7 +161,9 @@ class Subscriber:
 
 
 @contextmanager
-def _client(settings: Settings, hub: Watched, stop: threading.Event) -> Iterator[Bus | None]:
+def _client(
+    settings: Settings, hub: Watched, stop: threading.Event, show: Callable[[], None]
+) -> Iterator[Bus | None]:
     """The supervisor's own place on the bus, as soon as the hub's process has opened it.
 
     None when the run was stopped before that.
@@ -162,8 +177,9 @@ def _client(settings: Settings, hub: Watched, stop: threading.Event) -> Iterator
     with ExitStack() as door:
         while bus is None and not stop.is_set():
             hub.refuse_failure()
+            show()
             try:
-                bus = door.enter_context(open_client(settings.bus, settings.room, 1.0))
+                bus = door.enter_context(open_client(settings.bus, settings.room, TRY_S))
             except BusError:
                 if time.monotonic() > until_s:
                     raise

@@ -51,13 +51,16 @@ def live_parts(settings: Settings, clip: Clip, context: ProcessContext) -> list[
         Part("integrator", integrator_main, (settings, clip, context), beats=True),
         Part("recognizer", recognizer_main, (settings, period_s, context)),
     ]
-    if settings.page.port:
-        parts.append(Part("animator", animator_main, (settings, clip.rig, period_s, context)))
     for view in clip.views:
         arguments = (settings, view.number, context)
         name = f"viewer {view.number}"
         parts.append(Part(name, viewer_main, arguments, leads=True, beats=True))
     return parts
+
+
+def page_part(settings: Settings, context: ProcessContext, title: str, ending: Connection) -> Part:
+    """The process of the live page: started first, and the last to end."""
+    return Part("animator", animator_main, (settings, context, title, ending))
 
 
 def integrator_main(*arguments: Any) -> None:

@@ -1,7 +1,8 @@
 """What a live run said, kept for what is written at its end: the newest, as bytes."""
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from itertools import islice, takewhile
 from typing import Final, Generic
 
 from common.bus.message_codec import Said, decode, encode
@@ -29,3 +30,8 @@ class MessageLog(Generic[Said]):
     def all(self) -> list[Said]:
         """What is kept, oldest first."""
         return [decode(packed, self._kind) for packed in self._packed]
+
+    def newest(self, wanted: Callable[[Said], bool], most: int = MOST_KEPT) -> list[Said]:
+        """The newest ones that are wanted, oldest first, up to the first that is not."""
+        messages = (decode(packed, self._kind) for packed in islice(reversed(self._packed), most))
+        return list(takewhile(wanted, messages))[::-1]

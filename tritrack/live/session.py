@@ -4,8 +4,8 @@ import signal
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, nullcontext
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import FrameType
@@ -13,26 +13,20 @@ from typing import Any, Final
 
 import msgspec
 from rich.console import Console
-from rich.live import Live as LiveDisplay
 
-from common.bus.control_messages import Pulse
 from common.bus.messages import Posture
 from common.bus.process import ProcessContext, logged
 from common.config import BusSettings, PageSettings, Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip, both_cameras
-from common.video.clips import open_clip
-from recognizer.__main__ import model_of
 from tritrack.live.launch import Heard, nothing_heard, run
+from tritrack.live.page_desk import PageDesk
 from tritrack.live.process_table import live_parts
-from tritrack.live.table import table_of
-from tritrack.offline.batch import head_of
-from tritrack.offline.lockstep import measured_before
-from tritrack.store.recording import recording_to, refuse_without_library
+from tritrack.live.screen import Screen, warnings_of
+from tritrack.store.recording import Keep, refuse_without_library
 from tritrack.store.runs import write_postures, write_run
-from tritrack.terminal import warn
-from viewer.landmarks.landmark_sources import refuse_landmarks
 
+PLAYS: Final = "the run is over; the page plays it as long as it is open (Ctrl-C ends)"
 NO_POSTURE: Final = -1
 """posture_id of a clip that shows none of the postures: free motion, a test of the tracker."""
 
@@ -63,6 +57,72 @@ def live(
             written first.
     """
     refuse_mode(settings)
+    if record:
+        refuse_without_library()
+    _refuse_port(settings)
+    log = _new_log(out)
+    began, heard = time.monotonic(), nothing_heard()
+    title = name or Path(settings.clip).name or "tritrack"
+    with _stopped_by_signals() as stop, ExitStack() as doors:
+        context = ProcessContext(True, log)
+        desk = PageDesk(settings, out, title, context)
+        doors.callback(desk.close)
+        clip = _opened(settings, name)
+        screen = Screen(clip, settings, console, lambda: desk.address)
+
+        def facts() -> dict[str, Any]:
+            named = performed(heard.postures.all())
+            return _facts(heard, named, clip, time.monotonic() - began)
+
+        desk.facts = facts
+        try:
+            with TemporaryDirectory(prefix=".kept-", dir=out) as kept:
+                parts = live_parts(settings, clip, context._replace(kept=Path(kept)))
+                names = [part.name for part in (*parts, *desk.parts)]
+                with (
+                    screen.shown(names) as show,
+                    logged("supervisor", log),
+                    _kept(out, clip, settings, record) as keep,
+                ):
+                    run(parts, settings, stop, show, heard._replace(keep=keep), desk)
+        finally:
+            told = facts()
+            write_run(out, heard.bodies.all(), settings, told)
+            write_postures(out, heard.postures.all(), told["posture"])
+        _show_end(desk, told, stop, console)
+    return told
+
+
+def _kept(
+    out: Path, clip: Clip, settings: Settings, record: bool
+) -> AbstractContextManager[Keep | None]:
+    """What takes each message of a run that is recorded."""
+    if not record:
+        return nullcontext()
+    from tritrack.offline.batch import head_of
+    from tritrack.store.recording import recording_to
+
+    return recording_to(out, head_of(clip, settings))
+
+
+def _show_end(
+    desk: PageDesk, facts: dict[str, Any], stop: threading.Event, console: Console
+) -> None:
+    """Let the page play the run for who looks at it, unless Ctrl-C ended all."""
+    if desk.stopped:
+        stop.clear()
+    if not stop.is_set():
+        desk.end(facts, stop, lambda: console.print(PLAYS))
+
+
+def _opened(settings: Settings, name: str) -> Clip:
+    """The clip of a run that will not fail for what can be known before.
+
+    Its imports take a second, in which the page is opened.
+    """
+    from common.video.clips import open_clip
+    from tritrack.offline.lockstep import measured_before
+
     clip = open_clip(settings)
     clip = msgspec.structs.replace(
         clip,
@@ -71,85 +131,7 @@ def live(
         body=measured_before(settings),
     )
     _refuse_what_would_fail(settings, clip)
-    if record:
-        refuse_without_library()
-    began = time.monotonic()
-    heard = nothing_heard()
-    screen = _Screen(clip, settings, console)
-    with _stopped_by_signals() as stop:
-        path = _new_log(out)
-        try:
-            with TemporaryDirectory(prefix=".kept-", dir=out) as kept:
-                parts = live_parts(settings, clip, ProcessContext(True, path, Path(kept)))
-                names = [part.name for part in parts]
-                with (
-                    screen.shown(names) as show,
-                    logged("supervisor", path),
-                    recording_to(out, head_of(clip, settings)) if record else nullcontext() as keep,
-                ):
-                    run(parts, settings, stop, show, heard._replace(keep=keep))
-        finally:
-            postures = heard.postures.all()
-            facts = _facts(heard, performed(postures), clip, time.monotonic() - began)
-            write_run(out, heard.bodies.all(), settings, facts)
-            write_postures(out, postures, facts["posture"])
-    return facts
-
-
-class _Screen:
-    """What a person sees of a run: the table of processes, and each piece of news once."""
-
-    def __init__(self, clip: Clip, settings: Settings, console: Console) -> None:
-        rate_hz = clip.views[0].fps / clip.every
-        self._title = f"{clip.name}: {settings.mode} mode, {rate_hz:g} frames a second"
-        self._console = console
-        self._told: set[str] = set()
-        for warning in clip.warnings:
-            self._warn(warning)
-
-    @contextmanager
-    def shown(self, names: list[str]) -> Iterator[Callable[[Heard], None]]:
-        """A function that shows the newest pulses and news; the last stay when it is over."""
-        table = table_of(names, {}, self._title)
-        with LiveDisplay(
-            table, console=self._console, refresh_per_second=4, transient=True
-        ) as display:
-
-            def show(heard: Heard) -> None:
-                nonlocal table
-                self._news(heard)
-                table = table_of(names, heard.pulses, self._title)
-                display.update(table)
-
-            yield show
-        self._console.print(table)
-
-    def _news(self, heard: Heard) -> None:
-        for warning in [*warnings_of(heard.pulses), *heard.notes]:
-            self._warn(warning)
-        page = heard.pulses.get("animator")
-        if page is not None and page.detail not in self._told | {""}:
-            self._told.add(page.detail)
-            self._console.print(f"the page: [link]{page.detail}[/link]", highlight=False)
-        posture = heard.pulses.get("recognizer")
-        if posture is not None and posture.detail not in self._told | {""}:
-            self._told.add(posture.detail)
-            self._console.print(posture.detail, highlight=False)
-
-    def _warn(self, text: str) -> None:
-        if text not in self._told:
-            self._told.add(text)
-            warn(self._console, text)
-
-
-def warnings_of(pulses: Mapping[str, Pulse]) -> list[str]:
-    """What the viewers and the integrator find odd: their pulses tell all of it, a line each."""
-    return [
-        line
-        for name, pulse in sorted(pulses.items())
-        if name.startswith("viewer") or name == "integrator"
-        for line in pulse.detail.splitlines()
-    ]
+    return clip
 
 
 def refuse_mode(settings: Settings) -> None:
@@ -167,11 +149,20 @@ def refuse_mode(settings: Settings) -> None:
 
 def _refuse_what_would_fail(settings: Settings, clip: Clip) -> None:
     """Say before any process starts what one of them would fail on."""
+    from recognizer.__main__ import model_of
+    from viewer.landmarks.landmark_sources import refuse_landmarks
+
     meant = "" if clip.meta.posture_id == NO_POSTURE else clip.meta.posture
     model_of(settings, meant)
     refuse_landmarks(settings, clip.views)
+
+
+def _refuse_port(settings: Settings) -> None:
+    """Say that the page cannot be opened before anything is."""
     if settings.page.port:
         try:
+            import websockets  # noqa: F401
+
             from animator.page.door import refuse_port
         except ImportError as error:
             raise LiveRefused(

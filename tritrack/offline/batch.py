@@ -15,24 +15,11 @@ from common.video.clip_facts import Clip, both_cameras
 from common.video.clip_sources import ClipError
 from common.video.decoding import DecoderDied, Undecodable
 from tritrack.offline.lockstep import Decoders, Watch, measured_before, track_clip
+from tritrack.overrides import overridden
 from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_files
 from tritrack.store.recording import Head, recording_to, refuse_without_library
 from tritrack.store.runs import believed, write_run
 from tritrack.terminal import bar, by_share, complain, warn
-
-
-def overridden(settings: Settings, mode: Mode | None, size: str | None) -> Settings:
-    """The settings with what a command line names instead; None leaves what they say.
-
-    Raises:
-        SettingsError: When the size is none.
-    """
-    try:
-        return msgspec.structs.replace(
-            settings, mode=mode or settings.mode, size=size or settings.size
-        )
-    except ValueError as error:
-        raise SettingsError(str(error)) from error
 
 
 def track_all(

@@ -14,8 +14,8 @@ from common.method import Mode
 from common.rig.camera import Rig
 from common.video.clip_facts import both_cameras
 from recognizer.__main__ import MOVING
-from tritrack.offline.batch import overridden
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.overrides import overridden
 from viewer.capture import CapturedFrame
 from viewer.jpeg import jpeg_of
 

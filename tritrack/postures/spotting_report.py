@@ -18,8 +18,8 @@ from recognizer.features import Rows, rows
 from recognizer.model_file import load
 from recognizer.postures import DensityModel
 from recognizer.training.streams import Act, Found, Stream, found, joined
-from tritrack.offline.batch import overridden
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.overrides import overridden
 from tritrack.store.clip_paths import without_plain_files
 from tritrack.store.past_run import PastRunError, open_run
 from tritrack.store.runs import poses

@@ -19,9 +19,9 @@ from recognizer.evaluation import Recording
 from recognizer.features import ROW_NAMES, rows
 from recognizer.spotting import motion_of
 from tritrack.offline import clip_cache
-from tritrack.offline.batch import overridden
 from tritrack.offline.clip_cache import CachedRun
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.overrides import overridden
 from tritrack.store.clip_paths import ClipsFailed, without_plain_files
 from tritrack.store.cores import made
 from tritrack.store.past_run import PastRunError, open_run

@@ -1,0 +1,117 @@
+"""What the page's process and a browser tell each other, as JSON."""
+
+from typing import Any, Final, Literal
+
+import msgspec
+
+from animator.scene import LEFT, RIGHT, TRUNK, Colour
+from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS
+from common.body.kinematics import HEAD
+from common.bus.control_messages import Pulse
+from common.bus.messages import Performance, Status
+
+CYLINDERS: Final = [i for i in range(len(LIMBS)) if i != HEAD]
+"""The limbs that are drawn as cylinders; the head is round."""
+
+Numbers = list[float]
+
+
+class ShownView(msgspec.Struct, frozen=True):
+    """What one camera sees, in pixels of its working picture."""
+
+    size: tuple[int, int]
+    outline: list[Numbers]
+    """The silhouette's contours: x, y, x, y ..."""
+    limbs: list[Numbers]
+    """The fitted body's, LIMBS order; one that is not before the camera has none."""
+    joints: Numbers
+    """Of JOINT_NAMES: x, y, x, y ...; empty where there is no pose."""
+    score: float
+    sees: str
+    """Which side of the body."""
+    hint: str
+    """What the person could do about it."""
+    jpeg: bytes
+    """The picture, where one may be shown."""
+
+
+class ShownPosture(msgspec.Struct, frozen=True):
+    """What the body is doing."""
+
+    name: str
+    doing: str
+    times: int
+    rivals: list[tuple[str, float]]
+    """The likeliest names and their probabilities, best first."""
+
+
+class ShownFrame(msgspec.Struct, frozen=True, tag="frame", tag_field="kind"):
+    """An instant of the run."""
+
+    number: int
+    """Counts what was shown: a browser that comes late may be told one twice."""
+    frame: int
+    time_s: float
+    status: Status
+    words: str
+    from_views: str
+    confidence: Numbers
+    """JOINT_NAMES order."""
+    solids: list[Numbers]
+    """Cylinders, then balls: place (3), turn (w, x, y, z), size (3), colour (3) each."""
+    angles: Numbers
+    """ANGLE_NAMES order, degrees; empty where there is no pose."""
+    views: list[ShownView | None]
+    posture: ShownPosture | None
+    events: tuple[Performance, ...]
+    """Performances that are over since the instant before."""
+
+
+class ShownHealth(msgspec.Struct, frozen=True, tag="health", tag_field="kind"):
+    """How the processes are doing."""
+
+    pulses: list[Pulse]
+
+
+class ShownRoom(msgspec.Struct, frozen=True, tag="room", tag_field="kind"):
+    """Where the cameras stand."""
+
+    middle: Numbers
+    spectator: Numbers
+    cameras: list[list[Numbers]]
+    """Of each its eye and the four corners of its picture, a metre before it."""
+
+
+class Greeting(msgspec.Struct, frozen=True, tag="hello", tag_field="kind"):
+    """What a browser must know before it can draw."""
+
+    title: str
+    commands: bool
+    """Whether somebody hears what the person asks for."""
+    angles: tuple[str, ...] = ANGLE_NAMES
+    joints: tuple[str, ...] = JOINT_NAMES
+    limbs: tuple[str, ...] = LIMBS
+    colours: dict[str, Colour] = msgspec.field(
+        default_factory=lambda: {"left": LEFT, "right": RIGHT, "trunk": TRUNK}
+    )
+    cylinders: int = len(CYLINDERS)
+
+
+class Told(msgspec.Struct, frozen=True, tag="told", tag_field="kind"):
+    """What became of a wish."""
+
+    what: str
+    well: bool
+    text: str
+
+
+class Over(msgspec.Struct, frozen=True, tag="over", tag_field="kind"):
+    """The run is over."""
+
+    facts: dict[str, Any]
+
+
+class Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What the person at the page asks for."""
+
+    what: Literal["stop", "record", "end_record", "save", "measure", "background", "front", "back"]

@@ -1,0 +1,185 @@
+"""The live page's server: its files, and a WebSocket to each browser of this machine."""
+
+import asyncio
+import logging
+import mimetypes
+import queue
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
+from http import HTTPStatus
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+from websockets.asyncio.server import Server, ServerConnection, serve
+from websockets.datastructures import Headers
+from websockets.exceptions import ConnectionClosed
+from websockets.http11 import Request, Response
+
+from animator.page.door import HOST, PageError, is_own, refuse_port, unusable
+
+SITE: Final = Path(__file__).parent / "site"
+SOCKET: Final = "/live"
+"""Where a page asks for its WebSocket."""
+WAITING: Final = 256
+"""Messages that may wait for a browser: one that is slower loses the oldest."""
+MOST_SAID_BYTES: Final = 1000
+"""A browser says short things alone."""
+MOST_ASKED: Final = 16
+"""Of these, so many wait to be heard."""
+MOST_BROWSERS: Final = 8
+POLICY: Final = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+    "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+"""The browser itself keeps the page from asking anybody else."""
+
+log = logging.getLogger(__name__)
+
+
+class _Door(NamedTuple):
+    """The server's thread, once it listens."""
+
+    loop: asyncio.AbstractEventLoop
+    server: Server
+    over: asyncio.Event
+
+
+class PageServer:
+    """Serves the page on exactly this port of the loopback interface, in a thread of its own.
+
+    Args:
+        port: Of this machine, free.
+        greeting: What a browser is told when it comes, oldest first; called in the server's thread.
+
+    Raises:
+        PageError: When the port is 0, taken or not allowed.
+    """
+
+    def __init__(self, port: int, greeting: Callable[[], list[bytes]]) -> None:
+        refuse_port(port)
+        self.address = f"http://{HOST}:{port}"
+        self.asked: queue.Queue[bytes] = queue.Queue(MOST_ASKED)
+        """What browsers said."""
+        self.came = 0
+        """How many browsers have come so far."""
+        self._greeting = greeting
+        self._browsers: dict[ServerConnection, asyncio.Queue[bytes]] = {}
+        opened: queue.Queue[_Door | OSError] = queue.Queue(1)
+        self._thread = threading.Thread(
+            target=lambda: asyncio.run(self._serve(port, opened)), daemon=True
+        )
+        self._thread.start()
+        got = opened.get()
+        if isinstance(got, OSError):
+            raise PageError(unusable(port, str(got.strerror).lower()))
+        self._door = got
+
+    @property
+    def watched(self) -> bool:
+        """Whether any browser looks."""
+        return bool(self._browsers)
+
+    def tell(self, message: bytes) -> None:
+        """Send a message (JSON text) to every browser; never waits for one."""
+        with suppress(RuntimeError):  # the loop is closed: nobody is there
+            self._door.loop.call_soon_threadsafe(self._spread, message)
+
+    def close(self) -> None:
+        """Take the page down and free its port."""
+        with suppress(RuntimeError):
+            self._door.loop.call_soon_threadsafe(self._door.over.set)
+        self._thread.join()
+
+    async def _serve(self, port: int, opened: "queue.Queue[_Door | OSError]") -> None:
+        over = asyncio.Event()
+        try:
+            server = await serve(
+                self._attend,
+                HOST,
+                port,
+                process_request=self._request,
+                max_size=MOST_SAID_BYTES,
+                compression=None,
+                server_header=None,
+                logger=logging.getLogger(f"{__name__}.socket"),
+            )
+        except OSError as error:
+            opened.put(error)
+            return
+        opened.put(_Door(asyncio.get_running_loop(), server, over))
+        async with server:
+            await over.wait()
+
+    def _request(self, connection: ServerConnection, request: Request) -> Response | None:
+        """A file of the page; None where a WebSocket may be opened."""
+        host, origin = request.headers.get("Host", ""), request.headers.get("Origin", "")
+        if not is_own(host, origin):
+            text = "only this machine's own page may connect\n"
+            return connection.respond(HTTPStatus.FORBIDDEN, text)
+        if request.path == SOCKET:
+            full = len(self._browsers) >= MOST_BROWSERS
+            text = "too many browsers look at this page\n"
+            return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, text) if full else None
+        found = site().get(request.path.partition("?")[0])
+        if found is None:
+            return connection.respond(HTTPStatus.NOT_FOUND, "no such page\n")
+        return Response(HTTPStatus.OK, "OK", _headers(*found), found[1])
+
+    async def _attend(self, connection: ServerConnection) -> None:
+        """Serve one browser until it goes."""
+        waiting: asyncio.Queue[bytes] = asyncio.Queue(WAITING)
+        greeting = self._greeting()
+        self._browsers[connection] = waiting
+        self.came += 1
+        speaking = asyncio.create_task(_speak(connection, greeting, waiting))
+        try:
+            async for said in connection:
+                with suppress(queue.Full):
+                    self.asked.put_nowait(said if isinstance(said, bytes) else said.encode())
+        except ConnectionClosed:
+            pass
+        finally:
+            del self._browsers[connection]
+            speaking.cancel()
+
+    def _spread(self, message: bytes) -> None:
+        for waiting in self._browsers.values():
+            if waiting.full():
+                waiting.get_nowait()
+            waiting.put_nowait(message)
+
+
+async def _speak(
+    connection: ServerConnection, greeting: list[bytes], waiting: asyncio.Queue[bytes]
+) -> None:
+    """Send what is to be said, in its order."""
+    with suppress(ConnectionClosed):
+        for message in greeting:
+            await connection.send(message, text=True)
+        while True:
+            await connection.send(await waiting.get(), text=True)
+
+
+@cache
+def site() -> dict[str, tuple[str, bytes]]:
+    """The page's files by the path that a browser asks for: kind and content."""
+    files = {}
+    for path in sorted(SITE.iterdir()):
+        kind = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
+        files[f"/{path.name}"] = kind, path.read_bytes()
+    return {**files, "/": files["/index.html"]}
+
+
+def _headers(kind: str, content: bytes) -> Headers:
+    said: dict[str, Any] = {
+        "Content-Type": f"{kind}; charset=utf-8" if kind.startswith("text/") else kind,
+        "Content-Length": str(len(content)),
+        "Content-Security-Policy": POLICY,
+        "X-Content-Type-Options": "nosniff",
+        "Referrer-Policy": "no-referrer",
+        "Cache-Control": "no-store",
+        "Connection": "close",
+    }
+    return Headers(said)

@@ -1,0 +1,177 @@
+"""What is shown of an instant: messages of the bus as numbers that a browser draws."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+import cv2
+import numpy as np
+
+from animator.page.inset import limb_contours, limb_ends
+from animator.page.page_messages import (
+    CYLINDERS,
+    Numbers,
+    ShownFrame,
+    ShownPosture,
+    ShownRoom,
+    ShownView,
+)
+from animator.scene import (
+    Figure,
+    Shapes,
+    Snapshot,
+    figure,
+    frustum,
+    limb_shapes,
+    round_shapes,
+    rows_of,
+    viewpoint,
+)
+from common.body.body import ANGLES_IN_POSE
+from common.bus.messages import Body, Facing, Performance, Picture, Posture, Report, Status
+from common.raster.silhouette_report import unpack
+from common.rig.camera import Camera, Rig
+
+MOST_RIVALS: Final = 6
+"""So many postures are told with their probability."""
+SMOOTH_PX: Final = 0.7
+"""An outline's corners lie no farther from its pixels."""
+FACING_WORDS: Final[dict[Facing, str]] = {"facade": "front or back", "flank": "side"}
+STATUS_WORDS: Final[dict[Status, str]] = {
+    "empty": "nobody in view",
+    "measuring": "measuring the body",
+    "tracking": "tracking",
+    "predicted": "predicted, not seen",
+    "lost": "lost, searching",
+}
+
+
+def shown_frame(
+    snapshot: Snapshot, events: Sequence[Performance], rig: Rig, number: int
+) -> ShownFrame | None:
+    """A body and what belongs to it; None where there is no body yet.
+
+    Args:
+        snapshot: The newest of everything.
+        events: Performances that are over since the frame before.
+        rig: The run's cameras.
+        number: How many frames were shown before.
+    """
+    body = snapshot.body
+    if body is None:
+        return None
+    standing = figure(body)
+    return ShownFrame(
+        number=number,
+        frame=body.frame,
+        time_s=round(body.captured_s, 4),
+        status=body.status,
+        words=STATUS_WORDS[body.status],
+        from_views=body.views,
+        confidence=_rounded(body.confidence, 2),
+        solids=[] if standing is None else _solids(standing),
+        angles=_rounded([body.pose[i] for i in ANGLES_IN_POSE], 1) if body.pose else [],
+        views=_views(snapshot, body, standing, rig),
+        posture=shown_posture(snapshot.posture),
+        events=tuple(events),
+    )
+
+
+def shown_room(rig: Rig) -> ShownRoom:
+    """Where the cameras stand, for the room to be drawn."""
+    seen = viewpoint(rig)
+    cameras = [_pyramid(camera, (rig.width, rig.height)) for camera in rig.cameras]
+    return ShownRoom(_rounded(seen.look_at), _rounded(seen.position), cameras)
+
+
+def shown_posture(posture: Posture | None) -> ShownPosture | None:
+    """The name and its rivals' probabilities, where all postures are as likely beforehand."""
+    if posture is None:
+        return None
+    rivals = probabilities(posture.log_likelihoods)
+    best = sorted(rivals.items(), key=lambda each: -each[1])[:MOST_RIVALS]
+    told = [(name, round(share, 4)) for name, share in best]
+    return ShownPosture(posture.name, posture.doing, posture.times, told)
+
+
+def probabilities(log_likelihoods: Mapping[str, float]) -> dict[str, float]:
+    """Bayes' rule on log P(window | posture), with equal priors."""
+    if not log_likelihoods:
+        return {}
+    best = max(log_likelihoods.values())
+    weights = {name: math.exp(value - best) for name, value in log_likelihoods.items()}
+    total = sum(weights.values())
+    return {name: weight / total for name, weight in weights.items()}
+
+
+def outline_of(report: Report) -> list[Numbers]:
+    """The contours of a silhouette, holes too, in pixels: a pixel's centre is (0.5, 0.5)."""
+    mask = unpack(report).astype(np.uint8)
+    found, _ = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+    smooth = [cv2.approxPolyDP(contour, SMOOTH_PX, True) for contour in found]
+    return [_rounded(contour + 0.5, 1) for contour in smooth if len(contour) > 2]
+
+
+def _views(
+    snapshot: Snapshot, body: Body, standing: Figure | None, rig: Rig
+) -> list[ShownView | None]:
+    ends = None if standing is None else limb_ends(standing)
+    views: list[ShownView | None] = []
+    for n, camera in enumerate(rig.cameras):
+        report = snapshot.reports.get(n + 1)
+        if report is None:
+            views.append(None)
+            continue
+        limbs = [] if ends is None else limb_contours(camera, ends)
+        views.append(_view(report, body, limbs, snapshot.pictures.get(n + 1)))
+    return views
+
+
+def _view(report: Report, body: Body, limbs: list[Any], picture: Picture | None) -> ShownView:
+    own = report.viewer - 1
+    joints = body.joints_px[own] if own < len(body.joints_px) else ()
+    return ShownView(
+        size=(report.width, report.height),
+        outline=outline_of(report),
+        limbs=[_rounded(contour, 1) for contour in limbs],
+        joints=_rounded(joints, 1),
+        score=round(body.score[own], 3),
+        sees=FACING_WORDS[body.facing[own]] if body.pose else "",
+        hint=hint(body, report),
+        jpeg=b"" if picture is None else picture.jpeg,
+    )
+
+
+def hint(body: Body, report: Report) -> str:
+    """What the person could do about what this camera sees."""
+    if report.fault:
+        return f"the picture is {report.fault}"
+    if report.cut:
+        return "the person is partly outside the picture"
+    return report.refusal if body.status == "measuring" else ""
+
+
+def _solids(standing: Figure) -> list[Numbers]:
+    limbs = limb_shapes(standing)
+    return [*_rows(rows_of(limbs, CYLINDERS)), *_rows(round_shapes(limbs))]
+
+
+def _rows(shapes: Shapes) -> list[Numbers]:
+    table = np.hstack([shapes.positions, shapes.wxyzs, shapes.scales, shapes.colours])
+    rows: list[Numbers] = table.round(4).tolist()
+    return rows
+
+
+def _pyramid(camera: Camera, size: tuple[int, int]) -> list[Numbers]:
+    seen = frustum(camera, size)
+    high = math.tan(seen.fov_rad / 2)
+    wide = high * seen.aspect
+    corners = np.array([[x, y, 1.0] for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+    world = corners * (wide, high, 1.0) @ np.array(camera.R) + seen.position
+    return [_rounded(seen.position), *(_rounded(corner) for corner in world)]
+
+
+def _rounded(values: Any, digits: int = 4) -> Numbers:
+    """Numbers in a row, none longer than it must be."""
+    rounded: Numbers = np.asarray(values, np.float64).ravel().round(digits).tolist()
+    return rounded

@@ -1,0 +1,59 @@
+"""The retouching page's door: a viser server that this machine's own browser may enter alone."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, Final
+
+import rich
+import viser
+
+from animator.page.door import HOST, PageError, is_own, refuse_port, unusable
+
+POLICY_VIOLATION: Final = 1008
+"""What a WebSocket says when it closes on somebody who may not enter (RFC 6455, 7.4.1)."""
+
+
+def open_server(port: int) -> viser.ViserServer:
+    """A server on exactly this port of the loopback interface.
+
+    Raises:
+        PageError: When the port is 0, taken or not allowed.
+    """
+    refuse_port(port)
+    with _quiet():
+        server = viser.ViserServer(host=HOST, port=port, label="tritrack", verbose=False)
+    if server.get_port() != port:
+        close_server(server)
+        raise PageError(unusable(port, "another program was faster"))
+    _guard(server)
+    return server
+
+
+def close_server(server: viser.ViserServer) -> None:
+    """Take the page down and free its port."""
+    with _quiet():
+        server.stop()
+
+
+def _guard(server: viser.ViserServer) -> None:
+    """Close on strangers before anything is sent; viser has no setting for it."""
+    sockets = server._websock_server
+
+    async def refuse_strangers(client: Any) -> None:
+        connection = sockets._live_connections[client.client_id]
+        headers = connection.request.headers
+        if not is_own(headers.get("Host", ""), headers.get("Origin", "")):
+            await connection.close(POLICY_VIOLATION, "only this machine's own page may connect")
+
+    sockets.on_client_connect(refuse_strangers)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep viser's own announcements off the terminal: the commands say what matters."""
+    console = rich.get_console()
+    was, console.quiet = console.quiet, True
+    try:
+        yield
+    finally:
+        console.quiet = was

@@ -1,0 +1,57 @@
+"""What the person at the page may ask of the integrator."""
+
+from typing import Final
+
+from common.bus.control_messages import Answer, Command
+from common.notes.notes import ORIENTATIONS, Orientation
+from integrator.merge_state import State
+from integrator.opening_posture import Opening
+from integrator.single.sight import Annotations
+
+OTHERWISE: Final[dict[str, Orientation]] = {"front": "forward_right", "back": "backward_right"}
+"""Which way somebody faces of whom nothing else is known."""
+
+
+def step(
+    state: State, said: Annotations, command: Command
+) -> tuple[State, Annotations, Answer | None]:
+    """One command: the state that it leaves, what is said of the next instant, and the answer.
+
+    Args:
+        state: Before it.
+        said: What was said of the next instant already.
+        command: Any; None is answered to those that are not for the integrator.
+    """
+    if command.what == "measure":
+        return _unmeasured(state), said, _answer(command, True, _how_to_stand(state))
+    if command.what not in OTHERWISE:
+        return state, said, None
+    alone = None if state.found is None else state.found.alone
+    if alone is None:
+        seen = "nobody is seen" if state.found is None else "both cameras see front and back"
+        return state, said, _answer(command, False, f"{seen}: this is for one camera alone")
+    facing = _turned(alone.lifting.orientation, command.what)
+    word = f"the person is taken to face {facing.replace('_', ' ')} from now on"
+    return state, said._replace(orientation=facing), _answer(command, True, word)
+
+
+def _unmeasured(state: State) -> State:
+    """The body is to be measured again; until then it has the lengths that it had."""
+    return state._replace(opening=Opening(bdp=state.opening.bdp))
+
+
+def _how_to_stand(state: State) -> str:
+    if state.rig is not None and (state.found is None or state.found.alone is None):
+        return "stand upright with both arms stretched out level: the body is measured then"
+    return "the body's lengths are told from its outline anew"
+
+
+def _turned(before: str, to: str) -> Orientation:
+    """The same side of the picture, the front or the back: one of ORIENTATIONS."""
+    side = before.rpartition("_")[2]
+    name = f"{'forward' if to == 'front' else 'backward'}_{side}"
+    return next((one for one in ORIENTATIONS if one == name), OTHERWISE[to])
+
+
+def _answer(command: Command, well: bool, text: str) -> Answer:
+    return Answer(what=command.what, well=well, text=text)

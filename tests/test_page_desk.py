@@ -1,0 +1,117 @@
+"""What a run does for the person at its page: parts of it saved as run folders of their own."""
+
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+from local_bus import LocalBus
+
+from common.bus.control_messages import Answer, Command, Wish
+from common.bus.messages import Body
+from common.bus.process import ProcessContext
+from common.config import PageSettings, Settings
+from tritrack.live.launch import nothing_heard
+from tritrack.live.page_desk import LAST_S, SAVED, PageDesk
+from tritrack.store.past_run import open_run
+
+RATE_HZ = 15
+NO_PAGE = Settings(page=PageSettings(port=0))
+
+
+class Sitting:
+    """A desk without a page's process, and a run of so many seconds that was heard."""
+
+    def __init__(self, out: Path) -> None:
+        self.bus, self.heard, self.stop = LocalBus(), nothing_heard(), threading.Event()
+        self.answers = self.bus.subscribe(Answer)
+        self.desk = PageDesk(NO_PAGE, out, "a run", ProcessContext(True))
+        self.desk.facts = lambda: {"clip": "a clip", "warnings": []}
+        self.desk.listen(self.bus)
+        self.frames = 0
+
+    def run(self, seconds: float) -> None:
+        for _ in range(round(seconds * RATE_HZ)):
+            at_s = self.frames / RATE_HZ
+            body = Body(
+                frame=self.frames, captured_s=at_s, clock_s=at_s, status="empty", views="none"
+            )
+            self.heard.bodies.add([body])
+            self.frames += 1
+
+    def ask(self, what: Wish) -> Answer | None:
+        self.bus.publish(Command(what=what))
+        self.desk.serve(self.heard, self.stop)
+        answers = self.answers.drain()
+        return answers[-1] if answers else None
+
+
+@pytest.fixture
+def sitting(tmp_path: Path) -> Sitting:
+    return Sitting(tmp_path)
+
+
+def saved(out: Path) -> Path:
+    (folder,) = (out / SAVED).iterdir()
+    return folder
+
+
+def test_the_last_seconds_become_a_run_folder_that_every_command_reads(
+    sitting: Sitting, tmp_path: Path
+) -> None:
+    sitting.run(40.0)
+    answer = sitting.ask("save")
+    assert answer is not None
+    assert answer.well
+    assert "15.0 s written" in answer.text
+    past = open_run(saved(tmp_path))
+    assert np.ptp(past.poses["time_s"]) == pytest.approx(LAST_S, abs=1e-6)
+    assert past.poses["frame"][-1] == 40 * RATE_HZ - 1
+    assert past.summary["clip"] == "a clip"
+
+
+def test_a_recording_goes_from_its_first_word_to_its_last(sitting: Sitting, tmp_path: Path) -> None:
+    sitting.run(5.0)
+    assert sitting.ask("record") is not None
+    sitting.run(3.0)
+    answer = sitting.ask("end_record")
+    assert answer is not None
+    assert answer.well
+    assert np.ptp(open_run(saved(tmp_path)).poses["time_s"]) == pytest.approx(3.0)
+    assert sitting.ask("end_record") is None, "nothing is recorded any more"
+
+
+def test_a_recording_that_nobody_ended_is_written_when_the_run_is_over(
+    sitting: Sitting, tmp_path: Path
+) -> None:
+    sitting.run(1.0)
+    sitting.ask("record")
+    sitting.run(2.0)
+    sitting.desk.leave(sitting.heard)
+    assert len(open_run(saved(tmp_path)).poses["frame"]) == 2 * RATE_HZ + 1
+    assert sitting.ask("save") is None, "its bus is closed"
+
+
+def test_what_cannot_be_saved_is_said(sitting: Sitting, tmp_path: Path) -> None:
+    nothing = sitting.ask("save")
+    assert nothing is not None
+    assert not nothing.well
+    sitting.run(1.0)
+    (tmp_path / SAVED).write_text("in the way")
+    refused = sitting.ask("save")
+    assert refused is not None
+    assert not refused.well
+    assert "cannot write" in refused.text
+
+
+def test_the_run_is_ended_at_the_page(sitting: Sitting) -> None:
+    sitting.ask("stop")
+    assert sitting.stop.is_set()
+    assert sitting.desk.stopped
+
+
+def test_without_a_page_there_is_nothing_to_wait_for(sitting: Sitting) -> None:
+    assert sitting.desk.parts == []
+    assert sitting.desk.address == ""
+    sitting.desk.end({}, sitting.stop, lambda: pytest.fail("nobody is there"))
+    sitting.desk.close()

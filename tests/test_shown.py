@@ -1,0 +1,79 @@
+"""What is shown of an instant, held against geometry and Bayes' rule."""
+
+import math
+
+import cv2
+import msgspec
+import numpy as np
+import pytest
+from show_page import BDP, RIG, pose_at, snapshot_at
+
+from animator.page.shown import hint, outline_of, probabilities, shown_frame, shown_room
+from animator.scene import Snapshot
+from common.bus.messages import Body, Report
+from common.raster.silhouette_report import pack, unpack
+
+
+def test_postures_are_as_probable_as_bayes_has_it_with_equal_priors() -> None:
+    told = probabilities({"squat": math.log(0.02) - 700, "kick": math.log(0.06) - 700})
+    assert told == pytest.approx({"squat": 0.25, "kick": 0.75})
+    assert probabilities({}) == {}
+
+
+def test_an_outline_filled_is_the_silhouette_again_within_its_smoothing() -> None:
+    report = snapshot_at(4).reports[1]
+    mask = unpack(report)
+    filled = np.zeros(mask.shape, np.uint8)
+    for points in outline_of(report):
+        corners = np.array(points).reshape(-1, 2) - 0.5
+        cv2.fillPoly(filled, [np.rint(corners).astype(np.int32)], 1)
+    union = np.count_nonzero(mask | (filled > 0))
+    assert np.count_nonzero(mask & (filled > 0)) > 0.95 * union
+
+
+def test_a_frame_tells_both_views_the_solids_and_the_joints() -> None:
+    frame = shown_frame(snapshot_at(4), (), RIG, 7)
+    assert frame is not None
+    assert (frame.number, frame.words, len(frame.views)) == (7, "tracking", 2)
+    assert len(frame.solids) == 20
+    assert {len(solid) for solid in frame.solids} == {13}
+    first = frame.views[0]
+    assert first is not None
+    assert len(first.joints) == 30
+    seen, knee = unpack(snapshot_at(4).reports[1]), first.joints[14:16]
+    assert seen[int(knee[1]), int(knee[0])], "the left knee lies in the silhouette"
+    pelvis = np.array(frame.solids[0][:3])
+    assert pelvis == pytest.approx(pose_at(4 / 15)[:3], abs=BDP.torso.height)
+
+
+def test_before_anybody_was_heard_of_there_is_nothing_to_show() -> None:
+    assert shown_frame(Snapshot(), (), RIG, 0) is None
+    only_body = Snapshot(body=snapshot_at(0).body)
+    frame = shown_frame(only_body, (), RIG, 0)
+    assert frame is not None
+    assert frame.views == [None, None]
+
+
+def test_the_room_has_each_camera_where_it_stands() -> None:
+    room = shown_room(RIG)
+    eyes = np.array([camera[0] for camera in room.cameras])
+    assert np.linalg.norm(eyes - np.array(room.middle), axis=1) == pytest.approx([4.5, 4.5])
+    assert [len(camera) for camera in room.cameras] == [5, 5]
+
+
+def test_the_person_is_told_what_is_in_the_way() -> None:
+    """The refusal of the opening posture matters while the body is being measured, not later."""
+    body = snapshot_at(0).body
+    assert isinstance(body, Body)
+    measuring = msgspec.structs.replace(body, status="measuring")
+
+    def report(**told: object) -> Report:
+        given = {"width": 8, "height": 1, "silhouette": pack(np.zeros((1, 8), bool)), "box": None}
+        moment = {"frame": 0, "captured_s": 0.0, "clock_s": 0.0, "viewer": 1}
+        return Report(**given, **moment, **told)  # type: ignore[arg-type]
+
+    refused = report(refusal="raise both arms sideways")
+    assert hint(measuring, refused) == "raise both arms sideways"
+    assert hint(body, refused) == ""
+    assert "partly outside" in hint(body, report(cut=True))
+    assert "frozen" in hint(body, report(fault="frozen"))

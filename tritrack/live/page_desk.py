@@ -1,0 +1,153 @@
+"""What a run does for its page: starts its process, does what is asked for there, tells the end."""
+
+import socket
+import threading
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any, Final
+
+from common.bus.bus import Bus
+from common.bus.control_messages import Answer, Command, Wish
+from common.bus.inbox import Inbox
+from common.bus.process import ProcessContext
+from common.config import Settings
+from tritrack.live.process_table import SPAWN, Part, page_part
+from tritrack.live.recorded import MessageLog
+from tritrack.live.supervise import Watched
+from tritrack.store.runs import RunError, write_postures, write_run
+
+SAVED: Final = "saved"
+"""Folder of what the person at the page saved, below the run's."""
+LAST_S: Final = 15.0
+ANSWERS_S: Final = 0.2
+GONE_S: Final = 2.0
+"""A page at which nobody looks has closed by then."""
+
+Facts = Callable[[], dict[str, Any]]
+
+
+class PageDesk:
+    """The run's side of its page; without a page all of it does nothing."""
+
+    def __init__(self, settings: Settings, out: Path, title: str, context: ProcessContext) -> None:
+        """Start the page's process at once: people shall not wait for what compiles."""
+        self.stopped = False
+        """The run was ended at the page."""
+        self.facts: Facts = dict
+        """Gives what the summary of a saved part tells."""
+        self.watched: Watched | None = None
+        self._settings, self._out = settings, out
+        self._bus: Bus | None = None
+        self._commands: Inbox[Command] | None = None
+        self._began_s: float | None = None
+        self._ending: Connection | None = None
+        if settings.page.port:
+            theirs, self._ending = SPAWN.Pipe(duplex=False)
+            self.watched = Watched(page_part(settings, context, title, theirs))
+
+    @property
+    def parts(self) -> list[Part]:
+        """The page's process, if there is one."""
+        return [] if self.watched is None else [self.watched.part]
+
+    @property
+    def address(self) -> str:
+        """Where a browser finds the page; "" while it does not answer."""
+        if self.watched is None:
+            return ""
+        port = self._settings.page.port
+        try:
+            socket.create_connection(("127.0.0.1", port), ANSWERS_S).close()
+        except OSError:
+            return ""
+        return f"http://127.0.0.1:{port}"
+
+    def listen(self, bus: Bus) -> None:
+        """Hear what is asked for from now on."""
+        self._bus, self._commands = bus, bus.subscribe(Command)
+
+    def serve(self, heard: Any, stop: threading.Event) -> None:
+        """Do what was asked for since.
+
+        Args:
+            heard: What the run said so far: `bodies` and `postures`.
+            stop: Ends the run, if that is asked for.
+        """
+        for command in self._commands.drain() if self._commands else ():
+            if command.what == "stop":
+                self.stopped = True
+                stop.set()
+            elif command.what == "record":
+                self._began_s = _newest_s(heard.bodies)
+                self._say("record", True, "recording")
+            elif command.what == "save":
+                first_s = _newest_s(heard.bodies) - LAST_S
+                self._write("save", first_s, f"last_{LAST_S:.0f}_s", heard)
+            elif command.what == "end_record":
+                self._finish(heard)
+
+    def leave(self, heard: Any) -> None:
+        """The run is over, and its bus about to close: write what is recorded, hear no more."""
+        self._finish(heard)
+        self._bus = self._commands = None
+
+    def _finish(self, heard: Any) -> None:
+        """Write what was recorded, if anything is."""
+        if self._began_s is not None:
+            first_s, self._began_s = self._began_s, None
+            self._write("end_record", first_s, "recording", heard)
+
+    def end(self, facts: dict[str, Any], stop: threading.Event, say: Callable[[], None]) -> None:
+        """Tell the page that the run is over, and wait until nobody looks at it any more.
+
+        Args:
+            facts: What came of the run.
+            stop: Ends the wait.
+            say: Called where there is a wait.
+        """
+        if self.watched is None or self._ending is None:
+            return
+        try:
+            self._ending.send({**facts, "out": str(self._out)})
+        except OSError:  # it has gone
+            return
+        process = self.watched.running.process
+        process.join(GONE_S)
+        if process.is_alive():
+            say()
+        while process.is_alive() and not stop.wait(0.1):
+            pass
+
+    def close(self) -> None:
+        """End the page's process."""
+        if self.watched is not None:
+            self.watched.end()
+
+    def _write(self, what: Wish, first_s: float, name: str, heard: Any) -> None:
+        """A part of the run as a run folder of its own."""
+        bodies = heard.bodies.newest(lambda body: body.captured_s >= first_s)
+        if not bodies:
+            self._say(what, False, "nothing was tracked yet")
+            return
+        postures = heard.postures.newest(lambda each: each.captured_s >= first_s)
+        last_s = bodies[-1].captured_s
+        folder = self._out / SAVED / f"{name}_to_{last_s:.1f}_s"
+        try:
+            write_run(folder, bodies, self._settings, self.facts())
+            write_postures(folder, postures, postures[-1].name if postures else "")
+        except RunError as error:
+            self._say(what, False, str(error)[:400])
+            return
+        seconds = last_s - bodies[0].captured_s
+        self._say(what, True, f"{seconds:.1f} s written to {folder}"[:400])
+
+    def _say(self, what: Wish, well: bool, text: str) -> None:
+        if self._bus is not None:
+            self._bus.publish(Answer(what=what, well=well, text=text))
+
+
+def _newest_s(bodies: MessageLog[Any]) -> float:
+    """When the newest body was seen; 0 where there is none."""
+    newest = bodies.newest(lambda _: True, most=1)
+    return float(newest[0].captured_s) if newest else 0.0

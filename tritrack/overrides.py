@@ -1,0 +1,20 @@
+"""What a command line sets above the settings of a file."""
+
+import msgspec
+
+from common.config import Settings, SettingsError
+from common.method import Mode
+
+
+def overridden(settings: Settings, mode: Mode | None, size: str | None) -> Settings:
+    """The settings with what a command line names instead; None leaves what they say.
+
+    Raises:
+        SettingsError: When the size is none.
+    """
+    try:
+        return msgspec.structs.replace(
+            settings, mode=mode or settings.mode, size=size or settings.size
+        )
+    except ValueError as error:
+        raise SettingsError(str(error)) from error

@@ -1,0 +1,40 @@
+"""A new background in the middle of a run, from frames that show nobody."""
+
+from common.bus.control_messages import Answer, Command
+from common.bus.inbox import Inbox
+from common.bus.messages import ViewerNumber
+from common.config import Settings
+from common.video.decoding import Image
+from viewer.background.background import Background, learnt, overlaid_opening
+from viewer.background.empty_opening import is_still
+
+
+class Learning:
+    """Gathers frames once it is asked to, and learns the background from them."""
+
+    def __init__(self, commands: Inbox[Command], viewer: ViewerNumber, settings: Settings) -> None:
+        """Listen to commands; nothing is gathered yet."""
+        self._commands, self._viewer = commands, viewer
+        self._due = settings.silhouette.empty_frames
+        self._frames: list[Image] | None = None
+
+    def step(self, picture: Image) -> tuple[Background | None, Answer | None]:
+        """One frame: the new background, if it is known now, and what to tell of it.
+
+        Frames in which something moves are no background, and the old one stays.
+        """
+        if any(command.what == "background" for command in self._commands.drain()):
+            self._frames = []
+        if self._frames is None:
+            return None, None
+        self._frames.append(picture.copy())
+        if len(self._frames) < self._due:
+            return None, None
+        frames, self._frames = self._frames, None
+        laid_over = overlaid_opening(frames)
+        if not is_still(laid_over):
+            return None, self._answer(False, "something moves: the background stays as it was")
+        return learnt(laid_over, frames), self._answer(True, "it has a new background")
+
+    def _answer(self, well: bool, text: str) -> Answer:
+        return Answer(what="background", well=well, text=f"camera {self._viewer}: {text}")
