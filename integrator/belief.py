@@ -85,13 +85,16 @@ def _astray(joints_m: NDArray[np.float64], camera: Camera, found: Landmarks | No
 
 
 def _is_turned_about(joints_m: NDArray[np.float64], told: list[tuple[Report, Camera]]) -> bool:
-    """Whether all views that are sure which way somebody faces see another one than the body's."""
+    """Whether all views that are sure which way somebody faces see another one than the body's.
+
+    One alone takes front for back too often.
+    """
     off_deg = [
         _off_deg(yaw_deg(camera, joints_m), report.landmarks.facing_deg)
         for report, camera in told
         if report.landmarks is not None and report.landmarks.facing_confidence > FACES
     ]
-    return bool(off_deg) and min(off_deg) > TURNED_DEG
+    return len(off_deg) > 1 and min(off_deg) > TURNED_DEG
 
 
 def _off_deg(one_deg: float, other_deg: float) -> float:

@@ -57,9 +57,10 @@ def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, f
 
 
 def weighed(state: State, pair: Pair, scores: tuple[float, float]) -> State:
-    """The state with how long the body has not been believed; one that is lost is forgotten.
+    """The state with how long the body has not been believed; one that both lost is forgotten.
 
-    What the network remembers of a wrong body it would go on with.
+    What the network remembers of a wrong body it would go on with. One view that is alone keeps
+    what it remembers: it knows front from back by that alone.
     """
     found = state.found
     assert found is not None
@@ -68,7 +69,7 @@ def weighed(state: State, pair: Pair, scores: tuple[float, float]) -> State:
     if is_believed(places_m, state.rig, pair, scores):
         return state._replace(doubted=0)
     state = state._replace(doubted=state.doubted + 1)
-    if state.doubted % LOST_FRAMES:
+    if state.doubted % LOST_FRAMES or found.alone is not None:
         return state
     return state._replace(found=found._replace(memory=None))
 

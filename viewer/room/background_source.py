@@ -94,7 +94,7 @@ def of_clip(
     opened = learnt(laid_over, opening)
     makers: list[Callable[[], Background]] = [lambda: learn_uncovered(sample)]
     if any(look.is_somebody for look in looks):
-        makers.insert(0, lambda: learn_around(judges, regions))
+        makers.append(lambda: learn_around(judges, regions))
         if still:
             makers.insert(len(makers) if somebody else 0, lambda: opened)
     best = best_of(makers, judges, looks, settings)

@@ -17,13 +17,12 @@ SURE: Final = 0.6
 FAR: Final = 0.2
 """Statures from the body at which an outline is a thing's: a door's, a shadow's."""
 TIGHT: Final = 0.06
-"""Statures around the body that are left of an outline that holds much of a thing."""
+"""Statures around the body that are left of an outline that holds one."""
 REACH: Final = 0.1
 """Statures from a bone's axis to the farthest of the body: a hand, a hem."""
-SPECK: Final = 0.02
-"""So much of an outline far from the body is noise, and stays ..."""
 MUCH: Final = 0.15
-"""... and so much of it tells that there is more nearby."""
+"""So much of an outline far from the body is a thing. Less may be an arm that the landmarks have
+elsewhere, and stays."""
 COVERED: Final = 0.35
 """A bone with less of its axis in the outline is missing there."""
 FEW: Final = 1
@@ -76,10 +75,9 @@ def _without_things(seen: Seen, landmarks: Landmarks) -> tuple[Bytes, Bytes | No
     """The outline (H, W) without what is far from the body, and that; None if it is hardly any."""
     mask, ends = seen.mask.view(np.uint8), np.array(landmarks.joints_px)[_ENDS]
     share = _far_share(mask, ends, (FAR + REACH) * stature_px(landmarks))
-    if share < SPECK:
+    if share < MUCH:
         return mask, None
-    beyond = FAR if share < MUCH else TIGHT
-    near = cv2.bitwise_and(mask, body_region(landmarks, mask.shape, beyond))
+    near = cv2.bitwise_and(mask, body_region(landmarks, mask.shape, TIGHT))
     return np.asarray(near), np.asarray(cv2.subtract(mask, near))
 
 
