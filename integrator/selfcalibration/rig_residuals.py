@@ -22,6 +22,9 @@ from integrator.selfcalibration.sight_lines import Meeting, Numbers, directions,
 LENGTH_ERROR: Final = 0.012
 """What a segment's ends move about in the body, statures: landmarks are no bones."""
 FACING_DEG: Final = 20.0
+UNSURE_FACING, SURE_FACING = 0.6, 0.85
+"""Front and back are mistaken for seconds by a network that is less sure than this."""
+FEWEST_FACINGS: Final = 12
 UPRIGHT_DEG: Final = 1.5
 TALL_SHARE: Final = 0.93
 """Whose neck is at least so far from the ankles, of the most that it is, stands upright."""
@@ -140,6 +143,7 @@ def standing_misfits(one: Explained, stature_m: float) -> list[Vector]:
 def facing_misfits(guess: Vector, one: Explained, first: JointTrack) -> Vector:
     """(n,) how far both views disagree which way in the world the person faces."""
     turned, sure = _turned(guess, one, first)
+    sure = np.clip((sure - UNSURE_FACING) / (SURE_FACING - UNSURE_FACING), 0.0, 1.0) ** 2
     off = 2.0 * np.sin(turned / 2.0) / math.radians(FACING_DEG)
     few = FACING_FRAMES / max(float(sure.sum()), FACING_FRAMES)
     misfit: Vector = np.sqrt(few * sure) * softened(off)
@@ -147,10 +151,10 @@ def facing_misfits(guess: Vector, one: Explained, first: JointTrack) -> Vector:
 
 
 def facing_off_deg(guess: Vector, one: Explained, first: JointTrack) -> float:
-    """The same in degrees, in [0, 180], half of the time; 0 where views are not sure."""
+    """The same in degrees, in [0, 180], half of the time; 0 where views are seldom sure."""
     turned, sure = _turned(guess, one, first)
-    off = np.degrees(np.abs(np.angle(np.exp(1j * turned[sure > 0.5]))))
-    return float(np.median(off)) if len(off) else 0.0
+    off = np.degrees(np.abs(np.angle(np.exp(1j * turned[sure > SURE_FACING]))))
+    return float(np.median(off)) if len(off) >= FEWEST_FACINGS else 0.0
 
 
 def _turned(guess: Vector, one: Explained, first: JointTrack) -> tuple[Vector, Vector]:
