@@ -22,9 +22,7 @@ from integrator.selfcalibration.rig_residuals import (
 )
 from integrator.selfcalibration.rig_starts import known_of
 
-STEADY: Final = [
-    n for n, name in enumerate(JOINT_NAMES) if not name.endswith(("elbow", "wrist"))
-]
+STEADY: Final = [n for n, name in enumerate(JOINT_NAMES) if not name.endswith(("elbow", "wrist"))]
 SURE: Final = 0.6
 """Landmarks of both views that are surer than this are held against each other."""
 FEWEST, ENOUGH = 12, 40

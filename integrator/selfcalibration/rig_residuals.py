@@ -16,7 +16,7 @@ from integrator.selfcalibration.rig_evidence import (
     exchanged,
     sigma_m,
 )
-from integrator.selfcalibration.rig_guess import BODY, FOCALS, LATE, pinholes
+from integrator.selfcalibration.rig_guess import BODY, FOCALS, LATE, PLACE, pinholes
 from integrator.selfcalibration.sight_lines import Meeting, Numbers, directions, meeting
 
 LENGTH_ERROR: Final = 0.012
@@ -29,6 +29,9 @@ UPRIGHT_DEG: Final = 1.5
 TALL_SHARE: Final = 0.93
 """Whose neck is at least so far from the ankles, of the most that it is, stands upright."""
 FLOOR_M: Final = 0.02
+ON_THE_RIGHT, SIDE_EDGE = 2.45, 0.2
+"""Sigmas against a camera 2 to the right of camera 1, and how abruptly: far away, mirror images are
+told apart by the facing alone, and where that is unsure the paper's rig has it on the left (C1)."""
 FOCALS_ALIKE: Final = 0.1
 """How far the focal lengths of both cameras differ, mostly (of their logarithm)."""
 INDEPENDENT_HZ: Final = 1.0
@@ -145,7 +148,7 @@ def facing_misfits(guess: Vector, one: Explained, first: JointTrack) -> Vector:
     turned, sure = _turned(guess, one, first)
     sure = np.clip((sure - UNSURE_FACING) / (SURE_FACING - UNSURE_FACING), 0.0, 1.0) ** 2
     off = 2.0 * np.sin(turned / 2.0) / math.radians(FACING_DEG)
-    few = FACING_FRAMES / max(float(sure.sum()), FACING_FRAMES)
+    few = FACING_FRAMES / max(len(sure), FACING_FRAMES)
     misfit: Vector = np.sqrt(few * sure) * softened(off)
     return misfit
 
@@ -176,4 +179,5 @@ def prior_misfits(guess: Vector, known: Known) -> list[Vector]:
     high_m = float(np.exp(guess[BODY])[prior.UPRIGHT].sum())
     stature = math.log(high_m / (prior.CROWN_SHARE * known.stature_m)) / known.stature_error
     soft = softened(np.array([*off[known.soft[believed]], alike]))
-    return [off[~known.soft[believed]], soft, np.array([stature])]
+    right = 0.5 + 0.5 * math.tanh(math.sin(guess[PLACE["yaw_2"]]) / SIDE_EDGE)
+    return [off[~known.soft[believed]], soft, np.array([stature, ON_THE_RIGHT * right])]
