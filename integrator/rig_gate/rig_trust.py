@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import msgspec
 import numpy as np
 
-from common.body.body import Vector
+from common.body.body import JOINT_NAMES, Vector
 from common.rig.camera import Rig
 from integrator.rig_gate.known_rig import as_ideal, guess_of
 from integrator.selfcalibration import person_prior as prior
@@ -22,10 +22,13 @@ from integrator.selfcalibration.rig_residuals import (
 )
 from integrator.selfcalibration.rig_starts import known_of
 
+STEADY: Final = [n for n, name in enumerate(JOINT_NAMES) if not name.endswith(("elbow", "wrist"))]
+SURE: Final = 0.6
+"""Landmarks of both views that are surer than this are held against each other."""
 FEWEST, ENOUGH = 12, 40
 """Moments in which both views must see the person, and as many as are looked at."""
-MOST_APART_MM: Final = 32.0
-"""Views of a good rig place the joints less far apart, in the mean over a clip: r01 and r04."""
+MOST_APART_MM: Final = 34.0
+"""Views of a good rig place the joints less far apart: 28 mm at most of r01 and r04."""
 FLOOR_MM: Final = (-35.0, 45.0)
 """Where a good rig has the soles."""
 STATURES_M: Final = (0.9, 2.3)
@@ -123,7 +126,7 @@ def trust_of(rig: Rig, sighting: Sighting, period_s: float) -> Trust | None:
     fit = with_lateness(case, sighting)
     one = explained(fit.guess, case.evidence, 0, fit.sides[0])
     stature_m = case.evidence.known.stature_m
-    apart_m = apart(one)
+    apart_m = apart(one, case.evidence)
     trust = Trust(
         True,
         1e3 * apart_m,
@@ -138,13 +141,18 @@ def trust_of(rig: Rig, sighting: Sighting, period_s: float) -> Trust | None:
     return msgspec.structs.replace(trust, believed=not odd, odd=odd)
 
 
-def apart(one: Explained) -> float:
-    """How far views place the joints from each other, metres: of each joint the median, with its
-    sign, so that errors that change do not count; then the mean square over the joints."""
+def apart(one: Explained, evidence: Evidence) -> float:
+    """How far views place the joints from each other, metres.
+
+    Of each joint the median, with its sign, so that errors that change do not count; then the
+    root mean square over the joints. Elbows and wrists are left out, for a view that guesses
+    them behind the body guesses alike for seconds.
+    """
+    sure = np.minimum(evidence.clips[0].first.confidence, one.second.confidence) >= SURE
     medians = [
         float(np.median(one.met.gap_m[used, joint]))
-        for joint, used in enumerate(one.used.T)
-        if used.sum() >= FEWEST // 2
+        for joint, used in enumerate((one.used & sure).T)
+        if joint in STEADY and used.sum() >= FEWEST // 2
     ]
     return math.sqrt(float(np.mean(np.square(medians)))) if medians else 0.0
 

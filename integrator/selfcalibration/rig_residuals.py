@@ -16,16 +16,22 @@ from integrator.selfcalibration.rig_evidence import (
     exchanged,
     sigma_m,
 )
-from integrator.selfcalibration.rig_guess import BODY, FOCALS, LATE, pinholes
+from integrator.selfcalibration.rig_guess import BODY, FOCALS, LATE, PLACE, pinholes
 from integrator.selfcalibration.sight_lines import Meeting, Numbers, directions, meeting
 
 LENGTH_ERROR: Final = 0.012
 """What a segment's ends move about in the body, statures: landmarks are no bones."""
 FACING_DEG: Final = 20.0
+UNSURE_FACING, SURE_FACING = 0.6, 0.85
+"""Front and back are mistaken for seconds by a network that is less sure than this."""
+FEWEST_FACINGS: Final = 12
 UPRIGHT_DEG: Final = 1.5
 TALL_SHARE: Final = 0.93
 """Whose neck is at least so far from the ankles, of the most that it is, stands upright."""
 FLOOR_M: Final = 0.02
+ON_THE_RIGHT, SIDE_EDGE = 2.45, 0.2
+"""Sigmas against a camera 2 to the right of camera 1, and how abruptly: far away, mirror images are
+told apart by the facing alone, and where that is unsure the paper's rig has it on the left (C1)."""
 FOCALS_ALIKE: Final = 0.1
 """How far the focal lengths of both cameras differ, mostly (of their logarithm)."""
 INDEPENDENT_HZ: Final = 1.0
@@ -140,17 +146,18 @@ def standing_misfits(one: Explained, stature_m: float) -> list[Vector]:
 def facing_misfits(guess: Vector, one: Explained, first: JointTrack) -> Vector:
     """(n,) how far both views disagree which way in the world the person faces."""
     turned, sure = _turned(guess, one, first)
+    sure = np.clip((sure - UNSURE_FACING) / (SURE_FACING - UNSURE_FACING), 0.0, 1.0) ** 2
     off = 2.0 * np.sin(turned / 2.0) / math.radians(FACING_DEG)
-    few = FACING_FRAMES / max(float(sure.sum()), FACING_FRAMES)
+    few = FACING_FRAMES / max(len(sure), FACING_FRAMES)
     misfit: Vector = np.sqrt(few * sure) * softened(off)
     return misfit
 
 
 def facing_off_deg(guess: Vector, one: Explained, first: JointTrack) -> float:
-    """The same in degrees, in [0, 180], half of the time; 0 where views are not sure."""
+    """The same in degrees, in [0, 180], half of the time; 0 where views are seldom sure."""
     turned, sure = _turned(guess, one, first)
-    off = np.degrees(np.abs(np.angle(np.exp(1j * turned[sure > 0.5]))))
-    return float(np.median(off)) if len(off) else 0.0
+    off = np.degrees(np.abs(np.angle(np.exp(1j * turned[sure > SURE_FACING]))))
+    return float(np.median(off)) if len(off) >= FEWEST_FACINGS else 0.0
 
 
 def _turned(guess: Vector, one: Explained, first: JointTrack) -> tuple[Vector, Vector]:
@@ -172,4 +179,5 @@ def prior_misfits(guess: Vector, known: Known) -> list[Vector]:
     high_m = float(np.exp(guess[BODY])[prior.UPRIGHT].sum())
     stature = math.log(high_m / (prior.CROWN_SHARE * known.stature_m)) / known.stature_error
     soft = softened(np.array([*off[known.soft[believed]], alike]))
-    return [off[~known.soft[believed]], soft, np.array([stature])]
+    right = 0.5 + 0.5 * math.tanh(math.sin(guess[PLACE["yaw_2"]]) / SIDE_EDGE)
+    return [off[~known.soft[believed]], soft, np.array([stature, ON_THE_RIGHT * right])]
