@@ -1,1 +1,5 @@
-"""The front door: the commands and the processes that they start."""
+"""The front door: the commands, the processes that they start, and what programs import."""
+
+from tritrack.client import Subscription, subscribe, track
+
+__all__ = ["Subscription", "subscribe", "track"]

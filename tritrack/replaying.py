@@ -121,6 +121,7 @@ def replay_on_bus(folder: Path, endpoint: str, speed: float, console: Console) -
     room = recording.head.settings.room
     with open_hub(BusSettings(endpoint=endpoint), room) as bus:
         bus.keep(Cameras)
+        bus.announce("integrator")  # whose place it takes: who listens goes when it does
         console.print(f"{recording.head.name}: room {room} at {endpoint}", highlight=False)
         time.sleep(LISTEN_S)
         said = say(recording, bus, speed)

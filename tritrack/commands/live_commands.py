@@ -1,14 +1,14 @@
 """The live commands: a whole run on this machine, or one process of a rig spread over hosts."""
 
 from pathlib import Path
-from typing import Annotated, Any, cast
+from typing import Annotated, Any, Literal, cast
 
 import msgspec
 import typer
 
 from common import config
 from common.bus.messages import ViewerNumber
-from common.config import Settings
+from common.config import BusSettings, Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import ModeName, Out, Record, Size
 from tritrack.overrides import overridden
@@ -111,6 +111,24 @@ def waiting(settings: Settings, wait: bool) -> Settings:
     """The settings of a run that waits for its page only where both say so."""
     page = msgspec.structs.replace(settings.page, wait=settings.page.wait and wait)
     return msgspec.structs.replace(settings, page=page)
+
+
+def bridge(
+    protocol: Annotated[Literal["osc", "vmc", "lsl"], typer.Argument(help="Spoken to others.")],
+    to: Annotated[str, typer.Option(help="HOST:PORT that listens; 9000 or 39539 here.")] = "",
+    endpoint: Annotated[str, typer.Option(help="Of the run.")] = BusSettings().endpoint,
+    room: Annotated[str, typer.Option(help="Of the run.")] = Settings().room,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Hand a live run's bodies on by OSC, VMC or the Lab Streaming Layer, until it is over.
+
+    Example: tritrack bridge vmc --to 127.0.0.1:39539
+    """
+    from tritrack.bridges.bridging import bridge as run_bridge
+
+    there = to or ("127.0.0.1:39539" if protocol == "vmc" else "127.0.0.1:9000")
+    sent = run_bridge(protocol, endpoint, room, there)
+    tell({"bodies": sent}, json_wanted, f"{sent} bodies handed on")
 
 
 def live_settings(path: Path) -> Settings:

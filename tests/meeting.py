@@ -1,0 +1,61 @@
+"""A run that says made-up bodies on a bus of its own, for whoever listens from outside."""
+
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+from moving import random_joints
+
+from common.body.body import rest_pose
+from common.bus.bus import open_hub
+from common.bus.messages import Body
+from common.config import BusSettings
+
+HZ = 30.0
+
+
+def free_endpoint() -> str:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+def a_body(frame: int, joints_m: np.ndarray) -> Body:
+    now_s = time.monotonic()
+    return Body(
+        frame=frame,
+        captured_s=frame / HZ,
+        clock_s=now_s,
+        status="tracking",
+        views="both",
+        joints_m=tuple(map(tuple, joints_m.tolist())),
+        pose=tuple(rest_pose().tolist()),
+        confidence=(0.5,) * 15,
+    )
+
+
+@contextmanager
+def saying(frames: int = 120, wait_s: float = 0.0) -> Iterator[str]:
+    """The endpoint of a hub that says so many bodies, 30 a second, over and over in that time."""
+    endpoint, joints_m = free_endpoint(), random_joints(3)
+    over = threading.Event()
+
+    def say() -> None:
+        with open_hub(BusSettings(endpoint), "room") as bus:
+            bus.announce("integrator")
+            over.wait(wait_s)
+            for frame in range(frames):
+                if over.wait(1 / HZ):
+                    return
+                bus.publish(a_body(frame, joints_m[frame % len(joints_m)]))
+
+    thread = threading.Thread(target=say)
+    thread.start()
+    try:
+        yield endpoint
+    finally:
+        over.set()
+        thread.join()

@@ -1,0 +1,58 @@
+"""Bridges as processes: every body arrives at a receiver of another make, and soon."""
+
+import json
+import socket
+import statistics
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+from meeting import saying
+from osc_reader import read_osc
+
+from tritrack import subscribe
+
+pytest.importorskip("pythonosc", reason="pip install 'tritrack[osc]'")
+
+ROOT = Path(__file__).parents[1]
+MOST_ADDED_S = 0.005
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("protocol", ["osc", "vmc"])
+def test_every_body_arrives_with_little_added(protocol: str) -> None:
+    """Held against a subscriber in this process, which hears the same bodies."""
+    address = {"osc": "/tritrack/frame", "vmc": "/VMC/Ext/T"}[protocol]
+    arrived: dict[int, float] = {}
+    heard: dict[int, float] = {}
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ear, saying(150, 8.0) as endpoint:
+        ear.bind(("127.0.0.1", 0))
+        ear.settimeout(20.0)
+        to = f"127.0.0.1:{ear.getsockname()[1]}"
+        command = [sys.executable, "-m", "tritrack", "bridge", protocol, "--to", to]
+        bridge = subprocess.Popen(
+            [*command, "--endpoint", endpoint, "--json"],
+            cwd=ROOT,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+
+        def listen() -> None:
+            for body in subscribe(endpoint, wait_s=20.0):
+                heard[body.frame] = time.monotonic()
+
+        plain = threading.Thread(target=listen)
+        plain.start()
+        while len(arrived) < 150:
+            told = dict(read_osc(ear.recv(65536)))[address]
+            frame = told[0] if protocol == "osc" else round(30 * told[0])
+            arrived[frame] = time.monotonic()
+        plain.join()
+        said, _ = bridge.communicate(timeout=30)
+    assert json.loads(said) == {"bodies": 150}
+    added_s = statistics.median(arrived[frame] - heard[frame] for frame in arrived)
+    print(f"{protocol}: {1e3 * added_s:.2f} ms added")
+    assert added_s < MOST_ADDED_S

@@ -1,0 +1,49 @@
+"""LSL: 77 named channels, and an inlet on this machine hears them with the time of the frame."""
+
+import math
+import sys
+import time
+
+import pytest
+from meeting import a_body
+from moving import random_joints
+
+from common.bus.messages import Body
+from tritrack.bridges.lsl import CHANNELS, lsl_outlet, sample_of
+from tritrack.bridges.osc import BridgeError
+
+
+def test_a_sample_has_a_number_for_every_channel() -> None:
+    body = a_body(0, random_joints(3)[0])
+    labels = [label for label, _ in CHANNELS]
+    assert len(sample_of(body)) == len(labels) == len(set(labels)) == 77
+    assert sample_of(body)[labels.index("l_wrist_y")] == body.joints_m[5][1]
+    assert sample_of(body)[labels.index("l_shoulder_z")] == pytest.approx(180.0)
+    empty = Body(frame=0, captured_s=0.0, clock_s=0.0, status="empty", views="none")
+    assert all(math.isnan(value) for value in sample_of(empty))
+
+
+def test_without_the_library_the_cure_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pylsl", None)
+    with pytest.raises(BridgeError, match=r"pip install 'tritrack\[lsl\]'"):
+        lsl_outlet()
+
+
+@pytest.mark.slow
+def test_an_inlet_hears_every_body_with_the_time_of_its_frame() -> None:
+    pylsl = pytest.importorskip("pylsl", reason="pip install 'tritrack[lsl]'")
+    name = f"tritrack-test-{time.monotonic_ns()}"
+    push = lsl_outlet(name)
+    streams = pylsl.resolve_byprop("name", name, 1, 10.0)
+    if not streams:
+        pytest.skip("streams cannot be found on this machine: its network has no multicast")
+    inlet = pylsl.StreamInlet(streams[0])
+    inlet.open_stream(10.0)
+    bodies = [a_body(frame, row) for frame, row in enumerate(random_joints(3))]
+    late_s = []
+    for body in bodies:
+        push(body)
+        sample, stamp_s = inlet.pull_sample(5.0)
+        late_s.append(pylsl.local_clock() - stamp_s - (time.monotonic() - body.clock_s))
+        assert sample == pytest.approx(sample_of(body), abs=1e-4)
+    assert max(map(abs, late_s)) < 1e-3

@@ -1,0 +1,82 @@
+"""The published schema: that of the types, and live messages of every topic fit it."""
+
+import base64
+import json
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import msgpack
+import pytest
+import zenoh
+from message_schema import schema, text
+from rich.console import Console
+from test_message_codec import SAID
+
+from common.bus.message_codec import TOPICS, encode
+from common.bus.messages import Message
+from common.config import PageSettings, Settings
+from tritrack.live.session import free_settings, live
+
+DOCS = Path(__file__).parents[1] / "docs" / "messages.schema.json"
+
+
+def plain(value: Any) -> Any:
+    """What a reader of MessagePack has, as JSON writes it: bytes are base64."""
+    if isinstance(value, bytes):
+        return base64.b64encode(value).decode()
+    if isinstance(value, dict):
+        return {key: plain(each) for key, each in value.items()}
+    return [plain(each) for each in value] if isinstance(value, list) else value
+
+
+def check(payload: bytes, kind: type[Message]) -> None:
+    whole = schema()
+    own = {**whole["topics"][kind.__name__]["schema"], "$defs": whole["$defs"]}
+    jsonschema.Draft202012Validator(own).validate(plain(msgpack.unpackb(payload)))
+
+
+def test_what_is_published_is_written_from_the_types() -> None:
+    """Else: .venv/bin/python benchmarks/message_schema.py docs/messages.schema.json."""
+    assert DOCS.read_text() == text()
+    jsonschema.Draft202012Validator.check_schema(json.loads(text()))
+
+
+@pytest.mark.parametrize("message", SAID, ids=lambda each: type(each).__name__)
+def test_a_full_message_of_each_kind_fits(message: Message) -> None:
+    if type(message) in TOPICS:
+        check(encode(message), type(message))
+
+
+def test_what_no_process_says_does_not_fit() -> None:
+    message = next(each for each in SAID if type(each).__name__ == "Report")
+    spoilt = msgpack.unpackb(encode(message)) | {"viewer": 3}
+    with pytest.raises(jsonschema.ValidationError):
+        check(msgpack.packb(spoilt), type(message))
+
+
+@pytest.mark.slow
+def test_live_messages_of_every_topic_fit(clip: Path, tmp_path: Path) -> None:
+    """Heard by Zenoh alone, as a stranger's program does."""
+    settings = free_settings(Settings(clip=str(clip), pictures=True, page=PageSettings(port=0)))
+    heard: list[tuple[str, bytes]] = []
+    config = zenoh.Config()
+    config.insert_json5("mode", '"client"')
+    config.insert_json5("connect/endpoints", json.dumps([settings.bus.endpoint]))
+    config.insert_json5("connect/timeout_ms", "-1")
+    config.insert_json5("connect/exit_on_failure", "false")
+    with zenoh.open(config) as session:
+        session.declare_subscriber(
+            "tritrack/room/**",
+            lambda sample: heard.append((str(sample.key_expr), sample.payload.to_bytes())),
+        )
+        live(settings, tmp_path, Console(quiet=True))
+    met = set()
+    for key, payload in heard:
+        for kind, topic in TOPICS.items():
+            if zenoh.KeyExpr(topic.key.format(room="room", viewer="*", process="*")).intersects(
+                zenoh.KeyExpr(key)
+            ):
+                check(payload, kind)
+                met.add(kind)
+    assert met == set(TOPICS)

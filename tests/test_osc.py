@@ -1,0 +1,41 @@
+"""OSC, read back by hand: every joint and angle by name, and errors that name the cure."""
+
+import sys
+
+import pytest
+from meeting import a_body
+from moving import random_joints
+from osc_reader import read_osc
+
+from common.body.body import ANGLE_NAMES, JOINT_NAMES
+from common.bus.messages import Body
+from tritrack.bridges.osc import BridgeError, osc_packet, osc_sender
+
+pytest.importorskip("pythonosc", reason="pip install 'tritrack[osc]'")
+
+
+def test_a_packet_has_every_joint_and_angle_by_name() -> None:
+    body = a_body(7, random_joints(3)[0])
+    told = read_osc(osc_packet(body))
+    by_name = dict(told)
+    assert len(told) == len(by_name) == 1 + len(JOINT_NAMES) + len(ANGLE_NAMES)
+    assert by_name["/tritrack/frame"] == [7, body.captured_s, body.clock_s, "tracking"]
+    assert by_name["/tritrack/joint/l_wrist"] == pytest.approx([*body.joints_m[5], 0.5], abs=1e-6)
+    assert by_name["/tritrack/angle/l_shoulder_z"] == pytest.approx([180.0])
+
+
+def test_nobody_is_told_by_the_frame_alone() -> None:
+    body = Body(frame=3, captured_s=0.2, clock_s=0.2, status="empty", views="none")
+    assert read_osc(osc_packet(body)) == [("/tritrack/frame", [3, 0.2, 0.2, "empty"])]
+
+
+@pytest.mark.parametrize("to", ["", "127.0.0.1", "127.0.0.1:many", "127.0.0.1:70000"])
+def test_what_is_no_address_is_named(to: str) -> None:
+    with pytest.raises(BridgeError, match="is no address: write it like"):
+        osc_sender(to)
+
+
+def test_without_the_library_the_cure_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pythonosc", None)
+    with pytest.raises(BridgeError, match=r"pip install 'tritrack\[osc\]'"):
+        osc_sender("127.0.0.1:9000")

@@ -1,0 +1,93 @@
+"""Recordings: what was said comes back, any MCAP library reads it, Foxglove finds its schemas."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+from staging import report
+
+from common.body.body import JOINT_NAMES, rest_pose
+from common.body.kinematics import joints
+from common.body.proportions import body_vector, thesis_bdp
+from common.bus.messages import Body, Posture, Report
+from common.config import Settings
+from tritrack.store.foxglove_scene import SCENE
+from tritrack.store.recording import Head, RecordingError, read_recording, recording_to
+
+mcap_reader = pytest.importorskip("mcap.reader", reason="pip install 'tritrack[mcap]'")
+
+HEAD = Head(name="walk", settings=Settings(), period_s=1 / 15, alone=False, rig=None, body=None)
+
+
+def standing(frame: int) -> Body:
+    pose = rest_pose()
+    return Body(
+        frame=frame,
+        captured_s=frame / 15,
+        clock_s=frame / 15,
+        status="tracking",
+        views="both",
+        joints_m=tuple(map(tuple, joints(body_vector(thesis_bdp(1.7)), pose).tolist())),
+        pose=tuple(pose.tolist()),
+        confidence=(0.5,) * 15,
+    )
+
+
+def said() -> list[Report | Body | Posture]:
+    empty = Body(frame=1, captured_s=1 / 15, clock_s=1 / 15, status="empty", views="none")
+    named = Posture(frame=0, captured_s=0.0, clock_s=0.0, name="squat")
+    return [report(1), report(2), standing(0), named, empty]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    with recording_to(tmp_path, HEAD) as keep:
+        for message in said():
+            keep(message)
+    return tmp_path
+
+
+def test_what_was_said_comes_back(folder: Path) -> None:
+    one, two, body, named, empty = said()
+    recording = read_recording(folder)
+    assert recording.reports == ([one], [two])
+    assert recording.bodies == [body, empty]
+    assert recording.postures == [named]
+    assert recording.head.settings == Settings()
+    assert recording.head.versions["numpy"]
+
+
+def test_an_mcap_library_finds_a_scene_that_fits_its_schema(folder: Path) -> None:
+    with (folder / "recording.mcap").open("rb") as file:
+        found = list(mcap_reader.make_reader(file).iter_messages(["/scene", "/numbers"]))
+    scenes = [(s, json.loads(m.data)) for s, c, m in found if c.topic == "/scene"]
+    assert [schema.name for schema, _ in scenes] == [SCENE, SCENE]
+    assert [schema.encoding for schema, _ in scenes] == ["jsonschema"] * 2
+    for schema, scene in scenes:
+        jsonschema.validate(scene, json.loads(schema.data))
+    (entity,) = scenes[0][1]["entities"]
+    assert len(entity["spheres"]) == len(JOINT_NAMES)
+    head = entity["spheres"][JOINT_NAMES.index("head_top")]["pose"]["position"]
+    assert head["z"] == pytest.approx(standing(0).joints_m[JOINT_NAMES.index("head_top")][1])
+    assert [each["id"] for each in scenes[1][1]["deletions"]] == ["body"]
+    numbers: list[dict[str, Any]] = [json.loads(m.data) for _, c, m in found if c.topic != "/scene"]
+    assert numbers[0]["joints_m"]["l_wrist"]["y"] == standing(0).joints_m[5][1]
+    assert numbers[1]["joints_m"] == {}
+
+
+def test_a_recording_that_is_absent_or_damaged_is_named(folder: Path, tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match=r"has no recording\.mcap.*--record"):
+        read_recording(tmp_path / "none")
+    path = folder / "recording.mcap"
+    path.write_bytes(path.read_bytes()[:200])
+    with pytest.raises(RecordingError, match="was damaged"):
+        read_recording(folder)
+
+
+def test_without_the_library_the_cure_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mcap.writer", None)
+    with pytest.raises(RecordingError, match=r"pip install 'tritrack\[mcap\]'"):
+        read_recording(Path())

@@ -1,0 +1,83 @@
+"""Replay: recorded reports give the same bodies byte for byte, offline and live."""
+
+import json
+import shutil
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+from local_bus import LocalBus
+from rich.console import Console
+
+from common.bus.messages import Body, Posture, Report, ViewerNumber
+from common.config import PageSettings, Settings
+from tritrack.live.session import free_settings, live
+from tritrack.offline.batch import track_all
+from tritrack.replaying import pairs, replay_run, say
+from tritrack.store.past_run import open_run
+from tritrack.store.recording import read_recording
+
+pytest.importorskip("mcap", reason="pip install 'tritrack[mcap]'")
+
+QUIET = Console(quiet=True)
+
+
+@pytest.fixture(scope="module")
+def run(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("recorded")
+    track_all([clip], out, None, (1, 2), None, QUIET, record=True)
+    return out / clip.name
+
+
+def test_recorded_reports_give_the_same_bodies_byte_for_byte(run: Path, tmp_path: Path) -> None:
+    facts = replay_run(run, tmp_path / "again")
+    before, again = open_run(run).poses, open_run(tmp_path / "again").poses
+    assert facts["same"] == facts["bodies"] == len(before["frame"]) > 0
+    assert np.array_equal(before["joints_m"], again["joints_m"], equal_nan=True)
+
+
+@pytest.mark.parametrize("views", [(1,), (2,)])
+def test_a_run_of_one_view_comes_back_too(
+    clip: Path, tmp_path: Path, views: tuple[ViewerNumber, ...]
+) -> None:
+    track_all([clip], tmp_path, None, views, None, QUIET, record=True)
+    facts = replay_run(tmp_path / clip.name, None)
+    assert facts["same"] == facts["bodies"] > 0
+
+
+def test_a_body_whose_reports_were_lost_is_left_out(run: Path) -> None:
+    recording = read_recording(run)
+    recording.reports[0].pop(3)
+    recording.reports[1].pop(3)
+    made_of = list(pairs(recording))
+    assert len(made_of) == len(recording.bodies) - 1
+    assert all(body.captured_s == pair.newest.captured_s for body, pair in made_of)
+
+
+def test_all_that_was_said_is_said_again_in_its_order(run: Path) -> None:
+    recording, bus = read_recording(run), LocalBus()
+    few = recording._replace(reports=tuple(each[:9] for each in recording.reports))  # type: ignore[arg-type]
+    few = few._replace(bodies=recording.bodies[:9])
+    reports, bodies, postures = (bus.subscribe(kind) for kind in (Report, Body, Posture))
+    assert say(few, bus, speed=50.0) == 27
+    heard = bodies.drain()
+    assert [msgspec.structs.replace(b, clock_s=0.0) for b in heard] == [
+        msgspec.structs.replace(b, clock_s=0.0) for b in few.bodies
+    ]
+    assert [r.viewer for r in reports.drain()] == [1, 2] * 9
+    assert postures.drain() == []
+
+
+@pytest.mark.slow
+def test_a_live_run_comes_back_byte_for_byte(clip: Path, tmp_path: Path) -> None:
+    """Also what two processes reported, paired by the integrator as they came."""
+    slow = tmp_path / clip.name
+    shutil.copytree(clip, slow)
+    shutil.copy(clip.parent / "calibration.json", slow)
+    meta = json.loads((slow / "meta.json").read_text())
+    (slow / "meta.json").write_text(json.dumps({**meta, "fps": 5}))
+    settings = free_settings(Settings(clip=str(slow), page=PageSettings(port=0)))
+    live(settings, tmp_path / "lived", QUIET, record=True)
+    facts = replay_run(tmp_path / "lived", None)
+    assert facts["same"] == facts["bodies"] == len(open_run(tmp_path / "lived").poses["frame"])

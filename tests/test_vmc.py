@@ -1,0 +1,90 @@
+"""VMC, read back as Unity would: bones turned down the hierarchy stand where the joints are."""
+
+import numpy as np
+import pytest
+from meeting import a_body
+from moving import random_joints
+from osc_reader import read_osc
+from scipy.spatial.transform import Rotation
+
+from animator.bones import BONES
+from common.body.body import JOINT_NAMES
+from common.bus.messages import Body
+from tritrack.bridges.vmc import MEASURED, Measured, step
+
+pytest.importorskip("pythonosc", reason="pip install 'tritrack[osc]'")
+
+PARENTS = {
+    "Spine": "Hips",
+    "Head": "Spine",
+    **{
+        f"{side}{bone}": parent if parent in {"Hips", "Spine"} else f"{side}{parent}"
+        for side in ("Left", "Right")
+        for bone, parent in (
+            ("Shoulder", "Spine"),
+            ("UpperArm", "Shoulder"),
+            ("LowerArm", "UpperArm"),
+            ("UpperLeg", "Hips"),
+            ("LowerLeg", "UpperLeg"),
+        )
+    },
+}
+"""Unity's humanoid hierarchy, as far as it is sent."""
+
+
+def unity_places(packet: bytes) -> dict[str, np.ndarray]:
+    """World places of the bones in Unity's axes.
+
+    Mirrored in x, a left-handed turn (x, y, z, w) is the right-handed (x, -y, -z, w).
+    """
+    places: dict[str, np.ndarray] = {}
+    turns: dict[str, Rotation] = {}
+    for address, values in read_osc(packet):
+        if address != "/VMC/Ext/Bone/Pos":
+            continue
+        name, place = values[0], np.array(values[1:4]) * (-1, 1, 1)
+        x, y, z, w = values[4:]
+        turn = Rotation.from_quat([x, -y, -z, w])
+        parent = PARENTS.get(name)
+        if parent is not None:
+            place = places[parent] + turns[parent].apply(place)
+            turn = turns[parent] * turn
+        places[name], turns[name] = place, turn
+    return {name: place * (-1, 1, 1) for name, place in places.items()}
+
+
+def test_the_bones_stand_where_the_joints_are() -> None:
+    joints_m, state = random_joints(6), Measured()
+    for frame, row in enumerate(joints_m):
+        state, packet = step(state, a_body(frame, row))
+    assert packet is not None
+    assert len(state.poses) == MEASURED
+    places = unity_places(packet)
+    assert len(places) == len(BONES)
+    for bone, joint in (("LeftUpperArm", "l_shoulder"), ("RightLowerArm", "r_elbow")):
+        x, y, z = joints_m[-1, JOINT_NAMES.index(joint)]
+        assert places[bone] == pytest.approx([-x, y, z], abs=1e-3)
+    x, y, z = joints_m[-1, JOINT_NAMES.index("l_knee")]
+    assert places["LeftLowerLeg"] == pytest.approx([-x, y, z], abs=1e-3)
+
+
+def test_who_faces_forward_has_the_right_hand_at_positive_x() -> None:
+    """Unity: left-handed, +x is right of who faces +z."""
+    row = np.zeros((15, 3))
+    heights = {"pelvis": 0.9, "neck": 1.4, "head_top": 1.7}
+    for i, name in enumerate(JOINT_NAMES):
+        side = {"l": 1.0, "r": -1.0}.get(name[0], 0.0) if "_" in name and name[1] == "_" else 0.0
+        reach = {"shoulder": 0.2, "elbow": 0.45, "wrist": 0.7}.get(name[2:], 0.1)
+        height = heights.get(name, {"hip": 0.9, "knee": 0.5, "ankle": 0.1}.get(name[2:], 1.4))
+        row[i] = (side * reach, height, 0.0)
+    _, packet = step(Measured(), a_body(0, row))
+    assert packet is not None
+    places = unity_places(packet)
+    assert places["RightLowerArm"][0] == pytest.approx(0.45, abs=1e-3)
+    turns = [values[4:] for address, values in read_osc(packet) if "Bone" in address]
+    assert all(abs(turn[3]) == pytest.approx(1.0, abs=1e-3) for turn in turns)
+
+
+def test_nobody_moves_no_bone() -> None:
+    body = Body(frame=0, captured_s=0.0, clock_s=0.0, status="empty", views="none")
+    assert step(Measured(), body) == (Measured(), None)

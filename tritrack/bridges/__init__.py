@@ -1,0 +1,1 @@
+"""Bridges: what a live run says, in the protocols of other programs."""

@@ -1,0 +1,48 @@
+"""A bridge at work: bodies of a run in, another protocol out, until the run is over."""
+
+from typing import Literal
+
+from common.bus.messages import Body
+from tritrack.bridges import vmc
+from tritrack.bridges.lsl import lsl_outlet
+from tritrack.bridges.osc import osc_packet, osc_sender
+from tritrack.client import Subscription, subscribe
+
+Protocol = Literal["osc", "vmc", "lsl"]
+
+
+def bridge(protocol: Protocol, endpoint: str, room: str, to: str) -> int:
+    """Hand on every body; how many.
+
+    Args:
+        protocol: Which.
+        endpoint: Of the run.
+        room: Of the run.
+        to: `HOST:PORT` that OSC and VMC are sent to.
+
+    Raises:
+        BridgeError: When the protocol's library is missing, or `to` is no address.
+        BusError: When no run answers within a minute.
+    """
+    bodies = subscribe(endpoint, room)
+    if protocol == "lsl":
+        push, sent = lsl_outlet(), 0
+        for body in bodies:
+            push(body)
+            sent += 1
+        return sent
+    return _by_osc(protocol, bodies, to)
+
+
+def _by_osc(protocol: Protocol, bodies: Subscription[Body], to: str) -> int:
+    send, state, sent = osc_sender(to), vmc.Measured(), 0
+    for body in bodies:
+        packet: bytes | None = None
+        if protocol == "vmc":
+            state, packet = vmc.step(state, body)
+        else:
+            packet = osc_packet(body)
+        if packet is not None:
+            send(packet)
+            sent += 1
+    return sent

@@ -1,0 +1,73 @@
+"""A body as VMC (Virtual Motion Capture): turns of Unity's humanoid bones, one bundle a body.
+
+Source: the VMC protocol specification, version 2.x: addresses of a Performer; Unity's axes are
+left-handed, +x right of who faces +z, +y up, so x changes its sign.
+"""
+
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from animator.bones import BONES, Skeleton, motion_of, offset_m, skeleton_of
+from common.body.body import Vector
+from common.bus.messages import Body
+from tritrack.bridges.osc import message
+
+UNITY: Final = {
+    f"{side}{ours}": f"{side}{unity}"
+    for side in ("Left", "Right")
+    for ours, unity in (
+        ("Arm", "UpperArm"),
+        ("ForeArm", "LowerArm"),
+        ("UpLeg", "UpperLeg"),
+        ("Leg", "LowerLeg"),
+    )
+}
+"""Unity's names of BONES that it calls otherwise."""
+MEASURED: Final = 30
+"""Poses whose median lengths make the skeleton; until then those that came."""
+TYPES: Final = "sfffffff"
+
+
+class Measured(NamedTuple):
+    """The skeleton so far."""
+
+    poses: tuple[Any, ...] = ()
+    """(15, 3) each, at most MEASURED."""
+    skeleton: Skeleton | None = None
+
+
+def step(state: Measured, body: Body) -> tuple[Measured, bytes | None]:
+    """The packet of a body; None where it has no pose."""
+    if not body.joints_m:
+        return state, None
+    joints_m = np.array(body.joints_m)
+    if state.skeleton is None or len(state.poses) < MEASURED:
+        poses = (*state.poses, joints_m)
+        state = Measured(poses, skeleton_of(np.array(poses)))
+    assert state.skeleton is not None
+    return state, vmc_packet(body, state.skeleton, joints_m)
+
+
+def vmc_packet(body: Body, skeleton: Skeleton, joints_m: Vector) -> bytes:
+    """The bundle of a pose."""
+    from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
+
+    motion = motion_of(skeleton, joints_m[None])
+    bundle: Any = OscBundleBuilder(IMMEDIATELY)
+    bundle.add_content(message("/VMC/Ext/OK", [1], "i"))
+    bundle.add_content(message("/VMC/Ext/T", [body.captured_s], "f"))
+    root = ["root", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+    bundle.add_content(message("/VMC/Ext/Root/Pos", root, TYPES))
+    for i, (bone, own) in enumerate(zip(BONES, motion.turns, strict=True)):
+        place_m = motion.root_m[0] if i == 0 else offset_m(skeleton, i)
+        x, y, z, w = own.as_quat()[0].tolist()
+        told = [UNITY.get(bone.name, bone.name), *_mirrored(place_m), x, -y, -z, w]
+        bundle.add_content(message("/VMC/Ext/Bone/Pos", told, TYPES))
+    packet: bytes = bundle.build().dgram
+    return packet
+
+
+def _mirrored(place_m: Vector) -> list[float]:
+    x, y, z = place_m.tolist()
+    return [-x, y, z]
