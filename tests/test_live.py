@@ -224,6 +224,23 @@ def test_a_pause_holds_the_page_while_the_run_goes_on(page: LivePage, looking: L
 
 
 @pytest.mark.slow
+def test_another_run_at_the_same_address_begins_afresh(page: LivePage, looking: Looking) -> None:
+    for frame in range(9):
+        page.show(snapshot_at(frame))
+    assert looking.until("document.body.dataset.frame === '8'")
+    page.close()
+    port = int(page.address.rsplit(":", 1)[1])
+    other = LivePage("the next run", port, commands=False)
+    try:
+        other.set_rig(RIG)
+        other.show(snapshot_at(2))
+        assert looking.until("document.title.startsWith('the next run')")
+        assert looking.until("document.body.dataset.frame === '2'")
+    finally:
+        other.close()
+
+
+@pytest.mark.slow
 def test_buttons_ask_and_answers_are_shown(page: LivePage, looking: Looking) -> None:
     page.show(snapshot_at(0))
     assert looking.until("!document.querySelector('#actions').hidden")

@@ -2,6 +2,7 @@
 
 import queue
 import threading
+import time
 from collections import deque
 from collections.abc import Sequence
 from typing import Any, Final
@@ -33,7 +34,7 @@ class LivePage:
     """
 
     def __init__(self, title: str, port: int, commands: bool) -> None:
-        self._hello = Greeting(title, commands)
+        self._hello = Greeting(title, time.time_ns() // 1_000_000, commands)
         self._lock = threading.Lock()
         self._frames: deque[bytes] = deque()
         self._bytes = self._shown = 0

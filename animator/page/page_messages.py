@@ -86,6 +86,8 @@ class Greeting(msgspec.Struct, frozen=True, tag="hello", tag_field="kind"):
     """What a browser must know before it can draw."""
 
     title: str
+    run: int
+    """Another one is another run, or another process of this one: a page begins afresh."""
     commands: bool
     """Whether somebody hears what the person asks for."""
     angles: tuple[str, ...] = ANGLE_NAMES

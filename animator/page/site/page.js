@@ -22,7 +22,10 @@ let [dirty, plotted, before] = [false, 0, 0];
 
 const heard = {
   hello(told) {
-    if (greeting) return; // the same run, after a pause of the connection
+    if (greeting) { // after a pause of the connection
+      if (told.run !== greeting.run) location.reload();
+      return;
+    }
     greeting = told;
     at("title").textContent = told.title;
     document.title = `${told.title} · tritrack`;
