@@ -89,7 +89,8 @@ def test_a_recording_that_nobody_ended_is_written_when_the_run_is_over(
     sitting.run(2.0)
     sitting.desk.leave(sitting.heard)
     assert len(open_run(saved(tmp_path)).poses["frame"]) == 2 * RATE_HZ + 1
-    assert sitting.ask("save") is None, "its bus is closed"
+    answer = sitting.ask("save")  # of what was asked before, at most: its bus is closed
+    assert answer is None or answer.what == "end_record"
 
 
 def test_what_cannot_be_saved_is_said(sitting: Sitting, tmp_path: Path) -> None:

@@ -272,7 +272,7 @@ def test_the_count_of_matches_is_the_papers_cost() -> None:
 
 @pytest.mark.parametrize("seen", [True, False], ids=["with an outline", "without one"])
 def test_what_a_source_outside_sees_is_in_the_report_and_stays_there(seen: bool) -> None:
-    person = Landmarks(joints_px=((80.0, 60.0),) * 15, confidence=(0.9,) * 15, facing_deg=30.0)
+    person = Landmarks(joints_px=((80.0, 60.0),) * 15, confidence=(0.4,) * 15, facing_deg=30.0)
     state = told_from_outside()
     picture = frame(silhouettes(standing())[0] if seen else NOBODY)
     shown = msgspec.structs.replace(picture, landmarks=(person,))
@@ -283,7 +283,7 @@ def test_what_a_source_outside_sees_is_in_the_report_and_stays_there(seen: bool)
 
 def test_landmarks_change_nothing_else_of_a_report() -> None:
     state = told_from_outside()
-    person = Landmarks(joints_px=((80.0, 60.0),) * 15, confidence=(0.9,) * 15)
+    person = Landmarks(joints_px=((80.0, 60.0),) * 15, confidence=(0.4,) * 15)
     picture = frame(silhouettes(standing())[0])
     shown = msgspec.structs.replace(picture, landmarks=(person,))
     _, with_them = track.step(state, shown, guide(standing()))

@@ -1,5 +1,6 @@
 """A live run from its settings to its run folder."""
 
+import shutil
 import signal
 import socket
 import threading
@@ -60,6 +61,7 @@ def live(
     if record:
         refuse_without_library()
     _refuse_port(settings)
+    new = not out.exists()
     log = _new_log(out)
     began, heard = time.monotonic(), nothing_heard()
     title = name or Path(settings.clip).name or "tritrack"
@@ -67,7 +69,7 @@ def live(
         context = ProcessContext(True, log)
         desk = PageDesk(settings, out, title, context)
         doors.callback(desk.close)
-        clip = _opened(settings, name)
+        clip = _opened_or_nothing(settings, name, out, new=new)
         screen = Screen(clip, settings, console, lambda: desk.address)
 
         def facts() -> dict[str, Any]:
@@ -113,6 +115,16 @@ def _show_end(
         stop.clear()
     if not stop.is_set():
         desk.end(facts, stop, lambda: console.print(PLAYS))
+
+
+def _opened_or_nothing(settings: Settings, name: str, out: Path, *, new: bool) -> Clip:
+    """The clip of a run; where it is refused, a folder that was made for the run goes again."""
+    try:
+        return _opened(settings, name)
+    except BaseException:
+        if new:
+            shutil.rmtree(out, ignore_errors=True)
+        raise
 
 
 def _opened(settings: Settings, name: str) -> Clip:
