@@ -9,6 +9,7 @@ from typing import Any, Final, NamedTuple
 
 from common.bus.bus import Bus, BusError, open_client
 from common.bus.control_messages import Cameras, Pulse
+from common.bus.inbox import Inbox
 from common.bus.messages import Body, Posture, Report
 from common.bus.process import READY_S
 from common.config import Settings
@@ -126,7 +127,7 @@ class Subscriber:
     @property
     def dropped(self) -> int:
         """How many reports, bodies and postures never came here."""
-        boxes = (self._bodies, self._postures, *self._reports)
+        boxes: tuple[Inbox[Any], ...] = (self._bodies, self._postures, *self._reports)
         return sum(box.dropped for box in boxes)
 
     def catch_up(self) -> None:
