@@ -17,8 +17,8 @@ def test_a_sample_has_a_number_for_every_channel() -> None:
     body = a_body(0, random_joints(3)[0])
     labels = [label for label, _ in CHANNELS]
     assert len(sample_of(body)) == len(labels) == len(set(labels)) == 77
-    assert sample_of(body)[labels.index("l_wrist_y")] == body.joints_m[5][1]
-    assert sample_of(body)[labels.index("l_shoulder_z")] == pytest.approx(180.0)
+    assert sample_of(body)[labels.index("l_wrist_y_m")] == body.joints_m[5][1]
+    assert sample_of(body)[labels.index("l_shoulder_z_deg")] == pytest.approx(180.0)
     empty = Body(frame=0, captured_s=0.0, clock_s=0.0, status="empty", views="none")
     assert all(math.isnan(value) for value in sample_of(empty))
 

@@ -5,14 +5,15 @@ import time
 from collections.abc import AsyncIterator, Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Generic, overload
+from typing import TYPE_CHECKING, Final, Generic, TypeVar, overload
 
-from common.bus.message_codec import Said
-from common.bus.messages import Body, ViewerNumber
+from common.bus.messages import Body, Message, ViewerNumber
 from common.config import BusSettings, Settings, load
 
 if TYPE_CHECKING:
     from common.bus.bus import Bus
+
+Said = TypeVar("Said", bound=Message)
 
 ENDPOINT: Final = BusSettings().endpoint
 ROOM: Final = Settings().room

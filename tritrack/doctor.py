@@ -30,6 +30,10 @@ EXTRAS: Final = (
     ("notes of the retouching page", "tomlkit", "page"),
     ("rooms of busy clips", "scikit-image", "single"),
     ("plots of reports", "matplotlib", "report"),
+    ("C3D files", "ezc3d", "export"),
+    ("recordings", "mcap", "mcap"),
+    ("OSC and VMC bridges", "python-osc", "osc"),
+    ("LSL bridge", "pylsl", "lsl"),
 )
 """What only some commands need: its use, the distribution, and the extra that brings it."""
 

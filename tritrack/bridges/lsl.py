@@ -10,9 +10,9 @@ from common.bus.messages import Body
 from tritrack.bridges.osc import BridgeError
 
 CHANNELS: Final = (
-    *((f"{joint}_{axis}", "m") for joint in JOINT_NAMES for axis in "xyz"),
+    *((f"{joint}_{axis}_m", "metres") for joint in JOINT_NAMES for axis in "xyz"),
     *((f"{joint}_confidence", "probability") for joint in JOINT_NAMES),
-    *((angle, "degrees") for angle in ANGLE_NAMES),
+    *((f"{angle}_deg", "degrees") for angle in ANGLE_NAMES),
 )
 """Label and unit of each."""
 

@@ -49,8 +49,10 @@ def osc_sender(to: str) -> Callable[[bytes], None]:
         raise BridgeError("OSC and VMC need python-osc: pip install 'tritrack[osc]'") from error
     host, _, port = to.rpartition(":")
     try:
+        if not 0 < int(port) < 1 << 16:
+            raise ValueError(port)
         family, kind, *_, address = socket.getaddrinfo(host, int(port), type=socket.SOCK_DGRAM)[0]
-    except (OSError, ValueError, OverflowError) as error:
+    except (OSError, ValueError) as error:
         raise BridgeError(f"--to {to} is no address: write it like 127.0.0.1:9000") from error
     door = socket.socket(family, kind)
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from typing import Any, Final, NamedTuple
 
-from common.bus.bus import Bus, BusError, open_client
+from common.bus.bus import Bus, BusError, Inbox, open_client
 from common.bus.control_messages import Cameras, Pulse
 from common.bus.messages import Body, Posture, Report
 from common.bus.process import READY_S
@@ -139,8 +139,8 @@ class Subscriber:
     @property
     def dropped(self) -> int:
         """How many reports, bodies and postures never came here."""
-        reports = sum(box.dropped for box in self._reports)
-        return self._bodies.dropped + self._postures.dropped + reports
+        boxes: tuple[Inbox[Any], ...] = (self._bodies, self._postures, *self._reports)
+        return sum(box.dropped for box in boxes)
 
     def catch_up(self) -> None:
         """Take in all that was said since."""
