@@ -120,7 +120,8 @@ def test_the_last_line_tells_what_was_followed_how_well_and_what_to_open(
     facts = single_all([video], tmp_path, Given(), SMALL, QUIET)["clips"]["waving"]
     line = line_of("waving", facts)
     assert re.fullmatch(
-        r"waving: a pose in 31 of 40 frames \(7\d%\), believed in \d+%, mean confidence 0\.\d\d; open "
+        r"waving: a pose in 31 of 40 frames \(7\d%\), believed in \d+%, "
+        r"mean confidence 0\.\d\d; open "
         rf"{tmp_path}/waving/overlay\.mp4 \((H\.264|MPEG-4)\)",
         line,
     )

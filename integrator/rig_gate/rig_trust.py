@@ -28,8 +28,8 @@ SURE: Final = 0.6
 FEWEST, ENOUGH = 12, 40
 """Moments in which both views must see the person, and as many as are looked at."""
 MOST_APART_MM: Final = 65.0
-"""Views of a good rig place the joints less far apart: 28 mm at most of r01 and r04, but 52 of other
-people, whom the network of landmarks sees less well."""
+"""Views of a good rig place the joints less far apart: 28 mm at most of r01 and r04, but 52 of
+other people, whom the network of landmarks sees less well."""
 FLOOR_MM: Final = (-35.0, 45.0)
 """Where a good rig has the soles."""
 STATURES_M: Final = (0.9, 2.3)

@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from typing import Any, Final, NamedTuple
 
-from common.bus.bus import Bus, BusError, Inbox, open_client
+from common.bus.bus import Bus, BusError, open_client
 from common.bus.control_messages import Cameras, Pulse
+from common.bus.inbox import Inbox
 from common.bus.messages import Body, Posture, Report
 from common.bus.process import READY_S
 from common.config import Settings
