@@ -56,8 +56,9 @@ def package(root: Path, name: str, found: Sequence[Source]) -> Package:
     own = [each for each in found if each.package == name]
     inside = [(a, b) for a, b in arrows(root, own) if a.parts[0] == b.parts[0]]
     pairs = ((room_of(a), room_of(b)) for a, b in inside)
-    graph = pointing((a, b) for a, b in pairs if a != b)
-    rooms = {room_of(each.path) for each in own if each.path != Path(name, "__init__.py")}
+    door = room_of(Path(name, "__init__.py"))  # what programs import: it is not drawn
+    graph = pointing((a, b) for a, b in pairs if a != b and door not in (a, b))
+    rooms = {room_of(each.path) for each in own} - {door}
     level_of = heights(graph, sorted(rooms))
     levels: list[list[Box]] = []
     for level in range(max(level_of.values()) + 1):
