@@ -7,7 +7,7 @@ const ROUND = 20; // corners of what is round
 const ANGLE_RAD = 0.52;
 const CIRCLE = Array.from({ length: ROUND }, (_, i) => [Math.cos((2 * Math.PI * i) / ROUND), Math.sin((2 * Math.PI * i) / ROUND)]);
 const CYLINDER = [...CIRCLE.map(([x, z]) => [x, 0, z]), ...CIRCLE.map(([x, z]) => [x, 1, z])];
-const BALL = [-0.9, -0.6, -0.2, 0.2, 0.6, 0.9].flatMap((y) => CIRCLE.map(([x, z]) => [x * Math.sqrt(1 - y * y), y, z * Math.sqrt(1 - y * y)])).concat([[0, 1, 0], [0, -1, 0]]);
+const BALL = [-0.97, -0.85, -0.62, -0.25, 0.25, 0.62, 0.85, 0.97].flatMap((y) => CIRCLE.map(([x, z]) => [x, z].map((value) => value * Math.sqrt(1 - y * y))).map(([x, z]) => [x, y, z]));
 
 export class Room {
   constructor(canvas, cylinders) {
