@@ -181,8 +181,7 @@ REHEARSED = """
 from animator.__main__ import warm_up
 from common.body import kinematics, proportions
 from common.rig import camera
-from common.rig.camera import paper_rig
-warm_up(paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5)))
+warm_up()
 for compiled in (camera._on_plane, kinematics.place_limbs, proportions.attached):
     print(len(compiled.signatures))
 """
