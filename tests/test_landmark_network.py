@@ -1,6 +1,10 @@
 """What the network of landmarks puts out is read as it was taught, and it knows people."""
 
+import os
+import subprocess
+import sys
 from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -105,3 +109,15 @@ def test_it_tells_front_from_back() -> None:
     right = [abs((f.facing_deg - true + 180) % 360 - 180) < 45 for true, f in turned]
     assert len(turned) > 80
     assert np.mean(right) > 0.7
+
+
+def test_the_runtime_reports_nothing_to_anybody(tmp_path: Path) -> None:
+    """It keeps a file in the folder for what is temporary where it does."""
+    code = "from viewer.landmarks.landmark_network import shipped; shipped()"
+    subprocess.run(
+        [sys.executable, "-c", code],
+        check=True,
+        timeout=120,
+        env={**os.environ, "TMPDIR": str(tmp_path), "ORT_DISABLE_TELEMETRY": "0"},
+    )
+    assert list(tmp_path.iterdir()) == []

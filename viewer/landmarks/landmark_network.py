@@ -1,11 +1,11 @@
 """The network that finds landmarks in a window of the picture, and what its outputs mean."""
 
+import os
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-import onnxruntime
 from numpy.typing import NDArray
 
 from common.body.body import Vector
@@ -39,7 +39,14 @@ class Found(NamedTuple):
 
 @lru_cache(maxsize=1)
 def shipped() -> Any:
-    """The network that is installed with the program, on one core."""
+    """The network that is installed with the program, on one core.
+
+    onnxruntime would report its use to its maker, and keep a file for it, unless it is told not to
+    before it is imported: nothing leaves this machine.
+    """
+    os.environ["ORT_DISABLE_TELEMETRY"] = "1"
+    import onnxruntime
+
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     return onnxruntime.InferenceSession(SHIPPED, options, providers=["CPUExecutionProvider"])
