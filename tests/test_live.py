@@ -192,7 +192,7 @@ def test_pictures_and_body_move_an_event_appears_and_the_end_is_played(
     page.end({"clip": "walk", "warnings": ["it was dark <b>"], "out": "runs/1"})
     assert looking.until("!document.querySelector('#ending').hidden")
     assert "it was dark <b>" in looking.ask("document.querySelector('#ending').innerText")
-    assert "over" in looking.ask("document.querySelector('#words').innerText")
+    assert looking.until("document.querySelector('#words').innerText.includes('over')")
     looking.key("Home", 36)
     assert looking.until("document.body.dataset.frame === '0'")
     first = looking.seen("#room")
