@@ -34,7 +34,7 @@ def digest_of(root: Path) -> str:
     """A word for all that decides what is compiled, 32 hexadecimal digits.
 
     Any change in any of our files changes it: what a function compiles to depends on the functions
-    that it calls and the constants that it reads, wherever they stand. Takes 3 ms.
+    that it calls and the constants that it reads, wherever they stand. Takes 10 ms.
 
     Args:
         root: Folder of PACKAGES.
@@ -42,9 +42,14 @@ def digest_of(root: Path) -> str:
     digest = hashlib.sha256()
     for version in (sys.version, np.__version__, numba.__version__):
         add(digest, "version", version.encode())
+    above = len(os.path.join(root, ""))
     for package in PACKAGES:
-        for path in sorted((root / package).rglob("*.py")):
-            add(digest, path.relative_to(root).as_posix(), path.read_bytes())
+        for folder, folders, files in os.walk(root / package):
+            folders.sort()
+            for name in sorted(files):
+                if name.endswith(".py"):
+                    path = os.path.join(folder, name)
+                    add(digest, path[above:], _content(path))
     return digest.hexdigest()[:32]
 
 
@@ -53,6 +58,11 @@ def add(digest: Any, name: str, content: bytes) -> None:
     for part in (name.encode(), content):
         digest.update(len(part).to_bytes(8, "little"))
         digest.update(part)
+
+
+def _content(path: str) -> bytes:
+    with open(path, "rb", buffering=0) as file:
+        return file.read()
 
 
 DIGEST: Final = digest_of(ROOT)

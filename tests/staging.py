@@ -78,6 +78,7 @@ def exact(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("viewer.camera_fault.step", lambda state, _: (state, ""))
     monkeypatch.setattr("viewer.silhouette.silhouette.init", lambda *_: None)
     monkeypatch.setattr("viewer.silhouette.silhouette.step", step)
+    monkeypatch.setattr("viewer.silhouette.silhouette.without_things", lambda state, *_: state)
 
 
 class Told(NamedTuple):

@@ -57,7 +57,10 @@ def test_what_no_process_says_does_not_fit() -> None:
 
 
 def listen(endpoint: str, heard: list[tuple[str, bytes]], over: threading.Event) -> None:
-    """All that is said in the room, from when its hub answers until the test is over."""
+    """All that is said in the room, from when its hub answers until the test is over.
+
+    Once a body is heard, the stranger asks the run to save what it saw; the run answers.
+    """
     config = zenoh.Config()
     config.insert_json5("mode", '"client"')
     config.insert_json5("connect/endpoints", json.dumps([endpoint]))
@@ -71,6 +74,9 @@ def listen(endpoint: str, heard: list[tuple[str, bytes]], over: threading.Event)
                 "tritrack/room/**",
                 lambda sample: heard.append((str(sample.key_expr), sample.payload.to_bytes())),
             )
+            while not over.wait(0.1) and not any(key.endswith("/body/pose") for key, _ in heard):
+                pass
+            session.put("tritrack/room/command", msgpack.packb({"what": "save"}))
             over.wait()
 
 
@@ -96,3 +102,4 @@ def test_live_messages_of_every_topic_fit(clip: Path, tmp_path: Path) -> None:
                 check(payload, kind)
                 met.add(kind)
     assert met == set(TOPICS)
+    assert list((tmp_path / "saved").iterdir()), "what the stranger asked for was done"

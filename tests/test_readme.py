@@ -22,7 +22,7 @@ from source_map import tracked
 
 ROOT: Final = Path(__file__).parents[1]
 COMMAND: Final = re.compile(r"^ {4}(\S.*)$", re.MULTILINE)
-LIMIT_S: Final = 600.0
+LIMIT_S: Final = 300.0
 """No command takes longer; the installation is the longest."""
 PORTS: Final = (8080, 7447)
 """Of the page and the bus, where a settings file names no others."""

@@ -24,7 +24,8 @@ from staging import (
 )
 
 from common.body.body import ANGLE_NAMES, POSE_INDEX, Vector
-from common.body.proportions import stature
+from common.body.kinematics import joints
+from common.body.proportions import body_vector, stature
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Guide, Landmarks, Report, ViewerNumber
 from common.method import METHODS
@@ -54,6 +55,14 @@ def told_from_outside() -> track.State:
     method = msgspec.structs.replace(setup.method, landmarks=True)
     outside = msgspec.structs.replace(setup.settings, landmarks="mediapipe")
     return viewer(1)._replace(setup=setup._replace(settings=outside, method=method))
+
+
+def landmarks_of(pose: Vector) -> Landmarks:
+    """Where picture 1 shows the joints of a pose; a source is sure of all."""
+    places_px = project(RIG.cameras[0], joints(body_vector(PERSON), pose)).tolist()
+    return Landmarks(
+        joints_px=tuple((x, y) for x, y in places_px), confidence=(0.9,) * 15, facing_deg=30.0
+    )
 
 
 def frame(mask: Mask, index: int = 0) -> CapturedFrame:
@@ -272,7 +281,7 @@ def test_the_count_of_matches_is_the_papers_cost() -> None:
 
 @pytest.mark.parametrize("seen", [True, False], ids=["with an outline", "without one"])
 def test_what_a_source_outside_sees_is_in_the_report_and_stays_there(seen: bool) -> None:
-    person = Landmarks(joints_px=((80.0, 60.0),) * 15, confidence=(0.4,) * 15, facing_deg=30.0)
+    person = landmarks_of(standing())
     state = told_from_outside()
     picture = frame(silhouettes(standing())[0] if seen else NOBODY)
     shown = msgspec.structs.replace(picture, landmarks=(person,))
@@ -283,7 +292,7 @@ def test_what_a_source_outside_sees_is_in_the_report_and_stays_there(seen: bool)
 
 def test_landmarks_change_nothing_else_of_a_report() -> None:
     state = told_from_outside()
-    person = Landmarks(joints_px=((80.0, 60.0),) * 15, confidence=(0.4,) * 15)
+    person = landmarks_of(standing())
     picture = frame(silhouettes(standing())[0])
     shown = msgspec.structs.replace(picture, landmarks=(person,))
     _, with_them = track.step(state, shown, guide(standing()))
