@@ -44,15 +44,19 @@ def step(
     if before is None:
         expected: Any = np.einsum("ac,bd->abcd", first, second)
     else:
-        drawn = first[:, None, :, None] * before.sum(axis=(0, 2), keepdims=True)
-        expected = (1 - ANEW) * before + ANEW * drawn
-        drawn = second[None, :, None, :] * expected.sum(axis=(1, 3), keepdims=True)
-        expected = (1 - ANEW) * expected + ANEW * drawn
+        expected = _drawn_anew(before, first[:, None, :, None], (0, 2))
+        expected = _drawn_anew(expected, second[None, :, None, :], (1, 3))
     said = arms[:, :, None, None] + legs[None, None]
     now = expected * np.exp(TRUST * (said - said.max()))
     now /= now.sum()
     arms_1, arms_2, legs_1, legs_2 = (int(i) for i in np.unravel_index(now.argmax(), now.shape))
     return now, Exchanged((arms_1, arms_2), (legs_1, legs_2))
+
+
+def _drawn_anew(known: Exchanges, usual: Vector, view: tuple[int, int]) -> Exchanges:
+    """What is expected next where now and then the axes of one view are drawn from the usual."""
+    found: Exchanges = (1 - ANEW) * known + ANEW * usual * known.sum(axis=view, keepdims=True)
+    return found
 
 
 def _usual(aside: float) -> Vector:

@@ -78,29 +78,11 @@ def step(
         stature_m: Of the person.
     """
     turned = turned_about.step(None if before is None else before.turned, proposed_m, rays)
-    known = None if before is None else before.exchanges
     if turned[1]:
         proposed_m, confidence = proposed_m[OTHER_SIDES], confidence[OTHER_SIDES]
-    if before is not None and known is not None and turned[1] != before.turned[1]:
-        known = known[::-1, ::-1, ::-1, ::-1]
-    sure = (_share(confidence, PROPOSED_RIGHT), _share(rays.confidence, SHOWN_RIGHT))
-    spreads = (
-        PROPOSED.right + PROPOSED.unsure * (1.0 - confidence),
-        stature_m * (SHOWN.right + SHOWN.unsure * (1.0 - rays.confidence)),
-    )
-    seen = np.where(rays.confidence > 0.0, sure[1], 0.0)
-    values, places_m, precisions = _modes(
-        proposed_m,
-        sure[0],
-        spreads[0],
-        rays.centres_m,
-        rays.directions,
-        seen,
-        spreads[1],
-        stature_m,
-    )
+    values, places_m, precisions = _weighed(proposed_m, confidence, rays, stature_m)
     exchanges, decided = exchanged_sides.step(
-        known,
+        _exchanges(before, turned[1]),
         values[ARMS].sum(axis=0),
         values[LEGS].sum(axis=0),
         _aside(proposed_m, rays.centres_m),
@@ -112,6 +94,31 @@ def step(
         joints_m = limb_springs.sprung(joints_m, tight, lengths_m)
     memory = Memory(turned, exchanges, limb_springs.lengths_m(lengths_m, joints_m))
     return Fused(joints_m, _confidence(tight), decided, memory)
+
+
+def _exchanges(before: Memory | None, turned: bool) -> Exchanges | None:
+    """What is remembered of exchanged sides; a proposal that is turned now has all the others."""
+    if before is None or turned == before.turned[1]:
+        return None if before is None else before.exchanges
+    return before.exchanges[::-1, ::-1, ::-1, ::-1]
+
+
+def _weighed(
+    proposed_m: NDArray[np.float64], confidence: Vector, rays: Rays, stature_m: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """`_modes` of what confidences say of how sure and how wide each witness is."""
+    shown = np.where(rays.confidence > 0.0, _share(rays.confidence, SHOWN_RIGHT), 0.0)
+    found: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] = _modes(
+        proposed_m,
+        _share(confidence, PROPOSED_RIGHT),
+        PROPOSED.right + PROPOSED.unsure * (1.0 - confidence),
+        rays.centres_m,
+        rays.directions,
+        shown,
+        stature_m * (SHOWN.right + SHOWN.unsure * (1.0 - rays.confidence)),
+        stature_m,
+    )
+    return found
 
 
 def _confidence(precisions: NDArray[np.float64]) -> Vector:

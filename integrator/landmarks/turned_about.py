@@ -58,6 +58,11 @@ def yaw_deg(rotation: NDArray[np.float64], joints_m: NDArray[np.float64]) -> flo
     for girdle in (pose_network.SHOULDERS, pose_network.HIPS):
         left, right = joints_m[girdle]
         across += left - right
+    return facing_deg(rotation, across)
+
+
+def facing_deg(rotation: NDArray[np.float64], across: NDArray[np.float64]) -> float:
+    """Likewise of somebody whose left is there of the right, (3,) world; (-180, 180]."""
     to_right, _, away = rotation @ across
     return math.degrees(math.atan2(away, to_right))
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, OTHER_SIDE
 from common.notes.notes import ORIENTATIONS, Orientation
 from common.rig.camera import Camera, arrays_of, centre
+from integrator.landmarks.turned_about import facing_deg
 
 Joints = NDArray[np.float64]
 SIDEWAYS_DEG: Final = 20.0
@@ -40,8 +41,7 @@ def yaw_deg(camera: Camera, joints_m: Joints) -> float:
     """Which way the lines across shoulders and hips face: 0 the camera, 90 the picture's right."""
     at = {name: joints_m[i] for i, name in enumerate(JOINT_NAMES)}
     across = at["l_shoulder"] - at["r_shoulder"] + at["l_hip"] - at["r_hip"]
-    right, _, away = arrays_of(camera).R @ across
-    return float(np.degrees(np.arctan2(away, right)))
+    return facing_deg(arrays_of(camera).R, across)
 
 
 def faces(yaw: float) -> Orientation:

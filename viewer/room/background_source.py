@@ -22,10 +22,8 @@ from viewer.room.room_people import AROUND, looked_at
 
 SAMPLE = 40
 """How many frames at most, spread over a clip, tell whether its opening is empty."""
-
 LOOKED_AT = 1500
 """How many frames of a clip are looked at for that: a long recording is judged by its start."""
-
 
 PEOPLE = 20
 """How many of these frames are searched for people, where the opening is in doubt."""
@@ -72,10 +70,9 @@ def of_clip(
 ) -> tuple[Background, str]:
     """The background of a clip, and what is odd about how that is known.
 
-    Where contours say that nobody is in the opening, that is the room: they were never wrong in
-    that. They do take furniture for somebody: then the network of landmarks is asked, and the
-    backgrounds of both cases are made, the likelier first, until one has the outlines that the
-    landmarks in later frames ask for.
+    Where contours say that nobody is in the opening, that is the room. They do take furniture for
+    somebody: then the network of landmarks is asked, and the backgrounds of both cases are made,
+    the likelier first, until one has the outlines that the landmarks in later frames ask for.
 
     Args:
         opening: The first frames.
