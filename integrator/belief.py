@@ -60,10 +60,10 @@ def is_believed(
 
 
 def _is_trusted(report: Report) -> bool:
-    found = report.landmarks
-    if found is None or np.mean(found.confidence) < TRUSTED:
+    if report.landmarks is None:
         return False
-    return int(np.count_nonzero(np.array(found.confidence) > SURE)) >= LEAST
+    sure = report.landmarks.confidence
+    return sum(sure) >= TRUSTED * len(sure) and sum(each > SURE for each in sure) >= LEAST
 
 
 def _astray(joints_m: NDArray[np.float64], camera: Camera, found: Landmarks | None) -> float:
@@ -77,11 +77,9 @@ def _astray(joints_m: NDArray[np.float64], camera: Camera, found: Landmarks | No
         return np.inf
     tall_px = max(float(np.linalg.norm(np.ptp(joints_px, axis=0))), 1.0)
     sure = np.array(found.confidence) > SURE
-    same, other = (
-        float(np.median(np.linalg.norm(places - seen_px, axis=1)[sure]))
-        for places in (joints_px, joints_px[OTHER_SIDE])
-    )
-    return min(same, other) / tall_px
+    off_px = np.stack([joints_px, joints_px[OTHER_SIDE]])[:, sure] - seen_px[sure]
+    off_px = np.sort(np.hypot(off_px[..., 0], off_px[..., 1]), axis=1)
+    return float(off_px[:, off_px.shape[1] // 2].min()) / tall_px
 
 
 def _is_turned_about(joints_m: NDArray[np.float64], told: list[tuple[Report, Camera]]) -> bool:
