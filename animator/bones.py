@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from animator.turns import arc, frame_of
+from animator.turns import arc_axes, axes_of
 from common.body.body import JOINT_NAMES, Vector
 
 Joints = NDArray[np.float64]
@@ -81,14 +81,14 @@ def skeleton_of(joints_m: Joints) -> Skeleton:
         joints_m: At least one row without NaN.
     """
     posed = joints_m[np.isfinite(joints_m).all(axis=(1, 2))]
-    spine = frame_of(_between(posed, "pelvis", "neck"), _between(posed, "r_shoulder", "l_shoulder"))
+    spine = axes_of(_between(posed, "pelvis", "neck"), _between(posed, "r_shoulder", "l_shoulder"))
     tips = []
     for bone in BONES:
         along = _between(posed, bone.starts, bone.ends)
         length_m = float(np.median(np.linalg.norm(along, axis=1)))
         rest = _REST.get(bone.name)
         if rest is None:
-            rest = np.median(spine.apply(along, inverse=True), axis=0)
+            rest = np.median(_turned(spine.transpose(0, 2, 1), along), axis=0)
             rest = rest / max(float(np.linalg.norm(rest)), 1e-9)
         tips.append(length_m * rest)
     return Skeleton(np.array(tips))
@@ -105,25 +105,21 @@ def motion_of(skeleton: Skeleton, joints_m: Joints) -> Motion:
         joints_m: Without NaN.
     """
     pelvis_m = joints_m[:, _AT["pelvis"]]
-    world: list[Rotation] = []
-    local: list[Rotation] = []
-    origins: list[NDArray[np.float64]] = []
-    for i, bone in enumerate(BONES):
-        origins.append(_origin(skeleton, i, origins, world) if i else pelvis_m)
-        above = world[bone.parent] if i else Rotation.identity()
-        if bone.name == "Hips":
-            across = _between(joints_m, "r_hip", "l_hip")
-            turns = frame_of(_between(joints_m, "pelvis", "neck"), across, keep="across")
-        elif bone.name == "Spine":
-            across = _between(joints_m, "r_shoulder", "l_shoulder")
-            spine = frame_of(_between(joints_m, "pelvis", "neck"), across)
-            turns = above.inv() * spine
+    up = _between(joints_m, "pelvis", "neck")
+    hips = axes_of(up, _between(joints_m, "r_hip", "l_hip"), keep="across")
+    world, local, origins = [hips], [hips], [pelvis_m]
+    for i, bone in enumerate(BONES[1:], 1):
+        above = world[bone.parent]
+        origins.append(origins[bone.parent] + _turned(above, offset_m(skeleton, i)))
+        if bone.name == "Spine":
+            spine = axes_of(up, _between(joints_m, "r_shoulder", "l_shoulder"))
+            turns = above.transpose(0, 2, 1) @ spine
         else:
             aim = joints_m[:, _AT[bone.ends]] - origins[i]
-            turns = arc(skeleton.tips_m[i], above.apply(aim, inverse=True))
+            turns = arc_axes(skeleton.tips_m[i], _turned(above.transpose(0, 2, 1), aim))
         local.append(turns)
-        world.append(above * turns)
-    return Motion(pelvis_m, tuple(local))
+        world.append(above @ turns)
+    return Motion(pelvis_m, tuple(Rotation.from_matrix(t, assume_valid=True) for t in local))
 
 
 def joints_of(skeleton: Skeleton, motion: Motion) -> Joints:
@@ -132,8 +128,11 @@ def joints_of(skeleton: Skeleton, motion: Motion) -> Joints:
     world: list[Rotation] = []
     origins: list[NDArray[np.float64]] = []
     for i, (bone, own) in enumerate(zip(BONES, motion.turns, strict=True)):
-        origins.append(_origin(skeleton, i, origins, world) if i else motion.root_m)
-        world.append(world[bone.parent] * own if i else own)
+        above = world[bone.parent] if i else Rotation.identity()
+        origins.append(
+            origins[bone.parent] + above.apply(offset_m(skeleton, i)) if i else motion.root_m
+        )
+        world.append(above * own)
         found[:, _AT[bone.starts]] = origins[i]
         found[:, _AT[bone.ends]] = origins[i] + world[i].apply(skeleton.tips_m[i])
     return found
@@ -158,12 +157,10 @@ def rest_origins_m(skeleton: Skeleton) -> Vector:
     return origins
 
 
-def _origin(
-    skeleton: Skeleton, bone: int, origins: list[NDArray[np.float64]], world: list[Rotation]
-) -> NDArray[np.float64]:
-    parent = BONES[bone].parent
-    there: NDArray[np.float64] = origins[parent] + world[parent].apply(offset_m(skeleton, bone))
-    return there
+def _turned(axes: NDArray[np.float64], along: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Directions (n, 3) or (3,) turned by matrices (n, 3, 3)."""
+    found: NDArray[np.float64] = (axes @ along[..., None])[..., 0]
+    return found
 
 
 def _between(joints_m: Joints, start: str, end: str) -> NDArray[np.float64]:

@@ -15,28 +15,52 @@ other."""
 
 def arc(start: Vector, ends: NDArray[np.float64]) -> Rotation:
     """The shortest turns that lead a direction (3,) to directions (n, 3): they twist nothing."""
+    return Rotation.from_quat(_half(start, ends), scalar_first=True)
+
+
+def arc_axes(start: Vector, ends: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Likewise as matrices (n, 3, 3): one pose has many turns, and few are made so in less time."""
+    quaternions = _half(start, ends)
+    quaternions /= np.sqrt((quaternions**2).sum(axis=1, keepdims=True))
+    w, x, y, z = quaternions.T
+    across = np.zeros((len(ends), 3, 3))
+    across[:, 2, 1], across[:, 0, 2], across[:, 1, 0] = x, y, z
+    across -= across.transpose(0, 2, 1)
+    found: NDArray[np.float64] = np.eye(3) + 2.0 * (w[:, None, None] * across + across @ across)
+    return found
+
+
+def _half(start: Vector, ends: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Quaternions (n, 4) of the shortest turns, w first, of any length."""
     a = start / np.linalg.norm(start)
     b = ends / np.maximum(np.linalg.norm(ends, axis=-1, keepdims=True), OPPOSITE)
-    w = 1.0 + b @ a
-    opposite = w < OPPOSITE
-    aside = np.cross(a, np.eye(3)[np.abs(a).argmin()])
-    axis = np.where(opposite[:, None], aside, np.cross(a, b))
-    w = np.where(opposite, 0.0, w)
-    return Rotation.from_quat(np.column_stack([w, axis]), scalar_first=True)
+    wxyz = np.empty((len(b), 4))
+    wxyz[:, 0] = 1.0 + b @ a
+    wxyz[:, 1:] = _cross(a, b)
+    opposite = wxyz[:, 0] < OPPOSITE
+    if opposite.any():
+        wxyz[opposite] = 0.0, *np.cross(a, np.eye(3)[np.abs(a).argmin()])
+    return wxyz
 
 
-def frame_of(
+def axes_of(
     up: NDArray[np.float64], across: NDArray[np.float64], keep: Literal["up", "across"] = "up"
-) -> Rotation:
-    """The turns that lead +y to `up` and +x to `across`, (n, 3) each.
+) -> NDArray[np.float64]:
+    """The turns that lead +y to `up` and +x to `across`, (n, 3) each, as matrices (n, 3, 3).
 
     Args:
         up: (n, 3).
         across: (n, 3), not parallel to it.
         keep: Which of the two is met exactly; the other is made square to it.
     """
-    out = np.cross(across, up)
-    x, y = (np.cross(up, out), up) if keep == "up" else (across, np.cross(out, across))
+    out = _cross(across, up)
+    x, y = (_cross(up, out), up) if keep == "up" else (across, _cross(out, across))
     axes = np.stack([x, y, out], axis=-1)
-    unit = axes / np.linalg.norm(axes, axis=-2, keepdims=True)
-    return Rotation.from_matrix(unit, assume_valid=True)
+    unit: NDArray[np.float64] = axes / np.linalg.norm(axes, axis=-2, keepdims=True)
+    return unit
+
+
+def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What np.cross gives of (..., 3), in a fifth of its time where there are few."""
+    (ax, ay, az), (bx, by, bz) = np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)

@@ -22,18 +22,7 @@ MOST_ADDED_S = 0.005
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "protocol",
-    [
-        "osc",
-        pytest.param(
-            "vmc",
-            marks=pytest.mark.xfail(
-                reason="one pose of the skeleton costs 5 ms in scipy's turns (docs/status.md)"
-            ),
-        ),
-    ],
-)
+@pytest.mark.parametrize("protocol", ["osc", "vmc"])
 def test_every_body_arrives_with_little_added(protocol: str) -> None:
     """Held against a subscriber in this process, which hears the same bodies."""
     address = {"osc": "/tritrack/frame", "vmc": "/VMC/Ext/T"}[protocol]

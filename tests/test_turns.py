@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from animator.turns import arc, frame_of
+from animator.turns import arc, arc_axes, axes_of
 
 seeds = st.integers(0, 10_000)
 
@@ -27,7 +27,15 @@ def test_to_the_opposite_direction_leads_half_a_turn() -> None:
 @given(seeds)
 def test_of_two_directions_the_one_that_is_kept_is_met(seed: int) -> None:
     up, across = np.random.default_rng(seed).normal(size=(2, 4, 3))
-    met = frame_of(up, across).apply([0.0, 1.0, 0.0])
+    met = axes_of(up, across) @ [0.0, 1.0, 0.0]
     assert np.allclose(met, up / np.linalg.norm(up, axis=1)[:, None])
-    met = frame_of(up, across, keep="across").apply([1.0, 0.0, 0.0])
+    met = axes_of(up, across, keep="across") @ [1.0, 0.0, 0.0]
     assert np.allclose(met, across / np.linalg.norm(across, axis=1)[:, None])
+
+
+@given(seeds)
+def test_as_matrices_they_are_the_same_turns(seed: int) -> None:
+    start, *ends = np.random.default_rng(seed).normal(size=(6, 3))
+    ends[0] = -3.0 * start
+    turns = arc(start, np.array(ends))
+    assert np.allclose(arc_axes(start, np.array(ends)), turns.as_matrix(), atol=1e-9)
