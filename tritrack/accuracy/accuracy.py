@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.npz_file import Arrays
+from tritrack.accuracy.intervals import intervals
 
 JOINTS: Final = tuple(
     f"{side}_{name}"
@@ -131,14 +132,19 @@ def summary(clips: Sequence[Compared]) -> dict[str, Any]:
     """All clips together, every frame and joint alike; NaN where nothing was to be measured.
 
     `abs_mm` is the distance in the world, `root_mm` after moving the middles of the hips together,
-    `pa_mm` after the best similarity of each frame; `lost` counts frames without a pose too.
+    `pa_mm` after the best similarity of each frame; `between` holds the 95 % intervals of each that
+    the choice of clips leaves; `lost` counts frames without a pose too.
     """
-    off = np.concatenate([clip.off_mm for clip in clips])
     tracked = np.concatenate([clip.tracked_m for clip in clips])
     true = np.concatenate([clip.true_m for clip in clips])
-    due, has = sum(clip.due for clip in clips), len(off)
+    off = {
+        "abs_mm": [clip.off_mm for clip in clips],
+        "root_mm": [_off_mm(rooted(clip.tracked_m), rooted(clip.true_m)) for clip in clips],
+        "pa_mm": [_off_mm(aligned(clip.tracked_m, clip.true_m), clip.true_m) for clip in clips],
+    }
+    due, has = sum(clip.due for clip in clips), len(tracked)
     empty, ghosts = sum(clip.empty for clip in clips), sum(clip.ghosts for clip in clips)
-    bad = int((off > LOST_MM).any(axis=1).sum()) + due - has
+    bad = sum(int((each > LOST_MM).any(axis=1).sum()) for each in off["abs_mm"]) + due - has
     turned = np.abs(inner_deg(tracked) - inner_deg(true))
     return {
         "clips": len(clips),
@@ -146,9 +152,8 @@ def summary(clips: Sequence[Compared]) -> dict[str, Any]:
         "coverage": has / due if due else np.nan,
         "lost": bad / due if due else np.nan,
         "ghost": ghosts / empty if empty else np.nan,
-        "abs_mm": spread(off),
-        "root_mm": spread(_distances_mm(rooted(tracked), rooted(true))),
-        "pa_mm": spread(_distances_mm(aligned(tracked, true), true)),
+        **{name: spread(np.concatenate(values)) for name, values in off.items()},
+        "between": {name: intervals(values) for name, values in off.items()},
         "angle_deg": {
             **{name: _mean(turned[:, 2 * i : 2 * i + 2]) for i, name in enumerate(INNER)},
             "all": _mean(turned),
@@ -156,10 +161,13 @@ def summary(clips: Sequence[Compared]) -> dict[str, Any]:
     }
 
 
-def per_joint(clips: Sequence[Compared]) -> dict[str, dict[str, float]]:
-    """Distance in the world of each joint, mm."""
-    off = np.concatenate([clip.off_mm for clip in clips])
-    return {name: spread(off[:, i]) for i, name in enumerate(JOINTS)}
+def per_joint(clips: Sequence[Compared]) -> dict[str, dict[str, Any]]:
+    """Distance in the world of each joint, mm, and its 95 % intervals."""
+    told = {}
+    for i, name in enumerate(JOINTS):
+        off = [clip.off_mm[:, i] for clip in clips]
+        told[name] = {**spread(np.concatenate(off)), "between": intervals(off)}
+    return told
 
 
 def spread(values: Vector) -> dict[str, float]:
@@ -207,7 +215,7 @@ def aligned(joints_m: Vector, onto_m: Vector) -> Vector:
     return moved
 
 
-def _distances_mm(one: Vector, other: Vector) -> Vector:
+def _off_mm(one: Vector, other: Vector) -> Vector:
     return 1e3 * np.linalg.norm(one - other, axis=-1)
 
 

@@ -1,7 +1,7 @@
 """The page of a tracking report: tables, plots and the worst frames, readable without network."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from common.templates import rendered
@@ -24,7 +24,8 @@ def line(report: Mapping[str, Any]) -> str:
     told = report["all"]
     return (
         f"{told['clips']} clips, {told['frames']} frames: mean {_number(told['abs_mm']['mean'])} "
-        f"mm, median {_number(told['abs_mm']['median'])}, inner angles "
+        f"mm{_between(told['between']['abs_mm'], 'mean')}, median "
+        f"{_number(told['abs_mm']['median'])}, inner angles "
         f"{_number(told['angle_deg']['all'])} degrees, lost {_share(told['lost'])}, silhouettes "
         f"{_number(report['silhouettes']['mean'], 3)}"
     )
@@ -32,12 +33,20 @@ def line(report: Mapping[str, Any]) -> str:
 
 def page_of(report: Mapping[str, Any]) -> str:
     """The report as a page; its pictures stand beside it."""
-    given = {**report, "number": _number, "percent": _share}
+    given = {**report, "number": _number, "percent": _share, "between": _between}
     return rendered("tritrack.accuracy", "accuracy_report.html", given)
 
 
 def _number(value: float, places: int = 1) -> str:
     return "-" if math.isnan(value) else f"{value:.{places}f}"
+
+
+def _between(told: Mapping[str, Sequence[float]], name: str) -> str:
+    """The interval of a figure, in brackets; nothing where there is none."""
+    if name not in told:
+        return ""
+    low, high = told[name]
+    return f" ({_number(low)} to {_number(high)})"
 
 
 def _share(value: float) -> str:
