@@ -15,7 +15,7 @@ import typer
 from tritrack.commands.clip_commands import export, replay, retouch, single, synth, track
 from tritrack.commands.command_output import JsonWanted, console, results
 from tritrack.commands.live_commands import animate, bridge, demo, integrate, live, recognize, view
-from tritrack.commands.model_commands import evaluate_app, train
+from tritrack.commands.model_commands import evaluate_app, teach, train
 from tritrack.commands.rig_commands import calibrate_app
 from tritrack.faults import code_of, told
 from tritrack.terminal import complain, json_text
@@ -89,7 +89,7 @@ def bench(
 
 COMMANDS: Final = (
     *(demo, live, view, integrate, recognize, animate, bridge),
-    *(track, synth, train, single, export, replay, retouch),
+    *(track, synth, train, teach, single, export, replay, retouch),
     *(doctor, bench),
 )
 """In the order of the help."""

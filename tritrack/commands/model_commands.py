@@ -81,6 +81,31 @@ def train(
     tell(facts, json_wanted, line)
 
 
+def teach(
+    posture: Annotated[str, typer.Argument(help="The new posture's name, as star_jump.")],
+    takes: Annotated[list[Path], typer.Argument(help="Clips of it or their runs, one a take.")],
+    out: Annotated[Path, typer.Option(help="The model file to write.", callback=writable_file)],
+    add_to: Annotated[
+        Path, typer.Option(help="A model file, or shipped: it keeps what it knows.")
+    ] = Path("shipped"),
+    recognizer: RecognizerName = "default",
+    cache: Cache = CACHE,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Teach a model one posture more, by three takes of it or more.
+
+    Says whether the takes agree, and which other posture the new one is nearest to.
+
+    Example: tritrack teach star_jump take1/ take2/ take3/ --out mine.npz
+    """
+    from tritrack.training import teaching
+    from tritrack.training.training import Plan
+
+    plan = Plan(None, recognizer, cache, add_to)
+    facts = teaching.teach(posture, takes, out, plan, console)
+    tell(facts, json_wanted, teaching.line(facts))
+
+
 @evaluate_app.command("postures")
 def evaluate_postures(
     clips: Annotated[

@@ -55,7 +55,7 @@ class Done(NamedTuple):
 
 
 def recordings(
-    paths: Sequence[Path], mode: Mode | None, cache: Path, console: Console
+    paths: Sequence[Path], mode: Mode | None, cache: Path, console: Console, posture: str = ""
 ) -> list[Recording]:
     """What was performed in each clip or run: the motion after the opening posture.
 
@@ -64,25 +64,27 @@ def recordings(
         mode: How clips are tracked; None: as their settings say.
         cache: Folder that keeps what tracking made of clips.
         console: For progress and warnings.
+        posture: What all of them show, whatever they say.
 
     Raises:
         RecordingError: When a folder is neither, or names no posture: before anything is tracked.
         SettingsError, ClipError, ClipsFailed: When clips cannot be used; ClipsFailed at the end,
             which and why was said before.
     """
-    folders = [Path(one.clip) for one in announced(paths, console)]
+    folders = [Path(one.clip) for one in announced(paths, console, posture)]
     clips = [path for path in folders if not _is_run(path)]
     kept = dict(zip(clips, kept_of(clips, mode, cache, console), strict=True))
     _tell_what_is_odd(kept, console)
-    return [_recording(path, kept[path] if path in kept else _of_run(path)) for path in folders]
+    found = [_recording(path, kept[path] if path in kept else _of_run(path)) for path in folders]
+    return [one._replace(posture=posture or one.posture) for one in found]
 
 
-def announced(paths: Sequence[Path], console: Console) -> list[Recording]:
+def announced(paths: Sequence[Path], console: Console, posture: str = "") -> list[Recording]:
     """Who performs what in each clip or run, as it says itself: nothing is tracked, there are no
     rows yet.
 
     Args:
-        paths: As `recordings` takes them.
+        paths: As `recordings` takes them; `posture` too.
         console: For warnings.
 
     Raises:
@@ -91,7 +93,7 @@ def announced(paths: Sequence[Path], console: Console) -> list[Recording]:
         ClipsFailed: When there is none.
     """
     told = [_announced(path) for path in without_plain_files(paths, console)]
-    nameless = [one.clip for one in told if not one.posture]
+    nameless = [one.clip for one in told if not (posture or one.posture)]
     if nameless:
         others = f", and {len(nameless) - 1} more name none" if len(nameless) > 1 else ""
         raise RecordingError(

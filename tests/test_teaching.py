@@ -1,0 +1,82 @@
+"""Teaching by command: takes become a model, and what is odd about them is said."""
+
+from pathlib import Path
+
+import pytest
+from acting import perform
+from rich.console import Console
+
+from recognizer.evaluation import Recording
+from recognizer.learning_error import LearningError
+from recognizer.model_file import load
+from tritrack.training import teaching
+from tritrack.training.teaching import line, teach
+from tritrack.training.training import Plan, TrainingError, train_postures
+
+QUIET = Console(quiet=True)
+NEW = "kick_left_side"
+
+
+@pytest.fixture
+def plan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Plan:
+    """Added to a model of two postures, not to the shipped one, which knows all that can act."""
+    people = [
+        Recording(f"s{n}", posture, perform(posture, n))
+        for posture in ("squat", "walk_toward")
+        for n in range(3)
+    ]
+    monkeypatch.setattr("tritrack.training.training.recordings", lambda *_: people)
+    train_postures([], tmp_path / "two.npz", Plan(None, "default", tmp_path), QUIET)
+    return Plan(None, "default", tmp_path, tmp_path / "two.npz")
+
+
+def filmed(monkeypatch: pytest.MonkeyPatch, *postures: str) -> list[Path]:
+    """Takes of these postures, which all come out as the one that is taught."""
+    takes = [
+        Recording("me", NEW, perform(posture, n), f"take{n}") for n, posture in enumerate(postures)
+    ]
+    monkeypatch.setattr(teaching, "recordings", lambda *_: takes)
+    return [Path(take.clip) for take in takes]
+
+
+def test_three_takes_make_a_model_that_knows_one_posture_more(
+    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    takes = filmed(monkeypatch, NEW, NEW, NEW)
+    facts = teach(NEW, takes, tmp_path / "mine.npz", plan, QUIET)
+    model = load(tmp_path / "mine.npz")
+    assert list(model.names) == facts["knows"] == ["squat", "walk_toward", NEW]
+    assert "me" in model.card.performers
+    assert "learnt from 3 takes, 3 postures known" in line(facts)
+    assert f"nearest other posture is {facts['rivals'][0]}" in line(facts)
+
+
+def test_a_take_that_differs_is_named_with_what_it_looks_like(
+    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    takes = filmed(monkeypatch, NEW, "squat", NEW, NEW)
+    facts = teach(NEW, takes, tmp_path / "mine.npz", plan, QUIET)
+    assert "take1 was taken for squat" in line(facts)
+
+
+def test_takes_that_do_not_agree_write_nothing(
+    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    takes = filmed(monkeypatch, "squat", "walk_toward", "squat")
+    with pytest.raises(LearningError, match="not known again"):
+        teach(NEW, takes, tmp_path / "mine.npz", plan, QUIET)
+    assert not (tmp_path / "mine.npz").exists()
+
+
+@pytest.mark.parametrize("posture", ["", "Star Jump", "../up", "9lives", "x" * 60])
+def test_what_is_no_name_is_refused(plan: Plan, tmp_path: Path, posture: str) -> None:
+    with pytest.raises(TrainingError, match="is no name of a posture"):
+        teach(posture, [], tmp_path / "mine.npz", plan, QUIET)
+
+
+def test_too_few_takes_are_refused_before_any_is_tracked(
+    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(teaching, "recordings", lambda *_: pytest.fail("they were tracked"))
+    with pytest.raises(TrainingError, match="name at least 3 clips of kick_left_side"):
+        teach(NEW, [Path("a"), Path("b")], tmp_path / "mine.npz", plan, QUIET)

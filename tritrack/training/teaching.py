@@ -1,0 +1,83 @@
+"""Teaching a model one posture more by a few takes of it."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from rich.console import Console
+
+from recognizer.model_file import save
+from recognizer.training.lesson import LEAST_TAKES, Lesson, taught
+from tritrack.store.cores import spread
+from tritrack.training.recordings import recordings
+from tritrack.training.training import Plan, TrainingError, model_named
+
+NAME: Final = re.compile(r"[a-z][a-z0-9_]{0,39}")
+
+
+def teach(
+    posture: str, paths: Sequence[Path], out: Path, plan: Plan, console: Console
+) -> dict[str, Any]:
+    """Learn a posture from takes, tell how well they agree, and write the model.
+
+    Args:
+        posture: Its name; whatever the clips call it.
+        paths: Clip folders or run folders, one a take.
+        out: The file to write.
+        plan: What it is added to, and how clips are tracked.
+        console: For progress and warnings.
+
+    Raises:
+        TrainingError: When the name is none, or there are too few takes.
+        RecordingError, ClipsFailed: When a take cannot be used.
+        LearningError: When the takes do not agree, or the name is known already.
+        ModelError: When the file cannot be written, or the model to add to cannot be read.
+    """
+    if not NAME.fullmatch(posture):
+        raise TrainingError(
+            f"{posture!r} is no name of a posture: small letters, digits and _, as star_jump"
+        )
+    known = model_named(plan.add_to or Path("shipped"), plan.recognizer)
+    if len(paths) < LEAST_TAKES:  # before any is tracked
+        raise TrainingError(f"{len(paths)} takes: name at least {LEAST_TAKES} clips of {posture}")
+    with spread(""):
+        takes = recordings(paths, known.card.recognizer, plan.cache, console, posture)
+    performers = sorted({take.performer for take in takes if take.performer})
+    lesson = taught(known, posture, [take.rows for take in takes], performers)
+    save(lesson.model, out)
+    return {
+        "model": str(out),
+        "posture": posture,
+        "takes": [
+            {"clip": take.clip, "margin": told.margin, "rival": told.rival}
+            for take, told in zip(takes, lesson.takes, strict=True)
+        ],
+        "rivals": rivals(lesson),
+        "knows": list(lesson.model.names),
+    }
+
+
+def rivals(lesson: Lesson) -> list[str]:
+    """The postures that the new one is nearest to, the nearest take first."""
+    near = sorted(lesson.takes, key=lambda take: take.margin)
+    return list(dict.fromkeys(take.rival for take in near))
+
+
+def line(facts: dict[str, Any]) -> str:
+    """What was learnt, in words."""
+    mistaken = [take for take in facts["takes"] if take["margin"] <= 0.0]
+    told = [
+        f"{facts['posture']} learnt from {len(facts['takes'])} takes,"
+        f" {len(facts['knows'])} postures known; written to {facts['model']}"
+    ]
+    told += [
+        f"{take['clip']} was taken for {take['rival']} by what the other takes teach: film it again"
+        for take in mistaken
+    ]
+    if not mistaken:
+        told.append(
+            "each take is known again by what the others teach; the nearest other posture is"
+            f" {facts['rivals'][0]}"
+        )
+    return "\n".join(told)
