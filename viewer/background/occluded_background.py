@@ -3,22 +3,14 @@
 from collections.abc import Sequence
 from typing import Final
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from common.raster.similarity import Mask
 from common.video.decoding import Image
-from viewer.background.background import (
-    Background,
-    estimated,
-    even_light,
-    large_regions,
-    slopes,
-    spread_of,
-)
-from viewer.background.empty_opening import EDGE_SHARE
+from viewer.background.background import Background, estimated, even_light, spread_of
 from viewer.background.image_stack import CHANGES, LUMA, Floats, median, squares
+from viewer.background.median_people import occupied
 
 GUESSED: Final = 4.0
 """Spread of a pixel whose background was guessed, grey levels."""
@@ -26,21 +18,6 @@ SEGMENT_SCALE: Final = 300.0
 SEGMENT_SIGMA: Final = 0.8
 LEAST_SEGMENT_PX: Final = 20
 """Felzenszwalb and Huttenlocher's own values for pictures of this size (T7)."""
-NOISES: Final = 4.0
-"""Spreads of a pixel's own flicker that a change must pass on top of CHANGES."""
-MOST_FLICKER: Final = 2 * CHANGES
-QUIET: Final = 0.25
-"""A pixel flickers by what it stays within for this share of the frames."""
-ROAMS: Final = 0.55
-"""Somebody whose middle moves sideways by this share of the height of where they are leaves every
-pixel for most of the clip: 0.5 to 2.0 for who crosses a picture, up to 0.5 on the spot."""
-RARELY: Final = 0.1
-"""Who is in the median picture and roams leaves the spot for more of the frames than this; what
-changes less often there is background that arms pass, whose own edges are taken for contours."""
-LEAST_BLOB: Final = 0.2
-"""Less than this share of the largest change at a place does not tell where the middle is."""
-AROUND: Final = 0.25
-"""Share of the picture's height in which contours speak for each other: half a person."""
 MOST_HIDDEN: Final = 0.25
 """Nobody hides more of a picture than this; then several people roam in it."""
 OUTSIDE: Final = 0.5
@@ -88,7 +65,7 @@ def learn_uncovered(frames: Sequence[Image]) -> Background:
     away = np.abs(even - centre).max(axis=3)
     labels = segments(centre)
     for stays in (True, False):
-        held = _held(centre, labels, _occupied(even, centre, away, stays))
+        held = _held(centre, labels, occupied(even, centre, away, stays))
         background, uncertain = _filled(even, centre, held)
         if uncertain.mean() <= MOST_HIDDEN:
             break
@@ -193,65 +170,6 @@ def _alike(centre: Floats, labels: NDArray[np.int64], where: Mask) -> Mask:
         spread = np.sqrt(np.maximum(square - mean**2, 0)) * ALIKE + CHANGES
         off = np.maximum(off, np.abs(own - mean[labels]) / spread[labels])
     return np.asarray(off < 1)
-
-
-def _occupied(even: Floats, centre: Floats, away: Floats, stays: bool) -> Mask:
-    """(H, W) True in the hulls of the places where somebody may stand in the median picture.
-
-    Args:
-        even: (n, H, W, 3) frames under one light.
-        centre: (H, W, 3), their median.
-        away: (n, H, W), how far they are from it.
-        stays: What stays put counts; otherwise only what its contours tell.
-    """
-    flicker = np.minimum(NOISES * np.quantile(away, QUIET, axis=0), MOST_FLICKER)
-    changed = np.stack([large_regions(off > CHANGES + flicker) for off in away])
-    hidden, often = _in_median(even, centre, changed), changed.mean(axis=0) > RARELY
-    gap = 2 * (centre.shape[0] // 60) + 1
-    joined = cv2.dilate(changed.max(axis=0), np.ones((gap, gap), np.uint8))
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(joined)
-    places = np.zeros(labels.shape, np.uint8)
-    for number in range(1, count):
-        own = labels == number
-        roams = _travelled(changed, own) > ROAMS * stats[number, cv2.CC_STAT_HEIGHT]
-        there = hidden & often if roams else hidden | stays
-        places |= own & there
-    return _hulls(places)
-
-
-def _in_median(even: Floats, centre: Floats, changed: NDArray[np.uint8]) -> Mask:
-    """(H, W) True where contours of what changes are in the median picture, not in the frames."""
-    slope = slopes(np.asarray(centre @ LUMA, np.float32))
-    in_median, in_frames = np.zeros_like(slope), np.zeros_like(slope)
-    for frame, own in zip(even, changed, strict=True):
-        contour = cv2.morphologyEx(own, cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8)) > 0
-        steeper = np.where(contour, slopes(np.asarray(frame @ LUMA, np.float32)) - slope, 0)
-        in_frames += steeper.clip(min=0)
-        in_median -= steeper.clip(max=0)
-    reach = 2 * round(AROUND * len(slope) / 2) + 1
-    held, due = (cv2.blur(sums, (reach, reach)) for sums in (in_median, in_frames))
-    return np.asarray(held > EDGE_SHARE * due)
-
-
-def _travelled(changed: NDArray[np.uint8], own: Mask) -> float:
-    """How far the middle of what changes in a place moves sideways, pixels."""
-    columns = (changed * own).sum(axis=1)
-    areas = columns.sum(axis=1)
-    seen = areas > LEAST_BLOB * areas.max()
-    middles = columns[seen] @ np.arange(own.shape[1]) / areas[seen]
-    low, high = np.quantile(middles, (0.05, 0.95))
-    return float(high - low)
-
-
-def _hulls(regions: NDArray[np.uint8]) -> Mask:
-    """The convex hull of every region."""
-    reach = max(1, regions.shape[0] // 60)
-    joined = cv2.dilate(regions, np.ones((2 * reach + 1, 2 * reach + 1), np.uint8))
-    contours, _ = cv2.findContours(joined, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-    out = np.zeros(regions.shape, np.uint8)
-    for contour in contours:
-        cv2.fillConvexPoly(out, cv2.convexHull(contour), 1)
-    return out > 0
 
 
 def _bridge(picture: Floats, held: Mask) -> Floats:
