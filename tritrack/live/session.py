@@ -62,10 +62,10 @@ def live(
         refuse_without_library()
     _refuse_port(settings)
     new = not out.exists()
-    log = _new_log(out)
     began, heard = time.monotonic(), nothing_heard()
     title = name or Path(settings.clip).name or "tritrack"
     with _stopped_by_signals() as stop, ExitStack() as doors:
+        log = _new_log(out)
         context = ProcessContext(True, log)
         desk = PageDesk(settings, out, title, context)
         doors.callback(desk.close)
