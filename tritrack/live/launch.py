@@ -17,6 +17,7 @@ from tritrack.live.page_desk import PageDesk
 from tritrack.live.process_table import Part
 from tritrack.live.recorded import MessageLog
 from tritrack.live.supervise import Watched, watched
+from tritrack.store.journal import Journal
 from tritrack.store.recording import Keep
 
 LOOK_S: Final = 0.1
@@ -39,6 +40,8 @@ class Heard(NamedTuple):
     """What the supervisor says itself: which part died, and what becomes of it."""
     keep: Keep | None = None
     """Takes every report, body, posture and rig, where the run is recorded."""
+    journal: Journal | None = None
+    """Takes every body, posture and rig at once."""
 
 
 def nothing_heard() -> Heard:
@@ -135,6 +138,8 @@ class Subscriber:
         self._cameras = bus.subscribe(Cameras)
         told = bus.latest(Cameras, LAST_WORDS_S)
         heard.cameras.extend([] if told is None else [told])
+        if heard.journal is not None:
+            heard.journal.keep(heard.cameras)
         self._reports = [bus.subscribe(Report)] if heard.keep is not None else []
 
     @property
@@ -154,11 +159,18 @@ class Subscriber:
         self._heard.bodies.add(bodies)
         self._heard.postures.add(postures)
         self._heard.cameras.extend(cameras)
+        if self._heard.journal is not None:
+            self._heard.journal.keep([*cameras, *bodies, *postures])
+            self._note(self._heard.journal.odd)
         for message in [each for some in [*said, bodies, postures, cameras] for each in some]:
             if self._heard.keep is not None:
                 self._heard.keep(message)
         for pulse in self._pulses.drain():
             self._heard.pulses[pulse.process] = pulse
+
+    def _note(self, lines: list[str]) -> None:
+        """Tell what is new among these."""
+        self._heard.notes.extend(line for line in lines if line not in self._heard.notes)
 
 
 @contextmanager

@@ -21,13 +21,17 @@ from common.config import BusSettings, PageSettings, Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip, both_cameras
 from tritrack.live.launch import Heard, nothing_heard, run
-from tritrack.live.page_desk import PageDesk
+from tritrack.live.page_desk import SAVED, PageDesk
 from tritrack.live.process_table import live_parts
 from tritrack.live.screen import Screen, warnings_of
+from tritrack.store.journal import Head as JournalHead
+from tritrack.store.journal import Journal, put_aside
 from tritrack.store.recording import Keep, refuse_without_library
 from tritrack.store.runs import write_postures, write_run
 
 PLAYS: Final = "the run is over; the page plays it as long as it is open (Ctrl-C ends)"
+KEPT: Final = ".kept-"
+"""Begins the name of the folder in which processes leave what their next start takes up."""
 NO_POSTURE: Final = -1
 """posture_id of a clip that shows none of the postures: free motion, a test of the tracker."""
 
@@ -77,8 +81,10 @@ def live(
             return _facts(heard, named, clip, time.monotonic() - began)
 
         desk.facts = facts
+        journal = _journal(out, clip, settings, heard.notes)
+        heard = heard._replace(journal=journal)
         try:
-            with TemporaryDirectory(prefix=".kept-", dir=out) as kept:
+            with TemporaryDirectory(prefix=KEPT, dir=out) as kept:
                 parts = live_parts(settings, clip, context._replace(kept=Path(kept)))
                 names = [part.name for part in (*parts, *desk.parts)]
                 with (
@@ -91,8 +97,23 @@ def live(
             told = facts()
             write_run(out, heard.bodies.all(), settings, told)
             write_postures(out, heard.postures.all(), told["posture"])
+            journal.remove()
         _show_end(desk, told, stop, console)
     return told
+
+
+def _journal(out: Path, clip: Clip, settings: Settings, notes: list[str]) -> Journal:
+    """What takes each body as it comes; the journal of a run that was cut short is put aside."""
+    aside = out / SAVED / f"cut_short_{time.strftime('%Y%m%d_%H%M%S')}"
+    try:
+        if put_aside(out, aside):
+            notes.append(f"the run before this one was cut short: what it measured is in {aside}")
+    except OSError as error:
+        raise LiveRefused(
+            f"{out} holds a run that was cut short, which cannot be put aside "
+            f"({error.strerror}): name another --out"
+        ) from error
+    return Journal(out, JournalHead(settings=settings, facts=_of_clip(clip)))
 
 
 def _kept(
@@ -189,6 +210,8 @@ def _new_log(out: Path) -> Path:
     try:
         out.mkdir(parents=True, exist_ok=True)
         path.write_text("")
+        for left in out.glob(f"{KEPT}*"):  # by a run that was cut short
+            shutil.rmtree(left, ignore_errors=True)
     except OSError as error:
         raise LiveRefused(f"cannot write {out}: {error.strerror}; name another --out") from error
     return path
@@ -218,9 +241,7 @@ def _facts(heard: Heard, posture: str, clip: Clip, seconds: float) -> dict[str, 
             "shorter runs, or follow recordings with: tritrack track"
         )
     return {
-        "clip": clip.name,
-        "performer": clip.meta.performer,
-        "posture_meant": clip.meta.posture,
+        **_of_clip(clip),
         "seconds": {"all": round(seconds, 3)},
         "scale_source": source,
         "posture": posture,
@@ -233,6 +254,14 @@ def _facts(heard: Heard, posture: str, clip: Clip, seconds: float) -> dict[str, 
             }
             for name, pulse in sorted(heard.pulses.items())
         },
+    }
+
+
+def _of_clip(clip: Clip) -> dict[str, Any]:
+    return {
+        "clip": clip.name,
+        "performer": clip.meta.performer,
+        "posture_meant": clip.meta.posture,
     }
 
 
