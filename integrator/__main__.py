@@ -15,6 +15,7 @@ from common.config import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip
 from integrator import commands, diagnostics, merge, merge_state, opening_posture, pairing, presence
+from integrator.frame_numbers import frame_times
 from integrator.integrator_warmup import warm_up
 from integrator.merge_state import Start, State
 from integrator.pairing import Pair
@@ -29,6 +30,11 @@ LAST_WORDS_S: Final = 1.0
 """All others meet here: how long the room stays open after the last body."""
 SUPERVISED_S: Final = 60.0
 """The same where a supervisor ends the processes in order."""
+ASLEEP_S: Final = 0.5
+"""A round that took longer was stopped, or starved: what was said meanwhile is on its way still,
+and its speakers are not to blame."""
+AWAKE_S: Final = 0.3
+"""For so long after it nobody is called late: all that waits is taken in first, and caught up."""
 OVERDUE_PERIODS: Final = 2.0
 """A report whose partner is two frames late goes on alone, and so do those after it."""
 
@@ -83,7 +89,9 @@ class Subscriber:
         self._paired = pairing.init(period_s, viewers)
         self._present = presence.init(period_s, viewers)
         self._wait_s = OVERDUE_PERIODS * period_s
-        self._looked_s = time.monotonic()
+        self._looked_s = self._round_s = time.monotonic()
+        self._judges_s = 0.0
+        """From then on it is asked who is late or silent."""
         bus.answer(ClockQuestion, self.starter.answer)
 
     @property
@@ -99,21 +107,33 @@ class Subscriber:
     def pairs(self) -> list[Pair]:
         """What is complete now, or overdue; waits a moment for a report."""
         complete: list[Pair] = []
-        report = self._reports.take(HEAR_S)
+        first = self._reports.take(HEAR_S)
+        reports = [] if first is None else [first, *self._reports.drain()]
         now_s = time.monotonic()
-        if report is not None:
+        for report in reports:
             self.starter.begun(report)
             self._present = presence.heard(self._present, report, now_s)
-            self._paired, complete = pairing.step(self._paired, report)
-        if report is None or now_s - self._looked_s > LOOK_S:
+            self._paired, more = pairing.step(self._paired, report)
+            complete += more
+        if not reports or now_s - self._looked_s > LOOK_S:
             # What a viewer said before it went comes first, unless there is always a report.
             complete += self._who_came_and_went(now_s)
             self._looked_s = now_s
-        self._paired, alone = pairing.overdue(self._paired, now_s, self._wait_s)
-        self._present, told = presence.step(self._present, now_s)
-        for line in told:
-            log.warning(line)
-        return complete + alone
+        if self._is_caught_up(reports, now_s):
+            self._paired, alone = pairing.overdue(self._paired, now_s, self._wait_s)
+            complete += alone
+            self._present, told = presence.step(self._present, now_s)
+            for line in told:
+                log.warning(line)
+        return complete
+
+    def _is_caught_up(self, reports: list[Report], now_s: float) -> bool:
+        """Whether who has said nothing can be held to it: this process has listened itself."""
+        if now_s - self._round_s > ASLEEP_S:
+            self._judges_s = now_s + AWAKE_S
+        self._round_s = now_s
+        fresh = not reports or now_s - reports[-1].clock_s < self._wait_s
+        return fresh and now_s >= self._judges_s
 
     def commands(self) -> list[Command]:
         """What the person at the page asks for since; that they are there is asked for too."""
@@ -209,7 +229,7 @@ def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContex
             period_s,
             settings,
             METHODS[settings.mode],
-            Start(len(viewers) == 1, opening=opening_posture.init(clip.body)),
+            Start(len(viewers) == 1, None, opening_posture.init(clip.body), frame_times(clip)),
         )
         warm_up(settings, clip.views[0].size)
         gc.collect()

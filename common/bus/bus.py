@@ -16,8 +16,9 @@ from common.bus.message_codec import MAX_BYTES, Said
 from common.bus.messages import Message
 from common.config import BusSettings
 
-LEASE_MS: Final = 1000
-"""A process that hangs counts as gone after this; Zenoh's own 10 s would be 150 frames."""
+LEASE_MS: Final = 4000
+"""A process that hangs counts as gone after this, by Zenoh's own 10 s. One that was stopped for
+less goes on where it was: what was said to it meanwhile waits. Who is silent is known sooner."""
 
 HANDSHAKE_MS: Final = 1000
 """How long a peer that accepts a connection may take to prove that it is one of ours."""

@@ -12,8 +12,9 @@ from common.bus.messages import Message
 QUESTIONS: Final[dict[type[Message], str]] = {ClockQuestion: "tritrack/{room}/clock"}
 """Where each kind of question is answered."""
 
-BOUND: Final = 64
-"""Messages that wait for a reader: four seconds at 15 Hz; older ones are of no use to anyone."""
+BOUND: Final = 128
+"""Messages that wait for a reader: four seconds of two viewers at 15 Hz; older ones are of no use
+to anyone."""
 
 MOST_GAP: Final = 100_000
 """Messages that a link may lose at once, two hours of them; a larger gap is nobody of ours."""
