@@ -26,15 +26,16 @@ from common.bus.messages import Body
 from common.config import BusSettings, PageSettings, Settings
 from common.video.clips import open_clip
 from tritrack import demo
-from tritrack.live.session import free_settings
+from tritrack.live.free_ports import free_settings
 from tritrack.live.table import table_of_rows
 from tritrack.store.past_run import PastRunError, open_run
 
 HARM_S: Final = 4.0
 """After the first body: the person is measured then."""
 FREEZE_S: Final = 2.0
-STARTING_S: Final = (0.05, 0.2, 0.5, 1.0, 2.0, 4.0)
-"""When a run that starts is stopped: one moment a trial, in turn."""
+STARTING_S: Final = (0.3, 1.0, 3.0, 0.5, 2.0, 5.0)
+"""When a run that starts is stopped: one moment a trial, in turn. Python itself needs the first
+tenth of a second, in which it heeds no signal."""
 ORPHANED_S: Final = 2.0
 PATIENCE_S: Final = 120.0
 LIVE: Final = (sys.executable, "-m", "tritrack", "live")

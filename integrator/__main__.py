@@ -148,6 +148,7 @@ class Subscriber:
             "dropped": self._paired.dropped + self._reports.dropped,
             "late": self._paired.late,
             "malformed": self._reports.malformed,
+            "foreign": self._reports.foreign,
         }
 
     def _who_came_and_went(self, now_s: float) -> list[Pair]:

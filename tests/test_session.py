@@ -18,8 +18,9 @@ from spoiling import copied, cut_off, uncalibrated
 from common.bus.control_messages import Pulse
 from common.bus.messages import Posture
 from common.config import PageSettings, Settings
+from tritrack.live.free_ports import free_settings
 from tritrack.live.screen import warnings_of
-from tritrack.live.session import LiveRefused, free_settings, live, performed
+from tritrack.live.session import LiveRefused, live, performed
 
 
 def settings_of(clip: Path) -> Settings:

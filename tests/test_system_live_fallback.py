@@ -24,8 +24,9 @@ from common.bus.control_messages import Pulse
 from common.bus.messages import Body, Views
 from common.config import BusSettings, PageSettings, Settings
 from tritrack.live import session
+from tritrack.live.free_ports import free_settings
 from tritrack.live.process_table import Part, live_parts
-from tritrack.live.session import free_settings, live
+from tritrack.live.session import live
 from tritrack.live.supervise import PartFailed
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.runs import poses

@@ -66,6 +66,11 @@ class Guides:
         """How many messages in a guide's place were none."""
         return self._inbox.malformed
 
+    @property
+    def foreign(self) -> int:
+        """How many guides were not of this run."""
+        return self._inbox.foreign
+
     def _heard(self) -> int:
         return -1 if self.newest is None else self.newest.frames[self._viewer - 1]
 
@@ -206,6 +211,7 @@ def _news(live: Live, guides: Guides, warnings: tuple[str, ...]) -> dict[str, An
         "dropped": live.dropped,
         "guide_misses": guides.misses,
         "malformed": guides.malformed,
+        "foreign": guides.foreign,
     }
 
 

@@ -2,7 +2,6 @@
 
 import shutil
 import signal
-import socket
 import threading
 import time
 from collections.abc import Iterator
@@ -17,9 +16,10 @@ from rich.console import Console
 
 from common.bus.messages import Posture
 from common.bus.process import ProcessContext, logged
-from common.config import BusSettings, PageSettings, Settings
+from common.config import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip, both_cameras
+from tritrack.live.free_ports import own_session, refuse_held_ports
 from tritrack.live.launch import Heard, nothing_heard, run
 from tritrack.live.page_desk import SAVED, PageDesk
 from tritrack.live.process_table import live_parts
@@ -56,15 +56,16 @@ def live(
         What the run's summary tells.
 
     Raises:
-        ClipError, ModelError, PageError, SettingsError, LiveRefused: When something cannot be
-            worked with; no process was started.
+        ClipError, ModelError, PageError, PortHeld, SettingsError, LiveRefused: When something
+            cannot be worked with; no process was started.
         PartFailed, BusError, RunError: When something failed; what was tracked until then is
             written first.
     """
     refuse_mode(settings)
     if record:
         refuse_without_library()
-    _refuse_port(settings)
+    refuse_held_ports(settings)
+    settings = own_session(settings)
     new = not out.exists()
     began, heard = time.monotonic(), nothing_heard()
     title = name or Path(settings.clip).name or "tritrack"
@@ -190,20 +191,6 @@ def _refuse_what_would_fail(settings: Settings, clip: Clip) -> None:
     refuse_landmarks(settings, clip.views)
 
 
-def _refuse_port(settings: Settings) -> None:
-    """Say that the page cannot be opened before anything is."""
-    if settings.page.port:
-        try:
-            import websockets  # noqa: F401
-
-            from animator.page.door import refuse_port
-        except ImportError as error:
-            raise LiveRefused(
-                f"the page needs {error.name}: pip install 'tritrack[page]', or set page.port = 0"
-            ) from error
-        refuse_port(settings.page.port)
-
-
 def _new_log(out: Path) -> Path:
     """The log of this run alone: a run before it in the same folder is overwritten."""
     path = out / "log.txt"
@@ -220,16 +207,6 @@ def _new_log(out: Path) -> Path:
 def performed(postures: list[Posture]) -> str:
     """The posture of a whole clip: the last name given, by a window that saw most of it."""
     return next((posture.name for posture in reversed(postures) if posture.name), "")
-
-
-def free_settings(settings: Settings) -> Settings:
-    """The same settings with an endpoint and a page on ports that nobody holds."""
-    bus, page = _free_port(), _free_port()
-    return msgspec.structs.replace(
-        settings,
-        bus=BusSettings(endpoint=f"tcp/127.0.0.1:{bus}"),
-        page=PageSettings(port=page) if settings.page.port else settings.page,
-    )
 
 
 def _facts(heard: Heard, posture: str, clip: Clip, seconds: float) -> dict[str, Any]:
@@ -278,9 +255,3 @@ def _stopped_by_signals() -> Iterator[threading.Event]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-def _free_port() -> int:
-    with socket.socket() as door:
-        door.bind(("127.0.0.1", 0))
-        return int(door.getsockname()[1])
