@@ -16,6 +16,7 @@ from common.method import METHODS
 from common.video.clip_facts import Clip
 from integrator import commands, diagnostics, merge, merge_state, opening_posture, pairing, presence
 from integrator.frame_numbers import frame_times
+from integrator.handed_over import Estate
 from integrator.integrator_warmup import warm_up
 from integrator.merge_state import Start, State
 from integrator.pairing import Pair
@@ -35,6 +36,9 @@ ASLEEP_S: Final = 0.5
 and its speakers are not to blame."""
 AWAKE_S: Final = 0.3
 """For so long after it nobody is called late: all that waits is taken in first, and caught up."""
+GATHER_S: Final = 0.3
+"""Started again in the middle of a run, it waits so long for what the viewers say once more, and
+takes it in by its time."""
 OVERDUE_PERIODS: Final = 2.0
 """A report whose partner is two frames late goes on alone, and so do those after it."""
 
@@ -67,6 +71,11 @@ class Starter:
     def looked_at(self) -> None:
         """Somebody looks: nothing else is waited for."""
         self._wait_s = 0.0
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the start is known."""
+        return self._start_s is not None
 
     def begun(self, report: Report) -> None:
         """The run has begun: this process was started again, and its viewers were not."""
@@ -108,7 +117,10 @@ class Subscriber:
         """What is complete now, or overdue; waits a moment for a report."""
         complete: list[Pair] = []
         first = self._reports.take(HEAR_S)
+        if first is not None and not self.starter.fixed:
+            time.sleep(GATHER_S)
         reports = [] if first is None else [first, *self._reports.drain()]
+        reports.sort(key=lambda report: report.captured_s)
         now_s = time.monotonic()
         for report in reports:
             self.starter.begun(report)
@@ -176,6 +188,7 @@ def run(
     bus: Bus,
     stop: threading.Event,
     wait_s: float = 0.0,
+    estate: Estate = Estate(None),
 ) -> None:
     """Pair and merge what the viewers report, until each has ended; wait so long for the page."""
     pace = Pace(period_s)
@@ -203,6 +216,7 @@ def run(
         if subscriber.news != news:
             news = subscriber.news
             heart.hurry()
+        estate.leave(state)
         heart.beat("running", "\n".join([*odd, *news]), **subscriber.counts())
     odd = [*diagnostics.warnings(noticed, state), *subscriber.news]
     heart.beat("ended", "\n".join(odd), **subscriber.counts())
@@ -224,7 +238,7 @@ def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContex
     with process("integrator", context) as stop, open_hub(settings.bus, settings.room) as bus:
         bus.keep(Guide)
         bus.keep(Cameras)
-        bus.announce("integrator")
+        estate = Estate(context.kept)
         state = merge_state.init(
             clip.rig,
             period_s,
@@ -232,10 +246,12 @@ def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContex
             METHODS[settings.mode],
             Start(len(viewers) == 1, None, opening_posture.init(clip.body), frame_times(clip)),
         )
+        state = estate.taken_up(state)
         warm_up(settings, clip.views[0].size)
         gc.collect()
         gc.freeze()
-        run(state, viewers, period_s, bus, stop, page_wait_s(settings, clip, context))
+        bus.announce("integrator")  # viewers say then what was not heard: it listens at once
+        run(state, viewers, period_s, bus, stop, page_wait_s(settings, clip, context), estate)
         stop.wait(SUPERVISED_S if context.supervised else LAST_WORDS_S)
 
 

@@ -13,8 +13,8 @@ from common.config import MOST_SESSION
 QUESTIONS: Final[dict[type[Message], str]] = {ClockQuestion: "tritrack/{room}/clock"}
 """Where each kind of question is answered."""
 
-BOUND: Final = 128
-"""Messages that wait for a reader: four seconds of two viewers at 15 Hz; older ones are of no use
+BOUND: Final = 256
+"""Messages that wait for a reader: eight seconds of two viewers at 15 Hz; older ones are of no use
 to anyone."""
 
 MOST_GAP: Final = 100_000
