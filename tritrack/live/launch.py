@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple
 from common.bus.bus import Bus, BusError, open_client
 from common.bus.control_messages import Cameras, Pulse
 from common.bus.inbox import Inbox
-from common.bus.messages import Body, Posture, Report
+from common.bus.messages import Body, Message, Posture, Report
 from common.bus.process import READY_S
 from common.config import Settings
 from tritrack.live.page_desk import PageDesk
@@ -131,7 +131,7 @@ class Subscriber:
 
     def __init__(self, bus: Bus, heard: Heard) -> None:
         """Listen from now on; the cameras may have been told before."""
-        self._heard = heard
+        self._heard, self._keep = heard, heard.keep
         self._bodies = bus.subscribe(Body)
         self._postures = bus.subscribe(Posture)
         self._pulses = bus.subscribe(Pulse)
@@ -162,11 +162,20 @@ class Subscriber:
         if self._heard.journal is not None:
             self._heard.journal.keep([*cameras, *bodies, *postures])
             self._note(self._heard.journal.odd)
-        for message in [each for some in [*said, bodies, postures, cameras] for each in some]:
-            if self._heard.keep is not None:
-                self._heard.keep(message)
+        self._record([each for some in [*said, cameras, bodies, postures] for each in some])
         for pulse in self._pulses.drain():
             self._heard.pulses[pulse.process] = pulse
+
+    def _record(self, messages: list[Message]) -> None:
+        """Keep these for a replay, as long as the disk takes them: the run goes on without."""
+        if self._keep is None:
+            return
+        try:
+            for message in messages:
+                self._keep(message)
+        except OSError as error:
+            self._keep = None
+            self._note([f"the recording ends here: it cannot be written ({error.strerror})"])
 
     def _note(self, lines: list[str]) -> None:
         """Tell what is new among these."""
