@@ -1,5 +1,6 @@
 """A signal ends a command with its word and its code, whenever it comes."""
 
+import importlib
 import os
 import signal
 import subprocess
@@ -20,14 +21,14 @@ def test_a_command_that_starts_ends_with_its_word_and_code(
 ) -> None:
     """It waits for a package that is never whole: it is still being imported."""
     code = (
-        "import sys, time, importlib.abc\n"
+        "import runpy, sys, time, importlib.abc\n"
         "class Slow(importlib.abc.MetaPathFinder):\n"
         "    def find_spec(self, name, *rest):\n"
         "        if name == 'typer':\n"
         "            print('importing', flush=True)\n"
         "            time.sleep(60)\n"
         "sys.meta_path.insert(0, Slow())\n"
-        "import tritrack.__main__\n"
+        "runpy.run_module('tritrack', run_name='__main__', alter_sys=True)\n"
     )
     run = subprocess.Popen(
         [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
@@ -46,3 +47,9 @@ def test_ctrl_c_and_sigterm_are_told_apart_by_their_codes() -> None:
     wrapped.__cause__ = Terminated()
     codes = [code_of_stop(one) for one in (KeyboardInterrupt(), Terminated(), wrapped)]
     assert codes == [130, 143, 143]
+
+
+def test_a_program_that_imports_the_command_keeps_its_own_signals() -> None:
+    before = signal.getsignal(signal.SIGTERM)
+    importlib.import_module("tritrack.__main__")
+    assert signal.getsignal(signal.SIGTERM) is before

@@ -3,6 +3,8 @@
 import multiprocessing
 import os
 import signal
+import sys
+from pathlib import Path
 from types import FrameType
 from typing import Final, NoReturn
 
@@ -18,9 +20,12 @@ class Terminated(KeyboardInterrupt):
 def heed_at_once() -> None:
     """While a command's own modules are imported, a signal ends it with its word and code.
 
-    A process of a run imports the command too: its supervisor tells it how to end.
+    A process of a run imports the command too: its supervisor tells it how to end. So does a program
+    that is another: signals are its own.
     """
-    if multiprocessing.parent_process() is None:
+    called = Path(sys.argv[0])
+    is_command = called.name == "tritrack" or called.parts[-2:] == ("tritrack", "__main__.py")
+    if is_command and multiprocessing.parent_process() is None:
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, _leave)
 
