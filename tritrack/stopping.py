@@ -20,8 +20,8 @@ class Terminated(KeyboardInterrupt):
 def heed_at_once() -> None:
     """While a command's own modules are imported, a signal ends it with its word and code.
 
-    A process of a run imports the command too: its supervisor tells it how to end. So does a program
-    that is another: signals are its own.
+    A process of a run imports the command too: its supervisor tells it how to end. So may another
+    program: its signals are its own.
     """
     called = Path(sys.argv[0])
     is_command = called.name == "tritrack" or called.parts[-2:] == ("tritrack", "__main__.py")
