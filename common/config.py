@@ -9,6 +9,9 @@ import msgspec
 
 from common.method import Mode
 
+MOST_SESSION: Final = 64
+"""Letters of a session's word, which goes with every message."""
+
 LANDMARK_SOURCES: Final = ("own", "none", "mediapipe")
 """What `landmarks` may say instead of a folder."""
 
@@ -118,6 +121,16 @@ class BusSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     endpoint: str = "tcp/127.0.0.1:7447"
     """The integrator's host listens there, all others connect to it. Name another host's address
     to spread a rig over hosts; nothing outside this machine is heard otherwise."""
+    session: str = ""
+    """A word that all processes of a run say with each message: what comes without it is dropped.
+    A live run makes one up; "": whoever speaks in the room is heard."""
+
+    def __post_init__(self) -> None:
+        """Refuse what no run could mean."""
+        if len(self.session) > MOST_SESSION or not self.session.isascii():
+            raise ValueError(
+                f"session must be at most {MOST_SESSION} ASCII letters, got {self.session!r}"
+            )
 
 
 class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -15,6 +15,8 @@ from common.config import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip
 from integrator import commands, diagnostics, merge, merge_state, opening_posture, pairing, presence
+from integrator.frame_numbers import frame_times
+from integrator.handed_over import Estate
 from integrator.integrator_warmup import warm_up
 from integrator.merge_state import Start, State
 from integrator.pairing import Pair
@@ -29,6 +31,14 @@ LAST_WORDS_S: Final = 1.0
 """All others meet here: how long the room stays open after the last body."""
 SUPERVISED_S: Final = 60.0
 """The same where a supervisor ends the processes in order."""
+ASLEEP_S: Final = 0.5
+"""A round that took longer was stopped, or starved: what was said meanwhile is on its way still,
+and its speakers are not to blame."""
+AWAKE_S: Final = 0.3
+"""For so long after it nobody is called late: all that waits is taken in first, and caught up."""
+GATHER_S: Final = 0.3
+"""Started again in the middle of a run, it waits so long for what the viewers say once more, and
+takes it in by its time."""
 OVERDUE_PERIODS: Final = 2.0
 """A report whose partner is two frames late goes on alone, and so do those after it."""
 
@@ -62,6 +72,11 @@ class Starter:
         """Somebody looks: nothing else is waited for."""
         self._wait_s = 0.0
 
+    @property
+    def fixed(self) -> bool:
+        """Whether the start is known."""
+        return self._start_s is not None
+
     def begun(self, report: Report) -> None:
         """The run has begun: this process was started again, and its viewers were not."""
         if self._start_s is None:
@@ -83,7 +98,9 @@ class Subscriber:
         self._paired = pairing.init(period_s, viewers)
         self._present = presence.init(period_s, viewers)
         self._wait_s = OVERDUE_PERIODS * period_s
-        self._looked_s = time.monotonic()
+        self._looked_s = self._round_s = time.monotonic()
+        self._judges_s = 0.0
+        """From then on it is asked who is late or silent."""
         bus.answer(ClockQuestion, self.starter.answer)
 
     @property
@@ -99,21 +116,36 @@ class Subscriber:
     def pairs(self) -> list[Pair]:
         """What is complete now, or overdue; waits a moment for a report."""
         complete: list[Pair] = []
-        report = self._reports.take(HEAR_S)
+        first = self._reports.take(HEAR_S)
+        if first is not None and not self.starter.fixed:
+            time.sleep(GATHER_S)
+        reports = [] if first is None else [first, *self._reports.drain()]
+        reports.sort(key=lambda report: report.captured_s)
         now_s = time.monotonic()
-        if report is not None:
+        for report in reports:
             self.starter.begun(report)
             self._present = presence.heard(self._present, report, now_s)
-            self._paired, complete = pairing.step(self._paired, report)
-        if report is None or now_s - self._looked_s > LOOK_S:
+            self._paired, more = pairing.step(self._paired, report)
+            complete += more
+        if not reports or now_s - self._looked_s > LOOK_S:
             # What a viewer said before it went comes first, unless there is always a report.
             complete += self._who_came_and_went(now_s)
             self._looked_s = now_s
-        self._paired, alone = pairing.overdue(self._paired, now_s, self._wait_s)
-        self._present, told = presence.step(self._present, now_s)
-        for line in told:
-            log.warning(line)
-        return complete + alone
+        if self._is_caught_up(reports, now_s):
+            self._paired, alone = pairing.overdue(self._paired, now_s, self._wait_s)
+            complete += alone
+            self._present, told = presence.step(self._present, now_s)
+            for line in told:
+                log.warning(line)
+        return complete
+
+    def _is_caught_up(self, reports: list[Report], now_s: float) -> bool:
+        """Whether who has said nothing can be held to it: this process has listened itself."""
+        if now_s - self._round_s > ASLEEP_S:
+            self._judges_s = now_s + AWAKE_S
+        self._round_s = now_s
+        fresh = not reports or now_s - reports[-1].clock_s < self._wait_s
+        return fresh and now_s >= self._judges_s
 
     def commands(self) -> list[Command]:
         """What the person at the page asks for since; that they are there is asked for too."""
@@ -128,6 +160,7 @@ class Subscriber:
             "dropped": self._paired.dropped + self._reports.dropped,
             "late": self._paired.late,
             "malformed": self._reports.malformed,
+            "foreign": self._reports.foreign,
         }
 
     def _who_came_and_went(self, now_s: float) -> list[Pair]:
@@ -155,6 +188,7 @@ def run(
     bus: Bus,
     stop: threading.Event,
     wait_s: float = 0.0,
+    estate: Estate = Estate(None),
 ) -> None:
     """Pair and merge what the viewers report, until each has ended; wait so long for the page."""
     pace = Pace(period_s)
@@ -182,6 +216,7 @@ def run(
         if subscriber.news != news:
             news = subscriber.news
             heart.hurry()
+        estate.leave(state)
         heart.beat("running", "\n".join([*odd, *news]), **subscriber.counts())
     odd = [*diagnostics.warnings(noticed, state), *subscriber.news]
     heart.beat("ended", "\n".join(odd), **subscriber.counts())
@@ -203,18 +238,20 @@ def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContex
     with process("integrator", context) as stop, open_hub(settings.bus, settings.room) as bus:
         bus.keep(Guide)
         bus.keep(Cameras)
-        bus.announce("integrator")
+        estate = Estate(context.kept)
         state = merge_state.init(
             clip.rig,
             period_s,
             settings,
             METHODS[settings.mode],
-            Start(len(viewers) == 1, opening=opening_posture.init(clip.body)),
+            Start(len(viewers) == 1, None, opening_posture.init(clip.body), frame_times(clip)),
         )
+        state = estate.taken_up(state)
         warm_up(settings, clip.views[0].size)
         gc.collect()
         gc.freeze()
-        run(state, viewers, period_s, bus, stop, page_wait_s(settings, clip, context))
+        bus.announce("integrator")  # viewers say then what was not heard: it listens at once
+        run(state, viewers, period_s, bus, stop, page_wait_s(settings, clip, context), estate)
         stop.wait(SUPERVISED_S if context.supervised else LAST_WORDS_S)
 
 

@@ -15,6 +15,7 @@ from integrator import opening_posture, outgoing
 from integrator.belief import LOST_SCORE
 from integrator.fit import proposed_pose, shape_fit
 from integrator.fit.proposed_pose import ProposedPose
+from integrator.frame_numbers import NO_FRAME, frame_at
 from integrator.merge_state import Posed, State
 from integrator.pairing import Pair, Seen
 from integrator.paper import fused_pose
@@ -80,7 +81,23 @@ def _at(state: State, pair: Pair) -> tuple[State, float]:
     dt_s = 0.0
     if state.found is not None and before_s is not None:  # whom nobody saw before owes nothing
         dt_s = max(0.0, now_s - before_s)
-    return state._replace(frames=(frames[0], frames[1]), last_s=now_s), dt_s
+    number = _number(state, pair)
+    return state._replace(
+        frames=(frames[0], frames[1]),
+        last_s=now_s,
+        number=number,
+        numbered=max(number, state.numbered),
+    ), dt_s
+
+
+def _number(state: State, pair: Pair) -> int:
+    """Rows are counted by camera 1's frames; by camera 2's where that is alone in the run."""
+    first, second = pair
+    if first is not None:
+        return first.frame
+    if state.times is None:
+        return second.frame if second is not None and state.frames[0] < 0 else NO_FRAME
+    return frame_at(state.times, pair.newest.captured_s, state.numbered, state.last_s)
 
 
 def _with_rig(state: State, seen: Seen) -> State:

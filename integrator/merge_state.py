@@ -10,6 +10,7 @@ from common.bus.messages import Facing
 from common.config import Settings
 from common.method import Method
 from common.rig.camera import Rig
+from integrator.frame_numbers import FrameTimes
 from integrator.landmarks import landmark_fusion
 from integrator.opening_posture import Opening
 from integrator.pose import smoothing
@@ -57,6 +58,12 @@ class State(NamedTuple):
     frames: tuple[int, int] = (-1, -1)
     """The last frame that was heard of each viewer."""
     last_s: float | None = None
+    number: int = -1
+    """Of the instant: the frame of camera 1 that was taken then."""
+    numbered: int = -1
+    """The last number that an instant had."""
+    times: FrameTimes | None = None
+    """When camera 1 takes its frames; None where it is no part of the run."""
     doubted: int = 0
     """For how many frames the body has not been believed."""
 
@@ -75,6 +82,8 @@ class Start(NamedTuple):
     """Where the rig is from; None: it is calibrated, if there is one."""
     opening: Opening = Opening()
     """What is known of the body."""
+    times: FrameTimes | None = None
+    """When camera 1 takes its frames."""
 
 
 def init(
@@ -93,4 +102,4 @@ def init(
     source = start.source or ("assumed" if rig is None else "calibrated")
     proposes = method.proposals and (start.alone or source != "assumed")
     smooth = smoothing.init(len(ANGLE_NAMES), period_s)
-    return State(settings, method, rig, source, proposes, smooth, start.opening)
+    return State(settings, method, rig, source, proposes, smooth, start.opening, times=start.times)

@@ -172,17 +172,9 @@ def no_detection(state: State, pair: Pair) -> tuple[Body, Guide]:
 
 
 def _moment(state: State, pair: Pair) -> dict[str, Any]:
-    """Which frame is spoken of.
-
-    Rows are counted by camera 1's frames, or by camera 2's where it is alone; -1 for an instant
-    that camera 1 missed.
-    """
-    first, second = pair
-    frame = -1 if first is None else first.frame
-    if first is None and state.frames[0] < 0 and second is not None:
-        frame = second.frame
+    """Which frame is spoken of, and when it was taken."""
     newest = pair.newest
-    return {"frame": frame, "captured_s": newest.captured_s, "clock_s": newest.clock_s}
+    return {"frame": state.number, "captured_s": newest.captured_s, "clock_s": newest.clock_s}
 
 
 def _status(state: State, cut: bool) -> Status:

@@ -4,8 +4,9 @@ from typing import Final, NamedTuple, TypeVar
 
 from common.bus.messages import Report, ViewerNumber
 
-QUEUE: Final = 32
-"""How many reports of one viewer wait for the other: two seconds at 15 frames a second."""
+QUEUE: Final = 128
+"""How many reports of one viewer wait for the other: eight seconds at 15 frames a second, after
+which who was stopped has all that was said meanwhile to catch up with."""
 
 NEVER_S: Final = float("-inf")
 

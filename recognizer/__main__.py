@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from common.body.body import ANGLES_IN_POSE
 from common.bus.bus import Bus, open_client
+from common.bus.inbox import Inbox
 from common.bus.messages import Body, Performance, Posture
 from common.bus.process import READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
@@ -119,8 +120,17 @@ def run(
             bus.publish(posture)
             told = words(posture.event) if posture.event else told
             pace.done(body.clock_s, time.monotonic())
-            heart.beat("running", told, dropped=bodies.dropped, malformed=bodies.malformed)
-    heart.beat("ended", told, dropped=bodies.dropped, malformed=bodies.malformed)
+            heart.beat("running", told, **_lost(bodies))
+    heart.beat("ended", told, **_lost(bodies))
+
+
+def _lost(bodies: Inbox[Body]) -> dict[str, int]:
+    """What was lost so far, as a Pulse tells it."""
+    return {
+        "dropped": bodies.dropped,
+        "malformed": bodies.malformed,
+        "foreign": bodies.foreign,
+    }
 
 
 def model_of(settings: Settings, meant: str = "") -> PostureModel:

@@ -406,3 +406,45 @@ def test_a_mailbox_that_is_closed_still_gives_what_waits() -> None:
     assert not mailbox.over
     assert [mailbox.take(0.0), mailbox.take(0.0), mailbox.take(0.0)] == [2, 3, None]
     assert (mailbox.dropped, mailbox.over) == (1, True)
+
+
+def test_what_another_run_says_is_dropped_counted_and_named(
+    endpoint: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A stray process of a run before speaks on the same endpoint, in a room of the same name; the
+    clock's question of one that is not ours stays without an answer."""
+    ours = BusSettings(endpoint, "monday")
+    strangers = (BusSettings(endpoint, "sunday"), BusSettings(endpoint))
+    with ExitStack() as doors:
+        hub = doors.enter_context(open_hub(ours, ROOM))
+        hub.answer(ClockQuestion, lambda _: ClockAnswer(now_s=1.0))
+        inbox = hub.subscribe(Report)
+        own = doors.enter_context(open_client(ours, ROOM, SOON_S))
+        own.publish(a_report(1, 0))
+        for settings in strangers:
+            other = doors.enter_context(open_client(settings, ROOM, SOON_S))
+            other.publish(a_report(1, 7))
+            question = ClockQuestion(viewer=1, ready=True)
+            assert other.ask(question, ClockAnswer, 0.5) is None
+        until_s = time.monotonic() + SOON_S
+        while inbox.foreign < len(strangers) and time.monotonic() < until_s:
+            time.sleep(0.01)
+        assert (inbox.foreign, inbox.malformed) == (len(strangers), 0)
+        assert [report.frame for report in inbox.drain()] == [0]
+        assert own.ask(ClockQuestion(viewer=1, ready=True), ClockAnswer, SOON_S) is not None
+    assert "another session" in caplog.text
+    assert "sunday" in caplog.text
+
+
+def test_a_listener_without_a_word_hears_a_run_that_has_one(endpoint: str) -> None:
+    """As who subscribes from a program of their own does."""
+    with ExitStack() as doors:
+        hub = doors.enter_context(open_hub(BusSettings(endpoint, "monday"), ROOM))
+        listener = doors.enter_context(open_client(BusSettings(endpoint), ROOM, SOON_S))
+        inbox = listener.subscribe(Report)
+        until_s = time.monotonic() + SOON_S
+        heard = None
+        while heard is None and time.monotonic() < until_s:
+            hub.publish(a_report(1, 3))
+            heard = inbox.take(0.1)
+        assert heard == a_report(1, 3)

@@ -17,9 +17,10 @@ from rich.console import Console
 
 from common.bus.messages import Body, ViewerNumber
 from common.config import BusSettings, PageSettings, Settings, SettingsError
+from tritrack.live.free_ports import PortHeld, free_settings
 from tritrack.live.launch import Heard, nothing_heard, run
 from tritrack.live.process_table import Part
-from tritrack.live.session import free_settings, live
+from tritrack.live.session import live
 from tritrack.live.supervise import PartFailed
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.runs import poses
@@ -135,7 +136,8 @@ def test_what_foreign_sessions_say_is_counted_and_dropped(clip: Path, tmp_path: 
         over.set()
         babbler.join()
     told = facts["processes"]
-    assert told["integrator"]["malformed"] > 0
+    assert told["integrator"]["foreign"] > 0
+    assert told["integrator"]["malformed"] == 0
     with np.load(tmp_path / "poses.npz") as found:
         late = told["viewer 1"]["dropped"] + told["integrator"]["late"]
         assert 69 - late <= len(found["frame"]) <= 69
@@ -174,8 +176,9 @@ def test_an_endpoint_in_use_is_refused_in_one_line(clip: Path, tmp_path: Path) -
         settings = Settings(
             clip=str(clip), page=PageSettings(port=0), bus=BusSettings(endpoint=endpoint)
         )
-        with pytest.raises(PartFailed, match=endpoint):
-            live(settings, tmp_path, QUIET)
+        with pytest.raises(PortHeld, match=f"{endpoint}: address already in use"):
+            live(settings, tmp_path / "out", QUIET)
+    assert not (tmp_path / "out").exists()
 
 
 def ignore(_heard: Heard) -> None:

@@ -17,7 +17,8 @@ from test_message_codec import SAID
 from common.bus.message_codec import TOPICS, encode
 from common.bus.messages import Message
 from common.config import PageSettings, Settings
-from tritrack.live.session import free_settings, live
+from tritrack.live.free_ports import free_settings
+from tritrack.live.session import live
 
 DOCS = Path(__file__).parents[1] / "docs" / "messages.schema.json"
 

@@ -12,7 +12,7 @@ from common.bus import clock
 from common.bus.clock import Exchange
 from common.bus.messages import Report, ViewerNumber
 from integrator.__main__ import OVERDUE_PERIODS
-from integrator.pairing import Pair, State, away, begin, end, init, overdue, step
+from integrator.pairing import QUEUE, Pair, State, away, begin, end, init, overdue, step
 
 PERIOD_S = 1 / 15
 
@@ -135,12 +135,12 @@ def test_what_waited_long_enough_is_overdue_and_what_waits_behind_it_too() -> No
 
 
 def test_a_full_queue_drops_its_oldest_and_counts() -> None:
-    state, pairs = heard(init(1.0), [report(1, float(second)) for second in range(32 + 5)])
+    state, pairs = heard(init(1.0), [report(1, float(second)) for second in range(QUEUE + 5)])
     assert pairs == []
     assert state.dropped == 5
     assert state.waiting[0][0].captured_s == 5.0
     _, pairs = flush(state)
-    assert len(pairs) == 32
+    assert len(pairs) == QUEUE
 
 
 def test_nobody_is_waited_for_after_two_missed_frames() -> None:

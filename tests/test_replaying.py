@@ -12,7 +12,8 @@ from rich.console import Console
 
 from common.bus.messages import Body, Posture, Report, ViewerNumber
 from common.config import PageSettings, Settings
-from tritrack.live.session import free_settings, live
+from tritrack.live.free_ports import free_settings
+from tritrack.live.session import live
 from tritrack.offline.batch import track_all
 from tritrack.replaying import pairs, replay_run, say
 from tritrack.store.past_run import open_run

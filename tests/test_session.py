@@ -18,8 +18,10 @@ from spoiling import copied, cut_off, uncalibrated
 from common.bus.control_messages import Pulse
 from common.bus.messages import Posture
 from common.config import PageSettings, Settings
+from tritrack.live.free_ports import free_settings, refuse_held_ports
 from tritrack.live.screen import warnings_of
-from tritrack.live.session import LiveRefused, free_settings, live, performed
+from tritrack.live.session import LiveRefused, live, performed
+from tritrack.store.past_run import open_run
 
 
 def settings_of(clip: Path) -> Settings:
@@ -148,6 +150,28 @@ def test_a_deliberate_end_is_no_failure(
     with np.load(out / "poses.npz", allow_pickle=False) as found:
         assert len(found["frame"]) < 69
         assert (len(found["frame"]) > 0) == (moment == "tracking")
+
+
+@pytest.mark.slow
+def test_what_was_measured_outlives_a_run_that_is_killed(clip: Path, tmp_path: Path) -> None:
+    """Its processes end with it, its ports are free, and its folder is read as any other."""
+    settings, out = settings_of(clip), tmp_path / "out"
+    text = f'clip = "{clip}"\n[page]\nport = 0\n[bus]\nendpoint = "{settings.bus.endpoint}"\n'
+    (tmp_path / "run.toml").write_text(text)
+    words = ["live", str(tmp_path / "run.toml"), "--out", str(out)]
+    run = subprocess.Popen([sys.executable, "-m", "tritrack", *words], stderr=subprocess.DEVNULL)
+    wait_for(out / "log.txt", 2)
+    time.sleep(2.5)
+    children = psutil.Process(run.pid).children(recursive=True)
+    run.kill()
+    run.wait()
+    time.sleep(1.0)
+    assert [child for child in children if lives(child)] == []
+    refuse_held_ports(settings)
+    assert not (out / "poses.npz").exists()
+    found = open_run(out)
+    assert len(found.poses["frame"]) > 5
+    assert "cut short" in found.summary["warnings"][0]
 
 
 def wait_for(log: Path, viewers: int) -> None:

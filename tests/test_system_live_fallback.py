@@ -24,8 +24,9 @@ from common.bus.control_messages import Pulse
 from common.bus.messages import Body, Views
 from common.config import BusSettings, PageSettings, Settings
 from tritrack.live import session
+from tritrack.live.free_ports import free_settings
 from tritrack.live.process_table import Part, live_parts
-from tritrack.live.session import free_settings, live
+from tritrack.live.session import live
 from tritrack.live.supervise import PartFailed
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.runs import poses
@@ -39,6 +40,8 @@ PATIENCE_S = 180.0
 FRAMES = 148
 MOTION = 29
 """First frame after the opening posture."""
+MOST_MISSING = 15
+"""Of the frames while the integrator is started again (issue 15, Shows 1)."""
 LOST = slice(45, 61)
 """Frames in which camera 2 is covered."""
 
@@ -180,11 +183,12 @@ def watched_run(
 
 
 def goes_on_and_comes_back(out: Path, witness: Witness) -> None:
-    """What every loss of view 2 has in common (issue 5, Shows 5)."""
+    """What every loss of a view has in common (issue 5, Shows 5)."""
     found = rows(out)
     since = found["frame"] >= witness.lost_at
     views, joints_m, status = (found[name][since] for name in ("views", "joints_m", "status"))
-    assert {"1", "both"} <= set(views)
+    assert "both" in views
+    assert {"1", "2"} & set(views)
     assert np.isfinite(joints_m).all(), "a pose is missing"
     assert np.diff(found["frame"][since]).max() <= 3, "a gap in the stream"
     assert "measuring" not in status, "measured again"
@@ -193,22 +197,28 @@ def goes_on_and_comes_back(out: Path, witness: Witness) -> None:
 Run = Callable[[Callable[[Witness], None]], tuple[dict[str, Any], Witness]]
 
 
+@pytest.mark.parametrize(("lost", "left"), [(1, "2"), (2, "1")])
 def test_a_killed_viewer_is_started_again_and_the_body_goes_on(
-    watched_run: Run, tmp_path: Path
+    watched_run: Run, tmp_path: Path, lost: int, left: Views
 ) -> None:
+    """Whichever it is: time counts the rows, not camera 1."""
+
     def harm(witness: Witness) -> None:
         witness.until_tracked()
-        os.kill(pid_of("viewer 2"), signal.SIGKILL)
-        witness.until_views("1")
-        witness.until_said("view 2 is lost (it was killed, or its link is cut); view 1 goes on")
+        os.kill(pid_of(f"viewer {lost}"), signal.SIGKILL)
+        witness.until_views(left)
+        witness.until_said(
+            f"view {lost} is lost (it was killed, or its link is cut); view {left} goes on"
+        )
         witness.until_views("both")
-        witness.until_said("view 2 is back")
+        witness.until_said(f"view {lost} is back")
 
     facts, _ = watched_run(harm)
-    assert any("viewer 2: killed by signal 9; it is started again" in w for w in facts["warnings"])
+    again = f"viewer {lost}: killed by signal 9; it is started again"
+    assert any(again in told for told in facts["warnings"])
     log = (tmp_path / "log.txt").read_text()
-    assert "supervisor  WARNING viewer 2: killed by signal 9" in log
-    assert "view 2 is lost" in log
+    assert f"supervisor  WARNING viewer {lost}: killed by signal 9" in log
+    assert f"view {lost} is lost" in log
 
 
 def test_a_frozen_viewer_is_silent_and_resumes(watched_run: Run) -> None:
@@ -242,7 +252,8 @@ def test_a_viewer_that_stays_frozen_is_killed_and_started_again(watched_run: Run
 def test_a_killed_integrator_is_started_again_and_poses_go_on(
     long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It is the hub that all others meet at: they find the new one, and it learns the body anew."""
+    """It is the hub that all others meet at: they find the new one, which knows the body, and say
+    again what the old one did not hear."""
 
     def harm(witness: Witness) -> None:
         witness.until_tracked()
@@ -263,8 +274,11 @@ def test_a_killed_integrator_is_started_again_and_poses_go_on(
     killed = "integrator: killed by signal 9; it is started again"
     assert any(killed in told for told in facts["warnings"])
     found = rows(tmp_path)
-    again = found["frame"] > witness.lost_at
-    assert np.isfinite(found["joints_m"][again][-5:]).all()
+    again = found["frame"] >= witness.lost_at
+    assert np.isfinite(found["joints_m"][again]).all()
+    assert "measuring" not in found["status"][again], "measured again"
+    missing = np.diff(found["frame"][again]) - 1
+    assert missing.sum() <= MOST_MISSING
 
 
 class Cable:
@@ -273,7 +287,8 @@ class Cable:
     def __init__(self, hub: BusSettings) -> None:
         self._hub = int(hub.endpoint.rsplit(":", 1)[1])
         self._door = socket.create_server(("127.0.0.1", 0))
-        self.bus = BusSettings(endpoint=f"tcp/127.0.0.1:{self._door.getsockname()[1]}")
+        endpoint = f"tcp/127.0.0.1:{self._door.getsockname()[1]}"
+        self.bus = msgspec.structs.replace(hub, endpoint=endpoint)
         self._ends: list[socket.socket] = []
         self._whole = True
         threading.Thread(target=self._accept, daemon=True).start()

@@ -20,8 +20,8 @@ from common.video.clip_facts import View
 from common.video.decoding import DecoderDied
 from integrator import __main__ as integrator
 from integrator import merge_state
+from tritrack.live.free_ports import free_settings
 from tritrack.live.launch import Subscriber, nothing_heard
-from tritrack.live.session import free_settings
 from viewer import __main__ as viewer
 from viewer import track
 from viewer.background.background import learn

@@ -1,5 +1,17 @@
 """The front door: the commands, the processes that they start, and what programs import."""
 
-from tritrack.client import Subscription, subscribe, track
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tritrack.client import Subscription, subscribe, track
 
 __all__ = ["Subscription", "subscribe", "track"]
+
+
+def __getattr__(name: str) -> Any:
+    """What programs import, loaded when it is asked for: a command must heed signals before."""
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from tritrack import client
+
+    return getattr(client, name)

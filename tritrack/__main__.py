@@ -10,6 +10,10 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
+from tritrack.stopping import WORD, code_of_stop, heed_at_once, heed_in_order
+
+heed_at_once()
+
 import typer
 
 from tritrack.commands.clip_commands import export, replay, retouch, single, synth, track
@@ -19,9 +23,6 @@ from tritrack.commands.model_commands import evaluate_app, teach, train
 from tritrack.commands.rig_commands import calibrate_app
 from tritrack.faults import code_of, told
 from tritrack.terminal import complain, json_text
-
-STOPPED = 130
-"""Exit code of what Ctrl-C ended before it was done, as shells count it."""
 
 app = typer.Typer(
     name="tritrack",
@@ -101,18 +102,18 @@ app.add_typer(evaluate_app, name="evaluate")
 
 def main() -> None:
     """Run a command; a user's mistake is one line and exit code 2, a fault of ours 1."""
+    heed_in_order()
     try:
         code = app(standalone_mode=False)
     except typer.TyperException as error:
         code = refuse_usage(error)
-    except (typer.Abort, KeyboardInterrupt):
-        code = STOPPED
+    except (typer.Abort, KeyboardInterrupt) as error:
+        complain(console, WORD)
+        code = code_of_stop(error)
     except Exception as error:
         log.debug("refused", exc_info=error)
         complain(console, told(error))
         code = code_of(error)
-    if code == STOPPED:
-        complain(console, "stopped before it was done")
     sys.exit(code or 0)
 
 

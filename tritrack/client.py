@@ -68,7 +68,7 @@ def subscribe(
 class Subscription(Generic[Said]):
     """A live run's messages of one kind; each loop over it listens anew from then on.
 
-    A loop that is slower than the run loses the oldest of 64 messages that wait, never the newest.
+    A loop that is slower than the run loses the oldest of 256 messages that wait, never the newest.
     It ends when the integrator does. It raises BusError when nobody answers in time.
     """
 

@@ -12,7 +12,8 @@ from synth.motion.motions import performance
 from synth.person.people import person
 from synth.picture.exposure import default_rig
 from synth.write import Filming, clip_name, write_clip, write_rig
-from tritrack.live.session import free_settings, live
+from tritrack.live.free_ports import free_settings
+from tritrack.live.session import live
 
 PERFORMER_SEED: Final = 90_001
 """Of a person that no model was trained on: the one in the package knows persons 1200 to 1211."""

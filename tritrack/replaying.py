@@ -64,7 +64,7 @@ def integrated(recording: Recording) -> Replayed:
         head.period_s,
         head.settings,
         METHODS[head.settings.mode],
-        Start(head.alone, opening=opening),
+        Start(head.alone, None, opening, head.times),
     )
     bodies, same = [], 0
     for before, pair in pairs(recording):

@@ -25,6 +25,7 @@ from viewer.capture import CapturedFrame, Live, RoomClock
 from viewer.jpeg import jpeg_of
 from viewer.landmarks.landmark_sources import outside_sources
 from viewer.room.background_source import background_of_run
+from viewer.unheard import Unheard
 from viewer.viewer_warmup import warm_up
 
 WAIT_SHARE: Final = 0.5
@@ -51,7 +52,7 @@ class Guides:
     def of_frame(self, index: int, wait_s: float) -> Guide | None:
         """The guide that has heard of this viewer's frame; else the newest, counted as a miss."""
         until_s = time.monotonic() + wait_s
-        while self._heard() < index:
+        while self.heard < index:
             left_s = until_s - time.monotonic()
             guide = self._inbox.take(max(0.0, left_s))
             if guide is not None:
@@ -66,7 +67,14 @@ class Guides:
         """How many messages in a guide's place were none."""
         return self._inbox.malformed
 
-    def _heard(self) -> int:
+    @property
+    def foreign(self) -> int:
+        """How many guides were not of this run."""
+        return self._inbox.foreign
+
+    @property
+    def heard(self) -> int:
+        """The last frame of this viewer that a guide has heard of; -1: none."""
         return -1 if self.newest is None else self.newest.frames[self._viewer - 1]
 
 
@@ -92,6 +100,7 @@ def run(
     pace = Pace(period_s)
     heart = Heart(bus, f"viewer {view.number}", pace)
     guides = Guides(bus.subscribe(Guide), view.number)
+    unheard, alive = Unheard(), bus.watch_alive()
     learning = Learning(bus.subscribe(Command), view.number, state.setup.settings)
     before, why = -1, ""
     try:
@@ -102,7 +111,10 @@ def run(
                 continue
             guide = guides.of_frame(before, WAIT_SHARE * period_s)
             state, report = track.step(state, frame, guide)
+            for missed in unheard.again(guides.heard, alive.drain()):
+                bus.publish(missed)
             bus.publish(report)
+            unheard.said(report)
             pace.done(frame.clock_s - live.offset_s, time.monotonic())
             if state.setup.settings.pictures:
                 bus.publish(_picture(view.number, frame))
@@ -206,6 +218,7 @@ def _news(live: Live, guides: Guides, warnings: tuple[str, ...]) -> dict[str, An
         "dropped": live.dropped,
         "guide_misses": guides.misses,
         "malformed": guides.malformed,
+        "foreign": guides.foreign,
     }
 
 

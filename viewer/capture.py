@@ -97,6 +97,7 @@ class Live:
         self._began_s = clock()
         self._every = every
         self._missed = 0
+        self._first_index: int | None = None
         self._stop = threading.Event()
         self._decoder = Decoder()
         self._waiting: Mailbox[CapturedFrame] = Mailbox(WAITING)
@@ -181,8 +182,17 @@ class Live:
     def _timed(self, decoded: Decoded) -> CapturedFrame:
         if isinstance(self._view.source, int):
             now_s = decoded.grabbed_s + self._room.offset_s
-            return CapturedFrame(decoded.index, now_s, now_s, decoded.picture)
+            index = self._counted_from(now_s) + decoded.index
+            return CapturedFrame(index, now_s, now_s, decoded.picture)
         captured_s = self._view.captured_s(decoded.index)
         next_s = self._view.captured_s(decoded.index + self._every)
         clock_s = self._room.start_s + captured_s
         return CapturedFrame(decoded.index, captured_s, clock_s, decoded.picture, next_s)
+
+    def _counted_from(self, now_s: float) -> int:
+        """The number of a camera's first frame: 0 at the run's start, what time tells where a
+        viewer is started again, so that no number comes twice."""
+        if self._first_index is None:
+            since = max(0.0, now_s - self._room.start_s) * self._view.fps / self._every
+            self._first_index = self._every * round(since)
+        return self._first_index

@@ -16,8 +16,9 @@ from common.bus.message_codec import MAX_BYTES, Said
 from common.bus.messages import Message
 from common.config import BusSettings
 
-LEASE_MS: Final = 1000
-"""A process that hangs counts as gone after this; Zenoh's own 10 s would be 150 frames."""
+LEASE_MS: Final = 4000
+"""A process that hangs counts as gone after this, by Zenoh's own 10 s. One that was stopped for
+less goes on where it was: what was said to it meanwhile waits. Who is silent is known sooner."""
 
 HANDSHAKE_MS: Final = 1000
 """How long a peer that accepts a connection may take to prove that it is one of ours."""
@@ -91,7 +92,7 @@ def open_hub(settings: BusSettings, room: str) -> Iterator[LiveBus]:
             f"cannot listen on {settings.endpoint} ({_first_line(error)}): end the run that holds "
             "it, or set another [bus] endpoint"
         ) from error
-    with _bus(session, room) as bus:
+    with _bus(session, room, settings.session) as bus:
         yield bus
 
 
@@ -108,15 +109,15 @@ def open_client(settings: BusSettings, room: str, give_up_s: float) -> Iterator[
             f"nobody answers at {settings.endpoint} after {give_up_s:g} s: start the integrator "
             "first, or set [bus] endpoint to where it listens"
         )
-    with _bus(session, room) as bus:
+    with _bus(session, room, settings.session) as bus:
         yield bus
 
 
 @contextmanager
-def _bus(session: Any, room: str) -> Iterator[LiveBus]:
+def _bus(session: Any, room: str, run: str) -> Iterator[LiveBus]:
     # A session that is not closed keeps its process from ending.
     with session:
-        bus = LiveBus(session, room)
+        bus = LiveBus(session, room, run)
         try:
             yield bus
         finally:

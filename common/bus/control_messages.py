@@ -20,6 +20,8 @@ class Pulse(Message, frozen=True, kw_only=True):
     dropped: int = 0
     guide_misses: int = 0
     malformed: int = 0
+    foreign: int = 0
+    """Messages that were dropped since they were not of this run."""
     late: int = 0
     latency_p50_ms: float = 0.0
     latency_p99_ms: float = 0.0

@@ -8,12 +8,14 @@ from common.bus.control_messages import ClockQuestion
 from common.bus.mailbox import Mailbox
 from common.bus.message_codec import TOPICS, MalformedMessage, Said, decode, key_of, pattern_of
 from common.bus.messages import Message
+from common.config import MOST_SESSION
 
 QUESTIONS: Final[dict[type[Message], str]] = {ClockQuestion: "tritrack/{room}/clock"}
 """Where each kind of question is answered."""
 
-BOUND: Final = 64
-"""Messages that wait for a reader: four seconds at 15 Hz; older ones are of no use to anyone."""
+BOUND: Final = 256
+"""Messages that wait for a reader: eight seconds of two viewers at 15 Hz; older ones are of no use
+to anyone."""
 
 MOST_GAP: Final = 100_000
 """Messages that a link may lose at once, two hours of them; a larger gap is nobody of ours."""
@@ -35,6 +37,8 @@ class Inbox(Generic[Said]):
         """Empty, for one kind of message in one room."""
         self.malformed = 0
         """How many payloads were refused."""
+        self.foreign = 0
+        """How many messages were not of this run."""
         self._kind = kind
         self._room = room
         self._missed = 0
@@ -80,6 +84,13 @@ class Inbox(Generic[Said]):
         if not TOPICS[self._kind].newest_only and 0 < gap <= MOST_GAP:
             self._missed += gap
         self._numbers[key] = number
+
+    def refuse_foreign(self, key: str, word: bytes) -> None:
+        """Count what came on a key from another run, or from nobody's; the first is logged."""
+        self.foreign += 1
+        if self.foreign == 1:
+            whose = repr(word[:MOST_SESSION]) if word else "none"
+            log.warning("%s: dropped a message of another session: %s", key, whose)
 
     def refuse(self, key: str, why: MalformedMessage) -> None:
         """Count what came on a key and is no such message; the first is logged."""

@@ -20,6 +20,7 @@ from common.bus.message_codec import (
     refuse_size,
 )
 from common.bus.messages import Message, Picture
+from common.config import MOST_SESSION
 
 AT_ONCE: Final = 4
 """Newest-only samples that may wait for our own thread: two viewers speak at the same moment.
@@ -27,7 +28,7 @@ Zenoh's default queue would serve ever older ones to a slow reader."""
 
 NUMBER_BYTES: Final = 8
 """Every message goes with its number on its key, so that who hears it can count what is lost on the
-way: under congestion Zenoh drops, and tells nobody."""
+way: under congestion Zenoh drops, and tells nobody. Behind the number stands the run's word."""
 
 log = logging.getLogger(__name__)
 
@@ -35,9 +36,11 @@ log = logging.getLogger(__name__)
 class LiveBus:
     """A Zenoh session in a room; see Bus for what each method promises."""
 
-    def __init__(self, session: Any, room: str) -> None:
-        """Speak and hear in `room` over an open session."""
+    def __init__(self, session: Any, room: str, run: str = "") -> None:
+        """Speak and hear in `room` over an open session; those of the same run, where it has a
+        word."""
         self._session = session
+        self._run = run.encode()
         self._room = room
         self._lock = threading.Lock()
         self._publishers: dict[str, Any] = {}
@@ -57,7 +60,7 @@ class LiveBus:
                 self._newest[type(message)][key] = payload
             self._said[key] += 1
             number = self._said[key].to_bytes(NUMBER_BYTES, "big")
-        self._publishers[key].put(payload, attachment=number)
+        self._publishers[key].put(payload, attachment=number + self._run)
 
     def subscribe(self, kind: type[Said]) -> Inbox[Said]:
         """Hear a kind of message; see Bus."""
@@ -71,14 +74,18 @@ class LiveBus:
 
         def hear(sample: Any) -> None:
             key = str(sample.key_expr)
+            said = sample.attachment.to_bytes() if sample.attachment is not None else b""
+            if not self._is_ours(said[NUMBER_BYTES:]):
+                inbox.refuse_foreign(key, said[NUMBER_BYTES:])
+                return
             try:
                 refuse_size(len(sample.payload))  # before it is copied: a flood costs least so
             except MalformedMessage as error:
                 inbox.refuse(key, error)
             else:
                 inbox.offer(key, sample.payload.to_bytes())
-                if sample.attachment is not None and len(sample.attachment) == NUMBER_BYTES:
-                    inbox.count(key, int.from_bytes(sample.attachment.to_bytes(), "big"))
+                if len(said) >= NUMBER_BYTES:
+                    inbox.count(key, int.from_bytes(said[:NUMBER_BYTES], "big"))
 
         self._listen(subscriber, hear, inbox)
         return inbox
@@ -105,6 +112,10 @@ class LiveBus:
         key = QUESTIONS[kind].format(room=self._room)
 
         def reply_to(query: Any) -> None:
+            whose = query.attachment.to_bytes() if query.attachment is not None else b""
+            if not self._is_ours(whose):
+                log.warning("%s: no answer to another session: %r", key, whose[:MOST_SESSION])
+                return
             payload = query.payload.to_bytes() if query.payload else b""
             said = answered(reply, kind, payload, key)
             if said is not None:
@@ -145,6 +156,9 @@ class LiveBus:
         for declared in [*self._queryables, *self._tokens, *self._publishers.values()]:
             declared.undeclare()
 
+    def _is_ours(self, word: bytes) -> bool:
+        return not self._run or word == self._run
+
     def _declare_publisher(self, key: str, kind: type[Message]) -> Any:
         return self._session.declare_publisher(
             key,
@@ -181,7 +195,8 @@ class LiveBus:
     def _get(
         self, key: str, kind: type[Said], payload: bytes | None, timeout_s: float
     ) -> Said | None:
-        for reply in self._session.get(key, payload=payload, timeout=timeout_s):
+        asked = self._session.get(key, payload=payload, timeout=timeout_s, attachment=self._run)
+        for reply in asked:
             if reply.ok is not None:
                 said = checked(reply.ok.payload.to_bytes(), kind, key)
                 if said is not None:

@@ -6,7 +6,7 @@ import msgspec
 
 from common.body.body import Bdp
 
-PROTOCOL: Final = 5
+PROTOCOL: Final = 6
 
 ViewerNumber = Literal[1, 2]
 Facing = Literal["facade", "flank"]

@@ -13,6 +13,7 @@ from typing import IO, Any, NamedTuple
 import cv2
 import numpy as np
 
+from common.parent_death import end_with_pipe
 from common.video.decoding import (
     END,
     FRAME,
@@ -50,6 +51,7 @@ def main() -> None:
     """Answer until the asker is gone."""
     # Ctrl-C reaches the asker too, who ends this process: it must not look like a broken film.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    end_with_pipe(sys.stdin.fileno())
     cv2.setNumThreads(1)
     answers = os.fdopen(int(sys.argv[1]), "wb")
     for line in sys.stdin:

@@ -26,7 +26,8 @@ from synth.write import ClipSet, write_set
 from tritrack.bench.bench_figure import Measured, least_s
 from tritrack.bench.bench_scenes import by_opencv, match_all, match_placed, model_pairs, scene
 from tritrack.bench.single_bench import FOLLOWED, figures
-from tritrack.live.session import free_settings, live
+from tritrack.live.free_ports import free_settings
+from tritrack.live.session import live
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.runs import VERSIONS_OF, write_run
 from viewer import track, viewer_warmup

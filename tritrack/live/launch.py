@@ -10,13 +10,14 @@ from typing import Any, Final, NamedTuple
 from common.bus.bus import Bus, BusError, open_client
 from common.bus.control_messages import Cameras, Pulse
 from common.bus.inbox import Inbox
-from common.bus.messages import Body, Posture, Report
+from common.bus.messages import Body, Message, Posture, Report
 from common.bus.process import READY_S
 from common.config import Settings
 from tritrack.live.page_desk import PageDesk
 from tritrack.live.process_table import Part
 from tritrack.live.recorded import MessageLog
 from tritrack.live.supervise import Watched, watched
+from tritrack.store.journal import Journal
 from tritrack.store.recording import Keep
 
 LOOK_S: Final = 0.1
@@ -39,6 +40,8 @@ class Heard(NamedTuple):
     """What the supervisor says itself: which part died, and what becomes of it."""
     keep: Keep | None = None
     """Takes every report, body, posture and rig, where the run is recorded."""
+    journal: Journal | None = None
+    """Takes every body, posture and rig at once."""
 
 
 def nothing_heard() -> Heard:
@@ -128,13 +131,15 @@ class Subscriber:
 
     def __init__(self, bus: Bus, heard: Heard) -> None:
         """Listen from now on; the cameras may have been told before."""
-        self._heard = heard
+        self._heard, self._keep = heard, heard.keep
         self._bodies = bus.subscribe(Body)
         self._postures = bus.subscribe(Posture)
         self._pulses = bus.subscribe(Pulse)
         self._cameras = bus.subscribe(Cameras)
         told = bus.latest(Cameras, LAST_WORDS_S)
         heard.cameras.extend([] if told is None else [told])
+        if heard.journal is not None:
+            heard.journal.keep(heard.cameras)
         self._reports = [bus.subscribe(Report)] if heard.keep is not None else []
 
     @property
@@ -154,11 +159,27 @@ class Subscriber:
         self._heard.bodies.add(bodies)
         self._heard.postures.add(postures)
         self._heard.cameras.extend(cameras)
-        for message in [each for some in [*said, bodies, postures, cameras] for each in some]:
-            if self._heard.keep is not None:
-                self._heard.keep(message)
+        if self._heard.journal is not None:
+            self._heard.journal.keep([*cameras, *bodies, *postures])
+            self._note(self._heard.journal.odd)
+        self._record([each for some in [*said, cameras, bodies, postures] for each in some])
         for pulse in self._pulses.drain():
             self._heard.pulses[pulse.process] = pulse
+
+    def _record(self, messages: list[Message]) -> None:
+        """Keep these for a replay, as long as the disk takes them: the run goes on without."""
+        if self._keep is None:
+            return
+        try:
+            for message in messages:
+                self._keep(message)
+        except OSError as error:
+            self._keep = None
+            self._note([f"the recording ends here: it cannot be written ({error.strerror})"])
+
+    def _note(self, lines: list[str]) -> None:
+        """Tell what is new among these."""
+        self._heard.notes.extend(line for line in lines if line not in self._heard.notes)
 
 
 @contextmanager

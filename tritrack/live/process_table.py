@@ -13,6 +13,7 @@ from typing import Any, Final, NamedTuple
 
 from common.bus.process import ProcessContext
 from common.config import Settings
+from common.parent_death import end_with_parent
 from common.video.clip_facts import Clip
 from tritrack.faults import code_of, told
 
@@ -143,6 +144,7 @@ def _inherited() -> Iterator[None]:
 
 def _guarded(part: Part, words: Connection) -> None:
     """Run a part; what it cannot do is said in one line, not in a traceback."""
+    end_with_parent()
     try:
         part.main(*part.arguments)
     except Exception as error:

@@ -2,7 +2,6 @@
 
 import shutil
 import signal
-import socket
 import threading
 import time
 from collections.abc import Iterator
@@ -17,17 +16,22 @@ from rich.console import Console
 
 from common.bus.messages import Posture
 from common.bus.process import ProcessContext, logged
-from common.config import BusSettings, PageSettings, Settings
+from common.config import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip, both_cameras
+from tritrack.live.free_ports import own_session, refuse_held_ports
 from tritrack.live.launch import Heard, nothing_heard, run
-from tritrack.live.page_desk import PageDesk
+from tritrack.live.page_desk import SAVED, PageDesk
 from tritrack.live.process_table import live_parts
 from tritrack.live.screen import Screen, warnings_of
+from tritrack.store.journal import Head as JournalHead
+from tritrack.store.journal import Journal, put_aside
 from tritrack.store.recording import Keep, refuse_without_library
 from tritrack.store.runs import write_postures, write_run
 
 PLAYS: Final = "the run is over; the page plays it as long as it is open (Ctrl-C ends)"
+KEPT: Final = ".kept-"
+"""Begins the name of the folder in which processes leave what their next start takes up."""
 NO_POSTURE: Final = -1
 """posture_id of a clip that shows none of the postures: free motion, a test of the tracker."""
 
@@ -52,20 +56,21 @@ def live(
         What the run's summary tells.
 
     Raises:
-        ClipError, ModelError, PageError, SettingsError, LiveRefused: When something cannot be
-            worked with; no process was started.
+        ClipError, ModelError, PageError, PortHeld, SettingsError, LiveRefused: When something
+            cannot be worked with; no process was started.
         PartFailed, BusError, RunError: When something failed; what was tracked until then is
             written first.
     """
     refuse_mode(settings)
     if record:
         refuse_without_library()
-    _refuse_port(settings)
+    refuse_held_ports(settings)
+    settings = own_session(settings)
     new = not out.exists()
-    log = _new_log(out)
     began, heard = time.monotonic(), nothing_heard()
     title = name or Path(settings.clip).name or "tritrack"
     with _stopped_by_signals() as stop, ExitStack() as doors:
+        log = _new_log(out)
         context = ProcessContext(True, log)
         desk = PageDesk(settings, out, title, context)
         doors.callback(desk.close)
@@ -77,8 +82,10 @@ def live(
             return _facts(heard, named, clip, time.monotonic() - began)
 
         desk.facts = facts
+        journal = _journal(out, clip, settings, heard.notes)
+        heard = heard._replace(journal=journal)
         try:
-            with TemporaryDirectory(prefix=".kept-", dir=out) as kept:
+            with TemporaryDirectory(prefix=KEPT, dir=out) as kept:
                 parts = live_parts(settings, clip, context._replace(kept=Path(kept)))
                 names = [part.name for part in (*parts, *desk.parts)]
                 with (
@@ -91,8 +98,23 @@ def live(
             told = facts()
             write_run(out, heard.bodies.all(), settings, told)
             write_postures(out, heard.postures.all(), told["posture"])
+            journal.remove()
         _show_end(desk, told, stop, console)
     return told
+
+
+def _journal(out: Path, clip: Clip, settings: Settings, notes: list[str]) -> Journal:
+    """What takes each body as it comes; the journal of a run that was cut short is put aside."""
+    aside = out / SAVED / f"cut_short_{time.strftime('%Y%m%d_%H%M%S')}"
+    try:
+        if put_aside(out, aside):
+            notes.append(f"the run before this one was cut short: what it measured is in {aside}")
+    except OSError as error:
+        raise LiveRefused(
+            f"{out} holds a run that was cut short, which cannot be put aside "
+            f"({error.strerror}): name another --out"
+        ) from error
+    return Journal(out, JournalHead(settings=settings, facts=_of_clip(clip)))
 
 
 def _kept(
@@ -169,26 +191,14 @@ def _refuse_what_would_fail(settings: Settings, clip: Clip) -> None:
     refuse_landmarks(settings, clip.views)
 
 
-def _refuse_port(settings: Settings) -> None:
-    """Say that the page cannot be opened before anything is."""
-    if settings.page.port:
-        try:
-            import websockets  # noqa: F401
-
-            from animator.page.door import refuse_port
-        except ImportError as error:
-            raise LiveRefused(
-                f"the page needs {error.name}: pip install 'tritrack[page]', or set page.port = 0"
-            ) from error
-        refuse_port(settings.page.port)
-
-
 def _new_log(out: Path) -> Path:
     """The log of this run alone: a run before it in the same folder is overwritten."""
     path = out / "log.txt"
     try:
         out.mkdir(parents=True, exist_ok=True)
         path.write_text("")
+        for left in out.glob(f"{KEPT}*"):  # by a run that was cut short
+            shutil.rmtree(left, ignore_errors=True)
     except OSError as error:
         raise LiveRefused(f"cannot write {out}: {error.strerror}; name another --out") from error
     return path
@@ -197,16 +207,6 @@ def _new_log(out: Path) -> Path:
 def performed(postures: list[Posture]) -> str:
     """The posture of a whole clip: the last name given, by a window that saw most of it."""
     return next((posture.name for posture in reversed(postures) if posture.name), "")
-
-
-def free_settings(settings: Settings) -> Settings:
-    """The same settings with an endpoint and a page on ports that nobody holds."""
-    bus, page = _free_port(), _free_port()
-    return msgspec.structs.replace(
-        settings,
-        bus=BusSettings(endpoint=f"tcp/127.0.0.1:{bus}"),
-        page=PageSettings(port=page) if settings.page.port else settings.page,
-    )
 
 
 def _facts(heard: Heard, posture: str, clip: Clip, seconds: float) -> dict[str, Any]:
@@ -218,9 +218,7 @@ def _facts(heard: Heard, posture: str, clip: Clip, seconds: float) -> dict[str, 
             "shorter runs, or follow recordings with: tritrack track"
         )
     return {
-        "clip": clip.name,
-        "performer": clip.meta.performer,
-        "posture_meant": clip.meta.posture,
+        **_of_clip(clip),
         "seconds": {"all": round(seconds, 3)},
         "scale_source": source,
         "posture": posture,
@@ -233,6 +231,14 @@ def _facts(heard: Heard, posture: str, clip: Clip, seconds: float) -> dict[str, 
             }
             for name, pulse in sorted(heard.pulses.items())
         },
+    }
+
+
+def _of_clip(clip: Clip) -> dict[str, Any]:
+    return {
+        "clip": clip.name,
+        "performer": clip.meta.performer,
+        "posture_meant": clip.meta.posture,
     }
 
 
@@ -249,9 +255,3 @@ def _stopped_by_signals() -> Iterator[threading.Event]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-def _free_port() -> int:
-    with socket.socket() as door:
-        door.bind(("127.0.0.1", 0))
-        return int(door.getsockname()[1])

@@ -14,6 +14,7 @@ from common.method import Mode
 from common.video.clip_facts import Clip, both_cameras
 from common.video.clip_sources import ClipError
 from common.video.decoding import DecoderDied, Undecodable
+from integrator.frame_numbers import frame_times
 from tritrack.offline.lockstep import Decoders, Watch, measured_before, track_clip
 from tritrack.overrides import overridden
 from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_files
@@ -88,6 +89,7 @@ def head_of(clip: Clip, settings: Settings) -> Head:
         alone=len(clip.views) == 1,
         rig=both_cameras(clip),
         body=clip.body,
+        times=frame_times(clip),
     )
 
 

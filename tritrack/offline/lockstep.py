@@ -17,6 +17,7 @@ from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reel
 from integrator import diagnostics, merge, merge_state, opening_posture
+from integrator.frame_numbers import frame_times
 from integrator.merge_state import Start
 from integrator.pairing import Pair
 from tritrack.offline.film_tracking import Film, Heard, follow_clip, unseen
@@ -160,7 +161,7 @@ def _prepared(
         viewers[view.number] = track.init(setup, background)
     period_s = clip.every / clip.views[0].fps
     opening = opening_posture.init(known)
-    start = Start(alone, "person" if looked.found else None, opening)
+    start = Start(alone, "person" if looked.found else None, opening, frame_times(clip))
     integrator = merge_state.init(rig, period_s, settings, method, start)
     return Prepared(clip, reels, viewers, integrator, odd, time.perf_counter() - began)
 

@@ -21,7 +21,7 @@ from recognizer.training.streams import Act, Found, Stream, found, joined
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.overrides import overridden
 from tritrack.store.clip_paths import without_plain_files
-from tritrack.store.past_run import PastRunError, open_run
+from tritrack.store.past_run import PastRunError, is_run, open_run
 from tritrack.store.runs import poses
 from tritrack.terminal import bar, json_text
 from tritrack.training.training import TrainingError
@@ -77,9 +77,7 @@ def streams(paths: Sequence[Path], mode: Mode | None, console: Console) -> list[
         _refuse_nameless(path)
     with Decoders() as decoders, bar(console) as progress:
         for path in progress.track(folders, description="reading"):
-            facts, seen = (
-                _run(path) if (path / "poses.npz").is_file() else _clip(path, mode, decoders)
-            )
+            facts, seen = _run(path) if is_run(path) else _clip(path, mode, decoders)
             if "acts" in facts:
                 acts = tuple(Act(**act) for act in facts["acts"])
                 whole.append(Stream(path.name, seen, acts))
@@ -91,7 +89,7 @@ def streams(paths: Sequence[Path], mode: Mode | None, console: Console) -> list[
 
 def _refuse_nameless(path: Path) -> None:
     """Before anything is tracked."""
-    if (path / "poses.npz").is_file():
+    if is_run(path):
         facts = _run(path)[0]
         named = "acts" in facts or facts.get("posture_meant")
     else:

@@ -2,12 +2,15 @@
 
 import json
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS
 from common.npz_file import Arrays, read_arrays
+
+if TYPE_CHECKING:
+    from tritrack.store.journal import Told
 
 MAX_BYTES: Final = 1 << 28
 """No poses of a run are larger: an hour at 30 frames a second."""
@@ -30,6 +33,7 @@ SINGLE_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
     "depth_confidence": ("f", (len(LIMBS),)),
 }
 """What a run of a single view has beside them."""
+CUT_SHORT: Final = "the run was cut short, or goes on: what it measured is read from its journal"
 
 
 class PastRunError(ValueError):
@@ -45,14 +49,26 @@ class PastRun(NamedTuple):
     summary: dict[str, Any]
 
 
+def is_run(folder: Path) -> bool:
+    """Whether a folder is that of a run, whole or cut short."""
+    from tritrack.store.journal import has_journal
+
+    return (folder / "poses.npz").is_file() or has_journal(folder)
+
+
 def open_run(folder: Path) -> PastRun:
-    """Read a run folder.
+    """Read a run folder; of a run that was cut short, what it wrote as it went.
 
     Raises:
         PastRunError: When it is none, or was damaged.
     """
     if not folder.is_dir():
         raise PastRunError(f"there is no run folder {folder}: name one that `tritrack track` wrote")
+    from tritrack.store.journal import read_journal
+
+    told = read_journal(folder)
+    if told is not None:
+        return _cut_short(folder, told)
     path = folder / "poses.npz"
     try:
         poses = read_arrays(path, MAX_BYTES)
@@ -64,6 +80,20 @@ def open_run(folder: Path) -> PastRun:
         raise PastRunError(f"{folder} was damaged ({error}): track the clip again") from error
     _refuse_other_arrays(path, poses)
     return PastRun(folder, poses, summary if isinstance(summary, dict) else {})
+
+
+def _cut_short(folder: Path, told: "Told") -> PastRun:
+    from tritrack.store.runs import poses, rows_of, summary_of
+
+    bodies = rows_of(told.bodies)
+    named = [posture.name for posture in told.postures if posture.name]
+    facts = {
+        **told.head.facts,
+        "scale_source": told.cameras[-1].scale_source if told.cameras else None,
+        "posture": named[-1] if named else "",
+        "warnings": [CUT_SHORT],
+    }
+    return PastRun(folder, poses(bodies), summary_of(bodies, told.head.settings, facts))
 
 
 def _refuse_other_arrays(path: Path, poses: dict[str, Any]) -> None:

@@ -19,6 +19,7 @@ from common.bus.message_codec import MalformedMessage, decode, encode
 from common.bus.messages import PROTOCOL, Body, Message, Moment, Posture, Report
 from common.config import Settings
 from common.rig.camera import Rig
+from integrator.frame_numbers import FrameTimes
 from tritrack.store import foxglove_scene
 from tritrack.store.runs import RunError, versions
 
@@ -51,6 +52,8 @@ class Head(msgspec.Struct, frozen=True, kw_only=True):
     """None: it is assumed when somebody is seen."""
     body: Bdp | None
     """As measured before the run; None: it was not."""
+    times: FrameTimes | None = None
+    """When camera 1 takes its frames; None where it is no part of the run."""
     protocol: int = PROTOCOL
     versions: dict[str, str] = {}
 

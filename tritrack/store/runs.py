@@ -43,14 +43,19 @@ def write_run(
     Raises:
         RunError: When the folder or a file cannot be written: no space, no right.
     """
-    bodies = [body for body in bodies if body.frame >= 0]
+    bodies = rows_of(bodies)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with replacing(folder / "poses.npz") as path, path.open("wb") as file:
             np.savez(file, allow_pickle=False, **poses(bodies))
-        _write_json(folder / "summary.json", _summary(bodies, settings, facts))
+        _write_json(folder / "summary.json", summary_of(bodies, settings, facts))
     except OSError as error:
         raise _unwritable(folder, error) from error
+
+
+def rows_of(bodies: Sequence[Body]) -> list[Body]:
+    """Those that get a row: of the instants that have a frame's number."""
+    return [body for body in bodies if body.frame >= 0]
 
 
 def write_postures(folder: Path, postures: Iterable[Posture], performed: str) -> None:
@@ -140,7 +145,8 @@ def believed(bodies: Sequence[Body]) -> float | None:
     return round(sum(status in BELIEVED for status in seen) / len(seen), 4)
 
 
-def _summary(bodies: Sequence[Body], settings: Settings, facts: dict[str, Any]) -> dict[str, Any]:
+def summary_of(bodies: Sequence[Body], settings: Settings, facts: dict[str, Any]) -> dict[str, Any]:
+    """What `summary.json` tells of these bodies, with the facts given."""
     with_pose = [body for body in bodies if body.joints_m]
     return {
         "frames": len(bodies),

@@ -24,7 +24,7 @@ from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.overrides import overridden
 from tritrack.store.clip_paths import ClipsFailed, without_plain_files
 from tritrack.store.cores import made
-from tritrack.store.past_run import PastRunError, open_run
+from tritrack.store.past_run import PastRunError, is_run, open_run
 from tritrack.store.runs import RunError
 from tritrack.terminal import bar, complain, warn
 
@@ -72,7 +72,7 @@ def recordings(
             which and why was said before.
     """
     folders = [Path(one.clip) for one in announced(paths, console, posture)]
-    clips = [path for path in folders if not _is_run(path)]
+    clips = [path for path in folders if not is_run(path)]
     kept = dict(zip(clips, kept_of(clips, mode, cache, console), strict=True))
     _tell_what_is_odd(kept, console)
     found = [_recording(path, kept[path] if path in kept else _of_run(path)) for path in folders]
@@ -104,17 +104,13 @@ def announced(paths: Sequence[Path], console: Console, posture: str = "") -> lis
 
 def _announced(path: Path) -> Recording:
     nothing = np.empty((0, len(ROW_NAMES)))
-    if _is_run(path):
+    if is_run(path):
         facts = _of_run(path).facts
         return Recording(
             facts.get("performer", ""), facts.get("posture_meant", ""), nothing, str(path)
         )
     meta = meta_of(config.load(path))
     return Recording(meta.performer, meta.posture, nothing, str(path))
-
-
-def _is_run(path: Path) -> bool:
-    return (path / "poses.npz").is_file()
 
 
 def _tell_what_is_odd(kept: dict[Path, CachedRun], console: Console) -> None:

@@ -13,6 +13,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from common.parent_death import end_with_pipe
 from viewer.landmarks.mediapipe_protocol import (
     NOBODY,
     POINTS,
@@ -29,6 +30,7 @@ def main() -> None:
     """Answer until the asker is gone."""
     # Ctrl-C reaches the asker too, who ends this process.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    end_with_pipe(sys.stdin.fileno())
     pipe, memory, width, height = map(int, sys.argv[1:5])
     shared = mmap.mmap(memory, 3 * width * height, access=mmap.ACCESS_READ)
     picture = np.frombuffer(shared, np.uint8).reshape(height, width, 3)

@@ -1,0 +1,88 @@
+"""What an integrator leaves to the one that is started in its place: body, rig and count."""
+
+import logging
+from pathlib import Path
+from typing import Final
+
+import msgspec
+
+from common.atomic_file import replacing
+from common.body.body import Bdp
+from common.rig.camera import Rig
+from integrator.merge_state import ScaleSource, State
+from integrator.opening_posture import Opening
+
+NAME: Final = "integrator.msgpack"
+
+log = logging.getLogger(__name__)
+
+
+class HandedOver(msgspec.Struct, frozen=True):
+    """What would take the person another T, or the viewers another while, to tell again."""
+
+    bdp: Bdp | None
+    measured: bool
+    measured_at_m: tuple[float, float, float]
+    rig: Rig | None
+    scale_source: ScaleSource
+    numbered: int
+    """The last number that an instant had."""
+
+
+def handed_over(state: State) -> HandedOver:
+    """What of a state is handed over."""
+    known = state.opening
+    return HandedOver(
+        known.bdp,
+        known.measured,
+        known.measured_at_m,
+        state.rig,
+        state.scale_source,
+        state.numbered,
+    )
+
+
+def resumed(state: State, given: HandedOver) -> State:
+    """A new state that knows what was handed over; poses and filters begin anew."""
+    opening = Opening(given.bdp, given.measured, given.measured_at_m) if given.bdp else Opening()
+    return state._replace(
+        opening=opening, rig=given.rig, scale_source=given.scale_source, numbered=given.numbered
+    )
+
+
+class Estate:
+    """The folder in which it is left; without a folder nothing is."""
+
+    def __init__(self, folder: Path | None) -> None:
+        """Of one run alone."""
+        self._path = None if folder is None else folder / NAME
+        self._left: HandedOver | None = None
+
+    def taken_up(self, state: State) -> State:
+        """The state with what was left, if anything was."""
+        if self._path is None or not self._path.is_file():
+            return state
+        try:
+            given = msgspec.msgpack.decode(self._path.read_bytes(), type=HandedOver)
+        except (OSError, msgspec.DecodeError) as error:
+            log.warning("what was handed over cannot be read (%s): the body is found anew", error)
+            return state
+        return resumed(state, given)
+
+    def leave(self, state: State) -> None:
+        """Leave what has changed but for the count, which time tells too."""
+        own = handed_over(state)
+        if self._path is None or self._is_known(own):
+            return
+        try:
+            with replacing(self._path) as path:
+                path.write_bytes(msgspec.msgpack.encode(own))
+        except OSError as error:
+            log.warning("nothing can be handed over (%s)", error.strerror)
+        self._left = own
+
+    def _is_known(self, own: HandedOver) -> bool:
+        if self._left is None:
+            return own.bdp is None and own.rig is None
+        same = msgspec.structs.replace(own, numbered=self._left.numbered)
+        return bool(same == self._left)

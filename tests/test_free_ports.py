@@ -1,0 +1,35 @@
+"""Ports of a run: what is held is named before anything starts."""
+
+import socket
+
+import pytest
+
+from animator.page.door import PageError
+from common.config import BusSettings, PageSettings, Settings
+from tritrack.live.free_ports import PortHeld, free_settings, own_session, refuse_held_ports
+
+
+def test_what_is_held_is_named_with_the_cure() -> None:
+    with socket.socket() as door:
+        door.bind(("127.0.0.1", 0))
+        door.listen()
+        port = door.getsockname()[1]
+        held = Settings(bus=BusSettings(f"tcp/127.0.0.1:{port}"), page=PageSettings(port=0))
+        with pytest.raises(PortHeld, match=f"tcp/127.0.0.1:{port}: address already in use; .*end"):
+            refuse_held_ports(held)
+        free = free_settings(Settings())
+        page = Settings(bus=free.bus, page=PageSettings(port=port))
+        with pytest.raises(PageError, match=f"port {port}"):
+            refuse_held_ports(page)
+
+
+def test_what_is_free_or_no_tcp_is_left_alone() -> None:
+    refuse_held_ports(free_settings(Settings()))
+    refuse_held_ports(Settings(bus=BusSettings("udp/127.0.0.1:7"), page=PageSettings(port=0)))
+
+
+def test_each_run_has_a_word_of_its_own_unless_it_was_given_one() -> None:
+    one, other = own_session(Settings()), own_session(Settings())
+    assert one.bus.session != other.bus.session
+    assert own_session(one) == one
+    assert Settings().bus.session == ""

@@ -1,0 +1,42 @@
+"""What an integrator leaves to its successor, and what that makes of it."""
+
+from pathlib import Path
+
+import msgspec
+
+from common.body.proportions import thesis_bdp
+from common.config import Settings
+from common.method import METHODS
+from common.rig.camera import paper_rig
+from integrator import merge_state
+from integrator.handed_over import NAME, Estate
+from integrator.opening_posture import Opening
+
+RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
+FRESH = merge_state.init(None, 1 / 15, Settings(), METHODS["default"])
+KNOWN = FRESH._replace(
+    rig=RIG, opening=Opening(thesis_bdp(1.6), True, (0.0, 0.9, 2.0)), numbered=70
+)
+
+
+def test_a_successor_knows_body_rig_and_count_and_begins_its_poses_anew(tmp_path: Path) -> None:
+    Estate(tmp_path).leave(KNOWN._replace(doubted=3))
+    taken = Estate(tmp_path).taken_up(FRESH)
+    assert (taken.opening, taken.rig, taken.numbered) == (KNOWN.opening, RIG, 70)
+    assert (taken.found, taken.doubted) == (None, 0)
+
+
+def test_nothing_is_left_before_anything_is_known_and_nothing_twice(tmp_path: Path) -> None:
+    estate = Estate(tmp_path)
+    estate.leave(FRESH)
+    assert not (tmp_path / NAME).exists()
+    estate.leave(KNOWN)
+    (tmp_path / NAME).unlink()
+    estate.leave(KNOWN._replace(numbered=71))
+    assert not (tmp_path / NAME).exists()
+    Estate(None).leave(KNOWN)
+
+
+def test_what_cannot_be_read_is_as_if_nothing_were_left(tmp_path: Path) -> None:
+    (tmp_path / NAME).write_bytes(msgspec.msgpack.encode({"bdp": 3}))
+    assert Estate(tmp_path).taken_up(FRESH) == FRESH

@@ -1,0 +1,122 @@
+"""The journal of a live run: whatever is cut off or fails, what was kept before is read again."""
+
+import errno
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from common.bus.messages import Body, Posture
+from common.config import Settings
+from tritrack.store.journal import BEFORE, NAME, Head, Journal, put_aside, read_journal
+from tritrack.store.past_run import open_run
+from tritrack.store.runs import poses, write_run
+
+HEAD = Head(settings=Settings(clip="clips/walk"), facts={"clip": "walk"})
+
+
+def body(frame: int) -> Body:
+    return Body(frame=frame, captured_s=frame / 15, clock_s=0.0, status="empty", views="none")
+
+
+def frames_in(folder: Path) -> list[int]:
+    told = read_journal(folder)
+    return [] if told is None else [each.frame for each in told.bodies]
+
+
+def test_what_is_kept_is_read_at_once_without_an_end(tmp_path: Path) -> None:
+    """As after kill -9: nothing was closed."""
+    one = Journal(tmp_path, HEAD)
+    one.keep([body(0), Posture(frame=0, captured_s=0.0, clock_s=0.0, name="squat")])
+    one.keep([body(1)])
+    told = read_journal(tmp_path)
+    assert told is not None
+    assert (told.head, told.bodies, told.postures[0].name) == (HEAD, [body(0), body(1)], "squat")
+
+
+@given(st.integers(0, 400))
+def test_a_torn_tail_costs_the_record_that_is_torn(tmp_path_factory: Any, cut: int) -> None:
+    folder = tmp_path_factory.mktemp("torn")
+    one = Journal(folder, HEAD)
+    ends = []
+    for frame in range(5):
+        one.keep([body(frame)])
+        ends.append((folder / NAME).stat().st_size)
+    left = max(0, ends[-1] - cut)
+    os.truncate(folder / NAME, left)
+    assert frames_in(folder) == [frame for frame, end in enumerate(ends) if end <= left]
+
+
+def test_a_byte_that_is_wrong_costs_what_stands_behind_it(tmp_path: Path) -> None:
+    one = Journal(tmp_path, HEAD)
+    one.keep([body(0)])
+    at = (tmp_path / NAME).stat().st_size
+    one.keep([body(1), body(2)])
+    data = bytearray((tmp_path / NAME).read_bytes())
+    data[at + 20] ^= 1
+    (tmp_path / NAME).write_bytes(data)
+    assert frames_in(tmp_path) == [0]
+
+
+def test_the_disk_that_it_takes_is_bounded_and_the_newest_stay(tmp_path: Path) -> None:
+    most = 2000
+    one = Journal(tmp_path, HEAD, most)
+    for frame in range(100):
+        one.keep([body(frame)])
+    sizes = [(tmp_path / name).stat().st_size for name in (BEFORE, NAME)]
+    assert max(sizes) <= most
+    kept = frames_in(tmp_path)
+    assert kept == list(range(kept[0], 100))
+    assert len(kept) > 5
+
+
+def test_a_full_disk_is_told_once_and_what_comes_when_it_has_room_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It takes half a record, then nothing: of that record nothing is left."""
+    one = Journal(tmp_path, HEAD)
+    one.keep([body(0)])
+    written = os.pwrite
+    calls = iter((10, None, None, None))
+
+    def full(file: int, data: bytes, at: int) -> int:
+        most = next(calls)
+        if most is None:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return written(file, data[:most], at)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "pwrite", full)
+        one.keep([body(1)])
+        one.keep([body(2)])
+    one.keep([body(3)])
+    assert frames_in(tmp_path) == [0, 3]
+    assert len(one.odd) == 1
+    assert "No space left on device" in one.odd[0]
+
+
+def test_a_run_that_was_cut_short_is_read_as_one_that_was_not(tmp_path: Path) -> None:
+    """An older run's results in the same folder are not taken for it."""
+    write_run(tmp_path, [body(7)], Settings(), {"warnings": []})
+    Journal(tmp_path, HEAD).keep([body(0), body(-1), body(1)])
+    run = open_run(tmp_path)
+    want = poses([body(0), body(1)])
+    assert run.poses["frame"].tolist() == want["frame"].tolist()
+    assert (run.summary["clip"], run.summary["frames"]) == ("walk", 2)
+    assert "cut short" in run.summary["warnings"][0]
+
+
+def test_a_journal_goes_with_its_run_and_one_of_a_run_cut_short_is_put_aside(
+    tmp_path: Path,
+) -> None:
+    one = Journal(tmp_path, HEAD)
+    one.keep([body(0)])
+    assert put_aside(tmp_path, tmp_path / "saved")
+    assert open_run(tmp_path / "saved").poses["frame"].tolist() == [0]
+    two = Journal(tmp_path, HEAD)
+    assert not put_aside(tmp_path, tmp_path / "saved_too")
+    two.remove()
+    assert not (tmp_path / NAME).exists()

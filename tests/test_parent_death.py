@@ -1,0 +1,99 @@
+"""Nothing outlives who started it, however that died: real processes, killed."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from common.parent_death import end_with_parent
+from tritrack.live.process_table import Part, end, started
+
+SOON_S = 2.0
+PATIENCE_S = 20.0
+
+PARENT = """
+import sys, time
+from pathlib import Path
+from test_parent_death import sleeps
+from tritrack.live.process_table import Part, started
+if __name__ == "__main__":
+    child = started(Part("viewer 1", sleeps, (sys.argv[1],)))
+    time.sleep(600)
+"""
+
+
+def sleeps(word: str) -> None:
+    """A part that has begun to work."""
+    Path(word).write_text(str(os.getpid()))
+    time.sleep(600.0)
+
+
+def ended_within(pid: int, wait_s: float) -> bool:
+    until_s = time.monotonic() + wait_s
+    while time.monotonic() < until_s:
+        if not psutil.pid_exists(pid) or psutil.Process(pid).status() == psutil.STATUS_ZOMBIE:
+            return True
+        time.sleep(0.02)
+    return False
+
+
+def written(path: Path) -> int:
+    until_s = time.monotonic() + PATIENCE_S
+    while not path.is_file() or not path.read_text():
+        assert time.monotonic() < until_s
+        time.sleep(0.02)
+    return int(path.read_text())
+
+
+@pytest.mark.parametrize("stopped", [False, True], ids=["works", "is stopped"])
+def test_a_part_ends_when_its_supervisor_is_killed(tmp_path: Path, stopped: bool) -> None:
+    """A process that was stopped runs no thread that could see it: Linux itself kills it."""
+    script = tmp_path / "parent.py"
+    script.write_text(PARENT)
+    path = os.pathsep.join((str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")))
+    parent = subprocess.Popen(
+        [sys.executable, str(script), str(tmp_path / "pid")], env={**os.environ, "PYTHONPATH": path}
+    )
+    pid = written(tmp_path / "pid")
+    if stopped:
+        os.kill(pid, signal.SIGSTOP)
+    parent.kill()
+    parent.wait()
+    assert ended_within(pid, SOON_S)
+
+
+def test_a_part_whose_supervisor_lives_lives(tmp_path: Path) -> None:
+    one = started(Part("viewer 1", sleeps, (str(tmp_path / "pid"),)))
+    try:
+        assert not ended_within(written(tmp_path / "pid"), 0.5)
+    finally:
+        end(one)
+
+
+def test_a_process_that_nobody_started_so_is_left_alone() -> None:
+    end_with_parent()
+
+
+def test_a_child_that_works_ends_with_its_pipe() -> None:
+    """It reads nothing at the moment, as a decoder that waits for a camera."""
+    code = (
+        "import sys, time; from common.parent_death import end_with_pipe; "
+        "end_with_pipe(sys.stdin.fileno()); print('up', flush=True); time.sleep(600)"
+    )
+    child = subprocess.Popen(
+        [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    assert child.stdin is not None
+    assert child.stdout is not None
+    assert child.stdout.readline() == b"up\n"
+    child.stdin.write(b"a line that is not read\n")
+    child.stdin.flush()
+    with pytest.raises(subprocess.TimeoutExpired):
+        child.wait(0.3)
+    child.stdin.close()
+    child.wait(SOON_S)

@@ -1,0 +1,79 @@
+"""The ports of a run: refused before anything starts where they are held, or found free."""
+
+import re
+import secrets
+import socket
+from typing import Final
+
+import msgspec
+
+from common.config import BusSettings, PageSettings, Settings
+
+TCP: Final = re.compile(r"tcp/(?P<host>[^/]+):(?P<port>\d+)")
+SESSION_BYTES: Final = 8
+
+
+class PortHeld(ValueError):
+    """A port that another program holds; the text names it and the cure."""
+
+
+def refuse_held_ports(settings: Settings) -> None:
+    """Say before anything starts that the bus or the page could not be opened.
+
+    Raises:
+        PortHeld: When the endpoint of the bus is held, or the page lacks a library.
+        PageError: When the page's port is.
+    """
+    _refuse_endpoint(settings.bus.endpoint)
+    if settings.page.port:
+        try:
+            import websockets  # noqa: F401
+
+            from animator.page.door import refuse_port
+        except ImportError as error:
+            raise PortHeld(
+                f"the page needs {error.name}: pip install 'tritrack[page]', or set page.port = 0"
+            ) from error
+        refuse_port(settings.page.port)
+
+
+def own_session(settings: Settings) -> Settings:
+    """The same settings with a word for this run alone, where they have none."""
+    if settings.bus.session:
+        return settings
+    bus = msgspec.structs.replace(settings.bus, session=secrets.token_hex(SESSION_BYTES))
+    return msgspec.structs.replace(settings, bus=bus)
+
+
+def free_settings(settings: Settings) -> Settings:
+    """The same settings with an endpoint and a page on ports that nobody holds."""
+    bus, page = _free_port(), _free_port()
+    return msgspec.structs.replace(
+        settings,
+        bus=BusSettings(endpoint=f"tcp/127.0.0.1:{bus}"),
+        page=PageSettings(port=page) if settings.page.port else settings.page,
+    )
+
+
+def _refuse_endpoint(endpoint: str) -> None:
+    """What is no TCP endpoint is left to who opens it."""
+    where = TCP.fullmatch(endpoint)
+    if where is None:
+        return
+    try:
+        found = socket.getaddrinfo(where["host"].strip("[]"), int(where["port"]))
+        with socket.socket(found[0][0]) as trial:
+            trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            trial.bind(found[0][4])
+    except OSError as error:
+        why = (error.strerror or str(error)).lower()
+        raise PortHeld(
+            f"cannot listen on {endpoint}: {why}; another run may hold it: end that, or set "
+            "another [bus] endpoint"
+        ) from error
+
+
+def _free_port() -> int:
+    with socket.socket() as door:
+        door.bind(("127.0.0.1", 0))
+        return int(door.getsockname()[1])

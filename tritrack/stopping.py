@@ -1,0 +1,51 @@
+"""What Ctrl-C and SIGTERM do to a command that is not ready for them: a word, a code, an end."""
+
+import multiprocessing
+import os
+import signal
+import sys
+from pathlib import Path
+from types import FrameType
+from typing import Final, NoReturn
+
+WORD: Final = "stopped before it was done"
+BY_SIGNAL: Final = 128
+"""What shells add to a signal's number where a signal ended a command."""
+
+
+class Terminated(KeyboardInterrupt):
+    """SIGTERM came: what is open is closed in order, as after Ctrl-C."""
+
+
+def heed_at_once() -> None:
+    """While a command's own modules are imported, a signal ends it with its word and code.
+
+    A process of a run imports the command too: its supervisor tells it how to end. So may another
+    program: its signals are its own.
+    """
+    called = Path(sys.argv[0])
+    is_command = called.name == "tritrack" or called.parts[-2:] == ("tritrack", "__main__.py")
+    if is_command and multiprocessing.parent_process() is None:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, _leave)
+
+
+def heed_in_order() -> None:
+    """From now on a signal is raised where the command is, so that it closes what it opened."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGTERM, _terminated)
+
+
+def code_of_stop(error: BaseException) -> int:
+    """The exit code of a command that a signal ended, as shells count it."""
+    terminated = isinstance(error, Terminated) or isinstance(error.__cause__, Terminated)
+    return BY_SIGNAL + (signal.SIGTERM if terminated else signal.SIGINT)
+
+
+def _leave(number: int, _frame: FrameType | None) -> NoReturn:
+    os.write(2, f"error: {WORD}\n".encode())
+    os._exit(BY_SIGNAL + number)
+
+
+def _terminated(_number: int, _frame: FrameType | None) -> NoReturn:
+    raise Terminated
