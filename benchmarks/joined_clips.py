@@ -1,4 +1,6 @@
-"""Several clips of one person and one rig as one long clip: python benchmarks/joined_clips.py OUT CLIP...
+"""Several clips of one person and one rig as one long clip.
+
+    python benchmarks/joined_clips.py OUT CLIP...
 
 The first clip is taken whole, of the others what follows their empty room. The person may jump
 where two meet. The joined clip has its truth and no calibration.

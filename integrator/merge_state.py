@@ -1,12 +1,12 @@
 """What the integrator remembers from one pair of reports to the next."""
 
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import ANGLE_NAMES, Vector
-from common.bus.messages import Facing
+from common.bus.messages import Facing, ScaleSource
 from common.config import Settings
 from common.method import Method
 from common.rig.camera import Rig
@@ -15,8 +15,6 @@ from integrator.opening_posture import Opening
 from integrator.pose import smoothing
 from integrator.proposal.pose_proposal import Memory
 from integrator.single.single_view import Alone
-
-ScaleSource = Literal["calibrated", "person", "assumed"]
 
 
 class Posed(NamedTuple):
@@ -57,6 +55,8 @@ class State(NamedTuple):
     frames: tuple[int, int] = (-1, -1)
     """The last frame that was heard of each viewer."""
     last_s: float | None = None
+    calibration: int = 0
+    """How often the rig was changed: places before and after do not compare."""
     doubted: int = 0
     """For how many frames the body has not been believed."""
 
@@ -75,6 +75,8 @@ class Start(NamedTuple):
     """Where the rig is from; None: it is calibrated, if there is one."""
     opening: Opening = Opening()
     """What is known of the body."""
+    by_person: bool = False
+    """A rig that is assumed is only the first guess: the person will tell it."""
 
 
 def init(
@@ -91,6 +93,6 @@ def init(
         start: What else is known.
     """
     source = start.source or ("assumed" if rig is None else "calibrated")
-    proposes = method.proposals and (start.alone or source != "assumed")
+    proposes = method.proposals and (start.alone or start.by_person or source != "assumed")
     smooth = smoothing.init(len(ANGLE_NAMES), period_s)
     return State(settings, method, rig, source, proposes, smooth, start.opening)

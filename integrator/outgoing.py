@@ -53,6 +53,8 @@ def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, f
         bdp=bdp,
         matches=sum(_matches(report) for report in pair if report is not None),
         lifting=None if found.alone is None else found.alone.lifting,
+        scale_source=state.scale_source,
+        calibration=state.calibration,
     )
 
 
@@ -141,6 +143,7 @@ def guide_of(state: State, pair: Pair, settled_now: bool) -> Guide:
         rest_row_px=(upright[0][1], upright[1][1]),
         pose=tuple(found.pose.tolist()),
         stick=_asks_for_stick(state),
+        proposes=state.proposes,
     )
 
 
@@ -158,7 +161,13 @@ def no_detection(state: State, pair: Pair) -> tuple[Body, Guide]:
     """What is told while nobody is in any view."""
     known = state.opening
     body = Body(
-        **_moment(state, pair), status="empty", views="none", facing=state.facing, bdp=known.bdp
+        **_moment(state, pair),
+        status="empty",
+        views="none",
+        facing=state.facing,
+        bdp=known.bdp,
+        scale_source=state.scale_source,
+        calibration=state.calibration,
     )
     guide = Guide(
         **_moment(state, pair),
@@ -167,6 +176,7 @@ def no_detection(state: State, pair: Pair) -> tuple[Body, Guide]:
         measured=known.measured,
         facing=state.facing,
         pose=tuple(rest_pose().tolist()),
+        proposes=state.proposes,
     )
     return body, guide
 

@@ -6,12 +6,14 @@ import msgspec
 
 from common.body.body import Bdp
 
-PROTOCOL: Final = 5
+PROTOCOL: Final = 6
 
 ViewerNumber = Literal[1, 2]
 Facing = Literal["facade", "flank"]
 Status = Literal["empty", "measuring", "tracking", "predicted", "lost"]
 Views = Literal["both", "1", "2", "none"]
+ScaleSource = Literal["calibrated", "person", "assumed"]
+"""Where a rig is from: a file, the person who moves before it, or nowhere."""
 CameraFault = Literal["", "frozen", "black", "saturated", "covered"]
 Pixel = tuple[float, float]
 Point = tuple[float, float, float]
@@ -157,6 +159,8 @@ class Guide(Moment, frozen=True, kw_only=True):
     """Predicted pose, POSE_NAMES order, metres and degrees."""
     stick: bool = False
     """A stick body is asked for: one view is left, and what it proposes does not fit."""
+    proposes: bool = False
+    """The integrator reads the pose off the silhouettes: angles are not to be searched for."""
 
 
 class Lifting(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -194,6 +198,10 @@ class Body(Moment, frozen=True, kw_only=True):
     matches: int = 0
     lifting: Lifting | None = None
     """Where one view alone shows the body."""
+    scale_source: ScaleSource = "assumed"
+    """Where the rig is from that the body is told by."""
+    calibration: int = 0
+    """How often that rig was changed in the run: places before and after do not compare."""
 
 
 class Performance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
