@@ -14,6 +14,7 @@ from integrator.landmarks import landmark_fusion
 from integrator.opening_posture import Opening
 from integrator.pose import smoothing
 from integrator.proposal.pose_proposal import Memory
+from integrator.rig_gate import rig_agreement
 from integrator.single.single_view import Alone
 
 
@@ -55,6 +56,7 @@ class State(NamedTuple):
     frames: tuple[int, int] = (-1, -1)
     """The last frame that was heard of each viewer."""
     last_s: float | None = None
+    agreement: rig_agreement.State = rig_agreement.State()
     calibration: int = 0
     """How often the rig was changed: places before and after do not compare."""
     doubted: int = 0

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, Vector, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector
-from common.bus.messages import Body, Guide, Pixel, Report, Status, Views
+from common.bus.messages import Agreement, Body, Guide, Pixel, Report, Status, Views
 from common.rig.camera import project
 from integrator.belief import is_believed
 from integrator.merge_state import State
@@ -38,7 +38,8 @@ def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, f
     places_m = _places_m(state, pose)
     pixels = tuple(project(camera, places_m) for camera in rig.cameras)
     outside = _outside(pair, pixels)
-    confidence = np.where(outside, 0.0, _confidence(state, scores))
+    told = state.agreement.told if _views(pair) == "both" else None
+    confidence = np.where(outside, 0.0, _confidence(state, scores) * _believed(state, told))
     return Body(
         **_moment(state, pair),
         status=_status(state, bool(outside.any())),
@@ -55,6 +56,7 @@ def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, f
         lifting=None if found.alone is None else found.alone.lifting,
         scale_source=state.scale_source,
         calibration=state.calibration,
+        agreement=told,
     )
 
 
@@ -108,6 +110,11 @@ def _confidence(state: State, scores: tuple[float, float]) -> Vector:
     if state.found.confidence is not None:
         return state.found.confidence
     return np.full(len(JOINT_NAMES), max(scores))
+
+
+def _believed(state: State, told: Agreement | None) -> float:
+    """Share of the confidence that is left where the rig is not believable."""
+    return 1.0 if told is None or state.settings.trust_calibration else told.believed
 
 
 def guide_of(state: State, pair: Pair, settled_now: bool) -> Guide:

@@ -177,6 +177,19 @@ class Lifting(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     (T19); empty where the pose was not lifted from its segments."""
 
 
+class Agreement(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How well both views agree by the run's rig, over the last seconds."""
+
+    apart_mm: float
+    """How far they place the joints from each other, errors that change left out."""
+    soles_mm: float
+    """Height of the feet above the floor while both stand on it."""
+    facing_deg: float
+    """How far they disagree which way in the room the person faces."""
+    believed: float
+    """By what the joints' confidence is multiplied: 1 of a rig that is believable."""
+
+
 class Body(Moment, frozen=True, kw_only=True):
     """One body: the universal BAPs and the joints they give."""
 
@@ -202,6 +215,8 @@ class Body(Moment, frozen=True, kw_only=True):
     """Where the rig is from that the body is told by."""
     calibration: int = 0
     """How often that rig was changed in the run: places before and after do not compare."""
+    agreement: Agreement | None = None
+    """None where one view alone shows the body, and until enough was seen."""
 
 
 class Performance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -9,6 +9,7 @@ from integrator import opening_posture
 from integrator.live_rig.rig_job import Solved
 from integrator.merge_state import State
 from integrator.pose import smoothing
+from integrator.rig_gate import rig_agreement
 
 
 def with_rig(state: State, rig: Rig) -> State:
@@ -32,6 +33,7 @@ def with_rig(state: State, rig: Rig) -> State:
         found=None,
         facing=("facade", "flank"),
         doubted=0,
+        agreement=rig_agreement.State(),
     )
 
 
