@@ -186,9 +186,10 @@ def run(
             news = (*calibration.news, *subscriber.news)
             if told.is_new(news):
                 heart.hurry()
-            odd = [*diagnostics.assumed(state), *news]
+            odd = [*diagnostics.assumed(state), *told.doubts(state), *news]
             heart.beat("running", "\n".join(odd), **subscriber.counts())
-    odd = [*diagnostics.warnings(noticed, state), *calibration.news, *subscriber.news]
+    news = (*told.doubts(state), *calibration.news, *subscriber.news)
+    odd = [*diagnostics.warnings(noticed, state), *news]
     heart.beat("ended", "\n".join(odd), **subscriber.counts())
 
 
@@ -199,6 +200,7 @@ class Told:
         """Nothing."""
         self._bus, self._calibration = bus, -1
         self._news: tuple[str, ...] = ()
+        self._doubt = ""
 
     def rig(self, state: State, late_s: float) -> None:
         """Tell the rig as soon as it is known, and each that comes after it."""
@@ -211,7 +213,12 @@ class Told:
                     late_s=late_s,
                 )
             )
-            self._calibration = state.calibration
+            self._calibration, self._doubt = state.calibration, ""
+
+    def doubts(self, state: State) -> list[str]:
+        """That the rig in use is not believable, as it was first seen."""
+        self._doubt = self._doubt or diagnostics.doubt(state)
+        return [self._doubt] if self._doubt else []
 
     def is_new(self, news: tuple[str, ...]) -> bool:
         """Whether there are other news than before."""
