@@ -18,6 +18,8 @@ from integrator import commands, diagnostics, merge, merge_state, opening_postur
 from integrator.frame_numbers import frame_times
 from integrator.handed_over import Estate
 from integrator.integrator_warmup import warm_up
+from integrator.live_rig.live_calibration import LiveCalibration, is_by_person
+from integrator.live_rig.rig_change import set_back
 from integrator.merge_state import Start, State
 from integrator.pairing import Pair
 from integrator.single.sight import Annotations
@@ -98,6 +100,8 @@ class Subscriber:
         self._paired = pairing.init(period_s, viewers)
         self._present = presence.init(period_s, viewers)
         self._wait_s = OVERDUE_PERIODS * period_s
+        self.late_s = 0.0
+        """By how much the times of view 2 are set back."""
         self._looked_s = self._round_s = time.monotonic()
         self._judges_s = 0.0
         """From then on it is asked who is late or silent."""
@@ -124,15 +128,17 @@ class Subscriber:
         now_s = time.monotonic()
         for report in reports:
             self.starter.begun(report)
-            self._present = presence.heard(self._present, report, now_s)
-            self._paired, more = pairing.step(self._paired, report)
+            timed = set_back(report, self.late_s)
+            self._present = presence.heard(self._present, timed, now_s)
+            self._paired, more = pairing.step(self._paired, timed)
             complete += more
         if not reports or now_s - self._looked_s > LOOK_S:
             # What a viewer said before it went comes first, unless there is always a report.
             complete += self._who_came_and_went(now_s)
             self._looked_s = now_s
         if self._is_caught_up(reports, now_s):
-            self._paired, alone = pairing.overdue(self._paired, now_s, self._wait_s)
+            wait_s = self._wait_s + abs(self.late_s)
+            self._paired, alone = pairing.overdue(self._paired, now_s, wait_s)
             complete += alone
             self._present, told = presence.step(self._present, now_s)
             for line in told:
@@ -194,32 +200,76 @@ def run(
     pace = Pace(period_s)
     heart = Heart(bus, "integrator", pace)
     subscriber = Subscriber(bus, viewers, period_s, wait_s)
-    noticed, odd = diagnostics.State(), diagnostics.assumed(state)
-    told_rig, news = False, subscriber.news
-    heart.beat("ready", "\n".join(odd))
-    said = Annotations()
-    while subscriber.going and not stop.is_set():
-        for command in subscriber.commands():
-            state, said, answer = commands.step(state, said, command)
-            if answer is not None:
-                bus.publish(answer)
-        for pair in subscriber.pairs():
-            state, body, guide = merge.step(state, pair, said)
-            said = Annotations()
-            noticed = diagnostics.step(noticed, pair)
-            bus.publish(guide)
-            bus.publish(body)
-            pace.done(body.clock_s, time.monotonic())
-        if not told_rig and state.rig is not None:
-            bus.publish(Cameras(rig=state.rig, scale_source=state.scale_source))
-            told_rig = True
-        if subscriber.news != news:
-            news = subscriber.news
-            heart.hurry()
-        estate.leave(state)
-        heart.beat("running", "\n".join([*odd, *news]), **subscriber.counts())
-    odd = [*diagnostics.warnings(noticed, state), *subscriber.news]
+    noticed, said, told = diagnostics.State(), Annotations(), Told(bus)
+    heart.beat("ready", "\n".join(diagnostics.assumed(state)))
+    looks = state.scale_source == "assumed" and state.proposes and len(viewers) == 2
+    with LiveCalibration(state, looks=looks, late_s=estate.late_s) as calibration:
+        while subscriber.going and not stop.is_set():
+            state, said = _obeyed(state, said, subscriber.commands(), bus)
+            for pair in subscriber.pairs():
+                state, body, guide = merge.step(state, pair, said)
+                said = Annotations()
+                noticed = diagnostics.step(noticed, pair)
+                bus.publish(guide)
+                bus.publish(body)
+                pace.done(body.clock_s, time.monotonic())
+                calibration.heard(pair)
+            state = calibration.changed(state)
+            subscriber.late_s = calibration.late_s
+            told.rig(state, calibration.late_s)
+            news = (*calibration.news, *subscriber.news)
+            if told.is_new(news):
+                heart.hurry()
+            estate.leave(state, calibration.late_s)
+            odd = [*diagnostics.assumed(state), *told.doubts(state), *news]
+            heart.beat("running", "\n".join(odd), **subscriber.counts())
+    news = (*told.doubts(state), *calibration.news, *subscriber.news)
+    odd = [*diagnostics.warnings(noticed, state), *news]
     heart.beat("ended", "\n".join(odd), **subscriber.counts())
+
+
+class Told:
+    """What was told of the run already."""
+
+    def __init__(self, bus: Bus) -> None:
+        """Nothing."""
+        self._bus, self._calibration = bus, -1
+        self._news: tuple[str, ...] = ()
+        self._doubt = ""
+
+    def rig(self, state: State, late_s: float) -> None:
+        """Tell the rig as soon as it is known, and each that comes after it."""
+        if state.rig is not None and state.calibration > self._calibration:
+            self._bus.publish(
+                Cameras(
+                    rig=state.rig,
+                    scale_source=state.scale_source,
+                    calibration=state.calibration,
+                    late_s=late_s,
+                )
+            )
+            self._calibration, self._doubt = state.calibration, ""
+
+    def doubts(self, state: State) -> list[str]:
+        """That the rig in use is not believable, as it was first seen."""
+        self._doubt = self._doubt or diagnostics.doubt(state)
+        return [self._doubt] if self._doubt else []
+
+    def is_new(self, news: tuple[str, ...]) -> bool:
+        """Whether there are other news than before."""
+        before, self._news = self._news, news
+        return news != before
+
+
+def _obeyed(
+    state: State, said: Annotations, asked: list[Command], bus: Bus
+) -> tuple[State, Annotations]:
+    """What the person at the page asks for, done and answered."""
+    for command in asked:
+        state, said, answer = commands.step(state, said, command)
+        if answer is not None:
+            bus.publish(answer)
+    return state, said
 
 
 def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContext()) -> None:
@@ -244,7 +294,12 @@ def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContex
             period_s,
             settings,
             METHODS[settings.mode],
-            Start(len(viewers) == 1, None, opening_posture.init(clip.body), frame_times(clip)),
+            Start(
+                len(viewers) == 1,
+                opening=opening_posture.init(clip.body),
+                times=frame_times(clip),
+                by_person=is_by_person(clip, settings),
+            ),
         )
         state = estate.taken_up(state)
         warm_up(settings, clip.views[0].size)

@@ -1,9 +1,12 @@
 """What was odd about a performance, and what was made of it instead: a line each."""
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from integrator import merge_state
 from integrator.pairing import Pair
+
+DOUBTED: Final = 0.5
+"""Of a rig by which no more than this is left of the joints' confidence something is said."""
 
 
 class State(NamedTuple):
@@ -36,6 +39,19 @@ def assumed(merged: merge_state.State) -> list[str]:
         "no calibration: a rig of the paper's kind is assumed, its scale from a stature of "
         f"{merged.settings.body.stature_m:g} m (make one: tritrack calibrate poles)"
     ]
+
+
+def doubt(merged: merge_state.State) -> str:
+    """What is said of a rig that both views do not bear out; "" while they do, or none is known."""
+    told, trusts = merged.agreement.told, merged.settings.trust_calibration
+    if told is None or told.believed > DOUBTED or trusts or merged.scale_source == "assumed":
+        return ""
+    return (
+        f"the calibration is not believable: views {told.apart_mm:.0f} mm apart, soles "
+        f"{told.soles_mm:+.0f} mm over the floor, facings {told.facing_deg:.0f} degrees apart; "
+        "joints are told with less confidence: calibrate again (tritrack calibrate person), or "
+        "set trust_calibration = true"
+    )
 
 
 def warnings(state: State, merged: merge_state.State) -> list[str]:

@@ -8,8 +8,9 @@ import msgspec
 
 from common.atomic_file import replacing
 from common.body.body import Bdp
+from common.bus.messages import ScaleSource
 from common.rig.camera import Rig
-from integrator.merge_state import ScaleSource, State
+from integrator.merge_state import State
 from integrator.opening_posture import Opening
 
 NAME: Final = "integrator.msgpack"
@@ -25,12 +26,16 @@ class HandedOver(msgspec.Struct, frozen=True):
     measured_at_m: tuple[float, float, float]
     rig: Rig | None
     scale_source: ScaleSource
+    calibration: int
+    """How often the rig was changed."""
+    late_s: float
+    """By how much the times of view 2 are set back."""
     numbered: int
     """The last number that an instant had."""
 
 
-def handed_over(state: State) -> HandedOver:
-    """What of a state is handed over."""
+def handed_over(state: State, late_s: float = 0.0) -> HandedOver:
+    """What of a state is handed over, and by how much view 2 is late."""
     known = state.opening
     return HandedOver(
         known.bdp,
@@ -38,6 +43,8 @@ def handed_over(state: State) -> HandedOver:
         known.measured_at_m,
         state.rig,
         state.scale_source,
+        state.calibration,
+        late_s,
         state.numbered,
     )
 
@@ -46,7 +53,11 @@ def resumed(state: State, given: HandedOver) -> State:
     """A new state that knows what was handed over; poses and filters begin anew."""
     opening = Opening(given.bdp, given.measured, given.measured_at_m) if given.bdp else Opening()
     return state._replace(
-        opening=opening, rig=given.rig, scale_source=given.scale_source, numbered=given.numbered
+        opening=opening,
+        rig=given.rig,
+        scale_source=given.scale_source,
+        calibration=given.calibration,
+        numbered=given.numbered,
     )
 
 
@@ -57,6 +68,8 @@ class Estate:
         """Of one run alone."""
         self._path = None if folder is None else folder / NAME
         self._left: HandedOver | None = None
+        self.late_s = 0.0
+        """By how much the times of view 2 were set back."""
 
     def taken_up(self, state: State) -> State:
         """The state with what was left, if anything was."""
@@ -67,11 +80,12 @@ class Estate:
         except (OSError, msgspec.DecodeError) as error:
             log.warning("what was handed over cannot be read (%s): the body is found anew", error)
             return state
+        self.late_s = given.late_s
         return resumed(state, given)
 
-    def leave(self, state: State) -> None:
+    def leave(self, state: State, late_s: float) -> None:
         """Leave what has changed but for the count, which time tells too."""
-        own = handed_over(state)
+        own = handed_over(state, late_s)
         if self._path is None or self._is_known(own):
             return
         try:

@@ -23,6 +23,7 @@ from integrator.pose import joint_limits, smoothing
 from integrator.rig.assumed_rig import assumed_rig
 from integrator.rig.body_position import facing_of
 from integrator.rig.undistortion import undistorted_pair, undistorted_rig
+from integrator.rig_gate import rig_agreement
 from integrator.single import single_view
 from integrator.single.sight import Annotations, Sight
 
@@ -60,6 +61,7 @@ def step(
         state = _without_pose(state)
         return (state, *outgoing.no_detection(state, pair))
     now = Instant(undistorted_rig(state.rig), seen, dt_s, annotations)
+    state = state._replace(agreement=rig_agreement.step(state.agreement, now.rig, now.seen))
     state, settled_at = _with_opening(state, now)
     state, now = _with_pose(state, now, settled_at)
     state = _with_shape(state, now)

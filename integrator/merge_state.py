@@ -1,12 +1,12 @@
 """What the integrator remembers from one pair of reports to the next."""
 
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import ANGLE_NAMES, Vector
-from common.bus.messages import Facing
+from common.bus.messages import Facing, ScaleSource
 from common.config import Settings
 from common.method import Method
 from common.rig.camera import Rig
@@ -15,9 +15,8 @@ from integrator.landmarks import landmark_fusion
 from integrator.opening_posture import Opening
 from integrator.pose import smoothing
 from integrator.proposal.pose_proposal import Memory
+from integrator.rig_gate import rig_agreement
 from integrator.single.single_view import Alone
-
-ScaleSource = Literal["calibrated", "person", "assumed"]
 
 
 class Posed(NamedTuple):
@@ -64,6 +63,9 @@ class State(NamedTuple):
     """The last number that an instant had."""
     times: FrameTimes | None = None
     """When camera 1 takes its frames; None where it is no part of the run."""
+    agreement: rig_agreement.State = rig_agreement.State()
+    calibration: int = 0
+    """How often the rig was changed: places before and after do not compare."""
     doubted: int = 0
     """For how many frames the body has not been believed."""
 
@@ -84,6 +86,8 @@ class Start(NamedTuple):
     """What is known of the body."""
     times: FrameTimes | None = None
     """When camera 1 takes its frames."""
+    by_person: bool = False
+    """A rig that is assumed is only the first guess: the person will tell it."""
 
 
 def init(
@@ -100,6 +104,6 @@ def init(
         start: What else is known.
     """
     source = start.source or ("assumed" if rig is None else "calibrated")
-    proposes = method.proposals and (start.alone or source != "assumed")
+    proposes = method.proposals and (start.alone or start.by_person or source != "assumed")
     smooth = smoothing.init(len(ANGLE_NAMES), period_s)
     return State(settings, method, rig, source, proposes, smooth, start.opening, times=start.times)

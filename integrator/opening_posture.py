@@ -6,6 +6,7 @@ import msgspec
 import numpy as np
 
 from common.body.body import Bdp, Vector, body_of_lengths
+from common.body.proportions import thesis_bdp
 from common.bus.messages import Measure, Report
 from common.method import Method
 from common.rig.camera import Rig
@@ -38,6 +39,8 @@ class Opening(NamedTuple):
     places_m: tuple[tuple[float, float, float], ...] = ()
     refused: int = 0
     """Frames since the last accepted one."""
+    measures: tuple[tuple[Measure, Measure], ...] = ()
+    """What the accepted frames showed, in pixels of both views."""
     samples: tuple[Sample, ...] = ()
     """The instants whose outlines the prior was fitted to, where it was."""
     unsampled: int = 0
@@ -82,14 +85,39 @@ def step(
             refused=opening.refused + 1,
             bodies=() if broken_off else opening.bodies,
             places_m=() if broken_off else opening.places_m,
+            measures=() if broken_off else opening.measures,
         ), None
+    return _settled(_measured(opening, rig, front, side), due, method)
+
+
+def elsewhere(opening: Opening, rig: Rig, due: int, method: Method, stature_m: float) -> Opening:
+    """What is known of the body, by a rig that is known only now.
+
+    Args:
+        opening: By the rig before. A body that was known before the run is kept.
+        rig: Two cameras.
+        due: As for `step`.
+        method: As for `step`.
+        stature_m: Of a body that was not measured.
+    """
+    if opening.measured and not opening.measures:
+        return opening
+    told = Opening(bdp=thesis_bdp(stature_m))
+    for front, side in opening.measures:
+        told = _measured(told, rig, front, side)
+    return _settled(told, due, method)[0]
+
+
+def _measured(opening: Opening, rig: Rig, front: Measure, side: Measure) -> Opening:
+    """An accepted frame more."""
     place = place_of(rig, (front.centre_px, side.centre_px), np.zeros(3), 0)
-    body = universal_bdp(front, side, scales_at(rig, place)[0])
     x, y, z = (float(value) for value in place)
-    opening = opening._replace(
-        bodies=(*opening.bodies, body), places_m=(*opening.places_m, (x, y, z)), refused=0
+    return opening._replace(
+        bodies=(*opening.bodies, universal_bdp(front, side, scales_at(rig, place)[0])),
+        places_m=(*opening.places_m, (x, y, z)),
+        measures=(*opening.measures, (front, side)),
+        refused=0,
     )
-    return _settled(opening, due, method)
 
 
 def _settled(opening: Opening, due: int, method: Method) -> tuple[Opening, Vector | None]:
@@ -102,7 +130,7 @@ def _settled(opening: Opening, due: int, method: Method) -> tuple[Opening, Vecto
     body = body_of_lengths(lengths.tolist())
     if method.legs_to_floor:
         body = _on_the_floor(body, y)
-    return Opening(body, True, (x, y, z)), place
+    return Opening(body, True, (x, y, z), measures=opening.measures), place
 
 
 def universal_bdp(front: Measure, side: Measure, px_per_m_1: float) -> Bdp:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, Vector, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector
-from common.bus.messages import Body, Guide, Pixel, Report, Status, Views
+from common.bus.messages import Agreement, Body, Guide, Pixel, Report, Status, Views
 from common.rig.camera import project
 from integrator.belief import is_believed
 from integrator.merge_state import State
@@ -38,7 +38,8 @@ def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, f
     places_m = _places_m(state, pose)
     pixels = tuple(project(camera, places_m) for camera in rig.cameras)
     outside = _outside(pair, pixels)
-    confidence = np.where(outside, 0.0, _confidence(state, scores))
+    told = state.agreement.told if _views(pair) == "both" else None
+    confidence = np.where(outside, 0.0, _confidence(state, scores) * _believed(state, told))
     return Body(
         **_moment(state, pair),
         status=_status(state, bool(outside.any())),
@@ -53,6 +54,9 @@ def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, f
         bdp=bdp,
         matches=sum(_matches(report) for report in pair if report is not None),
         lifting=None if found.alone is None else found.alone.lifting,
+        scale_source=state.scale_source,
+        calibration=state.calibration,
+        agreement=told,
     )
 
 
@@ -108,6 +112,11 @@ def _confidence(state: State, scores: tuple[float, float]) -> Vector:
     return np.full(len(JOINT_NAMES), max(scores))
 
 
+def _believed(state: State, told: Agreement | None) -> float:
+    """Share of the confidence that is left where the rig is not believable."""
+    return 1.0 if told is None or state.settings.trust_calibration else told.believed
+
+
 def guide_of(state: State, pair: Pair, settled_now: bool) -> Guide:
     """What the viewers need for their next frame.
 
@@ -141,6 +150,7 @@ def guide_of(state: State, pair: Pair, settled_now: bool) -> Guide:
         rest_row_px=(upright[0][1], upright[1][1]),
         pose=tuple(found.pose.tolist()),
         stick=_asks_for_stick(state),
+        proposes=state.proposes,
     )
 
 
@@ -158,7 +168,13 @@ def no_detection(state: State, pair: Pair) -> tuple[Body, Guide]:
     """What is told while nobody is in any view."""
     known = state.opening
     body = Body(
-        **_moment(state, pair), status="empty", views="none", facing=state.facing, bdp=known.bdp
+        **_moment(state, pair),
+        status="empty",
+        views="none",
+        facing=state.facing,
+        bdp=known.bdp,
+        scale_source=state.scale_source,
+        calibration=state.calibration,
     )
     guide = Guide(
         **_moment(state, pair),
@@ -167,6 +183,7 @@ def no_detection(state: State, pair: Pair) -> tuple[Body, Guide]:
         measured=known.measured,
         facing=state.facing,
         pose=tuple(rest_pose().tolist()),
+        proposes=state.proposes,
     )
     return body, guide
 

@@ -20,21 +20,23 @@ KNOWN = FRESH._replace(
 
 
 def test_a_successor_knows_body_rig_and_count_and_begins_its_poses_anew(tmp_path: Path) -> None:
-    Estate(tmp_path).leave(KNOWN._replace(doubted=3))
-    taken = Estate(tmp_path).taken_up(FRESH)
+    Estate(tmp_path).leave(KNOWN._replace(doubted=3, calibration=2), 0.1)
+    estate = Estate(tmp_path)
+    taken = estate.taken_up(FRESH)
     assert (taken.opening, taken.rig, taken.numbered) == (KNOWN.opening, RIG, 70)
+    assert (taken.calibration, estate.late_s) == (2, 0.1)
     assert (taken.found, taken.doubted) == (None, 0)
 
 
 def test_nothing_is_left_before_anything_is_known_and_nothing_twice(tmp_path: Path) -> None:
     estate = Estate(tmp_path)
-    estate.leave(FRESH)
+    estate.leave(FRESH, 0.0)
     assert not (tmp_path / NAME).exists()
-    estate.leave(KNOWN)
+    estate.leave(KNOWN, 0.0)
     (tmp_path / NAME).unlink()
-    estate.leave(KNOWN._replace(numbered=71))
+    estate.leave(KNOWN._replace(numbered=71), 0.0)
     assert not (tmp_path / NAME).exists()
-    Estate(None).leave(KNOWN)
+    Estate(None).leave(KNOWN, 0.0)
 
 
 def test_what_cannot_be_read_is_as_if_nothing_were_left(tmp_path: Path) -> None:

@@ -60,8 +60,16 @@ def test_what_no_process_says_does_not_fit() -> None:
 def listen(endpoint: str, heard: list[tuple[str, bytes]], over: threading.Event) -> None:
     """All that is said in the room, from when its hub answers until the test is over.
 
-    Once a body is heard, the stranger asks the run to save what it saw; the run answers.
+    Once a body is heard, the stranger asks the run to save what it saw, with the run's own word,
+    which goes behind the number of all that it says; the run answers.
     """
+    words: list[bytes] = []
+
+    def hear(sample: zenoh.Sample) -> None:
+        heard.append((str(sample.key_expr), sample.payload.to_bytes()))
+        if str(sample.key_expr).endswith("/body/pose") and sample.attachment is not None:
+            words.append(sample.attachment.to_bytes()[8:])
+
     config = zenoh.Config()
     config.insert_json5("mode", '"client"')
     config.insert_json5("connect/endpoints", json.dumps([endpoint]))
@@ -71,13 +79,11 @@ def listen(endpoint: str, heard: list[tuple[str, bytes]], over: threading.Event)
         except zenoh.ZError:
             continue
         with session:
-            session.declare_subscriber(
-                "tritrack/room/**",
-                lambda sample: heard.append((str(sample.key_expr), sample.payload.to_bytes())),
-            )
-            while not over.wait(0.1) and not any(key.endswith("/body/pose") for key, _ in heard):
+            session.declare_subscriber("tritrack/room/**", hear)
+            while not words and not over.wait(0.1):
                 pass
-            session.put("tritrack/room/command", msgpack.packb({"what": "save"}))
+            ours = (1).to_bytes(8, "big") + b"".join(words[:1])
+            session.put("tritrack/room/command", msgpack.packb({"what": "save"}), attachment=ours)
             over.wait()
 
 

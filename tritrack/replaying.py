@@ -17,6 +17,7 @@ from common.bus.rate import wait_until
 from common.config import BusSettings
 from common.method import METHODS
 from integrator import merge, merge_state, opening_posture
+from integrator.live_rig.rig_change import set_back, with_rig
 from integrator.merge_state import Start
 from integrator.pairing import Pair
 from tritrack.store.recording import Recording, read_recording
@@ -64,10 +65,13 @@ def integrated(recording: Recording) -> Replayed:
         head.period_s,
         head.settings,
         METHODS[head.settings.mode],
-        Start(head.alone, None, opening, head.times),
+        Start(head.alone, head.scale_source, opening, head.times, head.by_person),
     )
+    rigs = {told.calibration: told.rig for told in recording.cameras}
     bodies, same = [], 0
     for before, pair in pairs(recording):
+        if before.calibration > state.calibration and before.calibration in rigs:
+            state = with_rig(state, rigs[before.calibration])
         state, body, _guide = merge.step(state, pair)
         bodies.append(body)
         same += encode(body) == encode(before)
@@ -82,14 +86,16 @@ def pairs(recording: Recording) -> Iterator[tuple[Body, Pair]]:
     """
     first = {report.frame: report for report in recording.reports[0]}
     second, tolerance_s = list(recording.reports[1]), 0.5 * recording.head.period_s
+    late_s = {told.calibration: told.late_s for told in recording.cameras}
     at = 0
     for body in recording.bodies:
+        late = late_s.get(body.calibration, 0.0)
         one = first.get(body.frame)
         if one is not None and not _meets(one, body, tolerance_s):
             one = None
-        while at < len(second) and second[at].captured_s < body.captured_s - tolerance_s:
+        while at < len(second) and second[at].captured_s - late < body.captured_s - tolerance_s:
             at += 1
-        other = second[at] if at < len(second) else None
+        other = set_back(second[at], late) if at < len(second) else None
         if other is not None and not _meets(other, body, tolerance_s):
             other = None
         at += other is not None

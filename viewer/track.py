@@ -163,7 +163,7 @@ def describe(state: State, report: Report, mask: Mask, guide: Guide | None) -> t
     if setup.method.stick_lifting or (guide is not None and guide.stick):
         known = expected_body(guide, setup.viewer)
         return state, with_stick(report, mask, search.rotation, known, state.standing, setup.method)
-    if not setup.searches:
+    if not setup.searches or (guide is not None and guide.proposes):
         return state, report
     search, report = pose_search.step(search, report, mask, guide)
     return state._replace(search=search), report

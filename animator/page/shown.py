@@ -28,7 +28,16 @@ from animator.scene import (
     viewpoint,
 )
 from common.body.body import ANGLES_IN_POSE
-from common.bus.messages import Body, Facing, Performance, Picture, Posture, Report, Status
+from common.bus.messages import (
+    Body,
+    Facing,
+    Performance,
+    Picture,
+    Posture,
+    Report,
+    ScaleSource,
+    Status,
+)
 from common.raster.silhouette_report import unpack
 from common.rig.camera import Camera, Rig
 
@@ -37,6 +46,11 @@ MOST_RIVALS: Final = 6
 SMOOTH_PX: Final = 0.7
 """An outline's corners lie no farther from its pixels."""
 FACING_WORDS: Final[dict[Facing, str]] = {"facade": "front or back", "flank": "side"}
+SOURCE_WORDS: Final[dict[ScaleSource, str]] = {
+    "calibrated": "",
+    "person": "calibrated by the person, ",
+    "assumed": "the rig is assumed, ",
+}
 STATUS_WORDS: Final[dict[Status, str]] = {
     "empty": "nobody in view",
     "measuring": "measuring the body",
@@ -66,7 +80,7 @@ def shown_frame(
         frame=body.frame,
         time_s=round(body.captured_s, 4),
         status=body.status,
-        words=STATUS_WORDS[body.status],
+        words=words_of(body),
         from_views=body.views,
         confidence=_rounded(body.confidence, 2),
         solids=[] if standing is None else _solids(standing),
@@ -75,6 +89,16 @@ def shown_frame(
         posture=shown_posture(snapshot.posture),
         events=tuple(events),
     )
+
+
+def words_of(body: Body) -> str:
+    """How somebody is followed, and how far the cameras are to be believed."""
+    told = body.agreement
+    if told is None:
+        return STATUS_WORDS[body.status]
+    doubted = ", the calibration is doubtful" if told.believed < 1.0 else ""
+    agree = f"the cameras agree within {told.apart_mm:.0f} mm{doubted}"
+    return f"{STATUS_WORDS[body.status]}; {SOURCE_WORDS[body.scale_source]}{agree}"
 
 
 def shown_room(rig: Rig) -> ShownRoom:

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from common.bus.messages import Message, ViewerNumber
+from common.bus.messages import Message, ScaleSource, ViewerNumber
 from common.rig.camera import Rig
 
 
@@ -29,10 +29,14 @@ class Pulse(Message, frozen=True, kw_only=True):
 
 
 class Cameras(Message, frozen=True, kw_only=True):
-    """The rig that a run uses, once it is known."""
+    """The rig that a run uses, once it is known, and again when it is changed."""
 
     rig: Rig
-    scale_source: Literal["calibrated", "person", "assumed"]
+    scale_source: ScaleSource
+    calibration: int = 0
+    """How often it was changed: that of each body that is told by it."""
+    late_s: float = 0.0
+    """By how much the times of view 2 are set back."""
 
 
 class Ended(Message, frozen=True, kw_only=True):

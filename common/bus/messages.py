@@ -12,6 +12,8 @@ ViewerNumber = Literal[1, 2]
 Facing = Literal["facade", "flank"]
 Status = Literal["empty", "measuring", "tracking", "predicted", "lost"]
 Views = Literal["both", "1", "2", "none"]
+ScaleSource = Literal["calibrated", "person", "assumed"]
+"""Where a rig is from: a file, the person who moves before it, or nowhere."""
 CameraFault = Literal["", "frozen", "black", "saturated", "covered"]
 Pixel = tuple[float, float]
 Point = tuple[float, float, float]
@@ -157,6 +159,8 @@ class Guide(Moment, frozen=True, kw_only=True):
     """Predicted pose, POSE_NAMES order, metres and degrees."""
     stick: bool = False
     """A stick body is asked for: one view is left, and what it proposes does not fit."""
+    proposes: bool = False
+    """The integrator reads the pose off the silhouettes: angles are not to be searched for."""
 
 
 class Lifting(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -171,6 +175,19 @@ class Lifting(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     depth_error_deg: tuple[float, ...] = ()
     """LIMBS order: how far a segment's angle out of the picture changes with a pixel of its length
     (T19); empty where the pose was not lifted from its segments."""
+
+
+class Agreement(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How well both views agree by the run's rig, over the last seconds."""
+
+    apart_mm: float
+    """How far they place the joints from each other, errors that change left out."""
+    soles_mm: float
+    """Height of the feet above the floor while both stand on it."""
+    facing_deg: float
+    """How far they disagree which way in the room the person faces."""
+    believed: float
+    """By what the joints' confidence is multiplied: 1 of a rig that is believable."""
 
 
 class Body(Moment, frozen=True, kw_only=True):
@@ -194,6 +211,12 @@ class Body(Moment, frozen=True, kw_only=True):
     matches: int = 0
     lifting: Lifting | None = None
     """Where one view alone shows the body."""
+    scale_source: ScaleSource = "assumed"
+    """Where the rig is from that the body is told by."""
+    calibration: int = 0
+    """How often that rig was changed in the run: places before and after do not compare."""
+    agreement: Agreement | None = None
+    """None where one view alone shows the body, and until enough was seen."""
 
 
 class Performance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -21,6 +21,8 @@ LEAST_SHARED: Final = 15
 LEFT: Final = [n for n, name in enumerate(JOINT_NAMES) if name.startswith("l_")]
 RIGHT: Final = OTHER_SIDE[LEFT]
 MIDDLE: Final = [n for n, other in enumerate(OTHER_SIDE) if n == other]
+LEAST_LATE: Final = 0.6
+"""Share of a frame by which view 2 must be late before its clock is set."""
 
 
 def likely_lateness_s(first: JointTrack, second: JointTrack) -> float:

@@ -123,10 +123,11 @@ def _kept(
     """What takes each message of a run that is recorded."""
     if not record:
         return nullcontext()
+    from integrator.live_rig.live_calibration import is_by_person
     from tritrack.offline.batch import head_of
     from tritrack.store.recording import recording_to
 
-    return recording_to(out, head_of(clip, settings))
+    return recording_to(out, head_of(clip, settings, by_person=is_by_person(clip, settings)))
 
 
 def _show_end(
@@ -221,6 +222,7 @@ def _facts(heard: Heard, posture: str, clip: Clip, seconds: float) -> dict[str, 
         **_of_clip(clip),
         "seconds": {"all": round(seconds, 3)},
         "scale_source": source,
+        **_calibration(heard),
         "posture": posture,
         "warnings": list(dict.fromkeys(warnings)),
         "processes": {
@@ -240,6 +242,14 @@ def _of_clip(clip: Clip) -> dict[str, Any]:
         "performer": clip.meta.performer,
         "posture_meant": clip.meta.posture,
     }
+
+
+def _calibration(heard: Heard) -> dict[str, Any]:
+    """The rig that the person told, in the form of a calibration.json."""
+    told = heard.cameras[-1] if heard.cameras else None
+    if told is None or told.scale_source != "person":
+        return {}
+    return {"calibration": {**msgspec.to_builtins(told.rig), "late_s": told.late_s}}
 
 
 @contextmanager

@@ -8,14 +8,14 @@ import msgspec
 from rich.console import Console
 
 from common import config
-from common.bus.messages import Body, Message, Report, ViewerNumber
+from common.bus.messages import Body, Message, Report, ScaleSource, ViewerNumber
 from common.config import Settings, SettingsError
 from common.method import Mode
 from common.video.clip_facts import Clip, both_cameras
 from common.video.clip_sources import ClipError
 from common.video.decoding import DecoderDied, Undecodable
 from integrator.frame_numbers import frame_times
-from tritrack.offline.lockstep import Decoders, Watch, measured_before, track_clip
+from tritrack.offline.lockstep import Decoders, Tracked, Watch, measured_before, track_clip
 from tritrack.overrides import overridden
 from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_files
 from tritrack.store.recording import Head, recording_to, refuse_without_library
@@ -74,14 +74,27 @@ def track_all(
             done[name] = {**tracked.facts, "clip": name, "believed": believed(tracked.bodies)}
             write_run(out / name, tracked.bodies, settings, done[name])
             if record:
-                _write_recording(out / name, tracked.clip, settings, heard, console)
+                _write_recording(out / name, tracked, settings, heard, console)
     if len(done) < len(runs):
         raise ClipsFailed(f"{len(runs) - len(done)} of {len(runs)} clips could not be tracked")
     return {"clips": done}
 
 
-def head_of(clip: Clip, settings: Settings) -> Head:
-    """What a recording of a clip begins with."""
+def head_of(
+    clip: Clip,
+    settings: Settings,
+    scale_source: ScaleSource | None = None,
+    *,
+    by_person: bool = False,
+) -> Head:
+    """What a recording of a clip begins with.
+
+    Args:
+        clip: With the rig that is known before the first frame.
+        settings: Of the run.
+        scale_source: Where that rig is from; None: it is calibrated, if there is one.
+        by_person: The person tells the rig while the run goes on.
+    """
     return Head(
         name=clip.name,
         settings=settings,
@@ -90,6 +103,8 @@ def head_of(clip: Clip, settings: Settings) -> Head:
         rig=both_cameras(clip),
         body=clip.body,
         times=frame_times(clip),
+        scale_source=scale_source,
+        by_person=by_person,
     )
 
 
@@ -103,8 +118,9 @@ def _recorder(heard: list[Message]) -> Watch:
 
 
 def _write_recording(
-    folder: Path, clip: Clip, settings: Settings, heard: list[Message], console: Console
+    folder: Path, tracked: Tracked, settings: Settings, heard: list[Message], console: Console
 ) -> None:
+    clip = tracked.clip
     if not heard:
         warn(
             console,
@@ -113,6 +129,6 @@ def _write_recording(
         )
         return
     measured = msgspec.structs.replace(clip, body=measured_before(settings))
-    with recording_to(folder, head_of(measured, settings)) as keep:
+    with recording_to(folder, head_of(measured, settings, tracked.facts["scale_source"])) as keep:
         for message in heard:
             keep(message)

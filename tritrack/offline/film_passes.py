@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 
 from common.body.proportions import thesis_bdp
-from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.bus.messages import Body, Guide, Report, ScaleSource, ViewerNumber
 from common.config import Settings
 from common.method import Method
 from common.notes.notes import Notes, held
@@ -21,7 +21,7 @@ from common.video.clip_facts import Clip
 from common.video.clip_sources import ClipError
 from common.video.frame_cache import Reader
 from integrator import merge, merge_state
-from integrator.merge_state import ScaleSource, Start, State
+from integrator.merge_state import Start, State
 from integrator.opening_posture import Opening
 from integrator.pairing import Pair
 from integrator.rig.assumed_rig import assumed_camera

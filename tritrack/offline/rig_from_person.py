@@ -12,6 +12,7 @@ from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip, View
 from common.video.frame_cache import Reader
 from integrator.selfcalibration.joint_tracks import Sighting, track_of
+from integrator.selfcalibration.lateness import LEAST_LATE
 from integrator.selfcalibration.rig_quality import PersonCalibration
 from tritrack.offline.frame_pairs import backgrounds, instants
 from viewer import track
@@ -19,8 +20,6 @@ from viewer.landmarks.landmark_sources import Sources
 
 MOST_FRAMES: Final = 3_000
 """So much of a clip is looked at."""
-LEAST_LATE: Final = 0.6
-"""Share of a frame by which view 2 must be late before its clock is set."""
 
 
 class Looked(NamedTuple):

@@ -16,7 +16,7 @@ from common.atomic_file import replacing
 from common.body.body import Bdp
 from common.bus.control_messages import Cameras
 from common.bus.message_codec import MalformedMessage, decode, encode
-from common.bus.messages import PROTOCOL, Body, Message, Moment, Posture, Report
+from common.bus.messages import PROTOCOL, Body, Message, Moment, Posture, Report, ScaleSource
 from common.config import Settings
 from common.rig.camera import Rig
 from integrator.frame_numbers import FrameTimes
@@ -50,6 +50,10 @@ class Head(msgspec.Struct, frozen=True, kw_only=True):
     """One viewer is all that the run has."""
     rig: Rig | None
     """None: it is assumed when somebody is seen."""
+    scale_source: ScaleSource | None = None
+    """Where the rig is from; None: it is calibrated, if there is one."""
+    by_person: bool = False
+    """The person tells the rig while the run goes on."""
     body: Bdp | None
     """As measured before the run; None: it was not."""
     times: FrameTimes | None = None

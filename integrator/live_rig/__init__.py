@@ -1,0 +1,1 @@
+"""Rigs by the person while a run goes on: gathered from its reports, found beside its frames."""

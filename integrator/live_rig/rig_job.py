@@ -1,0 +1,95 @@
+"""What the process that finds rigs is asked, and what it answers."""
+
+import struct
+from typing import Final
+
+import msgspec
+import numpy as np
+
+from common.rig.camera import Rig
+from common.rig.rig_file import CalibrationError
+from integrator.selfcalibration.joint_tracks import JOINTS, JointTrack, Row, Sighting
+
+NUMBERS: Final = 1 + 2 * JOINTS + JOINTS + 2
+"""Of a row: time, places, confidence, facing and its confidence."""
+
+LENGTH: Final = struct.Struct("<I")
+"""What stands before an answer's bytes."""
+
+
+class Job(msgspec.Struct, frozen=True):
+    """What both views saw, and the rig that is in use."""
+
+    size_px: tuple[int, int]
+    stature_m: float
+    period_s: float
+    tracks: tuple[bytes, bytes]
+    """Packed rows."""
+    rig: Rig | None = None
+    """None: it is assumed."""
+
+
+class Trusted(msgspec.Struct, frozen=True):
+    """How far a rig is believable, by what was seen: see `integrator/rig_gate/rig_trust.py`."""
+
+    apart_mm: float
+    odd: tuple[str, ...]
+
+
+class Solved(msgspec.Struct, frozen=True):
+    """A rig, or why there is none."""
+
+    refusal: str = ""
+    rig: Rig | None = None
+    late_s: float = 0.0
+    """How late view 2 is."""
+    gap_mm: float = 0.0
+    """By how much sight lines of one joint miss each other."""
+    turn_error_deg: float = 0.0
+    """Of the yaw of camera 2, one sigma."""
+    trust: Trusted | None = None
+    """How far the rig is believable, by what it was found from."""
+    before: Trusted | None = None
+    """The same of the rig that is in use."""
+
+
+def packed(row: Row) -> bytes:
+    """A row as bytes."""
+    time_s, joints_px, confidence, *facing = row
+    return np.concatenate([[time_s], joints_px.ravel(), confidence, facing]).tobytes()
+
+
+def track_of_bytes(told: bytes) -> JointTrack:
+    """The track of packed rows, one after the other."""
+    table = np.frombuffer(told).reshape(-1, NUMBERS)
+    joints_px = table[:, 1 : 1 + 2 * JOINTS].reshape(-1, JOINTS, 2)
+    return JointTrack(
+        table[:, 0], joints_px, table[:, 1 + 2 * JOINTS : -2], table[:, -2], table[:, -1]
+    )
+
+
+def solved(job: Job) -> Solved:
+    """The rig that a job asks for: seconds of work."""
+    from integrator.selfcalibration.person_calibration import calibrated_by_person
+
+    first, second = (track_of_bytes(told) for told in job.tracks)
+    sighting = Sighting(first, second, job.size_px)
+    try:
+        found = calibrated_by_person((sighting,), job.stature_m)
+    except CalibrationError as error:
+        return Solved(refusal=str(error))
+    return Solved(
+        rig=found.rig,
+        late_s=found.late_s[0],
+        gap_mm=found.quality.gap_mm,
+        turn_error_deg=found.quality.cameras[1].turn_error_deg[0],
+        trust=_trusted(found.rig, sighting, job.period_s),
+        before=None if job.rig is None else _trusted(job.rig, sighting, job.period_s),
+    )
+
+
+def _trusted(rig: Rig, sighting: Sighting, period_s: float) -> Trusted | None:
+    from integrator.rig_gate.rig_trust import trust_of
+
+    trust = trust_of(rig, sighting, period_s)
+    return None if trust is None else Trusted(trust.apart_mm, trust.odd)

@@ -1,0 +1,201 @@
+"""When a run asks for a rig by its person, and whether it takes the one that is found."""
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.bus.messages import Report
+from common.rig.camera import Rig
+from integrator.live_rig.rig_job import Job, Solved, Trusted, packed
+from integrator.pairing import Pair
+from integrator.selfcalibration.joint_tracks import JOINTS, LEAST_SURE, Row, row_of
+from integrator.selfcalibration.lateness import LEAST_LATE
+
+ASKS_S: Final = (4.0, 8.0, 16.0, 32.0)
+"""After so many seconds of motion that both views see a rig is asked for: as often, no oftener."""
+MOVED: Final = 0.04
+"""Joints that went on average so many heights of the person have moved."""
+STILL_S: Final = 1.0
+"""Whoever has not moved for so long tells nothing new."""
+MOST_GAP_MM: Final = 35.0
+"""By which sight lines of a believable rig miss each other: 15 to 21 on r01 and r04."""
+MOST_TURN_DEG: Final = 15.0
+"""How uncertain the yaw of camera 2 may be: 4 to 10 on r01 and r04."""
+BETTER: Final = 0.7
+"""A rig by which views are less than this share of what they are apart by the one in use ..."""
+BETTER_MM: Final = 5.0
+"""... and by so much, is worth a jump ..."""
+MORE: Final = 4.0
+"""... and so is one by so many times the motion: on r01 and r04 31 and 33 mm after 4 s became 27
+after 16."""
+
+
+class State(NamedTuple):
+    """What was gathered, what was asked, and what is in use."""
+
+    period_s: float
+    stature_m: float
+    rows: tuple[tuple[bytes, ...], tuple[bytes, ...]] = ((), ())
+    """Of view 1 and view 2, packed, while somebody moves; one of nobody where some are left out."""
+    last_s: tuple[float, float] = (-math.inf, -math.inf)
+    """When the last row of each was taken."""
+    gap: bool = True
+    """The last rows are of nobody."""
+    size_px: tuple[int, int] = (0, 0)
+    """Of the pictures."""
+    moved_s: float = 0.0
+    """How long somebody has moved."""
+    posed: tuple[float, NDArray[np.float64]] | None = None
+    """When they last had moved, and how they stood then: (15, 2) in view 1, in heights."""
+    asked: int = 0
+    waits: bool = False
+    """What was asked is not answered."""
+    rig: Rig | None = None
+    """Found and taken; None: it is assumed."""
+    taken: int = 0
+    """Which of what was asked gave it."""
+    late_s: float = 0.0
+    """By how much the times of view 2 are set back already."""
+    refusal: str = ""
+    """Why the last one was not taken."""
+
+    @property
+    def is_over(self) -> bool:
+        """Nothing more will be asked."""
+        return self.asked == len(ASKS_S) and not self.waits
+
+
+def init(period_s: float, stature_m: float) -> State:
+    """Nothing was seen.
+
+    Args:
+        period_s: Time between frames.
+        stature_m: What is assumed of the person.
+    """
+    return State(period_s, stature_m)
+
+
+def step(state: State, pair: Pair) -> tuple[State, Job | None]:
+    """One instant more, and what to ask now, if anything."""
+    if state.asked == len(ASKS_S):
+        return state, None
+    state = _gathered(state, pair)
+    if state.waits or state.moved_s < ASKS_S[state.asked]:
+        return state, None
+    first, second = (b"".join(rows) for rows in state.rows)
+    job = Job(state.size_px, state.stature_m, state.period_s, (first, second), state.rig)
+    state = state._replace(asked=state.asked + 1, waits=True)
+    return (state._replace(rows=((), ())) if state.asked == len(ASKS_S) else state), job
+
+
+def answered(state: State, solved: Solved) -> tuple[State, bool]:
+    """What was asked is answered: whether that rig is the run's from now on."""
+    state = state._replace(waits=False, refusal=refusal_of(solved))
+    if state.refusal or not (state.rig is None or is_better(state, solved)):
+        return state, False
+    late_s = set_back_s(solved, state.period_s)
+    return state._replace(rig=solved.rig, late_s=late_s, taken=state.asked), True
+
+
+def set_back_s(solved: Solved, period_s: float) -> float:
+    """By how much the times of view 2 are to be set back; 0 for less than a share of a frame."""
+    return solved.late_s if abs(solved.late_s) >= LEAST_LATE * period_s else 0.0
+
+
+def refusal_of(solved: Solved) -> str:
+    """Why a rig is not believed, "" of one that is."""
+    trust = solved.trust
+    if solved.refusal or trust is None:
+        return solved.refusal or "too little is seen of anybody"
+    odd = [word for word in trust.odd if word != "late"]
+    if odd or solved.gap_mm > MOST_GAP_MM:
+        return f"both views stay {trust.apart_mm:.0f} mm apart ({', '.join(odd) or 'gaps'})"
+    if solved.turn_error_deg > MOST_TURN_DEG:
+        return f"camera 2 is known to {solved.turn_error_deg:.0f} degrees only"
+    return ""
+
+
+def why_none(state: State) -> str:
+    """Why the person told no rig."""
+    if state.waits:
+        return "what the person tells was not found in time"
+    if state.refusal:
+        return f"the person tells none ({state.refusal})"
+    return f"both cameras saw somebody move for {state.moved_s:.0f} s, of {ASKS_S[0]:.0f} needed"
+
+
+def is_better(state: State, solved: Solved) -> bool:
+    """Whether a believable rig is clearly better than the one in use, by all that was seen.
+
+    It is where views agree clearly more by it, or as much where far more motion was seen.
+    """
+    new, old = solved.trust, solved.before
+    assert new is not None
+    if old is None or not _holds(old):
+        return True
+    gain_mm = old.apart_mm - new.apart_mm
+    if ASKS_S[state.asked - 1] >= MORE * ASKS_S[state.taken - 1]:
+        return gain_mm >= 0.0
+    return gain_mm > BETTER_MM and new.apart_mm < BETTER * old.apart_mm
+
+
+def _holds(trust: Trusted) -> bool:
+    return set(trust.odd) <= {"late"}
+
+
+def _gathered(state: State, pair: Pair) -> State:
+    """The state with an instant in which somebody moves before both views."""
+    first, second = pair
+    if first is None or second is None or not _is_sure(first) or not _is_sure(second):
+        return _left_out(state, pair)
+    size_px = (first.width, first.height)
+    if size_px != (second.width, second.height):
+        return state
+    state = state._replace(size_px=size_px)
+    now_s, pose = first.captured_s, _pose(first)
+    if state.posed is None or float(np.abs(pose - state.posed[1]).mean()) >= MOVED:
+        state = state._replace(posed=(now_s, pose))
+    assert state.posed is not None
+    if now_s - state.posed[0] > STILL_S:
+        return _left_out(state, pair)
+    state = _with_row(_with_row(state, 0, row_of(first)), 1, row_of(second))
+    return state._replace(moved_s=state.moved_s + state.period_s, gap=False)
+
+
+def _is_sure(report: Report) -> bool:
+    seen = report.landmarks
+    if report.box is None or seen is None:
+        return False
+    return float(np.mean(seen.confidence)) >= LEAST_SURE
+
+
+def _pose(report: Report) -> NDArray[np.float64]:
+    """(15, 2) the landmarks about their middle, in heights of the outline."""
+    assert report.landmarks is not None
+    assert report.box is not None
+    joints_px = np.array(report.landmarks.joints_px)
+    return (joints_px - joints_px.mean(axis=0)) / max(report.box.bottom - report.box.top, 1)
+
+
+def _left_out(state: State, pair: Pair) -> State:
+    """The state that knows of a gap: who is not seen is between no neighbours."""
+    if state.gap:
+        return state
+    for view in (0, 1):
+        none = np.zeros(JOINTS)
+        row = (pair.newest.captured_s, np.zeros((JOINTS, 2)), none, 0.0, 0.0)
+        state = _with_row(state, view, row)
+    return state._replace(gap=True)
+
+
+def _with_row(state: State, view: int, row: Row) -> State:
+    """The state with a row more of a view, by its own camera's time, which goes on."""
+    time_s = row[0] + (state.late_s if view else 0.0)
+    if time_s <= state.last_s[view]:
+        return state
+    rows, last_s = list(state.rows), list(state.last_s)
+    rows[view] = (*rows[view], packed((time_s, *row[1:])))
+    last_s[view] = time_s
+    return state._replace(rows=(rows[0], rows[1]), last_s=(last_s[0], last_s[1]))

@@ -1,0 +1,141 @@
+"""How well both views agree by a rig, instant by instant, and how far its joints are believed."""
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import JOINT_NAMES, Vector
+from common.bus.messages import Agreement, Landmarks, Report
+from common.rig.camera import Camera, Rig, arrays_of
+from integrator.pairing import Seen
+from integrator.selfcalibration.person_prior import ANKLE_SHARE
+
+SAMPLES, APART_S = 40, 0.15
+"""So many instants tell, so far apart: the last six seconds."""
+FEWEST: Final = 8
+"""Fewer tell nothing."""
+FEWEST_FACINGS: Final = 5
+SURE: Final = 0.6
+"""Landmarks of a view that are less sure on average tell nothing of an instant."""
+SURE_FACING: Final = 0.85
+USUAL_M: Final = 1.75
+"""Stature of somebody whose ankles are this high: people differ by a centimetre there."""
+NARROW: Final = 0.05
+"""Squared sine of the angle between sight lines that are nearly one."""
+STANDS: Final = 0.3
+"""Share of the time in which the middle of the ankles is lower: both feet are on the floor."""
+APART_MM: Final = (60.0, 80.0)
+SOLES_MM: Final = ((-45.0, -75.0), (50.0, 80.0))
+FACING_DEG: Final = (90.0, 120.0)
+"""What is as usual for a good rig, and what no good one has: between them belief falls. The right
+rig has views of r01 and r04 31 mm apart at most, soles -14 to 29 mm high, facings 5 degrees apart;
+the views of other people, whom the network sees less well, are up to 56 mm apart."""
+LEAST: Final = 0.05
+"""Share of the confidence that is left to a rig that nobody believes."""
+
+_SHOULDERS, _KNEES, _ANKLES = (
+    [n for n, name in enumerate(JOINT_NAMES) if name.endswith(part)]
+    for part in ("shoulder", "knee", "ankle")
+)
+_MIDDLE: Final = [[n] for n, name in enumerate(JOINT_NAMES) if "_" not in name or "top" in name]
+POINTS: Final = (*_MIDDLE, _SHOULDERS, _KNEES, _ANKLES)
+"""Joints, and middles of pairs: they are the same where a view exchanges sides."""
+
+
+class State(NamedTuple):
+    """What the last seconds showed."""
+
+    samples: tuple[Vector, ...] = ()
+    """Of each instant the gaps of POINTS and the ankles' height, metres."""
+    facings_deg: tuple[float, ...] = ()
+    """By how much view 1 had the person turned against view 2, whenever both were sure."""
+    last_s: float = -math.inf
+    """When the last of them was taken."""
+    told: Agreement | None = None
+
+
+def step(state: State, rig: Rig, seen: Seen) -> State:
+    """One instant more.
+
+    Args:
+        state: What was seen before by the same rig.
+        rig: Two cameras without distortion.
+        seen: Both views' reports.
+    """
+    first, second = seen
+    if first is None or second is None or not (_is_sure(first) and _is_sure(second)):
+        return state
+    if 0.0 <= first.captured_s - state.last_s < APART_S:
+        return state
+    assert first.landmarks is not None
+    assert second.landmarks is not None
+    sample, turned = _sample(rig, first.landmarks, second.landmarks)
+    samples = (*state.samples, sample)[-SAMPLES:]
+    facings = (*state.facings_deg, *turned)[-SAMPLES:]
+    told = agreement_of(np.array(samples), facings) if len(samples) >= FEWEST else None
+    return State(samples, facings, first.captured_s, told)
+
+
+def agreement_of(samples: NDArray[np.float64], facings_deg: tuple[float, ...]) -> Agreement:
+    """What instants (n, points + 1) say together: errors that change are left out."""
+    apart_mm = 1e3 * float(np.sqrt(np.mean(np.median(samples[:, :-1], axis=0) ** 2)))
+    soles_mm = 1e3 * (float(np.quantile(samples[:, -1], STANDS)) - ANKLE_SHARE * USUAL_M)
+    enough = len(facings_deg) >= FEWEST_FACINGS
+    facing_deg = float(np.median(np.abs(facings_deg))) if enough else 0.0
+    believed = min(
+        _left(apart_mm, *APART_MM),
+        _left(soles_mm, *SOLES_MM[1]),
+        _left(-soles_mm, *(-limit for limit in SOLES_MM[0])),
+        _left(facing_deg, *FACING_DEG),
+    )
+    return Agreement(apart_mm, soles_mm, facing_deg, believed)
+
+
+def _left(value: float, usual: float, never: float) -> float:
+    """Share of the confidence that is left."""
+    return float(np.interp(value, (usual, never), (1.0, LEAST)))
+
+
+def _is_sure(report: Report) -> bool:
+    seen = report.landmarks
+    return seen is not None and not report.cut and float(np.mean(seen.confidence)) >= SURE
+
+
+def _sample(rig: Rig, first: Landmarks, second: Landmarks) -> tuple[Vector, tuple[float, ...]]:
+    """(points + 1,) of one instant, and by how much the facings differ, where both are sure."""
+    cameras = rig.cameras
+    one, other = _rays(cameras[0], first), _rays(cameras[1], second)
+    start = arrays_of(cameras[0]).centre
+    base = arrays_of(cameras[1]).centre - start
+    normal = np.cross(one, other)
+    sine_2 = np.maximum((normal**2).sum(axis=1), NARROW)
+    gaps = normal @ base / np.sqrt(sine_2)
+    cosine = (one * other).sum(axis=1)
+    far = (one @ base - cosine * (other @ base)) / sine_2
+    places = start + far[:, None] * one + 0.5 * gaps[:, None] * normal / np.sqrt(sine_2)[:, None]
+    return np.array([*gaps, places[-1, 1]]), _turned(cameras, (first, second), places[0])
+
+
+def _rays(camera: Camera, seen: Landmarks) -> NDArray[np.float64]:
+    """(points, 3) unit vectors in the world."""
+    known, joints_px = arrays_of(camera), np.array(seen.joints_px)
+    places_px = np.stack([joints_px[point].mean(axis=0) for point in POINTS])
+    plane = np.ones((len(POINTS), 3))
+    plane[:, :2] = (places_px - known.middle_px) / known.focal_px
+    found: NDArray[np.float64] = plane @ known.R
+    return found / np.linalg.norm(found, axis=1, keepdims=True)
+
+
+def _turned(
+    cameras: tuple[Camera, ...], seen: tuple[Landmarks, Landmarks], place_m: Vector
+) -> tuple[float, ...]:
+    """By how much view 1 has the person turned against view 2, degrees; () where unsure."""
+    if min(each.facing_confidence for each in seen) <= SURE_FACING:
+        return ()
+    yaws = []
+    for camera, each in zip(cameras, seen, strict=True):
+        to = arrays_of(camera).centre - place_m
+        yaws.append(math.degrees(math.atan2(to[0], to[2])) + each.facing_deg)
+    return ((yaws[0] - yaws[1] + 180.0) % 360.0 - 180.0,)

@@ -1,0 +1,85 @@
+"""How far a rig is believed, by exact landmarks of somebody who stands and turns before another."""
+
+import math
+
+import msgspec
+import numpy as np
+import pytest
+from staging import RIG, report, standing
+
+from common.body.body import OTHER_SIDE
+from common.body.kinematics import joints
+from common.body.proportions import body_vector, thesis_bdp
+from common.bus.messages import Landmarks, Report, ViewerNumber
+from common.rig.camera import Rig, as_matrix, as_row, centre, project
+from integrator.rig_gate import rig_agreement
+from integrator.rig_gate.rig_agreement import FEWEST, SAMPLES, State
+from integrator.rig_gate.rig_fault import exchanged_rig
+
+BODY = body_vector(thesis_bdp(1.75))
+
+
+def turned(rig: Rig, yaw_deg: float, raised_m: float = 0.0) -> Rig:
+    """With camera 2 turned and raised."""
+    first, second = rig.cameras
+    a = math.radians(yaw_deg)
+    about = [[math.cos(a), 0, math.sin(a)], [0, 1, 0], [-math.sin(a), 0, math.cos(a)]]
+    R = np.array(second.R) @ np.array(about)
+    t = -R @ (centre(second) + np.array([0.0, raised_m, 0.0]))
+    second = msgspec.structs.replace(second, R=as_matrix(R), t=as_row(t))
+    return msgspec.structs.replace(rig, cameras=(first, second))
+
+
+def seen(viewer: ViewerNumber, n: int, *, swaps: bool = False, sure: float = 0.9) -> Report:
+    joints_m = np.asarray(joints(BODY, standing((0.3 * math.sin(n), 0.2 * math.cos(n)))))
+    places = project(RIG.cameras[viewer - 1], joints_m)
+    places = places[OTHER_SIDE] if swaps else places
+    facing = (0.0, 90.0)[viewer - 1]
+    told = Landmarks(tuple((x, y) for x, y in places.tolist()), (sure,) * 15, facing, 0.95)
+    return report(viewer, frame=n, captured_s=0.2 * n, landmarks=told)
+
+
+def after(rig: Rig, instants: int = 20, **how: bool) -> State:
+    state = State()
+    for n in range(instants):
+        state = rig_agreement.step(state, rig, (seen(1, n), seen(2, n, **how)))
+    return state
+
+
+def test_a_right_rig_is_believed_also_where_a_view_exchanges_sides() -> None:
+    for swaps in (False, True):
+        told = after(RIG, swaps=swaps).told
+        assert told is not None
+        assert told.apart_mm < 5.0
+        assert abs(told.soles_mm) < 30.0
+        assert told.believed == 1.0
+
+
+@pytest.mark.parametrize(
+    "rig",
+    [turned(RIG, 10.0), turned(RIG, -10.0), turned(RIG, 0.0, 0.3), exchanged_rig(RIG)],
+    ids=["turned", "turned back", "raised", "exchanged"],
+)
+def test_a_wrong_rig_is_not_believed(rig: Rig) -> None:
+    told = after(rig).told
+    assert told is not None
+    assert told.believed < 0.2
+
+
+def test_nothing_is_told_of_a_moment_of_one_view_or_of_unsure_landmarks() -> None:
+    assert after(RIG, FEWEST - 1).told is None
+    assert after(RIG, FEWEST).told is not None
+    state = State()
+    for n in range(20):
+        state = rig_agreement.step(state, RIG, (seen(1, n), None))
+        state = rig_agreement.step(state, RIG, (seen(1, n), seen(2, n, sure=0.3)))
+    assert state == State()
+
+
+def test_what_is_kept_is_bounded_and_old_instants_are_forgotten() -> None:
+    state = after(turned(RIG, 10.0), 50)
+    assert len(state.samples) == len(state.facings_deg) == SAMPLES
+    for n in range(50, 50 + SAMPLES):
+        state = rig_agreement.step(state, RIG, (seen(1, n), seen(2, n)))
+    assert state.told is not None
+    assert state.told.believed == 1.0
