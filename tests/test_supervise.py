@@ -144,3 +144,16 @@ def test_a_fault_is_told_from_what_a_user_can_mend() -> None:
 def test_nothing_runs_after_the_end(sleeper: Watched) -> None:
     sleeper.end()
     assert not sleeper.running.process.is_alive()
+
+
+def test_what_is_told_to_end_before_it_listens_has_not_failed(sleeper: Watched) -> None:
+    sleeper.end()
+    assert sleeper.running.process.exitcode == -signal.SIGTERM
+    sleeper.refuse_failure()
+
+
+def test_what_was_killed_by_others_has(sleeper: Watched) -> None:
+    killed(sleeper)
+    sleeper.end()
+    with pytest.raises(PartFailed, match="killed by signal 9"):
+        sleeper.refuse_failure()

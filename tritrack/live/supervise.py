@@ -1,5 +1,6 @@
 """One process of a run under supervision: what dies is started again, later each time."""
 
+import signal
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -42,6 +43,8 @@ class Watched:
         """Why it is not started again; "" while it is."""
         self.running = started(part)
         self._tries = 0
+        self._asked = False
+        """It was told to end."""
         self._came_up = False
         """It has worked once: what fails before that fails for good."""
         self._alive_s, self._quiet_s = 0.0, 0.0
@@ -79,16 +82,18 @@ class Watched:
         return self._hung()
 
     def refuse_failure(self) -> None:
-        """Say why it failed, if it did.
+        """Say why it failed, if it did; who was asked to end and had no ears for it yet did not.
 
         Raises:
             PartFailed: When its process ended with an error, or it was given up.
         """
-        if self.given_up or (self._again_s is None and self.running.process.exitcode):
+        code = 0 if self._again_s is not None else self.running.process.exitcode
+        if self.given_up or (code and not (self._asked and code == -signal.SIGTERM)):
             raise self._failure(self.given_up or last_words(self.running))
 
     def end(self) -> None:
         """End its process and start no other."""
+        self._asked = self.running.process.is_alive()
         end(self.running)
 
     def _listen(self, since_s: float, pulse: Pulse | None) -> None:
