@@ -1,7 +1,7 @@
 """The child that finds rigs: `python -m integrator.live_rig.rig_child PIPE`.
 
 Each line is a Job, as base64 of its MessagePack; each answer a Solved with its length before it.
-It gives way to the processes of the run: a tenth of what they get, where there is not enough.
+It gives way to the processes of the run: a third of what they get, where there is not enough.
 """
 
 import base64
@@ -14,7 +14,7 @@ import msgspec
 
 from integrator.live_rig.rig_job import LENGTH, Job, solved
 
-POLITE: Final = 10
+POLITE: Final = 5
 
 
 def main() -> None:

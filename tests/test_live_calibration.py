@@ -1,0 +1,126 @@
+"""The rig of a live run without a calibration: what is told of it, with a solver that is none."""
+
+from pathlib import Path
+
+import pytest
+from joined_clips import joined
+from rich.console import Console
+from staging import PERIOD_S, RIG
+from test_rig_search import GOOD, both
+
+from common.config import PageSettings, Settings
+from common.method import METHODS
+from common.rig.camera import Rig
+from common.video.clip_facts import Clip, Meta, View
+from integrator import merge_state
+from integrator.live_rig import live_calibration
+from integrator.live_rig.live_calibration import LiveCalibration, is_by_person
+from integrator.live_rig.rig_job import Job, Solved
+from integrator.live_rig.rig_search import ASKS_S
+from integrator.merge_state import Start, State
+from tritrack.live.session import free_settings, live
+from tritrack.replaying import replay_run
+
+
+class Solver:
+    """Answers each job with the same, once it is let."""
+
+    def __init__(self) -> None:
+        self.jobs: list[Job] = []
+        self.said: Solved | None = None
+
+    def ask(self, job: Job) -> None:
+        self.jobs.append(job)
+
+    def answer(self) -> Solved | None:
+        said, self.said = self.said, None
+        return said
+
+    def close(self) -> None:
+        """It has no process."""
+
+
+@pytest.fixture
+def solver(monkeypatch: pytest.MonkeyPatch) -> Solver:
+    one = Solver()
+    monkeypatch.setattr(live_calibration, "RigSolver", lambda: one)
+    return one
+
+
+def begun() -> State:
+    settings = Settings()
+    return merge_state.init(None, PERIOD_S, settings, METHODS[settings.mode], Start(by_person=True))
+
+
+def test_the_network_proposes_from_the_first_frame_where_the_person_will_tell_the_rig() -> None:
+    assert begun().proposes
+    assert begun().scale_source == "assumed"
+
+
+def test_a_rig_that_is_taken_is_told_with_its_moment_and_the_frames_wait_for_nothing(
+    solver: Solver,
+) -> None:
+    state = begun()
+    with LiveCalibration(state, looks=True) as calibration:
+        for n in range(round(2 * ASKS_S[0] / PERIOD_S)):
+            calibration.heard(both(n))
+            assert calibration.changed(state) is state
+        assert len(solver.jobs) == 1
+        solver.said = GOOD
+        state = calibration.changed(state)
+    assert (state.rig, state.scale_source, state.calibration) == (RIG, "person", 1)
+    (told,) = calibration.news
+    assert told.startswith("7.9 s: the cameras are now calibrated by the person: views 11 mm apart")
+
+
+@pytest.mark.parametrize(
+    ("said", "why"),
+    [
+        (Solved(refusal="nobody there"), "the person tells none (nobody there)"),
+        (None, "was not found in time"),
+    ],
+)
+def test_a_run_whose_person_told_no_rig_says_at_its_end_why(
+    solver: Solver, said: Solved | None, why: str
+) -> None:
+    state = begun()
+    with LiveCalibration(state, looks=True) as calibration:
+        for n in range(round(1.5 * ASKS_S[0] / PERIOD_S)):
+            calibration.heard(both(n))
+        solver.said = said
+        assert calibration.changed(state) is state
+    assert why in calibration.news[-1]
+
+
+@pytest.mark.parametrize(
+    ("rig", "views", "settings", "looks"),
+    [
+        (None, 2, Settings(), True),
+        (RIG, 2, Settings(), False),
+        (None, 1, Settings(), False),
+        (None, 2, Settings(mode="paper"), False),
+        (None, 2, Settings(landmarks="none"), False),
+    ],
+    ids=["two views", "calibrated", "one view", "paper", "no landmarks"],
+)
+def test_only_two_views_with_landmarks_and_no_calibration_are_calibrated_by_the_person(
+    rig: Rig | None, views: int, settings: Settings, looks: bool
+) -> None:
+    view = View(1, "cam1.avi", (320, 240), (160, 120), 15.0, 10)
+    assert is_by_person(Clip("walk", (view,) * views, 1, rig, Meta()), settings) == looks
+
+
+@pytest.mark.slow
+def test_a_live_run_is_calibrated_by_its_person_and_is_replayed_byte_for_byte(
+    data_dir: Path, tmp_path: Path
+) -> None:
+    """Half a minute, for a machine that is busy: a quiet one needs nine seconds."""
+    pytest.importorskip("mcap", reason="pip install 'tritrack[mcap]'")
+    joined(tmp_path / "clip", sorted((data_dir / "dev").glob("r01_*"))[:8])
+    settings = free_settings(Settings(clip=str(tmp_path / "clip"), page=PageSettings(port=0)))
+    told = live(settings, tmp_path / "run", Console(quiet=True), record=True)
+    assert told["scale_source"] == "person"
+    assert len(told["calibration"]["cameras"]) == 2
+    assert any("now calibrated by the person" in line for line in told["warnings"])
+    facts = replay_run(tmp_path / "run", None)
+    assert facts["same"] == facts["bodies"] > 400
