@@ -216,7 +216,7 @@ def run(
         if subscriber.news != news:
             news = subscriber.news
             heart.hurry()
-        estate.leave(state)
+        estate.leave(state, time.monotonic())
         heart.beat("running", "\n".join([*odd, *news]), **subscriber.counts())
     odd = [*diagnostics.warnings(noticed, state), *subscriber.news]
     heart.beat("ended", "\n".join(odd), **subscriber.counts())

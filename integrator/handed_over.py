@@ -13,6 +13,7 @@ from integrator.merge_state import ScaleSource, State
 from integrator.opening_posture import Opening
 
 NAME: Final = "integrator.msgpack"
+LEAVE_S: Final = 1.0
 
 log = logging.getLogger(__name__)
 
@@ -57,6 +58,7 @@ class Estate:
         """Of one run alone."""
         self._path = None if folder is None else folder / NAME
         self._left: HandedOver | None = None
+        self._next_s = 0.0
 
     def taken_up(self, state: State) -> State:
         """The state with what was left, if anything was."""
@@ -69,10 +71,12 @@ class Estate:
             return state
         return resumed(state, given)
 
-    def leave(self, state: State) -> None:
-        """Leave what has changed but for the count, which time tells too."""
-        own = handed_over(state)
-        if self._path is None or self._is_known(own):
+    def leave(self, state: State, now_s: float) -> None:
+        """Leave what has changed, once a second at most, but for the count: time tells that too."""
+        if self._path is None or now_s < self._next_s:
+            return
+        own, self._next_s = handed_over(state), now_s + LEAVE_S
+        if self._is_known(own):
             return
         try:
             with replacing(self._path) as path:
