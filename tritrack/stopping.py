@@ -38,8 +38,10 @@ def heed_in_order() -> None:
 
 def code_of_stop(error: BaseException) -> int:
     """The exit code of a command that a signal ended, as shells count it."""
-    terminated = isinstance(error, Terminated) or isinstance(error.__cause__, Terminated)
-    return BY_SIGNAL + (signal.SIGTERM if terminated else signal.SIGINT)
+    cause: BaseException | None = error
+    while cause is not None and not isinstance(cause, Terminated):
+        cause = cause.__cause__ or cause.__context__
+    return BY_SIGNAL + (signal.SIGINT if cause is None else signal.SIGTERM)
 
 
 def _leave(number: int, _frame: FrameType | None) -> NoReturn:
