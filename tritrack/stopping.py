@@ -13,8 +13,9 @@ BY_SIGNAL: Final = 128
 """What shells add to a signal's number where a signal ended a command."""
 
 
-class Terminated(KeyboardInterrupt):
-    """SIGTERM came: what is open is closed in order, as after Ctrl-C."""
+class Terminated(SystemExit):
+    """SIGTERM came: what is open is closed in order, as after Ctrl-C, which typer takes for its
+    own and tells no cause of."""
 
 
 def heed_at_once() -> None:
@@ -38,10 +39,8 @@ def heed_in_order() -> None:
 
 def code_of_stop(error: BaseException) -> int:
     """The exit code of a command that a signal ended, as shells count it."""
-    cause: BaseException | None = error
-    while cause is not None and not isinstance(cause, Terminated):
-        cause = cause.__cause__ or cause.__context__
-    return BY_SIGNAL + (signal.SIGINT if cause is None else signal.SIGTERM)
+    number = signal.SIGTERM if isinstance(error, Terminated) else signal.SIGINT
+    return BY_SIGNAL + number
 
 
 def _leave(number: int, _frame: FrameType | None) -> NoReturn:
