@@ -123,14 +123,15 @@ class Subscriber:
         first = self._reports.take(HEAR_S)
         if first is not None and not self.starter.fixed:
             time.sleep(GATHER_S)
-        reports = [] if first is None else [first, *self._reports.drain()]
+        said = [] if first is None else [first, *self._reports.drain()]
+        for report in said:
+            self.starter.begun(report)
+        reports = [set_back(report, self.late_s) for report in said]
         reports.sort(key=lambda report: report.captured_s)
         now_s = time.monotonic()
         for report in reports:
-            self.starter.begun(report)
-            timed = set_back(report, self.late_s)
-            self._present = presence.heard(self._present, timed, now_s)
-            self._paired, more = pairing.step(self._paired, timed)
+            self._present = presence.heard(self._present, report, now_s)
+            self._paired, more = pairing.step(self._paired, report)
             complete += more
         if not reports or now_s - self._looked_s > LOOK_S:
             # What a viewer said before it went comes first, unless there is always a report.
@@ -206,6 +207,7 @@ def run(
     with LiveCalibration(state, looks=looks, late_s=estate.late_s) as calibration:
         while subscriber.going and not stop.is_set():
             state, said = _obeyed(state, said, subscriber.commands(), bus)
+            subscriber.late_s = calibration.late_s
             for pair in subscriber.pairs():
                 state, body, guide = merge.step(state, pair, said)
                 said = Annotations()
@@ -215,12 +217,11 @@ def run(
                 pace.done(body.clock_s, time.monotonic())
                 calibration.heard(pair)
             state = calibration.changed(state)
-            subscriber.late_s = calibration.late_s
             told.rig(state, calibration.late_s)
             news = (*calibration.news, *subscriber.news)
             if told.is_new(news):
                 heart.hurry()
-            estate.leave(state, calibration.late_s)
+            estate.leave(state, calibration.late_s, time.monotonic())
             odd = [*diagnostics.assumed(state), *told.doubts(state), *news]
             heart.beat("running", "\n".join(odd), **subscriber.counts())
     news = (*told.doubts(state), *calibration.news, *subscriber.news)

@@ -14,6 +14,7 @@ from integrator.merge_state import State
 from integrator.opening_posture import Opening
 
 NAME: Final = "integrator.msgpack"
+LEAVE_S: Final = 1.0
 
 log = logging.getLogger(__name__)
 
@@ -70,6 +71,7 @@ class Estate:
         self._left: HandedOver | None = None
         self.late_s = 0.0
         """By how much the times of view 2 were set back."""
+        self._next_s = 0.0
 
     def taken_up(self, state: State) -> State:
         """The state with what was left, if anything was."""
@@ -83,10 +85,12 @@ class Estate:
         self.late_s = given.late_s
         return resumed(state, given)
 
-    def leave(self, state: State, late_s: float) -> None:
-        """Leave what has changed but for the count, which time tells too."""
-        own = handed_over(state, late_s)
-        if self._path is None or self._is_known(own):
+    def leave(self, state: State, late_s: float, now_s: float) -> None:
+        """Leave what has changed, once a second at most, but for the count: time tells that too."""
+        if self._path is None or now_s < self._next_s:
+            return
+        own, self._next_s = handed_over(state, late_s), now_s + LEAVE_S
+        if self._is_known(own):
             return
         try:
             with replacing(self._path) as path:

@@ -20,7 +20,7 @@ KNOWN = FRESH._replace(
 
 
 def test_a_successor_knows_body_rig_and_count_and_begins_its_poses_anew(tmp_path: Path) -> None:
-    Estate(tmp_path).leave(KNOWN._replace(doubted=3, calibration=2), 0.1)
+    Estate(tmp_path).leave(KNOWN._replace(doubted=3, calibration=2), 0.1, 9.0)
     estate = Estate(tmp_path)
     taken = estate.taken_up(FRESH)
     assert (taken.opening, taken.rig, taken.numbered) == (KNOWN.opening, RIG, 70)
@@ -30,13 +30,15 @@ def test_a_successor_knows_body_rig_and_count_and_begins_its_poses_anew(tmp_path
 
 def test_nothing_is_left_before_anything_is_known_and_nothing_twice(tmp_path: Path) -> None:
     estate = Estate(tmp_path)
-    estate.leave(FRESH, 0.0)
+    estate.leave(FRESH, 0.0, 9.0)
     assert not (tmp_path / NAME).exists()
-    estate.leave(KNOWN, 0.0)
+    estate.leave(KNOWN, 0.0, 9.5)
+    assert not (tmp_path / NAME).exists(), "within the same second"
+    estate.leave(KNOWN, 0.0, 10.1)
     (tmp_path / NAME).unlink()
-    estate.leave(KNOWN._replace(numbered=71), 0.0)
+    estate.leave(KNOWN._replace(numbered=71), 0.0, 20.0)
     assert not (tmp_path / NAME).exists()
-    Estate(None).leave(KNOWN, 0.0)
+    Estate(None).leave(KNOWN, 0.0, 9.0)
 
 
 def test_what_cannot_be_read_is_as_if_nothing_were_left(tmp_path: Path) -> None:

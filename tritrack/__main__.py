@@ -10,7 +10,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
-from tritrack.stopping import WORD, code_of_stop, heed_at_once, heed_in_order
+from tritrack.stopping import WORD, Terminated, code_of_stop, heed_at_once, heed_in_order
 
 heed_at_once()
 
@@ -107,7 +107,7 @@ def main() -> None:
         code = app(standalone_mode=False)
     except typer.TyperException as error:
         code = refuse_usage(error)
-    except (typer.Abort, KeyboardInterrupt) as error:
+    except (typer.Abort, KeyboardInterrupt, Terminated) as error:
         complain(console, WORD)
         code = code_of_stop(error)
     except Exception as error:

@@ -13,8 +13,9 @@ BY_SIGNAL: Final = 128
 """What shells add to a signal's number where a signal ended a command."""
 
 
-class Terminated(KeyboardInterrupt):
-    """SIGTERM came: what is open is closed in order, as after Ctrl-C."""
+class Terminated(SystemExit):
+    """SIGTERM came: what is open is closed in order, as after Ctrl-C, which typer takes for its
+    own and tells no cause of."""
 
 
 def heed_at_once() -> None:
@@ -38,8 +39,8 @@ def heed_in_order() -> None:
 
 def code_of_stop(error: BaseException) -> int:
     """The exit code of a command that a signal ended, as shells count it."""
-    terminated = isinstance(error, Terminated) or isinstance(error.__cause__, Terminated)
-    return BY_SIGNAL + (signal.SIGTERM if terminated else signal.SIGINT)
+    number = signal.SIGTERM if isinstance(error, Terminated) else signal.SIGINT
+    return BY_SIGNAL + number
 
 
 def _leave(number: int, _frame: FrameType | None) -> NoReturn:
