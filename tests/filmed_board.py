@@ -112,7 +112,8 @@ def _at_scale(
     coarse = float(np.median(steps))
     if coarse <= 1:
         return printed, texels
-    small = cv2.resize(printed, None, fx=1 / coarse, fy=1 / coarse, interpolation=cv2.INTER_AREA)
+    small_size = (round(printed.shape[1] / coarse), round(printed.shape[0] / coarse))
+    small = cv2.resize(printed, small_size, interpolation=cv2.INTER_AREA)
     ratio = np.array([small.shape[1] / printed.shape[1], small.shape[0] / printed.shape[0]])
     return small, ((texels + 0.5) * ratio - 0.5).astype(np.float32)
 

@@ -9,13 +9,15 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from integrator.board.board import Board, charuco
+from integrator.board.corner_alignment import aligned
 
 WIDE_PX: Final = 2560
-"""Pictures are enlarged to about this width: markers of ten pixels are read then, and corners are
-known twice as well (measured on made-up films: 0.1 px off instead of 0.2)."""
+"""Pictures are enlarged to about this width: markers of ten pixels are read then."""
 LARGEST: Final = 4
+ROUGHLY: Final = 4
+"""Corners, not all in a line, that say roughly where a board is."""
 LEAST: Final = 6
-"""Corners, not all in a line, that say where a board is."""
+"""That must be seen well."""
 
 Grey = NDArray[np.uint8]
 
@@ -35,12 +37,15 @@ def corners_in(picture: Grey, board: Board) -> Vector | None:
     scale = int(np.clip(round(WIDE_PX / grey.shape[1]), 1, LARGEST))
     large = cv2.resize(grey, None, fx=scale, fy=scale, interpolation=cv2.INTER_CUBIC)
     found = _of_chessboard(large, board) if board.first_marker is None else _charuco(large, board)
-    return (found + 0.5) / scale - 0.5 if _tells(found) else None
+    if not _tells(found, ROUGHLY):
+        return None
+    found = aligned(grey, board, (found + 0.5) / scale - 0.5)
+    return found if _tells(found, LEAST) else None
 
 
-def _tells(px: Vector) -> bool:
+def _tells(px: Vector, least: int) -> bool:
     seen = px[np.isfinite(px[:, 0])]
-    if len(seen) < LEAST:
+    if len(seen) < least:
         return False
     across = np.linalg.svd(seen - seen.mean(axis=0), compute_uv=False)
     return bool(across[1] > 0.05 * across[0])
@@ -57,7 +62,7 @@ def _charuco(picture: Grey, board: Board) -> Vector:
 @lru_cache(maxsize=4)
 def _detector(board: Board) -> cv2.aruco.CharucoDetector:
     # Markers that were not read are asked for where the others say that they are: of boards that
-    # look small or slanted three to four times as many corners are found, as exact as without.
+    # look small or slanted three to four times as many corners are found.
     more = cv2.aruco.CharucoParameters()
     more.tryRefineMarkers = True
     return cv2.aruco.CharucoDetector(charuco(board), more)

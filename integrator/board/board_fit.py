@@ -9,8 +9,12 @@ import numpy as np
 from common.body.body import Vector
 from integrator.board.lens_start import Lens, Place, chained, undone
 
-SIGMA_PX: Final = 0.1
-"""How far a corner at rest is seen from where it is."""
+SIGMA_PX: Final = 0.05
+"""How far a corner at rest is seen from where it is, before more is known."""
+FINEST_PX: Final = 0.01
+"""No sight is believed more than this."""
+BELIEVED: Final = 3.0
+"""So many corners with SIGMA_PX are believed beside what a sight's own corners miss."""
 SOFT: Final = 3.0
 """Sigmas beyond which a miss counts linearly."""
 OFF_MIDDLE: Final = 0.03
@@ -34,6 +38,7 @@ class Sight(NamedTuple):
     """(n, 3) of the corners that it shows, metres, in the board's axes."""
     px: Vector
     """(n, 2)"""
+    sigma_px: float = SIGMA_PX
 
 
 class Start(NamedTuple):
@@ -110,7 +115,8 @@ def fitted_to(sights: Sequence[Sight], start: Start, size_px: tuple[int, int]) -
 
     def misses(unknown: Vector) -> Vector:
         off = [(_shown(layout, unknown, one)[0] - one.px).ravel() for one in sights]
-        return np.concatenate([*(part / SIGMA_PX for part in off), prior @ unknown - wanted])
+        own = [part / one.sigma_px for part, one in zip(off, sights, strict=True)]
+        return np.concatenate([*own, prior @ unknown - wanted])
 
     def slopes(unknown: Vector) -> Vector:
         return np.concatenate([*(_slope(layout, unknown, one) for one in sights), prior])
@@ -126,6 +132,12 @@ def fitted_to(sights: Sequence[Sight], start: Start, size_px: tuple[int, int]) -
         np.array([spread[layout.lens(n)][0] for n in range(layout.cameras)]),
         tuple(_shown(layout, found.x, one)[0] - one.px for one in sights),
     )
+
+
+def weighed(sight: Sight, miss_px: Vector) -> Sight:
+    """A sight with the sigma that its corners show: near boards are seen better than far ones."""
+    told = float(np.sum(miss_px**2)) / 2 + BELIEVED * SIGMA_PX**2
+    return sight._replace(sigma_px=max(FINEST_PX, (told / (len(miss_px) + BELIEVED)) ** 0.5))
 
 
 def _place(numbers: Vector) -> Place:
@@ -176,4 +188,4 @@ def _slope(layout: _Layout, unknown: Vector, sight: Sight) -> Vector:
     if sight.camera:
         rows[:, layout.camera(sight.camera)] = np.concatenate(by[2:], axis=1)
     rows[:, layout.lens(sight.camera)] = slopes[:, 6 : 6 + LENS]
-    return np.asarray(rows / SIGMA_PX)
+    return np.asarray(rows / sight.sigma_px)

@@ -11,7 +11,7 @@ from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError
 from integrator.board.board import Board, corner_places
 from integrator.board.board_coverage import covered
-from integrator.board.board_fit import Fit, Sight, Start, fitted_to, start_of
+from integrator.board.board_fit import Fit, Sight, Start, fitted_to, start_of, weighed
 from integrator.board.board_floor import Floor, floor_of, world_cameras
 from integrator.board.lens_start import Place, between, lens_of
 from integrator.board.still_board import (
@@ -132,8 +132,8 @@ def _refuse_few(film: Film, rests: int) -> None:
     if rests < LEAST_RESTS:
         raise CalibrationError(
             f"{film.name} shows the board in {len(film.time_s)} of the pictures that were looked "
-            f"at and at rest {rests} times, {LEAST_RESTS} or more are needed: hold it for two seconds "
-            "each at other places, near and far, turned to all sides"
+            f"at and at rest {rests} times, {LEAST_RESTS} or more are needed: hold it for two "
+            "seconds each at other places, near and far, turned to all sides"
         )
 
 
@@ -156,22 +156,24 @@ def _late(moments: Moments, floor_s: float | None) -> Chosen:
 def _fit(
     moments: Moments, places: Vector, start: Start, size_px: tuple[int, int]
 ) -> tuple[Fit, list[Sight], Moments]:
-    """Twice: the second time without sights that went astray, and rests that have none left."""
+    """Twice: the second time without sights that went astray, and with what each is worth."""
     sights = _sights(moments, places)
     fit = fitted_to(sights, start, size_px)
     off_px = np.array([np.sqrt(np.mean(np.sum(miss**2, axis=1))) for miss in fit.misses_px])
     good = off_px <= max(ASTRAY * float(np.median(off_px)), ASTRAY_PX)
-    if good.all():
-        return fit, sights, moments
     px = moments.px.copy()
     for sight, well in zip(sights, good, strict=True):
         if not well:
             px[sight.rest, sight.camera] = np.nan
     left = np.flatnonzero(np.isfinite(px[..., 0]).any(axis=(1, 2)))
     moments = only(moments._replace(px=px), left)
-    sights = _sights(moments, places)
+    kept = [
+        weighed(sight, miss)._replace(rest=int(np.searchsorted(left, sight.rest)))
+        for sight, miss, well in zip(sights, fit.misses_px, good, strict=True)
+        if well
+    ]
     again = Start(fit.lenses, fit.cameras, tuple(fit.boards[n] for n in left))
-    return fitted_to(sights, again, size_px), sights, moments
+    return fitted_to(kept, again, size_px), kept, moments
 
 
 def _sights(moments: Moments, places: Vector) -> list[Sight]:

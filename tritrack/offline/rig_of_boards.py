@@ -58,8 +58,8 @@ def calibrate_by_videos(
         if camera.coverage < UNCOVERED:
             warn(
                 console,
-                f"the board covered {camera.coverage:.0%} of the picture of {camera.name}: its lens "
-                f"is guessed elsewhere; hold it there too ({drawn})",
+                f"the board covered {camera.coverage:.0%} of the picture of {camera.name}: its "
+                f"lens is guessed elsewhere; hold it there too ({drawn})",
             )
     return found.quality, drawn
 
