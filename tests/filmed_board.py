@@ -137,7 +137,7 @@ def random_rig(seed: int, size: tuple[int, int], board: Board, holds: int = 48) 
     for n, bearing in enumerate((0.0, -yaw)):
         focal_px = width * random.uniform(0.8, 1.25)
         far_m = 2.3 * focal_px / height
-        high_m = random.uniform(1.0, 1.8)
+        high_m = random.uniform(1.2, 2.0)
         at = np.array([far_m * np.sin(bearing), high_m, far_m * np.cos(bearing)])
         # Camera 1 has no yaw: its own sight says where z is.
         aim = np.array([0.0, random.uniform(0.8, 1.0), 0.0])

@@ -10,7 +10,7 @@ from common.body.body import Vector
 from common.rig.rig_file import CalibrationError
 from integrator.board.lens_start import Place, undone
 
-UPRIGHT: Final = 0.5
+UPRIGHT: Final = 0.75
 """How much of a lying board's up is up for the cameras, at least."""
 BELOW_M: Final = 0.05
 """No board was ever this far below the floor."""

@@ -142,7 +142,10 @@ def poles(
 @calibrate_app.command("import")
 def import_(
     theirs: Annotated[
-        Path, typer.Argument(help="Pose2Sim, Caliscope or anipose TOML; Qualisys .qca.txt.")
+        Path,
+        typer.Argument(
+            help="Pose2Sim, Caliscope or anipose TOML; Qualisys .qca.txt; OpenCV .yml, .xml."
+        ),
     ],
     camera: Annotated[
         list[str] | None, typer.Option(help="Only this camera; give both, in their order.")
