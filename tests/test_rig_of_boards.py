@@ -47,7 +47,7 @@ def test_videos_give_the_rig_its_quality_and_what_was_covered(tmp_path: Path) ->
     assert picture is not None
     assert picture.shape == (360, 960, 3)
     with pytest.raises(
-        CalibrationError, match="no board is found in .*cam1.avi: a chessboard of 9x6"
+        CalibrationError, match=r"no board is found in .*cam1\.avi: a chessboard of 9x6"
     ):
         calibrate_by_videos(videos, Shown(20.0, "9x6"), out, QUIET)
 
