@@ -22,7 +22,7 @@ def write_videos(folder: Path, rig: FilmedRig) -> list[Path]:
     paths = []
     for n in range(2):
         path = folder / f"cam{n + 1}.avi"
-        writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"MJPG"), 5.0, rig.size)
+        writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 5.0, rig.size)
         writer.set(cv2.VIDEOWRITER_PROP_QUALITY, 95)
         for picture in pictures_of(rig, n, n, 4, late=n):
             writer.write(picture)

@@ -3,17 +3,16 @@
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-import msgspec
 import numpy as np
 
 from common.body.body import Vector
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError
 from integrator.board.board import Board, corner_places
-from integrator.board.board_coverage import covered
 from integrator.board.board_fit import Fit, Sight, Start, fitted_to, start_of, weighed
 from integrator.board.board_floor import Floor, floor_of, world_cameras
-from integrator.board.lens_start import Place, between, lens_of
+from integrator.board.board_quality import Quality, miss_px_of, quality_of
+from integrator.board.lens_start import Lens, Place, between, lens_of
 from integrator.board.still_board import (
     Chosen,
     Film,
@@ -41,36 +40,6 @@ POOR_PX: Final = 1.5
 """What corners miss by on average where the board is not the one that was named."""
 APART: Final = 0.02
 """The same of two cameras that were not looking at the same moments, in widths of the picture."""
-
-
-class CameraQuality(msgspec.Struct, frozen=True):
-    """What the board tells of one camera."""
-
-    name: str
-    focal_px: float
-    focal_error_px: float
-    """One sigma."""
-    k1: float
-    k2: float
-    reprojection_px: float
-    """Root mean square of what corners miss."""
-    rests: int
-    """In which it showed the board."""
-    coverage: float
-    """Share of its picture in which the board was seen."""
-
-
-class Quality(msgspec.Struct, frozen=True):
-    """How good a calibration by a board is."""
-
-    cameras: tuple[CameraQuality, ...]
-    reprojection_px: float
-    shared_rests: int
-    """In which two cameras or more showed the board."""
-    floor_s: float
-    """When the board lay on the floor, by the first film."""
-    floor_rests: int
-    """How often it lay there."""
 
 
 class BoardCalibration(NamedTuple):
@@ -101,8 +70,22 @@ def calibrated_by_board(
         _refuse_few(film, len(some))
     told = moments_of(rests)
     moments = spread_moments(told, MOST_RESTS, _late(told, floor_s))
-    shared = seen_by(moments)
     lenses = [lens_of(places, moments.px[:, n], size_px) for n in range(len(films))]
+    cameras = _related(films, lenses, moments, places)
+    start = start_of(lenses, cameras, len(moments.px))
+    fit, sights, moments = _fit(moments, places, start, size_px)
+    for n, film in enumerate(films):
+        _refuse_poor(film, miss_px_of(fit, sights, n))
+    floor = floor_of(fit.boards, fit.cameras, places, _resting(moments, floor_s))
+    quality = quality_of(fit, sights, moments, floor, size_px)
+    return BoardCalibration(_rig(fit, floor, size_px), quality, moments)
+
+
+def _related(
+    films: Sequence[Film], lenses: Sequence[Lens], moments: Moments, places: Vector
+) -> list[Place]:
+    """The first camera's axes in those of each."""
+    shared, width_px = seen_by(moments), films[0].size_px[0]
     cameras = [Place(np.zeros(3), np.zeros(3))]
     for n, film in enumerate(films[1:], start=1):
         both = int((shared[:, 0] & shared[:, n]).sum())
@@ -113,19 +96,13 @@ def calibrated_by_board(
                 "and begin both films within half a second"
             )
         place, off_px = between(lenses[0], lenses[n], places, moments.px[:, n])
-        if off_px > APART * size_px[0]:
+        if off_px > APART * width_px:
             raise CalibrationError(
                 f"{film.name} does not show the moments that {films[0].name} shows ({off_px:.0f} "
                 "px apart): begin both films within half a second, and move no camera"
             )
         cameras.append(place)
-    start = start_of(lenses, cameras, len(moments.px))
-    fit, sights, moments = _fit(moments, places, start, size_px)
-    for n, film in enumerate(films):
-        _refuse_poor(film, _miss_px(fit, sights, n))
-    floor = floor_of(fit.boards, fit.cameras, places, _resting(moments, floor_s))
-    quality = _quality(fit, sights, moments, floor, size_px)
-    return BoardCalibration(_rig(fit, floor, size_px), quality, moments)
+    return cameras
 
 
 def _refuse_few(film: Film, rests: int) -> None:
@@ -184,15 +161,6 @@ def _sights(moments: Moments, places: Vector) -> list[Sight]:
     return sights
 
 
-def _miss_px(fit: Fit, sights: Sequence[Sight], camera: int) -> float:
-    off = [
-        np.sum(miss**2, axis=1)
-        for sight, miss in zip(sights, fit.misses_px, strict=True)
-        if sight.camera == camera
-    ]
-    return float(np.sqrt(np.mean(np.concatenate(off))))
-
-
 def _resting(moments: Moments, floor_s: float | None) -> int | None:
     """The rest at a time of the first film."""
     if floor_s is None:
@@ -213,32 +181,3 @@ def _rig(fit: Fit, floor: Floor, size_px: tuple[int, int]) -> Rig:
         K = np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
         cameras.append(ForeignCamera(f"cam{n + 1}", size_px, K, R, t, (k1, k2, 0.0, 0.0)))
     return our_rig(cameras, "the board's rig")
-
-
-def _quality(
-    fit: Fit, sights: list[Sight], moments: Moments, floor: Floor, size_px: tuple[int, int]
-) -> Quality:
-    seen = seen_by(moments)
-    cameras = []
-    for n, lens in enumerate(fit.lenses):
-        cells = covered(moments.px[:, n], size_px)
-        cameras.append(
-            CameraQuality(
-                f"cam{n + 1}",
-                float(lens[0]),
-                float(fit.focal_error_px[n]),
-                float(lens[4]),
-                float(lens[5]),
-                _miss_px(fit, sights, n),
-                int(seen[:, n].sum()),
-                float((cells > 0).mean()),
-            )
-        )
-    squares = np.concatenate([np.sum(miss**2, axis=1) for miss in fit.misses_px])
-    return Quality(
-        tuple(cameras),
-        float(np.sqrt(squares.mean())),
-        int((seen.sum(axis=1) > 1).sum()),
-        float(moments.begin_s[floor.rests[-1]]),
-        len(floor.rests),
-    )

@@ -11,7 +11,8 @@ from common.atomic_file import replacing
 from common.rig.rig_file import CalibrationError
 from integrator.board.board import BOARDS, Board, chessboard
 from integrator.board.board_coverage import coverage_picture, covered
-from integrator.board.board_rig import Quality, calibrated_by_board
+from integrator.board.board_quality import Quality
+from integrator.board.board_rig import calibrated_by_board
 from integrator.rig.calibration import write_rig
 from tritrack.offline.board_films import looked_through
 from tritrack.terminal import bar, warn
