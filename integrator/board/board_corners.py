@@ -13,6 +13,8 @@ from integrator.board.corner_alignment import aligned
 
 WIDE_PX: Final = 2560
 """Pictures are enlarged to about this width: markers of ten pixels are read then."""
+BARE_PX: Final = 640
+"""The same of a chessboard, which has no markers to read: it takes long to be missed."""
 LARGEST: Final = 4
 ROUGHLY: Final = 4
 """Corners, not all in a line, that say roughly where a board is."""
@@ -34,7 +36,8 @@ def corners_in(picture: Grey, board: Board) -> Vector | None:
         are seen.
     """
     grey = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY) if picture.ndim == 3 else picture
-    scale = int(np.clip(round(WIDE_PX / grey.shape[1]), 1, LARGEST))
+    wide_px = WIDE_PX if board.first_marker is not None else BARE_PX
+    scale = int(np.clip(round(wide_px / grey.shape[1]), 1, LARGEST))
     large = cv2.resize(grey, None, fx=scale, fy=scale, interpolation=cv2.INTER_CUBIC)
     found = _of_chessboard(large, board) if board.first_marker is None else _charuco(large, board)
     if not _tells(found, ROUGHLY):
