@@ -1,4 +1,4 @@
-"""The calibrate commands: where the cameras are, from a person, or from markers and poles (4.1)."""
+"""The calibrate commands: where the cameras are, from a person, a board, or markers (4.1)."""
 
 from pathlib import Path
 from typing import Annotated, Final, Literal
@@ -9,7 +9,7 @@ from tritrack.commands.command_output import JsonWanted, console, tell_rows
 from tritrack.commands.options import writable_file
 
 calibrate_app = typer.Typer(
-    help="Find out where the cameras are: from a person, or from line markers, then poles (4.1).",
+    help="Find out where the cameras are: from a person, a printed board, markers, poles (4.1).",
     no_args_is_help=True,
 )
 
@@ -54,6 +54,61 @@ def person(
 
 
 @calibrate_app.command()
+def board(
+    videos: Annotated[
+        list[Path] | None, typer.Argument(help="A video of each camera, at full size.")
+    ] = None,
+    print_: Annotated[
+        Path | None,
+        typer.Option("--print", help="Write the board to print (PDF).", callback=writable_file),
+    ] = None,
+    paper: Annotated[Literal["a4", "a3"], typer.Option(help="To print on.")] = "a3",
+    square: Annotated[
+        float | None, typer.Option(min=1.0, max=1000.0, help="Side of a square as measured, mm.")
+    ] = None,
+    chessboard: Annotated[
+        str | None, typer.Option(help="A chessboard of so many squares instead, such as 9x6.")
+    ] = None,
+    floor: Annotated[
+        float | None,
+        typer.Option(min=0.0, help="When the board lies on the floor: second of the first video."),
+    ] = None,
+    out: Written = OUT,
+    force: Forced = False,
+    json_wanted: JsonWanted = False,
+) -> None:
+    """Calibrate cameras by a printed board, or print it.
+
+    Hold the board for two seconds each in some thirty poses: near each camera all over its picture,
+    tilted; then where both see it; at the end lay it on the floor at two or three places.
+
+    Example: tritrack calibrate board --print board.pdf --paper a3
+    Example: tritrack calibrate board cam1.mp4 cam2.mp4 --out clips/calibration.json
+    """
+    from integrator.board.board_print import print_board
+    from integrator.rig.calibration import refuse_to_replace
+    from tritrack.offline.rig_of_boards import Shown, calibrate_by_videos
+
+    if print_ is None and not videos:
+        raise typer.BadParameter("name the video of each camera, or --print board.pdf")
+    if print_ is not None:
+        refuse_to_replace(print_, force)
+        print_board(print_, paper)
+        console.print(f"written to {print_}", highlight=False, soft_wrap=True)
+    if videos:
+        refuse_to_replace(out, force)
+        quality, drawn = calibrate_by_videos(videos, Shown(square, chessboard, floor), out, console)
+        tell_rows(quality.cameras, json_wanted)
+        console.print(
+            f"corners miss by {quality.reprojection_px:.2f} px; {quality.shared_rests} poses seen "
+            f"by several cameras; the board lies on the floor at {quality.floor_s:.1f} s\n"
+            f"written to {out}, what the board covered of each picture to {drawn}",
+            highlight=False,
+            soft_wrap=True,
+        )
+
+
+@calibrate_app.command()
 def markers(
     measured: Annotated[Path, typer.Argument(help="Points on the line markers (TOML).")],
     json_wanted: JsonWanted = False,
@@ -87,7 +142,10 @@ def poles(
 @calibrate_app.command("import")
 def import_(
     theirs: Annotated[
-        Path, typer.Argument(help="Pose2Sim, Caliscope or anipose TOML; Qualisys .qca.txt.")
+        Path,
+        typer.Argument(
+            help="Pose2Sim, Caliscope or anipose TOML; Qualisys .qca.txt; OpenCV .yml, .xml."
+        ),
     ],
     camera: Annotated[
         list[str] | None, typer.Option(help="Only this camera; give both, in their order.")
