@@ -18,6 +18,8 @@ BINS: Final = 16
 """Directions that the facing is told apart in."""
 FARTHEST: Final = 0.8
 """No peak is farther from the middle of its highest cell, in cells."""
+DEEP: Final = 25.0
+"""A cell whose logit lies so far below the highest adds nothing that a float32 could tell."""
 SHIPPED: Final = Path(__file__).with_name("landmarks.onnx")
 PLATT: Final = (1.07, 0.67, 0.41)
 """Of the network's own confidence, of how much of a joint's map lies about its peak, and 1: the
@@ -81,6 +83,8 @@ def _peaks(maps: Any) -> tuple[Any, Any]:
         rows, columns = np.full(3, 1e-9), np.full(3, 1e-9)
         for i in range(CELLS):
             for k in range(CELLS):
+                if maps[j, i, k] < best - DEEP:
+                    continue
                 share = np.exp(maps[j, i, k] - best)
                 total += share
                 if abs(i - row) <= 1 and abs(k - column) <= 1:
