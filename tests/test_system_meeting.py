@@ -20,6 +20,7 @@ from common.video.clip_facts import View
 from common.video.decoding import DecoderDied
 from integrator import __main__ as integrator
 from integrator import merge_state
+from integrator.hearing import run_start
 from tritrack.live.free_ports import free_settings
 from tritrack.live.launch import Subscriber, nothing_heard
 from viewer import __main__ as viewer
@@ -109,14 +110,14 @@ def question(number: int, ready: bool = True) -> ClockQuestion:
 def test_the_start_is_fixed_once_when_every_viewer_is_ready(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    now = Clock(monkeypatch, "integrator.__main__")
-    starter = integrator.Starter(frozenset((1, 2)))
+    now = Clock(monkeypatch, "integrator.hearing.run_start")
+    starter = run_start.Starter(frozenset((1, 2)))
     assert starter.answer(question(1)) == ClockAnswer(now_s=1000.0, start_s=None)
     now.wait(1.0)
     assert starter.answer(question(2, ready=False)).start_s is None
     now.wait(1.0)
     fixed_s = starter.answer(question(2)).start_s
-    assert fixed_s == 1002.0 + integrator.LEAD_S
+    assert fixed_s == 1002.0 + run_start.LEAD_S
     now.wait(5.0)
     for number in (1, 2):
         assert starter.answer(question(number)) == ClockAnswer(now_s=1007.0, start_s=fixed_s)
@@ -125,19 +126,19 @@ def test_the_start_is_fixed_once_when_every_viewer_is_ready(
 def test_a_clip_waits_for_who_looks_at_its_page_but_not_for_ever(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    now = Clock(monkeypatch, "integrator.__main__")
-    starters = [integrator.Starter(frozenset((1,)), wait_s=30.0) for _ in range(2)]
+    now = Clock(monkeypatch, "integrator.hearing.run_start")
+    starters = [run_start.Starter(frozenset((1,)), wait_s=30.0) for _ in range(2)]
     assert [each.answer(question(1)).start_s for each in starters] == [None, None]
     now.wait(3.0)
     starters[0].looked_at()
     started = [each.answer(question(1)).start_s for each in starters]
-    assert started == [1003.0 + integrator.LEAD_S, None]
+    assert started == [1003.0 + run_start.LEAD_S, None]
     now.wait(27.0)
-    assert starters[1].answer(question(1)).start_s == 1030.0 + integrator.LEAD_S
+    assert starters[1].answer(question(1)).start_s == 1030.0 + run_start.LEAD_S
 
 
 def test_a_run_with_one_viewer_waits_for_no_other() -> None:
-    assert integrator.Starter(frozenset((2,))).answer(question(2)).start_s is not None
+    assert run_start.Starter(frozenset((2,))).answer(question(2)).start_s is not None
 
 
 class Talkative(LocalBus):

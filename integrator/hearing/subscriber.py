@@ -1,0 +1,132 @@
+"""What the viewers say, in pairs of one instant."""
+
+import logging
+import time
+from typing import Final
+
+from common.bus.bus import Bus
+from common.bus.control_messages import ClockQuestion, Command, Ended
+from common.bus.messages import Report, ViewerNumber
+from integrator import pairing, presence
+from integrator.hearing.run_start import Starter
+from integrator.live_rig.rig_change import set_back
+from integrator.pairing import Pair
+
+HEAR_S: Final = 0.02
+LOOK_S: Final = 0.5
+"""Viewers so fast that a report always waits are asked after so long whether they are there."""
+ASLEEP_S: Final = 0.5
+"""A round that took longer was stopped, or starved: what was said meanwhile is on its way still,
+and its speakers are not to blame."""
+AWAKE_S: Final = 0.3
+"""For so long after it nobody is called late: all that waits is taken in first, and caught up."""
+GATHER_S: Final = 0.3
+"""Started again in the middle of a run, it waits so long for what the viewers say once more, and
+takes it in by its time."""
+OVERDUE_PERIODS: Final = 2.0
+"""A report whose partner is two frames late goes on alone, and so do those after it."""
+
+log = logging.getLogger(__name__)
+
+
+class Subscriber:
+    """What the viewers say, in pairs of one instant, and who of them is there."""
+
+    def __init__(
+        self, bus: Bus, viewers: tuple[ViewerNumber, ...], period_s: float, wait_s: float
+    ) -> None:
+        """Listen from now on."""
+        self.starter = Starter(frozenset(viewers), wait_s)
+        self._commands = bus.subscribe(Command)
+        self._numbers = {f"viewer {number}": number for number in viewers}
+        self._reports, self._ended = bus.subscribe(Report), bus.subscribe(Ended)
+        self._alive = bus.watch_alive()
+        self._paired = pairing.init(period_s, viewers)
+        self._present = presence.init(period_s, viewers)
+        self._wait_s = OVERDUE_PERIODS * period_s
+        self.late_s = 0.0
+        """By how much the times of view 2 are set back."""
+        self._looked_s = self._round_s = time.monotonic()
+        self._judges_s = 0.0
+        """From then on it is asked who is late or silent."""
+        bus.answer(ClockQuestion, self.starter.answer)
+
+    @property
+    def going(self) -> bool:
+        """Whether any viewer may still say something."""
+        return presence.going(self._present, time.monotonic())
+
+    @property
+    def news(self) -> tuple[str, ...]:
+        """Which views were lost and found, and why."""
+        return self._present.news
+
+    def pairs(self) -> list[Pair]:
+        """What is complete now, or overdue; waits a moment for a report."""
+        complete: list[Pair] = []
+        first = self._reports.take(HEAR_S)
+        if first is not None and not self.starter.fixed:
+            time.sleep(GATHER_S)
+        said = [] if first is None else [first, *self._reports.drain()]
+        for report in said:
+            self.starter.begun(report)
+        reports = [set_back(report, self.late_s) for report in said]
+        reports.sort(key=lambda report: report.captured_s)
+        now_s = time.monotonic()
+        for report in reports:
+            self._present = presence.heard(self._present, report, now_s)
+            self._paired, more = pairing.step(self._paired, report)
+            complete += more
+        if not reports or now_s - self._looked_s > LOOK_S:
+            # What a viewer said before it went comes first, unless there is always a report.
+            complete += self._who_came_and_went(now_s)
+            self._looked_s = now_s
+        if self._is_caught_up(reports, now_s):
+            wait_s = self._wait_s + abs(self.late_s)
+            self._paired, alone = pairing.overdue(self._paired, now_s, wait_s)
+            complete += alone
+            self._present, told = presence.step(self._present, now_s)
+            for line in told:
+                log.warning(line)
+        return complete
+
+    def _is_caught_up(self, reports: list[Report], now_s: float) -> bool:
+        """Whether who has said nothing can be held to it: this process has listened itself."""
+        if now_s - self._round_s > ASLEEP_S:
+            self._judges_s = now_s + AWAKE_S
+        self._round_s = now_s
+        fresh = not reports or now_s - reports[-1].clock_s < self._wait_s
+        return fresh and now_s >= self._judges_s
+
+    def commands(self) -> list[Command]:
+        """What the person at the page asks for since; that they are there is asked for too."""
+        asked = self._commands.drain()
+        if any(command.what == "start" for command in asked):
+            self.starter.looked_at()
+        return asked
+
+    def counts(self) -> dict[str, int]:
+        """What was lost so far, as a Pulse tells it."""
+        return {
+            "dropped": self._paired.dropped + self._reports.dropped,
+            "late": self._paired.late,
+            "malformed": self._reports.malformed,
+            "foreign": self._reports.foreign,
+        }
+
+    def _who_came_and_went(self, now_s: float) -> list[Pair]:
+        released: list[Pair] = []
+        for alive in self._alive.drain():
+            number = self._numbers.get(alive.name)
+            if number is not None and alive.alive:
+                self._present = presence.came(self._present, number, now_s)
+                self._paired = pairing.begin(self._paired, number)
+            elif number is not None:
+                self._present = presence.went(self._present, number, now_s)
+                self._paired, more = pairing.away(self._paired, number)
+                released += more
+        for over in self._ended.drain():
+            self._present = presence.ended(self._present, over, now_s)
+            self._paired, more = pairing.end(self._paired, over.viewer)
+            released += more
+        return released

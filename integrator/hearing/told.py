@@ -1,0 +1,39 @@
+"""What a run has said of its rig and views already."""
+
+from common.bus.bus import Bus
+from common.bus.control_messages import Cameras
+from integrator import diagnostics
+from integrator.merge_state import State
+
+
+class Told:
+    """What was told of the run already."""
+
+    def __init__(self, bus: Bus) -> None:
+        """Nothing."""
+        self._bus, self._calibration = bus, -1
+        self._news: tuple[str, ...] = ()
+        self._doubt = ""
+
+    def rig(self, state: State, late_s: float) -> None:
+        """Tell the rig as soon as it is known, and each that comes after it."""
+        if state.rig is not None and state.calibration > self._calibration:
+            self._bus.publish(
+                Cameras(
+                    rig=state.rig,
+                    scale_source=state.scale_source,
+                    calibration=state.calibration,
+                    late_s=late_s,
+                )
+            )
+            self._calibration, self._doubt = state.calibration, ""
+
+    def doubts(self, state: State) -> list[str]:
+        """That the rig in use is not believable, as it was first seen."""
+        self._doubt = self._doubt or diagnostics.doubt(state)
+        return [self._doubt] if self._doubt else []
+
+    def is_new(self, news: tuple[str, ...]) -> bool:
+        """Whether there are other news than before."""
+        before, self._news = self._news, news
+        return news != before
