@@ -9,7 +9,7 @@ import pytest
 from common.config import Settings
 from recognizer.__main__ import SHIPPED, init, step
 from recognizer.model_file import load
-from tritrack.live.session import performed
+from tritrack.live.run_facts import performed
 from tritrack.offline.lockstep import Decoders, track_clip
 
 

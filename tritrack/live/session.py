@@ -14,16 +14,16 @@ from typing import Any, Final
 import msgspec
 from rich.console import Console
 
-from common.bus.messages import Posture
 from common.bus.process import ProcessContext, logged
 from common.config import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip, both_cameras
 from tritrack.live.free_ports import own_session, refuse_held_ports
-from tritrack.live.launch import Heard, nothing_heard, run
+from tritrack.live.launch import nothing_heard, run
 from tritrack.live.page_desk import SAVED, PageDesk
 from tritrack.live.process_table import live_parts
-from tritrack.live.screen import Screen, warnings_of
+from tritrack.live.run_facts import facts_of, facts_of_clip
+from tritrack.live.screen import Screen
 from tritrack.store.journal import Head as JournalHead
 from tritrack.store.journal import Journal, put_aside
 from tritrack.store.recording import Keep, refuse_without_library
@@ -78,8 +78,7 @@ def live(
         screen = Screen(clip, settings, console, lambda: desk.address)
 
         def facts() -> dict[str, Any]:
-            named = performed(heard.postures.all())
-            return _facts(heard, named, clip, time.monotonic() - began)
+            return facts_of(heard, clip, time.monotonic() - began)
 
         desk.facts = facts
         journal = _journal(out, clip, settings, heard.notes)
@@ -114,7 +113,7 @@ def _journal(out: Path, clip: Clip, settings: Settings, notes: list[str]) -> Jou
             f"{out} holds a run that was cut short, which cannot be put aside "
             f"({error.strerror}): name another --out"
         ) from error
-    return Journal(out, JournalHead(settings=settings, facts=_of_clip(clip)))
+    return Journal(out, JournalHead(settings=settings, facts=facts_of_clip(clip)))
 
 
 def _kept(
@@ -203,53 +202,6 @@ def _new_log(out: Path) -> Path:
     except OSError as error:
         raise LiveRefused(f"cannot write {out}: {error.strerror}; name another --out") from error
     return path
-
-
-def performed(postures: list[Posture]) -> str:
-    """The posture of a whole clip: the last name given, by a window that saw most of it."""
-    return next((posture.name for posture in reversed(postures) if posture.name), "")
-
-
-def _facts(heard: Heard, posture: str, clip: Clip, seconds: float) -> dict[str, Any]:
-    source = heard.cameras[-1].scale_source if heard.cameras else None
-    warnings = [*clip.warnings, *warnings_of(heard.pulses), *heard.notes]
-    if heard.bodies.let_go:
-        warnings.append(
-            f"the first {heard.bodies.let_go} frames of a long run are not in poses.npz: write "
-            "shorter runs, or follow recordings with: tritrack track"
-        )
-    return {
-        **_of_clip(clip),
-        "seconds": {"all": round(seconds, 3)},
-        "scale_source": source,
-        **_calibration(heard),
-        "posture": posture,
-        "warnings": list(dict.fromkeys(warnings)),
-        "processes": {
-            name: {
-                key: round(value, 3) if isinstance(value, float) else value
-                for key, value in msgspec.to_builtins(pulse).items()
-                if key not in ("protocol", "process", "detail")
-            }
-            for name, pulse in sorted(heard.pulses.items())
-        },
-    }
-
-
-def _of_clip(clip: Clip) -> dict[str, Any]:
-    return {
-        "clip": clip.name,
-        "performer": clip.meta.performer,
-        "posture_meant": clip.meta.posture,
-    }
-
-
-def _calibration(heard: Heard) -> dict[str, Any]:
-    """The rig that the person told, in the form of a calibration.json."""
-    told = heard.cameras[-1] if heard.cameras else None
-    if told is None or told.scale_source != "person":
-        return {}
-    return {"calibration": {**msgspec.to_builtins(told.rig), "late_s": told.late_s}}
 
 
 @contextmanager

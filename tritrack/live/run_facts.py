@@ -1,0 +1,65 @@
+"""What the summary of a live run tells."""
+
+from typing import Any
+
+import msgspec
+
+from common.bus.messages import Posture
+from common.video.clip_facts import Clip
+from tritrack.live.launch import Heard
+from tritrack.live.screen import warnings_of
+
+
+def performed(postures: list[Posture]) -> str:
+    """The posture of a whole clip: the last name given, by a window that saw most of it."""
+    return next((posture.name for posture in reversed(postures) if posture.name), "")
+
+
+def facts_of(heard: Heard, clip: Clip, seconds: float) -> dict[str, Any]:
+    """What the summary tells of a run, so far.
+
+    Args:
+        heard: What its parts said.
+        clip: What they looked at.
+        seconds: For how long.
+    """
+    source = heard.cameras[-1].scale_source if heard.cameras else None
+    warnings = [*clip.warnings, *warnings_of(heard.pulses), *heard.notes]
+    if heard.bodies.let_go:
+        warnings.append(
+            f"the first {heard.bodies.let_go} frames of a long run are not in poses.npz: write "
+            "shorter runs, or follow recordings with: tritrack track"
+        )
+    return {
+        **facts_of_clip(clip),
+        "seconds": {"all": round(seconds, 3)},
+        "scale_source": source,
+        **_calibration(heard),
+        "posture": performed(heard.postures.all()),
+        "warnings": list(dict.fromkeys(warnings)),
+        "processes": {
+            name: {
+                key: round(value, 3) if isinstance(value, float) else value
+                for key, value in msgspec.to_builtins(pulse).items()
+                if key not in ("protocol", "process", "detail")
+            }
+            for name, pulse in sorted(heard.pulses.items())
+        },
+    }
+
+
+def facts_of_clip(clip: Clip) -> dict[str, Any]:
+    """Who performs what, as the clip says itself."""
+    return {
+        "clip": clip.name,
+        "performer": clip.meta.performer,
+        "posture_meant": clip.meta.posture,
+    }
+
+
+def _calibration(heard: Heard) -> dict[str, Any]:
+    """The rig that the person told, in the form of a calibration.json."""
+    told = heard.cameras[-1] if heard.cameras else None
+    if told is None or told.scale_source != "person":
+        return {}
+    return {"calibration": {**msgspec.to_builtins(told.rig), "late_s": told.late_s}}
