@@ -19,8 +19,8 @@ from common.bus.control_messages import Pulse
 from common.bus.messages import Posture
 from common.config import PageSettings, Settings
 from tritrack.live.free_ports import free_settings, refuse_held_ports
-from tritrack.live.screen import warnings_of
 from tritrack.live.run_facts import performed
+from tritrack.live.screen import warnings_of
 from tritrack.live.session import LiveRefused, live
 from tritrack.store.past_run import open_run
 
