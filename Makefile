@@ -2,7 +2,7 @@ PYTHON ?= python3.11
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: setup demo test matrix check bench clean
+.PHONY: setup demo test matrix check bench docs clean
 
 setup: $(VENV)/.installed
 	@$(BIN)/python -m tritrack.first_run
@@ -11,7 +11,7 @@ $(VENV)/.installed: pyproject.toml constraints.txt
 	@command -v $(PYTHON) >/dev/null || { echo "tritrack needs Python 3.11 or newer: install it, or name it: make PYTHON=/path/to/python3.11"; exit 1; }
 	@echo "once, some two minutes: libraries into $(VENV)"
 	@$(PYTHON) -m venv $(VENV)
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[page,export,mcap,osc,lsl,report,single,cluster,dev]'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[page,export,mcap,osc,lsl,report,single,cluster,docs,dev]'
 	@touch $@
 
 demo: setup
@@ -28,8 +28,12 @@ check: setup
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
+docs: setup
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
+	@echo "open .site/index.html"
+
 bench: setup
 	$(BIN)/python benchmarks/run.py
 
 clean:
-	rm -rf .venv .venv-* .cache runs .pytest_cache .mypy_cache .ruff_cache
+	rm -rf .venv .venv-* .cache .site runs .pytest_cache .mypy_cache .ruff_cache

@@ -10,7 +10,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
-from tritrack.stopping import WORD, Terminated, code_of_stop, heed_at_once, heed_in_order
+from tritrack.stopping import STOPS, WORD, Terminated, code_of_stop, heed_at_once, heed_in_order
 
 heed_at_once()
 
@@ -108,12 +108,13 @@ def main() -> None:
     except typer.TyperException as error:
         code = refuse_usage(error)
     except (typer.Abort, KeyboardInterrupt, Terminated) as error:
-        complain(console, WORD)
         code = code_of_stop(error)
     except Exception as error:
         log.debug("refused", exc_info=error)
         complain(console, told(error))
         code = code_of(error)
+    if code in STOPS:  # typer may have made a code of Ctrl-C
+        complain(console, WORD)
     sys.exit(code or 0)
 
 

@@ -11,6 +11,8 @@ from typing import Final, NoReturn
 WORD: Final = "stopped before it was done"
 BY_SIGNAL: Final = 128
 """What shells add to a signal's number where a signal ended a command."""
+STOPS: Final = (BY_SIGNAL + signal.SIGINT, BY_SIGNAL + signal.SIGTERM)
+"""Exit codes of a command that was stopped."""
 
 
 class Terminated(SystemExit):

@@ -1,0 +1,63 @@
+"""The documentation: what it quotes is said, what it types is understood, and it makes a site."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import typer
+from source_map import tracked
+
+from tritrack.__main__ import app
+
+ROOT = Path(__file__).parents[1]
+PAGES = sorted((ROOT / "docs").glob("*.md"))
+TYPED = re.compile(r"^ {4}tritrack (\S.*)$", re.MULTILINE)
+QUOTED = re.compile(r"^\| `([^`]+)`", re.MULTILINE)
+
+
+def words_of(command: str) -> list[str]:
+    return command.split("#", maxsplit=1)[0].split("|", maxsplit=1)[0].split()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_what_a_page_types_is_a_command_with_such_options(page: Path) -> None:
+    for typed in TYPED.findall(page.read_text()):
+        command = typer.main.get_command(app)
+        words = words_of(typed)
+        while words and words[0] in getattr(command, "commands", {}):
+            command = command.commands[words.pop(0)]  # type: ignore[attr-defined]
+        assert not hasattr(command, "commands"), f"tritrack {typed}"
+        known = {each for param in command.params for each in [*param.opts, *param.secondary_opts]}
+        given = {word.split("=")[0] for word in words if word.startswith("--")}
+        assert given <= known | {"--help"}, f"tritrack {typed}"
+
+
+def test_each_message_of_the_troubleshooting_is_said_somewhere() -> None:
+    sources = [path for path in tracked(ROOT) if path.suffix == ".py" and "tests" not in path.parts]
+    said = " ".join(re.sub(r'"\s*f?"', "", path.read_text()) for path in sources)
+    quoted = QUOTED.findall((ROOT / "docs" / "troubleshooting.md").read_text())
+    assert len(quoted) > 15
+    assert [text for text in quoted if text not in said] == []
+
+
+def test_every_page_has_its_place_in_the_site() -> None:
+    named = re.findall(r"(\w+\.md)", (ROOT / "mkdocs.yml").read_text())
+    assert sorted(named) == sorted(["index.md", "contributing.md", *(page.name for page in PAGES)])
+
+
+@pytest.mark.slow
+def test_the_pages_make_a_site_without_a_broken_link(tmp_path: Path) -> None:
+    pytest.importorskip("mkdocs", reason="pip install 'tritrack[docs]'")
+    done = subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(tmp_path / "site")],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    first = (tmp_path / "site" / "index.html").read_text()
+    assert "Body tracking and posture recognition" in first
+    assert "fonts.googleapis" not in first
