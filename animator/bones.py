@@ -46,6 +46,15 @@ BONES: Final = (
 with the arms."""
 
 _AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
+_DEPTHS: Final = [0]
+for _bone in BONES[1:]:
+    _DEPTHS.append(_DEPTHS[_bone.parent] + 1)
+_GENERATIONS: Final = tuple(
+    (bones, [BONES[i].parent for i in bones], [_AT[BONES[i].ends] for i in bones])
+    for bones in ([i for i in range(2, len(BONES)) if _DEPTHS[i] == depth] for depth in range(1, 5))
+)
+"""Bones as far from the hips, which are aimed at once: their places in BONES, their parents', and
+those of the landmarks that they are aimed at."""
 _UP, _LEFT = np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])
 _REST: Final = {"Spine": _UP, "Head": _UP, "Hips": _LEFT} | {
     f"{side}{bone}": sign * _LEFT if "Arm" in bone else -_UP
@@ -95,7 +104,15 @@ def skeleton_of(joints_m: Joints) -> Skeleton:
 
 
 def motion_of(skeleton: Skeleton, joints_m: Joints) -> Motion:
-    """The turns that lead a skeleton through joints.
+    """The turns that lead a skeleton through joints, without NaN."""
+    turns = tuple(
+        Rotation.from_matrix(own, assume_valid=True) for own in turned_axes(skeleton, joints_m)
+    )
+    return Motion(joints_m[:, _AT["pelvis"]], turns)
+
+
+def turned_axes(skeleton: Skeleton, joints_m: Joints) -> NDArray[np.float64]:
+    """Likewise as matrices, (13, n, 3, 3): of each of BONES, in its parent's axes.
 
     Every bone is aimed at its landmark from where the bones before it have come to, so that a
     length that differs shifts one landmark and not the rest of the limb.
@@ -104,22 +121,22 @@ def motion_of(skeleton: Skeleton, joints_m: Joints) -> Motion:
         skeleton: A body.
         joints_m: Without NaN.
     """
-    pelvis_m = joints_m[:, _AT["pelvis"]]
+    world = np.empty((len(BONES), len(joints_m), 3, 3))
+    local, origins = np.empty_like(world), np.empty(world.shape[:-1])
     up = _between(joints_m, "pelvis", "neck")
     hips = axes_of(up, _between(joints_m, "r_hip", "l_hip"), keep="across")
-    world, local, origins = [hips], [hips], [pelvis_m]
-    for i, bone in enumerate(BONES[1:], 1):
-        above = world[bone.parent]
-        origins.append(origins[bone.parent] + _turned(above, offset_m(skeleton, i)))
-        if bone.name == "Spine":
-            spine = axes_of(up, _between(joints_m, "r_shoulder", "l_shoulder"))
-            turns = above.transpose(0, 2, 1) @ spine
-        else:
-            aim = joints_m[:, _AT[bone.ends]] - origins[i]
-            turns = arc_axes(skeleton.tips_m[i], _turned(above.transpose(0, 2, 1), aim))
-        local.append(turns)
-        world.append(above @ turns)
-    return Motion(pelvis_m, tuple(Rotation.from_matrix(t, assume_valid=True) for t in local))
+    spine = axes_of(up, _between(joints_m, "r_shoulder", "l_shoulder"))
+    world[:2], local[:2] = (hips, spine), (hips, hips.swapaxes(-1, -2) @ spine)
+    origins[:2] = joints_m[:, _AT["pelvis"]]
+    offsets_m = np.array([offset_m(skeleton, i) for i in range(len(BONES))])
+    for bones, parents, ends in _GENERATIONS:
+        above = world[parents]
+        origins[bones] = origins[parents] + _turned(above, offsets_m[bones, None])
+        aims = joints_m[:, ends].swapaxes(0, 1) - origins[bones]
+        aims = _turned(above.swapaxes(-1, -2), aims)
+        local[bones] = arc_axes(skeleton.tips_m[bones, None], aims)
+        world[bones] = above @ local[bones]
+    return local
 
 
 def joints_of(skeleton: Skeleton, motion: Motion) -> Joints:

@@ -18,28 +18,34 @@ def arc(start: Vector, ends: NDArray[np.float64]) -> Rotation:
     return Rotation.from_quat(_half(start, ends), scalar_first=True)
 
 
-def arc_axes(start: Vector, ends: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Likewise as matrices (n, 3, 3): one pose has many turns, and few are made so in less time."""
-    quaternions = _half(start, ends)
-    quaternions /= np.sqrt((quaternions**2).sum(axis=1, keepdims=True))
-    w, x, y, z = quaternions.T
-    across = np.zeros((len(ends), 3, 3))
-    across[:, 2, 1], across[:, 0, 2], across[:, 1, 0] = x, y, z
-    across -= across.transpose(0, 2, 1)
-    found: NDArray[np.float64] = np.eye(3) + 2.0 * (w[:, None, None] * across + across @ across)
+def arc_axes(starts: NDArray[np.float64], ends: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Likewise as matrices (..., 3, 3), of directions (..., 3): one pose has many turns, and a few
+    take less time so."""
+    quaternions = _half(starts, ends)
+    quaternions /= np.sqrt((quaternions**2).sum(axis=-1, keepdims=True))
+    w, x, y, z = np.moveaxis(quaternions, -1, 0)
+    across = np.zeros((*w.shape, 3, 3))
+    across[..., 2, 1], across[..., 0, 2], across[..., 1, 0] = x, y, z
+    across -= across.swapaxes(-1, -2)
+    found: NDArray[np.float64] = across @ across
+    found += w[..., None, None] * across
+    found *= 2.0
+    found[..., (0, 1, 2), (0, 1, 2)] += 1.0
     return found
 
 
-def _half(start: Vector, ends: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Quaternions (n, 4) of the shortest turns, w first, of any length."""
-    a = start / np.linalg.norm(start)
+def _half(starts: NDArray[np.float64], ends: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Quaternions (..., 4) of the shortest turns, w first, of any length."""
+    a = starts / np.linalg.norm(starts, axis=-1, keepdims=True)
     b = ends / np.maximum(np.linalg.norm(ends, axis=-1, keepdims=True), OPPOSITE)
-    wxyz = np.empty((len(b), 4))
-    wxyz[:, 0] = 1.0 + b @ a
-    wxyz[:, 1:] = _cross(a, b)
-    opposite = wxyz[:, 0] < OPPOSITE
+    wxyz = np.empty((*b.shape[:-1], 4))
+    wxyz[..., 0] = 1.0 + (a * b).sum(axis=-1)
+    wxyz[..., 1:] = _cross(a, b)
+    opposite = wxyz[..., 0] < OPPOSITE
     if opposite.any():
-        wxyz[opposite] = 0.0, *np.cross(a, np.eye(3)[np.abs(a).argmin()])
+        a = np.broadcast_to(a, b.shape)[opposite]
+        wxyz[opposite, 0] = 0.0
+        wxyz[opposite, 1:] = np.cross(a, np.eye(3)[np.abs(a).argmin(axis=-1)])
     return wxyz
 
 

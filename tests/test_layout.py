@@ -36,6 +36,7 @@ NAMED = re.compile(r"`((?:[\w.-]+/)+(?:\w+\.\w+)?)(?: \((\w+)\))?`")
 
 
 SYSTEM = {
+    "docs": "the documentation: what it quotes, what it types, the site that it makes",
     "layout": "the rules of the house, this file",
     "readme": "the README, typed as it stands in a fresh copy",
     "system_commands": "every command as a user calls it",

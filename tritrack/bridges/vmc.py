@@ -7,9 +7,10 @@ left-handed, +x right of who faces +z, +y up, so x changes its sign.
 from typing import Any, Final, NamedTuple
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
-from animator.bones import BONES, Skeleton, motion_of, offset_m, skeleton_of
-from common.body.body import Vector
+from animator.bones import BONES, Skeleton, offset_m, skeleton_of, turned_axes
+from common.body.body import JOINT_NAMES, Vector
 from common.bus.messages import Body
 from tritrack.bridges.osc import message
 
@@ -24,6 +25,7 @@ UNITY: Final = {
     )
 }
 """Unity's names of BONES that it calls otherwise."""
+PELVIS: Final = JOINT_NAMES.index("pelvis")
 MEASURED: Final = 30
 """Poses whose median lengths make the skeleton; until then those that came."""
 TYPES: Final = "sfffffff"
@@ -53,15 +55,15 @@ def vmc_packet(body: Body, skeleton: Skeleton, joints_m: Vector) -> bytes:
     """The bundle of a pose."""
     from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
 
-    motion = motion_of(skeleton, joints_m[None])
+    axes = turned_axes(skeleton, joints_m[None])[:, 0]
+    turns = Rotation.from_matrix(axes, assume_valid=True).as_quat().tolist()
     bundle: Any = OscBundleBuilder(IMMEDIATELY)
     bundle.add_content(message("/VMC/Ext/OK", [1], "i"))
     bundle.add_content(message("/VMC/Ext/T", [body.captured_s], "f"))
     root = ["root", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
     bundle.add_content(message("/VMC/Ext/Root/Pos", root, TYPES))
-    for i, (bone, own) in enumerate(zip(BONES, motion.turns, strict=True)):
-        place_m = motion.root_m[0] if i == 0 else offset_m(skeleton, i)
-        x, y, z, w = own.as_quat()[0].tolist()
+    for i, (bone, (x, y, z, w)) in enumerate(zip(BONES, turns, strict=True)):
+        place_m = joints_m[PELVIS] if i == 0 else offset_m(skeleton, i)
         told = [UNITY.get(bone.name, bone.name), *_mirrored(place_m), x, -y, -z, w]
         bundle.add_content(message("/VMC/Ext/Bone/Pos", told, TYPES))
     packet: bytes = bundle.build().dgram
