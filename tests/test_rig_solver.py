@@ -65,9 +65,16 @@ def test_the_process_finds_what_is_found_here_and_asking_waits_for_nothing() -> 
     assert time.monotonic() - began_s < 0.05
     assert solver.answer() is None
     found = answer_of(solver, 100.0)
-    assert found == solved(job)
+    here = solved(job)
     assert found is not None
     assert found.before is not None
+    assert found.rig is not None
+    assert here.rig is not None
+    # The child has one thread for its sums, this process as many as there are: last digits differ.
+    for one, other in zip(found.rig.cameras, here.rig.cameras, strict=True):
+        for name in ("K", "R", "t"):
+            assert np.allclose(getattr(one, name), getattr(other, name), rtol=1e-5, atol=1e-5)
+    assert found.refusal == here.refusal == ""
 
 
 @pytest.mark.slow
