@@ -4,6 +4,7 @@ import time
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_limits
 from wild_rigs import Trial, filmed
 
 from common.rig.camera import paper_rig
@@ -56,7 +57,12 @@ def test_a_job_of_too_little_is_refused_with_the_reason() -> None:
 
 
 @pytest.mark.slow
-def test_the_process_finds_what_is_found_here_and_asking_waits_for_nothing() -> None:
+def test_the_process_finds_what_is_found_here_and_asking_waits_for_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """To the last bit, with one thread in both, as live processes have: more add up otherwise."""
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        monkeypatch.setenv(name, "1")
     shown = walking()
     tracks = (rows_of(shown.sighting.first), rows_of(shown.sighting.second))
     job = Job(shown.sighting.size_px, shown.stature_m, 1 / 15, tracks, PAPER)
@@ -65,16 +71,10 @@ def test_the_process_finds_what_is_found_here_and_asking_waits_for_nothing() -> 
     assert time.monotonic() - began_s < 0.05
     assert solver.answer() is None
     found = answer_of(solver, 100.0)
-    here = solved(job)
+    with threadpool_limits(1):
+        assert found == solved(job)
     assert found is not None
     assert found.before is not None
-    assert found.rig is not None
-    assert here.rig is not None
-    # The child has one thread for its sums, this process as many as there are: last digits differ.
-    for one, other in zip(found.rig.cameras, here.rig.cameras, strict=True):
-        for name in ("K", "R", "t"):
-            assert np.allclose(getattr(one, name), getattr(other, name), rtol=1e-5, atol=1e-5)
-    assert found.refusal == here.refusal == ""
 
 
 @pytest.mark.slow
