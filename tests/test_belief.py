@@ -82,3 +82,12 @@ def test_without_landmarks_the_better_view_speaks() -> None:
     first, second = (msgspec.structs.replace(report(n, BODY), landmarks=None) for n in (0, 1))
     assert is_believed(BODY, RIG, Pair(first, second), (0.4, 0.1))
     assert not is_believed(BODY, RIG, Pair(first, second), (0.3, 0.3))
+
+
+def test_a_body_that_no_view_shows_anybody_of_is_not_believed_however_it_fits() -> None:
+    assert not is_believed(BODY, RIG, pair(BODY, confidence=0.15), FITS)
+
+
+def test_a_body_of_whom_one_view_shows_a_little_is_believed_where_it_fits() -> None:
+    seen = Pair(report(0, BODY, 0.15), report(1, BODY, 0.3))
+    assert is_believed(BODY, RIG, seen, FITS)

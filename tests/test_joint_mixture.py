@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from integrator.landmarks.joint_mixture import Witnesses, most_probable
+from integrator.landmarks.joint_mixture import PROPOSED, Witnesses, most_probable
 
 CENTRES_M = np.array([[0.0, 1.0, 4.0], [-4.0, 1.0, 0.0]])
 TRUE_M = np.array([0.1, 1.2, -0.2])
@@ -21,9 +21,13 @@ def told(
     directions: np.ndarray,
     surety: float = 0.8,
     sureties: tuple[float, float] = (0.8, 0.8),
+    wider_m: float = 0.0,
 ) -> Witnesses:
-    spreads_m = np.array([0.02, 0.03, 0.03])
-    return Witnesses(proposed_m, surety, CENTRES_M, directions, np.array(sureties), spreads_m, 1.75)
+    spreads_m = np.array([0.02 + wider_m, 0.03, 0.03])
+    sure = np.array(sureties)
+    return Witnesses(
+        proposed_m, surety, CENTRES_M, directions, sure, spreads_m, PROPOSED.roughly + wider_m, 1.75
+    )
 
 
 def place_of(witnesses: Witnesses) -> tuple[np.ndarray, float, np.ndarray]:
@@ -55,6 +59,16 @@ def test_a_proposal_that_is_unsure_gives_way_across_a_sure_ray_and_keeps_its_dep
     off = place_m - proposed_m
     assert off @ rays[0] < 0.05
     assert np.linalg.norm(np.cross(place_m - CENTRES_M[0], rays[0])) < 0.03
+
+
+def test_a_proposal_that_is_held_more_loosely_gives_way_further() -> None:
+    proposed_m = TRUE_M + np.array([0.15, 0.0, 0.0])
+    rays = rays_through(TRUE_M, TRUE_M)
+    off_m = []
+    for wider_m in (0.0, 0.2):
+        place_m, _, _ = place_of(told(proposed_m, rays, 0.2, (0.6, 0.0), wider_m))
+        off_m.append(np.linalg.norm(np.cross(place_m - CENTRES_M[0], rays[0])))
+    assert off_m[1] < 0.6 * off_m[0]
 
 
 def test_agreement_is_more_probable_and_held_more_tightly() -> None:

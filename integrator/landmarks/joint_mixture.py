@@ -54,6 +54,8 @@ class Witnesses(NamedTuple):
     """(2,) how probably each landmark is right; 0: there is none."""
     spreads_m: Any
     """(3,) of the proposed joint and of both landmarks, where they are right."""
+    roughly_m: float
+    """Of the proposed joint, where it is roughly right."""
     stature_m: float
 
 
@@ -124,9 +126,7 @@ def _weigh(told: Any, here: Any, normal: Any, right: Any) -> float:
     square = 0.0
     for i in range(3):
         square += (here[i] - told.proposed_m[i]) ** 2
-    total, weight = _likelihood(
-        square, told.spreads_m[0], PROPOSED.roughly, told.surety, PROPOSED, 3
-    )
+    total, weight = _likelihood(square, told.spreads_m[0], told.roughly_m, told.surety, PROPOSED, 3)
     weight += HELD
     normal[0] = normal[3] = normal[5] = weight
     normal[1] = normal[2] = normal[4] = 0.0

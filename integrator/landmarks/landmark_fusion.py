@@ -1,5 +1,6 @@
 """One body of what the outlines propose and what each view's picture shows of the joints."""
 
+import math
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -7,7 +8,7 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.compiled import compiled
-from integrator.landmarks import exchanged_sides, limb_springs, turned_about
+from integrator.landmarks import exchanged_sides, limb_springs, proposal_misfit, turned_about
 from integrator.landmarks.exchanged_sides import Exchanged, Exchanges
 from integrator.landmarks.joint_mixture import (
     LEAST,
@@ -18,6 +19,7 @@ from integrator.landmarks.joint_mixture import (
     most_probable,
 )
 from integrator.landmarks.landmark_rays import Rays
+from integrator.landmarks.proposal_misfit import Misfit
 from integrator.proposal import pose_network
 from integrator.proposal.network_weights import JOINTS
 from integrator.proposal.pose_network import OTHER_SIDES
@@ -44,6 +46,8 @@ class Memory(NamedTuple):
     exchanges: Exchanges
     lengths_m: Vector
     """(10,) of `limb_springs.ENDS`."""
+    misfit: Misfit
+    """Of proposals beside the rays."""
 
 
 class Fused(NamedTuple):
@@ -66,9 +70,10 @@ def step(
 ) -> Fused:
     """One instant: each joint where the proposal and both views together most probably have it.
 
-    Where faces say that the proposal is turned about, its sides are exchanged. Which sides a view
-    exchanged is decided for arms and legs as wholes, by all that is said of their joints; then
-    limbs are given their lengths.
+    Where faces say that the proposal is turned about, its sides are exchanged. Where proposals have
+    lately been off what is shown, they are believed less closely. Which sides a view exchanged is
+    decided for arms and legs as wholes, by all that is said of their joints; then limbs are given
+    their lengths.
 
     Args:
         before: Of the instant before; None at the first.
@@ -80,7 +85,9 @@ def step(
     turned = turned_about.step(None if before is None else before.turned, proposed_m, rays)
     if turned[1]:
         proposed_m, confidence = proposed_m[OTHER_SIDES], confidence[OTHER_SIDES]
-    values, places_m, precisions = _weighed(proposed_m, confidence, rays, stature_m)
+    misfit = proposal_misfit.step(before and before.misfit, proposed_m, rays, stature_m)
+    wider_m = proposal_misfit.wider_m(misfit, stature_m)
+    values, places_m, precisions = _weighed(proposed_m, confidence, wider_m, rays, stature_m)
     exchanges, decided = exchanged_sides.step(
         _exchanges(before, turned[1]),
         values[ARMS].sum(axis=0),
@@ -92,7 +99,7 @@ def step(
     lengths_m = None if before is None else before.lengths_m
     if lengths_m is not None:
         joints_m = limb_springs.sprung(joints_m, tight, lengths_m)
-    memory = Memory(turned, exchanges, limb_springs.lengths_m(lengths_m, joints_m))
+    memory = Memory(turned, exchanges, limb_springs.lengths_m(lengths_m, joints_m), misfit)
     return Fused(joints_m, _confidence(tight), decided, memory)
 
 
@@ -104,14 +111,19 @@ def _exchanges(before: Memory | None, turned: bool) -> Exchanges | None:
 
 
 def _weighed(
-    proposed_m: NDArray[np.float64], confidence: Vector, rays: Rays, stature_m: float
+    proposed_m: NDArray[np.float64],
+    confidence: Vector,
+    wider_m: float,
+    rays: Rays,
+    stature_m: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """`_modes` of what confidences say of how sure and how wide each witness is."""
     shown = np.where(rays.confidence > 0.0, _share(rays.confidence, SHOWN_RIGHT), 0.0)
     found: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] = _modes(
         proposed_m,
         _share(confidence, PROPOSED_RIGHT),
-        PROPOSED.right + PROPOSED.unsure * (1.0 - confidence),
+        np.hypot(PROPOSED.right + PROPOSED.unsure * (1.0 - confidence), wider_m),
+        math.hypot(PROPOSED.roughly, wider_m),
         rays.centres_m,
         rays.directions,
         shown,
@@ -152,6 +164,7 @@ def _modes(
     proposed_m: Any,
     sure: Any,
     spreads_m: Any,
+    roughly_m: float,
     centres_m: Any,
     directions: Any,
     seen: Any,
@@ -174,7 +187,14 @@ def _modes(
                     sureties[view] = seen[view, own]
                     spreads[1 + view] = seen_m[view, own]
                 told = Witnesses(
-                    proposed_m[joint], sure[joint], centres_m, along, sureties, spreads, stature_m
+                    proposed_m[joint],
+                    sure[joint],
+                    centres_m,
+                    along,
+                    sureties,
+                    spreads,
+                    roughly_m,
+                    stature_m,
                 )
                 values[joint, first, second] = most_probable(
                     told, places_m[joint, first, second], precisions[joint, first, second]

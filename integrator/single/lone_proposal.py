@@ -14,7 +14,7 @@ from integrator.landmarks.landmark_rays import rays_of
 from integrator.proposal import pose_network, pose_proposal
 from integrator.proposal.pose_proposal import HEAD, NECK, PELVIS
 from integrator.rig.undistortion import undistorted_rig
-from integrator.single import reflection
+from integrator.single import bent_limbs, reflection
 from integrator.single.reflection import Front
 from integrator.single.sight import Hypothesis, Sight, posed
 from integrator.single.stick_similarity import stick_similarity
@@ -68,6 +68,7 @@ def step(before: Before, sight: Sight) -> Proposed:
         front, behind = reflection.front_of(front, yaw, annotations.orientation, sight.dt_s)
         joints_m = reflection.seen_from_behind(camera, joints_m) if behind else joints_m
     joints_m, confidence, landmarks = _with_landmarks(before, sight, joints_m, known.confidence)
+    joints_m = bent_limbs.bent(sight, joints_m)
     joints_m = reflection.leaning(camera, joints_m, annotations.depth)
     for name, place in annotations.joints_px.items():
         at = JOINT_NAMES.index(name)

@@ -114,6 +114,14 @@ def leaning(camera: Camera, joints_m: Joints, depth: Mapping[str, str]) -> Joint
     return _at_depths(camera, joints_m, depths_m)
 
 
+def mirrored(camera: Camera, joints_m: Joints, limb: int) -> Joints:
+    """The body one of whose LIMBS leans as far the other way."""
+    depths_m = _depths(camera, joints_m)
+    near, far = LIMB_ENDS[limb]
+    depths_m[_HANGS[limb]] -= 2 * (depths_m[far] - depths_m[near])
+    return _at_depths(camera, joints_m, depths_m)
+
+
 def _depths(camera: Camera, joints_m: Joints) -> Joints:
     found: Joints = (joints_m - centre(camera)) @ arrays_of(camera).R[2]
     return found

@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bus.messages import Lifting
-from common.rig.camera import arrays_of
+from common.rig.camera import arrays_of, project
 from integrator.landmarks import landmark_fusion
 from integrator.proposal.pose_proposal import Memory
+from integrator.rig.undistortion import undistorted_camera
 from integrator.single import depth_signs, lifted_stick, lone_proposal, reflection
 from integrator.single.reflection import Front
 from integrator.single.sight import Hypothesis, Sight
@@ -77,13 +78,25 @@ def step(memory: Memory | None, alone: Alone, sight: Sight) -> Found:
         signs = _witnessed(sight, alone.signs, body.joints_m, body.lifting.orientation_confidence)
         return _found(body, seen.memory, alone._replace(signs=signs))
     signs, lifted = lifted_stick.step(alone.signs, sight)
-    if not seen.agrees or lifted.score >= SURELY * body.score:
+    fits = lifted.score >= SURELY * body.score
+    if not seen.agrees or (fits and _off_px(sight, lifted) <= _off_px(sight, body)):
         body = lifted
     return _found(body, seen.memory, alone._replace(signs=signs))
 
 
 def _found(body: Hypothesis, memory: Memory | None, alone: Alone) -> Found:
     return Found(body, memory, alone._replace(score=body.score, lifting=body.lifting))
+
+
+def _off_px(sight: Sight, body: Hypothesis) -> float:
+    """How far a body is from what is shown, its surest joints most; 0 where nothing is."""
+    found = sight.report.landmarks
+    if found is None:
+        return 0.0
+    sure = np.array(found.confidence)
+    seen_px = project(undistorted_camera(sight.camera), body.joints_m)
+    off_px = np.linalg.norm(seen_px - np.array(found.joints_px), axis=1)
+    return float(sure @ off_px / max(sure.sum(), 1e-9))
 
 
 def _witnessed(
