@@ -19,7 +19,6 @@ from integrator.landmarks.joint_mixture import (
     most_probable,
 )
 from integrator.landmarks.landmark_rays import Rays
-from integrator.landmarks.proposal_misfit import Misfit
 from integrator.proposal import pose_network
 from integrator.proposal.network_weights import JOINTS
 from integrator.proposal.pose_network import OTHER_SIDES
@@ -46,8 +45,8 @@ class Memory(NamedTuple):
     exchanges: Exchanges
     lengths_m: Vector
     """(10,) of `limb_springs.ENDS`."""
-    misfit: Misfit
-    """Of proposals beside the rays."""
+    misfit: float
+    """How far proposals were beside the rays: of `proposal_misfit`."""
 
 
 class Fused(NamedTuple):
@@ -85,7 +84,9 @@ def step(
     turned = turned_about.step(None if before is None else before.turned, proposed_m, rays)
     if turned[1]:
         proposed_m, confidence = proposed_m[OTHER_SIDES], confidence[OTHER_SIDES]
-    misfit = proposal_misfit.step(before and before.misfit, proposed_m, rays, stature_m)
+    misfit = proposal_misfit.step(
+        0.0 if before is None else before.misfit, proposed_m, rays, stature_m
+    )
     wider_m = proposal_misfit.wider_m(misfit, stature_m)
     values, places_m, precisions = _weighed(proposed_m, confidence, wider_m, rays, stature_m)
     exchanges, decided = exchanged_sides.step(

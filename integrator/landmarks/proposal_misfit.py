@@ -1,6 +1,7 @@
 """How far proposals have lately been off what the pictures show, and so how far to believe them."""
 
-from typing import Final, NamedTuple
+import math
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,27 +18,11 @@ LATELY: Final = 0.2
 """Share of an instant that all its landmarks are sure of."""
 
 
-class Misfit(NamedTuple):
-    """Of the instants up to now, the latest most."""
-
-    squares: float = 0.0
-    """Sum of weighted squares, statures^2, ..."""
-    weight: float = 0.0
-    """... and of the weights."""
-
-    @property
-    def off(self) -> float:
-        """How far proposals were beside the rays, statures."""
-        return float(np.sqrt(self.squares / self.weight)) if self.weight > 0.0 else 0.0
-
-
-def step(
-    before: Misfit | None, proposed_m: NDArray[np.float64], rays: Rays, stature_m: float
-) -> Misfit:
-    """With one more instant.
+def step(before: float, proposed_m: NDArray[np.float64], rays: Rays, stature_m: float) -> float:
+    """The mean square of how far proposals were beside the rays, statures^2, the latest most.
 
     Args:
-        before: Of the instants before; None at the first.
+        before: Up to the instant before; 0 at the first: one instant alone proves little.
         proposed_m: (12, 3) world, of JOINTS.
         rays: Of both views' landmarks.
         stature_m: Of the person.
@@ -50,19 +35,15 @@ def step(
         nearest = np.where(nearer, own, exchanged).clip(max=FARTHEST).reshape(-1)
         squares += float(rays.confidence[view] @ nearest**2)
         weight += float(rays.confidence[view].sum())
-    before = before or Misfit()
     if weight == 0.0:
         return before
     share = LATELY * min(1.0, weight / len(proposed_m))
-    return Misfit(
-        (1.0 - share) * before.squares + share * squares / weight,
-        (1.0 - share) * before.weight + share,
-    )
+    return (1.0 - share) * before + share * squares / weight
 
 
-def wider_m(misfit: Misfit, stature_m: float) -> float:
+def wider_m(misfit: float, stature_m: float) -> float:
     """By how much the spread of a proposed joint grows, metres."""
-    return WIDER * max(0.0, misfit.off - USUAL) * stature_m
+    return WIDER * max(0.0, math.sqrt(misfit) - USUAL) * stature_m
 
 
 def _off(away_m: NDArray[np.float64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
