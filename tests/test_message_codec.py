@@ -361,8 +361,41 @@ def test_a_silhouette_comes_back_at_any_width(mask: np.ndarray[Any, np.dtype[np.
     height, width = mask.shape
     packed = pack(mask)
     assert len(packed) == height * ((width + 7) // 8)
-    report = msgspec.structs.replace(REPORT, width=width, height=height, silhouette=packed)
+    said = {"width": width, "height": height, "silhouette": packed, "box": None}
+    report = msgspec.structs.replace(REPORT, **said)
     assert np.array_equal(unpack(decode(encode(report), Report)), mask)
+
+
+@pytest.mark.parametrize(
+    "box",
+    [
+        Box(left=-1, right=2, top=0, bottom=2),
+        Box(left=2, right=1, top=0, bottom=2),
+        Box(left=1, right=13, top=0, bottom=2),
+        Box(left=1, right=2, top=2, bottom=0),
+        Box(left=1, right=2, top=0, bottom=3),
+    ],
+    ids=["left of it", "from right to left", "right of it", "upside down", "below it"],
+)
+def test_a_box_that_is_not_in_the_picture_is_refused(box: Box) -> None:
+    with pytest.raises(MalformedMessage, match="in a picture of 13x3"):
+        decode(encode(msgspec.structs.replace(REPORT, box=box)), Report)
+
+
+def test_a_body_with_joints_and_no_pose_is_refused() -> None:
+    with pytest.raises(MalformedMessage, match="not all there, or none"):
+        decode(encode(msgspec.structs.replace(BODY, pose=())), Body)
+
+
+@pytest.mark.parametrize("frame", [2**62, -(2**62), 10**10])
+def test_numbers_beyond_all_that_is_counted_are_refused(frame: int) -> None:
+    with pytest.raises(MalformedMessage, match="frame holds"):
+        decode(encode(msgspec.structs.replace(REPORT, frame=frame)), Report)
+
+
+def test_a_time_of_a_few_hundred_digits_is_refused() -> None:
+    with pytest.raises(MalformedMessage, match="captured_s holds"):
+        decode(encode(msgspec.structs.replace(REPORT, captured_s=1e200)), Report)
 
 
 def test_a_silhouette_of_the_papers_size_has_2400_bytes() -> None:

@@ -1,6 +1,5 @@
 """Messages on their way: the table of topics, bytes, and the refusal of what no process says."""
 
-import math
 from collections.abc import Iterator
 from typing import Final, NamedTuple, TypeVar
 
@@ -10,7 +9,9 @@ from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES, Bdp, E
 from common.bus.control_messages import Answer, Cameras, Command, Ended, Pulse
 from common.bus.messages import (
     PROTOCOL,
+    Agreement,
     Body,
+    Box,
     Fit,
     Guide,
     Landmarks,
@@ -58,7 +59,11 @@ TOPICS: Final[dict[type[Message], Topic]] = {
 
 Said = TypeVar("Said", bound=Message)
 
+MOST: Final = 1e9
+"""No number of ours is larger: seconds of thirty years, pixels, frames."""
 _CARRIERS: Final = (
+    Agreement,
+    Box,
     Measure,
     Fit,
     Landmarks,
@@ -70,7 +75,7 @@ _CARRIERS: Final = (
     Rig,
     Camera,
 )
-"""Structs in messages whose numbers must be finite."""
+"""Structs in messages whose numbers are looked at."""
 _LENGTHS: Final[dict[tuple[type[Message], str], tuple[int, ...]]] = {
     (Guide, "pose"): (0, len(POSE_NAMES)),
     (Body, "pose"): (0, len(POSE_NAMES)),
@@ -133,8 +138,9 @@ def _refuse_what_no_process_would_say(message: Message) -> None:
         allowed = _LENGTHS.get((type(message), name))
         if allowed is not None and len(value) not in allowed:
             raise MalformedMessage(f"{name} has {len(value)} entries, not {allowed[-1]}")
-        if not all(math.isfinite(number) for number in _numbers(value)):
-            raise MalformedMessage(f"{name} holds a number that is not finite")
+        for number in _numbers(value):
+            if not abs(number) <= MOST:
+                raise MalformedMessage(f"{name} holds {number}, at most {MOST:g} is taken")
     if isinstance(message, Report):
         _refuse_a_false_report(message)
     if isinstance(message, Body):
@@ -144,6 +150,8 @@ def _refuse_what_no_process_would_say(message: Message) -> None:
 def _refuse_a_false_report(report: Report) -> None:
     if report.width <= 0 or report.height <= 0:
         raise MalformedMessage(f"a picture of {report.width}x{report.height}")
+    if report.box is not None:
+        _refuse_a_false_box(report.box, report.width, report.height)
     due = report.height * ((report.width + 7) // 8)
     if len(report.silhouette) != due:
         raise MalformedMessage(f"silhouette has {len(report.silhouette)} bytes, not {due}")
@@ -154,6 +162,11 @@ def _refuse_a_false_report(report: Report) -> None:
         _refuse_a_false_fit(report.fit)
     if report.landmarks is not None:
         _refuse_false_landmarks(report.landmarks)
+
+
+def _refuse_a_false_box(box: Box, width: int, height: int) -> None:
+    if not (0 <= box.left <= box.right < width and 0 <= box.top <= box.bottom < height):
+        raise MalformedMessage(f"{box} in a picture of {width}x{height}")
 
 
 def _refuse_false_landmarks(landmarks: Landmarks) -> None:
@@ -169,6 +182,9 @@ def _refuse_false_landmarks(landmarks: Landmarks) -> None:
 
 
 def _refuse_a_false_body(body: Body) -> None:
+    whole = {len(part) > 0 for part in (body.joints_m, body.pose, body.angles_raw_deg)}
+    if len(whole) > 1:
+        raise MalformedMessage("joints_m, pose and angles_raw_deg are not all there, or none")
     if any(len(own) != len(JOINT_NAMES) for own in body.joints_px):
         raise MalformedMessage(f"joints_px has no {len(JOINT_NAMES)} joints in a camera")
     if body.lifting is not None:
@@ -200,7 +216,7 @@ def _refuse_a_false_fit(fit: Fit) -> None:
 
 
 def _numbers(value: object) -> Iterator[float]:
-    if isinstance(value, float):
+    if isinstance(value, int | float):
         yield value
     elif isinstance(value, tuple):
         for item in value:
