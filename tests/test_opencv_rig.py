@@ -77,3 +77,30 @@ def test_what_is_no_file_of_opencvs_is_told_in_one_line(tmp_path: Path, text: st
     (tmp_path / "a.yml").write_text(text)
     with pytest.raises(CalibrationError, match=r"a\.yml"):
         imported_rig(tmp_path / "a.yml")
+
+
+@pytest.mark.parametrize(
+    ("was", "told"),
+    [
+        ("   cols: 3\n", ""),
+        ("   cols: 3\n", "   cols: 2\n"),
+        ("   rows: 3\n", "   rows: 9\n"),
+        ("   rows: 3\n", "   rows: -3\n"),
+        ("[ 600.", "[ 1., 600."),
+        ("[ 600.", "[ x, 600."),
+        ("[ 600.", "[ \udcff, 600."),
+        ("image_width: 640", "image_width: wide"),
+        ("image_width: 640", "image_width: [ 640 ]"),
+    ],
+)
+def test_a_matrix_of_another_size_than_it_says_is_refused(
+    tmp_path: Path, was: str, told: str
+) -> None:
+    """OpenCV's own reader of matrices writes beyond its memory there."""
+    path = tmp_path / "camera.yml"
+    write(path, {"image_width": 640, "image_height": 480, "camera_matrix": K})
+    text = path.read_text()
+    assert was in text
+    path.write_text(text.replace(was, told, 1), errors="surrogateescape")
+    with pytest.raises(CalibrationError, match=r"camera\.yml"):
+        imported_rig(path)

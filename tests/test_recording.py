@@ -32,6 +32,7 @@ def standing(frame: int) -> Body:
         views="both",
         joints_m=tuple(map(tuple, joints(body_vector(thesis_bdp(1.7)), pose).tolist())),
         pose=tuple(pose.tolist()),
+        angles_raw_deg=tuple(pose[list(ANGLES_IN_POSE)].tolist()),
         confidence=(0.5,) * 15,
     )
 
@@ -83,6 +84,15 @@ def test_a_recording_that_is_absent_or_damaged_is_named(folder: Path, tmp_path: 
         read_recording(tmp_path / "none")
     path = folder / "recording.mcap"
     path.write_bytes(path.read_bytes()[:200])
+    with pytest.raises(RecordingError, match="was damaged"):
+        read_recording(folder)
+
+
+def test_a_recording_whose_compressed_part_is_damaged_is_named(folder: Path) -> None:
+    path = folder / "recording.mcap"
+    whole = path.read_bytes()
+    at = whole.index(b"zstd") + 60
+    path.write_bytes(whole[:at] + bytes(16) + whole[at + 16 :])
     with pytest.raises(RecordingError, match="was damaged"):
         read_recording(folder)
 

@@ -155,6 +155,8 @@ def _refuse_a_false_report(report: Report) -> None:
     due = report.height * ((report.width + 7) // 8)
     if len(report.silhouette) != due:
         raise MalformedMessage(f"silhouette has {len(report.silhouette)} bytes, not {due}")
+    if report.measure is not None and min(report.measure.height_px, report.measure.depth_px) <= 0.0:
+        raise MalformedMessage("a measured body without height or depth")
     unknown = [name for name in report.angles_deg if name not in ANGLE_NAMES]
     if unknown:
         raise MalformedMessage(f"unknown angle {unknown[0]!r}")

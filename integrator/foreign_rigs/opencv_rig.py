@@ -79,7 +79,7 @@ def _nodes(path: Path) -> dict[str, Any]:
         return {name: _value(root.getNode(name)) for name in root.keys()}  # noqa: SIM118
     except OSError as error:
         raise CalibrationError(f"cannot read the calibration {path}: {error.strerror}") from error
-    except (cv2.error, SystemError) as error:
+    except (cv2.error, SystemError, UnicodeDecodeError) as error:
         raise CalibrationError(f"{path} is no file of OpenCV's FileStorage") from error
 
 
@@ -88,25 +88,39 @@ def _value(node: cv2.FileNode) -> Any:
         return node.real()
     if node.isSeq():
         return [_value(node.at(n)) for n in range(node.size())]
-    if node.isMap() and "data" in node.keys():  # noqa: SIM118
-        return node.mat()
+    if node.isMap():
+        return _array(node)
     return node.string() if node.isString() else None
 
 
+def _array(node: cv2.FileNode) -> Vector | None:
+    """A matrix (rows, cols); None where it is none.
+
+    OpenCV's own reader writes beyond its memory where a matrix says another size than it has.
+    """
+    shape = [node.getNode(name) for name in ("rows", "cols")]
+    data = _value(node.getNode("data"))
+    if not all(size.isInt() for size in shape) or not isinstance(data, list):
+        return None
+    rows, columns = (round(size.real()) for size in shape)
+    numbers = [number for number in data if isinstance(number, float)]
+    if min(rows, columns) < 1 or len(numbers) != len(data) or len(data) != rows * columns:
+        return None
+    return np.array(numbers).reshape(rows, columns)
+
+
 def _matrix(content: dict[str, Any], names: Sequence[str]) -> Vector | None:
-    found = next(
+    return next(
         (content[name] for name in names if isinstance(content.get(name), np.ndarray)), None
     )
-    return None if found is None else np.asarray(found, np.float64)
 
 
 def _size(content: dict[str, Any], path: Path) -> tuple[int, int]:
-    for across, down in SIZES:
-        if across in content and down in content:
-            return round(content[across]), round(content[down])
-    for name in ("imageSize", "image_size", "size"):
-        if name in content and len(np.ravel(content[name])) == 2:
-            width, height = np.ravel(content[name]).tolist()
+    said: list[Any] = [[content.get(across), content.get(down)] for across, down in SIZES]
+    said += [content.get(name) for name in ("imageSize", "image_size", "size")]
+    for size in said:
+        if isinstance(size, list) and [type(length) for length in size] == [float, float]:
+            width, height = size
             return round(width), round(height)
     raise CalibrationError(
         f"{path} does not say how large the pictures are: add the lines image_width: and "

@@ -120,7 +120,7 @@ def read_recording(folder: Path) -> Recording:
         with path.open("rb") as file:
             (told,) = library.make_reader(file).iter_metadata()
         head = msgspec.json.decode(told.metadata["head"], type=Head)
-    except (library.McapError, MalformedMessage, OSError, ValueError, KeyError) as error:
+    except library.errors as error:
         raise RecordingError(
             f"{path} was damaged or is of another version ({error}): record again"
         ) from error
@@ -165,7 +165,8 @@ class _Library(NamedTuple):
     Writer: Any
     NonSeekingReader: Any
     make_reader: Any
-    McapError: Any
+    errors: tuple[type[Exception], ...]
+    """What reading raises of a damaged file."""
 
 
 def _library() -> _Library:
@@ -173,9 +174,11 @@ def _library() -> _Library:
         from mcap.exceptions import McapError
         from mcap.reader import NonSeekingReader, make_reader
         from mcap.writer import Writer
+        from zstandard import ZstdError
     except ImportError as error:
         raise RecordingError("recordings need mcap: pip install 'tritrack[mcap]'") from error
-    return _Library(Writer, NonSeekingReader, make_reader, McapError)
+    errors = (McapError, ZstdError, RuntimeError, MalformedMessage, OSError, ValueError, KeyError)
+    return _Library(Writer, NonSeekingReader, make_reader, errors)
 
 
 def refuse_without_library() -> None:
