@@ -9,7 +9,7 @@ import jsonschema
 import pytest
 from staging import report
 
-from common.body.body import JOINT_NAMES, rest_pose
+from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body, Posture, Report
