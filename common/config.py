@@ -157,6 +157,9 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Take every n-th frame of a recorded clip."""
     fps: float = 0.0
     """Rate at which recorded clips are taken to run, and played; 0: what they say themselves."""
+    metrics: str = ""
+    """HOST:PORT at which a live run answers /metrics (Prometheus) and /healthz; nowhere when
+    empty."""
     pictures: bool = False
     """Publish small pictures for the page; otherwise no picture leaves a viewer."""
     camera_1: CameraSettings | None = None
@@ -177,6 +180,8 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             raise ValueError(f"landmarks must be {', '.join(LANDMARK_SOURCES)} or a folder")
         _within("every", self.every, 1, 1000)
         _within("fps", self.fps, 0.0, 1000.0)
+        if self.metrics:
+            address_of(self.metrics)
 
 
 def load(path: Path) -> Settings:
@@ -219,6 +224,18 @@ def size_of(text: str) -> tuple[int, int]:
     _within("width", int(width), 32, 4096)
     _within("height", int(height), 32, 4096)
     return int(width), int(height)
+
+
+def address_of(text: str) -> tuple[str, int]:
+    """Host and port of an address as it is written, `127.0.0.1:9464`.
+
+    Raises:
+        ValueError: When it is none.
+    """
+    host, _, port = text.rpartition(":")
+    if not (host and port.isdecimal() and 0 < int(port) < 65536):
+        raise ValueError(f"metrics must look like 127.0.0.1:9464, got {text!r}")
+    return host, int(port)
 
 
 def working_size(source: tuple[int, int], bound: tuple[int, int]) -> tuple[int, int]:

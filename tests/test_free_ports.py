@@ -21,6 +21,10 @@ def test_what_is_held_is_named_with_the_cure() -> None:
         page = Settings(bus=free.bus, page=PageSettings(port=port))
         with pytest.raises(PageError, match=f"port {port}"):
             refuse_held_ports(page)
+        pytest.importorskip("prometheus_client", reason="pip install 'tritrack[metrics]'")
+        metrics = Settings(bus=free.bus, page=held.page, metrics=f"127.0.0.1:{port}")
+        with pytest.raises(PortHeld, match=f"metrics on 127.0.0.1:{port}: address already in use"):
+            refuse_held_ports(metrics)
 
 
 def test_what_is_free_or_no_tcp_is_left_alone() -> None:

@@ -32,6 +32,8 @@ class Part(NamedTuple):
     arguments: tuple[Any, ...]
     leads: bool = False
     """The run is over when all that lead have ended."""
+    spare: bool = False
+    """The run goes on where it was given up."""
     beats: bool = False
     """While it runs it says so once a second, whatever the others do: if it does not, it hangs."""
 
@@ -48,13 +50,16 @@ class Running(NamedTuple):
 def live_parts(settings: Settings, clip: Clip, context: ProcessContext) -> list[Part]:
     """The table of a live run: who listens comes before who speaks (P2)."""
     period_s = clip.every / clip.views[0].fps
+    viewers = {f"viewer {view.number}": view.number for view in clip.views}
     parts = [
         Part("integrator", integrator_main, (settings, clip, context), beats=True),
         Part("recognizer", recognizer_main, (settings, period_s, context)),
     ]
-    for view in clip.views:
-        arguments = (settings, view.number, context)
-        name = f"viewer {view.number}"
+    if settings.metrics:
+        needed = (*(part.name for part in parts), *viewers)
+        parts.append(Part("metrics", metrics_main, (settings, needed, context), spare=True))
+    for name, number in viewers.items():
+        arguments = (settings, number, context)
         parts.append(Part(name, viewer_main, arguments, leads=True, beats=True))
     return parts
 
@@ -81,6 +86,13 @@ def recognizer_main(*arguments: Any) -> None:
 def animator_main(*arguments: Any) -> None:
     """The animator, imported where it runs."""
     from animator.__main__ import main
+
+    main(*arguments)
+
+
+def metrics_main(*arguments: Any) -> None:
+    """The metrics, imported where they are served."""
+    from tritrack.outside.metrics_process import main
 
     main(*arguments)
 
