@@ -120,7 +120,8 @@ class BusSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     endpoint: str = "tcp/127.0.0.1:7447"
     """The integrator's host listens there, all others connect to it. Name another host's address
-    to spread a rig over hosts; nothing outside this machine is heard otherwise."""
+    to spread a rig over hosts; nothing outside this machine is heard otherwise. "auto": a live run
+    takes a free port of this machine, and tells it."""
     session: str = ""
     """A word that all processes of a run say with each message: what comes without it is dropped.
     A live run makes one up; "": whoever speaks in the room is heard."""
@@ -209,7 +210,7 @@ def load(path: Path) -> Settings:
         ) from error
     except msgspec.DecodeError as error:
         raise SettingsError(f"{path}: {error}") from error
-    return _with_full_paths(settings, path)
+    return with_full_paths(settings, path)
 
 
 def size_of(text: str) -> tuple[int, int]:
@@ -244,7 +245,12 @@ def working_size(source: tuple[int, int], bound: tuple[int, int]) -> tuple[int, 
     return max(1, round(source[0] * shrink)), max(1, round(source[1] * shrink))
 
 
-def _with_full_paths(settings: Settings, path: Path) -> Settings:
+def with_full_paths(settings: Settings, path: Path) -> Settings:
+    """Settings that stand in a file: relative paths from there, environment variables filled in.
+
+    Raises:
+        SettingsError: When a variable is not set, or the landmarks name no folder.
+    """
     folder = path.parent
 
     def full(name: str) -> str:

@@ -55,7 +55,7 @@ def told(said: Iterable[Told]) -> Samples:
 
     class Figures(Collector):  # type: ignore[misc,unused-ignore]
         def collect(self) -> Iterable[Metric]:
-            return families(figures, "hall", 12.5)
+            return families({"hall": figures}, 12.5)
 
     registry = CollectorRegistry()
     registry.register(Figures())

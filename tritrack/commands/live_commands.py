@@ -56,6 +56,18 @@ def live(
     tell(facts, json_wanted, f"posture: {facts['posture'] or 'none'}; written to {out}")
 
 
+def serve(
+    sites_file: Annotated[Path, typer.Argument(help="The sites (TOML): names and settings.")],
+) -> None:
+    """Serve several rooms, each with its own settings, until stopped. SIGHUP reads the file anew.
+
+    Example: tritrack serve configs/sites.toml
+    """
+    from tritrack.serving.serve import serve as serve_sites
+
+    serve_sites(sites_file, console)
+
+
 def view(
     settings_file: ConfigPath,
     viewer: Annotated[int, typer.Option(min=1, max=2, help="Which camera this process looks at.")],

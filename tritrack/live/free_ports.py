@@ -12,6 +12,8 @@ from common.config import BusSettings, PageSettings, Settings, address_of
 
 TCP: Final = re.compile(r"tcp/(?P<host>[^/]+):(?P<port>\d+)")
 SESSION_BYTES: Final = 8
+AUTO: Final = "auto"
+"""An endpoint that is left open."""
 
 
 class PortHeld(ValueError):
@@ -37,8 +39,7 @@ def refuse_held_ports(settings: Settings) -> None:
                 f"the page needs {error.name}: pip install 'tritrack[page]', or set page.port = 0"
             ) from error
         refuse_port(settings.page.port)
-    if settings.metrics:
-        _refuse_metrics(settings.metrics)
+    refuse_held_metrics(settings.metrics)
 
 
 def own_session(settings: Settings) -> Settings:
@@ -59,6 +60,23 @@ def free_settings(settings: Settings) -> Settings:
     )
 
 
+def with_free_endpoint(settings: Settings) -> Settings:
+    """The same settings with a free port of this machine where they leave it open."""
+    if settings.bus.endpoint != AUTO:
+        return settings
+    endpoint = f"tcp/127.0.0.1:{_free_port()}"
+    bus = msgspec.structs.replace(settings.bus, endpoint=endpoint)
+    return msgspec.structs.replace(settings, bus=bus)
+
+
+def ports(settings: Settings) -> list[int]:
+    """What a run listens on; what it may choose is left out."""
+    bus = TCP.fullmatch(settings.bus.endpoint)
+    found = [int(bus["port"])] if bus is not None else []
+    found += [settings.page.port] if settings.page.port else []
+    return [*found, *([address_of(settings.metrics)[1]] if settings.metrics else [])]
+
+
 def _refuse_endpoint(endpoint: str) -> None:
     """What is no TCP endpoint is left to who opens it."""
     where = TCP.fullmatch(endpoint)
@@ -72,7 +90,14 @@ def _refuse_endpoint(endpoint: str) -> None:
         )
 
 
-def _refuse_metrics(address: str) -> None:
+def refuse_held_metrics(address: str) -> None:
+    """Say before anything starts that metrics could not be served there; nowhere when empty.
+
+    Raises:
+        PortHeld: When the address is held, or a library lacks.
+    """
+    if not address:
+        return
     if importlib.util.find_spec("prometheus_client") is None:
         raise PortHeld(
             "the metrics need prometheus_client: pip install 'tritrack[metrics]', or take "

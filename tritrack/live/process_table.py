@@ -20,7 +20,7 @@ from tritrack.faults import code_of, told
 SPAWN: Final = multiprocessing.get_context("spawn")
 """Never fork: Zenoh's threads are not inherited."""
 END_S: Final = 5.0
-"""How long a process may take to close its doors before it is killed."""
+"""What most processes may take to close their doors."""
 ONE_THREAD: Final = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
 
 
@@ -36,6 +36,10 @@ class Part(NamedTuple):
     """The run goes on where it was given up."""
     beats: bool = False
     """While it runs it says so once a second, whatever the others do: if it does not, it hangs."""
+    nests: bool = False
+    """It starts processes of its own."""
+    end_s: float = END_S
+    """How long it may take to close its doors before it is killed."""
 
 
 class Running(NamedTuple):
@@ -107,7 +111,9 @@ def viewer_main(*arguments: Any) -> None:
 def started(part: Part) -> Running:
     """A part's process, begun."""
     ours, theirs = SPAWN.Pipe(duplex=False)
-    process = SPAWN.Process(name=part.name, target=_guarded, args=(part, theirs), daemon=True)
+    process = SPAWN.Process(
+        name=part.name, target=_guarded, args=(part, theirs), daemon=not part.nests
+    )
     with _inherited():
         process.start()
     theirs.close()
@@ -118,7 +124,7 @@ def end(one: Running) -> None:
     """Ask, wait, then kill."""
     if one.process.is_alive():
         one.process.terminate()
-        one.process.join(END_S)
+        one.process.join(one.part.end_s)
     if one.process.is_alive():
         one.process.kill()
         one.process.join()

@@ -1,6 +1,6 @@
 """The figures of a run as Prometheus reads them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import accumulate
 from typing import Final
 
@@ -11,8 +11,7 @@ from prometheus_client.core import (
     Metric,
 )
 
-from common.bus.control_messages import Pulse
-from tritrack.outside.run_figures import BUCKETS_S, Latency, PartFigures, RunFigures
+from tritrack.outside.run_figures import BUCKETS_S, PartFigures, RunFigures
 
 COUNTS: Final = (
     ("frames", "frames", "Frames that a process worked on."),
@@ -33,101 +32,107 @@ AGREEMENT: Final = (
 """Name of a gauge, its field in an Agreement, by what that is multiplied, what it tells."""
 
 
-def families(figures: RunFigures, room: str, now_s: float) -> Iterator[Metric]:
-    """Every metric of a run.
+def families(rooms: Mapping[str, RunFigures], now_s: float) -> Iterator[Metric]:
+    """Every metric of one run, or of several.
 
     Args:
-        figures: Of the run.
-        room: Its name, a label of each.
+        rooms: The figures of each run by its room's name, which is a label of every sample.
         now_s: By the clock of the figures.
     """
-    yield from _counts(figures.parts, room)
-    yield from _states(figures.parts, room, now_s)
-    yield _latencies(figures.latencies, room)
-    yield from _bodies(figures, room)
+    parts = [(room, name, part) for room, own in rooms.items() for name, part in own.parts.items()]
+    yield from _counts(parts)
+    yield from _states(parts, now_s)
+    yield _latencies(rooms)
+    yield from _bodies(rooms)
 
 
-def _counts(parts: Mapping[str, PartFigures], room: str) -> Iterator[Metric]:
-    pulses = _pulses(parts)
+Parts = Sequence[tuple[str, str, PartFigures]]
+"""Each process with its room's name and its own."""
+
+
+def _counts(parts: Parts) -> Iterator[Metric]:
+    pulses = [(room, name, part.pulse) for room, name, part in parts if part.pulse is not None]
     for name, field, meaning in COUNTS:
         family = CounterMetricFamily(f"tritrack_{name}", meaning, labels=("room", "part"))
-        for part, pulse in pulses.items():
-            family.add_metric((room, part), getattr(pulse, field))
+        for *labels, pulse in pulses:
+            family.add_metric(labels, getattr(pulse, field))
         yield family
     rejected = CounterMetricFamily(
         "tritrack_rejected_messages",
         "Messages that no process of the run would say.",
         labels=("room", "part", "cause"),
     )
-    for part, pulse in pulses.items():
+    for *labels, pulse in pulses:
         for cause in CAUSES:
-            rejected.add_metric((room, part, cause), getattr(pulse, cause))
+            rejected.add_metric((*labels, cause), getattr(pulse, cause))
     yield rejected
 
 
-def _states(parts: Mapping[str, PartFigures], room: str, now_s: float) -> Iterator[Metric]:
-    labels = ("room", "part")
-    up = GaugeMetricFamily("tritrack_up", "1 while a process has its place.", labels=labels)
+def _states(parts: Parts, now_s: float) -> Iterator[Metric]:
+    names = ("room", "part")
+    up = GaugeMetricFamily("tritrack_up", "1 while a process has its place.", labels=names)
     restarts = CounterMetricFamily(
-        "tritrack_restarts", "New processes in the place of one that died.", labels=labels
+        "tritrack_restarts", "New processes in the place of one that died.", labels=names
     )
     age = GaugeMetricFamily(
-        "tritrack_message_age_seconds", "Since a process said anything.", labels=labels
+        "tritrack_message_age_seconds", "Since a process said anything.", labels=names
     )
     memory = GaugeMetricFamily(
-        "tritrack_resident_memory_bytes", "Memory of a process.", labels=labels
+        "tritrack_resident_memory_bytes", "Memory of a process.", labels=names
     )
     recent = GaugeMetricFamily(
         "tritrack_recent_latency_seconds",
         "From capture to the end of a process's work, over its last half minute.",
-        labels=(*labels, "quantile"),
+        labels=(*names, "quantile"),
     )
-    for name, part in parts.items():
-        up.add_metric((room, name), part.there)
-        restarts.add_metric((room, name), part.restarts)
+    for *labels, part in parts:
+        up.add_metric(labels, part.there)
+        restarts.add_metric(labels, part.restarts)
         if part.heard_s is not None:
-            age.add_metric((room, name), now_s - part.heard_s)
-    for name, pulse in _pulses(parts).items():
-        memory.add_metric((room, name), pulse.memory_mb * 1e6)
-        recent.add_metric((room, name, "0.5"), pulse.latency_p50_ms / 1000.0)
-        recent.add_metric((room, name, "0.99"), pulse.latency_p99_ms / 1000.0)
+            age.add_metric(labels, now_s - part.heard_s)
+        if part.pulse is not None:
+            memory.add_metric(labels, part.pulse.memory_mb * 1e6)
+            recent.add_metric((*labels, "0.5"), part.pulse.latency_p50_ms / 1000.0)
+            recent.add_metric((*labels, "0.99"), part.pulse.latency_p99_ms / 1000.0)
     yield from (up, restarts, age, memory, recent)
 
 
-def _latencies(latencies: Mapping[str, Latency], room: str) -> Metric:
+def _latencies(rooms: Mapping[str, RunFigures]) -> Metric:
     family = HistogramMetricFamily(
         "tritrack_latency_seconds",
         "From capture until a body (integrator) or a posture (recognizer) is heard.",
         labels=("room", "part"),
     )
     ends = [*(str(end_s) for end_s in BUCKETS_S), "+Inf"]
-    for part, latency in latencies.items():
-        buckets = list(zip(ends, accumulate(latency.counts), strict=True))
-        family.add_metric((room, part), buckets, latency.sum_s)
+    for room, figures in rooms.items():
+        for part, latency in figures.latencies.items():
+            buckets = list(zip(ends, accumulate(latency.counts), strict=True))
+            family.add_metric((room, part), buckets, latency.sum_s)
     return family
 
 
-def _bodies(figures: RunFigures, room: str) -> Iterator[Metric]:
+def _bodies(rooms: Mapping[str, RunFigures]) -> Iterator[Metric]:
     bodies = CounterMetricFamily(
         "tritrack_bodies", "Bodies by status; tracking: believed.", labels=("room", "status")
     )
-    for status, count in figures.bodies.items():
-        bodies.add_metric((room, status), count)
-    yield bodies
-    agreement = figures.body.agreement if figures.body is not None else None
-    if agreement is not None:
-        for name, field, scale, meaning in AGREEMENT:
-            yield _gauge(name, meaning, room, getattr(agreement, field) * scale)
-    if figures.cameras is not None:
-        meaning = "By how much the times of view 2 are set back."
-        yield _gauge("view_offset_seconds", meaning, room, figures.cameras.late_s)
-
-
-def _gauge(name: str, meaning: str, room: str, value: float) -> Metric:
-    family = GaugeMetricFamily(f"tritrack_{name}", meaning, labels=("room",))
-    family.add_metric((room,), value)
-    return family
-
-
-def _pulses(parts: Mapping[str, PartFigures]) -> dict[str, Pulse]:
-    return {name: part.pulse for name, part in parts.items() if part.pulse is not None}
+    offset = GaugeMetricFamily(
+        "tritrack_view_offset_seconds",
+        "By how much the times of view 2 are set back.",
+        labels=("room",),
+    )
+    for room, figures in rooms.items():
+        for status, count in figures.bodies.items():
+            bodies.add_metric((room, status), count)
+        if figures.cameras is not None:
+            offset.add_metric((room,), figures.cameras.late_s)
+    yield from (bodies, offset)
+    agreements = {
+        room: figures.body.agreement
+        for room, figures in rooms.items()
+        if figures.body is not None and figures.body.agreement is not None
+    }
+    for name, field, scale, meaning in AGREEMENT:
+        family = GaugeMetricFamily(f"tritrack_{name}", meaning, labels=("room",))
+        for room, agreement in agreements.items():
+            family.add_metric((room,), getattr(agreement, field) * scale)
+        yield family

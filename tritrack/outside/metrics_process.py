@@ -51,7 +51,7 @@ class Desk:
 
     def metrics(self) -> Iterable[Metric]:
         """All figures."""
-        return families(self._figures, self._room, time.monotonic())
+        return families({self._room: self._figures}, time.monotonic())
 
     def health(self) -> tuple[bool, Sequence[str]]:
         """Whether the run is well, and what is to be said of that."""
