@@ -29,10 +29,11 @@ CHANGED_S: Final = 1.0
 class House:
     """The rooms that are served, by their names."""
 
-    def __init__(self, say: Callable[[str], None]) -> None:
-        """None yet; `say` is given each piece of news."""
+    def __init__(self, say: Callable[[str], None], lament: Callable[[str], None]) -> None:
+        """None yet; each piece of news is said, what went wrong is lamented."""
         self._rooms: dict[str, Room] = {}
-        self._say = say
+        self._states: dict[str, str] = {}
+        self._say, self._lament = say, lament
 
     @property
     def pulses(self) -> dict[str, Pulse]:
@@ -57,7 +58,8 @@ class House:
         for room in self._rooms.values():
             told = room.look(time.monotonic())
             if told:
-                self._say(told)
+                self._lament(told)
+            self._tell_state(room)
 
     def end(self) -> None:
         """End all, at once."""
@@ -76,11 +78,19 @@ class House:
         figures = {name: room.figures for name, room in list(self._rooms.items())}
         return families(figures, time.monotonic())
 
+    def _tell_state(self, room: Room) -> None:
+        """Say how a room is, where that is another state than before."""
+        name = room.site.name
+        if room.pulse is not None and self._states.get(name) != room.pulse.state:
+            self._states[name] = room.pulse.state
+            self._say(room.status.line)
+
     def _end(self, rooms: Sequence[Room]) -> None:
         for room in rooms:
             room.ask()
         for room in rooms:
             room.end()
+            self._states.pop(room.site.name, None)
             self._say(f"{room.site.name}: stopped; its run is in {room.site.out}")
 
 
@@ -99,7 +109,10 @@ def serve(path: Path, console: Console) -> None:
     for site in sites.sites.values():
         refuse_held_ports(with_free_endpoint(site.settings))
     with _signals() as (stop, anew), LiveDisplay(console=console, transient=True) as display:
-        house = House(lambda told: warn(console, told))
+        house = House(
+            lambda told: console.print(told, markup=False, highlight=False, soft_wrap=True),
+            lambda told: warn(console, told),
+        )
         seen, look_s = _state_of(sites), 0.0
         try:
             house.become(sites.sites)
