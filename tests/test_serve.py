@@ -90,6 +90,11 @@ class Service:
                 continue
         return found
 
+    def frames(self, name: str) -> float:
+        """Bodies of a site so far."""
+        found = read(asked(self.address, "/metrics")[1])
+        return found.value("tritrack_frames_total", room=name)
+
     def all_of(self, own: psutil.Process, name: str) -> set[int]:
         """The same, when the last of them is there: a supervisor and four parts."""
         self.until(f"all of {name}", lambda: len(self.pids_of(own, name)) == 5)
@@ -138,6 +143,7 @@ def test_a_site_that_is_killed_is_started_again_and_the_other_goes_on(service: S
     with service.running() as own:
         service.until_well("hall", "lobby")
         hall, lobby = (service.all_of(own, name) for name in ("hall", "lobby"))
+        service.until("hall to have measured something", lambda: service.frames("hall") > 10)
         (supervisor,) = hall & {one.pid for one in own.children()}
         os.kill(supervisor, signal.SIGKILL)
         service.until("the loss to be told", lambda: service.health()[0] == 503)

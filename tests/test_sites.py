@@ -99,6 +99,11 @@ def test_what_would_listen_twice_on_a_port_is_refused_before_anything_starts(
     assert "endpoint = 'auto'" in said
 
 
+def test_the_sites_that_are_shipped_load() -> None:
+    found = load_sites(Path(__file__).parents[1] / "configs" / "sites.toml")
+    assert list(found.sites) == ["hall", "lobby"]
+
+
 def test_endpoints_that_are_left_open_never_clash(tmp_path: Path) -> None:
     assert len(load_sites(written(tmp_path, site("hall") + site("lobby"))).sites) == 2
 
