@@ -27,32 +27,32 @@ from tritrack.live.session import live
 
 pytestmark = pytest.mark.slow
 
-PATIENCE_S = 120.0
+PATIENCE_S = 180.0
 PARTS = {"integrator", "recognizer", "viewer 1", "viewer 2", "metrics"}
 
 
 class Outsider(threading.Thread):
     """Asks a run by HTTP, does it harm, and ends it."""
 
-    def __init__(self, address: str, stop: threading.Event) -> None:
+    def __init__(self, address: str, victim: str, stop: threading.Event) -> None:
         super().__init__()
         self.seen: Samples | None = None
         self.sick = self.after = ""
         self.failure: BaseException | None = None
-        self._address, self._over = address, stop
+        self._address, self._victim, self._over = address, victim, stop
 
     def run(self) -> None:
         try:
             self._until("well", lambda: self._health()[0] == 200 and self._bodies() > 20)
             (pid,) = (
-                one.pid for one in multiprocessing.active_children() if one.name == "viewer 2"
+                one.pid for one in multiprocessing.active_children() if one.name == self._victim
             )
             assert pid is not None
             os.kill(pid, signal.SIGKILL)
             self._until("sick", lambda: self._health()[0] == 503)
             self.sick = self._health()[1]
             self._until("well again", lambda: self._health()[0] == 200)
-            self._until("counted", lambda: self._of_viewer_2() == 1)
+            self._until("counted", lambda: self._restarts() >= 1)
             self.seen = self._samples()
         except BaseException as error:
             self.failure = error
@@ -77,13 +77,15 @@ class Outsider(threading.Thread):
     def _bodies(self) -> float:
         return sum(self._samples().by("status", "tritrack_bodies_total").values())
 
-    def _of_viewer_2(self) -> float:
-        return self._samples().value("tritrack_restarts_total", part="viewer 2")
+    def _restarts(self) -> float:
+        return self._samples().value("tritrack_restarts_total", part=self._victim)
 
 
-def test_a_killed_viewer_is_named_and_all_is_well_when_it_is_back(
-    clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("victim", ["viewer 2", "integrator"])
+def test_who_was_killed_is_named_and_all_is_well_when_it_is_back(
+    clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, victim: str
 ) -> None:
+    """The integrator is where all meet: with it everybody is gone, and found again."""
     folder = copied(clip, tmp_path / "clip")
     refilmed(folder, lambda film: film + 14 * (film[:29:-1] + film[29:]))
     edit_json(folder / "meta.json", lambda meta: meta.update(fps=5.0))
@@ -92,14 +94,13 @@ def test_a_killed_viewer_is_named_and_all_is_well_when_it_is_back(
         metrics=free_address(),
     )
     stop = threading.Event()
-    outsider = Outsider(settings.metrics, stop)
+    outsider = Outsider(settings.metrics, victim, stop)
     monkeypatch.setattr(session, "_stopped_by_signals", lambda: nullcontext(stop))
     outsider.start()
     facts = live(settings, tmp_path / "out", Console(quiet=True))
     outsider.join()
     assert outsider.failure is None, outsider.failure
-    assert "viewer 2: it " in outsider.sick
-    assert "viewer 1" not in outsider.sick
+    assert f"{victim}: it " in outsider.sick
     assert set(facts["processes"]) == PARTS
     assert outsider.seen is not None
     tells_the_run(outsider.seen)
@@ -112,10 +113,10 @@ def tells_the_run(seen: Samples) -> None:
     assert {labels["room"] for _, labels, _ in seen.samples} == {"hall"}
     frames = seen.by("part", "tritrack_frames_total")
     assert set(frames) == PARTS
-    assert frames["viewer 1"] > 20
     assert all(mb > 20e6 for mb in seen.by("part", "tritrack_resident_memory_bytes").values())
     assert all(age < 5.0 for age in seen.by("part", "tritrack_message_age_seconds").values())
     bodies = seen.by("status", "tritrack_bodies_total")
+    assert sum(bodies.values()) > 20
     for part in ("integrator", "recognizer"):
         counts = seen.by("le", "tritrack_latency_seconds_bucket", part=part)
         assert counts["+Inf"] >= counts["0.1"] >= 0
