@@ -24,6 +24,7 @@ from tritrack.commands.live_commands import (
     demo,
     integrate,
     live,
+    metrics,
     recognize,
     serve,
     view,
@@ -98,7 +99,7 @@ def bench(
 
 
 COMMANDS: Final = (
-    *(demo, live, serve, view, integrate, recognize, animate, bridge),
+    *(demo, live, serve, view, integrate, recognize, animate, metrics, bridge),
     *(track, synth, train, teach, single, export, replay, retouch),
     *(doctor, bench),
 )

@@ -109,6 +109,23 @@ def recognize(settings_file: ConfigPath) -> None:
     recognizer_main(settings, clip.every / clip.views[0].fps)
 
 
+def metrics(settings_file: ConfigPath) -> None:
+    """Serve figures and health alone, on the integrator's host: /metrics and /healthz.
+
+    Example: tritrack metrics configs/live.toml
+    """
+    from tritrack.live.free_ports import refuse_held_metrics
+    from tritrack.live.process_table import names_of
+
+    settings = live_settings(settings_file)
+    if not settings.metrics:
+        raise config.SettingsError(f"{settings_file}: set metrics = '127.0.0.1:9464', say")
+    refuse_held_metrics(settings.metrics)
+    from tritrack.outside.metrics_process import main as metrics_main
+
+    metrics_main(settings, names_of(two_camera_clip(settings)))
+
+
 def animate(settings_file: ConfigPath) -> None:
     """Run the live page alone.
 

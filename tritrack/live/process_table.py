@@ -54,18 +54,23 @@ class Running(NamedTuple):
 def live_parts(settings: Settings, clip: Clip, context: ProcessContext) -> list[Part]:
     """The table of a live run: who listens comes before who speaks (P2)."""
     period_s = clip.every / clip.views[0].fps
-    viewers = {f"viewer {view.number}": view.number for view in clip.views}
     parts = [
         Part("integrator", integrator_main, (settings, clip, context), beats=True),
         Part("recognizer", recognizer_main, (settings, period_s, context)),
     ]
     if settings.metrics:
-        needed = (*(part.name for part in parts), *viewers)
-        parts.append(Part("metrics", metrics_main, (settings, needed, context), spare=True))
-    for name, number in viewers.items():
-        arguments = (settings, number, context)
-        parts.append(Part(name, viewer_main, arguments, leads=True, beats=True))
+        arguments = (settings, names_of(clip), context)
+        parts.append(Part("metrics", metrics_main, arguments, spare=True))
+    for view in clip.views:
+        seen_by = (settings, view.number, context)
+        name = f"viewer {view.number}"
+        parts.append(Part(name, viewer_main, seen_by, leads=True, beats=True))
     return parts
+
+
+def names_of(clip: Clip) -> tuple[str, ...]:
+    """The processes that a run cannot do without."""
+    return ("integrator", "recognizer", *(f"viewer {view.number}" for view in clip.views))
 
 
 def page_part(settings: Settings, context: ProcessContext, title: str, ending: Connection) -> Part:
