@@ -20,7 +20,8 @@ from rich.console import Console
 from spoiling import copied, edit_json, refilmed
 from test_metrics_server import asked, free_address
 
-from common.config import PageSettings, Settings
+from common.config import PageSettings, Settings, SettingsError
+from tritrack.commands.live_commands import metrics
 from tritrack.live import session
 from tritrack.live.free_ports import free_settings
 from tritrack.live.session import live
@@ -122,3 +123,9 @@ def tells_the_run(seen: Samples) -> None:
         assert counts["+Inf"] >= counts["0.1"] >= 0
         assert counts["+Inf"] == pytest.approx(sum(bodies.values()), abs=3)
     assert seen.value("tritrack_latency_seconds_sum", part="recognizer") > 0.0
+
+
+def test_settings_without_an_address_have_no_metrics_to_serve(tmp_path: Path) -> None:
+    (tmp_path / "room.toml").write_text("clip = 'walk'")
+    with pytest.raises(SettingsError, match=r"room\.toml: set metrics = "):
+        metrics(tmp_path / "room.toml")
