@@ -120,7 +120,8 @@ class BusSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     endpoint: str = "tcp/127.0.0.1:7447"
     """The integrator's host listens there, all others connect to it. Name another host's address
-    to spread a rig over hosts; nothing outside this machine is heard otherwise."""
+    to spread a rig over hosts; nothing outside this machine is heard otherwise. "auto": a live run
+    takes a free port of this machine, and tells it."""
     session: str = ""
     """A word that all processes of a run say with each message: what comes without it is dropped.
     A live run makes one up; "": whoever speaks in the room is heard."""
@@ -157,6 +158,9 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Take every n-th frame of a recorded clip."""
     fps: float = 0.0
     """Rate at which recorded clips are taken to run, and played; 0: what they say themselves."""
+    metrics: str = ""
+    """HOST:PORT at which a live run answers /metrics (Prometheus) and /healthz; nowhere when
+    empty."""
     pictures: bool = False
     """Publish small pictures for the page; otherwise no picture leaves a viewer."""
     camera_1: CameraSettings | None = None
@@ -177,6 +181,8 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             raise ValueError(f"landmarks must be {', '.join(LANDMARK_SOURCES)} or a folder")
         _within("every", self.every, 1, 1000)
         _within("fps", self.fps, 0.0, 1000.0)
+        if self.metrics:
+            address_of(self.metrics)
 
 
 def load(path: Path) -> Settings:
@@ -204,7 +210,7 @@ def load(path: Path) -> Settings:
         ) from error
     except msgspec.DecodeError as error:
         raise SettingsError(f"{path}: {error}") from error
-    return _with_full_paths(settings, path)
+    return with_full_paths(settings, path)
 
 
 def size_of(text: str) -> tuple[int, int]:
@@ -221,13 +227,30 @@ def size_of(text: str) -> tuple[int, int]:
     return int(width), int(height)
 
 
+def address_of(text: str) -> tuple[str, int]:
+    """Host and port of an address as it is written, `127.0.0.1:9464`.
+
+    Raises:
+        ValueError: When it is none.
+    """
+    host, _, port = text.rpartition(":")
+    if not (host and port.isdecimal() and 0 < int(port) < 65536):
+        raise ValueError(f"metrics must look like 127.0.0.1:9464, got {text!r}")
+    return host, int(port)
+
+
 def working_size(source: tuple[int, int], bound: tuple[int, int]) -> tuple[int, int]:
     """Largest size of the source's shape within the bound; never larger than the source."""
     shrink = min(1.0, bound[0] / source[0], bound[1] / source[1])
     return max(1, round(source[0] * shrink)), max(1, round(source[1] * shrink))
 
 
-def _with_full_paths(settings: Settings, path: Path) -> Settings:
+def with_full_paths(settings: Settings, path: Path) -> Settings:
+    """Settings that stand in a file: relative paths from there, environment variables filled in.
+
+    Raises:
+        SettingsError: When a variable is not set, or the landmarks name no folder.
+    """
     folder = path.parent
 
     def full(name: str) -> str:

@@ -2,11 +2,19 @@
 
 import socket
 
+import msgspec
 import pytest
 
 from animator.page.door import PageError
 from common.config import BusSettings, PageSettings, Settings
-from tritrack.live.free_ports import PortHeld, free_settings, own_session, refuse_held_ports
+from tritrack.live.free_ports import (
+    PortHeld,
+    free_settings,
+    own_session,
+    ports,
+    refuse_held_ports,
+    with_free_endpoint,
+)
 
 
 def test_what_is_held_is_named_with_the_cure() -> None:
@@ -21,6 +29,10 @@ def test_what_is_held_is_named_with_the_cure() -> None:
         page = Settings(bus=free.bus, page=PageSettings(port=port))
         with pytest.raises(PageError, match=f"port {port}"):
             refuse_held_ports(page)
+        pytest.importorskip("prometheus_client", reason="pip install 'tritrack[metrics]'")
+        metrics = Settings(bus=free.bus, page=held.page, metrics=f"127.0.0.1:{port}")
+        with pytest.raises(PortHeld, match=f"metrics on 127.0.0.1:{port}: address already in use"):
+            refuse_held_ports(metrics)
 
 
 def test_what_is_free_or_no_tcp_is_left_alone() -> None:
@@ -33,3 +45,19 @@ def test_each_run_has_a_word_of_its_own_unless_it_was_given_one() -> None:
     assert one.bus.session != other.bus.session
     assert own_session(one) == one
     assert Settings().bus.session == ""
+
+
+def test_an_endpoint_that_is_left_open_is_a_free_port_and_others_stay() -> None:
+    open_ended = Settings(bus=BusSettings(endpoint="auto", session="mine"))
+    one, other = with_free_endpoint(open_ended), with_free_endpoint(open_ended)
+    assert one.bus.endpoint.startswith("tcp/127.0.0.1:")
+    assert one.bus.endpoint != other.bus.endpoint
+    assert one.bus.session == "mine"
+    assert with_free_endpoint(one) == one
+
+
+def test_the_ports_of_a_run_are_those_that_it_does_not_choose() -> None:
+    assert ports(Settings()) == [7447, 8080]
+    chosen = Settings(bus=BusSettings(endpoint="auto"), page=PageSettings(port=0))
+    assert ports(chosen) == []
+    assert ports(msgspec.structs.replace(chosen, metrics="127.0.0.1:9464")) == [9464]

@@ -19,7 +19,7 @@ BELOW = {
 """Which of our packages each may import."""
 HEAVY = (
     *("matplotlib", "sklearn", "hmmlearn", "filterpy", "joblib", "distributed", "dask", "torch"),
-    *("zenoh", "viser", "skimage", "tomlkit"),
+    *("zenoh", "viser", "skimage", "tomlkit", "prometheus_client"),
 )
 """What only some commands need."""
 IDS = [

@@ -18,7 +18,17 @@ import typer
 
 from tritrack.commands.clip_commands import export, replay, retouch, single, synth, track
 from tritrack.commands.command_output import JsonWanted, console, results
-from tritrack.commands.live_commands import animate, bridge, demo, integrate, live, recognize, view
+from tritrack.commands.live_commands import (
+    animate,
+    bridge,
+    demo,
+    integrate,
+    live,
+    metrics,
+    recognize,
+    serve,
+    view,
+)
 from tritrack.commands.model_commands import evaluate_app, teach, train
 from tritrack.commands.rig_commands import calibrate_app
 from tritrack.faults import code_of, told
@@ -89,7 +99,7 @@ def bench(
 
 
 COMMANDS: Final = (
-    *(demo, live, view, integrate, recognize, animate, bridge),
+    *(demo, live, serve, view, integrate, recognize, animate, metrics, bridge),
     *(track, synth, train, teach, single, export, replay, retouch),
     *(doctor, bench),
 )

@@ -56,6 +56,18 @@ def live(
     tell(facts, json_wanted, f"posture: {facts['posture'] or 'none'}; written to {out}")
 
 
+def serve(
+    sites_file: Annotated[Path, typer.Argument(help="The sites (TOML): names and settings.")],
+) -> None:
+    """Serve several rooms, each with its own settings, until stopped. SIGHUP reads the file anew.
+
+    Example: tritrack serve configs/sites.toml
+    """
+    from tritrack.serving.serve import serve as serve_sites
+
+    serve_sites(sites_file, console)
+
+
 def view(
     settings_file: ConfigPath,
     viewer: Annotated[int, typer.Option(min=1, max=2, help="Which camera this process looks at.")],
@@ -95,6 +107,23 @@ def recognize(settings_file: ConfigPath) -> None:
     settings = live_settings(settings_file)
     clip = two_camera_clip(settings)
     recognizer_main(settings, clip.every / clip.views[0].fps)
+
+
+def metrics(settings_file: ConfigPath) -> None:
+    """Serve figures and health alone, on the integrator's host: /metrics and /healthz.
+
+    Example: tritrack metrics configs/live.toml
+    """
+    from tritrack.live.free_ports import refuse_held_metrics
+    from tritrack.live.process_table import names_of
+
+    settings = live_settings(settings_file)
+    if not settings.metrics:
+        raise config.SettingsError(f"{settings_file}: set metrics = '127.0.0.1:9464', say")
+    refuse_held_metrics(settings.metrics)
+    from tritrack.outside.metrics_process import main as metrics_main
+
+    metrics_main(settings, names_of(two_camera_clip(settings)))
 
 
 def animate(settings_file: ConfigPath) -> None:

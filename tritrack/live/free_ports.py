@@ -1,5 +1,6 @@
 """The ports of a run: refused before anything starts where they are held, or found free."""
 
+import importlib.util
 import re
 import secrets
 import socket
@@ -7,10 +8,12 @@ from typing import Final
 
 import msgspec
 
-from common.config import BusSettings, PageSettings, Settings
+from common.config import BusSettings, PageSettings, Settings, address_of
 
 TCP: Final = re.compile(r"tcp/(?P<host>[^/]+):(?P<port>\d+)")
 SESSION_BYTES: Final = 8
+AUTO: Final = "auto"
+"""An endpoint that is left open."""
 
 
 class PortHeld(ValueError):
@@ -18,10 +21,11 @@ class PortHeld(ValueError):
 
 
 def refuse_held_ports(settings: Settings) -> None:
-    """Say before anything starts that the bus or the page could not be opened.
+    """Say before anything starts that the bus, the page or the metrics could not be opened.
 
     Raises:
-        PortHeld: When the endpoint of the bus is held, or the page lacks a library.
+        PortHeld: When the endpoint of the bus or the address of the metrics is held, or the page
+            or the metrics lack a library.
         PageError: When the page's port is.
     """
     _refuse_endpoint(settings.bus.endpoint)
@@ -35,6 +39,7 @@ def refuse_held_ports(settings: Settings) -> None:
                 f"the page needs {error.name}: pip install 'tritrack[page]', or set page.port = 0"
             ) from error
         refuse_port(settings.page.port)
+    refuse_held_metrics(settings.metrics)
 
 
 def own_session(settings: Settings) -> Settings:
@@ -55,22 +60,67 @@ def free_settings(settings: Settings) -> Settings:
     )
 
 
+def with_free_endpoint(settings: Settings) -> Settings:
+    """The same settings with a free port of this machine where they leave it open."""
+    if settings.bus.endpoint != AUTO:
+        return settings
+    endpoint = f"tcp/127.0.0.1:{_free_port()}"
+    bus = msgspec.structs.replace(settings.bus, endpoint=endpoint)
+    return msgspec.structs.replace(settings, bus=bus)
+
+
+def ports(settings: Settings) -> list[int]:
+    """What a run listens on; what it may choose is left out."""
+    bus = TCP.fullmatch(settings.bus.endpoint)
+    found = [int(bus["port"])] if bus is not None else []
+    found += [settings.page.port] if settings.page.port else []
+    return [*found, *([address_of(settings.metrics)[1]] if settings.metrics else [])]
+
+
 def _refuse_endpoint(endpoint: str) -> None:
     """What is no TCP endpoint is left to who opens it."""
     where = TCP.fullmatch(endpoint)
     if where is None:
         return
+    why = _trouble(where["host"].strip("[]"), int(where["port"]))
+    if why:
+        raise PortHeld(
+            f"cannot listen on {endpoint}: {why}; another run may hold it: end that, or set "
+            "another [bus] endpoint"
+        )
+
+
+def refuse_held_metrics(address: str) -> None:
+    """Say before anything starts that metrics could not be served there; nowhere when empty.
+
+    Raises:
+        PortHeld: When the address is held, or a library lacks.
+    """
+    if not address:
+        return
+    if importlib.util.find_spec("prometheus_client") is None:
+        raise PortHeld(
+            "the metrics need prometheus_client: pip install 'tritrack[metrics]', or take "
+            "metrics out of the settings"
+        )
+    why = _trouble(*address_of(address))
+    if why:
+        raise PortHeld(
+            f"cannot serve the metrics on {address}: {why}; another run may hold it: end that, or "
+            "set another metrics = HOST:PORT"
+        )
+
+
+def _trouble(host: str, port: int) -> str:
+    """Why nobody could listen there, or ""."""
     try:
-        found = socket.getaddrinfo(where["host"].strip("[]"), int(where["port"]))
+        found = socket.getaddrinfo(host, port)
         with socket.socket(found[0][0]) as trial:
             trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             trial.bind(found[0][4])
     except OSError as error:
-        why = (error.strerror or str(error)).lower()
-        raise PortHeld(
-            f"cannot listen on {endpoint}: {why}; another run may hold it: end that, or set "
-            "another [bus] endpoint"
-        ) from error
+        return (error.strerror or str(error)).lower()
+    return ""
 
 
 def _free_port() -> int:

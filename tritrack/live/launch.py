@@ -122,7 +122,7 @@ def _look_after(crew: Sequence[Watched], heard: Heard) -> None:
 def _over(crew: Sequence[Watched]) -> bool:
     """Whether every viewer has ended or was given up, or a part that all need was given up."""
     leads = [one for one in crew if one.part.leads]
-    needed = any(one.given_up for one in crew if not one.part.leads)
+    needed = any(one.given_up for one in crew if not (one.part.leads or one.part.spare))
     return needed or all(one.done or one.given_up for one in leads)
 
 

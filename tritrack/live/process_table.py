@@ -20,7 +20,7 @@ from tritrack.faults import code_of, told
 SPAWN: Final = multiprocessing.get_context("spawn")
 """Never fork: Zenoh's threads are not inherited."""
 END_S: Final = 5.0
-"""How long a process may take to close its doors before it is killed."""
+"""What most processes may take to close their doors."""
 ONE_THREAD: Final = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
 
 
@@ -32,8 +32,14 @@ class Part(NamedTuple):
     arguments: tuple[Any, ...]
     leads: bool = False
     """The run is over when all that lead have ended."""
+    spare: bool = False
+    """The run goes on where it was given up."""
     beats: bool = False
     """While it runs it says so once a second, whatever the others do: if it does not, it hangs."""
+    nests: bool = False
+    """It starts processes of its own."""
+    end_s: float = END_S
+    """How long it may take to close its doors before it is killed."""
 
 
 class Running(NamedTuple):
@@ -52,11 +58,19 @@ def live_parts(settings: Settings, clip: Clip, context: ProcessContext) -> list[
         Part("integrator", integrator_main, (settings, clip, context), beats=True),
         Part("recognizer", recognizer_main, (settings, period_s, context)),
     ]
+    if settings.metrics:
+        arguments = (settings, names_of(clip), context)
+        parts.append(Part("metrics", metrics_main, arguments, spare=True))
     for view in clip.views:
-        arguments = (settings, view.number, context)
+        seen_by = (settings, view.number, context)
         name = f"viewer {view.number}"
-        parts.append(Part(name, viewer_main, arguments, leads=True, beats=True))
+        parts.append(Part(name, viewer_main, seen_by, leads=True, beats=True))
     return parts
+
+
+def names_of(clip: Clip) -> tuple[str, ...]:
+    """The processes that a run cannot do without."""
+    return ("integrator", "recognizer", *(f"viewer {view.number}" for view in clip.views))
 
 
 def page_part(settings: Settings, context: ProcessContext, title: str, ending: Connection) -> Part:
@@ -85,6 +99,13 @@ def animator_main(*arguments: Any) -> None:
     main(*arguments)
 
 
+def metrics_main(*arguments: Any) -> None:
+    """The metrics, imported where they are served."""
+    from tritrack.outside.metrics_process import main
+
+    main(*arguments)
+
+
 def viewer_main(*arguments: Any) -> None:
     """A viewer, imported where it runs."""
     from viewer.__main__ import main
@@ -95,7 +116,9 @@ def viewer_main(*arguments: Any) -> None:
 def started(part: Part) -> Running:
     """A part's process, begun."""
     ours, theirs = SPAWN.Pipe(duplex=False)
-    process = SPAWN.Process(name=part.name, target=_guarded, args=(part, theirs), daemon=True)
+    process = SPAWN.Process(
+        name=part.name, target=_guarded, args=(part, theirs), daemon=not part.nests
+    )
     with _inherited():
         process.start()
     theirs.close()
@@ -106,7 +129,7 @@ def end(one: Running) -> None:
     """Ask, wait, then kill."""
     if one.process.is_alive():
         one.process.terminate()
-        one.process.join(END_S)
+        one.process.join(one.part.end_s)
     if one.process.is_alive():
         one.process.kill()
         one.process.join()

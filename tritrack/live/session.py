@@ -4,7 +4,7 @@ import shutil
 import signal
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,8 +18,8 @@ from common.bus.process import ProcessContext, logged
 from common.config import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip, both_cameras
-from tritrack.live.free_ports import own_session, refuse_held_ports
-from tritrack.live.launch import nothing_heard, run
+from tritrack.live.free_ports import own_session, refuse_held_ports, with_free_endpoint
+from tritrack.live.launch import Heard, nothing_heard, run
 from tritrack.live.page_desk import SAVED, PageDesk
 from tritrack.live.process_table import live_parts
 from tritrack.live.run_facts import facts_of, facts_of_clip
@@ -41,7 +41,12 @@ class LiveRefused(ValueError):
 
 
 def live(
-    settings: Settings, out: Path, console: Console, name: str = "", record: bool = False
+    settings: Settings,
+    out: Path,
+    console: Console,
+    name: str = "",
+    record: bool = False,
+    tell: Callable[[Heard], None] | None = None,
 ) -> dict[str, Any]:
     """Run the processes on a clip or on cameras until it ends or Ctrl-C; write the run folder.
 
@@ -51,6 +56,7 @@ def live(
         console: Shows the live table, each warning once, and the page's address.
         name: Of the run; the clip's when empty.
         record: Keep what the viewers report, so that it can be replayed.
+        tell: Called ten times a second too, with what was heard so far.
 
     Returns:
         What the run's summary tells.
@@ -64,7 +70,10 @@ def live(
     refuse_mode(settings)
     if record:
         refuse_without_library()
+    left_open, settings = settings, with_free_endpoint(settings)
     refuse_held_ports(settings)
+    if settings != left_open:
+        console.print(f"the bus: {settings.bus.endpoint}", highlight=False)
     settings = own_session(settings)
     new = not out.exists()
     began, heard = time.monotonic(), nothing_heard()
@@ -92,7 +101,13 @@ def live(
                     logged("supervisor", log),
                     _kept(out, clip, settings, record) as keep,
                 ):
-                    run(parts, settings, stop, show, heard._replace(keep=keep), desk)
+
+                    def look(heard: Heard) -> None:
+                        show(heard)
+                        if tell is not None:
+                            tell(heard)
+
+                    run(parts, settings, stop, look, heard._replace(keep=keep), desk)
         finally:
             told = facts()
             write_run(out, heard.bodies.all(), settings, told)

@@ -91,9 +91,15 @@ class Watched:
         if self.given_up or (code and not (self._asked and code == -signal.SIGTERM)):
             raise self._failure(self.given_up or last_words(self.running))
 
+    def ask(self) -> None:
+        """Ask its process to end."""
+        if self.running.process.is_alive():
+            self._asked = True
+            self.running.process.terminate()
+
     def end(self) -> None:
         """End its process and start no other."""
-        self._asked = self.running.process.is_alive()
+        self.ask()
         end(self.running)
 
     def _listen(self, since_s: float, pulse: Pulse | None) -> None:

@@ -1,0 +1,167 @@
+"""Several rooms served as a user does: real processes, a file that changes, signals."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+
+pytest.importorskip("prometheus_client", reason="pip install 'tritrack[metrics]'")
+
+from metrics_reader import read
+from spoiling import copied, edit_json, refilmed
+from test_metrics_server import asked, free_address
+
+pytestmark = pytest.mark.slow
+
+ROOT = Path(__file__).parents[1]
+PATIENCE_S = 180.0
+SOON_S = 20.0
+SITE = """
+[[site]]
+name = "{name}"
+[site.settings]
+clip = "clip"
+size = "{size}"
+page = {{ port = 0 }}
+bus = {{ endpoint = "auto" }}
+"""
+
+
+class Service:
+    """`tritrack serve`, and what is seen of it from outside."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.address = folder, free_address()
+
+    def write(self, **sizes: str) -> None:
+        """Sites by their names, with the sizes of their pictures; at once, as editors do."""
+        text = "".join(SITE.format(name=name, size=size) for name, size in sizes.items())
+        new = self.folder / "new.toml"
+        new.write_text(f'metrics = "{self.address}"\n{text}')
+        new.rename(self.folder / "sites.toml")
+
+    @contextmanager
+    def running(self) -> Iterator[psutil.Process]:
+        command = [sys.executable, "-m", "tritrack", "serve", str(self.folder / "sites.toml")]
+        own = subprocess.Popen(command, cwd=ROOT)
+        try:
+            yield psutil.Process(own.pid)
+        finally:
+            own.kill()
+            own.wait()
+
+    def health(self) -> tuple[int, str]:
+        try:
+            return asked(self.address, "/healthz")
+        except OSError:
+            return 0, "nobody answers"
+
+    def until(self, what: str, seen: Callable[[], bool]) -> None:
+        until_s = time.monotonic() + PATIENCE_S
+        while not seen():
+            assert time.monotonic() < until_s, f"waited in vain for {what}: {self.health()}"
+            time.sleep(0.1)
+
+    def until_well(self, *names: str) -> None:
+        def are_well() -> bool:
+            code, text = self.health()
+            states = {line.split(",")[0] for line in text.splitlines()}
+            return code == 200 and states == {f"{name}: running" for name in names}
+
+        self.until(f"{names} to be well", are_well)
+
+    def pids_of(self, own: psutil.Process, name: str) -> set[int]:
+        """The processes that write the log of a site."""
+        log = str(self.folder / "runs" / name / "log.txt")
+        found = set()
+        for one in own.children(recursive=True):
+            try:
+                if log in {file.path for file in one.open_files()}:
+                    found.add(one.pid)
+            except psutil.Error:
+                continue
+        return found
+
+    def frames(self, name: str) -> float:
+        """Bodies of a site so far."""
+        found = read(asked(self.address, "/metrics")[1])
+        return found.value("tritrack_frames_total", room=name)
+
+    def all_of(self, own: psutil.Process, name: str) -> set[int]:
+        """The same, when the last of them is there: a supervisor and four parts."""
+        self.until(f"all of {name}", lambda: len(self.pids_of(own, name)) == 5)
+        return self.pids_of(own, name)
+
+
+@pytest.fixture
+def service(clip: Path, tmp_path: Path) -> Service:
+    folder = copied(clip, tmp_path / "clip")
+    refilmed(folder, lambda film: film + 14 * (film[:29:-1] + film[29:]))
+    edit_json(folder / "meta.json", lambda meta: meta.update(fps=5.0))
+    return Service(tmp_path)
+
+
+def test_a_changed_file_changes_what_it_must_and_leaves_the_others_alone(service: Service) -> None:
+    service.write(hall="160x120", lobby="160x120", stage="160x120")
+    with service.running() as own:
+        service.until_well("hall", "lobby", "stage")
+        before = {name: service.all_of(own, name) for name in ("hall", "lobby", "stage")}
+
+        service.write(hall="160x120", lobby="128x96", annex="160x120")
+        service.until("stage to be gone", lambda: "stage" not in service.health()[1])
+        service.until_well("hall", "lobby", "annex")
+        assert service.pids_of(own, "hall") == before["hall"]
+        assert not service.pids_of(own, "lobby") & before["lobby"]
+        assert not any(psutil.pid_exists(pid) for pid in before["stage"])
+
+        (service.folder / "sites.toml").write_text("[[site]]\nname = 3")
+        own.send_signal(signal.SIGHUP)
+        time.sleep(3.0)
+        service.until_well("hall", "lobby", "annex")
+        assert service.pids_of(own, "hall") == before["hall"]
+
+        everybody = own.children(recursive=True)
+        own.send_signal(signal.SIGTERM)
+        assert own.wait(SOON_S) == 0
+        assert psutil.wait_procs(everybody, timeout=2.0)[1] == [], "somebody was left behind"
+    for name in ("hall", "lobby", "annex", "stage"):
+        assert (service.folder / "runs" / name / "summary.json").is_file(), name
+    with np.load(service.folder / "runs" / "hall" / "poses.npz") as found:
+        assert len(found["frame"]) > 0
+
+
+def test_a_site_that_is_killed_is_started_again_and_the_other_goes_on(service: Service) -> None:
+    service.write(hall="160x120", lobby="160x120")
+    with service.running() as own:
+        service.until_well("hall", "lobby")
+        hall, lobby = (service.all_of(own, name) for name in ("hall", "lobby"))
+        service.until("hall to have measured something", lambda: service.frames("hall") > 10)
+        (supervisor,) = hall & {one.pid for one in own.children()}
+        os.kill(supervisor, signal.SIGKILL)
+        service.until("the loss to be told", lambda: service.health()[0] == 503)
+        assert "hall: " in service.health()[1]
+        service.until_well("hall", "lobby")
+        assert not service.pids_of(own, "hall") & hall
+        assert service.pids_of(own, "lobby") == lobby
+        found = read(asked(service.address, "/metrics")[1])
+        assert found.by("room", "tritrack_restarts_total") == {"hall": 1.0, "lobby": 0.0}
+        own.send_signal(signal.SIGTERM)
+        assert own.wait(SOON_S) == 0
+    assert list((service.folder / "runs" / "hall" / "saved").glob("cut_short_*"))
+
+
+def test_nothing_outlives_a_service_that_is_killed(service: Service) -> None:
+    service.write(hall="160x120")
+    with service.running() as own:
+        service.until_well("hall")
+        everybody = own.children(recursive=True)
+        own.kill()
+        assert psutil.wait_procs(everybody, timeout=5.0)[1] == []

@@ -1,0 +1,45 @@
+"""How a site is doing: many pulses as one, and one line."""
+
+from common.bus.control_messages import Pulse
+from tritrack.serving.site_status import site_pulse, status_of
+
+HUB = Pulse(
+    process="integrator",
+    state="running",
+    frames=450,
+    fps=15.0,
+    latency_p99_ms=21.4,
+    memory_mb=200.0,
+    deadline_misses=1,
+)
+VIEWER = Pulse(process="viewer 2", state="running", deadline_misses=2, memory_mb=150.0, foreign=3)
+
+
+def test_a_site_is_the_sum_of_its_processes_at_the_integrators_pace() -> None:
+    pulse = site_pulse("hall", {"integrator": HUB, "viewer 2": VIEWER}, 60.0)
+    assert (pulse.process, pulse.state, pulse.frames, pulse.fps) == ("hall", "running", 450, 15.0)
+    assert (pulse.deadline_misses, pulse.foreign, pulse.memory_mb) == (3, 3, 410.0)
+    assert status_of("hall", pulse, "") == (
+        True,
+        "hall: running, 15.0 frames a second, p99 21 ms, 3 missed, 410 MB",
+    )
+
+
+def test_a_site_without_one_of_its_processes_is_not_well() -> None:
+    dead = Pulse(process="viewer 2", state="restarting")
+    status = status_of("hall", site_pulse("hall", {"integrator": HUB, "viewer 2": dead}, 0.0), "")
+    assert not status.well
+    assert status.line.startswith("hall: running (viewer 2: restarting), 15.0 frames")
+
+
+def test_a_site_whose_integrator_is_started_again_still_works() -> None:
+    """Else what supervises it would take it for one that never came up."""
+    again = Pulse(process="integrator", state="restarting", frames=450)
+    assert site_pulse("hall", {"integrator": again}, 0.0).state == "running"
+
+
+def test_a_site_that_is_down_says_why_and_one_that_was_not_heard_starts() -> None:
+    assert status_of("hall", None, "no clip") == (False, "hall: down: no clip")
+    assert status_of("hall", None, "") == (False, "hall: starting")
+    assert site_pulse("hall", {}, 0.0).state == "starting"
+    assert not status_of("hall", site_pulse("hall", {}, 0.0), "").well

@@ -1,0 +1,1 @@
+"""What is seen of a run from outside: figures for Prometheus, and whether it is well."""

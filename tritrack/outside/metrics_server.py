@@ -1,0 +1,77 @@
+"""Figures and health by HTTP, for Prometheus and for whoever watches over services."""
+
+import threading
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from socketserver import ThreadingMixIn
+from typing import Any, Final
+from wsgiref.simple_server import WSGIRequestHandler, WSGIServer, make_server
+
+from prometheus_client import CollectorRegistry, make_wsgi_app
+from prometheus_client.core import Metric
+from prometheus_client.registry import Collector
+
+from common.config import address_of
+
+SLOW_S: Final = 5.0
+"""Who takes longer to send a request is hung up on."""
+TEXT: Final = ("Content-Type", "text/plain; charset=utf-8")
+
+Health = Callable[[], tuple[bool, Sequence[str]]]
+"""Whether all is well, and lines that say what is or is not."""
+
+
+@contextmanager
+def served(address: str, metrics: Callable[[], Iterable[Metric]], health: Health) -> Iterator[None]:
+    """Answer `/metrics` and `/healthz` meanwhile, from a thread of their own.
+
+    Args:
+        address: `HOST:PORT` to listen on.
+        metrics: Gives all figures; asked once a scrape.
+        health: Gives the answer of `/healthz`: 200 where all is well, else 503.
+    """
+    registry = CollectorRegistry()
+    registry.register(_Figures(metrics))
+    to_metrics = make_wsgi_app(registry)
+
+    def answer(request: dict[str, Any], start: Callable[..., Any]) -> Iterable[bytes]:
+        if request["PATH_INFO"] == "/metrics":
+            return to_metrics(request, start)
+        if request["PATH_INFO"] != "/healthz":
+            start("404 Not Found", [TEXT])
+            return [b"there are /metrics and /healthz\n"]
+        well, lines = health()
+        start("200 OK" if well else "503 Service Unavailable", [TEXT])
+        return ["".join(f"{line}\n" for line in lines).encode()]
+
+    host, port = address_of(address)
+    with make_server(host, port, answer, _Server, _Silent) as server:
+        thread = threading.Thread(target=server.serve_forever, name="metrics", daemon=True)
+        thread.start()
+        try:
+            yield
+        finally:
+            server.shutdown()
+            thread.join()
+
+
+class _Figures(Collector):
+    """What the library asks for figures."""
+
+    def __init__(self, metrics: Callable[[], Iterable[Metric]]) -> None:
+        self._metrics = metrics
+
+    def collect(self) -> Iterable[Metric]:
+        """Called once a scrape."""
+        return self._metrics()
+
+
+class _Server(ThreadingMixIn, WSGIServer):
+    daemon_threads = True
+
+
+class _Silent(WSGIRequestHandler):
+    timeout = SLOW_S
+
+    def log_message(self, format: str, *_: Any) -> None:
+        """Nobody reads that a page was asked for."""

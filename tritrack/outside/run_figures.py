@@ -1,0 +1,106 @@
+"""The figures of a run, as they follow from what its processes say."""
+
+from bisect import bisect_left
+from collections.abc import Mapping
+from typing import Final, NamedTuple
+
+from common.bus.control_messages import Cameras, Pulse
+from common.bus.inbox import Alive
+from common.bus.messages import Body, Posture
+
+BUCKETS_S: Final = (
+    *(0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05),
+    *(0.0667, 0.1, 0.15, 0.25, 0.5, 1.0, 2.5),
+)
+"""Upper ends of the classes of latency; 66.7 ms is a frame at the paper's rate (P1)."""
+
+Told = Body | Posture | Pulse | Cameras | Alive
+"""What the figures are made of."""
+
+
+class PartFigures(NamedTuple):
+    """What is known of one process."""
+
+    pulse: Pulse | None = None
+    """Its newest."""
+    heard_s: float | None = None
+    """When it said anything last."""
+    there: bool = False
+    """It has its place on the bus; False before, and since it died or its link was cut."""
+    restarts: int = 0
+    """How often another one took its place."""
+
+
+class Latency(NamedTuple):
+    """Times from capture until a message was heard, counted in classes."""
+
+    counts: tuple[int, ...] = (0,) * (len(BUCKETS_S) + 1)
+    """Of each of BUCKETS_S, the longer ones last."""
+    sum_s: float = 0.0
+
+
+class RunFigures(NamedTuple):
+    """What is known of a run."""
+
+    parts: Mapping[str, PartFigures] = {}
+    bodies: Mapping[str, int] = {}
+    """How many of each status."""
+    body: Body | None = None
+    """The newest."""
+    body_s: float | None = None
+    """When it was heard."""
+    latencies: Mapping[str, Latency] = {}
+    """Of bodies by "integrator", of postures by "recognizer"."""
+    cameras: Cameras | None = None
+
+
+def step(figures: RunFigures, told: Told, now_s: float) -> RunFigures:
+    """Take in one message.
+
+    Args:
+        figures: So far.
+        told: What was said, or who came or went.
+        now_s: When it was heard, by the room's clock: the integrator host's monotonic clock.
+    """
+    match told:
+        case Body():
+            bodies = {**figures.bodies, told.status: figures.bodies.get(told.status, 0) + 1}
+            heard = _spoke(figures, "integrator", told.clock_s, now_s)
+            return heard._replace(bodies=bodies, body=told, body_s=now_s)
+        case Posture():
+            return _spoke(figures, "recognizer", told.clock_s, now_s)
+        case Pulse():
+            return _with_part(figures, told.process, _beaten(figures, told, now_s))
+        case Cameras():
+            return figures._replace(cameras=told)
+        case Alive():
+            part = figures.parts.get(told.name, PartFigures())
+            return _with_part(figures, told.name, part._replace(there=told.alive))
+
+
+def _beaten(figures: RunFigures, pulse: Pulse, now_s: float) -> PartFigures:
+    """A process whose counts begin anew is another one."""
+    part = figures.parts.get(pulse.process, PartFigures())
+    last = part.pulse
+    anew = last is not None and (
+        pulse.frames < last.frames or (last.state == "running" and pulse.state in BEGINNING)
+    )
+    return part._replace(pulse=pulse, heard_s=now_s, restarts=part.restarts + anew)
+
+
+BEGINNING: Final = ("starting", "ready")
+
+
+def _spoke(figures: RunFigures, name: str, clock_s: float, now_s: float) -> RunFigures:
+    """A process said something of the frame of that moment."""
+    took_s = max(now_s - clock_s, 0.0)
+    before = figures.latencies.get(name, Latency())
+    place = bisect_left(BUCKETS_S, took_s)
+    counts = (*before.counts[:place], before.counts[place] + 1, *before.counts[place + 1 :])
+    latencies = {**figures.latencies, name: Latency(counts, before.sum_s + took_s)}
+    part = figures.parts.get(name, PartFigures())._replace(heard_s=now_s)
+    return _with_part(figures._replace(latencies=latencies), name, part)
+
+
+def _with_part(figures: RunFigures, name: str, part: PartFigures) -> RunFigures:
+    return figures._replace(parts={**figures.parts, name: part})

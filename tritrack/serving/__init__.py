@@ -1,0 +1,1 @@
+"""Several rooms on one machine: sites started, watched over, changed and ended."""

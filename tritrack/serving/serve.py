@@ -1,0 +1,133 @@
+"""Serving sites: started, watched over, changed when their file changes, and ended together."""
+
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from pathlib import Path
+from types import FrameType
+from typing import Final
+
+from rich.console import Console
+from rich.live import Live as LiveDisplay
+
+from common.config import SettingsError
+from tritrack.live.free_ports import refuse_held_metrics, refuse_held_ports, with_free_endpoint
+from tritrack.live.table import table_of
+from tritrack.serving.served_rooms import House
+from tritrack.serving.sites import Sites, load_sites
+from tritrack.terminal import say, warn
+
+LOOK_S: Final = 0.1
+CHANGED_S: Final = 1.0
+"""How often is looked whether a file has changed."""
+
+
+class SitesWatch:
+    """The file of sites, and whether it or a file that it names has changed."""
+
+    def __init__(self, path: Path) -> None:
+        """Read it.
+
+        Raises:
+            SettingsError: When it cannot be used.
+        """
+        self.sites = load_sites(path)
+        """As the file had them when it could be used last."""
+        self._path = path
+        self._seen, self._next_s = _stamps(self.sites), 0.0
+
+    def changed(self, now_s: float, asked: threading.Event) -> bool:
+        """Whether it is to be read again: once a second by its looks, or since that is asked."""
+        if now_s < self._next_s:
+            return False
+        self._next_s = now_s + CHANGED_S
+        if not asked.is_set() and _stamps(self.sites) == self._seen:
+            return False
+        asked.clear()
+        return True
+
+    def read(self) -> str:
+        """Read it again; why it cannot be used, or ""."""
+        trouble = ""
+        try:
+            self.sites = load_sites(self._path)
+        except SettingsError as error:
+            trouble = str(error)
+        self._seen = _stamps(self.sites)
+        return trouble
+
+
+def serve(path: Path, console: Console) -> None:
+    """Serve the sites of a file until SIGINT or SIGTERM; SIGHUP reads it anew.
+
+    Args:
+        path: Of the file.
+        console: Shows a table of the sites, and what happens.
+
+    Raises:
+        SettingsError, PortHeld, PageError: When the file cannot be used; nothing was started.
+    """
+    file = SitesWatch(path)
+    _refuse_what_is_held(file.sites)
+    with (
+        _signals() as (stop, anew),
+        LiveDisplay(console=console, transient=True) as display,
+        House(lambda told: say(console, told), lambda told: warn(console, told)) as house,
+        _answers(file.sites, house),
+    ):
+        house.become(file.sites.sites)
+        while not stop.wait(LOOK_S):
+            house.look()
+            display.update(table_of(house.names, house.pulses, str(path)))
+            if file.changed(time.monotonic(), anew):
+                trouble = file.read()
+                if trouble:
+                    warn(console, f"all sites go on as they were: {trouble}")
+                house.become(file.sites.sites)
+
+
+def _refuse_what_is_held(sites: Sites) -> None:
+    refuse_held_metrics(sites.metrics)
+    for site in sites.sites.values():
+        refuse_held_ports(with_free_endpoint(site.settings))
+
+
+def _stamps(sites: Sites) -> list[tuple[int, int] | None]:
+    """By what is seen that a file has changed."""
+    return [_stamp(path) for path in sites.files]
+
+
+def _stamp(path: Path) -> tuple[int, int] | None:
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size
+
+
+def _answers(sites: Sites, house: House) -> AbstractContextManager[None]:
+    """Metrics and health of all sites by HTTP, where that is wanted."""
+    if not sites.metrics:
+        return nullcontext()
+    from tritrack.outside.metrics_server import served
+
+    return served(sites.metrics, house.metrics, house.health)
+
+
+@contextmanager
+def _signals() -> Iterator[tuple[threading.Event, threading.Event]]:
+    """Set by SIGINT and SIGTERM, and by SIGHUP."""
+    stop, anew = threading.Event(), threading.Event()
+
+    def heed(number: int, _frame: FrameType | None) -> None:
+        (anew if number == signal.SIGHUP else stop).set()
+
+    heeded = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    before = {number: signal.signal(number, heed) for number in heeded}
+    try:
+        yield stop, anew
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
