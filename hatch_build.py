@@ -92,8 +92,10 @@ def refuse_strings(source: bytes, root: Path, names: Mapping[str, str]) -> None:
         Immovable: At the first that is.
     """
     for node in ast.walk(ast.parse(source)):
-        text = getattr(node, "value", None) if isinstance(node, ast.Constant) else None
-        if not isinstance(text, str) or not DOTTED.fullmatch(text) or _top(text) not in names:
+        if not isinstance(node, ast.Constant) or not isinstance(node.value, str):
+            continue
+        text = node.value
+        if not DOTTED.fullmatch(text) or _top(text) not in names:
             continue
         place = root / text.replace(".", "/")
         if place.is_dir() or place.with_suffix(".py").is_file():

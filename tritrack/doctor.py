@@ -20,8 +20,6 @@ REQUIRED = {
     "numpy": "numpy",
     "opencv-python-headless": "cv2",
     "eclipse-zenoh": "zenoh",
-    "hmmlearn": "hmmlearn",
-    "filterpy": "filterpy",
     "msgspec": "msgspec",
     "numba": "numba",
 }
@@ -31,7 +29,8 @@ EXTRAS: Final = (
     ("live page", "viser", "page"),
     ("notes of the retouching page", "tomlkit", "page"),
     ("rooms of busy clips", "scikit-image", "single"),
-    ("plots of reports", "matplotlib", "report"),
+    ("learning of postures", "hmmlearn", "learn"),
+    ("plots of reports and of angles", "matplotlib", "report"),
     ("C3D files", "ezc3d", "export"),
     ("recordings", "mcap", "mcap"),
     ("OSC and VMC bridges", "python-osc", "osc"),
