@@ -8,13 +8,16 @@ import shutil
 import subprocess
 import sys
 import tomllib
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Final
 
 import pytest
 from command_line import unknown_in
+from meeting import free_endpoint
 
 from common.config import load
+from tritrack import subscribe
 
 ROOT: Final = Path(__file__).parents[1]
 UNITS: Final = ROOT / "configs" / "systemd"
@@ -97,3 +100,25 @@ def test_systemd_understands_every_line_of_a_unit(instance: str, tmp_path: Path)
     )
     assert done.returncode == 0, done.stderr
     assert instance not in done.stderr
+
+
+@pytest.mark.slow
+def test_the_processes_of_a_rig_find_each_other_in_any_order(clip: Path, tmp_path: Path) -> None:
+    """The viewers first, who wait for the integrator: as on two hosts that are switched on."""
+    pytest.importorskip("websockets", reason="pip install 'tritrack[page]'")
+    endpoint, page = free_endpoint(), free_endpoint().rpartition(":")[2]
+    rig = tmp_path / RIG
+    told = f'[page]\nport = {page}\n[bus]\nendpoint = "{endpoint}"\nsession = "word"\n'
+    rig.write_text(f'clip = "{clip}"\n{told}')
+    started: dict[str, subprocess.Popen[bytes]] = {}
+    with ExitStack() as doors:
+        for words in started_by_units():
+            command = [sys.executable, "-m", "tritrack", words[0], str(rig), *words[2:]]
+            process = doors.enter_context(subprocess.Popen(command, stderr=subprocess.DEVNULL))
+            doors.callback(process.terminate)
+            started[" ".join([words[0], *words[3:]])] = process
+        bodies = [body for body in subscribe(endpoint, wait_s=60.0) if body.joints_m]
+        for name in ("view 1", "view 2", "integrate"):
+            assert started[name].wait(60.0) == 0, name
+    assert len(bodies) > 10
+    assert {process.returncode for process in started.values()} == {0}
