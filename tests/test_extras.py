@@ -22,6 +22,7 @@ def test_what_is_missing_is_named_with_the_extra_that_brings_it() -> None:
         ("train a --out mine.npz", "learn"),
         ("evaluate postures a --out report", "report"),
         ("evaluate tracking a --out report", "report"),
+        ("demo --out run", "page"),
         ("calibrate board --print board.pdf", "report"),
     ],
 )

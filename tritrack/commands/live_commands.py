@@ -11,6 +11,7 @@ from common.bus.messages import ViewerNumber
 from common.config import BusSettings, Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import ModeName, Out, Record, Size
+from tritrack.extras import refuse_without
 from tritrack.overrides import overridden
 
 Wait = Annotated[
@@ -29,6 +30,8 @@ def demo(
 
     Example: tritrack demo
     """
+    if page:
+        refuse_without("page", "websockets")
     from tritrack.demo import run_demo
 
     facts = run_demo(out, page, console, wait)
