@@ -41,7 +41,7 @@ def best_codec(size: tuple[int, int]) -> Codec:
     Whether it works is known by trying, and it is tried in a process of its own: encoders print
     what they miss, and those of hardware may hang.
     """
-    asked = [sys.executable, "-P", "-m", "animator.film_codec", *map(str, size)]
+    asked = [sys.executable, "-P", "-m", __name__, *map(str, size)]
     try:
         told = subprocess.run(asked, capture_output=True, timeout=TRIAL_S, check=False)
     except subprocess.TimeoutExpired:

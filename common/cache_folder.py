@@ -17,12 +17,8 @@ from typing import Any, Final
 import numba
 import numpy as np
 
-ROOT: Final = Path(__file__).resolve().parents[1]
-"""Of a checkout, or `site-packages`."""
-PACKAGES: Final = (
-    *("animator", "common", "integrator", "recognizer"),
-    *("synth", "tritrack", "viewer"),
-)
+from common.packages import PACKAGES, ROOT
+
 KEPT: Final = 3
 """Folders of as many digests stay: of this one and of those that were used last."""
 NAME: Final = re.compile(r"tritrack-[0-9a-f]{32}")

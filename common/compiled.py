@@ -13,7 +13,8 @@ from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
 from common.atomic_file import replacing
-from common.cache_folder import PACKAGES, compiled_folder
+from common.cache_folder import compiled_folder
+from common.packages import PACKAGES
 
 log = logging.getLogger(__name__)
 

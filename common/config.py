@@ -157,7 +157,8 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     every: int = 1
     """Take every n-th frame of a recorded clip."""
     fps: float = 0.0
-    """Rate at which recorded clips are taken to run, and played; 0: what they say themselves."""
+    """Rate at which recorded clips are taken to run, and played; 0: what they say themselves. Of
+    cameras on another host than the integrator's: theirs."""
     metrics: str = ""
     """HOST:PORT at which a live run answers /metrics (Prometheus) and /healthz; nowhere when
     empty."""

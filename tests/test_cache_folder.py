@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from common.cache_folder import KEPT, PACKAGES, ROOT, digest_of, first_writable, parents, prune
+from common.cache_folder import KEPT, digest_of, first_writable, parents, prune
+from common.packages import PACKAGES, ROOT
 
 
 @pytest.fixture

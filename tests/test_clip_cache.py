@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from spoiling import copied, edit_json
 
-from common.cache_folder import ROOT
 from common.config import Settings
+from common.packages import ROOT
 from common.video.clip_sources import ClipError
 from tritrack.offline import clip_cache
 from tritrack.offline.clip_cache import key_of, read, write

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from common.cache_folder import ROOT, compiled_folder
+from common.cache_folder import compiled_folder
+from common.packages import ROOT
 from common.raster.kernel import warm
 
 CALLEE = """
@@ -60,7 +61,7 @@ def house(tmp_path: Path) -> Path:
     for package in ("common", "viewer", "tritrack"):
         (root / package).mkdir(parents=True)
         (root / package / "__init__.py").touch()
-    for name in ("atomic_file.py", "cache_folder.py", "compiled.py"):
+    for name in ("atomic_file.py", "cache_folder.py", "compiled.py", "packages.py"):
         shutil.copy(ROOT / "common" / name, root / "common")
     (root / "pyproject.toml").touch()
     (root / "viewer" / "callee.py").write_text(CALLEE)

@@ -6,10 +6,8 @@ import sys
 from pathlib import Path
 
 import pytest
-import typer
+from command_line import unknown_in, words_of
 from source_map import tracked
-
-from tritrack.__main__ import app
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted((ROOT / "docs").glob("*.md"))
@@ -17,21 +15,10 @@ TYPED = re.compile(r"^ {4}tritrack (\S.*)$", re.MULTILINE)
 QUOTED = re.compile(r"^\| `([^`]+)`", re.MULTILINE)
 
 
-def words_of(command: str) -> list[str]:
-    return command.split("#", maxsplit=1)[0].split("|", maxsplit=1)[0].split()
-
-
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_what_a_page_types_is_a_command_with_such_options(page: Path) -> None:
     for typed in TYPED.findall(page.read_text()):
-        command = typer.main.get_command(app)
-        words = words_of(typed)
-        while words and words[0] in getattr(command, "commands", {}):
-            command = command.commands[words.pop(0)]  # type: ignore[attr-defined]
-        assert not hasattr(command, "commands"), f"tritrack {typed}"
-        known = {each for param in command.params for each in [*param.opts, *param.secondary_opts]}
-        given = {word.split("=")[0] for word in words if word.startswith("--")}
-        assert given <= known | {"--help"}, f"tritrack {typed}"
+        assert unknown_in(words_of(typed)) == [], f"tritrack {typed}"
 
 
 def test_each_message_of_the_troubleshooting_is_said_somewhere() -> None:

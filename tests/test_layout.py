@@ -40,9 +40,11 @@ SYSTEM = {
     "layout": "the rules of the house, this file",
     "readme": "the README, typed as it stands in a fresh copy",
     "system_commands": "every command as a user calls it",
+    "system_hosts": "containers and units of a rig over hosts: what they start is there",
     "system_live_fallback": "live runs that lose a view: real processes that are killed or frozen",
     "system_lost_view": "both viewers and the integrator in lock-step, then one of them alone",
     "system_meeting": "how the processes of a run wait for each other",
+    "system_wheel": "the wheel, installed beside files of the same names",
     "system_naming": "from a clip to the name of its posture",
 }
 """Tests of more than one module; every other file of tests bears its module's name."""

@@ -18,6 +18,7 @@ from urllib.request import urlopen
 
 import numpy as np
 import pytest
+from installing import pip, refuse_without_network
 from source_map import tracked
 
 ROOT: Final = Path(__file__).parents[1]
@@ -108,18 +109,6 @@ def shell(copy: Path, tmp_path: Path) -> dict[str, str]:
         "XDG_CACHE_HOME": str(tmp_path / "cache"),
         "TMPDIR": str(tmp_path / "tmp"),
     }
-
-
-def pip(*words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "pip", *words], capture_output=True, text=True, check=False
-    )
-
-
-def refuse_without_network(folder: Path) -> None:
-    tried = pip("download", "--quiet", "--no-deps", "--dest", str(folder / "tried"), "iniconfig")
-    if tried.returncode:
-        pytest.skip(f"no package can be installed here: {tried.stderr.strip()[-200:]}")
 
 
 def typed(command: str, copy: Path, shell: dict[str, str]) -> tuple[int, str]:

@@ -3,9 +3,29 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tritrack.client import Subscription, subscribe, track
+    from tritrack.client import (
+        ANGLE_NAMES,
+        JOINT_NAMES,
+        POSE_INDEX,
+        Body,
+        Posture,
+        Report,
+        Subscription,
+        subscribe,
+        track,
+    )
 
-__all__ = ["Subscription", "subscribe", "track"]
+__all__ = [
+    "ANGLE_NAMES",
+    "JOINT_NAMES",
+    "POSE_INDEX",
+    "Body",
+    "Posture",
+    "Report",
+    "Subscription",
+    "subscribe",
+    "track",
+]
 
 
 def __getattr__(name: str) -> Any:

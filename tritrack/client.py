@@ -7,11 +7,24 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Generic, TypeVar, overload
 
-from common.bus.messages import Body, Message, ViewerNumber
+from common.body.body import ANGLE_NAMES, JOINT_NAMES, POSE_INDEX
+from common.bus.messages import Body, Message, Posture, Report, ViewerNumber
 from common.config import BusSettings, Settings, load
 
 if TYPE_CHECKING:
     from common.bus.bus import Bus
+
+__all__ = [
+    "ANGLE_NAMES",
+    "JOINT_NAMES",
+    "POSE_INDEX",
+    "Body",
+    "Posture",
+    "Report",
+    "Subscription",
+    "subscribe",
+    "track",
+]
 
 Said = TypeVar("Said", bound=Message)
 
@@ -59,7 +72,7 @@ def subscribe(
     Args:
         endpoint: Where the integrator listens, `[bus] endpoint` of the run's settings.
         room: `room` of the run's settings.
-        kind: Which message: Body, Posture, Report ... of `common.bus.messages`.
+        kind: Which message: Body, Posture or Report.
         wait_s: How long to wait for the run to begin.
     """
     return Subscription(kind, endpoint, room, wait_s)

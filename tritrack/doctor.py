@@ -14,12 +14,12 @@ from typing import Final, NamedTuple
 from rich.markup import escape
 from rich.table import Table
 
+from common.packages import PACKAGES, ROOT
+
 REQUIRED = {
     "numpy": "numpy",
     "opencv-python-headless": "cv2",
     "eclipse-zenoh": "zenoh",
-    "hmmlearn": "hmmlearn",
-    "filterpy": "filterpy",
     "msgspec": "msgspec",
     "numba": "numba",
 }
@@ -29,7 +29,8 @@ EXTRAS: Final = (
     ("live page", "viser", "page"),
     ("notes of the retouching page", "tomlkit", "page"),
     ("rooms of busy clips", "scikit-image", "single"),
-    ("plots of reports", "matplotlib", "report"),
+    ("learning of postures", "hmmlearn", "learn"),
+    ("plots of reports and of angles", "matplotlib", "report"),
     ("C3D files", "ezc3d", "export"),
     ("recordings", "mcap", "mcap"),
     ("OSC and VMC bridges", "python-osc", "osc"),
@@ -110,12 +111,8 @@ def _package(name: str, module: str) -> Finding:
 
 def _own_names() -> Finding:
     """Other packages named common or viewer exist: none of them may be found instead of ours."""
-    home = Path(__file__).resolve().parents[1]
-    foreign = [
-        name
-        for name in ("common", "viewer", "integrator", "recognizer", "animator", "synth")
-        if not str(import_module(name).__file__).startswith(str(home))
-    ]
+    places = {name: Path(str(import_module(name).__file__)).resolve() for name in PACKAGES}
+    foreign = [name for name, place in places.items() if not place.is_relative_to(ROOT)]
     return Finding(
         "own packages",
         not foreign,

@@ -6,8 +6,7 @@ import traceback
 from collections.abc import Mapping
 from typing import Any, Final
 
-OURS: Final = ("animator", "common", "integrator", "recognizer", "synth", "tritrack", "viewer")
-"""What is raised by a class of ours is meant for the user; all else is a fault."""
+from common.packages import PACKAGES
 
 FULL: Final = (errno.ENOSPC, errno.EDQUOT)
 """What a full disk says, wherever it is met."""
@@ -69,6 +68,7 @@ def refuse_unfollowed(clips: Mapping[str, Mapping[str, Any]]) -> None:
 
 
 def _is_for_the_user(error: Exception) -> bool:
+    """Whether a class of ours says it, or a full disk; all else is a fault."""
     if isinstance(error, OSError) and error.errno in FULL:
         return True
-    return type(error).__module__.split(".")[0] in OURS
+    return type(error).__module__.split(".")[0] in PACKAGES

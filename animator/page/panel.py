@@ -11,4 +11,4 @@ ACCENT: Final[Colour] = (62, 142, 126)
 
 def piece(name: str, given: Mapping[str, Any]) -> str:
     """A template of a page filled in."""
-    return rendered("animator.page", name, given)
+    return rendered(__package__, name, given)

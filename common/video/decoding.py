@@ -166,7 +166,7 @@ class Decoder:
     ) -> Generator[_Answer, None, None]:
         """INFO, then FRAMEs if any size is asked for, else TIMES; then END."""
         if self._child is None:
-            self._child = Child("common.video.decoder", self._stall_s)
+            self._child = Child(f"{__package__}.decoder", self._stall_s)
         frames, whole = 0, False
         try:
             request = {"source": source, "sizes": sizes, "every": every}

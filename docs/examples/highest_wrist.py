@@ -2,8 +2,7 @@
 
 import sys
 
-from common.body.body import JOINT_NAMES
-from tritrack import track
+from tritrack import JOINT_NAMES, track
 
 wrist = JOINT_NAMES.index("l_wrist")
 heights_m = [body.joints_m[wrist][1] for body in track(sys.argv[1]) if body.joints_m]

@@ -2,8 +2,7 @@
 
 import sys
 
-from common.body.body import POSE_INDEX
-from tritrack import subscribe
+from tritrack import POSE_INDEX, subscribe
 
 for body in subscribe(*sys.argv[1:2]):
     if body.pose:

@@ -11,7 +11,7 @@ import msgspec
 from common.video.child_process import Broken, Child
 from integrator.live_rig.rig_job import LENGTH, Job, Solved
 
-MODULE: Final = "integrator.live_rig.rig_child"
+MODULE: Final = f"{__package__}.rig_child"
 STALL_S: Final = 120.0
 """A child that has found nothing for so long is ended: it needs 3 s of a quiet machine."""
 

@@ -34,7 +34,7 @@ def line(report: Mapping[str, Any]) -> str:
 def page_of(report: Mapping[str, Any]) -> str:
     """The report as a page; its pictures stand beside it."""
     given = {**report, "number": _number, "percent": _share, "between": _between}
-    return rendered("tritrack.accuracy", "accuracy_report.html", given)
+    return rendered(__package__, "accuracy_report.html", given)
 
 
 def _number(value: float, places: int = 1) -> str:

@@ -1,7 +1,7 @@
 """The live commands: a whole run on this machine, or one process of a rig spread over hosts."""
 
 from pathlib import Path
-from typing import Annotated, Any, Literal, cast
+from typing import Annotated, Literal, cast
 
 import msgspec
 import typer
@@ -11,6 +11,7 @@ from common.bus.messages import ViewerNumber
 from common.config import BusSettings, Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import ModeName, Out, Record, Size
+from tritrack.extras import refuse_without
 from tritrack.overrides import overridden
 
 Wait = Annotated[
@@ -29,6 +30,8 @@ def demo(
 
     Example: tritrack demo
     """
+    if page:
+        refuse_without("page", "websockets")
     from tritrack.demo import run_demo
 
     facts = run_demo(out, page, console, wait)
@@ -90,6 +93,7 @@ def integrate(settings_file: ConfigPath) -> None:
     Example: tritrack integrate configs/live.toml
     """
     from integrator.__main__ import main as integrator_main
+    from tritrack.live.elsewhere import two_camera_clip
     from tritrack.offline.lockstep import measured_before
 
     settings = live_settings(settings_file)
@@ -103,6 +107,7 @@ def recognize(settings_file: ConfigPath) -> None:
     Example: tritrack recognize configs/live.toml
     """
     from recognizer.__main__ import main as recognizer_main
+    from tritrack.live.elsewhere import two_camera_clip
 
     settings = live_settings(settings_file)
     clip = two_camera_clip(settings)
@@ -114,6 +119,7 @@ def metrics(settings_file: ConfigPath) -> None:
 
     Example: tritrack metrics configs/live.toml
     """
+    from tritrack.live.elsewhere import two_camera_clip
     from tritrack.live.free_ports import refuse_held_metrics
     from tritrack.live.process_table import names_of
 
@@ -167,12 +173,3 @@ def live_settings(path: Path) -> Settings:
     settings = config.load(path)
     refuse_mode(settings)
     return settings
-
-
-def two_camera_clip(settings: Settings) -> Any:
-    """The clip that settings name, with a camera for each viewer where it is calibrated."""
-    from common.video.clip_facts import both_cameras
-    from common.video.clips import open_clip
-
-    clip = open_clip(settings)
-    return msgspec.structs.replace(clip, rig=both_cameras(clip))

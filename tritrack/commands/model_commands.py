@@ -1,7 +1,7 @@
 """The commands for models and figures: learn, and measure what is tracked and recognised."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 import typer
 
@@ -16,7 +16,10 @@ from tritrack.commands.options import (
     writable,
     writable_file,
 )
+from tritrack.extras import refuse_without
 
+LEARN: Final = ("learn", "hmmlearn", "sklearn")
+"""The extra of what learns models, and what it brings."""
 RecognizerName = Annotated[
     Literal["default", "paper"], typer.Option(help="The better models, or the paper's.")
 ]
@@ -56,15 +59,14 @@ def train(
         tell(facts, json_wanted, f"{facts['instants']} instants learnt, written to {out}")
         return
     if what == "silhouettes":
+        refuse_without(*LEARN)
         from tritrack.training.silhouette_training import train_silhouettes
 
         facts = train_silhouettes(out, 0, console)
         tell(facts, json_wanted, f"{facts['pixels']} pixels learnt, written to {out}")
         return
     if what == "landmarks":
-        from tritrack.training.training import refuse_without
-
-        refuse_without("torch", "onnx", "onnxscript", "anny")
+        refuse_without("train", "torch", "onnx", "onnxscript", "anny")
         from tritrack.training.landmark_training import train_landmarks
 
         facts = train_landmarks(out, 0, console)
@@ -72,6 +74,7 @@ def train(
         return
     if not runs:
         raise typer.BadParameter("name clips or run folders to learn postures from")
+    refuse_without(*LEARN)
     from tritrack.training.training import Plan, train_postures
 
     facts = train_postures(runs, out, Plan(mode, recognizer, cache, add_to), console)
@@ -98,6 +101,7 @@ def teach(
 
     Example: tritrack teach star_jump take1/ take2/ take3/ --out mine.npz
     """
+    refuse_without(*LEARN)
     from tritrack.training import teaching
     from tritrack.training.training import Plan
 
@@ -138,6 +142,9 @@ def evaluate_postures(
 
     Example: tritrack evaluate postures clips/*/ --split 's1*:s2*' --out report
     """
+    refuse_without("report", "matplotlib")
+    if model is None:
+        refuse_without(*LEARN)
     from tritrack.postures import posture_evaluation
 
     plan = posture_evaluation.Plan(
@@ -191,6 +198,7 @@ def evaluate_tracking(
 
     Example: tritrack evaluate tracking clips/*/ --out report
     """
+    refuse_without("report", "matplotlib")
     from tritrack.accuracy import accuracy_report, tracking_evaluation
 
     report = tracking_evaluation.evaluate_tracking(clips, out, runs, mode, size, console)

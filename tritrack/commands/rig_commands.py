@@ -7,6 +7,7 @@ import typer
 
 from tritrack.commands.command_output import JsonWanted, console, tell_rows
 from tritrack.commands.options import writable_file
+from tritrack.extras import refuse_without
 
 calibrate_app = typer.Typer(
     help="Find out where the cameras are: from a person, a printed board, markers, poles (4.1).",
@@ -92,6 +93,7 @@ def board(
     if print_ is None and not videos:
         raise typer.BadParameter("name the video of each camera, or --print board.pdf")
     if print_ is not None:
+        refuse_without("report", "matplotlib")
         refuse_to_replace(print_, force)
         print_board(print_, paper)
         console.print(f"written to {print_}", highlight=False, soft_wrap=True)

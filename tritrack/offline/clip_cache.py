@@ -12,9 +12,10 @@ import msgspec
 import numpy as np
 
 from common.atomic_file import replacing
-from common.cache_folder import DIGEST, PACKAGES, ROOT, add
+from common.cache_folder import DIGEST, add
 from common.config import LANDMARK_SOURCES, Settings
 from common.npz_file import Arrays, read_arrays
+from common.packages import PACKAGES, ROOT
 from common.video.clip_sources import ClipError, companions_folder, footage_of
 from common.video.clips import find_calibration
 from tritrack.offline.lockstep import Tracked

@@ -29,4 +29,4 @@ def page_of(report: dict[str, Any], folder: Path) -> str:
         **{"split": report["split"], "sweep": report.get("sweep")},
         **{"papers": PAPERS, "picture": picture},
     }
-    return rendered("tritrack.postures", "posture_page.html", given)
+    return rendered(__package__, "posture_page.html", given)

@@ -1,5 +1,6 @@
 """The files of a followed film that are looked at or animated: curves, background, BVH."""
 
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
 
@@ -22,7 +23,7 @@ FLAG: Final = (0, 0, 255)
 
 
 def write_files(folder: Path, arrays: dict[str, Any], background: Background | None) -> list[str]:
-    """Write the angles' curves, the background if there is one, and the animation.
+    """Write the angles' curves where matplotlib is, the background if any, and the animation.
 
     Args:
         folder: Of the run.
@@ -36,7 +37,8 @@ def write_files(folder: Path, arrays: dict[str, Any], background: Background | N
         RunError: When a file cannot be written.
     """
     try:
-        _write(folder / "angles.png", angle_plot(arrays))
+        if find_spec("matplotlib") is not None:
+            _write(folder / "angles.png", angle_plot(arrays))
         if background is not None:
             _write(folder / "background.png", cv2.imencode(".png", marked(background))[1].tobytes())
         return _animate(folder, arrays)

@@ -1,6 +1,5 @@
 """Posture models from clips or runs."""
 
-import importlib.util
 from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
@@ -22,19 +21,6 @@ SHIPPED_MODELS: Final[dict[Recognizer, Path]] = {"default": SHIPPED, "paper": SH
 
 class TrainingError(ValueError):
     """What cannot be learnt, tested or written; the text names the cure."""
-
-
-def refuse_without(*packages: str) -> None:
-    """Say which packages are wanted.
-
-    Raises:
-        TrainingError: When one is not installed.
-    """
-    missing = [name for name in packages if importlib.util.find_spec(name) is None]
-    if missing:
-        raise TrainingError(
-            f"learning networks needs {', '.join(missing)}: pip install 'tritrack[train]'"
-        )
 
 
 class Plan(NamedTuple):

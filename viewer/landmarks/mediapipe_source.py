@@ -66,7 +66,7 @@ class MediaPipe:
         shared = mmap.mmap(memory, 3 * width * height)
         self._picture: Image = np.frombuffer(shared, np.uint8).reshape(height, width, 3)
         told = [str(number) for number in (memory, width, height)]
-        child = "viewer.landmarks.mediapipe_child"
+        child = f"{__package__}.mediapipe_child"
         self._child: Child | None = Child(child, START_S, told, (memory,))
         os.close(memory)
 

@@ -1,0 +1,48 @@
+"""Cameras of another host: the integrator and the recognizer know them by the calibration alone."""
+
+import msgspec
+
+from common.config import Settings
+from common.rig.rig_file import CalibrationError, load_rig
+from common.video.clip_facts import Clip, both_cameras
+from common.video.clip_sources import ClipError, companions_folder, footage_of
+from common.video.clips import find_calibration, open_clip
+from common.video.decoding import Decoder, Source, VideoInfo
+
+
+class Unopened(Decoder):
+    """Takes the calibration's word for a camera, which may be plugged in elsewhere."""
+
+    def __init__(self, camera: VideoInfo) -> None:
+        """What each camera is."""
+        super().__init__()
+        self._camera = camera
+
+    def probe(self, source: Source) -> VideoInfo:
+        """What a source is; a film is looked into, as ever."""
+        return self._camera if isinstance(source, int) else super().probe(source)
+
+
+def two_camera_clip(settings: Settings) -> Clip:
+    """The clip that settings name, with a camera for each viewer where it is calibrated.
+
+    Cameras that are calibrated are not opened: their pictures have the calibration's size, and come
+    at `fps` of the settings, or of the calibration, or 15 a second.
+
+    Raises:
+        ClipError: When something is missing, or contradicts the rest.
+    """
+    path = find_calibration(settings, companions_folder(settings, footage_of(settings)))
+    try:
+        rig = load_rig(path) if path else None
+    except CalibrationError as error:
+        raise ClipError(str(error)) from error
+    if rig is None:
+        return _with_both(open_clip(settings))
+    fps = settings.fps or rig.fps or 0.0
+    with Unopened(VideoInfo(rig.width, rig.height, fps, frames=0)) as decoder:
+        return _with_both(open_clip(settings, decoder))
+
+
+def _with_both(clip: Clip) -> Clip:
+    return msgspec.structs.replace(clip, rig=both_cameras(clip))
