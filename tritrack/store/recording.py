@@ -177,7 +177,8 @@ def _library() -> _Library:
         from zstandard import ZstdError
     except ImportError as error:
         raise RecordingError("recordings need mcap: pip install 'tritrack[mcap]'") from error
-    errors = (McapError, ZstdError, RuntimeError, MalformedMessage, OSError, ValueError, KeyError)
+    own = (McapError, ZstdError, MalformedMessage)
+    errors = (*own, OSError, ValueError, KeyError, RuntimeError, OverflowError, MemoryError)
     return _Library(Writer, NonSeekingReader, make_reader, errors)
 
 
