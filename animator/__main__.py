@@ -188,7 +188,7 @@ def _shown(
     until_s = time.monotonic() + READY_S
     while not stop.is_set():
         try:
-            with open_client(settings.bus, settings.room, HEAR_S) as bus:
+            with open_client(settings.bus, settings.room, HEAR_S, "animator") as bus:
                 bus.announce("animator")
                 return run(page, bus, stop, ending)
         except BusError:

@@ -7,6 +7,7 @@ from typing import Final
 
 import msgspec
 
+from common.endpoint import is_exposed
 from common.method import Mode
 
 MOST_SESSION: Final = 64
@@ -120,16 +121,32 @@ class BusSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     endpoint: str = "tcp/127.0.0.1:7447"
     """The integrator's host listens there, all others connect to it. Name another host's address
-    to spread a rig over hosts; nothing outside this machine is heard otherwise."""
+    to spread a rig over hosts, with `keys`; nothing outside this machine is heard otherwise."""
     session: str = ""
     """A word that all processes of a run say with each message: what comes without it is dropped.
     A live run makes one up; "": whoever speaks in the room is heard."""
+    keys: str = ""
+    """A folder that `tritrack keys` made: all speak TLS, show their certificates, and say no more
+    than theirs allows; the endpoint is then tls/HOST:PORT."""
+    open_to_all: bool = False
+    """Let whoever reaches the endpoint hear and say all, though other machines do."""
 
     def __post_init__(self) -> None:
         """Refuse what no run could mean."""
         if len(self.session) > MOST_SESSION or not self.session.isascii():
             raise ValueError(
                 f"session must be at most {MOST_SESSION} ASCII letters, got {self.session!r}"
+            )
+        if self.endpoint.startswith("tls/") != bool(self.keys):
+            raise SettingsError(
+                f"keys go with an endpoint tls/HOST:PORT, it with keys (tritrack keys FOLDER): "
+                f"got endpoint {self.endpoint!r}, keys {self.keys!r}"
+            )
+        if is_exposed(self.endpoint) and not self.keys and not self.open_to_all:
+            raise SettingsError(
+                f"whoever reaches {self.endpoint} could hear and forge all of the run: make keys "
+                "(tritrack keys FOLDER) and set keys = 'FOLDER' and the endpoint tls/HOST:PORT, "
+                "or set open_to_all = true"
             )
 
 
@@ -264,4 +281,5 @@ def _with_full_paths(settings: Settings, path: Path) -> Settings:
         recognizer=msgspec.structs.replace(
             settings.recognizer, model=full(settings.recognizer.model)
         ),
+        bus=msgspec.structs.replace(settings.bus, keys=full(settings.bus.keys)),
     )

@@ -1,10 +1,12 @@
 """Ports of a run: what is held is named before anything starts."""
 
 import socket
+from pathlib import Path
 
 import pytest
 
 from animator.page.door import PageError
+from common.bus.bus_keys import KeysError
 from common.config import BusSettings, PageSettings, Settings
 from tritrack.live.free_ports import PortHeld, free_settings, own_session, refuse_held_ports
 
@@ -33,3 +35,9 @@ def test_each_run_has_a_word_of_its_own_unless_it_was_given_one() -> None:
     assert one.bus.session != other.bus.session
     assert own_session(one) == one
     assert Settings().bus.session == ""
+
+
+def test_keys_that_are_not_there_are_named_before_anything_starts(tmp_path: Path) -> None:
+    bus = BusSettings(endpoint="tls/127.0.0.1:7447", keys=str(tmp_path))
+    with pytest.raises(KeysError, match=r"ca\.pem: no such file"):
+        refuse_held_ports(free_settings(Settings(bus=bus, page=PageSettings(port=0))))

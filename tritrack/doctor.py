@@ -34,6 +34,7 @@ EXTRAS: Final = (
     ("recordings", "mcap", "mcap"),
     ("OSC and VMC bridges", "python-osc", "osc"),
     ("LSL bridge", "pylsl", "lsl"),
+    ("keys of a bus", "cryptography", "keys"),
 )
 """What only some commands need: its use, the distribution, and the extra that brings it."""
 

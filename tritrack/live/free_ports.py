@@ -3,13 +3,15 @@
 import re
 import secrets
 import socket
+from pathlib import Path
 from typing import Final
 
 import msgspec
 
-from common.config import BusSettings, PageSettings, Settings
+from common.bus.bus_keys import PARTS, refuse_missing
+from common.config import PageSettings, Settings
 
-TCP: Final = re.compile(r"tcp/(?P<host>[^/]+):(?P<port>\d+)")
+TCP: Final = re.compile(r"(?:tcp|tls)/(?P<host>[^/]+):(?P<port>\d+)")
 SESSION_BYTES: Final = 8
 
 
@@ -23,7 +25,12 @@ def refuse_held_ports(settings: Settings) -> None:
     Raises:
         PortHeld: When the endpoint of the bus is held, or the page lacks a library.
         PageError: When the page's port is.
+        KeysError: When a part of a live run lacks its keys.
     """
+    if settings.bus.keys:
+        for part in PARTS:
+            if part != "client":
+                refuse_missing(Path(settings.bus.keys), part)
     _refuse_endpoint(settings.bus.endpoint)
     if settings.page.port:
         try:
@@ -48,9 +55,10 @@ def own_session(settings: Settings) -> Settings:
 def free_settings(settings: Settings) -> Settings:
     """The same settings with an endpoint and a page on ports that nobody holds."""
     bus, page = _free_port(), _free_port()
+    kind = "tls" if settings.bus.keys else "tcp"
     return msgspec.structs.replace(
         settings,
-        bus=BusSettings(endpoint=f"tcp/127.0.0.1:{bus}"),
+        bus=msgspec.structs.replace(settings.bus, endpoint=f"{kind}/127.0.0.1:{bus}"),
         page=PageSettings(port=page) if settings.page.port else settings.page,
     )
 
