@@ -110,10 +110,18 @@ class PageSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """0: no page."""
     wait: bool = True
     """A recorded clip begins when somebody looks at the page, or half a minute later."""
+    host: str = "127.0.0.1"
+    """Where it listens. Beyond this machine, as at 0.0.0.0, a token in the printed address is asked
+    for, and nothing hides what is sent."""
+    name: str = ""
+    """By which browsers call a proxy that stands before the page, as rig.example."""
 
     def __post_init__(self) -> None:
         """Refuse what no run could mean."""
         _within("port", self.port, 0, 65535)
+        for name, word in (("host", self.host), ("name", self.name or "none")):
+            if not word or set(word) & set("/@?# "):
+                raise ValueError(f"{name} must be a plain name or address, got {word!r}")
 
 
 class BusSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

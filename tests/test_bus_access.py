@@ -160,7 +160,7 @@ def test_a_part_announces_itself_under_its_own_name_alone(hall: Hall) -> None:
     watcher = hall.hub.watch_alive()
     with ExitStack() as doors:
         for part in ("client", "viewer1"):
-            speaker = enter(hall, doors, part)  # type: ignore[arg-type]
+            speaker = enter(hall, doors, part)
             for name in PROCESSES:
                 speaker.announce(name)
         time.sleep(LATE_S)

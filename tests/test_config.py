@@ -93,6 +93,8 @@ def test_what_is_misspelt_or_ill_typed_is_refused_with_its_place(
         ("[camera_1]\nsource = 'a'\ndevice = 0", "both set"),
         ("[bus]\nendpoint = 'tcp/192.168.1.5:7447'", "tcp/192.168.1.5:7447.*tritrack keys FOLDER"),
         ("[bus]\nendpoint = 'tcp/0.0.0.0:7447'", "or set open_to_all = true"),
+        ("[page]\nhost = ''", "host must be a plain name or address, got ''"),
+        ("[page]\nname = 'https://rig'", "got 'https://rig'"),
         ("[bus]\nkeys = 'keys'", "keys go with an endpoint tls/HOST:PORT"),
         ("[bus]\nendpoint = 'tls/rig.local:7447'", "it with keys .tritrack keys FOLDER"),
     ],

@@ -41,7 +41,7 @@ def refuse_held_ports(settings: Settings) -> None:
             raise PortHeld(
                 f"the page needs {error.name}: pip install 'tritrack[page]', or set page.port = 0"
             ) from error
-        refuse_port(settings.page.port)
+        refuse_port(settings.page.port, settings.page.host)
 
 
 def own_session(settings: Settings) -> Settings:
