@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 import pytest
-from keyring import with_keys
+from keyring import foreign, tls_as, with_keys
 from meeting import free_endpoint
 from test_message_codec import BODY, REPORT, SAID
 
@@ -18,7 +18,7 @@ from common.bus.bus import Bus, open_client, open_hub
 from common.bus.bus_keys import Part
 from common.bus.control_messages import ClockAnswer, ClockQuestion, Ended, Pulse
 from common.bus.inbox import Alive, Inbox
-from common.bus.message_codec import TOPICS, key_of
+from common.bus.message_codec import TOPICS, encode, key_of
 from common.bus.messages import Guide, Message, Picture, Report
 from common.config import BusSettings
 from tritrack.keys.authority import make_keys
@@ -127,6 +127,32 @@ def test_of_ten_thousand_forged_messages_none_is_delivered(keys: Path) -> None:
     assert delivered(with_keys(keys)) == (0, 20)
     forged, _ = delivered(BusSettings(free_endpoint()))
     assert forged > 1000
+
+
+@pytest.mark.parametrize("mode", ["client", "peer", "router"])
+@pytest.mark.parametrize("name", ["client", "viewer1"])
+def test_neither_another_mode_nor_a_wildcard_widens_what_a_part_may_say(
+    hall: Hall, keys: Path, mode: str, name: str
+) -> None:
+    """By a program of somebody who knows Zenoh and holds the files of one part."""
+    place = {"connect": hall.settings.endpoint}
+    with ExitStack() as doors:
+        page = enter(hall, doors, "animator")
+        inboxes = [bus.subscribe(kind) for bus in (hall.hub, page) for kind in (Report, type(BODY))]
+        false = doors.enter_context(foreign(mode, place, tls_as(keys, name)))
+        time.sleep(LATE_S)
+        own, report = (msgspec.structs.replace(REPORT, viewer=viewer) for viewer in (1, 2))
+        for key in ("viewer/2/report", "viewer/*/report", "viewer/**", "**", "*/2/report"):
+            false.put(f"tritrack/{ROOM}/{key}", encode(report))
+        for key in ("body/pose", "body/*", "**", "*/pose"):
+            false.put(f"tritrack/{ROOM}/{key}", encode(BODY))
+        for key in ("tritrack/**", "**", "tritrack/*/body/pose"):
+            false.put(key, encode(BODY))
+        false.put(f"tritrack/{ROOM}/viewer/1/report", encode(own))
+        time.sleep(LATE_S)
+        allowed = [own] if name == "viewer1" else []
+        assert [inbox.drain() for inbox in inboxes] == [allowed, [], allowed, []]
+        assert sum(inbox.malformed for inbox in inboxes) == 0
 
 
 def test_only_a_viewer_may_ask_the_clock_and_so_begin_the_run(hall: Hall) -> None:

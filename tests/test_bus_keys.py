@@ -1,6 +1,5 @@
 """A bus with keys over real sessions on the loopback: who gets in."""
 
-import json
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -8,7 +7,7 @@ from pathlib import Path
 
 import pytest
 import zenoh
-from keyring import with_keys
+from keyring import foreign, tls_as, with_keys
 from meeting import a_body, free_endpoint
 from moving import random_joints
 
@@ -16,6 +15,7 @@ pytest.importorskip("cryptography", reason="keys are an extra: install tritrack[
 
 from common.bus.bus import BusError, open_client, open_hub
 from common.bus.bus_keys import KeysError, Part, refuse_missing
+from common.bus.inbox import Alive
 from common.bus.messages import Body
 from common.config import BusSettings
 from tritrack import subscribe
@@ -41,16 +41,6 @@ def settings(keys: Path) -> Iterator[BusSettings]:
         yield place
 
 
-def raw(mode: str, endpoint: str, tls: dict[str, object]) -> zenoh.Session:
-    """A session of a program that is not ours."""
-    config = zenoh.Config()
-    side = "listen" if mode == "router" else "connect"
-    told = {"mode": mode, f"{side}/endpoints": [endpoint], "transport/link/tls": tls}
-    for name, value in {**told, "scouting/multicast/enabled": False}.items():
-        config.insert_json5(name, json.dumps(value))
-    return zenoh.open(config)
-
-
 @pytest.mark.parametrize("part", ["viewer1", "viewer2", "recognizer", "animator", "supervisor"])
 def test_each_part_gets_in_with_its_keys(settings: BusSettings, part: Part) -> None:
     with open_client(settings, ROOM, SOON_S, part):
@@ -59,20 +49,28 @@ def test_each_part_gets_in_with_its_keys(settings: BusSettings, part: Part) -> N
 
 def test_without_a_certificate_nobody_gets_in(settings: BusSettings, keys: Path) -> None:
     """Neither by TLS, knowing the authority, nor by plain TCP on the same port."""
+    place = {"connect": settings.endpoint}
     with pytest.raises(zenoh.ZError, match="Unable to connect"):
-        raw("client", settings.endpoint, {"root_ca_certificate": str(keys / "ca.pem")})
+        foreign("client", place, {"root_ca_certificate": str(keys / "ca.pem")})
     with pytest.raises(zenoh.ZError, match="Unable to connect"):
-        raw("client", settings.endpoint.replace("tls/", "tcp/"), {})
+        foreign("client", {"connect": settings.endpoint.replace("tls/", "tcp/")}, {})
+
+
+def test_the_integrators_own_certificate_opens_nothing_for_who_connects(
+    settings: BusSettings, keys: Path
+) -> None:
+    with pytest.raises(zenoh.ZError, match="Unable to connect"):
+        foreign("client", {"connect": settings.endpoint}, tls_as(keys, "integrator"))
 
 
 def test_with_keys_of_another_authority_nobody_gets_in(
     settings: BusSettings, tmp_path: Path
 ) -> None:
     make_keys(tmp_path, [], 2)
-    foreign = with_keys(tmp_path, settings.endpoint)
+    theirs = with_keys(tmp_path, settings.endpoint)
     with (
         pytest.raises(BusError, match=f"look at the keys: tritrack doctor --keys {tmp_path}"),
-        open_client(foreign, ROOM, NEVER_S, "viewer1"),
+        open_client(theirs, ROOM, NEVER_S, "viewer1"),
     ):
         pass
 
@@ -104,18 +102,23 @@ def test_expired_keys_open_nothing(tmp_path: Path) -> None:
 
 def test_who_holds_a_clients_keys_cannot_pose_as_the_integrator(keys: Path) -> None:
     place = with_keys(keys)
-    false = {
-        "root_ca_certificate": str(keys / "ca.pem"),
-        "listen_certificate": str(keys / "client.pem"),
-        "listen_private_key": str(keys / "client.key"),
-        "enable_mtls": True,
-    }
+    false = tls_as(keys, "client", "listen")
     with (
-        raw("router", place.endpoint, false),
+        foreign("router", {"listen": place.endpoint}, false),
         pytest.raises(BusError, match="nobody answers"),
         open_client(place, ROOM, NEVER_S, "viewer1"),
     ):
         pass
+
+
+def test_a_part_finds_an_integrator_that_was_started_again(keys: Path) -> None:
+    place = with_keys(keys)
+    with ExitStack() as doors:
+        with open_hub(place, ROOM):
+            viewer = doors.enter_context(open_client(place, ROOM, SOON_S, "viewer1"))
+            viewer.announce("viewer 1")
+        with open_hub(place, ROOM) as hub:
+            assert hub.watch_alive().take(SOON_S) == Alive("viewer 1", alive=True)
 
 
 def test_a_program_with_a_clients_keys_hears_the_bodies(keys: Path) -> None:
