@@ -8,6 +8,7 @@ import time
 from multiprocessing.connection import Connection
 from typing import Any, Final
 
+from animator.page.door import Entrance, entrance_of, invitation_of
 from animator.page.inset import limb_contours, limb_ends
 from animator.page.live import LivePage
 from animator.scene import Figure, Snapshot, limb_shapes
@@ -152,6 +153,7 @@ def main(
     context: ProcessContext = ProcessContext(),
     title: str = "tritrack",
     ending: Connection | None = None,
+    entrance: Entrance | None = None,
 ) -> None:
     """Open the page at once, show until stopped or until who looks at the end has left, close.
 
@@ -161,6 +163,7 @@ def main(
         title: Of the run.
         ending: On which a supervisor tells what came of the run, when it is over; None: there is
             none.
+        entrance: Whose token a supervisor told the person; None: we do, by the log.
 
     Raises:
         PageError: When the port is taken.
@@ -168,8 +171,10 @@ def main(
     """
     with process("animator", context) as stop:
         os.nice(BEHIND)
-        page = LivePage(title, settings.page.port, commands=context.supervised)
-        log.info("the page is at %s", page.address)
+        own = entrance or entrance_of(settings.page)
+        page = LivePage(title, settings.page.port, context.supervised, own)
+        told = page.address if entrance else invitation_of(own, settings.page.port)
+        log.info("the page is at %s", told)
         try:
             warm_up()
             gc.freeze()
@@ -188,7 +193,7 @@ def _shown(
     until_s = time.monotonic() + READY_S
     while not stop.is_set():
         try:
-            with open_client(settings.bus, settings.room, HEAR_S) as bus:
+            with open_client(settings.bus, settings.room, HEAR_S, "animator") as bus:
                 bus.announce("animator")
                 return run(page, bus, stop, ending)
         except BusError:

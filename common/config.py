@@ -7,10 +7,14 @@ from typing import Final
 
 import msgspec
 
+from common.endpoint import is_exposed
 from common.method import Mode
 
 MOST_SESSION: Final = 64
 """Letters of a session's word, which goes with every message."""
+
+AUTO: Final = "auto"
+"""An endpoint that is left open."""
 
 LANDMARK_SOURCES: Final = ("own", "none", "mediapipe")
 """What `landmarks` may say instead of a folder."""
@@ -109,10 +113,18 @@ class PageSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """0: no page."""
     wait: bool = True
     """A recorded clip begins when somebody looks at the page, or half a minute later."""
+    host: str = "127.0.0.1"
+    """Where it listens. Beyond this machine, as at 0.0.0.0, a token in the printed address is asked
+    for, and nothing hides what is sent."""
+    name: str = ""
+    """By which browsers call a proxy that stands before the page, as rig.example."""
 
     def __post_init__(self) -> None:
         """Refuse what no run could mean."""
         _within("port", self.port, 0, 65535)
+        for name, word in (("host", self.host), ("name", self.name or "none")):
+            if not word or set(word) & set("/@?# "):
+                raise ValueError(f"{name} must be a plain name or address, got {word!r}")
 
 
 class BusSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -120,17 +132,33 @@ class BusSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     endpoint: str = "tcp/127.0.0.1:7447"
     """The integrator's host listens there, all others connect to it. Name another host's address
-    to spread a rig over hosts; nothing outside this machine is heard otherwise. "auto": a live run
-    takes a free port of this machine, and tells it."""
+    to spread a rig over hosts, with `keys`; nothing outside this machine is heard otherwise.
+    "auto": a live run takes a free port of this machine, and tells it."""
     session: str = ""
     """A word that all processes of a run say with each message: what comes without it is dropped.
     A live run makes one up; "": whoever speaks in the room is heard."""
+    keys: str = ""
+    """A folder that `tritrack keys` made: all speak TLS, show their certificates, and say no more
+    than theirs allows; the endpoint is then tls/HOST:PORT."""
+    open_to_all: bool = False
+    """Let whoever reaches the endpoint hear and say all, though other machines do."""
 
     def __post_init__(self) -> None:
         """Refuse what no run could mean."""
         if len(self.session) > MOST_SESSION or not self.session.isascii():
             raise ValueError(
                 f"session must be at most {MOST_SESSION} ASCII letters, got {self.session!r}"
+            )
+        if self.endpoint != AUTO and self.endpoint.startswith("tls/") != bool(self.keys):
+            raise SettingsError(
+                f"keys go with an endpoint tls/HOST:PORT, it with keys (tritrack keys FOLDER): "
+                f"got endpoint {self.endpoint!r}, keys {self.keys!r}"
+            )
+        if is_exposed(self.endpoint) and not self.keys and not self.open_to_all:
+            raise SettingsError(
+                f"whoever reaches {self.endpoint} could hear and forge all of the run: make keys "
+                "(tritrack keys FOLDER) and set keys = 'FOLDER' and the endpoint tls/HOST:PORT, "
+                "or set open_to_all = true"
             )
 
 
@@ -288,4 +316,5 @@ def with_full_paths(settings: Settings, path: Path) -> Settings:
         recognizer=msgspec.structs.replace(
             settings.recognizer, model=full(settings.recognizer.model)
         ),
+        bus=msgspec.structs.replace(settings.bus, keys=full(settings.bus.keys)),
     )

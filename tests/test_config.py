@@ -93,6 +93,12 @@ def test_what_is_misspelt_or_ill_typed_is_refused_with_its_place(
         ("[search]\nleg_window_deg = 4", "leg_window_deg"),
         ("[recognizer]\nwindow_frames = 1", "got 1"),
         ("[camera_1]\nsource = 'a'\ndevice = 0", "both set"),
+        ("[bus]\nendpoint = 'tcp/192.168.1.5:7447'", "tcp/192.168.1.5:7447.*tritrack keys FOLDER"),
+        ("[bus]\nendpoint = 'tcp/0.0.0.0:7447'", "or set open_to_all = true"),
+        ("[page]\nhost = ''", "host must be a plain name or address, got ''"),
+        ("[page]\nname = 'https://rig'", "got 'https://rig'"),
+        ("[bus]\nkeys = 'keys'", "keys go with an endpoint tls/HOST:PORT"),
+        ("[bus]\nendpoint = 'tls/rig.local:7447'", "it with keys .tritrack keys FOLDER"),
     ],
 )
 def test_what_no_run_could_mean_is_refused_with_what_was_got(
@@ -131,8 +137,12 @@ def test_paths_are_relative_to_the_file_and_variables_are_filled_in(
         background = "/plates/empty.png"
         [recognizer]
         model = "own.model"
+        [bus]
+        endpoint = "tls/rig.local:7447"
+        keys = "keys"
     """
     settings = load(written(tmp_path, text))
+    assert settings.bus.keys == str(tmp_path / "keys")
     assert settings.clip == "/elsewhere/kick"
     assert settings.calibration == str(tmp_path / "here.json")
     assert settings.camera_1 is not None
@@ -204,3 +214,8 @@ def test_a_variable_that_is_not_set_is_named(
     (tmp_path / "live.toml").write_text('clip = "$NOWHERE/walk"')
     with pytest.raises(SettingsError, match=r"\$NOWHERE/walk names a variable that is not set"):
         load(tmp_path / "live.toml")
+
+
+def test_a_bus_that_others_reach_without_keys_must_be_wanted(tmp_path: Path) -> None:
+    text = "[bus]\nendpoint = 'tcp/192.168.1.5:7447'\nopen_to_all = true"
+    assert load(written(tmp_path, text)).bus.open_to_all

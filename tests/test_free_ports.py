@@ -1,11 +1,13 @@
 """Ports of a run: what is held is named before anything starts."""
 
 import socket
+from pathlib import Path
 
 import msgspec
 import pytest
 
 from animator.page.door import PageError
+from common.bus.bus_keys import KeysError
 from common.config import BusSettings, PageSettings, Settings
 from tritrack.live.free_ports import (
     PortHeld,
@@ -61,3 +63,9 @@ def test_the_ports_of_a_run_are_those_that_it_does_not_choose() -> None:
     chosen = Settings(bus=BusSettings(endpoint="auto"), page=PageSettings(port=0))
     assert ports(chosen) == []
     assert ports(msgspec.structs.replace(chosen, metrics="127.0.0.1:9464")) == [9464]
+
+
+def test_keys_that_are_not_there_are_named_before_anything_starts(tmp_path: Path) -> None:
+    bus = BusSettings(endpoint="tls/127.0.0.1:7447", keys=str(tmp_path))
+    with pytest.raises(KeysError, match=r"ca\.pem: no such file"):
+        refuse_held_ports(free_settings(Settings(bus=bus, page=PageSettings(port=0))))

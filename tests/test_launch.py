@@ -88,6 +88,24 @@ def test_a_live_run_equals_an_offline_one(slow_clip: Path, lived: Lived) -> None
 
 
 @pytest.mark.slow
+def test_a_live_run_with_keys_gives_the_same_bodies(slow_clip: Path, tmp_path: Path) -> None:
+    """As one without, which equals an offline one: each part may say all that it has to."""
+    pytest.importorskip("cryptography", reason="keys are an extra: install tritrack[keys]")
+    from tritrack.keys.authority import make_keys
+
+    make_keys(tmp_path / "keys", [], 2)
+    bus = BusSettings(endpoint="tls/127.0.0.1:7447", keys=str(tmp_path / "keys"))
+    facts = live(settings_of(slow_clip, bus=bus), tmp_path / "out", QUIET)
+    for name, told in facts["processes"].items():
+        assert (name, told["frames"], told["dropped"]) == (name, 69, 0)
+    with Decoders() as decoders:
+        offline = poses(track_clip(Settings(clip=str(slow_clip)), decoders).bodies)
+    with np.load(tmp_path / "out" / "poses.npz") as found:
+        for name, values in offline.items():
+            np.testing.assert_array_equal(found[name], values, err_msg=name)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("view", [1, 2])
 def test_a_live_run_with_one_viewer_equals_tracking_one_view(
     slow_clip: Path, tmp_path: Path, view: ViewerNumber

@@ -1,18 +1,26 @@
 """What a run does for the person at its page: parts of it saved as run folders of their own."""
 
+import io
+import json
+import re
 import threading
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 from local_bus import LocalBus
+from rich.console import Console
+from test_page_server import free_port
 
 from common.bus.control_messages import Answer, Command, Wish
 from common.bus.messages import Body
 from common.bus.process import ProcessContext
 from common.config import PageSettings, Settings
+from tritrack.live.free_ports import free_settings
 from tritrack.live.launch import nothing_heard
 from tritrack.live.page_desk import LAST_S, SAVED, PageDesk
+from tritrack.live.session import live
 from tritrack.store.past_run import open_run
 
 RATE_HZ = 15
@@ -116,3 +124,21 @@ def test_without_a_page_there_is_nothing_to_wait_for(sitting: Sitting) -> None:
     assert sitting.desk.address == ""
     sitting.desk.end({}, sitting.stop, lambda: pytest.fail("nobody is there"))
     sitting.desk.close()
+
+
+@pytest.mark.slow
+def test_the_token_of_a_page_beyond_this_machine_is_told_to_the_person_alone(
+    clip: Path, tmp_path: Path
+) -> None:
+    """It is printed once; who reads the run folder, or hears the bus, does not learn it."""
+    said, out = io.StringIO(), tmp_path / "out"
+    settings = free_settings(Settings(clip=str(clip), page=PageSettings(port=0)))
+    page = PageSettings(port=free_port(), host="0.0.0.0", wait=False)
+    settings = msgspec.structs.replace(settings, page=page)
+    live(settings, out, Console(file=said, width=60))
+    (token,) = set(re.findall(rf":{page.port}/\?token=([\w-]+)", said.getvalue()))
+    assert len(token) >= 43
+    told = {path.name: path.read_bytes() for path in out.rglob("*") if path.is_file()}
+    assert f":{page.port}".encode() in told["log.txt"]
+    assert [name for name, content in told.items() if token.encode() in content] == []
+    assert token not in repr(json.loads(told["summary.json"]))

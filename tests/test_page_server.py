@@ -1,11 +1,14 @@
 """The page's server over real sockets: whom it lets in, and that it waits for nobody."""
 
+import http.client
 import json
 import socket
 import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
+from contextlib import ExitStack
+from typing import NamedTuple
 
 import pytest
 
@@ -16,8 +19,10 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
-from animator.page.door import PageError
-from animator.page.page_server import MOST_ASKED, WAITING, PageServer
+from animator.page.door import Entrance, PageError, cookie_of
+from animator.page.page_server import MOST_ASKED, MOST_BROWSERS, WAITING, PageServer
+
+TOKEN = "a-long-word-that-nobody-guesses"
 
 
 def free_port() -> int:
@@ -127,3 +132,121 @@ def test_what_a_browser_says_is_bounded(server: PageServer) -> None:
         while server.asked.qsize() < MOST_ASKED and time.monotonic() < until_s:
             time.sleep(0.01)
     assert server.asked.qsize() == MOST_ASKED
+
+
+class Open(NamedTuple):
+    """A page that other machines reach, called by an address of this one."""
+
+    server: PageServer
+    port: int
+
+    @property
+    def cookie(self) -> str:
+        return f"{cookie_of(self.port)}={TOKEN}"
+
+    def status(self, path: str, **headers: str) -> int:
+        return self.answer(path, **headers).status
+
+    def answer(self, path: str, **headers: str) -> http.client.HTTPResponse:
+        """What the page answers, whatever the names in the question."""
+        line = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
+        line.request("GET", path, headers={"Host": f"rig.local:{self.port}", **headers})
+        return line.getresponse()
+
+
+@pytest.fixture
+def everywhere() -> Iterator[Open]:
+    port = free_port()
+    entrance = Entrance("0.0.0.0", token=TOKEN)
+    server = PageServer(port, lambda: [b'{"kind":"hello"}'], entrance)
+    yield Open(server, port)
+    server.close()
+
+
+@pytest.mark.parametrize("path", ["/", "/page.js", "/live", "/nothing"])
+@pytest.mark.parametrize(
+    "brought", ["", "TOKEN", TOKEN[:-1], f"{TOKEN}x", TOKEN.upper(), "%FF", "\xff"]
+)
+def test_beyond_this_machine_nothing_is_shown_without_the_token(
+    everywhere: Open, path: str, brought: str
+) -> None:
+    cookie = {"Cookie": f"{cookie_of(everywhere.port)}={brought}; other=1"}
+    assert everywhere.status(path) == 403
+    assert everywhere.status(path, **cookie) == 403
+    if brought.isascii():
+        assert everywhere.status(f"{path}?token={brought}") == 403
+    refused = everywhere.answer(path)
+    assert b"?token=" in refused.read()
+    assert refused.headers["Set-Cookie"] is None
+
+
+def test_the_printed_address_lets_in_and_leaves_no_token_in_the_address_bar(
+    everywhere: Open,
+) -> None:
+    came = everywhere.answer(f"/?token={TOKEN}")
+    assert (came.status, came.headers["Location"]) == (303, "/")
+    kept, *rules = came.headers["Set-Cookie"].split("; ")
+    assert kept == everywhere.cookie
+    assert {"HttpOnly", "SameSite=Lax"} <= set(rules)
+    for path in ("/", "/page.js"):
+        assert everywhere.status(path, Cookie=f"other=1; {kept}") == 200
+
+
+def test_a_socket_is_opened_to_who_has_the_token_and_comes_from_the_page_itself(
+    everywhere: Open,
+) -> None:
+    where = f"ws://127.0.0.1:{everywhere.port}/live"
+    own, foreign = Origin(f"http://127.0.0.1:{everywhere.port}"), Origin("https://evil.example")
+    cookie = {"Cookie": everywhere.cookie}
+    with connect(where, origin=own, additional_headers=cookie) as browser:
+        assert json.loads(browser.recv(timeout=10)) == {"kind": "hello"}
+    with connect(f"{where}?token={TOKEN}") as program:
+        assert json.loads(program.recv(timeout=10)) == {"kind": "hello"}
+    for origin, headers in ((own, {}), (foreign, cookie)):
+        with (
+            pytest.raises(InvalidStatus, match="403"),
+            connect(where, origin=origin, additional_headers=headers),
+        ):
+            pass
+
+
+def test_fifty_browsers_are_served_and_the_next_is_told_why_not(server: PageServer) -> None:
+    """Issue 15: 50 clients; who leaves makes room for another."""
+    with ExitStack() as doors:
+        browsers = [doors.enter_context(connect(socket_of(server))) for _ in range(50)]
+        for browser in browsers:
+            browser.recv(timeout=10)
+        with pytest.raises(InvalidStatus) as refused, connect(socket_of(server)):
+            pass
+        assert refused.value.response.status_code == 503
+        assert b"50 browsers look at this page already: close one" in refused.value.response.body
+        server.tell(b"news")
+        assert [browser.recv(timeout=10) for browser in browsers] == ["news"] * MOST_BROWSERS
+        browsers.pop().close()
+        until_s = time.monotonic() + 10
+        while len(server._browsers) == MOST_BROWSERS and time.monotonic() < until_s:
+            time.sleep(0.01)
+        with connect(socket_of(server)) as late:
+            assert json.loads(late.recv(timeout=10)) == {"kind": "hello"}
+
+
+def test_a_browser_that_does_not_listen_costs_the_others_no_message(server: PageServer) -> None:
+    """Each message reaches who listens before the next is said; of the deaf one's the oldest go."""
+    last = 8 * WAITING
+    with (
+        connect(socket_of(server), max_queue=1) as deaf,
+        connect(socket_of(server)) as quick,
+        connect(socket_of(server)) as other,
+    ):
+        for browser in (deaf, quick, other):
+            browser.recv(timeout=10)
+        for n in range(last + 1):
+            server.tell(b"%d " % n + b"x" * 20_000)
+            for browser in (quick, other):
+                assert int(browser.recv(timeout=10).split()[0]) == n
+        assert max(waiting.qsize() for waiting in server._browsers.values()) == WAITING
+        heard = [int(deaf.recv(timeout=10).split()[0])]
+        while heard[-1] != last:
+            heard.append(int(deaf.recv(timeout=10).split()[0]))
+    assert len(heard) < last
+    assert heard == sorted(heard)

@@ -4,6 +4,7 @@ import logging
 import os
 import sys
 from importlib.metadata import version
+from pathlib import Path
 from typing import Annotated, Final, Literal
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -18,6 +19,7 @@ import typer
 
 from tritrack.commands.clip_commands import export, replay, retouch, single, synth, track
 from tritrack.commands.command_output import JsonWanted, console, results
+from tritrack.commands.key_commands import examined_keys, keys
 from tritrack.commands.live_commands import (
     animate,
     bridge,
@@ -69,14 +71,19 @@ def every_command(
     logging.basicConfig(level=log_level.upper(), format="%(levelname)s %(name)s: %(message)s")
 
 
-def doctor(json_wanted: JsonWanted = False) -> None:
+def doctor(
+    keys_folder: Annotated[
+        Path | None, typer.Option("--keys", help="Look at the keys in this folder too.")
+    ] = None,
+    json_wanted: JsonWanted = False,
+) -> None:
     """Check the installation and name what is missing.
 
     Example: tritrack doctor
     """
     from tritrack.doctor import examine, table_of
 
-    findings = examine()
+    findings = [*examine(), *([] if keys_folder is None else examined_keys(keys_folder))]
     if json_wanted:
         print(json_text([finding._asdict() for finding in findings]))
     else:
@@ -101,7 +108,7 @@ def bench(
 COMMANDS: Final = (
     *(demo, live, serve, view, integrate, recognize, animate, metrics, bridge),
     *(track, synth, train, teach, single, export, replay, retouch),
-    *(doctor, bench),
+    *(keys, doctor, bench),
 )
 """In the order of the help."""
 for command in COMMANDS:

@@ -54,11 +54,16 @@ def track(source: str | Path, views: tuple[ViewerNumber, ...] = (1, 2)) -> list[
 
 @overload
 def subscribe(
-    endpoint: str = ENDPOINT, room: str = ROOM, *, wait_s: float = WAIT_S
+    endpoint: str = ENDPOINT, room: str = ROOM, *, wait_s: float = WAIT_S, keys: str = ""
 ) -> "Subscription[Body]": ...
 @overload
 def subscribe(
-    endpoint: str = ENDPOINT, room: str = ROOM, *, kind: type[Said], wait_s: float = WAIT_S
+    endpoint: str = ENDPOINT,
+    room: str = ROOM,
+    *,
+    kind: type[Said],
+    wait_s: float = WAIT_S,
+    keys: str = "",
 ) -> "Subscription[Said]": ...
 def subscribe(
     endpoint: str = ENDPOINT,
@@ -66,6 +71,7 @@ def subscribe(
     *,
     kind: type = Body,
     wait_s: float = WAIT_S,
+    keys: str = "",
 ) -> "Subscription":  # type: ignore[type-arg]
     """What a live run says, for `for` and `async for`, until the run is over.
 
@@ -74,8 +80,14 @@ def subscribe(
         room: `room` of the run's settings.
         kind: Which message: Body, Posture or Report.
         wait_s: How long to wait for the run to begin.
+        keys: Folder with ca.pem, client.pem and client.key, where the run has keys; the endpoint is
+            tls/HOST:PORT then.
+
+    Raises:
+        SettingsError: When only one of keys and endpoint is of TLS.
     """
-    return Subscription(kind, endpoint, room, wait_s)
+    bus = BusSettings(endpoint=endpoint, keys=keys, open_to_all=True)
+    return Subscription(kind, bus, room, wait_s)
 
 
 class Subscription(Generic[Said]):
@@ -85,9 +97,9 @@ class Subscription(Generic[Said]):
     It ends when the integrator does. It raises BusError when nobody answers in time.
     """
 
-    def __init__(self, kind: type[Said], endpoint: str, room: str, wait_s: float) -> None:
+    def __init__(self, kind: type[Said], bus: BusSettings, room: str, wait_s: float) -> None:
         """See `subscribe`."""
-        self._kind, self._endpoint, self._room, self._wait_s = kind, endpoint, room, wait_s
+        self._kind, self._bus, self._room, self._wait_s = kind, bus, room, wait_s
 
     def __iter__(self) -> Iterator[Said]:
         """Listen from now on."""
@@ -108,8 +120,7 @@ class Subscription(Generic[Said]):
     def _listen(self, doors: ExitStack) -> "_Ears[Said]":
         from common.bus.bus import open_client
 
-        settings = BusSettings(endpoint=self._endpoint)
-        bus = doors.enter_context(open_client(settings, self._room, self._wait_s))
+        bus = doors.enter_context(open_client(self._bus, self._room, self._wait_s))
         return _Ears(bus, self._kind, time.monotonic() + self._wait_s)
 
 

@@ -36,6 +36,7 @@ EXTRAS: Final = (
     ("OSC and VMC bridges", "python-osc", "osc"),
     ("LSL bridge", "pylsl", "lsl"),
     ("metrics", "prometheus-client", "metrics"),
+    ("keys of a bus", "cryptography", "keys"),
 )
 """What only some commands need: its use, the distribution, and the extra that brings it."""
 

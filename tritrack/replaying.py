@@ -108,27 +108,32 @@ def _meets(report: Report, body: Body, tolerance_s: float) -> bool:
     return near and report.clock_s <= body.clock_s
 
 
-def replay_on_bus(folder: Path, endpoint: str, speed: float, console: Console) -> dict[str, Any]:
+def replay_on_bus(
+    folder: Path, bus_settings: BusSettings, speed: float, console: Console
+) -> dict[str, Any]:
     """Say again all that a recorded run said, at its pace, to whoever listens at an endpoint.
 
     Messages are as recorded but for `clock_s`, which is when they are said.
 
     Args:
         folder: That of the run.
-        endpoint: Where others connect to, as `[bus] endpoint` of the settings has it.
+        bus_settings: Where others connect to, and with which keys.
         speed: 2.0 is twice as fast.
         console: Is told where to listen.
 
     Raises:
         RecordingError: When there is no recording.
         BusError: When the endpoint is taken or is none.
+        KeysError: When keys are named that are not there.
     """
     recording = read_recording(folder)
     room = recording.head.settings.room
-    with open_hub(BusSettings(endpoint=endpoint), room) as bus:
+    with open_hub(bus_settings, room) as bus:
         bus.keep(Cameras)
         bus.announce("integrator")  # whose place it takes: who listens goes when it does
-        console.print(f"{recording.head.name}: room {room} at {endpoint}", highlight=False)
+        console.print(
+            f"{recording.head.name}: room {room} at {bus_settings.endpoint}", highlight=False
+        )
         time.sleep(LISTEN_S)
         said = say(recording, bus, speed)
         time.sleep(LISTEN_S)

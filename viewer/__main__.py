@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from common.bus import clock
 from common.bus.bus import Bus, open_client
+from common.bus.bus_keys import VIEWERS
 from common.bus.control_messages import ClockAnswer, ClockQuestion, Command, Ended
 from common.bus.inbox import Inbox
 from common.bus.messages import Guide, Picture, ViewerNumber
@@ -150,7 +151,10 @@ def main(
         SettingsError: When the source of landmarks cannot be used.
     """
     name = f"viewer {viewer}"
-    with process(name, context) as stop, open_client(settings.bus, settings.room, READY_S) as bus:
+    with (
+        process(name, context) as stop,
+        open_client(settings.bus, settings.room, READY_S, VIEWERS[viewer]) as bus,
+    ):
         heart = Heart(bus, name, Pace(1.0))
         heart.beat("starting")
         view, state, warnings = _prepared(settings, viewer, context)

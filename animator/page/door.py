@@ -1,50 +1,115 @@
-"""The pages' door: which port is free, and who may come in: this machine's own browser alone."""
+"""The pages' door: where a page listens, which port is free, and who may come in."""
 
+import secrets
 import socket
-from typing import Final
-from urllib.parse import urlsplit
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+from urllib.parse import parse_qs, urlsplit
+
+from common.config import PageSettings
+from common.endpoint import is_loopback
 
 HOST: Final = "127.0.0.1"
 OWN_NAMES: Final = (HOST, "localhost")
+EVERY_ADDRESS: Final = ("0.0.0.0", "::")
 
 
 class PageError(RuntimeError):
     """The page cannot be opened: the text says why and what to do."""
 
 
-def is_own(host: str, origin: str) -> bool:
+class Entrance(NamedTuple):
+    """Where a page listens, and what lets a browser in."""
+
+    host: str = HOST
+    name: str = ""
+    """Of a proxy that stands before it, beside this machine's own."""
+    token: str = ""
+    """What a browser must bring; "": nothing, where no other machine gets here."""
+
+
+def entrance_of(settings: PageSettings) -> Entrance:
+    """The entrance that settings ask for, with a token of its own where others get to it."""
+    token = "" if is_loopback(settings.host) else secrets.token_urlsafe()
+    return Entrance(settings.host, settings.name, token)
+
+
+def address_of(entrance: Entrance, port: int) -> str:
+    """By what a browser calls the page."""
+    host = socket.gethostname() if entrance.host in EVERY_ADDRESS else entrance.host
+    return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
+
+
+def invitation_of(entrance: Entrance, port: int) -> str:
+    """The page's address with what lets a browser in: for the person who started it alone."""
+    token = f"/?token={entrance.token}" if entrance.token else ""
+    return f"{address_of(entrance, port)}{token}"
+
+
+def is_own(host: str, origin: str, entrance: Entrance = Entrance()) -> bool:
     """Whether a connection comes from this very page.
 
     Any web page may try to connect to this machine, and a foreign name may be made to point here;
-    a browser tells both by these headers. A program that is no browser sends no origin.
+    a browser tells both by these headers. A program that is no browser sends no origin. Where a
+    token is asked for, the page may have any name: no foreign one has the cookie.
 
     Args:
         host: The request's `Host`, as 127.0.0.1:8080; a forwarded port may differ from ours.
         origin: The request's `Origin`, or "".
+        entrance: The page's.
     """
-    named = urlsplit(f"//{host}").hostname
-    return named in OWN_NAMES and (not origin or urlsplit(origin).netloc == host)
+    try:
+        named, whence = urlsplit(f"//{host}").hostname, urlsplit(origin).netloc
+    except ValueError:
+        return False
+    known = named in OWN_NAMES or named == entrance.name or bool(entrance.token)
+    return bool(named) and known and (not origin or whence == host)
 
 
-def refuse_port(port: int) -> None:
+def cookie_of(port: int) -> str:
+    """The name under which a browser keeps the token: cookies do not tell ports apart."""
+    return f"tritrack_{port}"
+
+
+def has_token(entrance: Entrance, query: str, cookies: Sequence[str], port: int) -> bool:
+    """Whether a request brings the token, in its address or as a cookie.
+
+    Args:
+        entrance: The page's.
+        query: What stands behind the `?`.
+        cookies: The request's `Cookie` headers.
+        port: The page's.
+    """
+    pairs = [each.strip().partition("=") for line in cookies for each in line.split(";")]
+    brought = [value for name, _, value in pairs if name == cookie_of(port)]
+    brought += parse_qs(query).get("token", [])
+    due = entrance.token.encode()
+    return not due or any(
+        secrets.compare_digest(each.encode(errors="replace"), due) for each in brought
+    )
+
+
+def refuse_port(port: int, host: str = HOST) -> None:
     """A server that quietly took the next free port would make the address told to the user wrong.
 
     Raises:
-        PageError: When the port is 0, taken or not allowed.
+        PageError: When the port is 0, taken or not allowed, or the host is not this machine's.
     """
     if port == 0:
         raise PageError("page.port is 0, which means no page: set it to a free port, as 8080")
-    with socket.socket() as trial:
-        trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            trial.bind((HOST, port))
-        except OSError as error:
-            raise PageError(unusable(port, str(error.strerror).lower())) from error
+    try:
+        found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
+        with socket.socket(found[0][0]) as trial:
+            trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            trial.bind(found[0][4])
+    except OSError as error:
+        raise PageError(unusable(port, str(error.strerror).lower(), host)) from error
 
 
-def unusable(port: int, why: str) -> str:
+def unusable(port: int, why: str, host: str = HOST) -> str:
     """What to say of a port that cannot be had."""
+    where = "" if host == HOST else f" of {host}"
     return (
-        f"cannot open the page on port {port}: {why}; "
+        f"cannot open the page on port {port}{where}: {why}; "
         "close what uses it, or set page.port to another one (or --port)"
     )

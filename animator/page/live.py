@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import msgspec
 
+from animator.page.door import Entrance
 from animator.page.page_messages import Asked, Greeting, Over, ShownHealth, Told
 from animator.page.page_server import PageServer
 from animator.page.shown import shown_frame, shown_room
@@ -22,25 +23,28 @@ MOST_BYTES: Final = 32_000_000
 
 
 class LivePage:
-    """What a browser on this machine sees at `address`, until `close`.
+    """What a browser sees at `address`, until `close`.
 
     Args:
         title: Of the run.
         port: Of this machine, free.
         commands: Whether somebody hears what the person asks for.
+        entrance: Where it listens, and to whom.
 
     Raises:
         PageError: When the port is 0, taken or not allowed.
     """
 
-    def __init__(self, title: str, port: int, commands: bool) -> None:
+    def __init__(
+        self, title: str, port: int, commands: bool, entrance: Entrance = Entrance()
+    ) -> None:
         self._hello = Greeting(title, time.time_ns() // 1_000_000, commands)
         self._lock = threading.Lock()
         self._frames: deque[bytes] = deque()
         self._bytes = self._shown = 0
         self._rig: Rig | None = None
         self._last: dict[type, bytes] = {}
-        self._server = PageServer(port, self._greeting)
+        self._server = PageServer(port, self._greeting, entrance)
         self.address = self._server.address
         """Where a browser finds the page."""
 

@@ -1,4 +1,4 @@
-"""The live page's server: its files, and a WebSocket to each browser of this machine."""
+"""The live page's server: its files, and a WebSocket to each browser that is let in."""
 
 import asyncio
 import logging
@@ -17,7 +17,16 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from animator.page.door import HOST, PageError, is_own, refuse_port, unusable
+from animator.page.door import (
+    Entrance,
+    PageError,
+    address_of,
+    cookie_of,
+    has_token,
+    is_own,
+    refuse_port,
+    unusable,
+)
 
 SITE: Final = Path(__file__).parent / "site"
 SOCKET: Final = "/live"
@@ -28,7 +37,7 @@ MOST_SAID_BYTES: Final = 1000
 """A browser says short things alone."""
 MOST_ASKED: Final = 16
 """Of these, so many wait to be heard."""
-MOST_BROWSERS: Final = 8
+MOST_BROWSERS: Final = 50
 POLICY: Final = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
@@ -47,33 +56,37 @@ class _Door(NamedTuple):
 
 
 class PageServer:
-    """Serves the page on exactly this port of the loopback interface, in a thread of its own.
+    """Serves the page on exactly this port, in a thread of its own.
 
     Args:
         port: Of this machine, free.
         greeting: What a browser is told when it comes, oldest first; called in the server's thread.
+        entrance: Where it listens, the loopback interface where nothing else is said, and to whom.
 
     Raises:
         PageError: When the port is 0, taken or not allowed.
     """
 
-    def __init__(self, port: int, greeting: Callable[[], list[bytes]]) -> None:
-        refuse_port(port)
-        self.address = f"http://{HOST}:{port}"
+    def __init__(
+        self, port: int, greeting: Callable[[], list[bytes]], entrance: Entrance = Entrance()
+    ) -> None:
+        refuse_port(port, entrance.host)
+        self.address = address_of(entrance, port)
         self.asked: queue.Queue[bytes] = queue.Queue(MOST_ASKED)
         """What browsers said."""
         self.came = 0
         """How many browsers have come so far."""
         self._greeting = greeting
+        self._entrance, self._port = entrance, port
         self._browsers: dict[ServerConnection, asyncio.Queue[bytes]] = {}
         opened: queue.Queue[_Door | OSError] = queue.Queue(1)
         self._thread = threading.Thread(
-            target=lambda: asyncio.run(self._serve(port, opened)), daemon=True
+            target=lambda: asyncio.run(self._serve(opened)), daemon=True
         )
         self._thread.start()
         got = opened.get()
         if isinstance(got, OSError):
-            raise PageError(unusable(port, str(got.strerror).lower()))
+            raise PageError(unusable(port, str(got.strerror).lower(), entrance.host))
         self._door = got
 
     @property
@@ -92,13 +105,13 @@ class PageServer:
             self._door.loop.call_soon_threadsafe(self._door.over.set)
         self._thread.join()
 
-    async def _serve(self, port: int, opened: "queue.Queue[_Door | OSError]") -> None:
+    async def _serve(self, opened: "queue.Queue[_Door | OSError]") -> None:
         over = asyncio.Event()
         try:
             server = await serve(
                 self._attend,
-                HOST,
-                port,
+                self._entrance.host,
+                self._port,
                 process_request=self._request,
                 max_size=MOST_SAID_BYTES,
                 compression=None,
@@ -115,17 +128,31 @@ class PageServer:
     def _request(self, connection: ServerConnection, request: Request) -> Response | None:
         """A file of the page; None where a WebSocket may be opened."""
         host, origin = request.headers.get("Host", ""), request.headers.get("Origin", "")
-        if not is_own(host, origin):
+        path, _, query = request.path.partition("?")
+        if not is_own(host, origin, self._entrance):
             text = "only this machine's own page may connect\n"
             return connection.respond(HTTPStatus.FORBIDDEN, text)
-        if request.path == SOCKET:
+        if not has_token(self._entrance, query, request.headers.get_all("Cookie"), self._port):
+            text = "open the page by its whole address, as it was printed: it ends in ?token=...\n"
+            return connection.respond(HTTPStatus.FORBIDDEN, text)
+        if path == SOCKET:
             full = len(self._browsers) >= MOST_BROWSERS
-            text = "too many browsers look at this page\n"
+            text = f"{MOST_BROWSERS} browsers look at this page already: close one of them\n"
             return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, text) if full else None
-        found = site().get(request.path.partition("?")[0])
+        if path == "/" and self._entrance.token and "token=" in query:
+            return Response(HTTPStatus.SEE_OTHER, "See Other", self._kept_token())
+        found = site().get(path)
         if found is None:
             return connection.respond(HTTPStatus.NOT_FOUND, "no such page\n")
         return Response(HTTPStatus.OK, "OK", _headers(*found), found[1])
+
+    def _kept_token(self) -> Headers:
+        """Take the token from the address bar, where it would be read and handed on, to a cookie
+        that no script reads and no foreign page makes a browser send."""
+        cookie = f"{cookie_of(self._port)}={self._entrance.token}; HttpOnly; SameSite=Lax; Path=/"
+        headers = _headers("text/plain", b"")
+        headers.update({"Location": "/", "Set-Cookie": cookie})
+        return headers
 
     async def _attend(self, connection: ServerConnection) -> None:
         """Serve one browser until it goes."""

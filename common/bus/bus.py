@@ -5,10 +5,13 @@ import logging
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, Final, Protocol
 
 import zenoh
 
+from common.bus.bus_access import access_of
+from common.bus.bus_keys import HUB, Part, tls_of
 from common.bus.inbox import Alive, Inbox
 from common.bus.live_bus import LiveBus
 from common.bus.mailbox import Mailbox
@@ -84,9 +87,10 @@ def open_hub(settings: BusSettings, room: str) -> Iterator[LiveBus]:
 
     Raises:
         BusError: When the endpoint is taken or is none.
+        KeysError: When the settings name keys that are not there.
     """
     try:
-        session = zenoh.open(_config("router", settings.endpoint))
+        session = zenoh.open(_config(settings, HUB, room))
     except zenoh.ZError as error:
         raise BusError(
             f"cannot listen on {settings.endpoint} ({_first_line(error)}): end the run that holds "
@@ -97,17 +101,23 @@ def open_hub(settings: BusSettings, room: str) -> Iterator[LiveBus]:
 
 
 @contextmanager
-def open_client(settings: BusSettings, room: str, give_up_s: float) -> Iterator[LiveBus]:
+def open_client(
+    settings: BusSettings, room: str, give_up_s: float, part: Part = "client"
+) -> Iterator[LiveBus]:
     """The bus of any other process; waits up to `give_up_s` for the hub.
+
+    Where the settings name keys it speaks as `part`, and no more than that may.
 
     Raises:
         BusError: When nobody answers at the endpoint in time.
+        KeysError: When the settings name keys that are not there.
     """
-    session = _reach(settings.endpoint, time.monotonic() + give_up_s)
+    session = _reach(settings, part, room, time.monotonic() + give_up_s)
     if session is None:
+        keys = f", or look at the keys: tritrack doctor --keys {settings.keys}"
         raise BusError(
             f"nobody answers at {settings.endpoint} after {give_up_s:g} s: start the integrator "
-            "first, or set [bus] endpoint to where it listens"
+            f"first, or set [bus] endpoint to where it listens{keys if settings.keys else ''}"
         )
     with _bus(session, room, settings.session) as bus:
         yield bus
@@ -124,25 +134,26 @@ def _bus(session: Any, room: str, run: str) -> Iterator[LiveBus]:
             bus.close()
 
 
-def _reach(endpoint: str, until_s: float) -> Any | None:
-    config = _config("client", endpoint)
+def _reach(settings: BusSettings, part: Part, room: str, until_s: float) -> Any | None:
+    config = _config(settings, part, room)
     while True:
         try:
             return zenoh.open(config)
         except zenoh.ZError as error:
-            log.debug("%s: %s", endpoint, _first_line(error))
+            log.debug("%s: %s", settings.endpoint, _first_line(error))
         if time.monotonic() + RETRY_S >= until_s:
             return None
         time.sleep(RETRY_S)
 
 
-def _config(mode: str, endpoint: str) -> zenoh.Config:
+def _config(settings: BusSettings, part: Part, room: str) -> zenoh.Config:
     """A session that hears and speaks at one endpoint and nowhere else."""
     zenoh.init_log_from_env_or("error")
-    own = {
-        "mode": mode,
-        "listen/endpoints": [endpoint] if mode == "router" else [],
-        "connect/endpoints": [endpoint] if mode == "client" else [],
+    hub, endpoint = part == HUB, settings.endpoint
+    own: dict[str, Any] = {
+        "mode": "router" if hub else "client",
+        "listen/endpoints": [endpoint] if hub else [],
+        "connect/endpoints": [] if hub else [endpoint],
         "connect/retry": {
             "period_init_ms": 100,
             "period_max_ms": 500,
@@ -158,6 +169,9 @@ def _config(mode: str, endpoint: str) -> zenoh.Config:
         "transport/link/rx/max_message_size": MAX_BYTES + ENVELOPE_BYTES,
         "transport/unicast/open_timeout": HANDSHAKE_MS,
     }
+    if settings.keys:
+        own["transport/link/tls"] = tls_of(Path(settings.keys), part)
+        own |= {"access_control": access_of(room)} if hub else {}
     config = zenoh.Config()
     try:
         for name, value in own.items():

@@ -184,9 +184,8 @@ def _refuse_false_landmarks(landmarks: Landmarks) -> None:
 
 
 def _refuse_a_false_body(body: Body) -> None:
-    whole = {len(part) > 0 for part in (body.joints_m, body.pose, body.angles_raw_deg)}
-    if len(whole) > 1:
-        raise MalformedMessage("joints_m, pose and angles_raw_deg are not all there, or none")
+    if body.pose and not body.joints_m:
+        raise MalformedMessage("a pose without joints_m")
     if any(len(own) != len(JOINT_NAMES) for own in body.joints_px):
         raise MalformedMessage(f"joints_px has no {len(JOINT_NAMES)} joints in a camera")
     if body.lifting is not None:

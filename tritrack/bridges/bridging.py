@@ -11,7 +11,7 @@ from tritrack.client import Subscription, subscribe
 Protocol = Literal["osc", "vmc", "lsl"]
 
 
-def bridge(protocol: Protocol, endpoint: str, room: str, to: str) -> int:
+def bridge(protocol: Protocol, endpoint: str, room: str, to: str, keys: str = "") -> int:
     """Hand on every body; how many.
 
     Args:
@@ -19,12 +19,13 @@ def bridge(protocol: Protocol, endpoint: str, room: str, to: str) -> int:
         endpoint: Of the run.
         room: Of the run.
         to: `HOST:PORT` that OSC and VMC are sent to.
+        keys: Folder of a client's keys, where the run has some.
 
     Raises:
         BridgeError: When the protocol's library is missing, or `to` is no address.
         BusError: When no run answers within a minute.
     """
-    bodies = subscribe(endpoint, room)
+    bodies = subscribe(endpoint, room, keys=keys)
     if protocol == "lsl":
         push, sent = lsl_outlet(), 0
         for body in bodies:

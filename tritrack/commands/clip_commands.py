@@ -7,7 +7,7 @@ from typing import Annotated, Any, Final, Literal
 import typer
 
 from common.bus.messages import ViewerNumber
-from common.config import Settings
+from common.config import BusSettings, Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import Out, Record, Size, writable, writable_file
 from tritrack.exporting import OWN_NAMES, Format, Scale, export_run
@@ -154,6 +154,7 @@ def replay(
     speed: Annotated[
         float, typer.Option(min=0.1, max=100.0, help="On the bus: 2 is twice as fast.")
     ] = 1.0,
+    keys: Annotated[str, typer.Option(help="On the bus: folder of the integrator's keys.")] = "",
     json_wanted: JsonWanted = False,
 ) -> None:
     """Send a recorded run through the integrator again, or say it again on a bus.
@@ -163,7 +164,7 @@ def replay(
     from tritrack.replaying import replay_on_bus, replay_run
 
     if bus:
-        facts = replay_on_bus(run, bus, speed, console)
+        facts = replay_on_bus(run, BusSettings(endpoint=bus, keys=keys), speed, console)
         tell(facts, json_wanted, f"{facts['said']} messages said")
         return
     facts = replay_run(run, out)

@@ -153,6 +153,7 @@ def bridge(
     to: Annotated[str, typer.Option(help="HOST:PORT that listens; 9000 or 39539 here.")] = "",
     endpoint: Annotated[str, typer.Option(help="Of the run.")] = BusSettings().endpoint,
     room: Annotated[str, typer.Option(help="Of the run.")] = Settings().room,
+    keys: Annotated[str, typer.Option(help="Folder of a client's keys, for a tls endpoint.")] = "",
     json_wanted: JsonWanted = False,
 ) -> None:
     """Hand a live run's bodies on by OSC, VMC or the Lab Streaming Layer, until it is over.
@@ -162,7 +163,7 @@ def bridge(
     from tritrack.bridges.bridging import bridge as run_bridge
 
     there = to or ("127.0.0.1:39539" if protocol == "vmc" else "127.0.0.1:9000")
-    sent = run_bridge(protocol, endpoint, room, there)
+    sent = run_bridge(protocol, endpoint, room, there, keys)
     tell({"bodies": sent}, json_wanted, f"{sent} bodies handed on")
 
 

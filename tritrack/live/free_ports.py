@@ -4,16 +4,16 @@ import importlib.util
 import re
 import secrets
 import socket
+from pathlib import Path
 from typing import Final
 
 import msgspec
 
-from common.config import BusSettings, PageSettings, Settings, address_of
+from common.bus.bus_keys import PARTS, refuse_missing
+from common.config import AUTO, PageSettings, Settings, address_of
 
-TCP: Final = re.compile(r"tcp/(?P<host>[^/]+):(?P<port>\d+)")
+TCP: Final = re.compile(r"(?:tcp|tls)/(?P<host>[^/]+):(?P<port>\d+)")
 SESSION_BYTES: Final = 8
-AUTO: Final = "auto"
-"""An endpoint that is left open."""
 
 
 class PortHeld(ValueError):
@@ -27,7 +27,12 @@ def refuse_held_ports(settings: Settings) -> None:
         PortHeld: When the endpoint of the bus or the address of the metrics is held, or the page
             or the metrics lack a library.
         PageError: When the page's port is.
+        KeysError: When a part of a live run lacks its keys.
     """
+    if settings.bus.keys:
+        for part in PARTS:
+            if part != "client":
+                refuse_missing(Path(settings.bus.keys), part)
     _refuse_endpoint(settings.bus.endpoint)
     if settings.page.port:
         try:
@@ -38,7 +43,7 @@ def refuse_held_ports(settings: Settings) -> None:
             raise PortHeld(
                 f"the page needs {error.name}: pip install 'tritrack[page]', or set page.port = 0"
             ) from error
-        refuse_port(settings.page.port)
+        refuse_port(settings.page.port, settings.page.host)
     refuse_held_metrics(settings.metrics)
 
 
@@ -53,9 +58,10 @@ def own_session(settings: Settings) -> Settings:
 def free_settings(settings: Settings) -> Settings:
     """The same settings with an endpoint and a page on ports that nobody holds."""
     bus, page = _free_port(), _free_port()
+    kind = "tls" if settings.bus.keys else "tcp"
     return msgspec.structs.replace(
         settings,
-        bus=BusSettings(endpoint=f"tcp/127.0.0.1:{bus}"),
+        bus=msgspec.structs.replace(settings.bus, endpoint=f"{kind}/127.0.0.1:{bus}"),
         page=PageSettings(port=page) if settings.page.port else settings.page,
     )
 
@@ -64,7 +70,7 @@ def with_free_endpoint(settings: Settings) -> Settings:
     """The same settings with a free port of this machine where they leave it open."""
     if settings.bus.endpoint != AUTO:
         return settings
-    endpoint = f"tcp/127.0.0.1:{_free_port()}"
+    endpoint = f"{'tls' if settings.bus.keys else 'tcp'}/127.0.0.1:{_free_port()}"
     bus = msgspec.structs.replace(settings.bus, endpoint=endpoint)
     return msgspec.structs.replace(settings, bus=bus)
 

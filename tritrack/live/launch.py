@@ -201,7 +201,9 @@ def _client(
             hub.refuse_failure()
             show()
             try:
-                bus = door.enter_context(open_client(settings.bus, settings.room, TRY_S))
+                bus = door.enter_context(
+                    open_client(settings.bus, settings.room, TRY_S, "supervisor")
+                )
             except BusError:
                 if time.monotonic() > until_s:
                     raise

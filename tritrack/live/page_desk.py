@@ -7,6 +7,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Final
 
+from animator.page.door import entrance_of, invitation_of
 from common.bus.bus import Bus
 from common.bus.control_messages import Answer, Command, Wish
 from common.bus.inbox import Inbox
@@ -42,9 +43,10 @@ class PageDesk:
         self._commands: Inbox[Command] | None = None
         self._began_s: float | None = None
         self._ending: Connection | None = None
+        self._entrance = entrance_of(settings.page)
         if settings.page.port:
             theirs, self._ending = SPAWN.Pipe(duplex=False)
-            self.watched = Watched(page_part(settings, context, title, theirs))
+            self.watched = Watched(page_part(settings, context, title, theirs, self._entrance))
 
     @property
     def parts(self) -> list[Part]:
@@ -53,15 +55,15 @@ class PageDesk:
 
     @property
     def address(self) -> str:
-        """Where a browser finds the page; "" while it does not answer."""
+        """What lets a browser find the page, and in; "" while it does not answer."""
         if self.watched is None:
             return ""
         port = self._settings.page.port
         try:
-            socket.create_connection(("127.0.0.1", port), ANSWERS_S).close()
+            socket.create_connection((self._entrance.host, port), ANSWERS_S).close()
         except OSError:
             return ""
-        return f"http://127.0.0.1:{port}"
+        return invitation_of(self._entrance, port)
 
     def listen(self, bus: Bus) -> None:
         """Hear what is asked for from now on."""

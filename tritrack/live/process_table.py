@@ -11,6 +11,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any, Final, NamedTuple
 
+from animator.page.door import Entrance
 from common.bus.process import ProcessContext
 from common.config import Settings
 from common.parent_death import end_with_parent
@@ -73,9 +74,15 @@ def names_of(clip: Clip) -> tuple[str, ...]:
     return ("integrator", "recognizer", *(f"viewer {view.number}" for view in clip.views))
 
 
-def page_part(settings: Settings, context: ProcessContext, title: str, ending: Connection) -> Part:
+def page_part(
+    settings: Settings,
+    context: ProcessContext,
+    title: str,
+    ending: Connection,
+    entrance: Entrance,
+) -> Part:
     """The process of the live page: started first, and the last to end."""
-    return Part("animator", animator_main, (settings, context, title, ending))
+    return Part("animator", animator_main, (settings, context, title, ending, entrance))
 
 
 def integrator_main(*arguments: Any) -> None:

@@ -5,6 +5,7 @@ from contextlib import contextmanager
 
 from rich.console import Console
 from rich.live import Live as LiveDisplay
+from rich.markup import escape
 
 from common.bus.control_messages import Pulse
 from common.config import Settings
@@ -50,7 +51,8 @@ class Screen:
         """Say where the page is, once it is there."""
         if "page" not in self._told and (address := self._address()):
             self._told.add("page")
-            self._console.print(f"the page: [link]{address}[/link]", highlight=False)
+            text = f"the page: [link]{escape(address)}[/link]"
+            self._console.print(text, highlight=False, soft_wrap=True)
 
     def _news(self, heard: Heard) -> None:
         for warning in [*warnings_of(heard.pulses), *heard.notes]:

@@ -61,7 +61,7 @@ const heard = {
 };
 
 function connect() {
-  socket = new WebSocket(`ws://${location.host}/live`);
+  socket = new WebSocket(`${location.protocol.replace("http", "ws")}//${location.host}/live`);
   socket.addEventListener("message", ({ data }) => {
     const told = JSON.parse(data);
     heard[told.kind]?.(told);

@@ -1,0 +1,25 @@
+"""Who can reach an endpoint: this machine alone, or others too."""
+
+import ipaddress
+import re
+from typing import Final
+
+ADDRESS: Final = re.compile(r"[^/]*/(?P<host>.*):\+?\d+(?:[?#].*)?", re.DOTALL)
+"""All that Zenoh takes for a host and its port; other kinds of endpoint lie within this machine."""
+
+
+def is_loopback(host: str) -> bool:
+    """Whether a name or address is this machine's own, which no other reaches.
+
+    A name is never looked up: of all names only `localhost` is ours.
+    """
+    try:
+        return ipaddress.ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def is_exposed(endpoint: str) -> bool:
+    """Whether other machines may reach an endpoint, as tcp/192.168.1.5:7447."""
+    where = ADDRESS.fullmatch(endpoint)
+    return where is not None and not is_loopback(where["host"])

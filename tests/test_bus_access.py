@@ -1,0 +1,194 @@
+"""Who may say what on a bus with keys, over real sessions on the loopback."""
+
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import msgspec
+import pytest
+from keyring import foreign, tls_as, with_keys
+from meeting import free_endpoint
+from test_message_codec import BODY, REPORT, SAID
+
+pytest.importorskip("cryptography", reason="keys are an extra: install tritrack[keys]")
+
+from common.bus.bus import Bus, open_client, open_hub
+from common.bus.bus_keys import Part
+from common.bus.control_messages import ClockAnswer, ClockQuestion, Ended, Pulse
+from common.bus.inbox import Alive, Inbox
+from common.bus.message_codec import TOPICS, encode, key_of
+from common.bus.messages import Guide, Message, Picture, Report
+from common.config import BusSettings
+from tritrack.keys.authority import make_keys
+
+ROOM = "hall"
+SOON_S = 5.0
+LATE_S = 0.5
+"""By then what was said is heard, or never: it takes milliseconds."""
+VIEWER_1 = {"viewer/1/report", "viewer/1/picture", "viewer/1/ended", "pulse/viewer 1", "answer"}
+HEARD: dict[Part, set[str]] = {
+    "viewer1": VIEWER_1,
+    "viewer2": {key.replace("1", "2") for key in VIEWER_1},
+    "recognizer": {"posture", "pulse/recognizer"},
+    "animator": {"command", "pulse/animator"},
+    "supervisor": {"answer"},
+    "metrics": {"pulse/metrics"},
+    "client": set(),
+}
+PROCESSES = ("viewer 1", "viewer 2", "integrator", "recognizer", "animator", "metrics")
+EVERYTHING: list[Message] = [
+    *(message for message in SAID if type(message) in TOPICS),
+    *(msgspec.structs.replace(REPORT, viewer=viewer) for viewer in (1, 2)),
+    Picture(frame=7, captured_s=0.5, clock_s=0.5, viewer=2, jpeg=b"\xff\xd8"),
+    Ended(viewer=2, frames=69),
+    *(Pulse(process=name, state="running") for name in PROCESSES),
+]
+
+
+class Hall(NamedTuple):
+    settings: BusSettings
+    hub: Bus
+
+
+@pytest.fixture(scope="module")
+def keys(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("keys")
+    make_keys(folder, [], 2)
+    return folder
+
+
+@pytest.fixture
+def hall(keys: Path) -> Iterator[Hall]:
+    settings = with_keys(keys)
+    with open_hub(settings, ROOM) as hub:
+        yield Hall(settings, hub)
+
+
+def enter(hall: Hall, doors: ExitStack, part: Part) -> Bus:
+    return doors.enter_context(open_client(hall.settings, ROOM, SOON_S, part))
+
+
+@pytest.mark.parametrize("part", HEARD)
+def test_a_part_is_heard_on_its_own_keys_and_on_no_other(hall: Hall, part: Part) -> None:
+    """By the integrator, which is the hub, and by others whom it hands on to."""
+    with ExitStack() as doors:
+        listener = enter(hall, doors, "animator" if part != "animator" else "supervisor")
+        inboxes: list[list[Inbox[Any]]] = [
+            [bus.subscribe(kind) for kind in TOPICS] for bus in (hall.hub, listener)
+        ]
+        speaker = enter(hall, doors, part)
+        time.sleep(LATE_S)
+        for message in EVERYTHING:
+            speaker.publish(message)
+        time.sleep(LATE_S)
+        for each in inboxes:
+            heard = {key_of(message, "") for inbox in each for message in inbox.drain()}
+            assert heard == {f"tritrack//{key}" for key in HEARD[part]}
+
+
+def test_everybody_hears_what_the_integrator_says(hall: Hall) -> None:
+    with ExitStack() as doors:
+        ears = [enter(hall, doors, part).subscribe(type(BODY)) for part in HEARD]
+        time.sleep(LATE_S)
+        hall.hub.publish(BODY)
+        assert [each.take(SOON_S) for each in ears] == [BODY] * len(ears)
+
+
+def delivered(settings: BusSettings) -> tuple[int, int]:
+    """How many of 10,000 forged reports and bodies two listeners hear; and of 10 true ones."""
+    with ExitStack() as doors:
+        hub = doors.enter_context(open_hub(settings, ROOM))
+        viewer, page, forger = (
+            doors.enter_context(open_client(settings, ROOM, SOON_S, part))
+            for part in ("viewer1", "animator", "client")
+        )
+        inboxes: list[Inbox[Any]] = [
+            bus.subscribe(kind) for bus in (hub, page) for kind in (Report, type(BODY))
+        ]
+        time.sleep(LATE_S)
+        forged, true = 0, 0
+        for n in range(5000):
+            forger.publish(msgspec.structs.replace(REPORT, viewer=1, frame=n))
+            forger.publish(msgspec.structs.replace(BODY, frame=n))
+            if n % 500 == 0:
+                viewer.publish(msgspec.structs.replace(REPORT, viewer=1, frame=-1))
+        time.sleep(LATE_S)
+        for inbox in inboxes:
+            heard = [message.frame for message in inbox.drain()]
+            true += heard.count(-1)
+            forged += len(heard) - heard.count(-1) + inbox.dropped
+            assert (inbox.malformed, inbox.foreign) == (0, 0)
+        return forged, true
+
+
+def test_of_ten_thousand_forged_messages_none_is_delivered(keys: Path) -> None:
+    """Issue 15: 0 of 10,000 under access control; the same forger on a plain bus is heard."""
+    assert delivered(with_keys(keys)) == (0, 20)
+    forged, _ = delivered(BusSettings(free_endpoint()))
+    assert forged > 1000
+
+
+@pytest.mark.parametrize("mode", ["client", "peer", "router"])
+@pytest.mark.parametrize("name", ["client", "viewer1"])
+def test_neither_another_mode_nor_a_wildcard_widens_what_a_part_may_say(
+    hall: Hall, keys: Path, mode: str, name: str
+) -> None:
+    """By a program of somebody who knows Zenoh and holds the files of one part."""
+    place = {"connect": hall.settings.endpoint}
+    with ExitStack() as doors:
+        page = enter(hall, doors, "animator")
+        inboxes = [bus.subscribe(kind) for bus in (hall.hub, page) for kind in (Report, type(BODY))]
+        false = doors.enter_context(foreign(mode, place, tls_as(keys, name)))
+        time.sleep(LATE_S)
+        own, report = (msgspec.structs.replace(REPORT, viewer=viewer) for viewer in (1, 2))
+        for key in ("viewer/2/report", "viewer/*/report", "viewer/**", "**", "*/2/report"):
+            false.put(f"tritrack/{ROOM}/{key}", encode(report))
+        for key in ("body/pose", "body/*", "**", "*/pose"):
+            false.put(f"tritrack/{ROOM}/{key}", encode(BODY))
+        for key in ("tritrack/**", "**", "tritrack/*/body/pose"):
+            false.put(key, encode(BODY))
+        false.put(f"tritrack/{ROOM}/viewer/1/report", encode(own))
+        time.sleep(LATE_S)
+        allowed = [own] if name == "viewer1" else []
+        assert [inbox.drain() for inbox in inboxes] == [allowed, [], allowed, []]
+        assert sum(inbox.malformed for inbox in inboxes) == 0
+
+
+def test_only_a_viewer_may_ask_the_clock_and_so_begin_the_run(hall: Hall) -> None:
+    question = ClockQuestion(viewer=1, ready=True)
+    hall.hub.answer(ClockQuestion, lambda _: ClockAnswer(now_s=1.0))
+    with ExitStack() as doors:
+        assert enter(hall, doors, "client").ask(question, ClockAnswer, LATE_S) is None
+        assert enter(hall, doors, "viewer2").ask(question, ClockAnswer, SOON_S) is not None
+
+
+def test_nobody_else_answers_in_the_integrators_place(hall: Hall) -> None:
+    with ExitStack() as doors:
+        false = enter(hall, doors, "client")
+        false.answer(ClockQuestion, lambda _: ClockAnswer(now_s=666.0))
+        false.keep(Guide)
+        time.sleep(LATE_S)
+        viewer = enter(hall, doors, "viewer1")
+        assert viewer.ask(ClockQuestion(viewer=1, ready=True), ClockAnswer, LATE_S) is None
+        assert viewer.latest(Guide, LATE_S) is None
+
+
+def test_everybody_may_ask_for_what_the_integrator_keeps(hall: Hall) -> None:
+    guide = Guide(frame=7, captured_s=0.5, clock_s=0.5, frames=(7, 7))
+    hall.hub.keep(Guide)
+    hall.hub.publish(guide)
+    with ExitStack() as doors:
+        assert enter(hall, doors, "client").latest(Guide, SOON_S) == guide
+
+
+def test_a_part_announces_itself_under_its_own_name_alone(hall: Hall) -> None:
+    watcher = hall.hub.watch_alive()
+    with ExitStack() as doors:
+        for part in ("client", "viewer1"):
+            speaker = enter(hall, doors, part)
+            for name in PROCESSES:
+                speaker.announce(name)
+        time.sleep(LATE_S)
+        assert watcher.drain() == [Alive("viewer 1", alive=True)]
