@@ -83,7 +83,7 @@ def test_two_sites_in_one_folder_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        site("hall", endpoint="tcp/127.0.0.1:7447") + site("lobby", endpoint="tcp/0.0.0.0:7447"),
+        site("hall", endpoint="tcp/127.0.0.1:7447") + site("lobby", endpoint="tcp/localhost:7447"),
         site("hall", page=7447) + site("lobby", endpoint="tcp/127.0.0.1:7447"),
         site("hall", page=7447, endpoint="tcp/127.0.0.1:7447") + site("lobby"),
         site("hall", more="metrics = '127.0.0.1:7447'") + site("lobby", page=7447),
