@@ -123,6 +123,36 @@ def test_what_hangs_is_killed_but_not_by_a_supervisor_that_slept_itself(sleeper:
     until(lambda: sleeper.running.process.exitcode == -signal.SIGKILL)
 
 
+def test_what_cannot_be_heard_is_not_killed_for_its_silence(sleeper: Watched) -> None:
+    """The integrator hands on what all others say, and takes seconds to start again."""
+    pulses, now_s = beating("viewer 2"), 100.0
+    for reached in (*[False] * 40, *[True] * 10):
+        now_s += 0.4
+        assert sleeper.look(now_s, pulses, reached) == ""
+    assert sleeper.running.process.is_alive()
+    for _ in range(10):
+        now_s += 0.4
+        told = sleeper.look(now_s, pulses)
+        if told:
+            break
+    assert "hangs, and is killed" in told
+
+
+def test_who_is_down_or_silent_hands_nothing_on(sleeper: Watched) -> None:
+    pulses, now_s = beating("viewer 2"), 100.0
+    sleeper.look(now_s, pulses)
+    assert sleeper.speaks
+    for _ in range(8):
+        now_s += 0.4
+        sleeper.look(now_s, pulses)
+    assert not sleeper.speaks
+    sleeper.look(now_s, beating("viewer 2"))
+    assert sleeper.speaks
+    killed(sleeper)
+    sleeper.look(now_s, pulses)
+    assert not sleeper.speaks
+
+
 def test_what_fails_before_it_ever_worked_fails_the_run_with_its_reason() -> None:
     with watched(Part("viewer 1", refuses, ("no camera",), leads=True)) as one:
         until(lambda: one.running.process.exitcode is not None)

@@ -80,3 +80,11 @@ def test_too_few_takes_are_refused_before_any_is_tracked(
     monkeypatch.setattr(teaching, "recordings", lambda *_: pytest.fail("they were tracked"))
     with pytest.raises(TrainingError, match="name at least 3 clips of kick_left_side"):
         teach(NEW, [Path("a"), Path("b")], tmp_path / "mine.npz", plan, QUIET)
+
+
+def test_one_take_named_twice_is_refused_before_any_is_tracked(
+    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(teaching, "recordings", lambda *_: pytest.fail("they were tracked"))
+    with pytest.raises(TrainingError, match="/a is named twice"):
+        teach(NEW, [Path("a"), Path("b"), Path("b/../a")], tmp_path / "mine.npz", plan, QUIET)

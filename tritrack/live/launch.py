@@ -111,9 +111,10 @@ def run(
 
 
 def _look_after(crew: Sequence[Watched], heard: Heard) -> None:
-    """Start again what died, and say so."""
+    """Start again what died, and say so; all that is said comes by way of the integrator."""
+    hub = next(one for one in crew if one.part.name == "integrator")
     for one in crew:
-        told = one.look(time.monotonic(), heard.pulses)
+        told = one.look(time.monotonic(), heard.pulses, reached=one is hub or hub.speaks)
         if told:
             log.warning(told)
             heard.notes.append(told)

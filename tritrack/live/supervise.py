@@ -24,6 +24,9 @@ LOOK_AT_MOST_S: Final = 0.5
 """What counts of the time between two looks: a supervisor that was stopped itself, with all of
 its group, must not take the others for hung."""
 
+LATELY_S: Final = 2.5
+"""Who has said nothing for so long may be unable to hand on what others say."""
+
 
 class PartFailed(RuntimeError):
     """A process of the run failed; the text names it and says why."""
@@ -57,12 +60,18 @@ class Watched:
         """Whether it came to its own end."""
         return self._again_s is None and self.running.process.exitcode == 0
 
-    def look(self, now_s: float, pulses: dict[str, Pulse]) -> str:
+    @property
+    def speaks(self) -> bool:
+        """Whether it has said something lately, as who hands on what others say must."""
+        return self._again_s is None and self._quiet_s <= LATELY_S
+
+    def look(self, now_s: float, pulses: dict[str, Pulse], reached: bool = True) -> str:
         """Start it again where it died or hangs; what is to be told of that, or "".
 
         Args:
             now_s: This host's monotonic clock.
             pulses: The newest of each part; a part that is down is told there too.
+            reached: Whether what it says gets here: nobody is held to what cannot be heard.
 
         Raises:
             PartFailed: When it fails before it ever worked.
@@ -76,7 +85,7 @@ class Watched:
                 self._again_s, self.running = None, started(self.part)
                 self._alive_s = self._quiet_s = 0.0
             return ""
-        self._listen(since_s, pulses.get(self.part.name))
+        self._listen(since_s, pulses.get(self.part.name), reached)
         if self.running.process.exitcode:
             return self._died(now_s, pulses)
         return self._hung()
@@ -102,9 +111,9 @@ class Watched:
         self.ask()
         end(self.running)
 
-    def _listen(self, since_s: float, pulse: Pulse | None) -> None:
+    def _listen(self, since_s: float, pulse: Pulse | None, reached: bool) -> None:
         self._alive_s += since_s
-        self._quiet_s = self._quiet_s + since_s if pulse is self._last else 0.0
+        self._quiet_s = self._quiet_s + since_s if pulse is self._last and reached else 0.0
         self._last = pulse
         self._came_up |= pulse is not None and pulse.state in ("ready", "running")
         if self._alive_s > STEADY_S:

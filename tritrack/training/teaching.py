@@ -1,6 +1,7 @@
 """Teaching a model one posture more by a few takes of it."""
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -29,7 +30,7 @@ def teach(
         console: For progress and warnings.
 
     Raises:
-        TrainingError: When the name is none, or there are too few takes.
+        TrainingError: When the name is none, there are too few takes, or one is named twice.
         RecordingError, ClipsFailed: When a take cannot be used.
         LearningError: When the takes do not agree, or the name is known already.
         ModelError: When the file cannot be written, or the model to add to cannot be read.
@@ -39,6 +40,9 @@ def teach(
             f"{posture!r} is no name of a posture: small letters, digits and _, as star_jump"
         )
     known = model_named(plan.add_to or Path("shipped"), plan.recognizer)
+    twice = [path for path, times in Counter(path.resolve() for path in paths).items() if times > 1]
+    if twice:
+        raise TrainingError(f"{twice[0]} is named twice: each take is a performance of its own")
     if len(paths) < LEAST_TAKES:  # before any is tracked
         raise TrainingError(f"{len(paths)} takes: name at least {LEAST_TAKES} clips of {posture}")
     with spread(""):
