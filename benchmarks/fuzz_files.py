@@ -65,8 +65,8 @@ class Kind(NamedTuple):
     whole: bytes
 
 
-def kinds(clip: Path, folder: Path, decoder: Decoder) -> dict[str, Kind]:
-    """One whole file of each kind, in a folder where it can be read."""
+def write_whole(clip: Path, folder: Path) -> None:
+    """A whole file of each kind, with all that belongs to it."""
     copy, run, cut_short = folder / "clip", folder / "run", folder / "cut_short"
     shutil.copytree(clip, copy)
     own = clip / "calibration.json"
@@ -92,6 +92,12 @@ def kinds(clip: Path, folder: Path, decoder: Decoder) -> dict[str, Kind]:
     np.savez(folder / "masks.npz", walk=np.ones((5, 12, 16), np.uint8))
     shutil.copyfile(recogniser.SHIPPED, folder / "model.npz")
     shutil.copyfile(recogniser.SHIPPED_PAPER, folder / "paper.npz")
+
+
+def kinds(clip: Path, folder: Path, decoder: Decoder) -> dict[str, Kind]:
+    """Each kind of file, one of it written whole where it can be read."""
+    write_whole(clip, folder)
+    copy, run = folder / "clip", folder / "run"
     settings = load(copy)
 
     def opened(_: Path) -> object:
@@ -118,7 +124,7 @@ def kinds(clip: Path, folder: Path, decoder: Decoder) -> dict[str, Kind]:
         "poses": (run / "clip" / "poses.npz", exported),
         "summary": (run / "clip" / "summary.json", exported),
         "recording": (run / "clip" / "recording.mcap", lambda path: read_recording(path.parent)),
-        "journal": (next(cut_short.iterdir()), lambda path: open_run(path.parent)),
+        "journal": (next((folder / "cut_short").iterdir()), lambda path: open_run(path.parent)),
         "video": (next(path for path in copy.iterdir() if path.stem in VIDEOS), seen),
     }
     return {name: Kind(path, read, path.read_bytes()) for name, (path, read) in found.items()}

@@ -28,3 +28,13 @@ def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("clips")
     wanted = ClipSet("postures", seed=90_001, postures=("raise_right_lateral",))
     return write_set(out, wanted, (160, 120))[0]
+
+
+@pytest.fixture(scope="module")
+def keys(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A bus's keys, for two days."""
+    from tritrack.keys.authority import make_keys
+
+    folder = tmp_path_factory.mktemp("keys")
+    make_keys(folder, [], 2)
+    return folder

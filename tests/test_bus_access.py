@@ -21,7 +21,6 @@ from common.bus.inbox import Alive, Inbox
 from common.bus.message_codec import TOPICS, encode, key_of
 from common.bus.messages import Guide, Message, Picture, Report
 from common.config import BusSettings
-from tritrack.keys.authority import make_keys
 
 ROOM = "hall"
 SOON_S = 5.0
@@ -50,13 +49,6 @@ EVERYTHING: list[Message] = [
 class Hall(NamedTuple):
     settings: BusSettings
     hub: Bus
-
-
-@pytest.fixture(scope="module")
-def keys(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("keys")
-    make_keys(folder, [], 2)
-    return folder
 
 
 @pytest.fixture

@@ -27,13 +27,6 @@ NEVER_S = 0.5
 """Patience with who must not get in: those that may need a hundredth of it."""
 
 
-@pytest.fixture(scope="module")
-def keys(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("keys")
-    make_keys(folder, [], 2)
-    return folder
-
-
 @pytest.fixture
 def settings(keys: Path) -> Iterator[BusSettings]:
     place = with_keys(keys)

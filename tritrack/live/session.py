@@ -46,7 +46,7 @@ def live(
     console: Console,
     name: str = "",
     record: bool = False,
-    tell: Callable[[Heard], None] | None = None,
+    tell: Callable[[Heard], object] = lambda _: None,
 ) -> dict[str, Any]:
     """Run the processes on a clip or on cameras until it ends or Ctrl-C; write the run folder.
 
@@ -67,14 +67,7 @@ def live(
         PartFailed, BusError, RunError: When something failed; what was tracked until then is
             written first.
     """
-    refuse_mode(settings)
-    if record:
-        refuse_without_library()
-    left_open, settings = settings, with_free_endpoint(settings)
-    refuse_held_ports(settings)
-    if settings != left_open:
-        console.print(f"the bus: {settings.bus.endpoint}", highlight=False)
-    settings = own_session(settings)
+    settings = _admitted(settings, record, console)
     new = not out.exists()
     began, heard = time.monotonic(), nothing_heard()
     title = name or Path(settings.clip).name or "tritrack"
@@ -104,8 +97,7 @@ def live(
 
                     def look(heard: Heard) -> None:
                         show(heard)
-                        if tell is not None:
-                            tell(heard)
+                        tell(heard)
 
                     run(parts, settings, stop, look, heard._replace(keep=keep), desk)
         finally:
@@ -115,6 +107,18 @@ def live(
             journal.remove()
         _show_end(desk, told, stop, console)
     return told
+
+
+def _admitted(settings: Settings, record: bool, console: Console) -> Settings:
+    """Settings that can be worked with, with the endpoint and the session that they leave open."""
+    refuse_mode(settings)
+    if record:
+        refuse_without_library()
+    found = with_free_endpoint(settings)
+    refuse_held_ports(found)
+    if found != settings:
+        console.print(f"the bus: {found.bus.endpoint}", highlight=False)
+    return own_session(found)
 
 
 def _journal(out: Path, clip: Clip, settings: Settings, notes: list[str]) -> Journal:
