@@ -91,7 +91,7 @@ def _met(
     on_first = centres[0] + ((cosine * e - d) / slope)[:, None] * first
     on_second = centres[1] + ((e - cosine * d) / slope)[:, None] * second
     meet = np.linalg.norm(on_first - on_second, axis=1) <= APART_SHARE * stature_m
-    both = np.logical_and((sure > 0).all(axis=0), meet)
+    both = np.asarray((sure > 0).all(axis=0) & meet)
     surer = sure.argmax(axis=0)
     one = np.where(surer[:, None] == 0, alone[0], alone[1])
     places_m = np.where(both[:, None], (on_first + on_second) / 2, one)
