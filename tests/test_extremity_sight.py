@@ -9,7 +9,7 @@ from common.body.body import rest_pose
 from common.body.extremities import EXTREMITY_NAMES, extremities
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.messages import Landmarks, Report
+from common.bus.messages import Landmarks, Report, ViewerNumber
 from common.rig.camera import project
 from integrator.landmarks.extremity_sight import DEPTH_BY_RULE, seen_extremities
 
@@ -20,13 +20,20 @@ NOBODY = Landmarks(((0.0, 0.0),) * 15, (0.0,) * 15)
 TOE = EXTREMITY_NAMES.index("l_toe")
 
 
-def report(viewer: int, places_m: np.ndarray, sure: tuple[float, ...]) -> Report:
+def report(viewer: ViewerNumber, places_m: np.ndarray, sure: tuple[float, ...]) -> Report:
     """A view that sees these places."""
     pixels = tuple(map(tuple, project(RIG.cameras[viewer - 1], places_m).tolist()))
     shown = msgspec.structs.replace(NOBODY, extremities_px=pixels, extremities_confidence=sure)
-    moment = {"frame": 0, "captured_s": 0.0, "clock_s": 0.0}
     return Report(
-        **moment, viewer=viewer, width=160, height=120, silhouette=b"", box=None, landmarks=shown
+        frame=0,
+        captured_s=0.0,
+        clock_s=0.0,
+        viewer=viewer,
+        width=160,
+        height=120,
+        silhouette=b"",
+        box=None,
+        landmarks=shown,
     )
 
 

@@ -1,5 +1,7 @@
 """When feet stand, and that they then stand still: made-up steps whose contacts are known."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -27,7 +29,7 @@ def walking(noise_m: float = 0.0) -> np.ndarray:
         moving = "r" if count % 2 == 0 else "l"
         z[moving] += STRIDE_M * (share if moving == "r" else share - 1.0)
         middle = (z["l"] + z["r"]) / 2
-        at = {
+        at: dict[str, Any] = {
             "pelvis": (0.0, 0.9, middle),
             "neck": (0.0, 1.4, middle),
             "head_top": (0, 1.7, middle),
