@@ -90,7 +90,7 @@ def body_figure(instant: Seen, out: Path) -> None:
         _stick(axes, at)
         axes.set_title(f"camera {n}: S {instant.body.score[n - 1]:.2f}", size=9)
         axes.axis("off")
-    room = figure.add_axes((0.665, 0.0, 0.3, 1.0), projection="3d")
+    room: Any = figure.add_axes((0.665, 0.0, 0.3, 1.0), projection="3d")
     places = np.array(instant.body.joints_m)[:, [0, 2, 1]] * (1, -1, 1)
     _stick(room, places)
     room.set(zlim=(0.0, 1.8), xlim=(-0.9, 0.9), ylim=(-0.9, 0.9))
