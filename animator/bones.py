@@ -9,9 +9,11 @@ from scipy.spatial.transform import Rotation
 
 from animator.turns import arc_axes, axes_of
 from common.body.body import JOINT_NAMES, Vector
+from common.body.extremities import AHEAD_SHARE, ALL_JOINT_NAMES, DOWN_SHARE
 
 Joints = NDArray[np.float64]
-"""(n, 15, 3), metres, JOINT_NAMES order; NaN where there is no pose."""
+"""(n, 15, 3) or (n, 22, 3), metres, JOINT_NAMES order or ALL_JOINT_NAMES; NaN where there is no
+pose."""
 
 
 class Bone(NamedTuple):
@@ -41,25 +43,39 @@ BONES: Final = (
     Bone("LeftLeg", 9, "l_knee", "l_ankle"),
     Bone("RightUpLeg", 0, "r_hip", "r_knee"),
     Bone("RightLeg", 11, "r_knee", "r_ankle"),
+    Bone("LeftHand", 5, "l_wrist", "l_knuckle"),
+    Bone("RightHand", 8, "r_wrist", "r_knuckle"),
+    Bone("LeftFoot", 10, "l_ankle", "l_toe"),
+    Bone("RightFoot", 12, "r_ankle", "r_toe"),
 )
 """Parents before their children. A pelvis and a trunk turn apart; so do the shoulders, which rise
-with the arms."""
+with the arms. A body without extremities has no hands and feet, the last four."""
+OF_JOINTS: Final = {
+    len(JOINT_NAMES): sum(bone.ends in JOINT_NAMES for bone in BONES),
+    len(ALL_JOINT_NAMES): len(BONES),
+}
+"""How many of BONES lie between so many joints."""
 
-_AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
+_AT: Final = {name: i for i, name in enumerate(ALL_JOINT_NAMES)}
 _DEPTHS: Final = [0]
 for _bone in BONES[1:]:
     _DEPTHS.append(_DEPTHS[_bone.parent] + 1)
-_GENERATIONS: Final = tuple(
-    (bones, [BONES[i].parent for i in bones], [_AT[BONES[i].ends] for i in bones])
-    for bones in ([i for i in range(2, len(BONES)) if _DEPTHS[i] == depth] for depth in range(1, 5))
-)
-"""Bones as far from the hips, which are aimed at once: their places in BONES, their parents', and
-those of the landmarks that they are aimed at."""
+_GENERATIONS: Final = {
+    count: tuple(
+        (bones, [BONES[i].parent for i in bones], [_AT[BONES[i].ends] for i in bones])
+        for depth in range(1, 1 + max(_DEPTHS[:count]))
+        if (bones := [i for i in range(2, count) if _DEPTHS[i] == depth])
+    )
+    for count in OF_JOINTS.values()
+}
+"""Of a skeleton of so many bones those that are as far from the hips, which are aimed at once:
+their places in BONES, their parents', and those of the landmarks that they are aimed at."""
 _UP, _LEFT = np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])
+_FOOT: Final = np.array([0.0, -DOWN_SHARE, AHEAD_SHARE]) / np.hypot(DOWN_SHARE, AHEAD_SHARE)
 _REST: Final = {"Spine": _UP, "Head": _UP, "Hips": _LEFT} | {
-    f"{side}{bone}": sign * _LEFT if "Arm" in bone else -_UP
+    f"{side}{bone}": {"Foot": _FOOT, "Leg": -_UP, "UpLeg": -_UP}.get(bone, sign * _LEFT)
     for side, sign in (("Left", 1.0), ("Right", -1.0))
-    for bone in ("Arm", "ForeArm", "UpLeg", "Leg")
+    for bone in ("Arm", "ForeArm", "Hand", "UpLeg", "Leg", "Foot")
 }
 """Where a bone points at rest: the opening posture, farthest from every pose in which a limb
 points the other way and its twist would jump. Shoulders rest where they mostly are."""
@@ -69,7 +85,12 @@ class Skeleton(msgspec.Struct, frozen=True):
     """A body of rigid bones, facing +z, arms stretched out."""
 
     tips_m: Vector
-    """(13, 3) from each bone's joint to what it is aimed at, at rest, BONES order."""
+    """(13, 3) or (17, 3) from each bone's joint to what it is aimed at, at rest, BONES order."""
+
+    @property
+    def bones(self) -> tuple[Bone, ...]:
+        """Those of BONES that it has."""
+        return BONES[: len(self.tips_m)]
 
 
 class Motion(NamedTuple):
@@ -78,7 +99,7 @@ class Motion(NamedTuple):
     root_m: Vector
     """(n, 3) where the hips are."""
     turns: tuple[Rotation, ...]
-    """(n,) of each of BONES, in its parent's axes."""
+    """(n,) of each bone, in its parent's axes."""
 
 
 def skeleton_of(joints_m: Joints) -> Skeleton:
@@ -92,7 +113,7 @@ def skeleton_of(joints_m: Joints) -> Skeleton:
     posed = joints_m[np.isfinite(joints_m).all(axis=(1, 2))]
     spine = axes_of(_between(posed, "pelvis", "neck"), _between(posed, "r_shoulder", "l_shoulder"))
     tips = []
-    for bone in BONES:
+    for bone in BONES[: OF_JOINTS[joints_m.shape[1]]]:
         along = _between(posed, bone.starts, bone.ends)
         length_m = float(np.median(np.linalg.norm(along, axis=1)))
         rest = _REST.get(bone.name)
@@ -112,7 +133,7 @@ def motion_of(skeleton: Skeleton, joints_m: Joints) -> Motion:
 
 
 def turned_axes(skeleton: Skeleton, joints_m: Joints) -> NDArray[np.float64]:
-    """Likewise as matrices, (13, n, 3, 3): of each of BONES, in its parent's axes.
+    """Likewise as matrices, (bones, n, 3, 3): of each bone, in its parent's axes.
 
     Every bone is aimed at its landmark from where the bones before it have come to, so that a
     length that differs shifts one landmark and not the rest of the limb.
@@ -121,15 +142,16 @@ def turned_axes(skeleton: Skeleton, joints_m: Joints) -> NDArray[np.float64]:
         skeleton: A body.
         joints_m: Without NaN.
     """
-    world = np.empty((len(BONES), len(joints_m), 3, 3))
+    count = len(skeleton.bones)
+    world = np.empty((count, len(joints_m), 3, 3))
     local, origins = np.empty_like(world), np.empty(world.shape[:-1])
     up = _between(joints_m, "pelvis", "neck")
     hips = axes_of(up, _between(joints_m, "r_hip", "l_hip"), keep="across")
     spine = axes_of(up, _between(joints_m, "r_shoulder", "l_shoulder"))
     world[:2], local[:2] = (hips, spine), (hips, hips.swapaxes(-1, -2) @ spine)
     origins[:2] = joints_m[:, _AT["pelvis"]]
-    offsets_m = np.array([offset_m(skeleton, i) for i in range(len(BONES))])
-    for bones, parents, ends in _GENERATIONS:
+    offsets_m = np.array([offset_m(skeleton, i) for i in range(count)])
+    for bones, parents, ends in _GENERATIONS[count]:
         above = world[parents]
         origins[bones] = origins[parents] + _turned(above, offsets_m[bones, None])
         aims = joints_m[:, ends].swapaxes(0, 1) - origins[bones]
@@ -140,11 +162,13 @@ def turned_axes(skeleton: Skeleton, joints_m: Joints) -> NDArray[np.float64]:
 
 
 def joints_of(skeleton: Skeleton, motion: Motion) -> Joints:
-    """Where a moving skeleton has the 15 landmarks."""
-    found = np.empty((len(motion.root_m), len(JOINT_NAMES), 3))
+    """Where a moving skeleton has the 15 landmarks; with hands and feet the 22, of which nose and
+    heels, that no bone leads to, are NaN."""
+    names = JOINT_NAMES if len(skeleton.bones) < len(BONES) else ALL_JOINT_NAMES
+    found = np.full((len(motion.root_m), len(names), 3), np.nan)
     world: list[Rotation] = []
     origins: list[NDArray[np.float64]] = []
-    for i, (bone, own) in enumerate(zip(BONES, motion.turns, strict=True)):
+    for i, (bone, own) in enumerate(zip(skeleton.bones, motion.turns, strict=True)):
         above = world[bone.parent] if i else Rotation.identity()
         origins.append(
             origins[bone.parent] + above.apply(offset_m(skeleton, i)) if i else motion.root_m
@@ -166,9 +190,9 @@ def offset_m(skeleton: Skeleton, bone: int) -> Vector:
 
 
 def rest_origins_m(skeleton: Skeleton) -> Vector:
-    """Where each bone's joint is at rest, (13, 3), the hips at the origin."""
-    origins = np.zeros((len(BONES), 3))
-    for i, bone in enumerate(BONES):
+    """Where each bone's joint is at rest, (bones, 3), the hips at the origin."""
+    origins = np.zeros((len(skeleton.bones), 3))
+    for i, bone in enumerate(skeleton.bones):
         if bone.parent >= 0:
             origins[i] = origins[bone.parent] + offset_m(skeleton, i)
     return origins

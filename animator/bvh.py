@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 from animator.bones import BONES, Joints, Motion, Skeleton, motion_of, offset_m, skeleton_of
 from animator.even_steps import EvenSteps, even_steps
 from animator.inbetween import at, between
+from animator.planted_feet import Planted, on_its_feet, planted
 from common.body.body import Vector
 
 ROOT_CHANNELS: Final = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
@@ -23,9 +24,10 @@ def steady(joints_m: Joints, time_s: Vector) -> tuple[Skeleton, Motion, EvenStep
 
     Frames that are missing or have no pose lie between their neighbours. Lengths are fixed
     (`skeleton_of`); where the joints of a run keep theirs, the skeleton's joints are the run's.
+    A foot that stands does not slide (`planted`).
 
     Args:
-        joints_m: (n, 15, 3), NaN where there is no pose.
+        joints_m: (n, 15 or 22, 3), NaN where there is no pose.
         time_s: (n,) of the rows.
 
     Returns:
@@ -35,8 +37,10 @@ def steady(joints_m: Joints, time_s: Vector) -> tuple[Skeleton, Motion, EvenStep
         NoMotion: When there are no two poses, or the times make no even steps.
     """
     steps = even_steps(joints_m, time_s)
+    run = planted(joints_m, time_s)
     skeleton = skeleton_of(joints_m)
-    motion = motion_of(skeleton, joints_m[steps.posed])
+    posed = Planted(run.joints_m[steps.posed], run.held[steps.posed])
+    motion = motion_of(skeleton, on_its_feet(skeleton, posed))
     keys, first = np.unique(steps.places, return_index=True)
     return skeleton, between(keys, at(motion, first), np.arange(steps.frames)), steps
 
@@ -53,7 +57,7 @@ def bvh_text(
     rows = np.concatenate(
         [motion.root_m / METRES_IN[scale], angles.reshape(len(angles), -1)], axis=1
     )
-    order = _file_order(0)
+    order = _file_order(skeleton, 0)
     columns = [0, 1, 2, *(3 + 3 * bone + axis for bone in order for axis in range(3))]
     body = "\n".join(" ".join(f"{value:.6f}" for value in row) for row in rows[:, columns])
     head = "\n".join(_hierarchy(skeleton, 0, ""))
@@ -94,7 +98,7 @@ def _hierarchy(skeleton: Skeleton, bone: int, indent: str) -> Iterator[str]:
     yield f"{indent}{{"
     yield f"{inner}OFFSET {_numbers(offset_m(skeleton, bone))}"
     yield f"{inner}{CHANNELS if bone else ROOT_CHANNELS}"
-    children = _children(bone)
+    children = _children(skeleton, bone)
     for child in children:
         yield from _hierarchy(skeleton, child, inner)
     if not children:
@@ -105,13 +109,14 @@ def _hierarchy(skeleton: Skeleton, bone: int, indent: str) -> Iterator[str]:
     yield f"{indent}}}"
 
 
-def _children(bone: int) -> list[int]:
-    return [i for i, other in enumerate(BONES) if other.parent == bone]
+def _children(skeleton: Skeleton, bone: int) -> list[int]:
+    return [i for i, other in enumerate(skeleton.bones) if other.parent == bone]
 
 
-def _file_order(bone: int) -> list[int]:
+def _file_order(skeleton: Skeleton, bone: int) -> list[int]:
     """Bones in the order in which the hierarchy names them."""
-    return [bone, *(each for child in _children(bone) for each in _file_order(child))]
+    inner = (_file_order(skeleton, child) for child in _children(skeleton, bone))
+    return [bone, *(each for children in inner for each in children)]
 
 
 def _numbers(vector: Vector) -> str:

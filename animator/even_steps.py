@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animator.bones import Joints
-from common.body.body import JOINT_NAMES, Vector
+from common.body.body import Vector
 
 MOST_FRAMES: Final = 1_000_000
 """Longer files are a mistake in the times: a gap that is filled has no end."""
@@ -35,7 +35,7 @@ def even_steps(joints_m: Joints, time_s: Vector) -> EvenSteps:
     """Lay a run out in even steps.
 
     Args:
-        joints_m: (n, 15, 3), NaN where there is no pose.
+        joints_m: (n, joints, 3), NaN where there is no pose.
         time_s: (n,) of the rows.
 
     Raises:
@@ -54,8 +54,8 @@ def even_steps(joints_m: Joints, time_s: Vector) -> EvenSteps:
 
 
 def with_gaps(joints_m: Joints, steps: EvenSteps) -> Joints:
-    """The joints as the file's frames have them, (frames, 15, 3); NaN where nothing was seen."""
-    rows = np.full((steps.frames, len(JOINT_NAMES), 3), np.nan)
+    """The joints as the file's frames have them; NaN where nothing was seen."""
+    rows = np.full((steps.frames, *joints_m.shape[1:]), np.nan)
     keys, first = np.unique(steps.places, return_index=True)
     rows[keys] = joints_m[steps.posed[first]]
     return rows

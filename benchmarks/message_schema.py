@@ -11,6 +11,7 @@ from typing import Any
 import msgspec
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES
+from common.body.extremities import EXTREMITY_NAMES
 from common.bus.message_codec import TOPICS
 from common.bus.messages import PROTOCOL
 from common.config import BusSettings, Settings
@@ -35,6 +36,7 @@ def schema() -> dict[str, Any]:
         "room": Settings().room,
         "orders": {
             "joints": JOINT_NAMES,
+            "extremities": EXTREMITY_NAMES,
             "angles": ANGLE_NAMES,
             "pose": POSE_NAMES,
             "limbs": LIMBS,

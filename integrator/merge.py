@@ -68,7 +68,7 @@ def step(
     scores = _scores(state, now)
     state = outgoing.weighed(state, pair, scores)
     state, angles = _smoothed(state, max(scores) >= LOST_SCORE, dt_s)
-    body = outgoing.body_of(state, pair, angles, scores)
+    body = outgoing.body_of(state, pair, now.seen, angles, scores)
     guide = outgoing.guide_of(state, pair, settled_at is not None)
     return state, body, guide
 

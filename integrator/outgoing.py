@@ -7,25 +7,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, Vector, rest_pose
+from common.body.extremities import extremities
 from common.body.kinematics import joints
-from common.body.proportions import body_vector
+from common.body.proportions import body_vector, stature
 from common.bus.messages import Agreement, Body, Guide, Pixel, Report, Status, Views
 from common.rig.camera import project
 from integrator.belief import is_believed
+from integrator.landmarks.extremity_sight import seen_extremities
 from integrator.merge_state import State
-from integrator.pairing import Pair
+from integrator.pairing import Pair, Seen
 from integrator.rig.body_position import pixels_of, scales_since
+from integrator.rig.undistortion import undistorted_rig
 
 LOST_FRAMES: Final = 5
 """After so many frames in a row in which it is not believed the body is lost."""
 
 
-def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, float]) -> Body:
+def body_of(
+    state: State, pair: Pair, seen: Seen, angles_deg: Vector, scores: tuple[float, float]
+) -> Body:
     """The body in the pose that was found, with its angles smooth.
 
     Args:
         state: Of this instant; its pose is as found.
         pair: What was heard of it.
+        seen: The same as without distortion, of views that have somebody.
         angles_deg: The smooth angles, ANGLE_NAMES order.
         scores: S of the pose in each view.
     """
@@ -39,7 +45,9 @@ def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, f
     pixels = tuple(project(camera, places_m) for camera in rig.cameras)
     outside = _outside(pair, pixels)
     told = state.agreement.told if _views(pair) == "both" else None
-    confidence = np.where(outside, 0.0, _confidence(state, scores) * _believed(state, told))
+    believed = _believed(state, told)
+    confidence = np.where(outside, 0.0, _confidence(state, scores) * believed)
+    ends_m, measured = _extremities(state, seen, places_m)
     return Body(
         **_moment(state, pair),
         status=_status(state, bool(outside.any())),
@@ -49,6 +57,9 @@ def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, f
         pose=tuple(pose.tolist()),
         angles_raw_deg=tuple(found.pose[in_pose].tolist()),
         confidence=tuple(confidence.tolist()),
+        extremities_m=tuple((x, y, z) for x, y, z in ends_m.tolist()),
+        extremities_px=tuple(_pixels(project(camera, ends_m)) for camera in rig.cameras),
+        extremities_confidence=tuple((measured * believed).tolist()),
         score=scores,
         facing=found.facing,
         bdp=bdp,
@@ -85,6 +96,17 @@ def _places_m(state: State, pose: Vector) -> NDArray[np.float64]:
     if state.found.joints_m is not None:
         return state.found.joints_m
     return np.asarray(joints(body_vector(state.opening.bdp), pose))
+
+
+def _extremities(state: State, seen: Seen, places_m: Vector) -> tuple[Vector, Vector]:
+    """Nose, heels, toes and knuckles, (7, 3), and how sure they are, (7,); 0: by the rule alone."""
+    assert state.rig is not None
+    assert state.opening.bdp is not None
+    stature_m = stature(state.opening.bdp)
+    rule_m = extremities(places_m, stature_m)
+    if state.doubted:
+        return rule_m, np.zeros(len(rule_m))
+    return seen_extremities(rule_m, undistorted_rig(state.rig), seen, stature_m)
 
 
 def _matches(report: Report) -> int:

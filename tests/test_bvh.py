@@ -9,7 +9,7 @@ from clients import answer_of
 from moving import BODY, random_joints
 from scipy.spatial.transform import Rotation
 
-from animator.bones import BONES, joints_of
+from animator.bones import joints_of
 from animator.bvh import bvh_text, euler_zxy_deg, steady
 from animator.even_steps import NoMotion
 from common.body.body import JOINT_NAMES, rest_pose
@@ -194,6 +194,6 @@ def test_blender_opens_it_in_centimetres(tmp_path: Path) -> None:
     said = answer_of("bpy", BLENDER, str(tmp_path / "body.bvh"))
     for frame, heads in zip((0, 20, 39), said, strict=True):
         expected = joints_of(skeleton, motion)[frame]
-        for bone in BONES:
+        for bone in skeleton.bones:
             x, y, z = expected[JOINT_NAMES.index(bone.starts)]
             assert heads[bone.name] == pytest.approx([x, -z, y], abs=1e-3)

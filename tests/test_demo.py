@@ -46,6 +46,7 @@ def test_the_demo_runs_ends_by_itself_and_leaves_nothing_but_its_run_folder(
         facts = json.loads(said)
         assert facts["posture"] == facts["posture_meant"] == demo.POSTURE
         assert "the page: http://127.0.0.1:" in errors
+        assert "the bus: tcp/127.0.0.1:" in errors
         written = {path.name for path in (tmp_path / f"run {n}").iterdir()}
         assert written == {"poses.npz", "summary.json", "posture.json", "log.txt"}
     assert list((tmp_path / "tmp").iterdir()) == []

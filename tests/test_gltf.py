@@ -76,7 +76,7 @@ def test_the_animated_nodes_stand_where_the_skeleton_does() -> None:
     skeleton, motion, content = made()
     places, _ = places_of(pygltflib.GLTF2.load_from_bytes(content))
     expected = joints_of(skeleton, motion)
-    for bone in BONES:
+    for bone in skeleton.bones:
         off = places[bone.name] - expected[:, JOINT_NAMES.index(bone.starts)]
         assert np.linalg.norm(off, axis=1).max() < 1e-3
         if f"{bone.name}_end" in places:
@@ -95,7 +95,7 @@ def test_every_stick_is_bound_to_its_bone_and_goes_with_it() -> None:
     owner = array_of(file, attributes.JOINTS_0)[:, 0]
     inverse = array_of(file, file.skins[0].inverseBindMatrices).reshape(-1, 4, 4)
     expected = joints_of(skeleton, motion)[20]
-    for i, bone in enumerate(BONES):
+    for i, bone in enumerate(skeleton.bones):
         at_bone = skin[owner == i] + inverse[i, 3, :3]
         moved = places[bone.name][20] + turns[bone.name][20].apply(at_bone)
         ends = [expected[JOINT_NAMES.index(name)] for name in (bone.starts, bone.ends)]
@@ -127,6 +127,6 @@ def test_blender_opens_it_as_a_skinned_armature(tmp_path: Path) -> None:
     assert said["skinned"]
     for frame, heads in zip((0, 20, 39), said["frames"], strict=True):
         expected = joints_of(skeleton, motion)[frame]
-        for bone in BONES:
+        for bone in skeleton.bones:
             x, y, z = expected[JOINT_NAMES.index(bone.starts)]
             assert heads[bone.name] == pytest.approx([x, -z, y], abs=1e-3)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from common.body.body import JOINT_NAMES
+from common.body.extremities import EXTREMITY_NAMES
 from common.bus.messages import Landmarks
 from common.config import SettingsError
 from common.video.clip_facts import View
@@ -86,7 +87,7 @@ def test_whose_points_all_have_no_score_is_nobody(tmp_path: Path) -> None:
 
 def test_scores_beyond_1_are_certainty(tmp_path: Path) -> None:
     (one,) = people_of(written(tmp_path / "0.json", person(score=1.3)))
-    assert set(one[:, 2]) == {1.0}
+    assert set(one[:17, 2]) == {1.0}
 
 
 def points_of(**given: tuple[float, float, float]) -> object:
@@ -163,3 +164,17 @@ def test_a_camera_has_no_files(tmp_path: Path) -> None:
     written(tmp_path / "cam1" / "0.json", person())
     with pytest.raises(SettingsError, match="for recorded clips: camera 1 is none"):
         KeypointFiles(tmp_path, view_of(source=0), alone=False)
+
+
+def test_feet_and_nose_are_told_where_a_layout_has_them(tmp_path: Path) -> None:
+    """BODY_25: 0 the nose, 19 and 21 the left big toe and heel, 22 and 24 the right ones'."""
+    numbers = [[float(n), 2.0 * n, 0.5] for n in range(25)]
+    keypoints = {"pose_keypoints_2d": [number for point in numbers for number in point]}
+    written(tmp_path / "cam1" / "0.json", keypoints)
+    (shown,) = told(KeypointFiles(tmp_path, view_of(), alone=True), 0)
+    by_name = dict(zip(EXTREMITY_NAMES, shown.extremities_px, strict=True))
+    points = {"nose": 0, "l_toe": 19, "l_heel": 21, "r_toe": 22, "r_heel": 24}
+    for name, point in points.items():  # their pixels' middles, at half the size
+        assert by_name[name] == ((point + 0.5) / 2, (2 * point + 0.5) / 2)
+    sure = dict(zip(EXTREMITY_NAMES, shown.extremities_confidence, strict=True))
+    assert {name for name, share in sure.items() if share} == set(points)

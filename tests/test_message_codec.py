@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as shapes
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES, rest_pose
+from common.body.extremities import EXTREMITY_NAMES
 from common.body.proportions import thesis_bdp
 from common.bus import control_messages, messages
 from common.bus.control_messages import (
@@ -64,6 +65,8 @@ FIT = Fit(
 LANDMARKS = Landmarks(
     joints_px=((6.5, 1.5),) * len(JOINT_NAMES),
     confidence=(0.0, 1.0) + (0.5,) * (len(JOINT_NAMES) - 2),
+    extremities_px=((3.5, -4.0),) * len(EXTREMITY_NAMES),
+    extremities_confidence=(0.0, 0.25, 1.0, 0.5, 0.5, 0.5, 0.5),
     facing_deg=-90.0,
     facing_confidence=0.75,
 )
@@ -104,6 +107,9 @@ BODY = Body(
     pose=tuple(rest_pose().tolist()),
     angles_raw_deg=(1.0,) * len(ANGLE_NAMES),
     confidence=(0.5,) * len(JOINT_NAMES),
+    extremities_m=((0.5, -1.0, 2.0),) * len(EXTREMITY_NAMES),
+    extremities_px=(((3.5, -4.0),) * len(EXTREMITY_NAMES),) * 2,
+    extremities_confidence=(0.0, 0.25, 1.0, 0.5, 0.5, 0.5, 0.5),
     bdp=BDP,
 )
 LIFTING = Lifting("forward_left", 0.75, (0.5,) * len(LIMBS), (1.5,) * len(LIMBS))

@@ -10,22 +10,24 @@ import numpy as np
 import pytest
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES
+from common.body.extremities import EXTREMITY_NAMES
 from common.bus.messages import Body, Performance, Posture
 from common.config import Settings
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.store.joint_arrays import on_disk
 from tritrack.store.runs import RunError, poses, write_postures, write_run
 
 N = 69
 CONTRACT = {
     "frame": ("i", (N,)),
     "time_s": ("f", (N,)),
-    "joints_m": ("f", (N, 15, 3)),
-    "joint_names": ("U", (15,)),
-    "joints_px": ("f", (N, 2, 15, 2)),
+    "joints_m": ("f", (N, 22, 3)),
+    "joint_names": ("U", (22,)),
+    "joints_px": ("f", (N, 2, 22, 2)),
     "angles_deg": ("f", (N, 17)),
     "angle_names": ("U", (17,)),
     "angles_raw_deg": ("f", (N, 17)),
-    "confidence": ("f", (N, 15)),
+    "confidence": ("f", (N, 22)),
     "status": ("U", (N,)),
     "views": ("U", (N,)),
     "score": ("f", (N, 2)),
@@ -68,7 +70,7 @@ def test_joints_are_named_as_printed(arrays: dict[str, np.ndarray]) -> None:
     sides = [f"{side}_{part}" for side in "lr" for part in ("shoulder", "elbow", "wrist")]
     sides += [f"{side}_{part}" for side in "lr" for part in ("hip", "knee", "ankle")]
     assert arrays["joint_names"].tolist()[:3] == ["pelvis", "neck", "head_top"]
-    assert set(arrays["joint_names"].tolist()[3:]) == set(sides)
+    assert set(arrays["joint_names"].tolist()[3:15]) == set(sides)
 
 
 def test_words_are_those_of_the_contract(arrays: dict[str, np.ndarray]) -> None:
@@ -107,7 +109,7 @@ def test_every_word_that_a_body_may_hold_fits_its_array() -> None:
 
 
 def test_a_run_without_frames_has_empty_arrays_of_the_same_shapes() -> None:
-    for name, array in poses([]).items():
+    for name, array in on_disk(poses([])).items():
         kind, shape = CONTRACT[name]
         expected = shape if name in ("joint_names", "angle_names") else (0, *shape[1:])
         assert (array.dtype.kind, array.shape) == (kind, expected)
@@ -218,5 +220,6 @@ def test_a_folder_that_is_a_file_is_named(tmp_path: Path) -> None:
 
 
 def test_the_names_are_the_bodys_own(arrays: dict[str, np.ndarray]) -> None:
-    assert tuple(arrays["joint_names"]) == JOINT_NAMES
+    assert tuple(arrays["joint_names"])[:15] == JOINT_NAMES
+    assert tuple(arrays["joint_names"])[15:] == EXTREMITY_NAMES
     assert tuple(arrays["angle_names"]) == ANGLE_NAMES

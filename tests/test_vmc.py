@@ -1,5 +1,6 @@
 """VMC, read back as Unity would: bones turned down the hierarchy stand where the joints are."""
 
+import msgspec
 import numpy as np
 import pytest
 from meeting import a_body
@@ -9,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from animator.bones import BONES
 from common.body.body import JOINT_NAMES
+from common.body.extremities import extremities
 from common.bus.messages import Body
 from tritrack.bridges.vmc import MEASURED, Measured, step
 
@@ -26,6 +28,8 @@ PARENTS = {
             ("LowerArm", "UpperArm"),
             ("UpperLeg", "Hips"),
             ("LowerLeg", "UpperLeg"),
+            ("Hand", "LowerArm"),
+            ("Foot", "LowerLeg"),
         )
     },
 }
@@ -56,7 +60,9 @@ def unity_places(packet: bytes) -> dict[str, np.ndarray]:
 def test_the_bones_stand_where_the_joints_are() -> None:
     joints_m, state = random_joints(6), Measured()
     for frame, row in enumerate(joints_m):
-        state, packet = step(state, a_body(frame, row))
+        ends = tuple(map(tuple, extremities(row, 1.75).tolist()))
+        body = msgspec.structs.replace(a_body(frame, row), extremities_m=ends)
+        state, packet = step(state, body)
     assert packet is not None
     assert len(state.poses) == MEASURED
     places = unity_places(packet)
@@ -66,6 +72,8 @@ def test_the_bones_stand_where_the_joints_are() -> None:
         assert places[bone] == pytest.approx([-x, y, z], abs=1e-3)
     x, y, z = joints_m[-1, JOINT_NAMES.index("l_knee")]
     assert places["LeftLowerLeg"] == pytest.approx([-x, y, z], abs=1e-3)
+    x, y, z = joints_m[-1, JOINT_NAMES.index("r_ankle")]
+    assert places["RightFoot"] == pytest.approx([-x, y, z], abs=1e-3)
 
 
 def test_who_faces_forward_has_the_right_hand_at_positive_x() -> None:

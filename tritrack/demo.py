@@ -62,6 +62,7 @@ def run_demo(out: Path, page: bool, console: Console, wait: bool = True) -> dict
         settings = free_settings(Settings(clip=str(clip), pictures=True))
         port = settings.page.port if page else 0
         settings = msgspec.structs.replace(settings, page=PageSettings(port, wait))
+        console.print(f"the bus: {settings.bus.endpoint}", highlight=False)
         facts = live(settings, out, console)
     if facts["posture"] != POSTURE:
         raise DemoFailed(f"performed {POSTURE}, named {facts['posture'] or 'nothing'}")

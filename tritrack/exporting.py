@@ -10,6 +10,8 @@ import numpy as np
 
 from common.atomic_file import replacing
 from common.body.body import ANGLE_NAMES, JOINT_NAMES
+from common.body.extremities import EXTREMITY_NAMES
+from tritrack.store.joint_arrays import all_joints_m
 from tritrack.store.past_run import PastRun, open_run
 
 Format = Literal["bvh", "gltf", "trc", "mot", "c3d", "csv"]
@@ -93,10 +95,10 @@ def _animated(run: PastRun) -> _Animated:
 
     joints_m = run.poses["joints_m"]
     try:
-        skeleton, motion, steps = steady(joints_m, run.poses["time_s"])
+        skeleton, motion, steps = steady(all_joints_m(run.poses), run.poses["time_s"])
     except NoMotion as error:
         raise _motionless(run, error) from error
-    made_m = joints_of(skeleton, motion)[steps.places]
+    made_m = joints_of(skeleton, motion)[steps.places, : len(JOINT_NAMES)]
     off_mm = 1e3 * np.linalg.norm(made_m - joints_m[steps.posed], axis=2)
     facts = {
         "frames": steps.frames,
@@ -153,10 +155,11 @@ def _c3d(run: PastRun, _name: str, _scale: Scale) -> Written:
 def _markers(run: PastRun) -> tuple[Any, float, dict[str, Any]]:
     """The run's joints in even steps with its gaps, seconds a frame, and what is told of them."""
     from animator.even_steps import NoMotion, even_steps, with_gaps
+    from animator.planted_feet import planted
 
-    joints_m = run.poses["joints_m"]
+    joints_m, time_s = all_joints_m(run.poses), run.poses["time_s"]
     try:
-        steps = even_steps(joints_m, run.poses["time_s"])
+        steps = even_steps(joints_m, time_s)
     except NoMotion as error:
         raise _motionless(run, error) from error
     facts = {
@@ -164,7 +167,7 @@ def _markers(run: PastRun) -> tuple[Any, float, dict[str, Any]]:
         "first_frame": int(run.poses["frame"][steps.posed[0]]),
         "empty": steps.frames - len(np.unique(steps.places)),
     }
-    return with_gaps(joints_m, steps), steps.step_s, facts
+    return with_gaps(planted(joints_m, time_s).joints_m, steps), steps.step_s, facts
 
 
 def _motionless(run: PastRun, error: Exception) -> ExportError:
@@ -173,6 +176,7 @@ def _motionless(run: PastRun, error: Exception) -> ExportError:
 
 def _csv(run: PastRun, _name: str, _scale: Scale) -> Written:
     text = io.StringIO()
+    further = EXTREMITY_NAMES if "extremities_m" in run.poses else ()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(
         [
@@ -180,6 +184,8 @@ def _csv(run: PastRun, _name: str, _scale: Scale) -> Written:
             *(f"{joint}_{axis}_m" for joint in JOINT_NAMES for axis in "xyz"),
             *(f"{angle}_deg" for angle in ANGLE_NAMES),
             *(f"{joint}_confidence" for joint in JOINT_NAMES),
+            *(f"{place}_{axis}_m" for place in further for axis in "xyz"),
+            *(f"{place}_confidence" for place in further),
         ]
     )
     writer.writerows(_csv_rows(run.poses))
@@ -187,8 +193,10 @@ def _csv(run: PastRun, _name: str, _scale: Scale) -> Written:
 
 
 def _csv_rows(poses: dict[str, Any]) -> Iterator[list[Any]]:
+    names = ["score", "joints_m", "angles_deg", "confidence"]
+    names += [name for name in ("extremities_m", "extremities_confidence") if name in poses]
     for i, frame in enumerate(poses["frame"]):
-        numbers = [poses[name][i] for name in ("score", "joints_m", "angles_deg", "confidence")]
+        numbers = [poses[name][i] for name in names]
         yield [
             int(frame),
             *_cells(poses["time_s"][i], 4),

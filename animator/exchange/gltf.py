@@ -77,7 +77,7 @@ def gltf_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
     buffer = _Buffer()
     figure = _figure(buffer, _sticks(skeleton))
     moves = _animation(buffer, motion, step_s)
-    inverse = np.tile(np.eye(4, dtype=np.float32), (len(BONES), 1, 1))
+    inverse = np.tile(np.eye(4, dtype=np.float32), (len(skeleton.bones), 1, 1))
     inverse[:, 3, :3] = -rest_origins_m(skeleton)  # a matrix is written column by column
     content = {
         "asset": {"version": "2.0", "generator": "tritrack"},
@@ -88,7 +88,7 @@ def gltf_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
         "materials": [{"pbrMetallicRoughness": {"baseColorFactor": COLOUR, "metallicFactor": 0.0}}],
         "skins": [
             {
-                "joints": [*range(len(BONES))],
+                "joints": [*range(len(skeleton.bones))],
                 "skeleton": 0,
                 "inverseBindMatrices": buffer.add(inverse),
             }
@@ -104,8 +104,8 @@ def gltf_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
 def _nodes(skeleton: Skeleton) -> list[dict[str, Any]]:
     """The bones, then a node at the end of each that carries no other, then the skinned mesh."""
     nodes: list[dict[str, Any]] = []
-    for i, bone in enumerate(BONES):
-        children = [n for n, other in enumerate(BONES) if other.parent == i]
+    for i, bone in enumerate(skeleton.bones):
+        children = [n for n, other in enumerate(skeleton.bones) if other.parent == i]
         nodes.append(
             {"name": bone.name, "translation": offset_m(skeleton, i).tolist()}
             | ({"children": children} if children else {})

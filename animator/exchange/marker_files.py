@@ -8,7 +8,8 @@ from typing import Any, Final
 import numpy as np
 
 from animator.bones import Joints
-from common.body.body import JOINT_NAMES, Vector
+from common.body.body import Vector
+from common.body.extremities import ALL_JOINT_NAMES
 
 MM_IN_M: Final = 1000.0
 TO_FORWARD_X: Final = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
@@ -27,20 +28,21 @@ def forward_x(places_m: Vector) -> Vector:
 
 
 def trc_text(joints_m: Joints, step_s: float, name: str) -> str:
-    """A TRC file: the 15 joints as markers of the same names, mm, OpenSim's axes.
+    """A TRC file: the joints as markers of the same names, mm, OpenSim's axes.
 
     Args:
-        joints_m: (n, 15, 3) in even steps; NaN, an empty cell in the file, where nothing was seen.
+        joints_m: (n, 15, 3) or (n, 22, 3) in even steps; NaN, an empty cell in the file, where
+            nothing was seen.
         step_s: Seconds a frame.
         name: Of the file, which its first line repeats.
     """
-    rate_hz, frames, markers = f"{1.0 / step_s:.6f}", len(joints_m), len(JOINT_NAMES)
+    rate_hz, frames, markers = f"{1.0 / step_s:.6f}", len(joints_m), joints_m.shape[1]
     head = [
         f"PathFileType\t4\t(X/Y/Z)\t{name}",
         "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits"
         "\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames",
         f"{rate_hz}\t{rate_hz}\t{frames}\t{markers}\tmm\t{rate_hz}\t1\t{frames}",
-        "Frame#\tTime\t" + "\t".join(f"{joint}\t\t" for joint in JOINT_NAMES),
+        "Frame#\tTime\t" + "\t".join(f"{joint}\t\t" for joint in ALL_JOINT_NAMES[:markers]),
         "\t\t" + "\t".join(f"{axis}{n}" for n in range(1, markers + 1) for axis in "XYZ"),
         "",
     ]
@@ -57,11 +59,11 @@ def _cell(value: float) -> str:
 
 
 def c3d_bytes(joints_m: Joints, step_s: float) -> bytes:
-    """A C3D file: the 15 joints as points of the same names, mm, OpenSim's axes.
+    """A C3D file: the joints as points of the same names, mm, OpenSim's axes.
 
     Args:
-        joints_m: (n, 15, 3) in even steps; NaN, an invalid point in the file, where nothing was
-            seen.
+        joints_m: (n, 15, 3) or (n, 22, 3) in even steps; NaN, an invalid point in the file, where
+            nothing was seen.
         step_s: Seconds a frame.
 
     Raises:
@@ -72,11 +74,11 @@ def c3d_bytes(joints_m: Joints, step_s: float) -> bytes:
     except ImportError as error:
         raise LibraryMissing("C3D needs ezc3d: pip install 'tritrack[export]'") from error
     places_mm = MM_IN_M * forward_x(joints_m)
-    points = np.ones((4, len(JOINT_NAMES), len(joints_m)))
+    points = np.ones((4, joints_m.shape[1], len(joints_m)))
     points[:3] = places_mm.transpose(2, 1, 0)
     content: Any = ezc3d.c3d()
     content["parameters"]["POINT"]["RATE"]["value"] = [1.0 / step_s]
-    content["parameters"]["POINT"]["LABELS"]["value"] = list(JOINT_NAMES)
+    content["parameters"]["POINT"]["LABELS"]["value"] = list(ALL_JOINT_NAMES[: joints_m.shape[1]])
     content["parameters"]["POINT"]["UNITS"]["value"] = ["mm"]
     content["data"]["points"] = points
     with tempfile.TemporaryDirectory() as folder:  # it writes to paths alone

@@ -12,7 +12,8 @@ import numpy as np
 
 from animator.bones import BONES, Motion, Skeleton, offset_m
 from animator.bvh import euler_zxy_deg
-from common.body.body import JOINT_NAMES, Vector
+from common.body.body import Vector
+from common.body.extremities import ALL_JOINT_NAMES
 
 TURNS: Final = (("rz", (0, 0, 1)), ("rx", (1, 0, 0)), ("ry", (0, 1, 0)))
 SHIFTS: Final = (("tx", (1, 0, 0)), ("ty", (0, 1, 0)), ("tz", (0, 0, 1)))
@@ -24,8 +25,8 @@ MASS: Final = "<mass>0.001</mass><inertia>1e-6 1e-6 1e-6 0 0 0</inertia>"
 
 def osim_text(skeleton: Skeleton) -> str:
     """The model (.osim), scaled to the skeleton's bones."""
-    bodies = "".join(f'<Body name="{bone.name}">{MASS}</Body>' for bone in BONES)
-    joints = "".join(_joint(skeleton, i) for i in range(len(BONES)))
+    bodies = "".join(f'<Body name="{bone.name}">{MASS}</Body>' for bone in skeleton.bones)
+    joints = "".join(_joint(skeleton, i) for i in range(len(skeleton.bones)))
     markers = "".join(_markers(skeleton))
     return (
         '<?xml version="1.0" encoding="UTF-8"?>\n<OpenSimDocument Version="40500">'
@@ -41,7 +42,7 @@ def osim_text(skeleton: Skeleton) -> str:
 def mot_text(motion: Motion, step_s: float, name: str) -> str:
     """The motion (.mot) in the coordinates of the model: metres and degrees."""
     angles_deg = euler_zxy_deg(motion.turns).reshape(len(motion.root_m), -1)
-    columns = ["time", *_coordinates()]
+    columns = ["time", *_coordinates(len(motion.turns))]
     times_s = np.arange(len(motion.root_m)) * step_s
     rows = np.column_stack([times_s, motion.root_m, angles_deg])
     body = "\n".join("\t".join(f"{value:.6f}" for value in row) for row in rows)
@@ -52,10 +53,10 @@ def mot_text(motion: Motion, step_s: float, name: str) -> str:
     )
 
 
-def _coordinates() -> list[str]:
+def _coordinates(bones: int) -> list[str]:
     """In the order of the file: the hips' place, then each bone's turns."""
     shifts = [f"Hips_{name}" for name, _ in SHIFTS]
-    return [*shifts, *(f"{bone.name}_{name}" for bone in BONES for name, _ in TURNS)]
+    return [*shifts, *(f"{bone.name}_{name}" for bone in BONES[:bones] for name, _ in TURNS)]
 
 
 def _joint(skeleton: Skeleton, bone: int) -> str:
@@ -103,10 +104,10 @@ def _axis(bone: str, root: bool, place: str, name: str, axis: tuple[int, ...]) -
 def _markers(skeleton: Skeleton) -> Iterator[str]:
     """Every landmark once: where a bone starts, or where it ends."""
     at: dict[str, tuple[str, Vector]] = {}
-    for bone, tip_m in zip(BONES, skeleton.tips_m, strict=True):
+    for bone, tip_m in zip(skeleton.bones, skeleton.tips_m, strict=True):
         at.setdefault(bone.starts, (bone.name, np.zeros(3)))
         at.setdefault(bone.ends, (bone.name, tip_m))
-    for joint in JOINT_NAMES:
+    for joint in (name for name in ALL_JOINT_NAMES if name in at):
         body, place_m = at[joint]
         yield (
             f'<Marker name="{joint}"><socket_parent_frame>/bodyset/{body}</socket_parent_frame>'

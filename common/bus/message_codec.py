@@ -6,6 +6,7 @@ from typing import Final, NamedTuple, TypeVar
 import msgspec
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES, Bdp, Elliptic, Round
+from common.body.extremities import EXTREMITY_NAMES
 from common.bus.control_messages import Answer, Cameras, Command, Ended, Pulse
 from common.bus.messages import (
     PROTOCOL,
@@ -83,6 +84,9 @@ _LENGTHS: Final[dict[tuple[type[Message], str], tuple[int, ...]]] = {
     (Body, "joints_px"): (0, 1, 2),
     (Body, "angles_raw_deg"): (0, len(ANGLE_NAMES)),
     (Body, "confidence"): (0, len(JOINT_NAMES)),
+    (Body, "extremities_m"): (0, len(EXTREMITY_NAMES)),
+    (Body, "extremities_px"): (0, 1, 2),
+    (Body, "extremities_confidence"): (0, len(EXTREMITY_NAMES)),
 }
 
 
@@ -176,7 +180,15 @@ def _refuse_false_landmarks(landmarks: Landmarks) -> None:
         length = len(getattr(landmarks, name))
         if length != len(JOINT_NAMES):
             raise MalformedMessage(f"{name} has {length} entries, not {len(JOINT_NAMES)}")
-    shares = (*landmarks.confidence, landmarks.facing_confidence)
+    for name in ("extremities_px", "extremities_confidence"):
+        if len(getattr(landmarks, name)) not in (0, len(EXTREMITY_NAMES)):
+            raise MalformedMessage(f"{name} has no {len(EXTREMITY_NAMES)} entries")
+    if len(landmarks.extremities_px) != len(landmarks.extremities_confidence):
+        raise MalformedMessage("extremities without their confidence")
+    shares = (
+        *(*landmarks.confidence, *landmarks.extremities_confidence),
+        landmarks.facing_confidence,
+    )
     if not all(0.0 <= share <= 1.0 for share in shares):
         raise MalformedMessage("landmarks of confidences beyond 0 to 1")
     if not -180.0 <= landmarks.facing_deg <= 180.0:
@@ -188,6 +200,8 @@ def _refuse_a_false_body(body: Body) -> None:
         raise MalformedMessage("a pose without joints_m")
     if any(len(own) != len(JOINT_NAMES) for own in body.joints_px):
         raise MalformedMessage(f"joints_px has no {len(JOINT_NAMES)} joints in a camera")
+    if any(len(own) != len(EXTREMITY_NAMES) for own in body.extremities_px):
+        raise MalformedMessage(f"extremities_px has no {len(EXTREMITY_NAMES)} places in a camera")
     if body.lifting is not None:
         _refuse_a_false_lifting(body.lifting)
 

@@ -6,7 +6,7 @@ import msgspec
 
 from common.body.body import Bdp
 
-PROTOCOL: Final = 6
+PROTOCOL: Final = 7
 
 ViewerNumber = Literal[1, 2]
 Facing = Literal["facade", "flank"]
@@ -91,6 +91,10 @@ class Landmarks(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     picture, in (-180, 180]."""
     facing_confidence: float = 0.0
     """How probably that is less than 45 degrees off, in [0, 1]; 0: the source does not tell."""
+    extremities_px: tuple[Pixel, ...] = ()
+    """EXTREMITY_NAMES order, as joints_px; empty: the source does not look for them."""
+    extremities_confidence: tuple[float, ...] = ()
+    """EXTREMITY_NAMES order, as confidence."""
 
 
 class Report(Moment, frozen=True, kw_only=True):
@@ -205,6 +209,12 @@ class Body(Moment, frozen=True, kw_only=True):
     """ANGLE_NAMES order, before smoothing."""
     confidence: tuple[float, ...] = ()
     """JOINT_NAMES order, in [0, 1]."""
+    extremities_m: tuple[Point, ...] = ()
+    """Nose, heels, toes, knuckles: EXTREMITY_NAMES order, world; empty where there is no pose."""
+    extremities_px: tuple[tuple[Pixel, ...], ...] = ()
+    """The same in the picture of each camera."""
+    extremities_confidence: tuple[float, ...] = ()
+    """EXTREMITY_NAMES order, in [0, 1]; 0: not measured, it follows from the joints."""
     score: tuple[float, float] = (0.0, 0.0)
     facing: tuple[Facing, Facing] = ("facade", "flank")
     bdp: Bdp | None = None

@@ -72,9 +72,11 @@ def _undistorted_px(place: Pixel | None, camera: Camera) -> Pixel | None:
 def _undistorted_landmarks(shown: Landmarks | None, camera: Camera) -> Landmarks | None:
     if shown is None:
         return None
-    K, places_px = np.array(camera.K), np.array([shown.joints_px])
+    K, places_px = np.array(camera.K), np.array([(*shown.joints_px, *shown.extremities_px)])
     straight = cv2.undistortPoints(places_px, K, np.array(camera.distortion), P=K)[:, 0]
-    return msgspec.structs.replace(shown, joints_px=tuple((u, v) for u, v in straight.tolist()))
+    places = tuple((u, v) for u, v in straight.tolist())
+    joints = len(shown.joints_px)
+    return msgspec.structs.replace(shown, joints_px=places[:joints], extremities_px=places[joints:])
 
 
 def undistorted(mask: Mask, camera: Camera) -> Mask:

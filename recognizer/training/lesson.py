@@ -50,8 +50,7 @@ def taught(
         LearningError: When the model knows the name, or there are too few takes, or one shows too
             little, or most takes are not known again by what the others teach.
     """
-    if posture in known.names:
-        raise LearningError(f"{posture} is known already: choose another name")
+    refuse_known(known, posture)
     if len(takes) < LEAST_TAKES:
         raise LearningError(
             f"{len(takes)} takes of {posture}: film at least {LEAST_TAKES}, the same motion each"
@@ -72,6 +71,16 @@ def taught(
             f" they are likelier {rivals}; film the same motion each time, or another posture"
         )
     return lesson
+
+
+def refuse_known(known: PostureModel, posture: str) -> None:
+    """Refuse a name that a model has.
+
+    Raises:
+        LearningError: When it has.
+    """
+    if posture in known.names:
+        raise LearningError(f"{posture} is known already: choose another name")
 
 
 def _judged(known: PostureModel, posture: str, takes: Sequence[Rows], i: int) -> Take:

@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from animator.bones import BONES, Skeleton, offset_m, skeleton_of, turned_axes
+from animator.bones import Skeleton, offset_m, skeleton_of, turned_axes
 from common.body.body import JOINT_NAMES, Vector
 from common.bus.messages import Body
 from tritrack.bridges.osc import message
@@ -35,7 +35,7 @@ class Measured(NamedTuple):
     """The skeleton so far."""
 
     poses: tuple[Any, ...] = ()
-    """(15, 3) each, at most MEASURED."""
+    """(15, 3) or, with hands and feet, (22, 3) each, at most MEASURED."""
     skeleton: Skeleton | None = None
 
 
@@ -43,7 +43,7 @@ def step(state: Measured, body: Body) -> tuple[Measured, bytes | None]:
     """The packet of a body; None where it has no pose."""
     if not body.joints_m:
         return state, None
-    joints_m = np.array(body.joints_m)
+    joints_m = np.array((*body.joints_m, *body.extremities_m))
     if state.skeleton is None or len(state.poses) < MEASURED:
         poses = (*state.poses, joints_m)
         state = Measured(poses, skeleton_of(np.array(poses)))
@@ -62,7 +62,7 @@ def vmc_packet(body: Body, skeleton: Skeleton, joints_m: Vector) -> bytes:
     bundle.add_content(message("/VMC/Ext/T", [body.captured_s], "f"))
     root = ["root", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
     bundle.add_content(message("/VMC/Ext/Root/Pos", root, TYPES))
-    for i, (bone, (x, y, z, w)) in enumerate(zip(BONES, turns, strict=True)):
+    for i, (bone, (x, y, z, w)) in enumerate(zip(skeleton.bones, turns, strict=True)):
         place_m = joints_m[PELVIS] if i == 0 else offset_m(skeleton, i)
         told = [UNITY.get(bone.name, bone.name), *_mirrored(place_m), x, -y, -z, w]
         bundle.add_content(message("/VMC/Ext/Bone/Pos", told, TYPES))

@@ -5,6 +5,7 @@ from typing import Annotated, Final, Literal
 
 import typer
 
+from common import config
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import (
     CACHE,
@@ -39,18 +40,14 @@ def train(
     ] = "postures",
     recognizer: RecognizerName = "default",
     mode: OwnMode = None,
-    add_to: Annotated[
-        Path | None,
-        typer.Option(help="A file, or shipped: it learns the postures too, or learns them anew."),
-    ] = None,
     cache: Cache = CACHE,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Learn postures from clips or runs, or poses and silhouettes from synthetic people.
 
-    A new posture needs three takes; with --add-to, the shipped model or another learns it too.
+    One posture more, beside those that a model knows: tritrack teach.
 
-    Example: tritrack train clips/*/ --out postures.npz --add-to shipped
+    Example: tritrack train clips/*/ --out postures.npz
     """
     if what == "proposals":
         from tritrack.training.proposal_training import train_proposals
@@ -77,7 +74,7 @@ def train(
     refuse_without(*LEARN)
     from tritrack.training.training import Plan, train_postures
 
-    facts = train_postures(runs, out, Plan(mode, recognizer, cache, add_to), console)
+    facts = train_postures(runs, out, Plan(mode, recognizer, cache), console)
     line = (
         f"{len(facts['sequences'])} postures learnt, {len(facts['knows'])} known; written to {out}"
     )
@@ -86,8 +83,16 @@ def train(
 
 def teach(
     posture: Annotated[str, typer.Argument(help="The new posture's name, as star_jump.")],
-    takes: Annotated[list[Path], typer.Argument(help="Clips of it or their runs, one a take.")],
     out: Annotated[Path, typer.Option(help="The model file to write.", callback=writable_file)],
+    takes: Annotated[
+        list[Path] | None, typer.Argument(help="Clips of it or their runs, one a take.")
+    ] = None,
+    live: Annotated[
+        Path | None, typer.Option(help="Settings of cameras: it counts you in and takes three.")
+    ] = None,
+    count_in: Annotated[
+        float, typer.Option(min=0.0, max=60.0, help="Seconds that are counted before a take.")
+    ] = 3.0,
     add_to: Annotated[
         Path, typer.Option(help="A model file, or shipped: it keeps what it knows.")
     ] = Path("shipped"),
@@ -95,18 +100,25 @@ def teach(
     cache: Cache = CACHE,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Teach a model one posture more, by three takes of it or more.
+    """Teach a model one posture more, by three takes of it or more, filmed or before cameras.
 
     Says whether the takes agree, and which other posture the new one is nearest to.
 
     Example: tritrack teach star_jump take1/ take2/ take3/ --out mine.npz
     """
     refuse_without(*LEARN)
+    if bool(takes) == (live is not None):
+        raise typer.BadParameter("name takes of it, or --live CONFIG")
     from tritrack.training import teaching
     from tritrack.training.training import Plan
 
     plan = Plan(None, recognizer, cache, add_to)
-    facts = teaching.teach(posture, takes, out, plan, console)
+    if live is not None:
+        from tritrack.training.live_teaching import teach_live
+
+        facts = teach_live(posture, config.load(live), out, plan, console, count_in)
+    else:
+        facts = teaching.teach(posture, takes or [], out, plan, console)
     tell(facts, json_wanted, teaching.line(facts))
 
 

@@ -46,7 +46,7 @@ def live(
     console: Console,
     name: str = "",
     record: bool = False,
-    tell: Callable[[Heard], object] = lambda _: None,
+    tell: Callable[[Heard], bool | None] = lambda _: None,
 ) -> dict[str, Any]:
     """Run the processes on a clip or on cameras until it ends or Ctrl-C; write the run folder.
 
@@ -56,7 +56,7 @@ def live(
         console: Shows the live table, each warning once, and the page's address.
         name: Of the run; the clip's when empty.
         record: Keep what the viewers report, so that it can be replayed.
-        tell: Called ten times a second too, with what was heard so far.
+        tell: Called ten times a second too, with what was heard so far; True ends the run.
 
     Returns:
         What the run's summary tells.
@@ -97,7 +97,8 @@ def live(
 
                     def look(heard: Heard) -> None:
                         show(heard)
-                        tell(heard)
+                        if tell(heard):
+                            stop.set()
 
                     run(parts, settings, stop, look, heard._replace(keep=keep), desk)
         finally:

@@ -13,7 +13,9 @@ from animator.bvh import bvh_text, steady
 from animator.even_steps import NoMotion
 from animator.inbetween import at, between, key_frames
 from common.atomic_file import replacing
+from common.body.body import JOINT_NAMES
 from tritrack.single.angle_plot import angle_plot
+from tritrack.store.joint_arrays import all_joints_m
 from tritrack.store.runs import RunError
 from tritrack.terminal import json_text
 from viewer.background.background import Background
@@ -56,9 +58,8 @@ def marked(background: Background) -> NDArray[np.uint8]:
 
 def _animate(folder: Path, arrays: dict[str, Any]) -> list[str]:
     """Write the animation and that of the key frames alone; what stood in the way."""
-    joints_m, time_s = arrays["joints_m"], arrays["time_s"]
     try:
-        skeleton, motion, steps = steady(joints_m, time_s)
+        skeleton, motion, steps = steady(all_joints_m(arrays), arrays["time_s"])
     except NoMotion as error:
         return [f"there is no animation: {error}"]
     clarity = np.full(steps.frames, np.nan)
@@ -66,6 +67,7 @@ def _animate(folder: Path, arrays: dict[str, Any]) -> list[str]:
     keys = key_frames(clarity)
     drawn = between(keys, at(motion, keys), np.arange(steps.frames))
     off_m = np.linalg.norm(joints_of(skeleton, drawn) - joints_of(skeleton, motion), axis=2)
+    off_m = off_m[:, : len(JOINT_NAMES)]
     frame_of = dict(zip(steps.places.tolist(), arrays["frame"][steps.posed].tolist(), strict=True))
     told = {
         "frames": [frame_of[key] for key in keys.tolist()],

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS
+from common.body.extremities import EXTREMITY_NAMES
 from common.npz_file import Arrays, read_arrays
+from tritrack.store.joint_arrays import parted
 
 if TYPE_CHECKING:
     from tritrack.store.journal import Told
@@ -33,6 +35,12 @@ SINGLE_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
     "depth_confidence": ("f", (len(LIMBS),)),
 }
 """What a run of a single view has beside them."""
+EXTREMITY_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
+    "extremities_m": ("f", (len(EXTREMITY_NAMES), 3)),
+    "extremities_px": ("f", (2, len(EXTREMITY_NAMES), 2)),
+    "extremities_confidence": ("f", (len(EXTREMITY_NAMES),)),
+}
+"""What the file has behind the 15 joints; runs that were written before it lack them."""
 CUT_SHORT: Final = "the run was cut short, or goes on: what it measured is read from its journal"
 
 
@@ -45,7 +53,7 @@ class PastRun(NamedTuple):
 
     folder: Path
     poses: Arrays
-    """Arrays by name: those of ROWS, and what else the file holds."""
+    """Arrays by name: those of ROWS, EXTREMITY_ROWS where it has them, what else the file holds."""
     summary: dict[str, Any]
 
 
@@ -71,7 +79,7 @@ def open_run(folder: Path) -> PastRun:
         return _cut_short(folder, told)
     path = folder / "poses.npz"
     try:
-        poses = read_arrays(path, MAX_BYTES)
+        poses = parted(read_arrays(path, MAX_BYTES))
         summary = json.loads((folder / "summary.json").read_text())
     except FileNotFoundError as error:
         missing = Path(str(error.filename)).name
@@ -98,12 +106,12 @@ def _cut_short(folder: Path, told: "Told") -> PastRun:
 
 def _refuse_other_arrays(path: Path, poses: dict[str, Any]) -> None:
     rows = len(poses["frame"]) if np.ndim(poses.get("frame", 0)) == 1 else 0
-    known = ROWS | {name: row for name, row in SINGLE_ROWS.items() if name in poses}
+    further = SINGLE_ROWS | EXTREMITY_ROWS
+    known = ROWS | {name: row for name, row in further.items() if name in poses}
     for name, (kinds, shape) in known.items():
         array = np.asarray(poses.get(name))
         if array.shape != (rows, *shape) or array.dtype.kind not in kinds:
             found = f"{array.dtype} {array.shape}" if name in poses else "missing"
             raise PastRunError(f"{path}: {name} is {found}, not {(rows, *shape)}: track it again")
-    names = tuple(str(name) for name in np.ravel(poses.get("joint_names", ())))
-    if names != JOINT_NAMES:
+    if tuple(str(name) for name in np.ravel(poses.get("joint_names", ()))) != JOINT_NAMES:
         raise PastRunError(f"{path}: joint_names are not those of this version: track it again")

@@ -1,7 +1,7 @@
 """Run folders: the poses, the summary and the postures of a run, as files."""
 
 import platform
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -12,8 +12,10 @@ import numpy as np
 
 from common.atomic_file import replacing
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES, LIMBS
+from common.body.extremities import EXTREMITY_NAMES
 from common.bus.messages import Body, Lifting, Posture
 from common.config import Settings
+from tritrack.store.joint_arrays import on_disk
 from tritrack.terminal import json_text
 
 VERSIONS_OF: Final = ("tritrack", "numpy", "opencv-python-headless", "numba", "eclipse-zenoh")
@@ -47,7 +49,7 @@ def write_run(
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with replacing(folder / "poses.npz") as path, path.open("wb") as file:
-            np.savez(file, allow_pickle=False, **poses(bodies))
+            np.savez(file, allow_pickle=False, **on_disk(poses(bodies)))
         _write_json(folder / "summary.json", summary_of(bodies, settings, facts))
     except OSError as error:
         raise _unwritable(folder, error) from error
@@ -86,7 +88,10 @@ def write_postures(folder: Path, postures: Iterable[Posture], performed: str) ->
 
 
 def poses(bodies: Sequence[Body]) -> dict[str, Any]:
-    """The arrays of `poses.npz`; a row without a pose is NaN."""
+    """The arrays of a run; a row without a pose is NaN.
+
+    What `poses.npz` holds of each joint, `on_disk` lays together: the 15, then the extremities.
+    """
     n = len(bodies)
 
     def rows(values: Iterable[Any], shape: tuple[int, ...]) -> Any:
@@ -100,6 +105,7 @@ def poses(bodies: Sequence[Body]) -> dict[str, Any]:
         "time_s": np.array([body.captured_s for body in bodies], np.float64),
         "joints_m": rows((body.joints_m for body in bodies), (len(JOINT_NAMES), 3)),
         "joint_names": np.array(JOINT_NAMES),
+        **_extremities(bodies, rows),
         "joints_px": rows((body.joints_px for body in bodies), (2, len(JOINT_NAMES), 2)),
         "angles_deg": rows(
             ([body.pose[i] for i in in_pose] if body.pose else () for body in bodies),
@@ -115,6 +121,19 @@ def poses(bodies: Sequence[Body]) -> dict[str, Any]:
         "score": np.array([body.score for body in bodies], np.float64).reshape(n, 2),
         "facing": np.array([body.facing for body in bodies], "U6").reshape(n, 2),
         **_liftings([body.lifting for body in bodies]),
+    }
+
+
+def _extremities(bodies: Sequence[Body], rows: Callable[..., Any]) -> dict[str, Any]:
+    """Nose, heels, toes and knuckles, if all bodies that have joints tell of them."""
+    if any(body.joints_m and not body.extremities_m for body in bodies):
+        return {}
+    count = len(EXTREMITY_NAMES)
+    sure = (body.extremities_confidence or (0.0,) * count for body in bodies)
+    return {
+        "extremities_m": rows((body.extremities_m for body in bodies), (count, 3)),
+        "extremities_px": rows((body.extremities_px for body in bodies), (2, count, 2)),
+        "extremities_confidence": np.array(list(sure), np.float64).reshape(-1, count),
     }
 
 

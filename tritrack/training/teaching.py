@@ -9,7 +9,8 @@ from typing import Any, Final
 from rich.console import Console
 
 from recognizer.model_file import save
-from recognizer.training.lesson import LEAST_TAKES, Lesson, taught
+from recognizer.postures import PostureModel
+from recognizer.training.lesson import LEAST_TAKES, Lesson, refuse_known, taught
 from tritrack.store.cores import spread
 from tritrack.training.recordings import recordings
 from tritrack.training.training import Plan, TrainingError, model_named
@@ -35,11 +36,7 @@ def teach(
         LearningError: When the takes do not agree, or the name is known already.
         ModelError: When the file cannot be written, or the model to add to cannot be read.
     """
-    if not NAME.fullmatch(posture):
-        raise TrainingError(
-            f"{posture!r} is no name of a posture: small letters, digits and _, as star_jump"
-        )
-    known = model_named(plan.add_to or Path("shipped"), plan.recognizer)
+    known = model_to_teach(posture, plan)
     twice = [path for path, times in Counter(path.resolve() for path in paths).items() if times > 1]
     if twice:
         raise TrainingError(f"{twice[0]} is named twice: each take is a performance of its own")
@@ -49,12 +46,38 @@ def teach(
         takes = recordings(paths, known.card.recognizer, plan.cache, console, posture)
     performers = sorted({take.performer for take in takes if take.performer})
     lesson = taught(known, posture, [take.rows for take in takes], performers)
+    return kept(lesson, posture, [take.clip for take in takes], out)
+
+
+def model_to_teach(posture: str, plan: Plan) -> PostureModel:
+    """The model that a posture is added to.
+
+    Raises:
+        TrainingError: When the name is none.
+        LearningError: When the model knows it.
+        ModelError: When it cannot be read.
+    """
+    if not NAME.fullmatch(posture):
+        raise TrainingError(
+            f"{posture!r} is no name of a posture: small letters, digits and _, as star_jump"
+        )
+    known = model_named(plan.add_to or Path("shipped"), plan.recognizer)
+    refuse_known(known, posture)
+    return known
+
+
+def kept(lesson: Lesson, posture: str, takes: Sequence[str], out: Path) -> dict[str, Any]:
+    """Write what was learnt; what the command tells of it.
+
+    Raises:
+        ModelError: When the file cannot be written.
+    """
     save(lesson.model, out)
     return {
         "model": str(out),
         "posture": posture,
         "takes": [
-            {"clip": take.clip, "margin": told.margin, "rival": told.rival}
+            {"clip": take, "margin": told.margin, "rival": told.rival}
             for take, told in zip(takes, lesson.takes, strict=True)
         ],
         "rivals": rivals(lesson),

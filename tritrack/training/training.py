@@ -11,7 +11,7 @@ from common.method import Mode
 from recognizer.__main__ import SHIPPED, SHIPPED_PAPER
 from recognizer.model_file import load, save
 from recognizer.postures import PostureModel, Recognizer
-from recognizer.training.learning import extended, train
+from recognizer.training.learning import train
 from tritrack.store.cores import spread
 from tritrack.training.recordings import recordings
 
@@ -32,9 +32,8 @@ class Plan(NamedTuple):
     """Which kind of model."""
     cache: Path
     """Folder that keeps what tracking made of clips."""
-    add_to: Path | None = None
-    """A model whose other postures are kept, and whose kind the new ones get; None: the model
-    knows what is learnt here alone."""
+    add_to: Path = Path("shipped")
+    """Of teaching: the model that a posture is added to, which tells its kind."""
 
 
 def train_postures(
@@ -52,21 +51,16 @@ def train_postures(
         RecordingError: When a folder is neither, or names no posture.
         ClipsFailed: When clips cannot be used.
         LearningError: When nothing can be learnt.
-        ModelError: When the file cannot be written, or the model to add to cannot be read.
+        ModelError: When the file cannot be written.
     """
-    known = model_named(plan.add_to, plan.recognizer) if plan.add_to else None
-    kind = known.card.recognizer if known else plan.recognizer
     learnt: dict[str, list[Any]] = defaultdict(list)
     performers = set()
     with spread(""):
-        given = recordings(paths, plan.mode or kind, plan.cache, console)
+        given = recordings(paths, plan.mode or plan.recognizer, plan.cache, console)
     for recording in given:
         learnt[recording.posture].append(recording.rows)
         performers.add(recording.performer)
-    if known is None:
-        model = train(dict(learnt), kind, performers=sorted(performers))
-    else:
-        model = extended(known, learnt, sorted(performers))
+    model = train(dict(learnt), plan.recognizer, performers=sorted(performers))
     save(model, out)
     return {
         "model": str(out),

@@ -14,7 +14,13 @@ from common.config import SettingsError
 from common.video.clip_facts import View
 from common.video.decoding import Decoded, Size
 from viewer.landmarks.fifteen_joints import facing_deg, fifteen, fifteen_shares
-from viewer.landmarks.keypoint_layouts import LAYOUTS, POINT, body_points
+from viewer.landmarks.keypoint_layouts import (
+    BODY_POINTS,
+    LAYOUTS,
+    POINT,
+    body_points,
+    extremity_points,
+)
 
 MOST_FILES: Final = 200_000
 MOST_BYTES: Final = 1 << 20
@@ -28,7 +34,8 @@ FACING: Final = [POINT[name] for name in ("nose", "l_ear", "l_shoulder", "r_shou
 """The points that tell which way somebody faces."""
 
 Person = NDArray[np.float64]
-"""(17, 3): columns and rows by our convention in the video's pixels, and scores."""
+"""(24, 3): columns and rows by our convention in the video's pixels, and scores: BODY_POINTS, then
+EXTREMITY_NAMES."""
 
 
 class _Person(msgspec.Struct):
@@ -121,7 +128,8 @@ def _person(numbers: Sequence[float], path: Path) -> Person:
     if rest or points not in LAYOUTS:
         known = "BODY_25, COCO (17 or 18) and HALPE_26"
         raise SettingsError(f"{path}: a person of {len(numbers)} numbers; layouts are {known}")
-    person = body_points(np.array(numbers, np.float64).reshape(points, 3))
+    told = np.array(numbers, np.float64).reshape(points, 3)
+    person = np.concatenate([body_points(told), extremity_points(told)])
     if not (np.abs(person) < FURTHEST_PX).all():
         raise SettingsError(f"{path}: a point lies nowhere near a picture: mend it")
     # They count from the middle of the first pixel, we from its corner.
@@ -147,13 +155,15 @@ def _with_a_whole_head(person: Person) -> Person:
 
 def _landmarks_of(person: Person, scale: NDArray[np.float64]) -> Landmarks:
     """Of a person in the video's pixels; the scores are taken for confidence as they are."""
-    points, scores = person[:, :2], person[:, 2]
-    joints = scale * fifteen(points)
+    points, scores = person[: len(BODY_POINTS), :2], person[: len(BODY_POINTS), 2]
+    joints, ends = scale * fifteen(points), person[len(BODY_POINTS) :]
     return Landmarks(
         joints_px=tuple((float(u), float(v)) for u, v in joints),
         confidence=tuple(fifteen_shares(scores).tolist()),
         facing_deg=facing_deg(points),
         facing_confidence=float(scores[FACING].min()),
+        extremities_px=tuple((float(u), float(v)) for u, v in scale * ends[:, :2]),
+        extremities_confidence=tuple(ends[:, 2].tolist()),
     )
 
 

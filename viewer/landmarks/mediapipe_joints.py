@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from common.bus.messages import Landmarks
 from common.video.decoding import Size
 from viewer.landmarks.fifteen_joints import Floats, facing_deg, fifteen, fifteen_shares
-from viewer.landmarks.keypoint_layouts import body_points
+from viewer.landmarks.keypoint_layouts import body_points, extremity_points
 
 
 def landmarks_of(points: NDArray[np.float32], shown: Size, working: Size) -> Landmarks:
@@ -19,12 +19,15 @@ def landmarks_of(points: NDArray[np.float32], shown: Size, working: Size) -> Lan
     """
     body = body_points(points)
     places = at_the_joints(body[:, :2])
-    joints = np.divide(working, shown) * fifteen(places)
+    scale = np.divide(working, shown)
+    joints, ends = scale * fifteen(places), extremity_points(points)
     return Landmarks(
         joints_px=tuple((float(u), float(v)) for u, v in joints),
         confidence=tuple(fifteen_shares(body[:, 2]).tolist()),
         facing_deg=facing_deg(places),
         facing_confidence=0.5,
+        extremities_px=tuple((float(u), float(v)) for u, v in scale * ends[:, :2]),
+        extremities_confidence=tuple(ends[:, 2].tolist()),
     )
 
 

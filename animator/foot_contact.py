@@ -1,0 +1,82 @@
+"""When a foot stands: it is low and slow, and stays until it is neither."""
+
+from typing import Final, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from animator.bones import Joints
+from common.body.body import JOINT_NAMES, Vector
+
+Side = Literal["l", "r"]
+SIDES: Final[tuple[Side, Side]] = ("l", "r")
+
+COMES_M_S, GOES_M_S = 0.30, 0.50
+"""Speed of the ankle below which a foot comes to stand, and beyond which it goes."""
+LOW_M, HIGH_M = 0.04, 0.07
+"""Height of the ankle above where it stands, likewise."""
+WANDERS_M: Final = 0.05
+"""A foot that comes farther from where it stood so far stands anew."""
+STANDS_S: Final = 0.15
+"""Shorter it only touches the floor."""
+LOWEST: Final = 20
+"""Where ankles stand is this percentile of the lower one's height, in a run."""
+
+
+class Stance(NamedTuple):
+    """One contact of a foot with the floor."""
+
+    side: Side
+    first: int
+    """Its first row; `end` is the first one after it."""
+    end: int
+
+
+def stances(joints_m: Joints, time_s: Vector) -> list[Stance]:
+    """All contacts of a run.
+
+    Args:
+        joints_m: (n, joints, 3), +y up; rows without a pose are NaN and end a contact.
+        time_s: (n,) increasing, at least two.
+    """
+    ankles = joints_m[:, [JOINT_NAMES.index(f"{side}_ankle") for side in SIDES]]
+    posed = np.isfinite(ankles).all(axis=(1, 2))
+    if not posed.any():
+        return []
+    floor_m = np.percentile(ankles[posed, :, 1].min(axis=1), LOWEST)
+    found = []
+    for side, ankle in zip(SIDES, ankles.swapaxes(0, 1), strict=True):
+        low = ankle[:, 1] - floor_m
+        slow = _speeds(ankle, time_s)
+        with np.errstate(invalid="ignore"):
+            comes = (low < LOW_M) & (slow < COMES_M_S)
+            stays = (low < HIGH_M) & (slow < GOES_M_S)
+        for first, end in _held(comes, stays, ankle):
+            if time_s[end - 1] - time_s[first] >= STANDS_S - 1e-9:
+                found.append(Stance(side, first, end))
+    return found
+
+
+def _speeds(places_m: Vector, time_s: Vector) -> Vector:
+    """Of a point (n, 3), from the row before to the row after; at ends and gaps from one side."""
+    steps = np.linalg.norm(np.diff(places_m, axis=0), axis=1) / np.diff(time_s)
+    both = np.full((2, len(places_m)), np.nan)
+    both[0, 1:], both[1, :-1] = steps, steps
+    both = np.where(np.isnan(both), both[::-1], both)
+    speeds: Vector = both.mean(axis=0)
+    return speeds
+
+
+def _held(
+    comes: NDArray[np.bool_], stays: NDArray[np.bool_], ankle_m: Vector
+) -> list[tuple[int, int]]:
+    found, first = [], -1
+    for i in range(len(comes)):
+        if first >= 0:
+            here = np.median(ankle_m[first:i], axis=0)
+            if not stays[i] or np.linalg.norm((ankle_m[i] - here)[[0, 2]]) > WANDERS_M:
+                found.append((first, i))
+                first = -1
+        if first < 0 and comes[i]:
+            first = i
+    return [*found, (first, len(comes))] if first >= 0 else found

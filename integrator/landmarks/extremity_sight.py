@@ -1,0 +1,99 @@
+"""Nose, heels, toes and knuckles where a source of landmarks sees them; else by the body's rule."""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.extremities import EXTREMITY_NAMES
+from common.bus.messages import Landmarks, Report
+from common.rig.camera import Camera, Rig, arrays_of, project
+
+Floats = NDArray[np.float64]
+
+LEAST: Final = 0.3
+"""Less sure a point is not looked at."""
+FARTHEST_SHARE: Final = 0.15
+"""Of the stature: farther from where the body has it, a point is somebody else's or a mistake."""
+APART_SHARE: Final = 0.06
+"""Of the stature: lines of sight that miss each other by more do not see one place."""
+DEPTH_BY_RULE: Final = 0.5
+"""Share of its confidence that is left where one view alone sees a point: how far away it is
+follows from the body."""
+_OTHER: Final = [
+    EXTREMITY_NAMES.index({"l_": "r_", "r_": "l_"}.get(name[:2], name[:2]) + name[2:])
+    for name in EXTREMITY_NAMES
+]
+_PARTS: Final = (("l_heel", "l_toe", "r_heel", "r_toe"), ("l_knuckle", "r_knuckle"))
+"""Feet and hands: a view may take either for the other side's."""
+
+
+def seen_extremities(
+    rule_m: Floats, rig: Rig, seen: tuple[Report | None, Report | None], stature_m: float
+) -> tuple[Floats, Floats]:
+    """Where they are, (7, 3), and how sure that is, (7,): 0 where nobody measured it.
+
+    Args:
+        rule_m: (7, 3) where the body has them.
+        rig: Two cameras without distortion.
+        seen: Of each view, as without distortion.
+        stature_m: From sole to crown.
+    """
+    sure, nearest = np.zeros((2, len(rule_m))), np.zeros((2, len(rule_m), 3))
+    for view, (camera, report) in enumerate(zip(rig.cameras, seen, strict=True)):
+        shown = None if report is None else report.landmarks
+        if shown is not None and shown.extremities_px:
+            pixels, sure[view] = _own_sides(shown, project(camera, rule_m))
+            nearest[view] = _lines(camera, pixels)
+    if not (sure >= LEAST).any():
+        return rule_m, np.zeros(len(rule_m))
+    sure = np.where(sure >= LEAST, sure, 0.0)
+    places_m, confidence = _met(rule_m, rig, nearest, sure, stature_m)
+    taken = np.linalg.norm(places_m - rule_m, axis=1) <= FARTHEST_SHARE * stature_m
+    return np.where(taken[:, None], places_m, rule_m), np.where(taken, confidence, 0.0)
+
+
+def _own_sides(shown: Landmarks, rule_px: Floats) -> tuple[Floats, Floats]:
+    """A view's pixels (7, 2) and confidence (7,), left and right as the body has them."""
+    pixels, sure = np.array(shown.extremities_px), np.array(shown.extremities_confidence)
+    for part in _PARTS:
+        at = [EXTREMITY_NAMES.index(name) for name in part]
+        other = [_OTHER[i] for i in at]
+        own_px = (sure[at] * np.linalg.norm(pixels[at] - rule_px[at], axis=1)).sum()
+        other_px = (sure[other] * np.linalg.norm(pixels[other] - rule_px[at], axis=1)).sum()
+        if other_px < own_px:
+            pixels[at], sure[at] = pixels[other], sure[other]
+    return pixels, sure
+
+
+def _lines(camera: Camera, pixels: Floats) -> Floats:
+    """Directions (7, 3) of unit length in which a camera sees pixels (7, 2)."""
+    known = arrays_of(camera)
+    plane = np.ones((len(pixels), 3))
+    plane[:, :2] = (pixels - known.middle_px) / known.focal_px
+    found: Floats = plane @ known.R
+    return found / np.linalg.norm(found, axis=1, keepdims=True)
+
+
+def _met(
+    rule_m: Floats, rig: Rig, lines: Floats, sure: Floats, stature_m: float
+) -> tuple[Floats, Floats]:
+    """The middle between two lines of sight, or the place of one that is nearest to the rule's."""
+    centres = [arrays_of(camera).centre for camera in rig.cameras]
+    alone = [
+        centre + ((rule_m - centre) * line).sum(axis=1, keepdims=True) * line
+        for centre, line in zip(centres, lines, strict=True)
+    ]
+    first, second, apart = lines[0], lines[1], centres[0] - centres[1]
+    cosine = (first * second).sum(axis=1)
+    d, e = first @ apart, second @ apart
+    slope = np.maximum(1.0 - cosine**2, 1e-6)
+    on_first = centres[0] + ((cosine * e - d) / slope)[:, None] * first
+    on_second = centres[1] + ((e - cosine * d) / slope)[:, None] * second
+    meet = np.linalg.norm(on_first - on_second, axis=1) <= APART_SHARE * stature_m
+    both = np.asarray((sure > 0).all(axis=0) & meet)
+    surer = sure.argmax(axis=0)
+    one = np.where(surer[:, None] == 0, alone[0], alone[1])
+    places_m = np.where(both[:, None], (on_first + on_second) / 2, one)
+    confidence = np.where(both, sure.min(axis=0), DEPTH_BY_RULE * sure.max(axis=0))
+    return np.where(confidence[:, None] > 0, places_m, rule_m), confidence

@@ -1,0 +1,145 @@
+"""When feet stand, and that they then stand still: made-up steps whose contacts are known."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from animator.bones import OF_JOINTS, joints_of, skeleton_of
+from animator.bvh import steady
+from animator.foot_contact import Stance, stances
+from animator.planted_feet import knees, planted
+from common.body.body import JOINT_NAMES
+from common.body.extremities import ALL_JOINT_NAMES, extremities
+
+RATE_HZ, STEP_S, STRIDE_M = 15.0, 0.6, 0.5
+TIMES = np.arange(60) / RATE_HZ
+
+
+def walking(noise_m: float = 0.0) -> np.ndarray:
+    """(60, 22, 3): feet take turns, the left one stands first; rows 0 to 8, 18 to 26 ...
+
+    A foot swings over 0.5 m ahead within 0.6 s, 0.12 m high, while the other one stands.
+    """
+    rng = np.random.default_rng(3)
+    poses = np.empty((len(TIMES), len(JOINT_NAMES), 3))
+    for i, time_s in enumerate(TIMES):
+        count, share = divmod(time_s / STEP_S + 1e-9, 1.0)
+        z = {"l": STRIDE_M * ((count + 1) // 2), "r": STRIDE_M * (count // 2)}
+        moving = "r" if count % 2 == 0 else "l"
+        z[moving] += STRIDE_M * (share if moving == "r" else share - 1.0)
+        middle = (z["l"] + z["r"]) / 2
+        at: dict[str, Any] = {
+            "pelvis": (0.0, 0.9, middle),
+            "neck": (0.0, 1.4, middle),
+            "head_top": (0, 1.7, middle),
+        }
+        for side, sign in (("l", 1.0), ("r", -1.0)):
+            high = 0.12 * np.sin(np.pi * share) if side == moving else 0.0
+            ankle = np.array([sign * 0.1, 0.068 + high, z[side]])
+            hip = np.array([sign * 0.1, 0.9, middle])
+            at[f"{side}_hip"], at[f"{side}_ankle"] = hip, ankle
+            at[f"{side}_knee"] = (hip + ankle) / 2 + (0.0, 0.0, 0.1)
+            for joint, y in (("shoulder", 1.35), ("elbow", 1.1), ("wrist", 0.85)):
+                at[f"{side}_{joint}"] = (sign * 0.2, y, middle)
+        poses[i] = [at[name] for name in JOINT_NAMES]
+    poses += rng.normal(0.0, 1.0, poses.shape) * noise_m
+    return np.concatenate([poses, extremities(poses, 1.7)], axis=1)
+
+
+def ankle(joints_m: np.ndarray, side: str) -> np.ndarray:
+    return joints_m[:, JOINT_NAMES.index(f"{side}_ankle")]
+
+
+def slide_m(place_m: np.ndarray) -> float:
+    return float(np.linalg.norm((place_m - np.median(place_m, axis=0))[:, [0, 2]], axis=1).max())
+
+
+def test_feet_that_take_turns_are_told_apart() -> None:
+    found = stances(walking(), TIMES)
+    for side, begins in (("l", (0, 18, 36, 54)), ("r", (9, 27, 45))):
+        own = [stance for stance in found if stance.side == side]
+        assert [stance.first for stance in own] == pytest.approx(begins, abs=2)
+    assert all(6 <= stance.end - stance.first <= 12 for stance in found if stance.end < 60)
+
+
+def test_a_gap_in_the_run_ends_a_contact() -> None:
+    still = np.repeat(walking()[:1], 60, axis=0)
+    still[30:32] = np.nan
+    own = [stance for stance in stances(still, TIMES) if stance.side == "l"]
+    assert own == [Stance("l", 0, 30), Stance("l", 32, 60)]
+
+
+def test_who_is_in_the_air_does_not_stand() -> None:
+    jumping = np.repeat(walking()[:1], 60, axis=0)
+    jumping[20:30, :, 1] += 0.3
+    told = np.zeros(60, bool)
+    for stance in stances(jumping, TIMES):
+        told[stance.first : stance.end] = True
+    assert not told[20:30].any()
+    assert told[:18].all()
+    assert told[32:].all()
+
+
+def test_a_standing_foot_that_was_tracked_unsteadily_is_held_still() -> None:
+    """6 mm of noise a coordinate: 12 mm of slide before, none after; swings are left alone."""
+    noisy = walking(0.006)
+    run = planted(noisy, TIMES)
+    for stance in stances(noisy, TIMES):
+        rows = slice(stance.first, stance.end)
+        assert slide_m(ankle(noisy, stance.side)[rows]) > 0.005
+        assert slide_m(ankle(run.joints_m, stance.side)[rows]) < 1e-6
+    far = run.held == 0
+    assert far.any()
+    for foot, side in enumerate("lr"):
+        moved = np.linalg.norm(ankle(run.joints_m, side) - ankle(noisy, side), axis=1)
+        assert moved[far[:, foot]].max() == pytest.approx(0.0, abs=1e-12)
+        assert moved.max() < 0.08 + 1e-9
+
+
+def test_the_skeleton_of_an_animation_stands_as_still() -> None:
+    """Within 1 mm in half of the contacts, though its bones cannot follow the joints."""
+    noisy = walking(0.006)
+    skeleton, motion, steps = steady(noisy, TIMES)
+    made = joints_of(skeleton, motion)
+    assert steps.frames == 60
+    slides = [
+        slide_m(ankle(made, stance.side)[stance.first : stance.end])
+        for stance in stances(noisy, TIMES)
+    ]
+    assert np.median(slides) < 1e-3
+    assert max(slides) < 0.005
+    pelvis = np.linalg.norm(made[:, 0] - noisy[:, 0], axis=1)
+    assert np.percentile(pelvis, 95) < 0.02
+
+
+def test_a_body_in_the_air_is_not_touched() -> None:
+    flying = walking()
+    flying[..., 1] += 0.4 * np.sin(np.linspace(0.0, 40.0, 60))[:, None]
+    run = planted(flying, TIMES)
+    untouched = run.held.max(axis=1) == 0
+    assert untouched.sum() > 20
+    assert (run.joints_m[untouched] == flying[untouched]).all()
+
+
+def test_knees_bend_so_that_both_bones_keep_their_lengths() -> None:
+    """3, 4, 5: a leg whose hip and ankle are 5 apart has its knee at a right angle."""
+    leg = np.array([[[0.0, 5.0, 0.0], [0.0, 3.0, 0.5], [0.0, 0.0, 0.0]]])
+    (knee,) = knees(leg, np.array([3.0]), np.array([4.0]))
+    assert knee == pytest.approx([0.0, 3.2, 2.4])
+
+
+def test_a_leg_that_is_too_short_is_straight() -> None:
+    leg = np.array([[[0.0, 8.0, 0.0], [0.0, 4.0, 0.5], [0.0, 0.0, 0.0]]])
+    (knee,) = knees(leg, np.array([3.0]), np.array([3.0]))
+    assert knee == pytest.approx([0.0, 4.0, 0.0], abs=1e-3)
+
+
+def test_hands_and_feet_are_bones_where_a_run_has_them() -> None:
+    whole = walking()
+    assert len(skeleton_of(whole).bones) == OF_JOINTS[22] == 17
+    assert len(skeleton_of(whole[:, :15]).bones) == OF_JOINTS[15] == 13
+    skeleton, motion, _ = steady(whole, TIMES)
+    made = joints_of(skeleton, motion)
+    toe = ALL_JOINT_NAMES.index("l_toe")
+    assert np.linalg.norm(made[:, toe] - whole[:, toe], axis=1).max() < 0.01

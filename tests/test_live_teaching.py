@@ -1,0 +1,104 @@
+"""Teaching before cameras: three takes that agree are learnt, others are done again."""
+
+import io
+from pathlib import Path
+
+import pytest
+from acting import perform
+from rich.console import Console
+
+from common.bus.messages import Body
+from common.config import PageSettings, Settings
+from recognizer.model_file import load, save
+from recognizer.training.learning import train
+from synth.motion.streaming import streamed
+from synth.person.people import person
+from synth.picture.exposure import default_rig
+from synth.write import FPS, Filming, write_clip, write_rig
+from tritrack.live.launch import nothing_heard
+from tritrack.training.coach import Said
+from tritrack.training.live_teaching import MOST_TAKES, Teaching, teach_live
+from tritrack.training.training import Plan, TrainingError
+
+NEW = "raise_both_lateral"
+KNOWN = ("squat", "walk_toward", "kick_left_side")
+
+
+@pytest.fixture(scope="module")
+def plan(tmp_path_factory: pytest.TempPathFactory) -> Plan:
+    """Added to a model of a few postures: the shipped one knows all that can act."""
+    folder = tmp_path_factory.mktemp("known")
+    save(train({name: [perform(name, n) for n in range(3)] for name in KNOWN}), folder / "few.npz")
+    return Plan(None, "default", folder, folder / "few.npz")
+
+
+def taught_by(
+    plan: Plan, monkeypatch: pytest.MonkeyPatch, *postures: str
+) -> tuple[Teaching, list[str]]:
+    """A teaching that cuts these performances out of what it sees, one a body."""
+    takes = [perform(posture, n) for n, posture in enumerate(postures)]
+    monkeypatch.setattr(
+        "tritrack.training.coach.step", lambda state, _: (state, Said(take=takes.pop(0)))
+    )
+    console = Console(record=True, width=200, file=io.StringIO())
+    teaching = Teaching(NEW, load(plan.add_to), console, 0.0)
+    heard = nothing_heard()
+    for n in range(len(postures)):
+        heard.bodies.add(
+            [Body(frame=n, captured_s=float(n), clock_s=0.0, status="empty", views="none")]
+        )
+        if teaching(heard):
+            break
+    return teaching, console.export_text().splitlines()
+
+
+def test_three_takes_that_agree_end_the_run(plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
+    teaching, said = taught_by(plan, monkeypatch, NEW, NEW, NEW, "squat")
+    assert teaching.lesson is not None
+    assert teaching.lesson.model.names == (*KNOWN, NEW)
+    assert said[-1] == "three takes that agree: learnt"
+
+
+def test_a_take_that_differs_is_named_and_done_again(
+    plan: Plan, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    teaching, said = taught_by(plan, monkeypatch, NEW, NEW, "squat", NEW)
+    assert "take 3 looks like squat: once more" in said
+    assert teaching.lesson is not None
+    assert len(teaching.lesson.takes) == 3
+
+
+def test_who_never_shows_one_motion_is_not_waited_for_for_ever(
+    plan: Plan, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown = ("squat", "walk_toward", "kick_left_side") * MOST_TAKES
+    teaching, said = taught_by(plan, monkeypatch, *shown)
+    assert teaching.lesson is None
+    assert sum("all over again" in line for line in said) >= 1
+    assert sum(line.startswith("take ") for line in said) <= MOST_TAKES
+
+
+@pytest.mark.slow
+def test_a_recording_that_plays_as_live_teaches_a_posture(plan: Plan, tmp_path: Path) -> None:
+    """Viewers, integrator and recogniser as processes; it is shown eight times, with pauses."""
+    rig, someone = default_rig(160, 120), person(5501)
+    write_rig(tmp_path / "calibration.json", rig)
+    shown = streamed(someone, 7, FPS, (NEW,) * 8)
+    write_clip(tmp_path / "shown", someone, shown, Filming(rig, 1, 2), 1)
+    settings = Settings(clip=str(tmp_path / "shown"), page=PageSettings(port=0))
+    out = tmp_path / "mine.npz"
+    facts = teach_live("both_up", settings, out, plan, Console(quiet=True), 0.0)
+    assert len(facts["takes"]) == 3
+    assert all(take["margin"] > 0.0 for take in facts["takes"])
+    assert load(out).names == (*KNOWN, "both_up")
+
+
+@pytest.mark.slow
+def test_a_recording_in_which_nobody_shows_it_teaches_nothing(
+    clip: Path, plan: Plan, tmp_path: Path
+) -> None:
+    settings = Settings(clip=str(clip), page=PageSettings(port=0))
+    out = tmp_path / "mine.npz"
+    with pytest.raises(TrainingError, match="ended before 3 takes of both_up agreed"):
+        teach_live("both_up", settings, out, plan, Console(quiet=True), 0.0)
+    assert not out.exists()

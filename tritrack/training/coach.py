@@ -1,0 +1,142 @@
+"""Teaching live: says what to do, counts in, and cuts each take out of what is seen."""
+
+import math
+from collections import deque
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.bus.messages import Body
+from recognizer.features import Rows
+
+MOVES_M: Final = 0.12
+"""Who has a joint that comes so far within LOOK_S moves."""
+LOOK_S: Final = 0.4
+STANDS_S: Final = 0.5
+"""Who has not moved for so long stands."""
+LONGEST_S: Final = 12.0
+"""A take ends by then, and nobody is waited for longer to begin one."""
+SHORTEST_S: Final = 0.7
+
+STAND: Final = "stand so that the cameras see all of you, arms hanging"
+AGAIN_STILL: Final = "nothing moved: once more"
+AGAIN_SHORT: Final = "that was too short: once more"
+AGAIN_LOST: Final = "you were lost from sight: once more"
+
+
+class Look(NamedTuple):
+    """One body, as far as teaching goes."""
+
+    time_s: float
+    row: Rows
+    """(20,) as a recogniser is told it."""
+    joints_m: NDArray[np.float64] | None
+    """(15, 3); None where the body is not believed."""
+
+
+class State(NamedTuple):
+    """What the coach remembers."""
+
+    posture: str
+    count_s: float
+    """How long is counted before each take."""
+    doing: str = "waiting"
+    """waiting (for somebody who stands), counting, ready or moving."""
+    since_s: float = 0.0
+    """When that began."""
+    still_s: float | None = None
+    """Since when nothing moves; None while something does."""
+    told: int = 0
+    """The last number that was counted."""
+    seen: tuple[Look, ...] = ()
+    """What was seen since the take began, and within LOOK_S before."""
+
+
+class Said(NamedTuple):
+    """What comes of a look."""
+
+    word: str = ""
+    """What is said to the person; "" for nothing."""
+    take: Rows | None = None
+    """(n, 20) a performance from its first movement to the last."""
+
+
+def look_at(body: Body, row: Rows, believed: tuple[str, ...]) -> Look:
+    """A body as the coach sees it."""
+    known = body.status in believed and bool(body.joints_m)
+    return Look(body.captured_s, row, np.array(body.joints_m) if known else None)
+
+
+def step(state: State, look: Look) -> tuple[State, Said]:
+    """One more body."""
+    state = _with(state, look)
+    if look.joints_m is None:
+        return _lost(state, look)
+    stands = state.still_s is not None and look.time_s - state.still_s >= STANDS_S
+    if state.doing == "waiting":
+        return _begin(state, look) if stands else (state, Said())
+    if state.doing == "counting":
+        return _count(state, look)
+    if state.doing == "ready":
+        return _await(state, look)
+    return _end(state, look, stands)
+
+
+def _with(state: State, look: Look) -> State:
+    """The state with a look, and since when nothing moves."""
+    kept = deque((*state.seen, look))
+    first_s = look.time_s - LOOK_S
+    while state.doing != "moving" and kept[0].time_s < first_s:
+        kept.popleft()
+    recent = [one for one in kept if one.time_s >= first_s and one.joints_m is not None]
+    moves = len(recent) < 2 or _extent_m([one.joints_m for one in recent]) > MOVES_M
+    since = recent[0].time_s if state.still_s is None and recent else state.still_s
+    return state._replace(seen=tuple(kept), still_s=None if moves else since)
+
+
+def _extent_m(joints_m: list[Any]) -> float:
+    return float(np.linalg.norm(np.array(joints_m) - joints_m[-1], axis=2).max())
+
+
+def _to(state: State, doing: str, look: Look) -> State:
+    return state._replace(doing=doing, since_s=look.time_s, told=0)
+
+
+def _lost(state: State, look: Look) -> tuple[State, Said]:
+    """Who is lost in a take does it again; else one waits."""
+    word = AGAIN_LOST if state.doing in ("counting", "ready", "moving") else ""
+    return _to(state, "waiting", look)._replace(still_s=None, seen=()), Said(word)
+
+
+def _begin(state: State, look: Look) -> tuple[State, Said]:
+    return _count(_to(state, "counting", look), look)
+
+
+def _count(state: State, look: Look) -> tuple[State, Said]:
+    """3, 2, 1, now; whoever moves meanwhile comes to stand again by then, or begins early."""
+    left = math.ceil(state.count_s - (look.time_s - state.since_s) - 1e-9)
+    if left > 0:
+        word = str(left) if left != state.told else ""
+        return state._replace(told=left), Said(word)
+    word = f"now: {state.posture}, once, then stand still"
+    return _to(state, "ready", look), Said(word)
+
+
+def _await(state: State, look: Look) -> tuple[State, Said]:
+    if state.still_s is None:
+        return _to(state, "moving", look), Said()
+    if look.time_s - state.since_s > LONGEST_S:
+        return _to(state, "waiting", look), Said(AGAIN_STILL)
+    return state, Said()
+
+
+def _end(state: State, look: Look, stands: bool) -> tuple[State, Said]:
+    if not stands and look.time_s - state.since_s <= LONGEST_S:
+        return state, Said()
+    last_s = state.still_s if stands and state.still_s is not None else look.time_s
+    rows = [one.row for one in state.seen if one.time_s <= last_s]
+    after = _to(state, "waiting", look)._replace(seen=(look,))
+    if last_s - state.since_s < SHORTEST_S:
+        return after, Said(AGAIN_SHORT)
+    return after, Said("thank you", np.array(rows))
