@@ -6,6 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 import torch
+from google.protobuf.message import DecodeError
 from numpy.typing import NDArray
 from torch import nn
 from torch.nn import functional
@@ -80,6 +81,13 @@ def _layer(inputs: int, outputs: int, stride: int = 1, bent: bool = True) -> Any
     return nn.Sequential(*parts)
 
 
+def _halved() -> Any:
+    """Numbers of half the length, where the processor reckons with them: without its instructions
+    they take fifteen times as long as whole ones."""
+    able = torch.cpu._is_avx512_bf16_supported()
+    return torch.autocast("cpu", dtype=torch.bfloat16, enabled=able)
+
+
 def planes_of(shown: list[Composite]) -> Any:
     """What the network sees of composites."""
     pictures = np.stack([np.dstack([one.picture, one.outline]) for one in shown])
@@ -89,7 +97,7 @@ def planes_of(shown: list[Composite]) -> Any:
 
 def loss(network: Any, shown: list[Composite]) -> Any:
     """Cross entropies of maps, facing, whether somebody is there, and how sure the maps are."""
-    with torch.autocast("cpu", dtype=torch.bfloat16):
+    with _halved():
         maps, told = network(planes_of(shown))
     maps, told = maps.float().flatten(2), told.float()
     joints = torch.from_numpy(np.stack([one.joints_px for one in shown]))
@@ -166,9 +174,80 @@ def export(network: Any, out: Path) -> None:
     )
 
 
+def read(path: Path) -> LandmarkNetwork:
+    """A network that `export` wrote, to be taught on.
+
+    What was folded into the layers stays there, and the normalisations do nothing until they are
+    told by `normalised` what they see.
+
+    Raises:
+        OSError: When the file cannot be read.
+        ValueError: When it holds no such network.
+    """
+    import onnx
+
+    try:
+        graph = onnx.load(path).graph
+    except DecodeError as error:
+        raise ValueError(f"{path} holds no network: {error}") from error
+    kept = {each.name: onnx.numpy_helper.to_array(each) for each in graph.initializer}
+    held = [node.input[1:] for node in graph.node if node.op_type in ("Conv", "Gemm")]
+    network = LandmarkNetwork().eval()
+    layers = _in_order(network, (nn.Conv2d, nn.Linear, nn.BatchNorm2d))
+    folded = [layer for layer in layers if not isinstance(layer, nn.BatchNorm2d)]
+    shapes = [tuple(kept[weight].shape) for weight, _ in held]
+    if shapes != [tuple(layer.weight.shape) for layer in folded]:
+        raise ValueError(f"{path} holds another kind of network")
+    values = iter(held)
+    for layer, after in zip(layers, [*layers[1:], None], strict=True):
+        if isinstance(layer, nn.BatchNorm2d):
+            continue
+        weight, bias = (torch.tensor(kept[name]) for name in next(values))
+        layer.weight.data = weight
+        biased = layer if layer.bias is not None else after
+        biased.bias.data = bias
+    return network.to(memory_format=torch.channels_last)
+
+
+def _in_order(network: Any, kinds: tuple[type, ...]) -> list[Any]:
+    """The layers of some kinds in the order in which they are gone through."""
+    order: list[Any] = []
+    hooks = [
+        layer.register_forward_hook(lambda layer, *_: order.append(layer))
+        for layer in network.modules()
+        if isinstance(layer, kinds)
+    ]
+    with torch.no_grad():
+        network(torch.zeros(1, PLANES, SIDE, SIDE))
+    for hook in hooks:
+        hook.remove()
+    return order
+
+
+def normalised(network: Any, shown: list[Composite]) -> None:
+    """Let the normalisations of a network that was `read` normalise what they see of composites,
+    and undo it by their own gains: it says what it said, and learns as it did."""
+    seen: dict[Any, tuple[Any, Any]] = {}
+
+    def look(layer: Any, given: tuple[Any, ...]) -> None:
+        seen[layer] = (given[0].mean((0, 2, 3)), given[0].var((0, 2, 3), correction=0))
+
+    layers = [layer for layer in network.modules() if isinstance(layer, nn.BatchNorm2d)]
+    hooks = [layer.register_forward_pre_hook(look) for layer in layers]
+    with torch.no_grad():
+        network.eval()(planes_of(shown))
+        for layer, hook in zip(layers, hooks, strict=True):
+            hook.remove()
+            mean, spread = seen[layer]
+            layer.running_mean.copy_(mean)
+            layer.running_var.copy_(spread)
+            layer.weight.copy_((spread + layer.eps).sqrt())
+            layer.bias.add_(mean)
+
+
 def joints_off(network: Any, shown: list[Composite]) -> NDArray[np.float64]:
     """(n, 15) how far off joints are, in statures; NaN for those that are not in the picture."""
-    with torch.no_grad(), torch.autocast("cpu", dtype=torch.bfloat16):
+    with torch.no_grad(), _halved():
         maps, _ = network.eval()(planes_of(shown))
     found = peaks(maps.float().flatten(2)).numpy()
     off = np.linalg.norm(found - np.stack([one.joints_px for one in shown]), axis=-1)
