@@ -15,13 +15,14 @@ from integrator.belief import is_believed
 from integrator.merge_state import State
 from integrator.pairing import Pair
 from integrator.rig.body_position import pixels_of, scales_since
+from integrator.single.sight import Annotations
 
 LOST_FRAMES: Final = 5
 """After so many frames in a row in which it is not believed the body is lost."""
 
 
 def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, float]) -> Body:
-    """The body in the pose that was found, with its angles smooth.
+    """The body in the pose that was found, with its angles smooth; a lost one is given no pose.
 
     Args:
         state: Of this instant; its pose is as found.
@@ -40,14 +41,18 @@ def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, f
     outside = _outside(pair, pixels)
     told = state.agreement.told if _views(pair) == "both" else None
     confidence = np.where(outside, 0.0, _confidence(state, scores) * _believed(state, told))
+    status = _status(state, bool(outside.any()))
+    posed: dict[str, Any] = {
+        "joints_m": tuple((x, y, z) for x, y, z in places_m.tolist()),
+        "joints_px": tuple(_pixels(each) for each in pixels),
+        "pose": tuple(pose.tolist()),
+        "angles_raw_deg": tuple(found.pose[in_pose].tolist()),
+    }
     return Body(
         **_moment(state, pair),
-        status=_status(state, bool(outside.any())),
+        **(posed if status != "lost" else {}),
+        status=status,
         views=_views(pair),
-        joints_m=tuple((x, y, z) for x, y, z in places_m.tolist()),
-        joints_px=tuple(_pixels(each) for each in pixels),
-        pose=tuple(pose.tolist()),
-        angles_raw_deg=tuple(found.pose[in_pose].tolist()),
         confidence=tuple(confidence.tolist()),
         score=scores,
         facing=found.facing,
@@ -60,17 +65,20 @@ def body_of(state: State, pair: Pair, angles_deg: Vector, scores: tuple[float, f
     )
 
 
-def weighed(state: State, pair: Pair, scores: tuple[float, float]) -> State:
+def weighed(
+    state: State, pair: Pair, scores: tuple[float, float], annotations: Annotations
+) -> State:
     """The state with how long the body has not been believed; one that both lost is forgotten.
 
-    What the network remembers of a wrong body it would go on with. One view that is alone keeps
-    what it remembers: it knows front from back by that alone.
+    A frame in which the user placed joints is believed. What the network remembers of a wrong body
+    it would go on with. One view that is alone keeps what it remembers: it knows front from back
+    by that alone.
     """
     found = state.found
     assert found is not None
     assert state.rig is not None
     places_m = _places_m(state, found.pose)
-    if is_believed(places_m, state.rig, pair, scores):
+    if annotations.joints_px or is_believed(places_m, state.rig, pair, scores):
         return state._replace(doubted=0)
     state = state._replace(doubted=state.doubted + 1)
     if state.doubted % LOST_FRAMES or found.alone is not None:
