@@ -23,24 +23,12 @@ def training(monkeypatch: pytest.MonkeyPatch) -> Any:
     from tritrack.training import landmark_training
 
     monkeypatch.setattr(landmark_training, "BATCH", 4)
+    monkeypatch.setattr(landmark_training, "BACKDROPS", 5)
     return landmark_training
 
 
-def course(training: Any) -> Any:
-    """A small one, from nothing."""
-    return training.Course(training.FROM_NOTHING._replace(backdrops=5), 0)
-
-
 def wanted(training: Any, people: Path, batch: int) -> Any:
-    return training.composed(training._wanted([people], course(training), batch))
-
-
-def begun(training: Any, kept: Path) -> Any:
-    return training._begun(kept, None, course(training))
-
-
-def step(training: Any, work: Any, shown: Any) -> Any:
-    return training._step(work, shown, course(training).amount)
+    return training.composed(training.Wanted((people,), 0, batch))
 
 
 def test_what_was_drawn_is_read_as_it_was_drawn(people: Path) -> None:
@@ -60,16 +48,16 @@ def test_the_same_batch_is_made_up_of_the_same_pictures(training: Any, people: P
 def test_work_that_was_stopped_goes_on_where_it_was(
     training: Any, people: Path, tmp_path: Path
 ) -> None:
-    straight = begun(training, tmp_path / "none")
-    stopped = begun(training, tmp_path / "none")
+    straight = training._begun(tmp_path / "none", 0)
+    stopped = training._begun(tmp_path / "none", 0)
     for batch in range(2):
         shown = wanted(training, people, batch)
-        straight, stopped = step(training, straight, shown), step(training, stopped, shown)
+        straight, stopped = training._step(straight, shown), training._step(stopped, shown)
     training._keep(stopped, tmp_path / "kept.pt")
-    resumed = begun(training, tmp_path / "kept.pt")
+    resumed = training._begun(tmp_path / "kept.pt", 0)
     assert resumed.batch == 2
     shown = wanted(training, people, 2)
-    straight, resumed = step(training, straight, shown), step(training, resumed, shown)
+    straight, resumed = training._step(straight, shown), training._step(resumed, shown)
     for name, value in straight.mean.state_dict().items():
         assert torch.allclose(value.float(), resumed.mean.state_dict()[name].float(), atol=1e-6)
 
@@ -77,10 +65,10 @@ def test_work_that_was_stopped_goes_on_where_it_was(
 def test_learning_makes_it_miss_less(training: Any, people: Path, tmp_path: Path) -> None:
     from tritrack.training import torch_landmarks
 
-    work, shown = begun(training, tmp_path / "none"), wanted(training, people, 0)
+    work, shown = training._begun(tmp_path / "none", 0), wanted(training, people, 0)
     before = torch_landmarks.loss(work.network, shown).item()
     for _ in range(12):
-        work = step(training, work, shown)
+        work = training._step(work, shown)
     assert torch_landmarks.loss(work.network, shown).item() < before - 0.5
 
 
@@ -96,33 +84,6 @@ def test_the_file_says_what_the_network_says(training: Any, people: Path, tmp_pa
     found = session.run(None, {"planes": planes.numpy()})
     for own, other in zip(due, found, strict=True):
         assert np.allclose(own.numpy(), other, rtol=1e-3, atol=1e-3)
-
-
-def test_a_network_that_is_taught_on_says_what_it_said(training: Any, people: Path) -> None:
-    """Also when its normalisations see a batch, as they do while it learns."""
-    from tritrack.training import torch_landmarks
-    from viewer.landmarks.landmark_network import SHIPPED, shipped
-
-    network, shown = torch_landmarks.read(SHIPPED), wanted(training, people, 0)
-    planes = torch_landmarks.planes_of(shown)
-    due = [shipped().run(None, {"planes": each[None].numpy()}) for each in planes]
-    torch_landmarks.normalised(network, shown)
-    for learning in (False, True):
-        with torch.no_grad():
-            found = network.train(learning)(planes)
-        for at, expected in enumerate(due):
-            for own, other in zip(found, expected, strict=True):
-                assert np.allclose(own[at].numpy(), other[0], rtol=0.02, atol=0.02)
-
-
-def test_what_is_no_such_network_is_not_taught_on(training: Any, tmp_path: Path) -> None:
-    from tritrack.training.training import TrainingError
-
-    (tmp_path / "notes.txt").write_text("nothing of a network")
-    silhouettes = Path("viewer/silhouette/silhouettes.npz")
-    for path in (tmp_path / "notes.txt", tmp_path / "missing.onnx", silhouettes):
-        with pytest.raises(TrainingError, match="cannot teach"):
-            training._first_network(path)
 
 
 def test_a_map_that_peaks_at_a_joint_finds_it() -> None:

@@ -22,8 +22,8 @@ HAIRS: Final[tuple[Hair, ...]] = ("bald", "short", "short", "bob", "tail")
 SKINS: Final = ((190, 205, 240), (36, 52, 82))
 HAIR: Final = ((90, 150, 190), (12, 14, 18))
 """The lightest and the darkest, blue, green, red."""
-DYED_SHARE, BARE_SHARE, BARE_CHEST_SHARE = 0.1, 0.12, 0.07
-"""Of the people: whose hair has any colour, who wear no shoes, no shirt."""
+DYED_SHARE, BARE_SHARE = 0.1, 0.12
+"""Of the people: whose hair has any colour, who wear no shoes."""
 
 
 def dressed(someone: Person, rng: np.random.Generator) -> Person:
@@ -51,8 +51,6 @@ def dressed(someone: Person, rng: np.random.Generator) -> Person:
         trousers=shirt if rng.random() < ALIKE_SHARE else _dye(rng),
         shoes=skin if rng.random() < BARE_SHARE else _dye(rng),
     )
-    if rng.random() < BARE_CHEST_SHARE:
-        look = look._replace(shirt=skin, shirt_second=skin, sleeve="none", loose_top_m=0.0)
     return someone._replace(look=look)
 
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from synth.person.people import Person
 from synth.person.skeleton import ANGLES
-from synth.picture.silhouette_examples import AT_LARGE, BENT, FEET, course
+from synth.picture.silhouette_examples import AT_LARGE, course
 
 WILD_SHARE: Final = 0.5
 """Of the people: how many hold poses that have nothing to do with each other."""
@@ -38,21 +38,6 @@ CALM: Final = 1.3
 """Wild angles gather about what is held at rest: the power of a chance that is at most 1."""
 REST_DEG: Final = {"sh_abd": 10.0, "sh_flex": 5.0, "elbow": 15.0, "hip_flex": 3.0, "knee": 5.0}
 FALLEN_DEG: Final = (50.0, 110.0)
-ALIKE_SHARE, ALIKE_DEG = 0.35, 6.0
-"""Of the wild poses: how many hold both arms, or both legs, alike, and how nearly."""
-CROUCH_SHARE: Final = 0.25
-"""Of the wild poses: how many crouch."""
-CROUCH_DEG: Final = {"hip_flex": 115.0, "knee": 130.0, "torso_pitch": 45.0}
-"""How far a deep crouch bends these; a shallower one bends all of them less."""
-CROUCH_SPREAD_DEG: Final = 8.0
-LIMBS: Final = tuple(
-    [[ANGLES.index(f"{side}_{name}") for name in names] for side in "lr"]
-    for names in (
-        ("sh_abd", "sh_flex", "sh_twist", "elbow"),
-        ("hip_abd", "hip_flex", "hip_twist", "knee", "foot"),
-    )
-)
-"""Columns of the left and the right limb: arms, legs."""
 
 
 def poses_deg(someone: Person, n: int, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -82,31 +67,8 @@ def _wild(n: int, rng: np.random.Generator) -> NDArray[np.float64]:
             reach = rest + (reach - rest) * rng.random(n) ** CALM
         columns.append(reach)
     angles = np.stack(columns, axis=1)
-    _crouched(angles, rng)
-    _alike(angles, rng)
     fallen = rng.random(n) < FALLEN_SHARE
     for name in ("root_pitch", "root_roll"):
         lying = rng.uniform(*FALLEN_DEG, n) * rng.choice([-1.0, 0.0, 1.0], n)
         angles[fallen, ANGLES.index(name)] += lying[fallen]
     return angles
-
-
-def _crouched(angles: NDArray[np.float64], rng: np.random.Generator) -> None:
-    """Some of the poses (n, 27) bend hips and knees together, from a little to wholly."""
-    who = rng.random(len(angles)) < CROUCH_SHARE
-    deep = rng.random(who.sum())
-    for at, name in enumerate(ANGLES):
-        most = CROUCH_DEG.get(name[2:] if name[1] == "_" else name)
-        if most is not None:
-            bent = deep * most + rng.normal(0.0, CROUCH_SPREAD_DEG, len(deep))
-            angles[who, at] = bent.clip(0.0)
-
-
-def _alike(angles: NDArray[np.float64], rng: np.random.Generator) -> None:
-    """Some of the poses (n, 27) hold both arms, or both legs, nearly alike."""
-    for left, right in LIMBS:
-        who = np.flatnonzero(rng.random(len(angles)) < ALIKE_SHARE)
-        differ = rng.normal(0.0, ALIKE_DEG, (len(who), len(left)))
-        differ[:, [at in FEET for at in left]] = 0.0
-        held = angles[np.ix_(who, left)] + differ
-        angles[np.ix_(who, right)] = np.where(np.isin(left, BENT), np.abs(held), held)

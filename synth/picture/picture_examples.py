@@ -25,9 +25,9 @@ FINER: Final = 2
 """Samples across a pixel."""
 PICTURES: Final = 16
 """Of one person."""
-DISTANCE_M, RISE_DEG, ROLL_DEG = (1.6, 7.0), (-12.0, 60.0), 16.0
+DISTANCE_M, RISE_DEG, ROLL_DEG = (1.6, 7.0), (-12.0, 55.0), 8.0
 """Range of the cameras, how far above the body's middle they stand, and how they are rolled."""
-ANYHOW_SHARE: Final = 0.15
+ANYHOW_SHARE: Final = 0.08
 """Of the pictures: how many are rolled in any way."""
 FRAME: Final = (-0.12, 0.3)
 """Logarithm of how much larger a picture is than FRAMED times the body's longer side."""

@@ -43,10 +43,6 @@ def train(
         Path | None,
         typer.Option(help="A file, or shipped: it learns the postures too, or learns them anew."),
     ] = None,
-    start: Annotated[
-        Path | None, typer.Option(help="Landmarks: a network that is taught on, or shipped.")
-    ] = None,
-    seed: Annotated[int, typer.Option(help="Landmarks: of the people who are made up.", min=0)] = 0,
     cache: Cache = CACHE,
     json_wanted: JsonWanted = False,
 ) -> None:
@@ -73,7 +69,7 @@ def train(
         refuse_without("train", "torch", "onnx", "onnxscript", "anny")
         from tritrack.training.landmark_training import train_landmarks
 
-        facts = train_landmarks(out, seed, console, start)
+        facts = train_landmarks(out, 0, console)
         tell(facts, json_wanted, f"{facts['pictures']} pictures learnt, written to {out}")
         return
     if not runs:

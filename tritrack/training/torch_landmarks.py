@@ -6,7 +6,6 @@ from typing import Any, Final
 
 import numpy as np
 import torch
-from google.protobuf.message import DecodeError
 from numpy.typing import NDArray
 from torch import nn
 from torch.nn import functional
@@ -172,77 +171,6 @@ def export(network: Any, out: Path) -> None:
         external_data=False,
         verbose=False,
     )
-
-
-def read(path: Path) -> LandmarkNetwork:
-    """A network that `export` wrote, to be taught on.
-
-    What was folded into the layers stays there, and the normalisations do nothing until they are
-    told by `normalised` what they see.
-
-    Raises:
-        OSError: When the file cannot be read.
-        ValueError: When it holds no such network.
-    """
-    import onnx
-
-    try:
-        graph = onnx.load(path).graph
-    except DecodeError as error:
-        raise ValueError(f"{path} holds no network: {error}") from error
-    kept = {each.name: onnx.numpy_helper.to_array(each) for each in graph.initializer}
-    held = [node.input[1:] for node in graph.node if node.op_type in ("Conv", "Gemm")]
-    network = LandmarkNetwork().eval()
-    layers = _in_order(network, (nn.Conv2d, nn.Linear, nn.BatchNorm2d))
-    folded = [layer for layer in layers if not isinstance(layer, nn.BatchNorm2d)]
-    shapes = [tuple(kept[weight].shape) for weight, _ in held]
-    if shapes != [tuple(layer.weight.shape) for layer in folded]:
-        raise ValueError(f"{path} holds another kind of network")
-    values = iter(held)
-    for layer, after in zip(layers, [*layers[1:], None], strict=True):
-        if isinstance(layer, nn.BatchNorm2d):
-            continue
-        weight, bias = (torch.tensor(kept[name]) for name in next(values))
-        layer.weight.data = weight
-        biased = layer if layer.bias is not None else after
-        biased.bias.data = bias
-    return network.to(memory_format=torch.channels_last)
-
-
-def _in_order(network: Any, kinds: tuple[type, ...]) -> list[Any]:
-    """The layers of some kinds in the order in which they are gone through."""
-    order: list[Any] = []
-    hooks = [
-        layer.register_forward_hook(lambda layer, *_: order.append(layer))
-        for layer in network.modules()
-        if isinstance(layer, kinds)
-    ]
-    with torch.no_grad():
-        network(torch.zeros(1, PLANES, SIDE, SIDE))
-    for hook in hooks:
-        hook.remove()
-    return order
-
-
-def normalised(network: Any, shown: list[Composite]) -> None:
-    """Let the normalisations of a network that was `read` normalise what they see of composites,
-    and undo it by their own gains: it says what it said, and learns as it did."""
-    seen: dict[Any, tuple[Any, Any]] = {}
-
-    def look(layer: Any, given: tuple[Any, ...]) -> None:
-        seen[layer] = (given[0].mean((0, 2, 3)), given[0].var((0, 2, 3), correction=0))
-
-    layers = [layer for layer in network.modules() if isinstance(layer, nn.BatchNorm2d)]
-    hooks = [layer.register_forward_pre_hook(look) for layer in layers]
-    with torch.no_grad():
-        network.eval()(planes_of(shown))
-        for layer, hook in zip(layers, hooks, strict=True):
-            hook.remove()
-            mean, spread = seen[layer]
-            layer.running_mean.copy_(mean)
-            layer.running_var.copy_(spread)
-            layer.weight.copy_((spread + layer.eps).sqrt())
-            layer.bias.add_(mean)
 
 
 def joints_off(network: Any, shown: list[Composite]) -> NDArray[np.float64]:
