@@ -68,19 +68,34 @@ def take_of(poses: Mapping[str, Any], px_scale: float = 1.0) -> Take:
     Args:
         poses: Beside the arrays of every run, one of a single view has `orientation` (n,),
             `orientation_confidence` (n,) and `depth_confidence` (n, 10) in the order of LIMBS; a
-            run without them was sure.
+            run without them was sure. A frame in which the body was lost has that of the nearest
+            frame with one, without confidence: something to put right.
         px_scale: Pixels of the video in one of the working picture.
     """
     n = len(poses["frame"])
+    rows = _nearest_posed(poses)
     return Take(
         frame=poses["frame"],
-        joints_px=px_scale * poses["joints_px"][:, 0],
-        joints_m=poses["joints_m"],
+        joints_px=px_scale * poses["joints_px"][rows, 0],
+        joints_m=poses["joints_m"][rows],
         confidence=poses["confidence"],
         orientation=np.array(poses.get("orientation", [""] * n), np.str_),
         orientation_confidence=np.array(poses.get("orientation_confidence", np.ones(n))),
         depth_confidence=np.array(poses.get("depth_confidence", np.ones((n, len(LIMBS))))),
     )
+
+
+def _nearest_posed(poses: Mapping[str, Any]) -> NDArray[np.int64]:
+    """(n,) the row whose pose a frame opens with: its own, but where the body was lost."""
+    rows = np.arange(len(poses["frame"]))
+    posed = np.flatnonzero(np.isfinite(poses["joints_m"]).all(axis=(1, 2)))
+    lost = rows[np.array(poses.get("status", [""] * len(rows))) == "lost"]
+    if len(posed):
+        next_one = np.searchsorted(posed, lost)
+        before = posed[(next_one - 1).clip(min=0)]
+        after = posed[next_one.clip(max=len(posed) - 1)]
+        rows[lost] = np.where(np.abs(lost - before) <= np.abs(after - lost), before, after)
+    return rows
 
 
 def depth_of(joints_m: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -66,7 +66,7 @@ def step(
     state, now = _with_pose(state, now, settled_at)
     state = _with_shape(state, now)
     scores = _scores(state, now)
-    state = outgoing.weighed(state, pair, scores)
+    state = outgoing.weighed(state, pair, scores, annotations)
     state, angles = _smoothed(state, max(scores) >= LOST_SCORE, dt_s)
     body = outgoing.body_of(state, pair, now.seen, angles, scores)
     guide = outgoing.guide_of(state, pair, settled_at is not None)

@@ -10,7 +10,7 @@ from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, Vector, rest_pose
 from common.body.extremities import extremities
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
-from common.bus.messages import Agreement, Body, Guide, Pixel, Report, Status, Views
+from common.bus.messages import Agreement, Body, Guide, Pixel, Point, Report, Status, Views
 from common.rig.camera import project
 from integrator.belief import is_believed
 from integrator.landmarks.extremity_sight import seen_extremities
@@ -18,6 +18,7 @@ from integrator.merge_state import State
 from integrator.pairing import Pair, Seen
 from integrator.rig.body_position import pixels_of, scales_since
 from integrator.rig.undistortion import undistorted_rig
+from integrator.single.sight import Annotations
 
 LOST_FRAMES: Final = 5
 """After so many frames in a row in which it is not believed the body is lost."""
@@ -26,7 +27,7 @@ LOST_FRAMES: Final = 5
 def body_of(
     state: State, pair: Pair, seen: Seen, angles_deg: Vector, scores: tuple[float, float]
 ) -> Body:
-    """The body in the pose that was found, with its angles smooth.
+    """The body in the pose that was found, with its angles smooth; a lost one is given no pose.
 
     Args:
         state: Of this instant; its pose is as found.
@@ -39,27 +40,29 @@ def body_of(
     assert rig is not None
     assert found is not None
     assert bdp is not None
-    pose, in_pose = found.pose.copy(), list(ANGLES_IN_POSE)
-    pose[in_pose] = angles_deg
+    pose = found.pose.copy()
+    pose[list(ANGLES_IN_POSE)] = angles_deg
     places_m = _places_m(state, pose)
     pixels = tuple(project(camera, places_m) for camera in rig.cameras)
     outside = _outside(pair, pixels)
     told = state.agreement.told if _views(pair) == "both" else None
     believed = _believed(state, told)
     confidence = np.where(outside, 0.0, _confidence(state, scores) * believed)
-    ends_m, measured = _extremities(state, seen, places_m)
+    status, posed = _status(state, bool(outside.any())), {}
+    if status != "lost":
+        posed = {
+            "joints_m": _points(places_m),
+            "joints_px": tuple(_pixels(each) for each in pixels),
+            "pose": tuple(pose.tolist()),
+            "angles_raw_deg": tuple(found.pose[list(ANGLES_IN_POSE)].tolist()),
+            **_extremities(state, seen, places_m, believed),
+        }
     return Body(
         **_moment(state, pair),
-        status=_status(state, bool(outside.any())),
+        **posed,
+        status=status,
         views=_views(pair),
-        joints_m=tuple((x, y, z) for x, y, z in places_m.tolist()),
-        joints_px=tuple(_pixels(each) for each in pixels),
-        pose=tuple(pose.tolist()),
-        angles_raw_deg=tuple(found.pose[in_pose].tolist()),
         confidence=tuple(confidence.tolist()),
-        extremities_m=tuple((x, y, z) for x, y, z in ends_m.tolist()),
-        extremities_px=tuple(_pixels(project(camera, ends_m)) for camera in rig.cameras),
-        extremities_confidence=tuple((measured * believed).tolist()),
         score=scores,
         facing=found.facing,
         bdp=bdp,
@@ -71,17 +74,20 @@ def body_of(
     )
 
 
-def weighed(state: State, pair: Pair, scores: tuple[float, float]) -> State:
+def weighed(
+    state: State, pair: Pair, scores: tuple[float, float], annotations: Annotations
+) -> State:
     """The state with how long the body has not been believed; one that both lost is forgotten.
 
-    What the network remembers of a wrong body it would go on with. One view that is alone keeps
-    what it remembers: it knows front from back by that alone.
+    A frame in which the user placed joints is believed. What the network remembers of a wrong body
+    it would go on with. One view that is alone keeps what it remembers: it knows front from back
+    by that alone.
     """
     found = state.found
     assert found is not None
     assert state.rig is not None
     places_m = _places_m(state, found.pose)
-    if is_believed(places_m, state.rig, pair, scores):
+    if annotations.joints_px or is_believed(places_m, state.rig, pair, scores):
         return state._replace(doubted=0)
     state = state._replace(doubted=state.doubted + 1)
     if state.doubted % LOST_FRAMES or found.alone is not None:
@@ -98,15 +104,21 @@ def _places_m(state: State, pose: Vector) -> NDArray[np.float64]:
     return np.asarray(joints(body_vector(state.opening.bdp), pose))
 
 
-def _extremities(state: State, seen: Seen, places_m: Vector) -> tuple[Vector, Vector]:
-    """Nose, heels, toes and knuckles, (7, 3), and how sure they are, (7,); 0: by the rule alone."""
+def _extremities(state: State, seen: Seen, places_m: Vector, believed: float) -> dict[str, Any]:
+    """Nose, heels, toes and knuckles; how sure they are is 0 where the rule alone places them."""
     assert state.rig is not None
     assert state.opening.bdp is not None
     stature_m = stature(state.opening.bdp)
-    rule_m = extremities(places_m, stature_m)
-    if state.doubted:
-        return rule_m, np.zeros(len(rule_m))
-    return seen_extremities(rule_m, undistorted_rig(state.rig), seen, stature_m)
+    ends_m = extremities(places_m, stature_m)
+    measured = np.zeros(len(ends_m))
+    if not state.doubted:
+        rig = undistorted_rig(state.rig)
+        ends_m, measured = seen_extremities(ends_m, rig, seen, stature_m)
+    return {
+        "extremities_m": _points(ends_m),
+        "extremities_px": tuple(_pixels(project(camera, ends_m)) for camera in state.rig.cameras),
+        "extremities_confidence": tuple((measured * believed).tolist()),
+    }
 
 
 def _matches(report: Report) -> int:
@@ -236,6 +248,10 @@ def _or_unseen(scales: tuple[float, float]) -> tuple[float, float]:
     """Scales with 0 for a camera that has the body behind it."""
     first, second = (scale if math.isfinite(scale) and scale > 0 else 0.0 for scale in scales)
     return first, second
+
+
+def _points(places_m: Vector) -> tuple[Point, ...]:
+    return tuple((x, y, z) for x, y, z in places_m.tolist())
 
 
 def _pixels(pixels: NDArray[np.float64]) -> tuple[Pixel, ...]:

@@ -186,6 +186,8 @@ def test_a_body_that_fits_nothing_is_predicted_then_lost_then_found() -> None:
     states = [stage.see((block, block)).body for _ in range(LOST_FRAMES + 1)]
     assert [body.status for body in states] == ["predicted"] * (LOST_FRAMES - 1) + ["lost"] * 2
     assert set(states[-1].confidence) == {0.0}
+    assert states[0].joints_m
+    assert not states[-1].joints_m
     again = stage.show([standing()] * 6)[-1]
     assert again.body.status == "tracking"
     assert errors_m(again, standing()).mean() < 0.12

@@ -50,6 +50,26 @@ def test_a_frame_asks_about_what_is_not_sure_the_least_sure_first() -> None:
     assert doubts_at(seen, 2, Notes()) == []
 
 
+def test_a_frame_whose_body_was_lost_opens_with_the_nearest_one() -> None:
+    n = 6
+    places = np.arange(float(n))[:, None, None, None] + np.zeros((n, 2, 15, 2))
+    bodies = places[:, 0, :, [0, 0, 0]].transpose(1, 2, 0).copy()
+    lost = np.array(["tracking", "lost", "lost", "lost", "tracking", "empty"])
+    bodies[lost != "tracking"] = np.nan
+    seen = take_of(
+        {
+            "frame": np.arange(n),
+            "joints_px": places,
+            "joints_m": bodies,
+            "confidence": np.zeros((n, 15)),
+            "status": lost,
+        }
+    )
+    assert seen.joints_m[:5, 0, 0].tolist() == [0.0, 0.0, 0.0, 4.0, 4.0]
+    assert seen.joints_px[:5, 0, 0].tolist() == [0.0, 0.0, 0.0, 4.0, 4.0]
+    assert seen.posed.tolist() == [True] * 5 + [False]
+
+
 def test_what_the_user_settled_is_not_asked_again() -> None:
     seen = take()
     seen.orientation_confidence[:] = seen.depth_confidence[:] = 0.5
