@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.messages import Report
+from common.bus.messages import Report, ViewerNumber
 from common.rig.camera import Rig
 from integrator.live_rig.rig_job import Job, Solved, Trusted, packed
 from integrator.pairing import Pair
@@ -60,6 +60,10 @@ class State(NamedTuple):
     """By how much the times of view 2 are set back already."""
     refusal: str = ""
     """Why the last one was not taken."""
+    moved: tuple[ViewerNumber, ...] = ()
+    """Cameras that were moved: they are looked for, the others stand where they stood."""
+    is_stale: bool = False
+    """What is waited for was asked of cameras that stood otherwise."""
 
     @property
     def is_over(self) -> bool:
@@ -77,6 +81,24 @@ def init(period_s: float, stature_m: float) -> State:
     return State(period_s, stature_m)
 
 
+def anew(state: State, rig: Rig | None, moved: tuple[ViewerNumber, ...]) -> State:
+    """The search begun again: what was seen so far tells nothing of how the cameras stand now.
+
+    Args:
+        state: Of the search so far.
+        rig: In use; None: it is assumed.
+        moved: Cameras that are known to have been moved.
+    """
+    return init(state.period_s, state.stature_m)._replace(
+        last_s=state.last_s,
+        rig=rig,
+        late_s=state.late_s,
+        moved=moved,
+        waits=state.waits,
+        is_stale=state.waits,
+    )
+
+
 def step(state: State, pair: Pair) -> tuple[State, Job | None]:
     """One instant more, and what to ask now, if anything."""
     if state.asked == len(ASKS_S):
@@ -85,13 +107,23 @@ def step(state: State, pair: Pair) -> tuple[State, Job | None]:
     if state.waits or state.moved_s < ASKS_S[state.asked]:
         return state, None
     first, second = (b"".join(rows) for rows in state.rows)
-    job = Job(state.size_px, state.stature_m, state.period_s, (first, second), state.rig)
+    job = Job(
+        state.size_px,
+        state.stature_m,
+        state.period_s,
+        (first, second),
+        state.rig,
+        state.moved,
+        state.late_s,
+    )
     state = state._replace(asked=state.asked + 1, waits=True)
     return (state._replace(rows=((), ())) if state.asked == len(ASKS_S) else state), job
 
 
 def answered(state: State, solved: Solved) -> tuple[State, bool]:
     """What was asked is answered: whether that rig is the run's from now on."""
+    if state.is_stale:
+        return state._replace(waits=False, is_stale=False), False
     state = state._replace(waits=False, refusal=refusal_of(solved))
     if state.refusal or not (state.rig is None or is_better(state, solved)):
         return state, False
