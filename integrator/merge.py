@@ -55,8 +55,7 @@ def step(
         annotations: What the user says of the frame, where one view is alone.
     """
     state, dt_s = _at(state, pair)
-    agreed = len(state.agreement.samples)
-    state = state._replace(stands=moved_cameras.step(state.stands, pair, agreed))
+    state = state._replace(stands=moved_cameras.step(state.stands, pair))
     seen = undistorted_pair(state.rig, pair).detections
     state = _with_rig(state, seen)
     if seen == (None, None) or state.rig is None:

@@ -2,13 +2,11 @@
 
 from typing import Protocol
 
-from common.bus.messages import ViewerNumber
 from common.config import Settings
 from common.method import METHODS
-from common.rig.camera import Rig
 from common.video.clip_facts import Clip
 from integrator import diagnostics
-from integrator.live_rig import rig_change, rig_search
+from integrator.live_rig import rig_change, rig_search, seen_lately
 from integrator.live_rig.rig_job import Job, Solved
 from integrator.live_rig.rig_solver import RigSolver
 from integrator.merge_state import State
@@ -53,6 +51,7 @@ class LiveCalibration:
         self._looks, self._stays = looks, "the rig stayed assumed"
         self._doubted = -1
         self._now_s = 0.0
+        self._lately = seen_lately.State()
 
     def __enter__(self) -> "LiveCalibration":
         """Nothing is started before it is needed."""
@@ -67,6 +66,7 @@ class LiveCalibration:
     def heard(self, pair: Pair) -> None:
         """One instant more."""
         self._now_s = pair.newest.captured_s
+        self._lately = seen_lately.step(self._lately, pair)
         if not self._looks or self._search.is_over:
             return
         self._search, job = rig_search.step(self._search, pair)
@@ -94,9 +94,17 @@ class LiveCalibration:
         if not moved or state.rig is None or state.settings.trust_calibration:
             return state
         self._tell(rig_change.word_of_moved(state))
-        state = rig_change.with_rig(state, turned_rig(state.rig, state.stands))
-        is_known = state.scale_source != "assumed"
-        self._look(state.rig if is_known else None, moved if is_known else ())
+        was_sure = not state.stands.unconfirmed
+        before, state = state.rig, rig_change.with_rig(state, turned_rig(state.rig, state.stands))
+        self._looks = True
+        if state.scale_source == "assumed":
+            self._search = rig_search.anew(self._search, None)
+            return state
+        stood = self._search.stood
+        if stood is None or was_sure:
+            stood = seen_lately.stand_before(self._lately, before, self._now_s)
+        self._lately, self._stays = seen_lately.State(), ""
+        self._search = rig_search.anew(self._search, state.rig, moved, stood)
         return state
 
     def _look_where_doubted(self, state: State) -> None:
@@ -105,12 +113,8 @@ class LiveCalibration:
             return
         self._doubted = state.calibration
         if not self._looks or self._search.is_over or self._search.moved:
-            self._look(state.rig, ())
+            self._looks, self._search = True, rig_search.anew(self._search, state.rig)
             self._stays = "the rig that is not believable stayed"
-
-    def _look(self, rig: Rig | None, moved: tuple[ViewerNumber, ...]) -> None:
-        self._looks, self._search = True, rig_search.anew(self._search, rig, moved)
-        self._stays = self._stays if rig is None else ""
 
     def _tell(self, text: str) -> None:
         self.news = (*self.news, f"{self._now_s:.1f} s: {text}")

@@ -85,7 +85,7 @@ def word_of_moved(state: State) -> str:
     turned = " and ".join(f"{deg:.1f}" for deg in by_deg)
     return (
         f"{cameras_named(stands.moved)} moved, its picture turned by {turned} degrees: the rig is "
-        "turned with it, and half believed until both views have agreed for 3 s"
+        "turned with it, and half believed until the person has told where it stands"
     )
 
 

@@ -18,6 +18,14 @@ LENGTH: Final = struct.Struct("<I")
 """What stands before an answer's bytes."""
 
 
+class Stand(msgspec.Struct, frozen=True):
+    """What both views saw before a camera was moved, and the rig that was right then."""
+
+    rig: Rig
+    tracks: tuple[bytes, bytes]
+    """Packed rows, times as they were told."""
+
+
 class Job(msgspec.Struct, frozen=True):
     """What both views saw, and the rig that is in use."""
 
@@ -32,6 +40,8 @@ class Job(msgspec.Struct, frozen=True):
     """Cameras that were moved: the others stay where the rig has them, and so does the world."""
     late_s: float = 0.0
     """How late view 2 is known to be."""
+    stood: Stand | None = None
+    """Before that."""
 
 
 class Trusted(msgspec.Struct, frozen=True):
@@ -97,9 +107,13 @@ def solved(job: Job) -> Solved:
 
 def _placed(job: Job, rig: Rig, sighting: Sighting) -> Solved:
     """The rig with the cameras that were moved where the person has them."""
-    from integrator.rig_gate.moved_place import placed
+    from integrator.rig_gate.moved_place import Stood, placed
 
-    found = placed(rig, sighting, job.moved, job.late_s)
+    stood = None
+    if job.stood is not None:
+        first, second = (track_of_bytes(told) for told in job.stood.tracks)
+        stood = Stood(job.stood.rig, Sighting(first, second, job.size_px))
+    found = placed(rig, sighting, job.moved, job.late_s, stood)
     if found is None:
         return Solved(refusal="too little is seen of anybody")
     return Solved(

@@ -14,10 +14,8 @@ from integrator.pairing import Pair
 AS_IT_WAS: Final = Shift(0.0, 0.0, 0.0)
 OTHERWISE_PX: Final = 1.0
 """Pictures that are shifted by more against each other are of a camera that was moved."""
-CONFIRMED: Final = 20
-"""Instants, 3 s, by which both views must agree before a new place of a camera is believed."""
 UNCONFIRMED_LEFT: Final = 0.5
-"""Share of the confidence that is left until then."""
+"""Share of the confidence that is left until the person has placed a camera that was moved."""
 MOVED_LEFT: Final = 0.05
 """The same while a rig is used that a camera has left."""
 
@@ -65,20 +63,13 @@ def far_px(one: Shift, other: Shift) -> float:
     )
 
 
-def step(state: MovedCameras, pair: Pair, instants: int) -> MovedCameras:
-    """One instant more.
-
-    Args:
-        state: Before it.
-        pair: What both viewers tell.
-        instants: In how many both views agreed by the rig in use, so far.
-    """
+def step(state: MovedCameras, pair: Pair) -> MovedCameras:
+    """One instant more."""
     first, second = (
         before if report is None or report.fault else _shift(report)
         for report, before in zip(pair, state.now, strict=True)
     )
-    unconfirmed = () if instants >= CONFIRMED else state.unconfirmed
-    return state._replace(now=(first, second), unconfirmed=unconfirmed)
+    return state._replace(now=(first, second))
 
 
 def _shift(report: Report) -> Shift:

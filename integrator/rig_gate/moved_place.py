@@ -6,21 +6,25 @@ from typing import Final, NamedTuple
 import msgspec
 import numpy as np
 
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
 from common.body.body import Vector
-from common.rig.camera import Camera, Rig, arrays_of, as_matrix, as_row
 from common.bus.messages import ViewerNumber
+from common.rig.camera import Camera, Rig, arrays_of, as_matrix, as_row
 from integrator.rig_gate.rig_fault import exchanged_rig
-from integrator.rig_gate.rig_trust import case_of
+from integrator.rig_gate.rig_trust import case_of, soles_m
+from integrator.selfcalibration import person_prior as prior
 from integrator.selfcalibration.joint_tracks import Sighting
-from integrator.selfcalibration.rig_evidence import Known
-from integrator.selfcalibration.rig_fit import fitted
+from integrator.selfcalibration.rig_evidence import Evidence, Known
+from integrator.selfcalibration.rig_fit import Fit, fitted, sides_of
 from integrator.selfcalibration.rig_guess import BODY, LATE, PLACE, Pinhole, pinholes
-from integrator.selfcalibration.rig_residuals import explained
+from integrator.selfcalibration.rig_residuals import explained, misfits
 
 PLACES: Final = {
-    "yaw_2": math.radians(1.5),
-    "pitch_2": math.radians(1.5),
-    "roll_2": math.radians(1.5),
+    "yaw_2": math.radians(3.0),
+    "pitch_2": math.radians(3.0),
+    "roll_2": math.radians(3.0),
     "x_2": 0.15,
     "height_2": 0.1,
     "z_2": 0.15,
@@ -29,6 +33,28 @@ PLACES: Final = {
 and metres."""
 TURNS: Final = ("pitch_1", "roll_1")
 """What is free of the first where both were moved: its place and yaw are the world's."""
+WALL: Final = 1.5
+"""How far the background is, in distances of the person: a step aside seems a turn before it."""
+BACKDROP: Final = math.radians(0.4)
+"""How far the background is from where a camera must have it, radians."""
+KNOWN_BODY: Final = 0.005
+"""How well the lengths are known that the person had before the move, as the landmarks see them."""
+
+
+class Stood(NamedTuple):
+    """What was seen before a camera was moved."""
+
+    rig: Rig
+    sighting: Sighting
+
+
+class Person(NamedTuple):
+    """Somebody as the landmarks see them, who may err, but the same way after the move."""
+
+    lengths: Vector
+    """(8,) logarithms of LENGTHS, metres."""
+    soles_m: float
+    """How high their soles seem to stand."""
 
 
 class Placed(NamedTuple):
@@ -42,7 +68,11 @@ class Placed(NamedTuple):
 
 
 def placed(
-    rig: Rig, sighting: Sighting, moved: tuple[ViewerNumber, ...], late_s: float
+    rig: Rig,
+    sighting: Sighting,
+    moved: tuple[ViewerNumber, ...],
+    late_s: float,
+    stood: Stood | None = None,
 ) -> Placed | None:
     """The rig with its moved cameras where the person has them; None where too little is seen.
 
@@ -51,10 +81,11 @@ def placed(
         sighting: What both saw since.
         moved: One or both.
         late_s: How late view 2 is.
+        stood: What was seen before: how long the person is, by the rig that was right then.
     """
     if moved == (1,):
-        other = Sighting(sighting.second, sighting.first, sighting.size_px)
-        found = placed(exchanged_rig(rig), other, (2,), -late_s)
+        other = None if stood is None else Stood(exchanged_rig(stood.rig), _other(stood.sighting))
+        found = placed(exchanged_rig(rig), _other(sighting), (2,), -late_s, other)
         return None if found is None else found._replace(rig=exchanged_rig(found.rig))
     case = case_of(rig, sighting)
     if case is None:
@@ -64,8 +95,12 @@ def placed(
     free[BODY] = free[LATE] = True
     start = case.guess.copy()
     start[LATE] = late_s
-    evidence = case.evidence._replace(known=_near(case.evidence.known, start))
-    fit = fitted(start, evidence, free, 2, 12)
+    known = _near(case.evidence.known, start)
+    person = None if stood is None else _person(stood, late_s)
+    if person is not None:
+        start, known = _of_person(person, start, known)
+    evidence = case.evidence._replace(known=known)
+    fit = _fitted(start, evidence, free)
     one = explained(fit.guess, evidence, 0, fit.sides[0])
     covariance = np.linalg.pinv(fit.jacobian.T @ fit.jacobian)
     yaw = int(free[: PLACE["yaw_2"]].sum())
@@ -74,6 +109,65 @@ def placed(
         1e3 * float(np.median(np.abs(one.met.gap_m[one.used]))),
         math.degrees(math.sqrt(max(0.0, float(covariance[yaw, yaw])))),
     )
+
+
+def _other(sighting: Sighting) -> Sighting:
+    return Sighting(sighting.second, sighting.first, sighting.size_px)
+
+
+def _person(stood: Stood, late_s: float) -> Person | None:
+    """The person by the rig before, as the landmarks see them."""
+    case = case_of(stood.rig, stood.sighting)
+    if case is None:
+        return None
+    free = np.zeros(len(case.guess), np.bool_)
+    free[BODY] = True
+    start = case.guess.copy()
+    start[LATE] = late_s
+    fit = fitted(start, case.evidence, free, 2, 8)
+    one = explained(fit.guess, case.evidence, 0, fit.sides[0])
+    return Person(fit.guess[BODY], soles_m(one, case.evidence.known.stature_m))
+
+
+def _of_person(person: Person, start: Vector, known: Known) -> tuple[Vector, Known]:
+    """What is begun with and believed of a known person: all stands higher by what they sink."""
+    start, mean, sigma = start.copy(), known.mean.copy(), known.sigma.copy()
+    for name in ("height_1", "height_2"):
+        start[PLACE[name]] -= person.soles_m
+        mean[PLACE[name]] -= person.soles_m
+    start[BODY] = mean[BODY] = person.lengths
+    sigma[BODY] = KNOWN_BODY
+    stature_m = float(np.exp(person.lengths[prior.UPRIGHT]).sum()) / prior.CROWN_SHARE
+    return start, known._replace(mean=mean, sigma=sigma, stature_m=stature_m)
+
+
+def _fitted(start: Vector, evidence: Evidence, free: NDArray[np.bool_]) -> Fit:
+    """The best guess near a start; the background keeps its place in the picture."""
+    sides = sides_of(start, evidence)
+    one = explained(start, evidence, 0, sides[0])
+    camera = pinholes(start)[1]
+    far_m = np.linalg.norm(one.met.points_m[:, prior.PELVIS] - camera.centre_m, axis=1)
+    wall_m = WALL * float(np.median(far_m))
+    found = start.copy()
+
+    def misses(values: Vector) -> Vector:
+        found[free] = values
+        return np.concatenate(
+            [misfits(found, evidence, sides), _backdrop(camera, pinholes(found)[1], wall_m)]
+        )
+
+    fit = least_squares(misses, start[free], x_scale="jac", max_nfev=20, ftol=1e-5, xtol=1e-6)
+    found[free] = fit.x
+    return Fit(found.copy(), float(fit.cost), sides, fit.jac)
+
+
+def _backdrop(before: Pinhole, camera: Pinhole, wall_m: float) -> Vector:
+    """(3,) by how much a wall ahead leaves its place in the picture, in sigmas."""
+    turn = camera.R @ before.R.T
+    aside = before.R @ (camera.centre_m - before.centre_m)
+    across = turn @ (np.array([0.0, 0.0, wall_m]) - aside)
+    roll = math.atan2(float(turn[1, 0] - turn[0, 1]), float(turn[0, 0] + turn[1, 1]))
+    return np.array([across[0] / across[2], across[1] / across[2], roll]) / BACKDROP
 
 
 def _near(known: Known, start: Vector) -> Known:

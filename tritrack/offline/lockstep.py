@@ -22,6 +22,7 @@ from integrator.live_rig.live_calibration import LiveCalibration
 from integrator.live_rig.rig_solver import SolverAtOnce
 from integrator.merge_state import Start
 from integrator.pairing import Pair
+from tritrack.moved_facts import moved_facts
 from tritrack.offline.film_tracking import Film, Heard, follow_clip, unseen
 from tritrack.offline.frame_pairs import backgrounds, instants, share_of
 from tritrack.offline.opening_clip import body_of
@@ -132,6 +133,7 @@ def track_clip(
         done = _performed(ready, sources, watches, tell)
         trust = trust_facts(looked.clip, witness, insisted=settings.trust_calibration)
         facts = _facts(ready, done, sources) | calibration_facts(looked) | trust
+        facts |= moved_facts(done.bodies)
         facts["warnings"] += doubts(facts)
         return Tracked(looked.clip, done.bodies, facts)
 

@@ -8,13 +8,18 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.rig.camera import Camera, arrays_of
-from viewer.background.background import Background
+from viewer.background.background import Background, slopes
+from viewer.background.image_stack import LUMA
 
 USUAL_FOCAL: Final = 1.25
 """Of a camera that is not calibrated, over the width of its picture: a lens of 44 degrees."""
 HALF: Final = 0.5
 """What the middle of the first pixel is, in a Camera's pixels; here it is 0, as for OpenCV."""
 ROUNDS: Final = 8
+EDGE_PX: Final = 0.35
+"""How far an edge may be from where it was turned to."""
+SOBEL: Final = 8.0
+"""What a slope of 1 a pixel is told as."""
 
 Places = NDArray[np.float64]
 
@@ -112,9 +117,11 @@ def turned_background(
     levels = [
         np.where(new[..., None], now, moved(each)) for each in (first.centre, first.low, first.high)
     ]
+    # between pixels edges are guessed: they may differ from the guess by a share of their height
+    steep = EDGE_PX / SOBEL * slopes(np.asarray(levels[0] @ LUMA, np.float32))
     return Background(
         levels[0],
-        moved(first.spread),
+        np.hypot(moved(first.spread), steep[..., None]),
         np.asarray(uncertain | new),
         levels[1],
         levels[2],
