@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Final
 
 import cv2
-import msgspec
 import numpy as np
 
 from common.body.body import JOINT_NAMES
@@ -36,7 +35,9 @@ AXIS: Final = (0.35, 1.0, 0.25)
 JOINTS: Final = [n for n, name in enumerate(JOINT_NAMES) if "_" in name and name != "head_top"]
 
 
-def bumped(clip: Path, out: Path, calibration: Path, camera: int, turn_deg: float, at_s: float) -> None:
+def bumped(
+    clip: Path, out: Path, calibration: Path, camera: int, turn_deg: float, at_s: float
+) -> None:
     """A copy of a clip whose camera is turned from a moment on; by 0 it is the clip."""
     shutil.copytree(clip, out)
     shutil.copy(calibration, out / "calibration.json")
@@ -80,7 +81,9 @@ def told(bodies: list[Body], truth: Path, camera: int, at_s: float) -> str:
         ours = [b for b in bodies if b.joints_m and low <= b.captured_s < high]
         if not ours:
             continue
-        off_m = [np.linalg.norm(np.array(b.joints_m)[JOINTS] - real[b.frame], axis=-1) for b in ours]
+        off_m = [
+            np.linalg.norm(np.array(b.joints_m)[JOINTS] - real[b.frame], axis=-1) for b in ours
+        ]
         sure = np.mean([np.array(b.confidence)[JOINTS].mean() for b in ours])
         parts.append(f"{word} {1e3 * np.nanmean(off_m):.0f} mm ({sure:.2f})")
     return ", ".join(parts)

@@ -10,7 +10,7 @@ from common.atomic_file import replacing
 from common.body.body import Bdp
 from common.bus.messages import ScaleSource
 from common.rig.camera import Rig
-from common.rig.turned_camera import Shift
+from common.rig.picture_shift import Shift
 from integrator.merge_state import State
 from integrator.opening_posture import Opening
 from integrator.rig_gate.moved_cameras import AS_IT_WAS, MovedCameras

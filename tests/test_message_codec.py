@@ -48,7 +48,7 @@ from common.bus.messages import (
 )
 from common.raster.silhouette_report import pack, unpack
 from common.rig.camera import paper_rig
-from common.rig.turned_camera import Shift
+from common.rig.picture_shift import Shift
 
 BDP = thesis_bdp(1.75)
 MEASURE = Measure(
@@ -88,7 +88,6 @@ REPORT = Report(
     score=0.8,
     fit=FIT,
     landmarks=LANDMARKS,
-    shift=Shift(right_px=3.5, down_px=-1.25, roll_deg=0.5),
 )
 GUIDE = Guide(
     frame=7,
@@ -120,6 +119,7 @@ LIFTED = msgspec.structs.replace(BODY, views="1", lifting=LIFTING)
 SAID: list[Message] = [
     REPORT,
     msgspec.structs.replace(REPORT, box=None, measure=None, root_px=None),
+    msgspec.structs.replace(REPORT, shift=Shift(right_px=3.5, down_px=-1.25, roll_deg=0.5)),
     GUIDE,
     BODY,
     LIFTED,

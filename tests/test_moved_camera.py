@@ -38,9 +38,8 @@ def shown(room: Image, turn: Vector = np.eye(3), seed: int = 0, light: float = 1
     middle = np.array([[1, 0, (SIZE[0] - wide) / 2], [0, 1, (SIZE[1] - high) / 2], [0, 0, 1]])
     way = LENS.K @ turn @ np.linalg.inv(LENS.K) @ middle
     picture = cv2.warpPerspective(room, way, SIZE).astype(float) * light
-    return np.clip(picture + np.random.default_rng(seed).normal(0, 2, picture.shape), 0, 255).astype(
-        np.uint8
-    )
+    noise = np.random.default_rng(seed).normal(0, 2, picture.shape)
+    return np.asarray(np.clip(picture + noise, 0, 255), np.uint8)
 
 
 def with_person(picture: Image, at: int) -> Image:

@@ -8,7 +8,8 @@ from staging import RIG, report
 
 from common.bus.messages import ViewerNumber
 from common.rig.camera import arrays_of, project
-from common.rig.turned_camera import Shift, angle_deg, shift_of, turned
+from common.rig.picture_shift import Shift
+from common.rig.turned_camera import angle_deg, shift_of, turned
 from integrator.pairing import Pair
 from integrator.rig_gate import moved_cameras
 from integrator.rig_gate.moved_cameras import (
@@ -37,7 +38,7 @@ def test_a_moved_camera_is_named_and_hardly_anything_is_believed() -> None:
 def test_the_rig_is_turned_as_the_picture_was() -> None:
     rig = turned_rig(RIG, after(MovedCameras(), SHIFT))
     assert rig.cameras[0] == RIG.cameras[0]
-    places_m = np.random.default_rng(1).uniform(-0.5, 0.5, (9, 3)) + [0, 1, 0]
+    places_m = np.random.default_rng(1).uniform((-0.5, 0.5, -0.5), (0.5, 1.5, 0.5), (9, 3))
     due = project(turned(RIG.cameras[1], TURN), places_m)
     assert project(rig.cameras[1], places_m) == pytest.approx(due)
 

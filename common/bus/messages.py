@@ -5,7 +5,7 @@ from typing import Final, Literal
 import msgspec
 
 from common.body.body import Bdp
-from common.rig.turned_camera import Shift
+from common.rig.picture_shift import Shift
 
 PROTOCOL: Final = 7
 

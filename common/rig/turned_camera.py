@@ -8,16 +8,7 @@ import numpy as np
 
 from common.body.body import Vector
 from common.rig.camera import Camera, as_matrix, as_row
-
-
-class Shift(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """How a picture lies against what the same camera showed at the start of the run."""
-
-    right_px: float
-    """How far to the right what was in its middle is now."""
-    down_px: float
-    roll_deg: float
-    """By how much it has turned about its middle, clockwise."""
+from common.rig.picture_shift import Shift
 
 
 def turn_of(shift: Shift, focal_px: Vector) -> Vector:

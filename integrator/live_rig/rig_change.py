@@ -78,7 +78,9 @@ def word_of_moved(state: State) -> str:
     stands = state.stands
     by_deg = [
         angle_deg(
-            moved_cameras.turn_since(state.rig.cameras[n - 1], stands.of_rig[n - 1], stands.now[n - 1])
+            moved_cameras.turn_since(
+                state.rig.cameras[n - 1], stands.of_rig[n - 1], stands.now[n - 1]
+            )
         )
         for n in stands.moved
     ]

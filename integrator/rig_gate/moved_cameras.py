@@ -8,7 +8,8 @@ import numpy as np
 from common.body.body import Vector
 from common.bus.messages import Report, ViewerNumber
 from common.rig.camera import Camera, Rig, arrays_of
-from common.rig.turned_camera import Shift, turn_of, turned
+from common.rig.picture_shift import Shift
+from common.rig.turned_camera import turn_of, turned
 from integrator.pairing import Pair
 
 AS_IT_WAS: Final = Shift(0.0, 0.0, 0.0)
@@ -58,9 +59,7 @@ class MovedCameras(NamedTuple):
 def far_px(one: Shift, other: Shift) -> float:
     """How far two shifts are apart, at the edge of a small picture."""
     roll_px = 80.0 * abs(np.radians(one.roll_deg - other.roll_deg))
-    return float(
-        max(abs(one.right_px - other.right_px), abs(one.down_px - other.down_px), roll_px)
-    )
+    return float(max(abs(one.right_px - other.right_px), abs(one.down_px - other.down_px), roll_px))
 
 
 def step(state: MovedCameras, pair: Pair) -> MovedCameras:

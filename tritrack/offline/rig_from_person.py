@@ -38,7 +38,7 @@ def sighting_of(
     readers: Mapping[ViewerNumber, Reader],
     sources: Sources,
 ) -> Sighting:
-    """What both views see of the person in a clip, looked at without a rig, until a camera is moved.
+    """What both views see of the person in a clip without a rig, until a camera is moved.
 
     Raises:
         DecoderDied: When a video broke the decoder.

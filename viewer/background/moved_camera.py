@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
-from common.rig.turned_camera import Shift, shift_of
+from common.rig.picture_shift import Shift
+from common.rig.turned_camera import shift_of
 from common.video.decoding import Image
 from viewer.background.background import Background
 from viewer.background.turned_picture import Lens, rays_of, seen_at, turn_between
@@ -115,13 +116,23 @@ def _found(state: State, even: NDArray[np.uint8]) -> Vector | None:
     window = cv2.createHanningWindow(even.shape[::-1], cv2.CV_32F)
     one, other = (each.astype(np.float32) - 128.0 for each in (state.even, even))
     coarse, _ = cv2.phaseCorrelate(one, other, window)
-    starts = [state.marks_px + np.float32(coarse), seen_at(state.lens, state.turn, state.marks_px)]
+    starts = [state.marks_px + np.float32(way) for way in (coarse, _middle_shift(state.even, even))]
+    starts.append(seen_at(state.lens, state.turn, state.marks_px).astype(np.float32))
     best: tuple[float, Vector | None] = (FOUND, None)
     for start in starts:
-        share, turn = _turn_from(state, even, start.astype(np.float32))
+        share, turn = _turn_from(state, even, start)
         if share >= best[0]:
             best = (share, turn)
     return best[1]
+
+
+def _middle_shift(first: NDArray[np.uint8], now: NDArray[np.uint8]) -> tuple[float, float]:
+    """Where the middle of one picture lies in another, from its place there."""
+    high, wide = (side // 5 for side in first.shape)
+    middle = first[high : first.shape[0] - high, wide : first.shape[1] - wide]
+    scores = cv2.matchTemplate(now, np.ascontiguousarray(middle), cv2.TM_CCOEFF_NORMED)
+    x, y = cv2.minMaxLoc(scores)[3]
+    return float(x - wide), float(y - high)
 
 
 def _turn_from(
@@ -159,8 +170,7 @@ def _inside(
 ) -> NDArray[np.bool_]:
     high, wide = shape[:2]
     limit = (wide - margin, high - margin)
-    within: NDArray[np.bool_] = ((places_px >= margin) & (places_px < limit)).all(axis=1)
-    return within
+    return np.asarray(((places_px >= margin) & (places_px < limit)).all(axis=1))
 
 
 def _alike(
