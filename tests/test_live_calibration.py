@@ -132,6 +132,7 @@ def test_a_live_run_is_calibrated_by_its_person_and_is_replayed_byte_for_byte(
 
 def told_of(n: int, shift: Shift | None) -> Pair:
     first, second = both(n)
+    assert second is not None
     return Pair(first, msgspec.structs.replace(second, shift=shift))
 
 

@@ -116,7 +116,10 @@ def _found(state: State, even: NDArray[np.uint8]) -> Vector | None:
     window = cv2.createHanningWindow(even.shape[::-1], cv2.CV_32F)
     one, other = (each.astype(np.float32) - 128.0 for each in (state.even, even))
     coarse, _ = cv2.phaseCorrelate(one, other, window)
-    starts = [state.marks_px + np.float32(way) for way in (coarse, _middle_shift(state.even, even))]
+    starts = [
+        state.marks_px + np.array(way, np.float32)
+        for way in (coarse, _middle_shift(state.even, even))
+    ]
     starts.append(seen_at(state.lens, state.turn, state.marks_px).astype(np.float32))
     best: tuple[float, Vector | None] = (FOUND, None)
     for start in starts:
