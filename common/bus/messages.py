@@ -7,7 +7,7 @@ import msgspec
 from common.body.body import Bdp
 from common.rig.picture_shift import Shift
 
-PROTOCOL: Final = 7
+PROTOCOL: Final = 8
 
 ViewerNumber = Literal[1, 2]
 Facing = Literal["facade", "flank"]
