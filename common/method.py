@@ -26,6 +26,9 @@ class Method(msgspec.Struct, frozen=True, kw_only=True):
     slow_light: bool
     """The background takes on the slow changes of the light."""
 
+    follows_cameras: bool
+    """A camera that is moved is noticed by its background, which is moved with it."""
+
     landmarks: bool
     """The viewer looks for joints in the picture itself; the body is made of those and outlines."""
     clutter_removal: bool

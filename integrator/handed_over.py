@@ -10,8 +10,10 @@ from common.atomic_file import replacing
 from common.body.body import Bdp
 from common.bus.messages import ScaleSource
 from common.rig.camera import Rig
+from common.rig.picture_shift import Shift
 from integrator.merge_state import State
 from integrator.opening_posture import Opening
+from integrator.rig_gate.moved_cameras import AS_IT_WAS, MovedCameras
 
 NAME: Final = "integrator.msgpack"
 LEAVE_S: Final = 1.0
@@ -33,6 +35,8 @@ class HandedOver(msgspec.Struct, frozen=True):
     """By how much the times of view 2 are set back."""
     numbered: int
     """The last number that an instant had."""
+    shifts: tuple[Shift, Shift] = (AS_IT_WAS, AS_IT_WAS)
+    """How the cameras stood when the rig was told."""
 
 
 def handed_over(state: State, late_s: float = 0.0) -> HandedOver:
@@ -47,6 +51,7 @@ def handed_over(state: State, late_s: float = 0.0) -> HandedOver:
         state.calibration,
         late_s,
         state.numbered,
+        state.stands.of_rig,
     )
 
 
@@ -59,6 +64,7 @@ def resumed(state: State, given: HandedOver) -> State:
         scale_source=given.scale_source,
         calibration=given.calibration,
         numbered=given.numbered,
+        stands=MovedCameras(given.shifts, given.shifts),
     )
 
 

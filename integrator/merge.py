@@ -23,7 +23,7 @@ from integrator.pose import joint_limits, smoothing
 from integrator.rig.assumed_rig import assumed_rig
 from integrator.rig.body_position import facing_of
 from integrator.rig.undistortion import undistorted_pair, undistorted_rig
-from integrator.rig_gate import rig_agreement
+from integrator.rig_gate import moved_cameras, rig_agreement
 from integrator.single import single_view
 from integrator.single.sight import Annotations, Sight
 
@@ -55,6 +55,7 @@ def step(
         annotations: What the user says of the frame, where one view is alone.
     """
     state, dt_s = _at(state, pair)
+    state = state._replace(stands=moved_cameras.step(state.stands, pair))
     seen = undistorted_pair(state.rig, pair).detections
     state = _with_rig(state, seen)
     if seen == (None, None) or state.rig is None:
@@ -107,7 +108,8 @@ def _with_rig(state: State, seen: Seen) -> State:
     whole = [report for report in seen if report is not None and not report.cut]
     if state.rig is not None or not whole:
         return state
-    return state._replace(rig=assumed_rig(whole[0], whole[-1], state.settings.body.stature_m))
+    rig = assumed_rig(whole[0], whole[-1], state.settings.body.stature_m)
+    return state._replace(rig=rig, stands=moved_cameras.told_by(state.stands, None, rig))
 
 
 def _with_opening(state: State, now: Instant) -> tuple[State, Vector | None]:

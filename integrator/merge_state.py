@@ -16,6 +16,7 @@ from integrator.opening_posture import Opening
 from integrator.pose import smoothing
 from integrator.proposal.pose_proposal import Memory
 from integrator.rig_gate import rig_agreement
+from integrator.rig_gate.moved_cameras import MovedCameras
 from integrator.single.single_view import Alone
 
 
@@ -68,6 +69,8 @@ class State(NamedTuple):
     """How often the rig was changed: places before and after do not compare."""
     doubted: int = 0
     """For how many frames the body has not been believed."""
+    stands: MovedCameras = MovedCameras()
+    """How the cameras stand, against how they stood when the rig was told."""
 
     @property
     def pose(self) -> Vector | None:

@@ -71,6 +71,7 @@ def body_of(
         scale_source=state.scale_source,
         calibration=state.calibration,
         agreement=told,
+        moved=state.stands.doubtful,
     )
 
 
@@ -148,7 +149,9 @@ def _confidence(state: State, scores: tuple[float, float]) -> Vector:
 
 def _believed(state: State, told: Agreement | None) -> float:
     """Share of the confidence that is left where the rig is not believable."""
-    return 1.0 if told is None or state.settings.trust_calibration else told.believed
+    if state.settings.trust_calibration:
+        return 1.0
+    return min(state.stands.left, 1.0 if told is None else told.believed)
 
 
 def guide_of(state: State, pair: Pair, settled_now: bool) -> Guide:
@@ -209,6 +212,7 @@ def no_detection(state: State, pair: Pair) -> tuple[Body, Guide]:
         bdp=known.bdp,
         scale_source=state.scale_source,
         calibration=state.calibration,
+        moved=state.stands.doubtful,
     )
     guide = Guide(
         **_moment(state, pair),

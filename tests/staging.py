@@ -76,6 +76,7 @@ def exact(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr("viewer.camera_fault.init", lambda _: None)
     monkeypatch.setattr("viewer.camera_fault.step", lambda state, _: (state, ""))
+    monkeypatch.setattr("viewer.track._watched", lambda *_: None)
     monkeypatch.setattr("viewer.silhouette.silhouette.init", lambda *_: None)
     monkeypatch.setattr("viewer.silhouette.silhouette.step", step)
     monkeypatch.setattr("viewer.silhouette.silhouette.without_things", lambda state, *_: state)

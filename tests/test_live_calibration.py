@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import msgspec
 import pytest
 from joined_clips import joined
 from rich.console import Console
@@ -11,13 +12,15 @@ from test_rig_search import GOOD, both
 from common.config import PageSettings, Settings
 from common.method import METHODS
 from common.rig.camera import Rig
+from common.rig.picture_shift import Shift
 from common.video.clip_facts import Clip, Meta, View
-from integrator import merge_state
+from integrator import merge, merge_state
 from integrator.live_rig import live_calibration
 from integrator.live_rig.live_calibration import LiveCalibration, is_by_person
-from integrator.live_rig.rig_job import Job, Solved
+from integrator.live_rig.rig_job import Job, Solved, Trusted
 from integrator.live_rig.rig_search import ASKS_S
 from integrator.merge_state import Start, State
+from integrator.pairing import Pair
 from tritrack.live.free_ports import free_settings
 from tritrack.live.session import live
 from tritrack.replaying import replay_run
@@ -125,3 +128,55 @@ def test_a_live_run_is_calibrated_by_its_person_and_is_replayed_byte_for_byte(
     assert any("now calibrated by the person" in line for line in told["warnings"])
     facts = replay_run(tmp_path / "run", None)
     assert facts["same"] == facts["bodies"] > 400
+
+
+def told_of(n: int, shift: Shift | None) -> Pair:
+    first, second = both(n)
+    assert second is not None
+    return Pair(first, msgspec.structs.replace(second, shift=shift))
+
+
+def test_a_camera_that_is_moved_is_turned_at_once_and_then_placed_by_the_person(
+    solver: Solver,
+) -> None:
+    settings = Settings()
+    state = merge_state.init(RIG, PERIOD_S, settings, METHODS[settings.mode])
+    shift = Shift(10.0, 0.0, 0.0)
+    with LiveCalibration(state, looks=False) as calibration:
+        for n in range(60):
+            pair = told_of(n, None if n < 45 else shift)
+            state, _, _ = merge.step(state, pair)
+            calibration.heard(pair)
+            state = calibration.changed(state)
+        assert not solver.jobs
+        assert (state.calibration, state.scale_source) == (1, "calibrated")
+        assert state.stands.doubtful == (2,)
+        assert state.rig is not None
+        assert state.rig.cameras[0] == RIG.cameras[0]
+        for n in range(60, 60 + round(2 * ASKS_S[0] / PERIOD_S)):
+            calibration.heard(told_of(n, shift))
+        (job,) = solver.jobs
+        assert (job.moved, job.rig) == ((2,), state.rig)
+        assert job.stood is not None
+        assert job.stood.rig == RIG
+        second = msgspec.structs.replace(state.rig.cameras[1], t=(0.0, 1.0, 4.1))
+        placed = msgspec.structs.replace(RIG, cameras=(RIG.cameras[0], second))
+        solver.said = msgspec.structs.replace(GOOD, rig=placed, before=Trusted(12.0, ()))
+        state = calibration.changed(state)
+    assert (state.rig, state.scale_source, state.stands.doubtful) == (placed, "calibrated", ())
+    assert [line.split(": ", 1)[1].split(",")[0] for line in calibration.news] == [
+        "camera 2 was moved",
+        "camera 2 was placed anew by the person: views 11 mm apart",
+    ]
+
+
+def test_who_trusts_the_calibration_keeps_it_where_a_camera_is_moved(solver: Solver) -> None:
+    settings = Settings(trust_calibration=True)
+    state = merge_state.init(RIG, PERIOD_S, settings, METHODS[settings.mode])
+    with LiveCalibration(state, looks=False) as calibration:
+        pair = told_of(0, Shift(10.0, 0.0, 0.0))
+        state, body, _ = merge.step(state, pair)
+        calibration.heard(pair)
+        assert calibration.changed(state) is state
+    assert body.moved == (2,)
+    assert not calibration.news

@@ -48,6 +48,7 @@ from common.bus.messages import (
 )
 from common.raster.silhouette_report import pack, unpack
 from common.rig.camera import paper_rig
+from common.rig.picture_shift import Shift
 
 BDP = thesis_bdp(1.75)
 MEASURE = Measure(
@@ -111,12 +112,14 @@ BODY = Body(
     extremities_px=(((3.5, -4.0),) * len(EXTREMITY_NAMES),) * 2,
     extremities_confidence=(0.0, 0.25, 1.0, 0.5, 0.5, 0.5, 0.5),
     bdp=BDP,
+    moved=(2,),
 )
 LIFTING = Lifting("forward_left", 0.75, (0.5,) * len(LIMBS), (1.5,) * len(LIMBS))
 LIFTED = msgspec.structs.replace(BODY, views="1", lifting=LIFTING)
 SAID: list[Message] = [
     REPORT,
     msgspec.structs.replace(REPORT, box=None, measure=None, root_px=None),
+    msgspec.structs.replace(REPORT, shift=Shift(right_px=3.5, down_px=-1.25, roll_deg=0.5)),
     GUIDE,
     BODY,
     LIFTED,

@@ -83,3 +83,14 @@ def test_what_is_kept_is_bounded_and_old_instants_are_forgotten() -> None:
         state = rig_agreement.step(state, RIG, (seen(1, n), seen(2, n)))
     assert state.told is not None
     assert state.told.believed == 1.0
+
+
+def test_a_rig_that_becomes_wrong_is_contradicted_within_two_seconds() -> None:
+    state = after(RIG, 40)
+    assert state.told is not None
+    assert state.told.believed == 1.0
+    for n in range(40, 50):
+        state = rig_agreement.step(state, turned(RIG, 10.0), (seen(1, n), seen(2, n)))
+    assert state.told is not None
+    assert state.told.believed < 0.2
+    assert len(state.samples) < 40

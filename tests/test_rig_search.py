@@ -140,3 +140,20 @@ def test_view_2_is_set_back_by_what_it_is_late_and_rows_keep_its_own_time() -> N
     state, _ = moved(0.0, rig_search.init(1 / HZ, 1.75))
     state, _ = answered(state._replace(asked=1), msgspec.structs.replace(GOOD, late_s=0.02))
     assert state.late_s == 0.0
+
+
+def test_what_was_asked_before_a_camera_was_moved_is_not_taken() -> None:
+    state, _ = moved(ASKS_S[0])
+    state = rig_search.anew(state, RIG, (2,))
+    assert state.rows == ((), ())
+    state, is_taken = answered(state, GOOD)
+    assert not is_taken
+    state, jobs = moved(ASKS_S[0], state, 100)
+    assert (jobs[0].rig, jobs[0].moved) == (RIG, (2,))
+
+
+def test_a_moved_camera_is_placed_by_the_person_even_where_views_agree_as_well_before() -> None:
+    state = rig_search.init(1 / HZ, 1.75)._replace(asked=1, waits=True, rig=RIG, moved=(2,))
+    assert answered(state, msgspec.structs.replace(GOOD, before=Trusted(11.0, ())))[1]
+    refused = msgspec.structs.replace(GOOD, trust=Trusted(80.0, ("apart",)))
+    assert not answered(state, refused)[1]

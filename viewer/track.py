@@ -14,8 +14,10 @@ from common.raster.silhouette_report import pack
 from common.raster.similarity import Mask
 from common.rig.camera import Camera
 from viewer import camera_fault
+from viewer.background import moved_camera
 from viewer.background.background import Background
 from viewer.background.moved_objects import Patch
+from viewer.background.turned_picture import lens_of, turned_background
 from viewer.capture import CapturedFrame
 from viewer.expected_body import expected_body
 from viewer.landmarks.nearest_landmarks import nearest_landmarks
@@ -66,6 +68,8 @@ class State(NamedTuple):
     """Of the last frame."""
     near_px: Pixel | None = None
     """The middle of the last silhouette, where no guide tells where the body is expected."""
+    moved: moved_camera.State | None = None
+    """Whether the camera was moved; None: nobody asks."""
 
 
 def init(
@@ -90,6 +94,7 @@ def init(
         tuple(patches),
         pose_search.init(setup.viewer, setup.camera, setup.settings.search),
         standing,
+        moved=_watched(setup, background, None),
     )
 
 
@@ -100,7 +105,19 @@ def with_background(state: State, background: Background) -> State:
         fault=camera_fault.init(background),
         silhouette=silhouette.init(background, setup.settings.silhouette, setup.method),
         coming=(),
+        moved=_watched(setup, background, state.moved),
     )
+
+
+def _watched(
+    setup: Setup, background: Background, before: moved_camera.State | None
+) -> moved_camera.State | None:
+    """What tells whether the camera is moved, where a rig may become wrong by that."""
+    if not setup.method.follows_cameras or (setup.alone and setup.camera is None):
+        return None
+    high, wide = background.uncertain.shape
+    begun = None if before is None else before.turn @ before.begun
+    return moved_camera.init(background, lens_of(setup.camera, (wide, high)), begun)
 
 
 def step(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State, Report]:
@@ -131,7 +148,7 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
         nobody = Seen(np.zeros(frame.picture.shape[:2], np.bool_), None, 0, 0, cut=False)
         report = _report_of(state.setup.viewer, frame, nobody)
         return state, msgspec.structs.replace(report, fault=fault), nobody.mask
-    state = _patched(state, frame.index)
+    state = _followed(_patched(state, frame.index), frame)
     remembered, seen = silhouette.step(state.silhouette, frame.picture, _near_px(state, guide))
     landmarks = _landmarks(state, frame, seen)
     held = corrected(seen, landmarks, state.setup.settings.silhouette.min_height_share)
@@ -142,7 +159,9 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
     seen = held.seen
     state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box), landmarks=landmarks)
     report = _report_of(state.setup.viewer, frame, seen)
-    return state, msgspec.structs.replace(report, landmarks=state.landmarks), seen.mask
+    shift = None if state.moved is None else state.moved.shift
+    report = msgspec.structs.replace(report, landmarks=state.landmarks, shift=shift)
+    return state, report, seen.mask
 
 
 def describe(state: State, report: Report, mask: Mask, guide: Guide | None) -> tuple[State, Report]:
@@ -196,6 +215,22 @@ def _landmarks(state: State, frame: CapturedFrame, seen: Seen) -> Landmarks | No
     if source == "own":
         return own_landmarks(frame.picture, seen, state.landmarks)
     return nearest_landmarks(frame.landmarks, seen.box)
+
+
+def _followed(state: State, frame: CapturedFrame) -> State:
+    """The state before the background as it is seen since the camera was moved."""
+    if state.moved is None:
+        return state
+    moved, is_new = moved_camera.step(state.moved, frame.picture)
+    if not is_new:
+        return state._replace(moved=moved)
+    background = turned_background(moved.first, moved.lens, moved.turn, frame.picture)
+    return state._replace(
+        moved=moved,
+        silhouette=silhouette.before(state.silhouette, background),
+        landmarks=None,
+        near_px=None,
+    )
 
 
 def _patched(state: State, index: int) -> State:

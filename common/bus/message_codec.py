@@ -26,6 +26,7 @@ from common.bus.messages import (
 )
 from common.notes.notes import ORIENTATIONS
 from common.rig.camera import Camera, Rig
+from common.rig.picture_shift import Shift
 
 MAX_BYTES: Final = 1_000_000
 """No message of ours is larger (a 1920x1080 silhouette has 259 kB)."""
@@ -74,6 +75,7 @@ _CARRIERS: Final = (
     Elliptic,
     Round,
     Rig,
+    Shift,
     Camera,
 )
 """Structs in messages whose numbers are looked at."""
@@ -87,6 +89,7 @@ _LENGTHS: Final[dict[tuple[type[Message], str], tuple[int, ...]]] = {
     (Body, "extremities_m"): (0, len(EXTREMITY_NAMES)),
     (Body, "extremities_px"): (0, 1, 2),
     (Body, "extremities_confidence"): (0, len(EXTREMITY_NAMES)),
+    (Body, "moved"): (0, 1, 2),
 }
 
 

@@ -5,8 +5,9 @@ from typing import Final, Literal
 import msgspec
 
 from common.body.body import Bdp
+from common.rig.picture_shift import Shift
 
-PROTOCOL: Final = 7
+PROTOCOL: Final = 8
 
 ViewerNumber = Literal[1, 2]
 Facing = Literal["facade", "flank"]
@@ -139,6 +140,8 @@ class Report(Moment, frozen=True, kw_only=True):
     """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
     fault: CameraFault = ""
     """What is wrong with the picture; nobody is seen in it then."""
+    shift: Shift | None = None
+    """How the camera was moved since the start; None: it stands as it stood."""
 
 
 class Guide(Moment, frozen=True, kw_only=True):
@@ -227,6 +230,8 @@ class Body(Moment, frozen=True, kw_only=True):
     """How often that rig was changed in the run: places before and after do not compare."""
     agreement: Agreement | None = None
     """None where one view alone shows the body, and until enough was seen."""
+    moved: tuple[ViewerNumber, ...] = ()
+    """Cameras that were moved, and whose new place the person has not confirmed yet."""
 
 
 class Performance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -3,13 +3,14 @@
 import msgspec
 
 from common.body.body import ANGLE_NAMES
-from common.bus.messages import Report
+from common.bus.messages import Report, ViewerNumber
 from common.rig.camera import Rig
+from common.rig.turned_camera import angle_deg
 from integrator import opening_posture
 from integrator.live_rig.rig_job import Solved
 from integrator.merge_state import State
 from integrator.pose import smoothing
-from integrator.rig_gate import rig_agreement
+from integrator.rig_gate import moved_cameras, rig_agreement
 
 
 def with_rig(state: State, rig: Rig) -> State:
@@ -17,15 +18,17 @@ def with_rig(state: State, rig: Rig) -> State:
 
     Where somebody stands, and how, is looked for afresh: the world is another one. Their body is
     kept: what the opening posture measured, by the new rig, or else the stature that the rig is
-    told by.
+    told by. Where a camera stays at its place the world stays too, and with it all of the body.
     """
-    body = state.settings.body
-    opening = opening_posture.elsewhere(
-        state.opening, rig, body.opening_frames, state.method, body.stature_m
-    )
+    body, opening, source = state.settings.body, state.opening, state.scale_source
+    if state.rig is None or not is_same_world(state.rig, rig):
+        source = "person"
+        opening = opening_posture.elsewhere(
+            state.opening, rig, body.opening_frames, state.method, body.stature_m
+        )
     return state._replace(
         rig=rig,
-        scale_source="person",
+        scale_source=source,
         calibration=state.calibration + 1,
         proposes=True,
         smooth=smoothing.init(len(ANGLE_NAMES), state.smooth.period_s),
@@ -34,6 +37,15 @@ def with_rig(state: State, rig: Rig) -> State:
         facing=("facade", "flank"),
         doubted=0,
         agreement=rig_agreement.State(),
+        stands=moved_cameras.told_by(state.stands, state.rig, rig),
+    )
+
+
+def is_same_world(before: Rig, rig: Rig) -> bool:
+    """Whether one camera at least stands where it stood: a new world has none there."""
+    return any(
+        moved_cameras.stays(one, other)
+        for one, other in zip(before.cameras, rig.cameras, strict=True)
     )
 
 
@@ -45,13 +57,40 @@ def set_back(report: Report, late_s: float) -> Report:
     return msgspec.structs.replace(report, captured_s=report.captured_s - late_s, next_s=next_s)
 
 
-def word_of(solved: Solved, late_s: float) -> str:
-    """What is said of a change."""
+def word_of(solved: Solved, late_s: float, moved: tuple[ViewerNumber, ...] = ()) -> str:
+    """What is said of a change, of cameras that were moved or of all."""
     assert solved.trust is not None
+    known = f"views {solved.trust.apart_mm:.0f} mm apart"
+    if moved:
+        return f"{cameras_named(moved)} placed anew by the person: {known}"
     first = "the cameras are now calibrated by the person"
     text = first if solved.before is None else "a better calibration by the person is used now"
     late = f", camera 2 {1e3 * late_s:+.0f} ms late" if late_s else ""
     return (
-        f"{text}: views {solved.trust.apart_mm:.0f} mm apart, camera 2 known to "
-        f"{solved.turn_error_deg:.0f} degrees{late}; the body jumps to the new axes here"
+        f"{text}: {known}, camera 2 known to {solved.turn_error_deg:.0f} degrees{late}; the body "
+        "jumps to the new axes here"
     )
+
+
+def word_of_moved(state: State) -> str:
+    """What is said of cameras that have just been moved."""
+    assert state.rig is not None
+    stands = state.stands
+    by_deg = [
+        angle_deg(
+            moved_cameras.turn_since(
+                state.rig.cameras[n - 1], stands.of_rig[n - 1], stands.now[n - 1]
+            )
+        )
+        for n in stands.moved
+    ]
+    turned = " and ".join(f"{deg:.1f}" for deg in by_deg)
+    return (
+        f"{cameras_named(stands.moved)} moved, its picture turned by {turned} degrees: the rig is "
+        "turned with it, and half believed until the person has told where it stands"
+    )
+
+
+def cameras_named(numbers: tuple[ViewerNumber, ...]) -> str:
+    """The cameras with a verb."""
+    return f"camera {numbers[0]} was" if len(numbers) == 1 else "both cameras were"

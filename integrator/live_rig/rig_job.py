@@ -6,6 +6,7 @@ from typing import Final
 import msgspec
 import numpy as np
 
+from common.bus.messages import ViewerNumber
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError
 from integrator.selfcalibration.joint_tracks import JOINTS, JointTrack, Row, Sighting
@@ -15,6 +16,14 @@ NUMBERS: Final = 1 + 2 * JOINTS + JOINTS + 2
 
 LENGTH: Final = struct.Struct("<I")
 """What stands before an answer's bytes."""
+
+
+class Stand(msgspec.Struct, frozen=True):
+    """What both views saw before a camera was moved, and the rig that was right then."""
+
+    rig: Rig
+    tracks: tuple[bytes, bytes]
+    """Packed rows, times as they were told."""
 
 
 class Job(msgspec.Struct, frozen=True):
@@ -27,6 +36,12 @@ class Job(msgspec.Struct, frozen=True):
     """Packed rows."""
     rig: Rig | None = None
     """None: it is assumed."""
+    moved: tuple[ViewerNumber, ...] = ()
+    """Cameras that were moved: the others stay where the rig has them, and so does the world."""
+    late_s: float = 0.0
+    """How late view 2 is known to be."""
+    stood: Stand | None = None
+    """Before that."""
 
 
 class Trusted(msgspec.Struct, frozen=True):
@@ -74,6 +89,8 @@ def solved(job: Job) -> Solved:
 
     first, second = (track_of_bytes(told) for told in job.tracks)
     sighting = Sighting(first, second, job.size_px)
+    if job.moved and job.rig is not None:
+        return _placed(job, job.rig, sighting)
     try:
         found = calibrated_by_person((sighting,), job.stature_m)
     except CalibrationError as error:
@@ -85,6 +102,27 @@ def solved(job: Job) -> Solved:
         turn_error_deg=found.quality.cameras[1].turn_error_deg[0],
         trust=_trusted(found.rig, sighting, job.period_s),
         before=None if job.rig is None else _trusted(job.rig, sighting, job.period_s),
+    )
+
+
+def _placed(job: Job, rig: Rig, sighting: Sighting) -> Solved:
+    """The rig with the cameras that were moved where the person has them."""
+    from integrator.rig_gate.moved_place import Stood, placed
+
+    stood = None
+    if job.stood is not None:
+        first, second = (track_of_bytes(told) for told in job.stood.tracks)
+        stood = Stood(job.stood.rig, Sighting(first, second, job.size_px))
+    found = placed(rig, sighting, job.moved, job.late_s, stood)
+    if found is None:
+        return Solved(refusal="too little is seen of anybody")
+    return Solved(
+        rig=found.rig,
+        late_s=job.late_s,
+        gap_mm=found.gap_mm,
+        turn_error_deg=found.turn_error_deg,
+        trust=_trusted(found.rig, sighting, job.period_s),
+        before=_trusted(rig, sighting, job.period_s),
     )
 
 

@@ -6,9 +6,9 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.messages import Report
+from common.bus.messages import Report, ViewerNumber
 from common.rig.camera import Rig
-from integrator.live_rig.rig_job import Job, Solved, Trusted, packed
+from integrator.live_rig.rig_job import Job, Solved, Stand, Trusted, packed
 from integrator.pairing import Pair
 from integrator.selfcalibration.joint_tracks import JOINTS, LEAST_SURE, Row, row_of
 from integrator.selfcalibration.lateness import LEAST_LATE
@@ -60,6 +60,12 @@ class State(NamedTuple):
     """By how much the times of view 2 are set back already."""
     refusal: str = ""
     """Why the last one was not taken."""
+    moved: tuple[ViewerNumber, ...] = ()
+    """Cameras that were moved: they are looked for, the others stand where they stood."""
+    stood: Stand | None = None
+    """What was seen before that."""
+    is_stale: bool = False
+    """What is waited for was asked of cameras that stood otherwise."""
 
     @property
     def is_over(self) -> bool:
@@ -77,6 +83,31 @@ def init(period_s: float, stature_m: float) -> State:
     return State(period_s, stature_m)
 
 
+def anew(
+    state: State,
+    rig: Rig | None,
+    moved: tuple[ViewerNumber, ...] = (),
+    stood: Stand | None = None,
+) -> State:
+    """The search begun again: what was seen so far tells nothing of how the cameras stand now.
+
+    Args:
+        state: Of the search so far.
+        rig: In use; None: it is assumed.
+        moved: Cameras that are known to have been moved.
+        stood: What was seen before that.
+    """
+    return init(state.period_s, state.stature_m)._replace(
+        last_s=state.last_s,
+        rig=rig,
+        late_s=state.late_s,
+        moved=moved,
+        stood=stood,
+        waits=state.waits,
+        is_stale=state.waits,
+    )
+
+
 def step(state: State, pair: Pair) -> tuple[State, Job | None]:
     """One instant more, and what to ask now, if anything."""
     if state.asked == len(ASKS_S):
@@ -85,13 +116,24 @@ def step(state: State, pair: Pair) -> tuple[State, Job | None]:
     if state.waits or state.moved_s < ASKS_S[state.asked]:
         return state, None
     first, second = (b"".join(rows) for rows in state.rows)
-    job = Job(state.size_px, state.stature_m, state.period_s, (first, second), state.rig)
+    job = Job(
+        state.size_px,
+        state.stature_m,
+        state.period_s,
+        (first, second),
+        state.rig,
+        state.moved,
+        state.late_s,
+        state.stood,
+    )
     state = state._replace(asked=state.asked + 1, waits=True)
     return (state._replace(rows=((), ())) if state.asked == len(ASKS_S) else state), job
 
 
 def answered(state: State, solved: Solved) -> tuple[State, bool]:
     """What was asked is answered: whether that rig is the run's from now on."""
+    if state.is_stale:
+        return state._replace(waits=False, is_stale=False), False
     state = state._replace(waits=False, refusal=refusal_of(solved))
     if state.refusal or not (state.rig is None or is_better(state, solved)):
         return state, False
@@ -129,11 +171,13 @@ def why_none(state: State) -> str:
 def is_better(state: State, solved: Solved) -> bool:
     """Whether a believable rig is clearly better than the one in use, by all that was seen.
 
-    It is where views agree clearly more by it, or as much where far more motion was seen.
+    It is where views agree clearly more by it, or as much where far more motion was seen. A camera
+    that was moved is always placed by the person first: its picture knows its turn alone, and views
+    may agree where it is a step aside.
     """
     new, old = solved.trust, solved.before
     assert new is not None
-    if old is None or not _holds(old):
+    if old is None or not _holds(old) or (state.moved and not state.taken):
         return True
     gain_mm = old.apart_mm - new.apart_mm
     if ASKS_S[state.asked - 1] >= MORE * ASKS_S[state.taken - 1]:

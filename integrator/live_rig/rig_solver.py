@@ -9,7 +9,8 @@ from typing import Final
 import msgspec
 
 from common.video.child_process import Broken, Child
-from integrator.live_rig.rig_job import LENGTH, Job, Solved
+from integrator.live_rig.rig_job import LENGTH, Job, Solved, solved
+from integrator.selfcalibration.lateness import LEAST_LATE
 
 MODULE: Final = f"{__package__}.rig_child"
 STALL_S: Final = 120.0
@@ -57,3 +58,26 @@ def _answer(child: Child) -> Solved:
     body = bytearray(LENGTH.unpack(head)[0])
     child.read_into(memoryview(body))
     return msgspec.msgpack.decode(body, type=Solved)
+
+
+class SolverAtOnce:
+    """Does each job while it is asked: for steps that wait for each other."""
+
+    def __init__(self) -> None:
+        """Nothing is asked."""
+        self._solved: Solved | None = None
+
+    def ask(self, job: Job) -> None:
+        """Do a job; what it finds of clocks is told, not set, for frames are paired already."""
+        found = solved(job)
+        if abs(found.late_s - job.late_s) >= LEAST_LATE * job.period_s:
+            found = Solved(refusal=f"view 2 is {1e3 * found.late_s:+.0f} ms late")
+        self._solved = found
+
+    def answer(self) -> Solved | None:
+        """What was found."""
+        found, self._solved = self._solved, None
+        return found
+
+    def close(self) -> None:
+        """Nothing goes on."""

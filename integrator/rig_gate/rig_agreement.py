@@ -32,6 +32,8 @@ FACING_DEG: Final = (90.0, 120.0)
 """What is as usual for a good rig, and what no good one has: between them belief falls. The right
 rig has views of r01 and r04 31 mm apart at most, soles -14 to 29 mm high, facings 5 degrees apart;
 the views of other people, whom the network sees less well, are up to 56 mm apart."""
+SUDDEN: Final = 0.2
+"""What is left of the belief in a rig that is contradicted in the last second alone."""
 LEAST: Final = 0.05
 """Share of the confidence that is left to a rig that nobody believes."""
 
@@ -75,6 +77,10 @@ def step(state: State, rig: Rig, seen: Seen) -> State:
     samples = (*state.samples, sample)[-SAMPLES:]
     facings = (*state.facings_deg, *turned)[-SAMPLES:]
     told = agreement_of(np.array(samples), facings) if len(samples) >= FEWEST else None
+    if told is not None and told.believed > SUDDEN:
+        last = agreement_of(np.array(samples[-FEWEST:]), facings[-FEWEST:])
+        if last.believed <= SUDDEN:  # what was before tells nothing of how it is now
+            samples, facings, told = samples[-FEWEST:], facings[-FEWEST:], last
     return State(samples, facings, first.captured_s, told)
 
 

@@ -133,7 +133,7 @@ def trust_of(rig: Rig, sighting: Sighting, period_s: float) -> Trust | None:
         1e3 * apart_m,
         apart_m / stature_m * float(np.mean(case.evidence.clips[0].units_px)),
         float(fit.guess[LATE]) / period_s,
-        1e3 * _soles_m(one, stature_m),
+        1e3 * soles_m(one, stature_m),
         stature_m,
         facing_off_deg(fit.guess, one, case.evidence.clips[0].first),
         len(one.used),
@@ -158,7 +158,8 @@ def apart(one: Explained, evidence: Evidence) -> float:
     return math.sqrt(float(np.mean(np.square(medians)))) if medians else 0.0
 
 
-def _soles_m(one: Explained, stature_m: float) -> float:
+def soles_m(one: Explained, stature_m: float) -> float:
+    """How high the lower foot's sole is, mostly."""
     ankles = np.where(one.used[:, prior.ANKLES], one.met.points_m[:, prior.ANKLES, 1], np.inf).min(
         axis=1
     )

@@ -8,6 +8,7 @@ from common.bus.messages import Posture
 from common.video.clip_facts import Clip
 from tritrack.live.launch import Heard
 from tritrack.live.screen import warnings_of
+from tritrack.moved_facts import moved_facts
 
 
 def performed(postures: list[Posture]) -> str:
@@ -35,6 +36,7 @@ def facts_of(heard: Heard, clip: Clip, seconds: float) -> dict[str, Any]:
         "seconds": {"all": round(seconds, 3)},
         "scale_source": source,
         **_calibration(heard),
+        **moved_facts(heard.bodies.all()),
         "posture": performed(heard.postures.all()),
         "warnings": list(dict.fromkeys(warnings)),
         "processes": {

@@ -18,8 +18,11 @@ from common.video.decoding import Decoder
 from common.video.frame_cache import Reel
 from integrator import diagnostics, merge, merge_state, opening_posture
 from integrator.frame_numbers import frame_times
+from integrator.live_rig.live_calibration import LiveCalibration
+from integrator.live_rig.rig_solver import SolverAtOnce
 from integrator.merge_state import Start
 from integrator.pairing import Pair
+from tritrack.moved_facts import moved_facts
 from tritrack.offline.film_tracking import Film, Heard, follow_clip, unseen
 from tritrack.offline.frame_pairs import backgrounds, instants, share_of
 from tritrack.offline.opening_clip import body_of
@@ -83,6 +86,8 @@ class Performance(NamedTuple):
     bodies: list[Body]
     integrator: merge_state.State
     noticed: diagnostics.State
+    news: tuple[str, ...]
+    """What became of the rig."""
     seconds: dict[str, float]
     """Of each stage."""
 
@@ -128,6 +133,7 @@ def track_clip(
         done = _performed(ready, sources, watches, tell)
         trust = trust_facts(looked.clip, witness, insisted=settings.trust_calibration)
         facts = _facts(ready, done, sources) | calibration_facts(looked) | trust
+        facts |= moved_facts(done.bodies)
         facts["warnings"] += doubts(facts)
         return Tracked(looked.clip, done.bodies, facts)
 
@@ -174,6 +180,7 @@ def _performed(
     guide: Guide | None = None
     bodies: list[Body] = []
     spent = {"viewers": 0.0, "integrator": 0.0}
+    calibration = LiveCalibration(state, looks=False, solver=SolverAtOnce())
     began = time.perf_counter()
     for frames in instants(ready.clip, ready.reels, sources):
         start = time.perf_counter()
@@ -185,13 +192,15 @@ def _performed(
         state, body, guide = merge.step(state, pair)
         noticed = diagnostics.step(noticed, pair)
         bodies.append(body)
+        calibration.heard(pair)
+        state = calibration.changed(state)
         for watch in watches:
             watch(frames, reports, body)
         tell(share_of(ready.clip, frames))
         spent["viewers"] += middle - start
         spent["integrator"] += time.perf_counter() - middle
     spent["following"] = time.perf_counter() - began
-    return Performance(bodies, state, noticed, spent)
+    return Performance(bodies, state, noticed, calibration.news, spent)
 
 
 def _facts(ready: Prepared, done: Performance, sources: Sources) -> dict[str, Any]:
@@ -210,7 +219,7 @@ def _facts(ready: Prepared, done: Performance, sources: Sources) -> dict[str, An
         "seconds": {name: round(value, 4) for name, value in seconds.items()},
         "frames_a_second": round(len(done.bodies) / followed_s, 1),
         "scale_source": done.integrator.scale_source,
-        "warnings": [*odd, *diagnostics.warnings(done.noticed, done.integrator)],
+        "warnings": [*odd, *diagnostics.warnings(done.noticed, done.integrator), *done.news],
     }
 
 

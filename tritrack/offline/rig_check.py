@@ -17,16 +17,20 @@ MOST_FRAMES: Final = 3_000
 
 
 class Witness:
-    """Keeps the landmarks of both views, instant by instant."""
+    """Keeps the landmarks of both views, instant by instant, while the cameras stand."""
 
     def __init__(self) -> None:
         """Nothing was seen yet."""
+        self._moved = False
         self._rows: dict[int, list[Row]] = {1: [], 2: []}
 
     def __call__(
-        self, _: dict[ViewerNumber, CapturedFrame], reports: dict[int, Report], __: Body
+        self, _: dict[ViewerNumber, CapturedFrame], reports: dict[int, Report], body: Body
     ) -> None:
-        """One instant more."""
+        """One instant more; the given rig is not held against what is seen after a move."""
+        self._moved = self._moved or bool(body.moved)
+        if self._moved:
+            return
         for number, report in reports.items():
             if len(self._rows[number]) < MOST_FRAMES:
                 self._rows[number].append(row_of(report))

@@ -38,7 +38,7 @@ def sighting_of(
     readers: Mapping[ViewerNumber, Reader],
     sources: Sources,
 ) -> Sighting:
-    """What both views see of the person in a clip, looked at without a rig.
+    """What both views see of the person in a clip without a rig, until a camera is moved.
 
     Raises:
         DecoderDied: When a video broke the decoder.
@@ -53,7 +53,8 @@ def sighting_of(
         for number, frame in frames.items():
             viewers[number], report, _ = track.look(viewers[number], frame, None)
             reports[number].append(report)
-        if n + 1 == MOST_FRAMES:
+        is_moved = any(own[-1].shift is not None for own in reports.values() if own)
+        if n + 1 == MOST_FRAMES or is_moved:
             break
     first, second = (track_of(reports[number]) for number in (1, 2))
     return Sighting(first, second, clip.views[0].size)

@@ -144,6 +144,13 @@ def guess(state: State, frame: Image, near_px: tuple[float, float] | None) -> Gu
     return Guess(cells, cell, blobs, mask, *features_of(frame, model, mask, doubt))
 
 
+def before(state: State, background: Background) -> State:
+    """Silhouettes before another background; whose colours are whose is kept."""
+    fresh_state = init(background, state.settings, state.method)
+    model = fresh_state.model._replace(body_colours=state.model.body_colours)
+    return fresh_state._replace(model=model, colours=state.colours)
+
+
 def patched(state: State, patch: Patch) -> State:
     """Silhouettes in a background with a patch on it."""
     centre, weight = state.model.centre.copy(), state.model.weight.copy()

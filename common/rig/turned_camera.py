@@ -1,0 +1,47 @@
+"""A camera that was turned where it stands: how its picture shifts, and back."""
+
+import math
+
+import cv2
+import msgspec
+import numpy as np
+
+from common.body.body import Vector
+from common.rig.camera import Camera, as_matrix, as_row
+from common.rig.picture_shift import Shift
+
+
+def turn_of(shift: Shift, focal_px: Vector) -> Vector:
+    """The turn (3, 3) of what a camera sees, in its own axes, that shifts its picture so.
+
+    Args:
+        shift: Of the picture's middle, and about it.
+        focal_px: (2,) across and down.
+    """
+    ahead = np.array([shift.right_px / focal_px[0], shift.down_px / focal_px[1], 1.0])
+    ahead /= np.linalg.norm(ahead)
+    axis = np.cross([0.0, 0.0, 1.0], ahead)
+    angle = math.atan2(float(np.linalg.norm(axis)), float(ahead[2]))
+    swing = cv2.Rodrigues(axis * (angle / max(float(np.linalg.norm(axis)), 1e-12)))[0]
+    roll = cv2.Rodrigues(np.array([0.0, 0.0, math.radians(shift.roll_deg)]))[0]
+    return np.asarray(swing @ roll, float)
+
+
+def shift_of(turn: Vector, focal_px: Vector) -> Shift:
+    """The shift of a picture by a turn: the other way round than `turn_of`."""
+    ahead = turn[:, 2] / turn[2, 2]
+    level = Shift(float(ahead[0] * focal_px[0]), float(ahead[1] * focal_px[1]), 0.0)
+    roll = turn_of(level, focal_px).T @ turn
+    angle = math.degrees(math.atan2(float(roll[1, 0]), float(roll[0, 0])))
+    return msgspec.structs.replace(level, roll_deg=angle)
+
+
+def angle_deg(turn: Vector) -> float:
+    """By how much a turn (3, 3) turns."""
+    return math.degrees(math.acos(max(-1.0, min(1.0, (float(np.trace(turn)) - 1.0) / 2.0))))
+
+
+def turned(camera: Camera, turn: Vector) -> Camera:
+    """The camera at its place after what it sees has turned by (3, 3) in its own axes."""
+    R, t = turn @ np.array(camera.R), turn @ np.array(camera.t)
+    return msgspec.structs.replace(camera, R=as_matrix(R), t=as_row(t))

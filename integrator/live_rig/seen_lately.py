@@ -1,0 +1,38 @@
+"""What both views saw in the last seconds, kept for the case that a camera is moved."""
+
+from typing import Final, NamedTuple
+
+from common.rig.camera import Rig
+from integrator.live_rig.rig_job import Stand, packed
+from integrator.pairing import Pair
+from integrator.selfcalibration.joint_tracks import LEAST_SURE, row_of
+
+MOST: Final = 120
+"""Frames that are kept: eight seconds of 15."""
+NOTICED_S: Final = 1.0
+"""So long before a move is told the camera may have been moved already."""
+
+
+class State(NamedTuple):
+    """The last frames in which both views were sure of somebody."""
+
+    rows: tuple[tuple[float, bytes, bytes], ...] = ()
+    """When, and what each view saw."""
+
+
+def step(state: State, pair: Pair) -> State:
+    """One instant more."""
+    first, second = pair.detections
+    if first is None or second is None or first.landmarks is None or second.landmarks is None:
+        return state
+    one, other = row_of(first), row_of(second)
+    if min(one[2].mean(), other[2].mean()) < LEAST_SURE:
+        return state
+    row = (first.captured_s, packed(one), packed(other))
+    return State((*state.rows, row)[-MOST:])
+
+
+def stand_before(state: State, rig: Rig, now_s: float) -> Stand:
+    """What was seen before a move that is told now, and the rig that was right then."""
+    kept = [row for row in state.rows if row[0] < now_s - NOTICED_S]
+    return Stand(rig, (b"".join(row[1] for row in kept), b"".join(row[2] for row in kept)))

@@ -1,0 +1,83 @@
+"""What the integrator makes of cameras that were moved."""
+
+import cv2
+import msgspec
+import numpy as np
+import pytest
+from staging import RIG, report
+
+from common.bus.messages import ViewerNumber
+from common.rig.camera import arrays_of, project
+from common.rig.picture_shift import Shift
+from common.rig.turned_camera import angle_deg, shift_of, turned
+from integrator.pairing import Pair
+from integrator.rig_gate import moved_cameras
+from integrator.rig_gate.moved_cameras import (
+    MOVED_LEFT,
+    UNCONFIRMED_LEFT,
+    MovedCameras,
+    told_by,
+    turned_rig,
+)
+
+TURN = np.asarray(cv2.Rodrigues(np.radians([1.0, 3.0, 0.5]))[0])
+SHIFT = shift_of(TURN, arrays_of(RIG.cameras[1]).focal_px)
+
+
+def after(state: MovedCameras, second: Shift | None) -> MovedCameras:
+    return moved_cameras.step(state, Pair(report(1), report(2, shift=second)))
+
+
+def test_a_moved_camera_is_named_and_hardly_anything_is_believed() -> None:
+    state = after(MovedCameras(), SHIFT)
+    assert state.moved == state.doubtful == (2,)
+    assert state.left == MOVED_LEFT
+    assert after(MovedCameras(), Shift(0.3, 0.2, 0.1)).doubtful == ()
+
+
+def test_the_rig_is_turned_as_the_picture_was() -> None:
+    rig = turned_rig(RIG, after(MovedCameras(), SHIFT))
+    assert rig.cameras[0] == RIG.cameras[0]
+    places_m = np.random.default_rng(1).uniform((-0.5, 0.5, -0.5), (0.5, 1.5, 0.5), (9, 3))
+    due = project(turned(RIG.cameras[1], TURN), places_m)
+    assert project(rig.cameras[1], places_m) == pytest.approx(due)
+
+
+def test_a_turned_rig_is_half_believed_until_the_person_has_placed_the_camera() -> None:
+    state = after(MovedCameras(), SHIFT)
+    turned_only = turned_rig(RIG, state)
+    state = told_by(state, RIG, turned_only)
+    assert (state.moved, state.doubtful, state.left) == ((), (2,), UNCONFIRMED_LEFT)
+    state = after(state, SHIFT)
+    assert state.doubtful == (2,)
+    second = msgspec.structs.replace(turned_only.cameras[1], t=(0.1, 1.0, 4.1))
+    placed = msgspec.structs.replace(turned_only, cameras=(turned_only.cameras[0], second))
+    state = told_by(state, turned_only, placed)
+    assert (state.doubtful, state.left) == ((), 1.0)
+
+
+def test_a_second_move_turns_the_rig_by_what_is_new() -> None:
+    state = after(MovedCameras(), SHIFT)
+    rig = turned_rig(RIG, state)
+    state = after(told_by(state, RIG, rig), None)
+    back = turned_rig(rig, state)
+    assert np.array(back.cameras[1].R) == pytest.approx(np.array(RIG.cameras[1].R), abs=1e-9)
+
+
+@pytest.mark.parametrize("viewer", [1, 2])
+def test_a_view_that_is_silent_or_faulty_stands_where_it_was_last_seen(
+    viewer: ViewerNumber,
+) -> None:
+    moved = report(viewer, shift=SHIFT)
+    silent = (Pair(moved, None), Pair(None, moved))[viewer - 1]
+    state = moved_cameras.step(MovedCameras(), silent)
+    assert state.moved == (viewer,)
+    covered = report(viewer, fault="covered")
+    state = moved_cameras.step(state, Pair(*((covered, None), (None, covered))[viewer - 1]))
+    assert state.moved == (viewer,)
+
+
+def test_by_what_a_camera_was_turned_since_is_told() -> None:
+    none = Shift(0.0, 0.0, 0.0)
+    turn = moved_cameras.turn_since(RIG.cameras[1], none, SHIFT)
+    assert angle_deg(turn @ TURN.T) == pytest.approx(0.0, abs=1e-5)
