@@ -74,6 +74,18 @@ def test_what_dies_is_started_again_and_the_table_says_so(sleeper: Watched) -> N
     assert sleeper.running.process.is_alive()
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP])
+def test_what_a_terminal_says_to_all_is_for_the_supervisor_alone(
+    sleeper: Watched, number: signal.Signals
+) -> None:
+    """Ctrl-C, and that it was closed: who started the others ends them in order."""
+    pid = sleeper.running.process.pid
+    assert pid is not None
+    os.kill(pid, number)
+    time.sleep(0.3)
+    assert sleeper.running.process.is_alive()
+
+
 def test_each_further_start_waits_twice_as_long_and_then_it_is_given_up(
     sleeper: Watched,
 ) -> None:
