@@ -22,6 +22,10 @@ def sleeps() -> None:
     time.sleep(600.0)
 
 
+def ends() -> None:
+    """A part whose work is done."""
+
+
 def refuses(text: str) -> None:
     """A part that does not."""
     raise ClipError(text)
@@ -133,6 +137,16 @@ def test_what_hangs_is_killed_but_not_by_a_supervisor_that_slept_itself(sleeper:
     assert now_s - 3700.0 == pytest.approx(5.0, abs=1.0)
     assert told == "viewer 2: it has said nothing for 5 s, hangs, and is killed"
     until(lambda: sleeper.running.process.exitcode == -signal.SIGKILL)
+
+
+def test_what_came_to_its_end_unheard_does_not_hang() -> None:
+    """Its last pulse is lost where the integrator is down as it ends."""
+    with watched(Part("viewer 2", ends, (), leads=True, beats=True)) as one:
+        pulses = beating("viewer 2")
+        one.look(100.0, pulses)
+        until(lambda: one.done)
+        told = {one.look(100.0 + 0.4 * number, pulses) for number in range(30)}
+    assert told == {""}
 
 
 def test_what_cannot_be_heard_is_not_killed_for_its_silence(sleeper: Watched) -> None:
