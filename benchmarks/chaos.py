@@ -39,7 +39,7 @@ tenth of a second, in which it heeds no signal."""
 ORPHANED_S: Final = 2.0
 PATIENCE_S: Final = 120.0
 LIVE: Final = (sys.executable, "-m", "tritrack", "live")
-SPAWNED: Final = ("animator", "integrator", "recognizer", "viewer 1", "viewer 2")
+STARTED: Final = ("animator", "integrator", "recognizer", "viewer 1", "viewer 2")
 """In the order in which a run starts them."""
 
 
@@ -84,8 +84,10 @@ class Trial:
     def parts(self) -> dict[str, psutil.Process]:
         """Its processes by their names, and each decoder by that of its viewer."""
         children = psutil.Process(self.run.pid).children()
-        spawned = [one for one in children if "spawn_main" in " ".join(one.cmdline())]
-        named = dict(zip(SPAWNED, sorted(spawned, key=lambda one: one.pid), strict=False))
+        (zygote,) = spoken_of(children, "forkserver")
+        begun = [*spoken_of(children, "spawn_main"), *zygote.children()]
+        in_order = sorted(begun, key=lambda one: (one.create_time(), one.pid))
+        named = {"zygote": zygote, **dict(zip(STARTED, in_order, strict=False))}
         for number in (1, 2):
             for one in named[f"viewer {number}"].children():
                 named[f"decoder {number}"] = one
@@ -148,6 +150,10 @@ class Trial:
         )
 
 
+def spoken_of(processes: Sequence[psutil.Process], word: str) -> list[psutil.Process]:
+    return [one for one in processes if word in " ".join(one.cmdline())]
+
+
 def kill(process: psutil.Process) -> None:
     process.kill()
 
@@ -179,6 +185,7 @@ CASES: Final = (
     Case("integrator killed", "integrator", kill),
     Case("recogniser killed", "recognizer", kill),
     Case("page killed", "animator", kill),
+    Case("zygote killed, all with it", "zygote", kill),
     Case("decoder of viewer 1 killed", "decoder 1", kill),
     Case("viewer 1 frozen 2 s", "viewer 1", freeze),
     Case("viewer 2 frozen 2 s", "viewer 2", freeze),

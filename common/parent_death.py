@@ -16,20 +16,29 @@ ORPHANED: Final = 1
 """Exit code of who ends so; nobody is left to read it."""
 
 
-def end_with_parent() -> None:
+def end_with_parent(forked_by: int | None = None) -> None:
     """End at once when the process that started this one by multiprocessing dies, however it does.
 
     Linux kills it, also while it is stopped or holds the interpreter; elsewhere a thread sees the
     end of a pipe. In a process that nobody started so nothing happens.
+
+    Args:
+        forked_by: Number of the process that forked this one for that parent, and itself ends with
+            it; None: the parent did.
     """
     parent = multiprocessing.parent_process()
     if parent is None:
         return
     if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-        if os.getppid() != parent.pid:  # it died before that was asked for
-            os._exit(ORPHANED)
+        end_with(forked_by or parent.pid or 0)
     _end_after(parent.join)
+
+
+def end_with(starter: int) -> None:
+    """Let Linux kill this process when the one that started it, by its number, dies."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != starter:  # it died before that was asked for
+        os._exit(ORPHANED)
 
 
 def end_with_pipe(number: int) -> None:

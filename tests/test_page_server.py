@@ -2,6 +2,7 @@
 
 import http.client
 import json
+import logging
 import socket
 import time
 import urllib.error
@@ -15,7 +16,7 @@ import pytest
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
 import psutil
-from websockets.exceptions import InvalidStatus
+from websockets.exceptions import ConnectionClosedError, InvalidStatus
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
@@ -78,6 +79,41 @@ def test_a_closed_page_frees_its_port() -> None:
     port = free_port()
     for _ in range(2):
         PageServer(port, list).close()
+
+
+@pytest.mark.parametrize(
+    "said",
+    [b"", b"GET", b"\x16\x03\x01 no HTTP\r\n\r\n", b"POST /live HTTP/1.1\r\nHost: a\r\n\r\n"],
+    ids=["nothing", "half a word", "another protocol", "another method"],
+)
+def test_who_connects_and_asks_for_nothing_leaves_no_traceback(
+    server: PageServer, caplog: pytest.LogCaptureFixture, said: bytes
+) -> None:
+    """The supervisor does, to see whether the page answers; so does whoever scans ports."""
+    with caplog.at_level(logging.INFO):
+        with socket.create_connection(("127.0.0.1", int(server.address.rsplit(":", 1)[1]))) as peer:
+            peer.sendall(said)
+        time.sleep(0.1)
+        with urllib.request.urlopen(server.address) as answer:
+            assert answer.status == 200
+    assert [record.getMessage() for record in caplog.records if record.exc_info] == []
+
+
+def test_a_fault_of_the_pages_own_is_logged_with_its_traceback(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    def broken() -> list[bytes]:
+        raise ZeroDivisionError
+
+    one = PageServer(free_port(), broken)
+    try:
+        with connect(socket_of(one)) as browser, pytest.raises(ConnectionClosedError):
+            browser.recv(timeout=5.0)
+    finally:
+        one.close()
+    assert [record.exc_info[0] for record in caplog.records if record.exc_info] == [
+        ZeroDivisionError
+    ]
 
 
 def test_a_foreign_web_page_is_shown_nothing(server: PageServer) -> None:

@@ -1,9 +1,12 @@
 """Several rooms served as a user does: real processes, a file that changes, signals."""
 
 import os
+import pty
+import select
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -33,6 +36,10 @@ size = "{size}"
 page = {{ port = 0 }}
 bus = {{ endpoint = "auto" }}
 """
+ON_TERMINAL = (
+    "import os, sys; os.open(os.ttyname(0), os.O_RDWR); os.execv(sys.argv[1], sys.argv[1:])"
+)
+"""Who leads a session and opens a terminal is told when that is closed."""
 
 
 class Service:
@@ -49,9 +56,19 @@ class Service:
         new.rename(self.folder / "sites.toml")
 
     @contextmanager
-    def running(self) -> Iterator[psutil.Process]:
+    def running(self, terminal: int | None = None) -> Iterator[psutil.Process]:
+        """Alone in its session; on that terminal, if one is given."""
         command = [sys.executable, "-m", "tritrack", "serve", str(self.folder / "sites.toml")]
-        own = subprocess.Popen(command, cwd=ROOT)
+        own = subprocess.Popen(
+            command if terminal is None else [sys.executable, "-c", ON_TERMINAL, *command],
+            cwd=ROOT,
+            start_new_session=True,
+            stdin=terminal,
+            stdout=terminal,
+            stderr=terminal,
+        )
+        if terminal is not None:
+            os.close(terminal)
         try:
             yield psutil.Process(own.pid)
         finally:
@@ -165,3 +182,55 @@ def test_nothing_outlives_a_service_that_is_killed(service: Service) -> None:
         everybody = own.children(recursive=True)
         own.kill()
         assert psutil.wait_procs(everybody, timeout=5.0)[1] == []
+
+
+def test_a_closed_terminal_ends_all_sites_in_order(service: Service) -> None:
+    service.write(hall="160x120")
+    with terminal() as (theirs, close), service.running(theirs) as own:
+        service.until_well("hall")
+        service.until("hall to have measured something", lambda: service.frames("hall") > 10)
+        everybody = own.children(recursive=True)
+        close()
+        assert own.wait(SOON_S) == 0
+        assert psutil.wait_procs(everybody, timeout=2.0)[1] == [], "somebody was left behind"
+    assert (service.folder / "runs" / "hall" / "summary.json").is_file()
+    assert "Traceback" not in (service.folder / "runs" / "hall" / "log.txt").read_text()
+
+
+@contextmanager
+def terminal() -> Iterator[tuple[int, Callable[[], None]]]:
+    """A terminal that is looked at, and what closes it."""
+    ours, theirs = pty.openpty()
+    closing = threading.Event()
+
+    def look() -> None:
+        while not closing.is_set():
+            if select.select([ours], [], [], 0.1)[0]:
+                os.read(ours, 4096)
+        os.close(ours)
+
+    def close() -> None:
+        closing.set()
+        looking.join()
+
+    looking = threading.Thread(target=look)
+    looking.start()
+    try:
+        yield theirs, close
+    finally:
+        close()
+
+
+def test_sighup_to_all_processes_leaves_them_alone_where_no_terminal_was_closed(
+    service: Service,
+) -> None:
+    """As when a session ends that the service was started in by `nohup`."""
+    service.write(hall="160x120")
+    with service.running() as own:
+        service.until_well("hall")
+        before = service.all_of(own, "hall")
+        os.killpg(own.pid, signal.SIGHUP)
+        time.sleep(1.0)
+        assert service.pids_of(own, "hall") == before
+        own.send_signal(signal.SIGTERM)
+        assert own.wait(SOON_S) == 0

@@ -22,6 +22,10 @@ def sleeps() -> None:
     time.sleep(600.0)
 
 
+def ends() -> None:
+    """A part whose work is done."""
+
+
 def refuses(text: str) -> None:
     """A part that does not."""
     raise ClipError(text)
@@ -74,6 +78,18 @@ def test_what_dies_is_started_again_and_the_table_says_so(sleeper: Watched) -> N
     assert sleeper.running.process.is_alive()
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP])
+def test_what_a_terminal_says_to_all_is_for_the_supervisor_alone(
+    sleeper: Watched, number: signal.Signals
+) -> None:
+    """Ctrl-C, and that it was closed: who started the others ends them in order."""
+    pid = sleeper.running.process.pid
+    assert pid is not None
+    os.kill(pid, number)
+    time.sleep(0.3)
+    assert sleeper.running.process.is_alive()
+
+
 def test_each_further_start_waits_twice_as_long_and_then_it_is_given_up(
     sleeper: Watched,
 ) -> None:
@@ -121,6 +137,16 @@ def test_what_hangs_is_killed_but_not_by_a_supervisor_that_slept_itself(sleeper:
     assert now_s - 3700.0 == pytest.approx(5.0, abs=1.0)
     assert told == "viewer 2: it has said nothing for 5 s, hangs, and is killed"
     until(lambda: sleeper.running.process.exitcode == -signal.SIGKILL)
+
+
+def test_what_came_to_its_end_unheard_does_not_hang() -> None:
+    """Its last pulse is lost where the integrator is down as it ends."""
+    with watched(Part("viewer 2", ends, (), leads=True, beats=True)) as one:
+        pulses = beating("viewer 2")
+        one.look(100.0, pulses)
+        until(lambda: one.done)
+        told = {one.look(100.0 + 0.4 * number, pulses) for number in range(30)}
+    assert told == {""}
 
 
 def test_what_cannot_be_heard_is_not_killed_for_its_silence(sleeper: Watched) -> None:

@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.datastructures import Headers
-from websockets.exceptions import ConnectionClosed
+from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.http11 import Request, Response
 
 from animator.page.door import (
@@ -45,6 +45,13 @@ POLICY: Final = (
 """The browser itself keeps the page from asking anybody else."""
 
 log = logging.getLogger(__name__)
+
+
+def is_of_ours(record: logging.LogRecord) -> bool:
+    """Whether the library's log tells of more than a connection whose peer asked for nothing, or
+    for nonsense: anybody may open one, we look so ourselves whether the page answers."""
+    kind = record.exc_info[0] if record.exc_info else None
+    return kind is None or not issubclass(kind, InvalidHandshake | EOFError | OSError)
 
 
 class _Door(NamedTuple):
@@ -80,6 +87,8 @@ class PageServer:
         self._entrance, self._port = entrance, port
         self._browsers: dict[ServerConnection, asyncio.Queue[bytes]] = {}
         opened: queue.Queue[_Door | OSError] = queue.Queue(1)
+        self._log = logging.getLogger(f"{__name__}.socket")
+        self._log.addFilter(is_of_ours)
         self._thread = threading.Thread(
             target=lambda: asyncio.run(self._serve(opened)), daemon=True
         )
@@ -116,7 +125,7 @@ class PageServer:
                 max_size=MOST_SAID_BYTES,
                 compression=None,
                 server_header=None,
-                logger=logging.getLogger(f"{__name__}.socket"),
+                logger=self._log,
             )
         except OSError as error:
             opened.put(error)

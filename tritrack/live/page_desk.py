@@ -13,9 +13,10 @@ from common.bus.control_messages import Answer, Command, Wish
 from common.bus.inbox import Inbox
 from common.bus.process import ProcessContext
 from common.config import Settings
-from tritrack.live.process_table import SPAWN, Part, page_part
+from tritrack.live.process_table import Part, page_part
 from tritrack.live.recorded import MessageLog
 from tritrack.live.supervise import Watched
+from tritrack.live.zygote import SPAWN, Zygote
 from tritrack.store.runs import RunError, write_postures, write_run
 
 SAVED: Final = "saved"
@@ -31,8 +32,18 @@ Facts = Callable[[], dict[str, Any]]
 class PageDesk:
     """The run's side of its page; without a page all of it does nothing."""
 
-    def __init__(self, settings: Settings, out: Path, title: str, context: ProcessContext) -> None:
-        """Start the page's process at once: people shall not wait for what compiles."""
+    def __init__(
+        self,
+        settings: Settings,
+        out: Path,
+        title: str,
+        context: ProcessContext,
+        zygote: Zygote | None = None,
+    ) -> None:
+        """Start the page's process at once: people shall not wait for what compiles.
+
+        One in its place is forked of the zygote, if there is one.
+        """
         self.stopped = False
         """The run was ended at the page."""
         self.facts: Facts = dict
@@ -46,7 +57,8 @@ class PageDesk:
         self._entrance = entrance_of(settings.page)
         if settings.page.port:
             theirs, self._ending = SPAWN.Pipe(duplex=False)
-            self.watched = Watched(page_part(settings, context, title, theirs, self._entrance))
+            part = page_part(settings, context, title, theirs, self._entrance, zygote)
+            self.watched = Watched(part)
 
     @property
     def parts(self) -> list[Part]:

@@ -1,7 +1,6 @@
 """The processes of a live run: the table of them, how one is started, and how it is ended."""
 
 import logging
-import multiprocessing
 import os
 import signal
 from collections.abc import Callable, Iterator
@@ -17,11 +16,11 @@ from common.config import Settings
 from common.parent_death import end_with_parent
 from common.video.clip_facts import Clip
 from tritrack.faults import code_of, told
+from tritrack.live.zygote import SPAWN, Zygote, forked_by
 
-SPAWN: Final = multiprocessing.get_context("spawn")
-"""Never fork: Zenoh's threads are not inherited."""
 END_S: Final = 5.0
 """What most processes may take to close their doors."""
+OF_TERMINALS: Final = (signal.SIGINT, signal.SIGHUP)
 ONE_THREAD: Final = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
 
 
@@ -41,6 +40,8 @@ class Part(NamedTuple):
     """It starts processes of its own."""
     end_s: float = END_S
     """How long it may take to close its doors before it is killed."""
+    zygote: Zygote | None = None
+    """Of which it is forked, where that is warm."""
 
 
 class Running(NamedTuple):
@@ -52,7 +53,9 @@ class Running(NamedTuple):
     """On which it says why it fails."""
 
 
-def live_parts(settings: Settings, clip: Clip, context: ProcessContext) -> list[Part]:
+def live_parts(
+    settings: Settings, clip: Clip, context: ProcessContext, zygote: Zygote
+) -> list[Part]:
     """The table of a live run: who listens comes before who speaks (P2)."""
     period_s = clip.every / clip.views[0].fps
     parts = [
@@ -66,7 +69,7 @@ def live_parts(settings: Settings, clip: Clip, context: ProcessContext) -> list[
         seen_by = (settings, view.number, context)
         name = f"viewer {view.number}"
         parts.append(Part(name, viewer_main, seen_by, leads=True, beats=True))
-    return parts
+    return [part._replace(zygote=zygote) for part in parts]
 
 
 def names_of(clip: Clip) -> tuple[str, ...]:
@@ -80,9 +83,11 @@ def page_part(
     title: str,
     ending: Connection,
     entrance: Entrance,
+    zygote: Zygote | None = None,
 ) -> Part:
     """The process of the live page: started first, and the last to end."""
-    return Part("animator", animator_main, (settings, context, title, ending, entrance))
+    arguments = (settings, context, title, ending, entrance)
+    return Part("animator", animator_main, arguments, zygote=zygote)
 
 
 def integrator_main(*arguments: Any) -> None:
@@ -122,11 +127,15 @@ def viewer_main(*arguments: Any) -> None:
 
 def started(part: Part) -> Running:
     """A part's process, begun."""
-    ours, theirs = SPAWN.Pipe(duplex=False)
-    process = SPAWN.Process(
-        name=part.name, target=_guarded, args=(part, theirs), daemon=not part.nests
+    context = part.zygote.context if part.zygote else SPAWN
+    ours, theirs = context.Pipe(duplex=False)
+    process = context.Process(
+        name=part.name,
+        target=_guarded,
+        args=(part.name, part.main, part.arguments, theirs),
+        daemon=not part.nests,
     )
-    with _inherited():
+    with inherited():
         process.start()
     theirs.close()
     return Running(part, process, ours)
@@ -154,30 +163,32 @@ def last_words(one: Running) -> str:
 
 
 @contextmanager
-def _inherited() -> Iterator[None]:
-    """What a process takes over from its supervisor: one thread a library, and deaf to Ctrl-C.
+def inherited() -> Iterator[None]:
+    """What a process takes over from its supervisor: one thread a library, deaf to its terminal.
 
-    A terminal sends Ctrl-C to all processes; only the supervisor, who ends the others in order,
-    shall hear it, also while they are still importing.
+    A terminal sends Ctrl-C, and word of its own end, to all processes; only the supervisor, who
+    ends the others in order, shall hear that, also while they are still importing.
     """
     resource_tracker.ensure_running()  # its own start would lift the block again
     before = dict(os.environ)
     os.environ.update(ONE_THREAD)
-    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    signal.pthread_sigmask(signal.SIG_BLOCK, OF_TERMINALS)
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, OF_TERMINALS)
         os.environ.clear()
         os.environ.update(before)
 
 
-def _guarded(part: Part, words: Connection) -> None:
+def _guarded(
+    name: str, main: Callable[..., None], arguments: tuple[Any, ...], words: Connection
+) -> None:
     """Run a part; what it cannot do is said in one line, not in a traceback."""
-    end_with_parent()
+    end_with_parent(forked_by())
     try:
-        part.main(*part.arguments)
+        main(*arguments)
     except Exception as error:
-        logging.getLogger(part.name).debug("failed", exc_info=error)
+        logging.getLogger(name).debug("failed", exc_info=error)
         words.send(told(error))
         raise SystemExit(code_of(error)) from None

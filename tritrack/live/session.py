@@ -21,9 +21,10 @@ from common.video.clip_facts import Clip, both_cameras
 from tritrack.live.free_ports import own_session, refuse_held_ports, with_free_endpoint
 from tritrack.live.launch import Heard, nothing_heard, run
 from tritrack.live.page_desk import SAVED, PageDesk
-from tritrack.live.process_table import live_parts
+from tritrack.live.process_table import inherited, live_parts
 from tritrack.live.run_facts import facts_of, facts_of_clip
 from tritrack.live.screen import Screen
+from tritrack.live.zygote import Zygote
 from tritrack.store.journal import Head as JournalHead
 from tritrack.store.journal import Journal, put_aside
 from tritrack.store.recording import Keep, refuse_without_library
@@ -50,6 +51,8 @@ def live(
 ) -> dict[str, Any]:
     """Run the processes on a clip or on cameras until it ends or Ctrl-C; write the run folder.
 
+    SIGTERM ends it too, and SIGHUP, which a terminal says that is closed.
+
     Args:
         settings: Of the run.
         out: The run folder; nothing is written elsewhere.
@@ -71,10 +74,11 @@ def live(
     new = not out.exists()
     began, heard = time.monotonic(), nothing_heard()
     title = name or Path(settings.clip).name or "tritrack"
-    with _stopped_by_signals() as stop, ExitStack() as doors:
+    with _stopped_by_signals(console) as stop, ExitStack() as doors:
         log = _new_log(out)
         context = ProcessContext(True, log)
-        desk = PageDesk(settings, out, title, context)
+        zygote = Zygote(inherited)
+        desk = PageDesk(settings, out, title, context, zygote)
         doors.callback(desk.close)
         clip = _opened_or_nothing(settings, name, out, new=new)
         screen = Screen(clip, settings, console, lambda: desk.address)
@@ -87,7 +91,7 @@ def live(
         heard = heard._replace(journal=journal)
         try:
             with TemporaryDirectory(prefix=KEPT, dir=out) as kept:
-                parts = live_parts(settings, clip, context._replace(kept=Path(kept)))
+                parts = live_parts(settings, clip, context._replace(kept=Path(kept)), zygote)
                 names = [part.name for part in (*parts, *desk.parts)]
                 with (
                     screen.shown(names) as show,
@@ -100,7 +104,9 @@ def live(
                         if tell(heard):
                             stop.set()
 
-                    run(parts, settings, stop, look, heard._replace(keep=keep), desk)
+                    heard = heard._replace(keep=keep)
+                    zygote.wait(stop, lambda: look(heard))
+                    run(parts, settings, stop, look, heard, desk)
         finally:
             told = facts()
             write_run(out, heard.bodies.all(), settings, told)
@@ -225,13 +231,17 @@ def _new_log(out: Path) -> Path:
 
 
 @contextmanager
-def _stopped_by_signals() -> Iterator[threading.Event]:
+def _stopped_by_signals(console: Console) -> Iterator[threading.Event]:
     stop = threading.Event()
 
-    def end(_number: int, _frame: FrameType | None) -> None:
+    def end(number: int, _frame: FrameType | None) -> None:
+        console.quiet |= number == signal.SIGHUP  # each word to a closed terminal would fail
         stop.set()
 
-    before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
+    heeded = [signal.SIGINT, signal.SIGTERM]
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as under nohup
+        heeded.append(signal.SIGHUP)
+    before = {number: signal.signal(number, end) for number in heeded}
     try:
         yield stop
     finally:

@@ -78,7 +78,7 @@ class Watched:
         """
         since_s = min(now_s - self._looked_s, LOOK_AT_MOST_S)
         self._looked_s = now_s
-        if self.given_up:
+        if self.given_up or self.done:
             return ""
         if self._again_s is not None:
             if now_s >= self._again_s:

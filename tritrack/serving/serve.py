@@ -62,6 +62,8 @@ class SitesWatch:
 def serve(path: Path, console: Console) -> None:
     """Serve the sites of a file until SIGINT or SIGTERM; SIGHUP reads it anew.
 
+    A terminal that is closed says SIGHUP too: where the console was shown on one, that ends it.
+
     Args:
         path: Of the file.
         console: Shows a table of the sites, and what happens.
@@ -72,7 +74,7 @@ def serve(path: Path, console: Console) -> None:
     file = SitesWatch(path)
     _refuse_what_is_held(file.sites)
     with (
-        _signals() as (stop, anew),
+        _signals(console) as (stop, anew),
         LiveDisplay(console=console, transient=True) as display,
         House(lambda told: say(console, told), lambda told: warn(console, told)) as house,
         _answers(file.sites, house),
@@ -117,12 +119,15 @@ def _answers(sites: Sites, house: House) -> AbstractContextManager[None]:
 
 
 @contextmanager
-def _signals() -> Iterator[tuple[threading.Event, threading.Event]]:
-    """Set by SIGINT and SIGTERM, and by SIGHUP."""
+def _signals(console: Console) -> Iterator[tuple[threading.Event, threading.Event]]:
+    """Set by SIGINT, SIGTERM and the end of the console's terminal, and by any other SIGHUP."""
     stop, anew = threading.Event(), threading.Event()
+    attended = console.is_terminal
 
     def heed(number: int, _frame: FrameType | None) -> None:
-        (anew if number == signal.SIGHUP else stop).set()
+        closed = attended and not console.file.isatty()
+        console.quiet |= closed  # each word to it would fail
+        (anew if number == signal.SIGHUP and not closed else stop).set()
 
     heeded = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
     before = {number: signal.signal(number, heed) for number in heeded}

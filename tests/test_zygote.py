@@ -1,0 +1,152 @@
+"""Parts forked of a process that has imported everything: real processes, no bus."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import psutil
+import pytest
+from test_parent_death import SOON_S, ended_within, sleeps, written
+
+from tritrack.live.process_table import Part, end, inherited, started
+from tritrack.live.supervise import PartFailed, watched
+from tritrack.live.zygote import SPAWN, Zygote
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(sys.platform != "linux", reason="parts are forked on Linux alone"),
+]
+
+PARENT = """
+import sys, threading, time
+from test_parent_death import sleeps
+from tritrack.live.process_table import Part, inherited, started
+from tritrack.live.zygote import Zygote
+if __name__ == "__main__":
+    zygote = Zygote(inherited)
+    zygote.wait(threading.Event(), lambda: None)
+    child = started(Part("viewer 1", sleeps, (sys.argv[1],), zygote=zygote))
+    time.sleep(600)
+"""
+
+
+@pytest.fixture(scope="module")
+def zygote() -> Zygote:
+    one = Zygote(inherited)
+    one.wait(threading.Event(), lambda: None)
+    assert one.context is not SPAWN
+    return one
+
+
+def says_what_it_has(path: str) -> None:
+    modules = {"cv2", "zenoh", "viewer.track", "integrator.merge", "recognizer.spotting"}
+    threads = len(os.listdir("/proc/self/task"))
+    Path(path).write_text(f"all {modules <= set(sys.modules)}, {threads} threads")
+    sleeps(f"{path}.pid")
+
+
+def fails() -> None:
+    raise ValueError("no camera")
+
+
+def test_a_part_has_all_modules_as_it_begins_and_no_threads_but_the_one_that_ends_it(
+    zygote: Zygote, tmp_path: Path
+) -> None:
+    """Libraries' threads would be lacking in it, and what waits for them would wait for ever."""
+    one = started(Part("viewer 1", says_what_it_has, (str(tmp_path / "said"),), zygote=zygote))
+    try:
+        assert written(tmp_path / "said.pid") == one.process.pid
+        assert (tmp_path / "said").read_text() == "all True, 2 threads"
+    finally:
+        end(one)
+    assert one.process.exitcode == -signal.SIGTERM
+
+
+def test_a_part_is_deaf_to_what_a_terminal_says_to_all(zygote: Zygote, tmp_path: Path) -> None:
+    one = started(Part("viewer 1", sleeps, (str(tmp_path / "pid"),), zygote=zygote))
+    try:
+        pid = written(tmp_path / "pid")
+        for number in (signal.SIGINT, signal.SIGHUP):
+            os.kill(psutil.Process(pid).ppid(), number)
+            os.kill(pid, number)
+        assert not ended_within(pid, 0.5)
+    finally:
+        end(one)
+
+
+def test_why_a_part_fails_and_how_it_was_killed_is_known_as_of_any_other(
+    zygote: Zygote, tmp_path: Path
+) -> None:
+    with watched(Part("viewer 1", fails, (), zygote=zygote)) as one:
+        one.running.process.join()
+        with pytest.raises(PartFailed, match=r"viewer 1: .*no camera"):
+            one.refuse_failure()
+    with watched(Part("viewer 1", sleeps, (str(tmp_path / "pid"),), zygote=zygote)) as one:
+        os.kill(written(tmp_path / "pid"), signal.SIGKILL)
+        one.running.process.join()
+        assert one.running.process.exitcode == -signal.SIGKILL
+
+
+def test_forks_end_with_their_zygote_and_the_next_has_another(
+    zygote: Zygote, tmp_path: Path
+) -> None:
+    one = started(Part("viewer 1", sleeps, (str(tmp_path / "first"),), zygote=zygote))
+    first = written(tmp_path / "first")
+    before = psutil.Process(first).ppid()
+    os.kill(before, signal.SIGKILL)
+    assert ended_within(first, SOON_S)
+    one.process.join(SOON_S)
+    assert one.process.exitcode
+    another = started(Part("viewer 1", sleeps, (str(tmp_path / "then"),), zygote=zygote))
+    try:
+        assert psutil.Process(written(tmp_path / "then")).ppid() not in (before, os.getpid())
+    finally:
+        end(another)
+
+
+@pytest.mark.parametrize("stopped", [False, True], ids=["works", "is stopped"])
+def test_zygote_and_forks_end_when_their_supervisor_is_killed(
+    tmp_path: Path, stopped: bool
+) -> None:
+    script = tmp_path / "parent.py"
+    script.write_text(PARENT)
+    path = os.pathsep.join((str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")))
+    parent = subprocess.Popen(
+        [sys.executable, str(script), str(tmp_path / "pid")], env={**os.environ, "PYTHONPATH": path}
+    )
+    pid = written(tmp_path / "pid")
+    own = psutil.Process(pid).ppid()
+    assert own != parent.pid
+    if stopped:
+        os.kill(pid, signal.SIGSTOP)
+    parent.kill()
+    parent.wait()
+    assert ended_within(pid, SOON_S)
+    assert ended_within(own, SOON_S)
+
+
+def test_a_run_that_is_stopped_does_not_wait_for_it() -> None:
+    code = (
+        "import threading, time; from tritrack.live.process_table import inherited; "
+        "from tritrack.live.zygote import Zygote; stop = threading.Event(); stop.set(); "
+        "began = time.monotonic(); Zygote(inherited).wait(stop, print); "
+        "assert time.monotonic() - began < 0.5"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False, timeout=20).returncode == 0
+
+
+def test_a_file_of_the_working_directory_is_not_taken_for_a_library(tmp_path: Path) -> None:
+    (tmp_path / "numpy.py").write_text("raise SystemExit('a stranger')")
+    code = (
+        "import sys; sys.path = [path for path in sys.path if path]\n"
+        "import threading; from tritrack.live.process_table import inherited\n"
+        "from tritrack.live.zygote import SPAWN, Zygote\n"
+        "if __name__ == '__main__':\n"
+        "    one = Zygote(inherited); one.wait(threading.Event(), lambda: None)\n"
+        "    assert one.context is not SPAWN\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], check=False, cwd=tmp_path, timeout=120)
+    assert done.returncode == 0
