@@ -23,6 +23,7 @@ from tritrack.live.process_table import Part
 from tritrack.live.session import live
 from tritrack.live.supervise import PartFailed
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.store.joint_arrays import on_disk
 from tritrack.store.runs import poses
 
 QUIET = Console(quiet=True)
@@ -81,7 +82,7 @@ def test_a_live_run_equals_an_offline_one(slow_clip: Path, lived: Lived) -> None
     out, facts = lived
     assert [facts["processes"][f"viewer {n}"]["guide_misses"] for n in (1, 2)] == [0, 0]
     with Decoders() as decoders:
-        offline = poses(track_clip(Settings(clip=str(slow_clip)), decoders).bodies)
+        offline = on_disk(poses(track_clip(Settings(clip=str(slow_clip)), decoders).bodies))
     with np.load(out / "poses.npz") as found:
         for name, values in offline.items():
             np.testing.assert_array_equal(found[name], values, err_msg=name)
@@ -99,7 +100,7 @@ def test_a_live_run_with_keys_gives_the_same_bodies(slow_clip: Path, tmp_path: P
     for name, told in facts["processes"].items():
         assert (name, told["frames"], told["dropped"]) == (name, 69, 0)
     with Decoders() as decoders:
-        offline = poses(track_clip(Settings(clip=str(slow_clip)), decoders).bodies)
+        offline = on_disk(poses(track_clip(Settings(clip=str(slow_clip)), decoders).bodies))
     with np.load(tmp_path / "out" / "poses.npz") as found:
         for name, values in offline.items():
             np.testing.assert_array_equal(found[name], values, err_msg=name)
@@ -117,7 +118,8 @@ def test_a_live_run_with_one_viewer_equals_tracking_one_view(
     facts = live(settings_of(folder), tmp_path / "out", QUIET)
     assert facts["processes"][f"viewer {view}"]["guide_misses"] == 0
     with Decoders() as decoders:
-        offline = poses(track_clip(Settings(clip=str(slow_clip)), decoders, (view,)).bodies)
+        done = track_clip(Settings(clip=str(slow_clip)), decoders, (view,))
+        offline = on_disk(poses(done.bodies))
     assert "orientation" in offline
     with np.load(tmp_path / "out" / "poses.npz") as found:
         for name, values in offline.items():
