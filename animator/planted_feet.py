@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from animator.bones import Joints, Skeleton
 from animator.foot_contact import SIDES, Stance, stances
+from animator.nearest_rows import nearest
 from animator.turns import axes_of
 from common.body.body import Vector
 from common.body.extremities import ALL_JOINT_NAMES
@@ -150,17 +151,15 @@ def _weights(own: list[Stance], time_s: Vector) -> Vector:
 
 def _shifts(places_m: Floats, own: list[Stance], weights: Vector) -> Floats:
     """By how much a point of a foot is moved, (n, 3)."""
-    rows = np.arange(len(places_m))
-    inside, shifts = np.zeros(len(rows), np.bool_), np.zeros_like(places_m)
+    stands, shifts = np.zeros(len(places_m), np.bool_), np.zeros_like(places_m)
     for stance in own:
         part = slice(stance.first, stance.end)
-        inside[part] = True
+        stands[part] = True
         shifts[part] = _bounded(np.median(places_m[part], axis=0) - places_m[part], FARTHEST_M)
     if not own:
         return shifts
-    edges = np.flatnonzero(inside)
-    nearest = edges[np.abs(rows[:, None] - edges).argmin(axis=1)]
-    return np.asarray(weights[:, None] * shifts[nearest])
+    rows = nearest(np.arange(len(places_m)), np.flatnonzero(stands))
+    return np.asarray(weights[:, None] * shifts[rows])
 
 
 def _bounded(shifts: Floats, most_m: float) -> Floats:

@@ -6,6 +6,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from animator.nearest_rows import nearest
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
 from common.notes.notes import Depth, Held, Notes, held
 
@@ -91,10 +92,7 @@ def _nearest_posed(poses: Mapping[str, Any]) -> NDArray[np.int64]:
     posed = np.flatnonzero(np.isfinite(poses["joints_m"]).all(axis=(1, 2)))
     lost = rows[np.array(poses.get("status", [""] * len(rows))) == "lost"]
     if len(posed):
-        next_one = np.searchsorted(posed, lost)
-        before = posed[(next_one - 1).clip(min=0)]
-        after = posed[next_one.clip(max=len(posed) - 1)]
-        rows[lost] = np.where(np.abs(lost - before) <= np.abs(after - lost), before, after)
+        rows[lost] = nearest(lost, posed)
     return rows
 
 
