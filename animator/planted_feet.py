@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from animator.bones import Joints, Skeleton
 from animator.foot_contact import SIDES, Stance, stances
-from animator.nearest_rows import nearest
 from animator.turns import axes_of
 from common.body.body import Vector
 from common.body.extremities import ALL_JOINT_NAMES
+from common.nearest_rows import nearest
 
 Floats = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.nearest_rows import nearest
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
+from common.nearest_rows import nearest
 from common.notes.notes import Depth, Held, Notes, held
 
 CONFIDENT: Final = 0.7

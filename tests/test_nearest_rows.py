@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from animator.nearest_rows import nearest
+from common.nearest_rows import nearest
 
 ROWS = st.sets(st.integers(0, 60), min_size=1)
 
