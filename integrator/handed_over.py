@@ -1,4 +1,4 @@
-"""What an integrator leaves to the one that is started in its place: body, rig and count."""
+"""What an integrator leaves to the next in its place: body, rig, count, and who has ended."""
 
 import logging
 from pathlib import Path
@@ -8,6 +8,7 @@ import msgspec
 
 from common.atomic_file import replacing
 from common.body.body import Bdp
+from common.bus.control_messages import Ended
 from common.bus.messages import ScaleSource
 from common.rig.camera import Rig
 from common.rig.picture_shift import Shift
@@ -37,10 +38,12 @@ class HandedOver(msgspec.Struct, frozen=True):
     """The last number that an instant had."""
     shifts: tuple[Shift, Shift] = (AS_IT_WAS, AS_IT_WAS)
     """How the cameras stood when the rig was told."""
+    over: tuple[Ended, ...] = ()
+    """What viewers said that ended: they do not say it twice."""
 
 
-def handed_over(state: State, late_s: float = 0.0) -> HandedOver:
-    """What of a state is handed over, and by how much view 2 is late."""
+def handed_over(state: State, late_s: float = 0.0, over: tuple[Ended, ...] = ()) -> HandedOver:
+    """What of a state is handed over, by how much view 2 is late, and which views are over."""
     known = state.opening
     return HandedOver(
         known.bdp,
@@ -52,6 +55,7 @@ def handed_over(state: State, late_s: float = 0.0) -> HandedOver:
         late_s,
         state.numbered,
         state.stands.of_rig,
+        over,
     )
 
 
@@ -77,6 +81,8 @@ class Estate:
         self._left: HandedOver | None = None
         self.late_s = 0.0
         """By how much the times of view 2 were set back."""
+        self.over: tuple[Ended, ...] = ()
+        """What viewers had said that ended."""
         self._next_s = 0.0
 
     def taken_up(self, state: State) -> State:
@@ -88,14 +94,16 @@ class Estate:
         except (OSError, msgspec.DecodeError) as error:
             log.warning("what was handed over cannot be read (%s): the body is found anew", error)
             return state
-        self.late_s = given.late_s
+        self.late_s, self.over = given.late_s, given.over
         return resumed(state, given)
 
-    def leave(self, state: State, late_s: float, now_s: float) -> None:
+    def leave(
+        self, state: State, late_s: float, now_s: float, over: tuple[Ended, ...] = ()
+    ) -> None:
         """Leave what has changed, once a second at most, but for the count: time tells that too."""
         if self._path is None or now_s < self._next_s:
             return
-        own, self._next_s = handed_over(state, late_s), now_s + LEAVE_S
+        own, self._next_s = handed_over(state, late_s, over), now_s + LEAVE_S
         if self._is_known(own):
             return
         try:

@@ -5,6 +5,7 @@ from pathlib import Path
 import msgspec
 
 from common.body.proportions import thesis_bdp
+from common.bus.control_messages import Ended
 from common.config import Settings
 from common.method import METHODS
 from common.rig.camera import paper_rig
@@ -26,6 +27,15 @@ def test_a_successor_knows_body_rig_and_count_and_begins_its_poses_anew(tmp_path
     assert (taken.opening, taken.rig, taken.numbered) == (KNOWN.opening, RIG, 70)
     assert (taken.calibration, estate.late_s) == (2, 0.1)
     assert (taken.found, taken.doubted) == (None, 0)
+
+
+def test_a_successor_knows_who_has_ended(tmp_path: Path) -> None:
+    """They do not say it again, and would be waited for in vain."""
+    over = (Ended(viewer=2, frames=330),)
+    Estate(tmp_path).leave(KNOWN, 0.0, 9.0, over)
+    estate = Estate(tmp_path)
+    estate.taken_up(FRESH)
+    assert estate.over == over
 
 
 def test_nothing_is_left_before_anything_is_known_and_nothing_twice(tmp_path: Path) -> None:

@@ -33,9 +33,14 @@ class Subscriber:
     """What the viewers say, in pairs of one instant, and who of them is there."""
 
     def __init__(
-        self, bus: Bus, viewers: tuple[ViewerNumber, ...], period_s: float, wait_s: float
+        self,
+        bus: Bus,
+        viewers: tuple[ViewerNumber, ...],
+        period_s: float,
+        wait_s: float,
+        over: tuple[Ended, ...] = (),
     ) -> None:
-        """Listen from now on."""
+        """Listen from now on; some viewers have ended before."""
         self.starter = Starter(frozenset(viewers), wait_s)
         self._commands = bus.subscribe(Command)
         self._numbers = {f"viewer {number}": number for number in viewers}
@@ -49,6 +54,10 @@ class Subscriber:
         self._looked_s = self._round_s = time.monotonic()
         self._judges_s = 0.0
         """From then on it is asked who is late or silent."""
+        self.over: tuple[Ended, ...] = ()
+        """What viewers said that have ended."""
+        for said in over:
+            self._end(said, self._looked_s)
         bus.answer(ClockQuestion, self.starter.answer)
 
     @property
@@ -120,13 +129,19 @@ class Subscriber:
             number = self._numbers.get(alive.name)
             if number is not None and alive.alive:
                 self._present = presence.came(self._present, number, now_s)
+                self.over = tuple(said for said in self.over if said.viewer != number)
                 self._paired = pairing.begin(self._paired, number)
             elif number is not None:
                 self._present = presence.went(self._present, number, now_s)
                 self._paired, more = pairing.away(self._paired, number)
                 released += more
-        for over in self._ended.drain():
-            self._present = presence.ended(self._present, over, now_s)
-            self._paired, more = pairing.end(self._paired, over.viewer)
-            released += more
+        for said in self._ended.drain():
+            released += self._end(said, now_s)
+        return released
+
+    def _end(self, said: Ended, now_s: float) -> list[Pair]:
+        """A viewer has said its last; what waited for it is released."""
+        self._present = presence.ended(self._present, said, now_s)
+        self.over = (*self.over, said)
+        self._paired, released = pairing.end(self._paired, said.viewer)
         return released
