@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("cryptography", reason="keys are an extra: install tritrack[keys]")
 
-from tritrack.doctor import Finding
+from tritrack.doctor.installation import Finding
 from tritrack.keys.authority import make_keys
 from tritrack.keys.key_check import examine_keys
 

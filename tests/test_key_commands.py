@@ -18,7 +18,7 @@ from tritrack.keys.authority import make_keys
 @pytest.fixture
 def only_keys(monkeypatch: pytest.MonkeyPatch) -> None:
     """The doctor looks at nothing else."""
-    monkeypatch.setattr(importlib.import_module("tritrack.doctor"), "examine", list)
+    monkeypatch.setattr(importlib.import_module("tritrack.doctor.installation"), "examine", list)
 
 
 def code_of(monkeypatch: pytest.MonkeyPatch, *words: str | Path) -> int:

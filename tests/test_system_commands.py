@@ -167,7 +167,7 @@ def test_a_fault_of_the_program_is_one_line_that_names_its_traceback(
     def broken() -> object:
         return empty[1]
 
-    monkeypatch.setattr(importlib.import_module("tritrack.doctor"), "examine", broken)
+    monkeypatch.setattr(importlib.import_module("tritrack.doctor.installation"), "examine", broken)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     said = tritrack("doctor")
     (kept,) = tmp_path.iterdir()
@@ -183,7 +183,9 @@ def test_ctrl_c_in_the_middle_is_one_line(
     def interrupted() -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(importlib.import_module("tritrack.doctor"), "examine", interrupted)
+    monkeypatch.setattr(
+        importlib.import_module("tritrack.doctor.installation"), "examine", interrupted
+    )
     said = tritrack("doctor")
     assert (said.code, said.errors) == (130, ["error: stopped before it was done"])
 

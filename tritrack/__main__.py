@@ -32,6 +32,7 @@ from tritrack.commands.live_commands import (
     view,
 )
 from tritrack.commands.model_commands import evaluate_app, teach, train
+from tritrack.commands.options import Out
 from tritrack.commands.rig_commands import calibrate_app
 from tritrack.faults import code_of, told
 from tritrack.terminal import complain, json_text
@@ -72,18 +73,31 @@ def every_command(
 
 
 def doctor(
+    settings_file: Annotated[
+        Path | None,
+        typer.Argument(help="Settings or a clip folder: is all there that a live run needs?"),
+    ] = None,
+    out: Out = Path("runs/live"),
     keys_folder: Annotated[
         Path | None, typer.Option("--keys", help="Look at the keys in this folder too.")
     ] = None,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Check the installation and name what is missing.
+    """Check the installation, and what a live run needs: ports, cameras, disk, clock, keys.
 
-    Example: tritrack doctor
+    Example: tritrack doctor configs/cameras.toml
     """
-    from tritrack.doctor import examine, table_of
+    from tritrack.doctor.installation import examine, table_of
 
-    findings = [*examine(), *([] if keys_folder is None else examined_keys(keys_folder))]
+    findings = examine()
+    if settings_file is not None:
+        from common import config
+        from tritrack.doctor.run_needs import examine_run
+
+        settings = config.load(settings_file)
+        findings += examine_run(settings, out)
+        keys_folder = keys_folder or (Path(settings.bus.keys) if settings.bus.keys else None)
+    findings += [] if keys_folder is None else examined_keys(keys_folder)
     if json_wanted:
         print(json_text([finding._asdict() for finding in findings]))
     else:

@@ -7,7 +7,7 @@ import typer
 
 from common.bus.bus_keys import KeysError
 from tritrack.commands.command_output import JsonWanted, tell
-from tritrack.doctor import Finding
+from tritrack.doctor.installation import Finding
 
 INSTALL: Final = "pip install 'tritrack[keys]'"
 

@@ -9,7 +9,7 @@ from cryptography.exceptions import InvalidSignature
 from cryptography.hazmat.primitives.serialization import load_pem_private_key
 
 from common.bus.bus_keys import AUTHORITY, HUB, PARTS, Part, pair_of
-from tritrack.doctor import Finding
+from tritrack.doctor.installation import Finding
 
 SOON: Final = timedelta(days=14)
 ANEW: Final = "make all keys anew (tritrack keys FOLDER --force) and copy them to every host"

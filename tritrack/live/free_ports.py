@@ -33,17 +33,8 @@ def refuse_held_ports(settings: Settings) -> None:
         for part in PARTS:
             if part != "client":
                 refuse_missing(Path(settings.bus.keys), part)
-    _refuse_endpoint(settings.bus.endpoint)
-    if settings.page.port:
-        try:
-            import websockets  # noqa: F401
-
-            from animator.page.door import refuse_port
-        except ImportError as error:
-            raise PortHeld(
-                f"the page needs {error.name}: pip install 'tritrack[page]', or set page.port = 0"
-            ) from error
-        refuse_port(settings.page.port, settings.page.host)
+    refuse_held_endpoint(settings)
+    refuse_held_page(settings)
     refuse_held_metrics(settings.metrics)
 
 
@@ -83,8 +74,13 @@ def ports(settings: Settings) -> list[int]:
     return [*found, *([address_of(settings.metrics)[1]] if settings.metrics else [])]
 
 
-def _refuse_endpoint(endpoint: str) -> None:
-    """What is no TCP endpoint is left to who opens it."""
+def refuse_held_endpoint(settings: Settings) -> None:
+    """Say that the bus could not be opened; what is no TCP endpoint is left to who opens it.
+
+    Raises:
+        PortHeld: When the endpoint is held.
+    """
+    endpoint = settings.bus.endpoint
     where = TCP.fullmatch(endpoint)
     if where is None:
         return
@@ -96,8 +92,28 @@ def _refuse_endpoint(endpoint: str) -> None:
         )
 
 
+def refuse_held_page(settings: Settings) -> None:
+    """Say that the page could not be opened; a run without one needs nothing.
+
+    Raises:
+        PortHeld: When a library lacks.
+        PageError: When the port is held.
+    """
+    if not settings.page.port:
+        return
+    try:
+        import websockets  # noqa: F401
+
+        from animator.page.door import refuse_port
+    except ImportError as error:
+        raise PortHeld(
+            f"the page needs {error.name}: pip install 'tritrack[page]', or set page.port = 0"
+        ) from error
+    refuse_port(settings.page.port, settings.page.host)
+
+
 def refuse_held_metrics(address: str) -> None:
-    """Say before anything starts that metrics could not be served there; nowhere when empty.
+    """Say that metrics could not be served there; nowhere when empty.
 
     Raises:
         PortHeld: When the address is held, or a library lacks.

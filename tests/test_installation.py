@@ -11,8 +11,8 @@ from fake_mediapipe import install_fake
 from rich.console import Console
 
 import tritrack.__main__ as door
-from tritrack import doctor
-from tritrack.doctor import Finding, examine, table_of
+from tritrack.doctor import installation as doctor
+from tritrack.doctor.installation import Finding, examine, table_of
 
 
 @pytest.fixture(scope="module")
@@ -101,6 +101,6 @@ def test_the_exit_code_says_whether_tritrack_works(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     stub: Callable[[], list[Finding]] = lambda: findings  # noqa: E731
-    monkeypatch.setattr(importlib.import_module("tritrack.doctor"), "examine", stub)
+    monkeypatch.setattr(importlib.import_module("tritrack.doctor.installation"), "examine", stub)
     assert door.app(["doctor", "--json"], standalone_mode=False) == code
     assert [one["what"] for one in json.loads(capsys.readouterr().out)] == [findings[0].what]

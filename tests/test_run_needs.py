@@ -1,0 +1,81 @@
+"""What a live run needs, looked over: each planted fault is found by name."""
+
+import shutil
+import socket
+import time
+from pathlib import Path
+
+import pytest
+
+from common.config import BusSettings, CameraSettings, PageSettings, Settings
+from tritrack.doctor.installation import Finding
+from tritrack.doctor.run_needs import examine_run
+from tritrack.live.free_ports import free_settings
+
+
+def found(settings: Settings, out: Path) -> dict[str, Finding]:
+    return {finding.what: finding for finding in examine_run(settings, out)}
+
+
+def faults(settings: Settings, out: Path) -> set[str]:
+    return {what for what, finding in found(settings, out).items() if not finding.ok}
+
+
+@pytest.fixture
+def sound(tmp_path: Path) -> Settings:
+    """Of two films that open."""
+    import cv2
+    import numpy as np
+
+    for number in (1, 2):
+        kind = cv2.VideoWriter.fourcc(*"MJPG")
+        film = cv2.VideoWriter(str(tmp_path / f"cam{number}.avi"), kind, 15, (64, 48))
+        for _ in range(3):
+            film.write(np.zeros((48, 64, 3), np.uint8))
+        film.release()
+    return free_settings(Settings(clip=str(tmp_path)))
+
+
+def test_a_run_that_lacks_nothing_is_found_sound(sound: Settings, tmp_path: Path) -> None:
+    assert faults(sound, tmp_path / "runs" / "live") == set()
+    assert found(sound, tmp_path)["pictures"].detail.startswith("view 1: 64x48, 15 a second, view")
+
+
+def test_a_port_that_is_taken_is_named(sound: Settings, tmp_path: Path) -> None:
+    with socket.socket() as holder:
+        holder.bind(("127.0.0.1", 0))
+        holder.listen()
+        port = holder.getsockname()[1]
+        bus = BusSettings(endpoint=f"tcp/127.0.0.1:{port}")
+        held = Settings(clip=sound.clip, bus=bus, page=PageSettings(port=port))
+        seen = found(held, tmp_path)
+    assert {what for what, one in seen.items() if not one.ok} == {
+        "port of the bus",
+        "port of the page",
+    }
+    assert f"127.0.0.1:{port}" in seen["port of the bus"].detail
+    assert "set another [bus] endpoint" in seen["port of the bus"].cure
+
+
+def test_a_camera_that_is_missing_is_named(sound: Settings, tmp_path: Path) -> None:
+    (tmp_path / "cam2.avi").unlink()
+    gone = CameraSettings(source=str(tmp_path / "cam2.avi"))
+    nowhere = Settings(clip=sound.clip, bus=sound.bus, page=sound.page, camera_2=gone)
+    seen = found(nowhere, tmp_path)
+    assert not seen["pictures"].ok
+    assert "cam2.avi" in seen["pictures"].detail
+
+
+def test_a_disk_that_is_full_is_named(
+    sound: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    usage = shutil.disk_usage(tmp_path)._replace(free=10_000_000)
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: usage)
+    assert faults(sound, tmp_path) == {"disk"}
+
+
+def test_a_clock_that_was_never_set_is_named(
+    sound: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(time, "time", lambda: 86_400.0)
+    assert faults(sound, tmp_path) == {"clock"}

@@ -1,0 +1,1 @@
+"""What is missing, here and for a run, and what to do about it."""

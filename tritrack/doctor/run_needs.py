@@ -1,0 +1,67 @@
+"""What a live run of some settings needs of this machine: ports, pictures, disk, a clock."""
+
+import shutil
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+from common.config import Settings
+from common.video.clips import open_clip
+from tritrack.doctor.installation import Finding
+from tritrack.live.free_ports import refuse_held_endpoint, refuse_held_metrics, refuse_held_page
+
+LEAST_BYTES: Final = 1 << 30
+"""An hour of both outlines at 320x240, 9.6 kB each, fifteen times a second, recorded: as much."""
+ZONE_S: Final = 86_400.0
+"""Dates of unpacked files may be of another time zone."""
+
+
+def examine_run(settings: Settings, out: Path) -> list[Finding]:
+    """Look at all of it, one after the other; nothing that fails keeps the rest from it.
+
+    Args:
+        settings: Of the run.
+        out: Where it would be written.
+    """
+    looks: list[tuple[str, Callable[[], str | None]]] = [
+        ("port of the bus", lambda: refuse_held_endpoint(settings)),
+        ("port of the page", lambda: refuse_held_page(settings)),
+        ("port of the metrics", lambda: refuse_held_metrics(settings.metrics)),
+        ("pictures", lambda: _pictures(settings)),
+    ]
+    return [*(_looked(what, look) for what, look in looks), _disk(out), _clock(time.time())]
+
+
+def _looked(what: str, look: Callable[[], str | None]) -> Finding:
+    """What is refused says why, and after a semicolon what to do."""
+    try:
+        return Finding(what, True, look() or "free")
+    except Exception as error:
+        detail, _, cure = str(error).partition("; ")
+        return Finding(what, False, detail, cure or "see what it says")
+
+
+def _pictures(settings: Settings) -> str:
+    """Each camera or film is opened."""
+    clip = open_clip(settings)
+    views = ", ".join(
+        f"view {view.number}: {view.source_size[0]}x{view.source_size[1]}, {view.fps:.4g} a second"
+        for view in clip.views
+    )
+    return f"{views}; {'calibrated' if clip.rig else 'no calibration: the person tells it'}"
+
+
+def _disk(out: Path) -> Finding:
+    place = next(path for path in (out.resolve(), *out.resolve().parents) if path.exists())
+    free = shutil.disk_usage(place).free
+    detail = f"{free / 1e9:.1f} GB free at {place}"
+    return Finding("disk", free >= LEAST_BYTES, detail, "free 1 GB, or name another --out")
+
+
+def _clock(now_s: float) -> Finding:
+    """A clock that was never set stands before all that is installed."""
+    made_s = Path(__file__).stat().st_mtime
+    shown = time.strftime("%Y-%m-%d %H:%M", time.localtime(now_s))
+    cure = "set this host's clock: it shows a time before tritrack was installed, and keys go by it"
+    return Finding("clock", now_s > made_s - ZONE_S, shown, cure)
