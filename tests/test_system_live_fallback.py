@@ -175,7 +175,7 @@ def watched_run(
     def run(harm: Callable[[Witness], None]) -> tuple[dict[str, Any], Witness]:
         settings = settings_of(long_clip)
         with Witness(settings.bus, harm) as witness:
-            monkeypatch.setattr(session, "_stopped_by_signals", lambda: nullcontext(witness.over))
+            monkeypatch.setattr(session, "_stopped_by_signals", lambda _: nullcontext(witness.over))
             facts = live(settings, tmp_path, Console(quiet=True))
         goes_on_and_comes_back(tmp_path, witness)
         return facts, witness
@@ -270,7 +270,7 @@ def test_a_killed_integrator_is_started_again_and_poses_go_on(
 
     settings = settings_of(long_clip)
     with Witness(settings.bus, harm) as witness:
-        monkeypatch.setattr(session, "_stopped_by_signals", lambda: nullcontext(witness.over))
+        monkeypatch.setattr(session, "_stopped_by_signals", lambda _: nullcontext(witness.over))
         facts = live(settings, tmp_path, Console(quiet=True))
     killed = "integrator: killed by signal 9; it is started again"
     assert any(killed in told for told in facts["warnings"])
