@@ -19,7 +19,7 @@ STILL = np.zeros((15, 3))
 
 
 def looks(*parts: tuple[str, float], begin_s: float = 0.0) -> list[Look]:
-    """Somebody who stands, waves (an arm 0.6 m up and down in a second) or is gone, for seconds."""
+    """Somebody who stands, waves (an arm 0.6 m up and down in a second), holds it up or is gone."""
     found: list[Look] = []
     for what, lasts_s in parts:
         for _ in range(round(lasts_s * RATE_HZ)):
@@ -27,6 +27,8 @@ def looks(*parts: tuple[str, float], begin_s: float = 0.0) -> list[Look]:
             joints_m = STILL.copy()
             if what == "waves":
                 joints_m[5, 1] = 0.3 * np.sin(2 * np.pi * time_s)
+            if what == "holds":
+                joints_m[5, 1] = 0.6
             row = np.full(20, float(len(found)))
             found.append(Look(time_s, row, None if what == "gone" else joints_m))
     return found
@@ -64,6 +66,16 @@ def test_a_take_is_what_is_moved_between_standing_and_standing() -> None:
     assert frames[0] == pytest.approx(75, abs=8)
     assert frames[-1] == pytest.approx(105, abs=8)
     assert (np.diff(frames) == 1).all()
+
+
+def test_who_holds_an_arm_up_is_in_the_middle_of_a_take() -> None:
+    told = coached(("stands", 5.0), ("holds", 1.5), ("stands", 2.0))
+    (take,) = (said.take for _, said in told if said.take is not None)
+    assert take[-1, 0] == pytest.approx(98, abs=8)
+
+
+def test_who_goes_on_standing_otherwise_has_ended() -> None:
+    assert "thank you" in words(("stands", 5.0), ("waves", 1.0), ("holds", 4.0))
 
 
 def test_three_performances_are_three_takes() -> None:

@@ -15,6 +15,10 @@ MOVES_M: Final = 0.12
 LOOK_S: Final = 0.4
 STANDS_S: Final = 0.5
 """Who has not moved for so long stands."""
+HELD_S: Final = 2.0
+"""Who stands otherwise than before the take, and for so long, will not go on."""
+HOME_M: Final = 0.25
+"""Who stands as before has no joint farther from where it was, beside the pelvis."""
 LONGEST_S: Final = 12.0
 """A take ends by then, and nobody is waited for longer to begin one."""
 SHORTEST_S: Final = 0.7
@@ -73,14 +77,15 @@ def step(state: State, look: Look) -> tuple[State, Said]:
     state = _with(state, look)
     if look.joints_m is None:
         return _lost(state, look)
-    stands = state.still_s is not None and look.time_s - state.still_s >= STANDS_S
+    still_s = 0.0 if state.still_s is None else look.time_s - state.still_s
+    stands = still_s >= STANDS_S
     if state.doing == "waiting":
         return _begin(state, look) if stands else (state, Said())
     if state.doing == "counting":
         return _count(state, look)
     if state.doing == "ready":
         return _await(state, look)
-    return _end(state, look, stands)
+    return _end(state, look, still_s >= HELD_S or (stands and _is_home(state.seen[0], look)))
 
 
 def _with(state: State, look: Look) -> State:
@@ -97,6 +102,14 @@ def _with(state: State, look: Look) -> State:
 
 def _extent_m(joints_m: list[Any]) -> float:
     return float(np.linalg.norm(np.array(joints_m) - joints_m[-1], axis=2).max())
+
+
+def _is_home(before: Look, now: Look) -> bool:
+    """Whether somebody stands as before the take: arms held up, or a deep squat, are its middle."""
+    assert before.joints_m is not None
+    assert now.joints_m is not None
+    moved = (now.joints_m - now.joints_m[0]) - (before.joints_m - before.joints_m[0])
+    return float(np.linalg.norm(moved, axis=1).max()) < HOME_M
 
 
 def _to(state: State, doing: str, look: Look) -> State:
