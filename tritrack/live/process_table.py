@@ -172,11 +172,11 @@ def inherited() -> Iterator[None]:
     resource_tracker.ensure_running()  # its own start would lift the block again
     before = dict(os.environ)
     os.environ.update(ONE_THREAD)
-    signal.pthread_sigmask(signal.SIG_BLOCK, OF_TERMINALS)
+    heard = signal.pthread_sigmask(signal.SIG_BLOCK, OF_TERMINALS)
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, OF_TERMINALS)
+        signal.pthread_sigmask(signal.SIG_SETMASK, heard)  # the run of a site is deaf itself
         os.environ.clear()
         os.environ.update(before)
 
