@@ -100,12 +100,16 @@ class Estate:
     def leave(
         self, state: State, late_s: float, now_s: float, over: tuple[Ended, ...] = ()
     ) -> None:
-        """Leave what has changed, once a second at most, but for the count: time tells that too."""
-        if self._path is None or now_s < self._next_s:
+        """Leave what has changed, but for the count: time tells that too.
+
+        At once where a body was measured, the rig changed or a view ended; else once a second.
+        """
+        if self._path is None:
             return
-        own, self._next_s = handed_over(state, late_s, over), now_s + LEAVE_S
-        if self._is_known(own):
+        own = handed_over(state, late_s, over)
+        if self._is_known(own) or (now_s < self._next_s and not self._is_news(own)):
             return
+        self._next_s = now_s + LEAVE_S
         try:
             with replacing(self._path) as path:
                 path.write_bytes(msgspec.msgpack.encode(own))
@@ -118,3 +122,9 @@ class Estate:
             return own.bdp is None and own.rig is None
         same = msgspec.structs.replace(own, numbered=self._left.numbered)
         return bool(same == self._left)
+
+    def _is_news(self, own: HandedOver) -> bool:
+        """Whether it is worse to lose than what is refined from frame to frame."""
+        left = self._left
+        known = (False, 0, ()) if left is None else (left.measured, left.calibration, left.over)
+        return (own.measured, own.calibration, own.over) != known

@@ -43,12 +43,24 @@ def test_nothing_is_left_before_anything_is_known_and_nothing_twice(tmp_path: Pa
     estate.leave(FRESH, 0.0, 9.0)
     assert not (tmp_path / NAME).exists()
     estate.leave(KNOWN, 0.0, 9.5)
-    assert not (tmp_path / NAME).exists(), "within the same second"
-    estate.leave(KNOWN, 0.0, 10.1)
     (tmp_path / NAME).unlink()
     estate.leave(KNOWN._replace(numbered=71), 0.0, 20.0)
     assert not (tmp_path / NAME).exists()
+    estate.leave(KNOWN, 0.2, 20.0)
+    (tmp_path / NAME).unlink()
+    estate.leave(KNOWN, 0.3, 20.5)
+    assert not (tmp_path / NAME).exists(), "within the same second"
+    estate.leave(KNOWN, 0.3, 21.1)
+    assert (tmp_path / NAME).exists()
     Estate(None).leave(KNOWN, 0.0, 9.0)
+
+
+def test_a_body_that_has_just_been_measured_is_left_at_once(tmp_path: Path) -> None:
+    """Who is killed within the second would else have the person stand in a T again."""
+    estate, measuring = Estate(tmp_path), KNOWN.opening._replace(measured=False)
+    estate.leave(KNOWN._replace(opening=measuring), 0.0, 9.0)
+    estate.leave(KNOWN, 0.0, 9.1)
+    assert Estate(tmp_path).taken_up(FRESH).opening.measured
 
 
 def test_what_cannot_be_read_is_as_if_nothing_were_left(tmp_path: Path) -> None:
