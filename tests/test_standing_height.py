@@ -20,6 +20,12 @@ def test_raised_arms_are_no_height() -> None:
     assert standing_rows(drawn(80, arms_up=True)) == standing_rows(drawn(80)) == (30.0, 110.0)
 
 
+def test_a_silhouette_in_two_parts_has_a_height() -> None:
+    mask = np.zeros((40, 60), np.bool_)
+    mask[10:30, 5:10] = mask[12:32, 50:55] = True
+    assert standing_rows(mask) in ((10.0, 32.0), (12.0, 32.0))
+
+
 def test_a_squat_does_not_shrink_the_scale() -> None:
     """T20: the height of standing frames holds for the squats between them."""
     rows = [standing_rows(drawn(tall)) for tall in (80, 80, 79, 60, 50, 60, 80, 81)]
