@@ -6,6 +6,13 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+for library in (
+    "OMP",
+    "OPENBLAS",
+    "NUMBA",
+):  # as the product's own processes: tests run side by side
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
