@@ -6,11 +6,8 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-for library in (
-    "OMP",
-    "OPENBLAS",
-    "NUMBA",
-):  # as the product's own processes: tests run side by side
+# As in the product's own processes: tests run side by side.
+for library in ("OMP", "OPENBLAS", "NUMBA"):
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")
 
 settings.register_profile("untimed", deadline=None)
