@@ -80,7 +80,7 @@ def poles(measured: Poles) -> tuple[Rig, Quality]:
 
     Source: section 4.1 (P43, M2); the conditions of P42 hold (the cameras are level and aimed).
     """
-    first, second = (_camera(measured, number) for number in (1, 2))
+    first, second = (camera_by_poles(measured, number) for number in (1, 2))
     rig = paper_rig(
         (measured.width, measured.height),
         (first.focal_px, second.focal_px),
@@ -90,7 +90,12 @@ def poles(measured: Poles) -> tuple[Rig, Quality]:
     return rig, Quality((first, second))
 
 
-def _camera(measured: Poles, number: int) -> CameraQuality:
+def camera_by_poles(measured: Poles, number: int) -> CameraQuality:
+    """One of the two cameras (1 or 2), by the poles that it shows.
+
+    Raises:
+        CalibrationError: When they do not determine it.
+    """
     name = f"cam{number}"
     values, sds, misfit_px = _fit(_tops(measured, number), name)
     distance_m, focal_px, rise, off_centre_px = values
