@@ -127,7 +127,7 @@ class Solved(msgspec.Struct, frozen=True):
     """Of the marks."""
     plan: Plan | None = None
     worst: str = ""
-    """The point that is farthest off, by name."""
+    """The point to look at first, by name."""
     worst_at: tuple[int, int] | None = None
     """Its camera (0 or 1) and mark."""
     whole: bool = False

@@ -105,6 +105,7 @@ class PageServer:
         opened: queue.Queue[_Door | OSError] = queue.Queue(1)
         self._log = logging.getLogger(f"{__name__}.socket")
         self._log.addFilter(is_of_ours)
+        self._log.setLevel(logging.WARNING)  # it would tell of every file that it serves
         self._thread = threading.Thread(
             target=lambda: asyncio.run(self._serve(opened)), daemon=True
         )

@@ -10,6 +10,7 @@ from common.bus.messages import Pixel
 from common.rig.rig_file import CalibrationError
 from integrator.rig.markers import Aim, Markers, MarkerView, fitted_lines, line_markers
 from tritrack.marking.marking_method import MarkingMethod, toml_number, toml_pixels
+from tritrack.marking.suspect_point import suspect_point
 
 HINTS: Final = {
     "floor": (
@@ -21,9 +22,8 @@ HINTS: Final = {
         "the marker on the wall behind (z axis), across the picture",
     ),
 }
-START: Final[tuple[Kind, ...]] = ("floor", "floor", "floor", "wall", "wall", "wall")
-FEWEST_TO_DOUBT: Final = 3
-"""Two points always make a line."""
+START: Final[tuple[Kind, ...]] = ("floor",) * 4 + ("wall",) * 4
+"""Four on each: of three nobody can tell which one is off."""
 NOMINAL_M: Final = 4.0
 """Where cameras are drawn from above: markers do not tell how far they stand."""
 DRAWN_DEG: Final = 40.0
@@ -81,13 +81,7 @@ def solve_markers(sheet: Sheet, size: Size, views: Sequence[int]) -> Solved:
     """How each camera points, as far as the points tell it."""
     names = tuple(_name(n, sheet) for n in range(len(sheet.marks)))
     seen, aims = zip(*(_seen(sheet, number, size) for number in views), strict=True)
-    off = [
-        (off_px, camera, mark)
-        for camera, one in enumerate(seen)
-        for mark, off_px in enumerate(one.off_px)
-        if off_px is not None and _shown(sheet, views[camera], mark) >= FEWEST_TO_DOUBT
-    ]
-    worst = max(off)[1:] if off else None
+    worst = suspect_point(sheet, views, lambda other, number: _seen(other, number, size)[0])
     return Solved(
         seen,
         names,
@@ -126,11 +120,6 @@ def _view(sheet: Sheet, number: int) -> MarkerView:
 def _points(sheet: Sheet, number: int, kind: str) -> tuple[Pixel, ...]:
     points = [mark.px[number - 1] for mark in sheet.marks if mark.kind == kind]
     return tuple(at for at in points if at is not None)
-
-
-def _shown(sheet: Sheet, number: int, mark: int) -> int:
-    """How many points of a mark's line the camera shows."""
-    return len(_points(sheet, number, sheet.marks[mark].kind))
 
 
 def _name(n: int, sheet: Sheet) -> str:

@@ -17,6 +17,7 @@ from integrator.rig.calibration import write_rig
 from integrator.rig.drawn_poles import drawn_poles
 from integrator.rig.poles import CameraQuality, Pole, Poles, camera_by_poles, poles
 from tritrack.marking.marking_method import MarkingMethod, toml_number, toml_pixels
+from tritrack.marking.suspect_point import suspect_point
 
 NUMBERS: Final = (
     Number("pole_height_m", "height of the poles", "m", True),
@@ -26,8 +27,7 @@ NUMBERS: Final = (
 TOP: Final = "the top of the pole"
 START_M: Final = ((0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, -1.0), (1.0, 1.0))
 """A, B and C of section 4.1, D_X = D_Z = 1 m, and two more."""
-FEWEST_TO_DOUBT: Final = 3
-"""Two tops fit any camera exactly."""
+VIEWS: Final = (1, 2)
 
 
 def pole_method(size: Size, before: Poles | None, out: Path) -> MarkingMethod:
@@ -80,12 +80,8 @@ def sheet_of_poles(measured: Poles) -> Sheet:
 def solve_poles(sheet: Sheet, size: Size) -> Solved:
     """Each camera as far as the tops tell it, and the room from above."""
     names = tuple(_name(n, mark) for n, mark in enumerate(sheet.marks))
-    try:
-        measured = poles_of(sheet, size)
-    except CalibrationError as error:
-        return Solved((Seen(False, str(error)),) * 2, names)
-    seen, known = zip(*(_seen(measured, sheet, number) for number in (1, 2)), strict=True)
-    worst = _worst(seen, sheet)
+    seen, known = zip(*(_seen(sheet, number, size) for number in VIEWS), strict=True)
+    worst = suspect_point(sheet, VIEWS, lambda other, number: _seen(other, number, size)[0])
     return Solved(
         seen,
         names,
@@ -130,8 +126,9 @@ def _name(n: int, mark: Mark) -> str:
     return f"pole {_letter(n)} at x {x_m:g}, z {z_m:g} m"
 
 
-def _seen(measured: Poles, sheet: Sheet, number: int) -> tuple[Seen, CameraQuality | None]:
+def _seen(sheet: Sheet, number: int, size: Size) -> tuple[Seen, CameraQuality | None]:
     try:
+        measured = poles_of(sheet, size)
         known = camera_by_poles(measured, number)
     except CalibrationError as error:
         return Seen(False, str(error)), None
@@ -159,18 +156,6 @@ def _facts(known: CameraQuality) -> tuple[tuple[str, str], ...]:
         ("axis off centre", f"{known.off_centre_px:+.1f} px"),
         ("misfit", f"{known.misfit_px:.2f} px"),
     )
-
-
-def _worst(seen: Sequence[Seen], sheet: Sheet) -> tuple[int, int] | None:
-    """Camera (from 0) and mark of the top that is farthest off, where more than two are seen."""
-    off = [
-        (off_px, camera, mark)
-        for camera, one in enumerate(seen)
-        if sum(each.px[camera] is not None for each in sheet.marks) >= FEWEST_TO_DOUBT
-        for mark, off_px in enumerate(one.off_px)
-        if off_px is not None
-    ]
-    return max(off)[1:] if off else None
 
 
 def _plan(known: Sequence[CameraQuality | None], sheet: Sheet, size: Size) -> Plan:
