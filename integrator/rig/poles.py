@@ -21,6 +21,8 @@ ROUNDS: Final = 20
 """Gauss-Newton converges within five or never."""
 SINGULAR: Final = 1e-9
 """Least over greatest singular value below which the poles leave something open."""
+NEAREST_M: Final = 0.01
+"""A pole that is nearer to a lens, or behind it, was not seen."""
 
 
 class Pole(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -155,7 +157,7 @@ def _fit(tops: _Tops, name: str) -> tuple[list[float], list[float], float]:
         if spread[-1] < SINGULAR * spread[0]:
             raise CalibrationError(f"no pole stands off the axis of {name}: add one at its side")
         values = values + np.linalg.lstsq(jacobian, residual)[0]
-        if not values[0] > tops.towards_m.max():
+        if not values[0] > tops.towards_m.max() + NEAREST_M:
             raise _distance_unknown(name)
     jacobian, residual = _linear(tops, values)
     sds = READING_SD_PX * np.sqrt(np.diag(np.linalg.inv(jacobian.T @ jacobian)))
@@ -168,7 +170,7 @@ def _start(tops: _Tops, name: str) -> Vector:
     rows = np.column_stack([tops.rows_px, -np.ones_like(tops.rows_px)])
     by_rows = np.linalg.lstsq(rows, tops.rows_px * tops.towards_m)[0]
     distance_m = by_rows[0] if tops.taped_m is None else tops.taped_m
-    if not distance_m > tops.towards_m.max():
+    if not distance_m > tops.towards_m.max() + NEAREST_M:
         raise _distance_unknown(name)
     near = 1 / (distance_m - tops.towards_m)
     columns = np.column_stack([tops.across_m * near, np.ones_like(near)])

@@ -14,14 +14,15 @@ from tritrack.marking.suspect_point import suspect_point
 
 HINTS: Final = {
     "floor": (
-        "the marker on the floor that runs towards camera 1 (z axis), up and down in the picture",
-        "the marker on the floor that runs towards camera 2 (x axis), up and down in the picture",
+        "z axis on the floor: up and down the picture",
+        "x axis on the floor: up and down the picture",
     ),
     "wall": (
-        "the marker on the wall behind (x axis), across the picture",
-        "the marker on the wall behind (z axis), across the picture",
+        "x axis on the wall behind: across the picture",
+        "z axis on the wall behind: across the picture",
     ),
 }
+KINDS: Final[tuple[Kind, ...]] = ("floor", "wall")
 START: Final[tuple[Kind, ...]] = ("floor",) * 4 + ("wall",) * 4
 """Four on each: of three nobody can tell which one is off."""
 NOMINAL_M: Final = 4.0
@@ -46,7 +47,7 @@ def marker_method(size: Size, before: Markers | None, views: Sequence[int]) -> M
         name="markers",
         numbers=numbers,
         hints=dict(HINTS),
-        start=empty if before is None else sheet_of_markers(before),
+        start=empty if before is None else sheet_of_markers(before, views),
         solve=lambda sheet: solve_markers(sheet, size, views),
         text=lambda sheet: markers_text(markers_of(sheet, size, views)),
         write=None,
@@ -65,16 +66,18 @@ def markers_of(sheet: Sheet, size: Size, views: Sequence[int]) -> Markers:
     return Markers(*size, tuple(_view(sheet, number) for number in views))
 
 
-def sheet_of_markers(measured: Markers) -> Sheet:
-    """The sheet on which a file's markers stand, its cameras in their order."""
+def sheet_of_markers(measured: Markers, views: Sequence[int]) -> Sheet:
+    """The sheet on which a file's markers stand: its cameras by name, or in their order."""
+    named = {view.name: view for view in measured.cameras}
+    ordered = dict(zip(views, measured.cameras, strict=False))
+    own = {n: named.get(f"cam{n}", ordered.get(n)) for n in views}
     marks = []
-    for kind in ("floor", "wall"):
-        lines = [getattr(view, f"{kind}_px") for view in measured.cameras[:2]]
-        for n in range(max((len(line) for line in lines), default=0)):
-            px = [line[n] if n < len(line) else None for line in lines]
-            marks.append(Mark(kind, (px[0], px[1] if len(px) > 1 else None)))
-    numbers = {_key(n): view.focal_px for n, view in enumerate(measured.cameras[:2], 1)}
-    return Sheet(tuple(marks), dict(numbers))
+    for kind in KINDS:
+        lines = [getattr(own.get(n), f"{kind}_px", ()) for n in (1, 2)]
+        for n in range(max(len(line) for line in lines)):
+            one, other = (line[n] if n < len(line) else None for line in lines)
+            marks.append(Mark(kind, (one, other)))
+    return Sheet(tuple(marks), {_key(n): getattr(own[n], "focal_px", None) for n in views})
 
 
 def solve_markers(sheet: Sheet, size: Size, views: Sequence[int]) -> Solved:

@@ -243,6 +243,12 @@ canvas.addEventListener("pointerup", (event) => {
   if (was.mark >= 0) act(() => { board.picked = was.mark; });
   else if (inside) act(() => board.place(where));
 });
+canvas.addEventListener("touchstart", (event) => { // a finger on a point drags it, not the page
+  const box = canvas.getBoundingClientRect();
+  const through = lens?.[board.camera];
+  const [x, y] = [event.touches[0].clientX - box.x, event.touches[0].clientY - box.y];
+  if (through && board.near(through.toPixel(x, y), NEAR_PX / through.scale) >= 0) event.preventDefault();
+}, { passive: false });
 canvas.addEventListener("pointercancel", () => { held = null; });
 canvas.addEventListener("pointerleave", () => { pointed = null; refresh(); });
 canvas.addEventListener("wheel", (event) => {
