@@ -10,6 +10,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -36,11 +37,14 @@ from pole_room import (
 from rich.console import Console
 from test_live import Looking
 from test_page_server import free_port
+from test_sheet import POLES
+from test_stills import Camera
 from test_suspect_point import clicked_markers, clicked_poles, moved
 from websockets.sync.client import connect
 from websockets.sync.connection import Connection
 
-from animator.marking.sheet import Marked, Sheet
+from animator.marking.marking_page import MarkingPage
+from animator.marking.sheet import Marked, Seen, Sheet, Shown, Solved
 from common.bus.messages import Pixel
 from common.rig.camera import as_paper_rig
 from common.rig.rig_file import CalibrationError, load_rig
@@ -48,6 +52,7 @@ from integrator.rig.calibration import read_points, run_markers, run_poles
 from integrator.rig.poles import Poles
 from tritrack.marking.marking import HEAD, Asked, KeptPoints, answered, kept_points, mark_poles
 from tritrack.marking.pole_sheet import pole_method, poles_text, sheet_of_poles
+from tritrack.marking.stills import Album, Running
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 QUIET = Console(quiet=True)
@@ -469,3 +474,30 @@ def test_a_finger_places_a_point_and_drags_it(tmp_path: Path) -> None:
             assert now == pytest.approx([was[0], was[1] + moved_px], abs=0.1)
             assert looking.ask("scrollY") == 0
         command.ended()
+
+
+@pytest.mark.slow
+@needs_browser
+def test_a_camera_that_runs_is_seen_live_until_it_is_held() -> None:
+    """Its pictures are never of one grey for long."""
+    camera = Camera()
+    album = Album((64, 48), {1: Running(camera, 0, (64, 48))})
+    hello = msgspec.structs.replace(POLES, size=album.size, pictures=album.pictures)
+    page = MarkingPage(hello, album.jpeg, free_port())
+    page.show(Shown(Sheet((), {}), "", 0, Solved((Seen(False, ""),), ()), "", True))
+    grey = "document.querySelector('#view').getContext('2d').getImageData(99, 99, 1, 1).data[0]"
+    try:
+        with open_tab(str(CHROMIUM), SOFT) as tab:
+            looking = Looking(tab, page.address, SIZES["desk"])
+            assert looking.until("document.body?.dataset.loaded === '1'")
+            assert looking.until("!document.querySelector('#hold').hidden")
+            first = looking.until(grey)
+            assert looking.until(f"Math.abs({grey} - {first}) > 20")
+            looking.ask("document.querySelector('#hold').click()")
+            time.sleep(0.5)
+            held = looking.ask(grey)
+            time.sleep(1.0)
+            assert looking.ask(grey) == held
+    finally:
+        page.close()
+        camera.stop()

@@ -1,5 +1,6 @@
 // What stands beside the picture: points, numbers, the result.
 
+export const READ_PX = 0.5; // by so much a point that was read to the pixel may be off
 const at = (id) => document.getElementById(id);
 
 export function element(kind, text, given = {}) {
@@ -76,7 +77,7 @@ export class Points {
       const { number } = board.hello.pictures[camera];
       const px = board.at(i, number - 1);
       const off_px = px ? solved.cameras[camera]?.off_px[i] : null;
-      const worst = solved.worst_at?.[0] === camera && solved.worst_at[1] === i;
+      const worst = solved.worst_at?.[0] === camera && solved.worst_at[1] === i && off_px > READ_PX;
       const own = camera === board.camera;
       cell.className = `px${px ? "" : " empty"}${own && board.next === i && board.picked === null ? " next" : ""}${own && board.picked === i ? " picked" : ""}${worst ? " worst" : ""}`;
       cell.replaceChildren(px ? `${px[0].toFixed(1)}, ${px[1].toFixed(1)}` : "–");
@@ -125,6 +126,7 @@ export function showResult(board, solved) {
     return part;
   }));
   const off_px = solved.worst_at ? solved.cameras[solved.worst_at[0]].off_px[solved.worst_at[1]] : null;
-  at("worst").textContent = off_px === null ? "" : `look first at ${solved.worst}: ${off_px.toFixed(2)} px off`;
-  at("worst").className = off_px > 2 ? "bad" : "";
+  const told = off_px > READ_PX ? "look first at" : "all points agree; the least";
+  at("worst").textContent = off_px === null ? "" : `${told} ${solved.worst}: ${off_px.toFixed(2)} px off`;
+  at("worst").className = off_px > READ_PX ? "bad" : "";
 }

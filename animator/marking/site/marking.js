@@ -1,7 +1,7 @@
 // The marking page: what is clicked goes to the server, which answers with what it gives.
 
 import { Board } from "./board.js";
-import { element, label, Numbers, Points, showResult } from "./lists.js";
+import { element, label, Numbers, Points, READ_PX, showResult } from "./lists.js";
 import { drawMarks, drawPicture, INKS, Lens, penOf } from "./picture.js";
 import { drawPlan } from "./plan.js";
 
@@ -160,7 +160,7 @@ function draw() {
   const seen = solved.cameras[camera];
   const marks = board.sheet.marks.map((mark, i) => ({
     at: board.at(i), ink: INKS[mark.kind], label: label(board, solved.names, i), picked: board.picked === i,
-    worst: solved.worst_at?.[0] === camera && solved.worst_at[1] === i && seen?.off_px[i] > 2,
+    worst: solved.worst_at?.[0] === camera && solved.worst_at[1] === i && seen?.off_px[i] > READ_PX,
   }));
   const pen = penOf(canvas);
   drawPicture(pen, through, still.image);
