@@ -8,11 +8,16 @@ import urllib.request
 from collections.abc import Iterator
 from typing import Any
 
+import cv2
 import msgspec
+import numpy as np
 import pytest
 
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
+from browser import open_tab, own_address
+from foreign_page import foreign_page
+from test_live import CHROMIUM, Looking
 from test_page_server import TOKEN, free_port
 from test_sheet import POLES
 from websockets.exceptions import ConnectionClosed, InvalidStatus
@@ -30,7 +35,7 @@ from animator.marking.sheet import (
     Shown,
     Solved,
 )
-from animator.page.door import Entrance, cookie_of
+from animator.page.door import Entrance, cookie_of, invitation_of
 
 SHOWN = Shown(Sheet((), {}), "", 0, Solved((Seen(False, "click"),), ()), "nothing kept", True)
 
@@ -39,6 +44,11 @@ def picture(camera: int, place: int) -> bytes | None:
     """Two stills of camera 1, and the newest picture of camera 2."""
     known = {(1, 0): b"first", (1, 1): b"second", (2, LIVE): b"newest"}
     return known.get((camera, place))
+
+
+def grey(camera: int, place: int) -> bytes | None:
+    """A picture that a browser can show."""
+    return cv2.imencode(".jpg", np.full((48, 64, 3), 90, np.uint8))[1].tobytes()
 
 
 @pytest.fixture
@@ -79,6 +89,7 @@ def test_the_page_its_parts_and_its_pictures_are_served(
     with urllib.request.urlopen(page.address + path) as answer:
         assert answer.headers["Content-Type"].startswith(kind)
         assert "default-src 'none'" in answer.headers["Content-Security-Policy"]
+        assert answer.headers["Cross-Origin-Resource-Policy"] == "same-origin"
         assert holds in answer.read()
 
 
@@ -157,5 +168,77 @@ def test_beyond_this_machine_no_picture_is_shown_without_the_token() -> None:
             line = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
             line.request("GET", "/still/1/0.jpg", headers={"Cookie": cookie})
             assert line.getresponse().status == status
+    finally:
+        page.close()
+
+
+def title_of(looking: Looking, address: str) -> dict[str, str]:
+    """What a foreign page tried, and what came of it."""
+    looking.tab.call("Page.navigate", url=address)
+    told: dict[str, str] = {}
+    until_s = time.monotonic() + 20
+    while len(told) < 3 and time.monotonic() < until_s:
+        title = looking.ask("document.title")
+        told = json.loads(title) if title.startswith("{") else {}
+        time.sleep(0.05)
+    return told
+
+
+REFUSED = {"image": "refused", "socket": "refused", "page": "refused"}
+needs_browser = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here")
+
+
+@pytest.mark.slow
+@needs_browser
+def test_a_foreign_page_in_a_browser_neither_sees_nor_hears_nor_reads() -> None:
+    """Not even shown in a frame of its own, as pictures of other sites otherwise are."""
+    page = MarkingPage(POLES, grey, free_port())
+    page.show(SHOWN)
+    try:
+        with (
+            foreign_page("127.0.0.1", page.address, "still/1/0.jpg") as foreign,
+            open_tab(str(CHROMIUM), ("--disable-gpu",)) as tab,
+        ):
+            looking = Looking(tab, page.address, (1400, 900))
+            assert looking.until("document.title.includes('poles')")
+            own = "(async () => { const i = new Image(); i.src = '/still/1/0.jpg';"
+            own += "await i.decode(); document.title = 'own'; })()"
+            looking.ask(own)
+            assert looking.until("document.title === 'own'"), "the page itself sees it"
+            assert title_of(looking, foreign) == REFUSED
+    finally:
+        page.close()
+
+
+@pytest.mark.slow
+@needs_browser
+def test_the_printed_address_lets_a_browser_in_from_beyond_loopback() -> None:
+    """Its token then leaves the address bar; no script reads it, no other port's page uses it."""
+    host, port = own_address(), free_port()
+    entrance = Entrance(host, token=TOKEN)
+    page = MarkingPage(POLES, grey, port, entrance)
+    page.show(SHOWN)
+    try:
+        with (
+            foreign_page(host, page.address, "still/1/0.jpg") as foreign,
+            open_tab(str(CHROMIUM), ("--disable-gpu",)) as tab,
+        ):
+            looking = Looking(tab, page.address, (390, 844))
+            assert looking.until("document.body?.innerText.includes('?token=')")
+            assert not looking.ask("document.querySelectorAll('script').length")
+            tab.call("Page.navigate", url=invitation_of(entrance, port))
+            assert looking.until("document.title.includes('poles')")
+            assert looking.ask("location.href") == f"http://{host}:{port}/"
+            assert looking.ask("document.cookie") == ""
+            assert looking.until("document.querySelector('#words').innerText === 'ready'")
+            assert title_of(looking, foreign) == REFUSED
+            tab.call("Page.navigate", url=f"{page.address}/")
+            assert looking.until("document.querySelector('#words')?.innerText === 'ready'")
+            page.close()
+            page = MarkingPage(POLES, grey, port, Entrance(host, token="another-run"))
+            assert looking.until("document.querySelector('#words').innerText.includes('printed')")
+        with open_tab(str(CHROMIUM), ("--disable-gpu",)) as tab:
+            looking = Looking(tab, page.address, (390, 844))
+            assert looking.until("document.body?.innerText.includes('?token=')")
     finally:
         page.close()

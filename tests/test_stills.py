@@ -82,7 +82,7 @@ def test_films_that_are_not_there_are_named(tmp_path: Path) -> None:
 
 
 class Camera:
-    """A camera that gives lighter and lighter pictures and begins anew, until it is stopped or pulled."""
+    """A camera whose pictures grow lighter and begin anew, until it is stopped or pulled."""
 
     def __init__(self) -> None:
         self.stopped, self.pulled = threading.Event(), threading.Event()

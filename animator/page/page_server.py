@@ -232,6 +232,7 @@ def _headers(kind: str, content: bytes) -> Headers:
         "Content-Security-Policy": POLICY,
         "X-Content-Type-Options": "nosniff",
         "Referrer-Policy": "no-referrer",
+        "Cross-Origin-Resource-Policy": "same-origin",
         "Cache-Control": "no-store",
         "Connection": "close",
     }

@@ -1,6 +1,7 @@
 // The marking page: what is clicked goes to the server, which answers with what it gives.
 
 import { Board } from "./board.js";
+import { isLockedOut, LOCKED_OUT } from "./knock.js";
 import { element, label, Numbers, Points, READ_PX, showResult } from "./lists.js";
 import { drawMarks, drawPicture, INKS, Lens, penOf } from "./picture.js";
 import { drawPlan } from "./plan.js";
@@ -80,8 +81,8 @@ function connect() {
     const told = JSON.parse(data);
     heard[told.kind]?.(told);
   });
-  socket.addEventListener("close", () => {
-    status("gone", "tritrack does not answer: it was ended, or is still to start");
+  socket.addEventListener("close", async () => {
+    status("gone", (await isLockedOut()) ? LOCKED_OUT : "tritrack does not answer: it was ended, or is still to start");
     setTimeout(connect, AGAIN_MS);
   });
 }
