@@ -212,6 +212,22 @@ def test_poles_said_to_the_page_are_solved_saved_and_repeated_by_the_typed_comma
 
 
 @pytest.mark.slow
+def test_changes_after_the_calibration_was_saved_are_told_with_the_cure(tmp_path: Path) -> None:
+    out, points = tmp_path / "calibration.json", tmp_path / "poles.toml"
+    with opened(tmp_path, "poles", "--out", str(out)) as command:
+        with connect(command.address.replace("http", "ws") + "/live") as browser:
+            heard(browser, "hello")
+            heard(browser, "shown")
+            say(browser, clicked_poles(), 1)
+            browser.send('{"type": "save"}')
+            heard(browser, "told")
+            say(browser, moved(clicked_poles(), 0, 0, (1.0, 0.0)), 2)
+        _, errors = command.ended()
+    assert f"tritrack calibrate poles {points} --out {out} --force" in errors
+    run_poles(points, out, replace=True)
+
+
+@pytest.mark.slow
 def test_markers_said_to_the_page_are_told_as_by_the_typed_command(tmp_path: Path) -> None:
     sheet = moved(clicked_markers(), 0, 0, (1.0, 0.0))
     with opened(tmp_path, "markers", "--json") as command:

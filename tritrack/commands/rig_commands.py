@@ -167,7 +167,10 @@ def poles(
     refuse_to_replace(out, force)
     result = mark_poles(Asked(page, _kept(measured), port), out, console)
     tell_rows(result.rows, json_wanted)
-    told = f"written to {out}" if result.saved else "no calibration was saved"
+    told = "no calibration was saved" if result.saved is None else f"written to {out}"
+    if result.saved not in (None, result.newest):
+        told += ", but for the last changes; they are kept: tritrack calibrate "
+        told += f"poles {measured} --out {out} --force"
     console.print(told, highlight=False, soft_wrap=True)
 
 

@@ -50,8 +50,9 @@ class Result(NamedTuple):
 
     rows: Sequence[msgspec.Struct]
     """Of each camera; none where the points do not suffice."""
-    saved: bool
-    """Whether the calibration was written."""
+    saved: Sheet | None
+    """Of which points the calibration was written last."""
+    newest: Sheet
 
 
 def mark_markers(asked: Asked, console: Console) -> Result:
@@ -152,7 +153,7 @@ def _serve(
         writes=writes,
     )
     shown = Shown(method.start, "", 0, method.solve(method.start), "nothing clicked yet", True)
-    saved = False
+    saved: Sheet | None = None
     with process("mark", ProcessContext()) as stop:
         page = MarkingPage(hello, album.jpeg, port, entrance)
         page.show(shown)
@@ -161,23 +162,23 @@ def _serve(
         try:
             while not stop.wait(LOOK_S):
                 album.refuse_fault()
-                shown, now_saved = _hear(page, method, hello, shown, kept)
-                saved = saved or now_saved
+                shown, written = _hear(page, method, hello, shown, kept)
+                saved = written or saved
         finally:
             page.close()
-    return Result(method.rows(shown.sheet) if shown.solved.whole else (), saved)
+    return Result(method.rows(shown.sheet) if shown.solved.whole else (), saved, shown.sheet)
 
 
 def _hear(
     page: MarkingPage, method: MarkingMethod, hello: Hello, shown: Shown, kept: KeptPoints
-) -> tuple[Shown, bool]:
-    """Do what browsers asked for: what is shown then, and whether a calibration was written."""
-    saved = False
+) -> tuple[Shown, Sheet | None]:
+    """Do what browsers asked for: what is shown then, and what a calibration was written of."""
+    saved = None
     try:
         while (wish := page.next_wish()) is not None:
             if isinstance(wish, Save):
                 page.tell(_written(method, shown.sheet, hello.writes), True)
-                saved = True
+                saved = shown.sheet
             else:
                 refuse_sheet(wish.sheet, hello)
                 shown = answered(method, wish, kept)
