@@ -169,8 +169,8 @@ def poles(
     tell_rows(result.rows, json_wanted)
     told = "no calibration was saved" if result.saved is None else f"written to {out}"
     if result.saved not in (None, result.newest):
-        told += ", but for the last changes; they are kept: tritrack calibrate "
-        told += f"poles {measured} --out {out} --force"
+        told += ", without what was changed since then; to take that in: "
+        told += f"tritrack calibrate poles {measured} --out {out} --force"
     console.print(told, highlight=False, soft_wrap=True)
 
 

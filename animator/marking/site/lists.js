@@ -126,7 +126,7 @@ export function showResult(board, solved) {
     return part;
   }));
   const off_px = solved.worst_at ? solved.cameras[solved.worst_at[0]].off_px[solved.worst_at[1]] : null;
-  const told = off_px > READ_PX ? "look first at" : "all points agree; the least";
-  at("worst").textContent = off_px === null ? "" : `${told} ${solved.worst}: ${off_px.toFixed(2)} px off`;
+  const told = off_px > READ_PX ? "look first at" : "all points agree; farthest off is";
+  at("worst").textContent = off_px === null ? "" : `${told} ${solved.worst}: ${off_px.toFixed(2)} px`;
   at("worst").className = off_px > READ_PX ? "bad" : "";
 }
