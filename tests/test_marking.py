@@ -517,3 +517,50 @@ def test_a_camera_that_runs_is_seen_live_until_it_is_held() -> None:
     finally:
         page.close()
         camera.stop()
+
+
+@pytest.mark.slow
+@needs_browser
+def test_near_by_a_click_is_finer_and_drags_move_points_or_the_picture(tmp_path: Path) -> None:
+    """The wheel comes nearer to what is under the pointer, which stays there."""
+    with opened(tmp_path, "poles", "--out", str(tmp_path / "calibration.json")) as command:
+        with clicking(command.address, SIZES["desk"]) as person:
+            looking, tab = person.looking, person.looking.tab
+            left, top, width, height = person.box("#view")
+            inside = "(e => e.clientWidth + ',' + e.clientHeight)(document.querySelector('#view'))"
+            drawn = [float(value) for value in looking.ask(inside).split(",")]  # rounded
+            scale = min(drawn[0] / SIZE[0], drawn[1] / SIZE[1])
+            x, y = round(left + width / 2 + 150 * scale), round(top + height / 2 - 100 * scale)
+            middle = ((x - left - width / 2) / width, (y - top - height / 2) / height)
+            under = [SIZE[n] / 2 + middle[n] * drawn[n] / scale for n in (0, 1)]
+
+            def mouse(kind: str, dx: float = 0.0, dy: float = 0.0) -> None:
+                held = {"button": "left", "buttons": 1, "clickCount": 1}
+                tab.call("Input.dispatchMouseEvent", type=kind, x=x + dx, y=y + dy, **held)
+
+            def chosen() -> list[float]:
+                text = looking.ask("document.querySelector('#chosen').textContent")
+                return [float(value) for value in text.rpartition(": ")[2].split(",")]
+
+            wheel = {"deltaX": 0, "deltaY": -416}  # e^(416/300): four times
+            tab.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, **wheel)
+            assert looking.until("document.querySelector('#whole').innerText === '4.0×'")
+            person.press(x, y)
+            assert looking.until("document.body.dataset.shown === '1'")
+            assert chosen() == pytest.approx(under, abs=0.01)
+            mouse("mousePressed")
+            mouse("mouseMoved", 20.0, 8.0)
+            mouse("mouseMoved", 40.0, -24.0)
+            mouse("mouseReleased", 40.0, -24.0)
+            there = [under[0] + 40 / (4 * scale), under[1] - 24 / (4 * scale)]
+            assert looking.until("document.querySelector('#chosen').textContent")
+            assert chosen() == pytest.approx(there, abs=0.05)
+            mouse("mousePressed", -200.0)
+            mouse("mouseMoved", -150.0)
+            mouse("mouseMoved", -100.0)
+            mouse("mouseReleased", -100.0)
+            assert chosen() == pytest.approx(there, abs=0.05), "the picture moved, not the point"
+            person.press(x, y)
+            assert looking.until("document.body.dataset.picked === '1'")
+            assert chosen() == pytest.approx((under[0] - 100 / (4 * scale), under[1]), abs=0.05)
+        command.ended()

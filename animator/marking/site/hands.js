@@ -14,9 +14,16 @@ export function listen(stage, act, save) {
   const { board, loupe } = stage;
   pointer(stage, act);
   loupe.addEventListener("click", (event) => {
-    act(() => board.nudge([(event.offsetX - loupe.clientWidth / 2) / LOUPE, (event.offsetY - loupe.clientHeight / 2) / LOUPE]));
+    const [x, y] = within(loupe, event);
+    act(() => board.nudge([(x - loupe.clientWidth / 2) / LOUPE, (y - loupe.clientHeight / 2) / LOUPE]));
   });
   keys(stage, act, save);
+}
+
+/** Where on a canvas, as it is drawn: offsetX and offsetY are rounded, and so is its clientWidth. */
+function within(canvas, { clientX, clientY }) {
+  const box = canvas.getBoundingClientRect();
+  return [((clientX - box.x) * canvas.clientWidth) / box.width, ((clientY - box.y) * canvas.clientHeight) / box.height];
 }
 
 /** A click places or picks, a drag of a point moves it, a drag of the picture pans it. */
@@ -26,15 +33,17 @@ function pointer(stage, act) {
   let held = null;
   view.addEventListener("pointerdown", (event) => {
     if (event.button) return;
-    held = { x: event.offsetX, y: event.offsetY, mark: meant(event.offsetX, event.offsetY), moved: false };
+    const [x, y] = within(view, event);
+    held = { x, y, mark: meant(x, y), moved: false };
     view.setPointerCapture(event.pointerId);
   });
   view.addEventListener("pointermove", (event) => {
     const { lens } = stage;
-    stage.pointed = event.pointerType === "mouse" ? lens.toPixel(event.offsetX, event.offsetY) : null;
-    if (held && (held.moved ||= Math.hypot(event.offsetX - held.x, event.offsetY - held.y) > DRAG_PX)) {
-      const by = [(event.offsetX - held.x) / lens.scale, (event.offsetY - held.y) / lens.scale];
-      [held.x, held.y] = [event.offsetX, event.offsetY];
+    const [x, y] = within(view, event);
+    stage.pointed = event.pointerType === "mouse" ? lens.toPixel(x, y) : null;
+    if (held && (held.moved ||= Math.hypot(x - held.x, y - held.y) > DRAG_PX)) {
+      const by = [(x - held.x) / lens.scale, (y - held.y) / lens.scale];
+      [held.x, held.y] = [x, y];
       if (held.mark < 0) lens.panBy(-by[0], -by[1]);
       else act(() => { board.picked = held.mark; board.nudge(by); });
     }
@@ -44,20 +53,19 @@ function pointer(stage, act) {
     const was = held;
     held = null;
     if (!was || was.moved) return;
-    const where = stage.lens.toPixel(event.offsetX, event.offsetY);
+    const where = stage.lens.toPixel(...within(view, event));
     const inside = where.every((value, i) => value >= 0 && value <= board.hello.size[i]);
     if (was.mark >= 0) act(() => { board.picked = was.mark; });
     else if (inside) act(() => board.place(where));
   });
   view.addEventListener("touchstart", (event) => { // a finger on a point drags it, not the page
-    const box = view.getBoundingClientRect();
-    if (meant(event.touches[0].clientX - box.x, event.touches[0].clientY - box.y) >= 0) event.preventDefault();
+    if (meant(...within(view, event.touches[0])) >= 0) event.preventDefault();
   }, { passive: false });
   view.addEventListener("pointercancel", () => { held = null; });
   view.addEventListener("pointerleave", () => { stage.pointed = null; stage.refresh(); });
   view.addEventListener("wheel", (event) => {
     event.preventDefault();
-    stage.lens.zoomBy(Math.exp(-event.deltaY / 300), event.offsetX, event.offsetY);
+    stage.lens.zoomBy(Math.exp(-event.deltaY / 300), ...within(view, event));
     stage.refresh();
   }, { passive: false });
 }
