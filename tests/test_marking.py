@@ -467,7 +467,7 @@ def test_a_finger_places_a_point_and_drags_it(tmp_path: Path) -> None:
         with clicking(command.address, SIZES["phone"]) as person:
             tab, looking = person.looking.tab, person.looking
             tab.call("Emulation.setTouchEmulationEnabled", enabled=True)
-            left, top, width, _ = person.box("#view")
+            left, top, _, height = person.box("#view")
 
             def touch(kind: str, *at: float) -> None:
                 points = [{"x": left + at[0], "y": top + at[1]}] if at else []
@@ -481,7 +481,9 @@ def test_a_finger_places_a_point_and_drags_it(tmp_path: Path) -> None:
             for step in range(1, 11):
                 touch("touchMove", 100.0, 60.0 + 8.0 * step)
             touch("touchEnd")
-            moved_px = 80.0 * SIZE[0] / width
+            inside = "(e => e.clientWidth + ',' + e.clientHeight)(document.querySelector('#view'))"
+            drawn = [float(value) for value in looking.ask(inside).split(",")]  # rounded
+            moved_px = 80.0 * drawn[1] / height / min(drawn[0] / SIZE[0], drawn[1] / SIZE[1])
             after = looking.ask("document.querySelector('#chosen').textContent")
             was, now = (
                 [float(value) for value in text.rpartition(": ")[2].split(",")]
