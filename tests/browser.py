@@ -3,6 +3,7 @@
 import base64
 import itertools
 import json
+import socket
 import subprocess
 import tempfile
 import time
@@ -13,8 +14,11 @@ from typing import Any
 
 import cv2
 import numpy as np
+import pytest
 from websockets.sync.client import connect
 from websockets.sync.connection import Connection
+
+from common.endpoint import is_loopback
 
 WEBGL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 """For pages with a scene of their own in 3-D; others are drawn sooner without."""
@@ -124,3 +128,16 @@ def saved(picture: np.ndarray, path: Path) -> Path:
     """The screenshot as a file, to be looked at when a test fails."""
     cv2.imwrite(str(path), cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
     return path
+
+
+def own_address() -> str:
+    """Of this machine, by which others reach it."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as door:
+        try:
+            door.connect(("192.0.2.1", 9))  # nothing is sent; RFC 5737
+        except OSError:
+            pytest.skip("this machine has no address but its own")
+        host: str = door.getsockname()[0]
+    if is_loopback(host):
+        pytest.skip("this machine has no address but its own")
+    return host

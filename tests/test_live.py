@@ -15,12 +15,13 @@ import pytest
 
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
-from browser import Tab, open_tab, saved
+from browser import Tab, open_tab, own_address, saved
 from show_page import RIG, pulses, snapshot_at
 from test_page_server import free_port
 from websockets.sync.client import connect
 
 from animator.page import live
+from animator.page.door import Entrance, invitation_of
 from animator.page.live import LivePage
 from animator.scene import LEFT, RIGHT
 from common.bus.control_messages import Answer
@@ -280,3 +281,32 @@ def test_all_that_can_be_pressed_has_a_name_and_is_reached_by_keyboard(
         looking.key("Tab", 9)
         reached.add(looking.ask("document.activeElement.id"))
     assert {"room", "record", "save", "stop", "play", "live", "scrub", "speed"} <= reached
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here: the page is not looked at")
+def test_the_printed_address_shows_the_run_beyond_loopback_and_the_next_run_has_another() -> None:
+    """Who stays on the page of a run that is over is told why the next one does not let them in."""
+    host, port = own_address(), free_port()
+    entrance = Entrance(host, token="a-long-word")
+    page = LivePage("a body that moves", port, commands=True, entrance=entrance)
+    page.set_rig(RIG)
+    page.show(snapshot_at(0))
+    try:
+        with open_tab(str(CHROMIUM), SOFT) as tab:
+            looking = Looking(tab, page.address, SIZES["desk"])
+            assert looking.until("document.body?.innerText.includes('?token=')")
+            tab.call("Page.navigate", url=invitation_of(entrance, port))
+            assert looking.until("document.body?.dataset.drawn")
+            assert looking.ask("location.href") == f"http://{host}:{port}/"
+            assert looking.ask("document.cookie") == "", "no script reads the token"
+            tab.call("Page.reload")
+            page.show(snapshot_at(1))
+            assert looking.until("document.body?.dataset.frame === '1'"), "the cookie is kept"
+            page.close()
+            page = LivePage("the next run", port, True, Entrance(host, token="another-word"))
+            assert looking.until("document.querySelector('#words').innerText.includes('printed')")
+            tab.call("Page.navigate", url=f"{page.address}/?token=another-word")
+            assert looking.until("document.title.startsWith('the next run')")
+    finally:
+        page.close()

@@ -12,7 +12,7 @@ from common.body.body import Vector
 from common.bus.messages import Pixel
 from common.rig.camera import Camera, as_matrix, as_row, centre, paper_rig, project
 from common.rig.rig_file import CalibrationError
-from integrator.rig.markers import MarkerView, line_markers
+from integrator.rig.markers import MarkerView, fitted_lines, line_markers
 
 SIZE = (160, 120)
 FOCAL_PX = 150.0
@@ -112,3 +112,23 @@ def test_what_is_no_marker_is_refused(floor_px: tuple[Pixel, ...], says: str) ->
     view = msgspec.structs.replace(shown(1, camera_of(1)), floor_px=floor_px)
     with pytest.raises(CalibrationError, match=says):
         line_markers(view, SIZE)
+
+
+@pytest.mark.parametrize("number", [1, 2])
+@given(yaw=angles, pitch=angles, roll=angles)
+def test_the_fitted_lines_go_through_points_that_were_read_without_error(
+    number: int, yaw: float, pitch: float, roll: float
+) -> None:
+    view = shown(number, turned(camera_of(number), yaw, pitch, roll))
+    for line, points in zip(fitted_lines(view, SIZE), (view.floor_px, view.wall_px), strict=True):
+        assert np.column_stack([points, np.ones(len(points))]) @ line == pytest.approx(
+            0.0, abs=1e-6
+        )
+
+
+def test_a_point_is_off_its_line_by_its_distance_in_pixels() -> None:
+    """A single point 3 px to the right of many on the centre column."""
+    view = shown(1, camera_of(1))
+    many = tuple((80.0, 70.0 + v) for v in range(50))
+    line, _ = fitted_lines(msgspec.structs.replace(view, floor_px=many), SIZE)
+    assert abs(line @ (83.0, 95.0, 1.0)) == pytest.approx(3.0)

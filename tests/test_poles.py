@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from common.rig.camera import Rig, as_paper_rig, paper_rig, project
 from common.rig.rig_file import CalibrationError
-from integrator.rig.poles import Pole, Poles, Quality, poles
+from integrator.rig.poles import Pole, Poles, Quality, camera_by_poles, poles
 
 SIZE = (160, 120)
 CORNERS = ((0.0, 0.0), (0.0, 1.0), (1.0, 0.0))
@@ -210,3 +210,11 @@ def test_a_pole_height_that_puts_a_lens_below_the_floor_is_refused() -> None:
     low = Poles(160, 120, 1.0, measured.poles)
     with pytest.raises(CalibrationError, match="check pole_height_m"):
         poles(low)
+
+
+def test_a_pole_at_the_lens_itself_is_refused() -> None:
+    """It was a fault: numbers overflowed on the way to the same refusal."""
+    near = 2.2250738585072014e-308
+    measured = Poles(160, 120, 1.0, (Pole(near, 0.0, None, (1.0, 1.0)),) * 2, None, 1e-200)
+    with pytest.raises(CalibrationError, match="do not tell how far cam2 stands"):
+        camera_by_poles(measured, 2)

@@ -34,7 +34,7 @@ SOCKET: Final = "/live"
 WAITING: Final = 256
 """Messages that may wait for a browser: one that is slower loses the oldest."""
 MOST_SAID_BYTES: Final = 1000
-"""A browser says short things alone."""
+"""A browser says short things alone, where a page does not take more."""
 MOST_ASKED: Final = 16
 """Of these, so many wait to be heard."""
 MOST_BROWSERS: Final = 50
@@ -45,6 +45,9 @@ POLICY: Final = (
 """The browser itself keeps the page from asking anybody else."""
 
 log = logging.getLogger(__name__)
+
+File = tuple[str, bytes]
+"""Kind (MIME) and content."""
 
 
 def is_of_ours(record: logging.LogRecord) -> bool:
@@ -62,6 +65,11 @@ class _Door(NamedTuple):
     over: asyncio.Event
 
 
+def live_file(path: str) -> File | None:
+    """The live page's file of a path, None where there is none."""
+    return site(SITE).get(path)
+
+
 class PageServer:
     """Serves the page on exactly this port, in a thread of its own.
 
@@ -69,13 +77,20 @@ class PageServer:
         port: Of this machine, free.
         greeting: What a browser is told when it comes, oldest first; called in the server's thread.
         entrance: Where it listens, the loopback interface where nothing else is said, and to whom.
+        file_of: The page's file of a path, None where there is none; called in the server's thread.
+        most_said_bytes: A browser that says more at once is left.
 
     Raises:
         PageError: When the port is 0, taken or not allowed.
     """
 
     def __init__(
-        self, port: int, greeting: Callable[[], list[bytes]], entrance: Entrance = Entrance()
+        self,
+        port: int,
+        greeting: Callable[[], list[bytes]],
+        entrance: Entrance = Entrance(),
+        file_of: Callable[[str], File | None] = live_file,
+        most_said_bytes: int = MOST_SAID_BYTES,
     ) -> None:
         refuse_port(port, entrance.host)
         self.address = address_of(entrance, port)
@@ -85,10 +100,12 @@ class PageServer:
         """How many browsers have come so far."""
         self._greeting = greeting
         self._entrance, self._port = entrance, port
+        self._file_of, self._most_said_bytes = file_of, most_said_bytes
         self._browsers: dict[ServerConnection, asyncio.Queue[bytes]] = {}
         opened: queue.Queue[_Door | OSError] = queue.Queue(1)
         self._log = logging.getLogger(f"{__name__}.socket")
         self._log.addFilter(is_of_ours)
+        self._log.setLevel(logging.WARNING)  # it would tell of every file that it serves
         self._thread = threading.Thread(
             target=lambda: asyncio.run(self._serve(opened)), daemon=True
         )
@@ -122,7 +139,7 @@ class PageServer:
                 self._entrance.host,
                 self._port,
                 process_request=self._request,
-                max_size=MOST_SAID_BYTES,
+                max_size=self._most_said_bytes,
                 compression=None,
                 server_header=None,
                 logger=self._log,
@@ -150,7 +167,7 @@ class PageServer:
             return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, text) if full else None
         if path == "/" and self._entrance.token and "token=" in query:
             return Response(HTTPStatus.SEE_OTHER, "See Other", self._kept_token())
-        found = site().get(path)
+        found = self._file_of(path)
         if found is None:
             return connection.respond(HTTPStatus.NOT_FOUND, "no such page\n")
         return Response(HTTPStatus.OK, "OK", _headers(*found), found[1])
@@ -199,10 +216,10 @@ async def _speak(
 
 
 @cache
-def site() -> dict[str, tuple[str, bytes]]:
-    """The page's files by the path that a browser asks for: kind and content."""
+def site(*folders: Path) -> dict[str, File]:
+    """A page's files by the path that a browser asks for; those of a later folder go before."""
     files = {}
-    for path in sorted(SITE.iterdir()):
+    for path in [path for folder in folders for path in sorted(folder.iterdir())]:
         kind = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
         files[f"/{path.name}"] = kind, path.read_bytes()
     return {**files, "/": files["/index.html"]}
@@ -215,6 +232,7 @@ def _headers(kind: str, content: bytes) -> Headers:
         "Content-Security-Policy": POLICY,
         "X-Content-Type-Options": "nosniff",
         "Referrer-Policy": "no-referrer",
+        "Cross-Origin-Resource-Policy": "same-origin",
         "Cache-Control": "no-store",
         "Connection": "close",
     }

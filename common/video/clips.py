@@ -99,9 +99,9 @@ def _meta(folder: Path) -> Meta:
 
 
 def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> View:
-    info = timed(_probed(named.source, decoder))
+    info = timed(probed(named.source, decoder))
     if named.settings.background:
-        _refuse_another_scene(named, _probed(named.settings.background, decoder), info)
+        _refuse_another_scene(named, probed(named.settings.background, decoder), info)
     of_a_file = isinstance(named.source, str)
     told_hz = settings.fps or meta.fps
     fps = (told_hz or info.fps) if of_a_file else (info.fps or CAMERA_HZ)
@@ -127,7 +127,12 @@ def _told_s(meta: Meta, named: Footage) -> tuple[float, ...]:
     return meta.capture_s.get(f"cam{named.number}", ()) if isinstance(named.source, str) else ()
 
 
-def _probed(source: Source, decoder: Decoder) -> VideoInfo:
+def probed(source: Source, decoder: Decoder) -> VideoInfo:
+    """What a file or camera is.
+
+    Raises:
+        ClipError: When it is not there, is empty, or has no picture.
+    """
     if isinstance(source, str):
         if not Path(source).is_file():
             raise ClipError(f"there is no file {source}: check the path")

@@ -21,7 +21,7 @@ def run_markers(path: Path) -> tuple[Aim, ...]:
     Raises:
         CalibrationError: When the file cannot be read or a marker is no line.
     """
-    markers = _read(path, Markers)
+    markers = read_points(path, Markers)
     return tuple(line_markers(view, (markers.width, markers.height)) for view in markers.cameras)
 
 
@@ -38,7 +38,7 @@ def run_poles(path: Path, out: Path, replace: bool = False) -> Quality:
             not suffice.
     """
     refuse_to_replace(out, replace)
-    rig, quality = poles(_read(path, Poles))
+    rig, quality = poles(read_points(path, Poles))
     write_rig(out, rig, quality)
     return quality
 
@@ -79,7 +79,12 @@ def write_text(path: Path, text: str) -> None:
         raise CalibrationError(f"cannot write the calibration {path}: {error.strerror}") from error
 
 
-def _read(path: Path, kind: type[Content]) -> Content:
+def read_points(path: Path, kind: type[Content]) -> Content:
+    """A file of measured points, TOML or JSON.
+
+    Raises:
+        CalibrationError: When it cannot be read, or says what cannot be meant.
+    """
     decode = msgspec.json.decode if path.suffix == ".json" else msgspec.toml.decode
     try:
         content = decode(path.read_bytes(), type=kind)

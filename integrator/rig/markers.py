@@ -69,7 +69,7 @@ def line_markers(view: MarkerView, size: tuple[int, int]) -> Aim:
 
     Source: section 4.1, steps (2)-(4) (P42).
     """
-    rays = [_rays(view, marker, size) for marker in ("floor_px", "wall_px")]
+    rays = _rays_of_both(view, size)
     normals = [_normal(view, rays[axis], axis) for axis in (0, 1)]
     right, below, forward = _rotation(rays)
     return Aim(
@@ -79,6 +79,27 @@ def line_markers(view: MarkerView, size: tuple[int, int]) -> Aim:
         roll_deg=_degrees(right[1], below[1]),
         skew_deg=math.degrees(math.asin(abs(float(normals[0] @ normals[1])))),
     )
+
+
+def fitted_lines(view: MarkerView, size: tuple[int, int]) -> Vector:
+    """Where the markers lie in the picture by the aim that their points give.
+
+    Returns:
+        (2, 3): a, b, c of a line a u + b v + c = 0, pixels, for the marker on the ground and that
+        on the wall; a^2 + b^2 = 1, so that the left side tells how far a point is off.
+
+    Raises:
+        CalibrationError: When the points of a marker make no line.
+    """
+    normals = _rotation(_rays_of_both(view, size)).T[:2]
+    across_down = normals[:, :2] / view.focal_px
+    lines = np.column_stack([across_down, normals[:, 2] - across_down @ np.array(size) / 2])
+    straight: Vector = lines / np.linalg.norm(across_down, axis=1, keepdims=True)
+    return straight
+
+
+def _rays_of_both(view: MarkerView, size: tuple[int, int]) -> list[Vector]:
+    return [_rays(view, marker, size) for marker in ("floor_px", "wall_px")]
 
 
 def _rotation(rays: list[Vector]) -> Vector:

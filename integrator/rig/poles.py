@@ -21,6 +21,8 @@ ROUNDS: Final = 20
 """Gauss-Newton converges within five or never."""
 SINGULAR: Final = 1e-9
 """Least over greatest singular value below which the poles leave something open."""
+NEAREST_M: Final = 0.01
+"""A pole that is nearer to a lens, or behind it, was not seen."""
 
 
 class Pole(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -80,7 +82,7 @@ def poles(measured: Poles) -> tuple[Rig, Quality]:
 
     Source: section 4.1 (P43, M2); the conditions of P42 hold (the cameras are level and aimed).
     """
-    first, second = (_camera(measured, number) for number in (1, 2))
+    first, second = (camera_by_poles(measured, number) for number in (1, 2))
     rig = paper_rig(
         (measured.width, measured.height),
         (first.focal_px, second.focal_px),
@@ -90,7 +92,12 @@ def poles(measured: Poles) -> tuple[Rig, Quality]:
     return rig, Quality((first, second))
 
 
-def _camera(measured: Poles, number: int) -> CameraQuality:
+def camera_by_poles(measured: Poles, number: int) -> CameraQuality:
+    """One of the two cameras (1 or 2), by the poles that it shows.
+
+    Raises:
+        CalibrationError: When they do not determine it.
+    """
     name = f"cam{number}"
     values, sds, misfit_px = _fit(_tops(measured, number), name)
     distance_m, focal_px, rise, off_centre_px = values
@@ -150,7 +157,7 @@ def _fit(tops: _Tops, name: str) -> tuple[list[float], list[float], float]:
         if spread[-1] < SINGULAR * spread[0]:
             raise CalibrationError(f"no pole stands off the axis of {name}: add one at its side")
         values = values + np.linalg.lstsq(jacobian, residual)[0]
-        if not values[0] > tops.towards_m.max():
+        if not values[0] > tops.towards_m.max() + NEAREST_M:
             raise _distance_unknown(name)
     jacobian, residual = _linear(tops, values)
     sds = READING_SD_PX * np.sqrt(np.diag(np.linalg.inv(jacobian.T @ jacobian)))
@@ -163,7 +170,7 @@ def _start(tops: _Tops, name: str) -> Vector:
     rows = np.column_stack([tops.rows_px, -np.ones_like(tops.rows_px)])
     by_rows = np.linalg.lstsq(rows, tops.rows_px * tops.towards_m)[0]
     distance_m = by_rows[0] if tops.taped_m is None else tops.taped_m
-    if not distance_m > tops.towards_m.max():
+    if not distance_m > tops.towards_m.max() + NEAREST_M:
         raise _distance_unknown(name)
     near = 1 / (distance_m - tops.towards_m)
     columns = np.column_stack([tops.across_m * near, np.ones_like(near)])

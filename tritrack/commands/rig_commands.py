@@ -18,6 +18,13 @@ calibrate_app = typer.Typer(
 Written = Annotated[Path, typer.Option(help="The file to write.", callback=writable_file)]
 Forced = Annotated[bool, typer.Option("--force", help="Replace a file that is there.")]
 OUT: Final = Path("calibration.json")
+Page = Annotated[
+    Path | None,
+    typer.Option(help="Click the points on a page, in pictures of this clip, or these settings."),
+]
+Port = Annotated[
+    int | None, typer.Option(min=1, max=65535, help="Of the page, instead of the settings'.")
+]
 
 
 @calibrate_app.command()
@@ -113,20 +120,32 @@ def board(
 @calibrate_app.command()
 def markers(
     measured: Annotated[Path, typer.Argument(help="Points on the line markers (TOML).")],
+    page: Page = None,
+    port: Port = None,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Say how far each camera is turned, tilted and rolled away from the marked lines.
 
     Example: tritrack calibrate markers configs/markers.toml
+    Example: tritrack calibrate markers markers.toml --page clips/empty
     """
     from integrator.rig.calibration import run_markers
 
-    tell_rows(run_markers(measured), json_wanted)
+    if page is None:
+        tell_rows(run_markers(measured), json_wanted)
+        return
+    refuse_without("page", "websockets")
+    from tritrack.marking.marking import Asked, mark_markers
+
+    result = mark_markers(Asked(page, _kept(measured), port), console)
+    tell_rows(result.rows, json_wanted)
 
 
 @calibrate_app.command()
 def poles(
     measured: Annotated[Path, typer.Argument(help="Tops of the poles in both pictures (TOML).")],
+    page: Page = None,
+    port: Port = None,
     out: Written = OUT,
     force: Forced = False,
     json_wanted: JsonWanted = False,
@@ -134,11 +153,31 @@ def poles(
     """Find focal lengths and distances from poles at known places, with error bars.
 
     Example: tritrack calibrate poles configs/poles.toml --out clips/calibration.json
+    Example: tritrack calibrate poles poles.toml --page clips/poles --out clips/calibration.json
     """
-    from integrator.rig.calibration import run_poles
+    from integrator.rig.calibration import refuse_to_replace, run_poles
 
-    tell_rows(run_poles(measured, out, force).cameras, json_wanted)
-    console.print(f"written to {out}", highlight=False, soft_wrap=True)
+    if page is None:
+        tell_rows(run_poles(measured, out, force).cameras, json_wanted)
+        console.print(f"written to {out}", highlight=False, soft_wrap=True)
+        return
+    refuse_without("page", "websockets")
+    from tritrack.marking.marking import Asked, mark_poles
+
+    refuse_to_replace(out, force)
+    result = mark_poles(Asked(page, _kept(measured), port), out, console)
+    tell_rows(result.rows, json_wanted)
+    told = "no calibration was saved" if result.saved is None else f"written to {out}"
+    if result.saved not in (None, result.newest):
+        told += ", without what was changed since then; to take that in: "
+        told += f"tritrack calibrate poles {measured} --out {out} --force"
+    console.print(told, highlight=False, soft_wrap=True)
+
+
+def _kept(points: Path) -> Path:
+    """The file in which a page keeps points, refused before anybody clicks where it cannot."""
+    writable_file(points)
+    return points
 
 
 @calibrate_app.command("import")

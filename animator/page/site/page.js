@@ -2,6 +2,7 @@
 
 import { Actions } from "./actions.js";
 import { History } from "./history.js";
+import { isLockedOut, LOCKED_OUT } from "./knock.js";
 import { Events, element, showEnding, showHealth, showPosture, showStatus, showTold, showTrust } from "./panel.js";
 import { INKS, Plot } from "./plot.js";
 import { Room } from "./room.js";
@@ -66,8 +67,10 @@ function connect() {
     const told = JSON.parse(data);
     heard[told.kind]?.(told);
   });
-  socket.addEventListener("close", () => {
-    if (!history.over) showStatus("gone", history.frames.length ? "the run does not answer" : "waiting for the run");
+  socket.addEventListener("close", async () => {
+    const waiting = history.frames.length ? "the run does not answer" : "waiting for the run";
+    const words = (await isLockedOut()) ? LOCKED_OUT : waiting;
+    if (!history.over) showStatus("gone", words);
     setTimeout(connect, AGAIN_MS);
   });
 }

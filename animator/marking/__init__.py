@@ -1,0 +1,1 @@
+"""The marking page: points of a calibration clicked in the cameras' pictures."""

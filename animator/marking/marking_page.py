@@ -1,0 +1,91 @@
+"""The marking page's server: pictures, the newest sheet to who comes, and what browsers said."""
+
+import queue
+import re
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+import msgspec
+
+from animator.marking.sheet import MOST_SAID_BYTES, Hello, Marked, Save, Shown, Told, heard
+from animator.page.door import Entrance
+from animator.page.page_server import SITE, File, PageServer, site
+
+OWN_SITE: Final = Path(__file__).parent / "site"
+STILL: Final = re.compile(r"/still/([12])/(\d{1,6}|live)\.jpg", re.ASCII)
+LIVE: Final = -1
+"""A still's place: the camera's newest picture."""
+
+JpegOf = Callable[[int, int], bytes | None]
+"""A still by its camera (1 or 2) and place (from 0, or LIVE), None where there is none."""
+
+
+def still_address(camera: int, place: int) -> str:
+    """Where a browser finds a still."""
+    return f"/still/{camera}/{'live' if place == LIVE else place}.jpg"
+
+
+class MarkingPage:
+    """What a browser sees at `address`, until `close`.
+
+    Args:
+        hello: What every browser is told first; its run is filled in.
+        jpeg_of: The pictures; called in the server's thread.
+        port: Of this machine, free.
+        entrance: Where it listens, and to whom.
+
+    Raises:
+        PageError: When the port is 0, taken or not allowed.
+    """
+
+    def __init__(
+        self, hello: Hello, jpeg_of: JpegOf, port: int, entrance: Entrance = Entrance()
+    ) -> None:
+        hello = msgspec.structs.replace(hello, run=time.time_ns() // 1_000_000)
+        self._hello, self._jpeg_of = msgspec.json.encode(hello), jpeg_of
+        self._lock = threading.Lock()
+        self._shown: bytes | None = None
+        self._server = PageServer(port, self._greeting, entrance, self._file, MOST_SAID_BYTES)
+        self.address = self._server.address
+        """Where a browser finds the page."""
+
+    def show(self, shown: Shown) -> None:
+        """Tell every browser, and those that come later, the newest sheet."""
+        said = msgspec.json.encode(shown)
+        with self._lock:
+            self._shown = said
+        self._server.tell(said)
+
+    def tell(self, text: str, well: bool) -> None:
+        """Say what became of a wish."""
+        self._server.tell(msgspec.json.encode(Told(text, well)))
+
+    def next_wish(self) -> Marked | Save | None:
+        """What a browser said, the oldest first; None when nothing waits.
+
+        Raises:
+            SheetError: When no page of ours says so.
+        """
+        try:
+            return heard(self._server.asked.get_nowait())
+        except queue.Empty:
+            return None
+
+    def close(self) -> None:
+        """Take the page down and free the port."""
+        self._server.close()
+
+    def _greeting(self) -> list[bytes]:
+        with self._lock:
+            return [self._hello] if self._shown is None else [self._hello, self._shown]
+
+    def _file(self, path: str) -> File | None:
+        asked = STILL.fullmatch(path)
+        if asked is None:
+            return site(SITE, OWN_SITE).get(path)
+        place = LIVE if asked[2] == "live" else int(asked[2])
+        jpeg = self._jpeg_of(int(asked[1]), place)
+        return None if jpeg is None else ("image/jpeg", jpeg)

@@ -1,0 +1,1 @@
+"""Markers and poles clicked on a page instead of typed."""

@@ -1,0 +1,177 @@
+"""The pictures of the marking page: stills of each film, or a camera's newest picture."""
+
+import math
+import threading
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from itertools import islice
+from typing import Final, NamedTuple, Protocol
+
+import cv2
+import numpy as np
+from rich.console import Console
+
+from animator.marking.marking_page import LIVE, still_address
+from animator.marking.sheet import Pictures
+from common.config import Settings, working_size
+from common.video.clip_sources import ClipError, Footage, footage_of
+from common.video.clips import SAME_ASPECT, probed
+from common.video.decoding import Decoded, Decoder, DecoderDied, Image, Size, Source, Undecodable
+from tritrack.terminal import bar
+
+MOST_STILLS: Final = 100
+"""Of each film, evenly spread: markers stand still, and a pole that is carried about rests."""
+BOUND: Final = (1920, 1080)
+"""Pictures are shown, and their points told, no larger."""
+JPEG_QUALITY: Final = 92
+
+
+class Reader(Protocol):
+    """Gives a source's pictures."""
+
+    def frames(
+        self, source: Source, size: Size, every: int = 1, large: Size | None = None
+    ) -> Generator[Decoded, None, None]:
+        """Every n-th picture, reduced to a size."""
+
+    def stop(self) -> None:
+        """End that, from any thread."""
+
+
+class Film(NamedTuple):
+    """Stills of a recorded film."""
+
+    jpegs: tuple[bytes, ...]
+    frames: tuple[int, ...]
+    """Their places in the film."""
+
+    def jpeg(self, place: int) -> bytes | None:
+        """A still, None where there is none."""
+        return self.jpegs[place] if 0 <= place < len(self.jpegs) else None
+
+
+class Running:
+    """A camera's newest picture, taken in a thread of its own until `close`."""
+
+    def __init__(self, reader: Reader, source: Source, size: Size) -> None:
+        self._reader = reader
+        self._newest: Image | None = None
+        self._came, self._closed = threading.Event(), threading.Event()
+        self.fault: Exception | None = None
+        """Why it gives no more pictures."""
+        self._thread = threading.Thread(target=self._read, args=(source, size), daemon=True)
+        self._thread.start()
+        self._came.wait()
+
+    def jpeg(self, place: int) -> bytes | None:
+        """The newest picture, which is all that there is."""
+        newest = self._newest
+        return None if newest is None or place != LIVE else _jpeg(newest)
+
+    def close(self) -> None:
+        """Let go of the camera."""
+        self._closed.set()
+        self._reader.stop()
+        self._thread.join()
+
+    def _read(self, source: Source, size: Size) -> None:
+        try:
+            for decoded in self._reader.frames(source, size):
+                self._newest = decoded.picture
+                self._came.set()
+        except (Undecodable, DecoderDied) as error:
+            self.fault = None if self._closed.is_set() else error
+        self._came.set()
+
+
+class Album(NamedTuple):
+    """The pictures of all views, of one size."""
+
+    size: Size
+    views: Mapping[int, Film | Running]
+    """By camera, 1 or 2."""
+
+    @property
+    def pictures(self) -> tuple[Pictures, ...]:
+        """As a browser is told of them."""
+        return tuple(_pictures(number, view) for number, view in self.views.items())
+
+    def jpeg(self, camera: int, place: int) -> bytes | None:
+        """A still, None where there is none."""
+        return self.views[camera].jpeg(place) if camera in self.views else None
+
+    def refuse_fault(self) -> None:
+        """See that every camera still runs.
+
+        Raises:
+            Undecodable, DecoderDied: When one does not.
+        """
+        for view in self.views.values():
+            if isinstance(view, Running) and view.fault is not None:
+                raise view.fault
+
+
+@contextmanager
+def open_album(settings: Settings, console: Console) -> Iterator[Album]:
+    """The pictures of a run's views; cameras run until the end.
+
+    Raises:
+        ClipError, Undecodable, DecoderDied: When something cannot be looked at, or the views'
+            pictures are not of one shape.
+    """
+    footage = footage_of(settings)
+    if not footage:
+        raise ClipError("there is nothing to look at: set clip, or camera_1 with source or device")
+    with ExitStack() as doors:
+        decoders = {view.number: doors.enter_context(Decoder()) for view in footage}
+        infos = {view.number: probed(view.source, decoders[view.number]) for view in footage}
+        size = common_size([(info.width, info.height) for info in infos.values()])
+        views: dict[int, Film | Running] = {}
+        for view in footage:
+            decoder, frames = decoders[view.number], infos[view.number].frames
+            if isinstance(view.source, int):
+                running = Running(decoder, view.source, size)
+                doors.callback(running.close)
+                views[view.number] = running
+            else:
+                views[view.number] = _film(decoder, view, size, frames, console)
+        yield Album(size, views)
+
+
+def common_size(sizes: Sequence[Size]) -> Size:
+    """The size at which all views' pictures are shown: no larger than any of them, nor than BOUND.
+
+    Raises:
+        ClipError: When their shapes differ, as no calibration has.
+    """
+    first = min(sizes)
+    for other in sizes:
+        if abs(first[0] * other[1] / (first[1] * other[0]) - 1.0) > SAME_ASPECT:
+            raise ClipError(
+                "the cameras' pictures differ in shape ({}x{} and {}x{}): film both alike".format(
+                    *first, *other
+                )
+            )
+    return working_size(first, BOUND)
+
+
+def _film(decoder: Decoder, view: Footage, size: Size, frames: int, console: Console) -> Film:
+    every = max(1, math.ceil(frames / MOST_STILLS))
+    with bar(console) as progress:
+        taken = islice(decoder.frames(view.source, size, every), MOST_STILLS)
+        told = progress.track(taken, total=math.ceil(frames / every) or None, description="reading")
+        stills = [(decoded.index, _jpeg(decoded.picture)) for decoded in told]
+    return Film(tuple(jpeg for _, jpeg in stills), tuple(index for index, _ in stills))
+
+
+def _pictures(number: int, view: Film | Running) -> Pictures:
+    name = f"cam{number}"
+    if isinstance(view, Running):
+        return Pictures(number, name, (still_address(number, LIVE),), (0,), runs=True)
+    addresses = tuple(still_address(number, place) for place in range(len(view.jpegs)))
+    return Pictures(number, name, addresses, view.frames, runs=False)
+
+
+def _jpeg(picture: Image) -> bytes:
+    _, encoded = cv2.imencode(".jpg", np.asarray(picture), [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+    return encoded.tobytes()
