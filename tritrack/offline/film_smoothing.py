@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, Vector
 from common.bus.messages import Body
 from common.notes.notes import Notes, held
-from common.rig.camera import Rig, project
+from common.rig.camera import Rig, centre, project
+from integrator.single.rigid_limbs import with_lengths
 
 NOISE_M: Final = 0.05
 """Standard deviation of a joint as one view has it."""
@@ -29,11 +30,13 @@ Covariance = tuple[float, float, float]
 def calmed(bodies: Sequence[Body], rig: Rig, notes: Notes = Notes()) -> list[Body]:
     """The bodies of a film with smooth joints, whose limbs keep the lengths that are their medians.
 
+    Where a length is not what was found, depth gives way before the place in the picture.
+
     Angles stay as they are: they were smoothed as they came. So do joints that the user placed.
 
     Args:
         bodies: In the order of time; those without joints part the film into stretches.
-        rig: Gives the joints' places in the pictures.
+        rig: Of the film's camera, twice.
         notes: The user's inputs.
     """
     from animator.bones import joints_of, motion_of, skeleton_of
@@ -43,7 +46,8 @@ def calmed(bodies: Sequence[Body], rig: Rig, notes: Notes = Notes()) -> list[Bod
         return list(bodies)
     joints_m = np.concatenate([_of_stretch(some) for some in stretches])
     skeleton = skeleton_of(joints_m)
-    rigid = iter(joints_of(skeleton, motion_of(skeleton, joints_m)))
+    rigid_m = joints_of(skeleton, motion_of(skeleton, joints_m))
+    rigid = iter(with_lengths(joints_m, rigid_m, centre(rig.cameras[0])))
     return [_with(body, next(rigid), rig, notes) if body.joints_m else body for body in bodies]
 
 

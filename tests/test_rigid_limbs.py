@@ -1,0 +1,54 @@
+"""Limbs of known lengths, held against arms whose depth or place is known to be wrong."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from common.body.body import JOINT_NAMES
+from integrator.single.rigid_limbs import with_lengths
+
+CAMERA = np.array([0.0, 1.2, 4.0])
+SHOULDER, ELBOW, WRIST = (JOINT_NAMES.index(f"l_{name}") for name in ("shoulder", "elbow", "wrist"))
+
+
+def standing() -> np.ndarray:
+    """One body (1, 15, 3) whose left arm is stretched out beside it."""
+    joints = np.zeros((1, len(JOINT_NAMES), 3))
+    joints[0, :, 1] = np.linspace(0.1, 1.7, len(JOINT_NAMES))
+    joints[0, [SHOULDER, ELBOW, WRIST]] = [[0.2, 1.4, 0.0], [0.5, 1.4, 0.0], [0.75, 1.4, 0.0]]
+    return joints
+
+
+def test_joints_that_have_their_lengths_stay() -> None:
+    assert np.allclose(with_lengths(standing(), standing(), CAMERA), standing(), atol=1e-6)
+
+
+def test_a_limb_that_is_too_long_in_depth_gives_way_in_depth() -> None:
+    found = standing()
+    found[0, ELBOW, 2], found[0, WRIST, 2] = 0.25, 0.25
+    sight = (found[0, ELBOW] - CAMERA) / np.linalg.norm(found[0, ELBOW] - CAMERA)
+    made = with_lengths(found, standing(), CAMERA)
+    aimed = found[0, ELBOW] - found[0, SHOULDER]
+    aimed = found[0, SHOULDER] + aimed * 0.3 / np.linalg.norm(aimed)
+
+    def beside(place: np.ndarray) -> float:
+        away = place - found[0, ELBOW]
+        return float(np.linalg.norm(away - (away @ sight) * sight))
+
+    assert beside(made[0, ELBOW]) < 0.75 * beside(aimed)
+
+
+@given(st.lists(st.floats(-0.3, 0.3), min_size=6, max_size=6))
+def test_limbs_have_their_lengths_wherever_they_were_found(off: list[float]) -> None:
+    found = standing()
+    found[0, [ELBOW, WRIST]] += np.reshape(off, (2, 3))
+    made = with_lengths(found, standing(), CAMERA)
+    lengths = np.linalg.norm(np.diff(made[0, [SHOULDER, ELBOW, WRIST]], axis=0), axis=1)
+    assert np.allclose(lengths, [0.3, 0.25])
+
+
+def test_a_limb_whose_ends_were_found_at_one_place_has_its_length_too() -> None:
+    found = standing()
+    found[0, [ELBOW, WRIST]] = found[0, SHOULDER]
+    made = with_lengths(found, standing(), CAMERA)
+    assert np.isclose(np.linalg.norm(made[0, ELBOW] - made[0, SHOULDER]), 0.3)
