@@ -1,0 +1,35 @@
+"""Who stands in the median picture of a clip, held against rendered people whose mask is known."""
+
+import numpy as np
+from test_judged_background import film
+from test_own_landmarks import RIG
+
+from synth.motion.motions import MOTION, performance
+from synth.person.people import person
+from synth.picture.render import render
+from viewer.background.image_stack import median
+from viewer.room.room_people import Look, looked_at
+from viewer.room.standing_body import standing
+
+
+def test_somebody_who_stays_is_found_whole() -> None:
+    """Better than the surest landmarks alone draw them."""
+    someone = person(4321)
+    motion = performance(someone, "raise_both_lateral", 3)
+    shots = list(render(someone, motion, RIG, 77, 3))
+    shown = [s for s, phase in zip(shots, motion.phase, strict=True) if phase == MOTION][::4]
+    frames, masks = [s.frame1 for s in shown], np.stack([s.mask1 for s in shown])
+    looks = looked_at(frames)
+    found, true = standing(median(frames), looks), masks.mean(axis=0) > 0.5
+    surest = max(looks, key=lambda look: sum(look.landmarks.confidence))
+    assert iou(found, true) > max(0.75, iou(surest.region(true.shape, 0.0) > 0, true))
+
+
+def test_nobody_stands_where_nobody_is() -> None:
+    empty, frames, _ = film()
+    nobody = [Look(look.landmarks, is_somebody=False) for look in looked_at(frames)]
+    assert not standing(empty.astype(np.float32), nobody).any()
+
+
+def iou(one: np.ndarray, other: np.ndarray) -> float:
+    return float((one & other).sum() / (one | other).sum())
