@@ -5,6 +5,7 @@ from typing import Final
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from common.raster.similarity import Mask
 from common.video.decoding import Image
@@ -17,17 +18,21 @@ BESIDE: Final = np.ones((3, 3), np.uint8)
 DARK, BRIGHT = np.float32(0), np.float32(255)
 
 
-def learn_behind(frames: Sequence[Image], body: Mask) -> Background:
+def learn_behind(
+    frames: Sequence[Image], body: Mask, covered: Sequence[NDArray[np.uint8]]
+) -> Background:
     """The background from pictures of which it is known where somebody hides it in most.
 
     It is what frames show there that is not what hides it, and comes near what is drawn from both
-    sides. Where hardly a frame shows that, nothing is known of it; but whatever is there is the
-    body: so the background is taken to be as far from that as it can be, since a guess may as well
-    be the body's colour. When they leave, the landmarks tell what is left there to be a thing.
+    sides, or is seen while they are elsewhere. Where hardly a frame shows that, nothing is known of
+    it; but whatever is there is the body: so the background is taken to be as far from that as it
+    can be, since a guess may as well be the body's colour. When they leave, the landmarks tell what
+    is left there to be a thing.
 
     Args:
         frames: Pictures from all over a clip, of one size.
         body: (H, W) of whoever their median shows.
+        covered: Of each frame (H, W), 1 where somebody may be.
     """
     even = even_light(frames)
     centre = median(even)
@@ -35,7 +40,7 @@ def learn_behind(frames: Sequence[Image], body: Mask) -> Background:
     held = cv2.dilate(body.view(np.uint8), BESIDE) > 0
     background = bridged(centre, held)
     near = np.abs((even - background) @ LUMA) < CHANGES
-    shows = held & near & ((away > CHANGES) | ~body)
+    shows = held & (near | (np.stack(covered) == 0)) & ((away > CHANGES) | ~body)
     count = shows.sum(axis=0)
     unseen = held & (count < SHOWN * len(even))
     seen = held & ~unseen

@@ -75,7 +75,8 @@ def of_clip(
 
     Where contours say that nobody is in the opening, that is the room. They do take furniture for
     somebody: then the network of landmarks is asked, and the backgrounds of both cases are made,
-    the likelier first, until one has the outlines that the landmarks in later frames ask for.
+    the likelier first, until one has the outlines that the landmarks in later frames ask for. Of
+    what changes and of who hides the same place all through, one is estimated each: the better.
 
     Args:
         opening: The first frames.
@@ -94,7 +95,9 @@ def of_clip(
     opened = learnt(laid_over, opening)
     makers: list[Callable[[], Background]] = [lambda: learn_uncovered(sample)]
     if any(look.is_somebody for look in looks):
-        makers.insert(0, lambda: learn_behind(sample, standing(median(even_light(judges)), looks)))
+        body = standing(median(even_light(judges)), looks)
+        estimates = [makers[0], lambda: learn_behind(judges, body, regions)]
+        makers = [lambda: best_of(estimates, judges, looks, settings, good=1.0)]
         makers.append(lambda: learn_around(judges, regions))
         if still:
             makers.insert(len(makers) if somebody else 0, lambda: opened)
