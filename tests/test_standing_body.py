@@ -1,5 +1,6 @@
 """Who stands in the median picture of a clip, held against rendered people whose mask is known."""
 
+import msgspec
 import numpy as np
 from test_judged_background import film
 from test_own_landmarks import RIG
@@ -29,6 +30,20 @@ def test_nobody_stands_where_nobody_is() -> None:
     empty, frames, _ = film()
     nobody = [Look(look.landmarks, is_somebody=False) for look in looked_at(frames)]
     assert not standing(empty.astype(np.float32), nobody).any()
+
+
+def test_what_is_larger_than_anybody_is_nobody() -> None:
+    """Landmarks of a picture that shows nobody may lie anywhere."""
+    empty, frames, _ = film()
+    high, wide = empty.shape[:2]
+    looks = []
+    for look in looked_at(frames):
+        places = np.array(look.landmarks.joints_px)
+        places = (places - places.mean(axis=0)) * 3.0 + (wide / 2, high / 2)
+        joints_px = tuple((float(x), float(y)) for x, y in places)
+        landmarks = msgspec.structs.replace(look.landmarks, joints_px=joints_px)
+        looks.append(Look(landmarks, is_somebody=True))
+    assert not standing(median(frames), looks).any()
 
 
 def iou(one: np.ndarray, other: np.ndarray) -> float:

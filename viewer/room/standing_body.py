@@ -9,6 +9,7 @@ import numpy as np
 from common.body.body import Vector
 from common.raster.similarity import Mask
 from viewer.background.image_stack import Floats
+from viewer.background.occluded_background import MOST_HIDDEN
 from viewer.room.room_people import Look
 
 BEYOND: Final = (-0.03, -0.015, 0.0, 0.015, 0.03, 0.05)
@@ -34,7 +35,7 @@ ALIKE: Final = 3e-5
 
 
 def standing(centre: Floats, looks: Sequence[Look]) -> Mask:
-    """(H, W) whom the median picture shows; nothing where nobody stays.
+    """(H, W) whom the median picture shows; nothing where nobody stays, or hides too much of it.
 
     Landmarks of single frames are off, each in its own way; what most of them have is the body's.
     From these votes, which colours are the body's and which the room's is learnt, and told of each
@@ -61,7 +62,7 @@ def standing(centre: Floats, looks: Sequence[Look]) -> Mask:
         body = _smooth(picture / 255, 1 / (1 + np.exp(-odds)), reach).clip(0, 1) * around
     found = np.zeros(centre.shape[:2], np.bool_)
     found[window] = body > 0.5
-    return found
+    return found & (found.mean() <= MOST_HIDDEN)
 
 
 def _votes(looks: Sequence[Look], shape: tuple[int, ...], beyond: float) -> Floats:
