@@ -72,7 +72,10 @@ def init(background: Background, lens: Lens, begun: Vector | None = None) -> Sta
         begun: How it was turned before that; None: it was not.
     """
     even = even_of(np.asarray(np.rint(background.centre), np.uint8))
-    marks = cv2.goodFeaturesToTrack(even, CORNERS, 0.02, APART * even.shape[0], blockSize=5)
+    near = cv2.dilate(background.uncertain.view(np.uint8), np.ones((PATCH, PATCH), np.uint8))
+    known = np.where(near > 0, np.uint8(0), np.uint8(255))
+    apart_px = APART * even.shape[0]
+    marks = cv2.goodFeaturesToTrack(even, CORNERS, 0.02, apart_px, mask=known, blockSize=5)
     marks_px = np.zeros((0, 2), np.float32) if marks is None else marks[:, 0]
     return State(lens, background, even, marks_px, np.eye(3), np.eye(3) if begun is None else begun)
 

@@ -69,7 +69,7 @@ def learn_uncovered(frames: Sequence[Image]) -> Background:
         background, uncertain = _filled(even, centre, held)
         if uncertain.mean() <= MOST_HIDDEN:
             break
-    return _estimated(even - centre, away, background, held, uncertain)
+    return estimated_of(even - centre, away, background, held, uncertain)
 
 
 def learn_around(frames: Sequence[Image], covered: Sequence[NDArray[np.uint8]]) -> Background:
@@ -88,7 +88,7 @@ def learn_around(frames: Sequence[Image], covered: Sequence[NDArray[np.uint8]]) 
     held = shown < LEAST_SHOWN
     away = np.abs(even - centre).max(axis=3)
     away[hidden] = np.inf
-    return _estimated(even - centre, away, _bridge(centre, held), held, held)
+    return estimated_of(even - centre, away, bridged(centre, held), held, held)
 
 
 def _shown_median(even: Floats, hidden: Mask, shown: NDArray[np.int64]) -> Floats:
@@ -101,7 +101,7 @@ def _shown_median(even: Floats, hidden: Mask, shown: NDArray[np.int64]) -> Float
     return centre
 
 
-def _estimated(
+def estimated_of(
     off: Floats, away: Floats, background: Floats, held: Mask, uncertain: Mask
 ) -> Background:
     """A background with how far frames stay from its centre while nobody changes them."""
@@ -115,7 +115,7 @@ def _estimated(
 
 def _filled(even: Floats, centre: Floats, held: Mask) -> tuple[Floats, Mask]:
     """The background (H, W, 3) with what is held filled, and where hardly a frame shows that."""
-    guess = _bridge(centre, held)
+    guess = bridged(centre, held)
     near = np.abs((even - guess) @ LUMA) < CHANGES
     shown = near.sum(axis=0)
     mean = (even * near[..., None]).sum(axis=0) / np.maximum(shown, 1)[..., None]
@@ -172,7 +172,7 @@ def _alike(centre: Floats, labels: NDArray[np.int64], where: Mask) -> Mask:
     return np.asarray(off < 1)
 
 
-def _bridge(picture: Floats, held: Mask) -> Floats:
+def bridged(picture: Floats, held: Mask) -> Floats:
     """The picture with the held stretch of every row drawn from its two ends."""
     out = picture.copy()
     columns = np.arange(picture.shape[1])

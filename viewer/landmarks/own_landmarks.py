@@ -64,6 +64,17 @@ def found_anywhere(picture: Image) -> tuple[Landmarks, float]:
     return _told(best), best.nobody
 
 
+def found_between(picture: Image, low_px: Vector, high_px: Vector, margin: float) -> Landmarks:
+    """Somebody in a picture whose joints lie about between two corners.
+
+    Args:
+        picture: (H, W, 3)
+        low_px: (2,) likewise `high_px`.
+        margin: How far the body reaches beyond them, in their longer distance.
+    """
+    return _told(_look(picture, None, _between(low_px, high_px, margin)))
+
+
 def _told(best: _Look) -> Landmarks:
     return Landmarks(
         joints_px=tuple((float(x), float(y)) for x, y in best.joints_px),
@@ -92,7 +103,11 @@ def _about(joints_px: NDArray[np.float64], confidence: tuple[float, ...]) -> Win
     sure = joints_px[np.array(confidence) > COUNTS]
     if len(sure) < len(joints_px) // 2:
         return None
-    low, high = sure.min(axis=0), sure.max(axis=0)
-    beyond = MARGIN * float((high - low).max())
+    return _between(sure.min(axis=0), sure.max(axis=0), MARGIN)
+
+
+def _between(low: Vector, high: Vector, margin: float) -> Window:
+    """The window about joints between two corners."""
+    beyond = margin * float((high - low).max())
     (left, top), (right, bottom) = low - beyond, high + beyond
     return window_about(left, right, top, bottom)

@@ -21,8 +21,8 @@ GOOD: Final = 0.6
 """An outline that has as much of the body, and hardly anything else, needs no other to be tried."""
 BESIDE: Final = 0.08
 """Statures around the body in which an outline may lie: clothes, hair, landmarks a bit off."""
-SURELY: Final = 0.1
-"""By so much one that is less likely must fit better."""
+SURELY: Final = 0.05
+"""By so much one that is less likely must fit better: in made-up rooms that was the better one."""
 FAR: Final = 0.2
 """Statures from the body at which an outline is somebody else's, or a thing's."""
 JUDGED: Final = 5
@@ -42,6 +42,7 @@ def best_of(
     pictures: Sequence[Image],
     looks: Sequence[Look],
     settings: SilhouetteSettings,
+    good: float = GOOD,
 ) -> Background:
     """The background whose outlines fit the landmarks best; the first that is good is taken.
 
@@ -50,6 +51,7 @@ def best_of(
         pictures: Of the clip, (H, W, 3) each.
         looks: What the network makes of each.
         settings: How a person is told from the room.
+        good: Which one needs no other; 1: all are made.
     """
     shown = [pair for pair in zip(pictures, looks, strict=True) if pair[1].is_somebody]
     told = shown[:: max(1, -(-len(shown) // JUDGED))]
@@ -58,7 +60,7 @@ def best_of(
         background = make()
         now = Judged(background, _worth(background, told, settings))
         best = now if best is None or now.worth > best.worth + SURELY else best
-        if best.worth >= GOOD or not told:
+        if best.worth >= good or not told:
             break
     assert best is not None
     return best.background
