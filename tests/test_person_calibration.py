@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from wild_rigs import Trial, filmed, missed
+from wild_rigs import Trial, filmed, missed, trial
 
 from common.rig.camera import paper_rig
 from common.rig.rig_file import CalibrationError, check_rig
@@ -43,6 +43,23 @@ def test_a_persons_stature_is_the_measure_of_all_lengths() -> None:
         assert math.dist(other.position_m, (0, 0, 0)) == pytest.approx(
             1.2 * math.dist(one.position_m, (0, 0, 0)), rel=0.03
         )
+
+
+def test_a_posture_on_a_spot_says_that_it_does_not_tell_focal_lengths() -> None:
+    shown = filmed_by_the_papers_rig(4, "swing_both_backforth")
+    unsure = calibrated_by_person((shown.sighting,), shown.stature_m).quality.unsure
+    assert any(word.startswith("focal lengths") for word in unsure)
+
+
+@pytest.mark.slow
+def test_walks_through_the_room_tell_the_focal_lengths_of_any_two_cameras() -> None:
+    shown = trial(1003, pieces=12)
+    found = calibrated_by_person((shown.sighting,), shown.stature_m)
+    off = missed(found, shown)
+    assert off.turn_deg < 3.0
+    assert off.focal < 0.05
+    assert off.late_frames < 0.5
+    assert found.quality.unsure == ()
 
 
 def test_somebody_seen_by_one_camera_alone_calibrates_nothing() -> None:

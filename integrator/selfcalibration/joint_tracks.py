@@ -12,8 +12,10 @@ from common.bus.messages import Report
 JOINTS: Final = len(JOINT_NAMES)
 LEAST_SURE: Final = 0.4
 """A view whose landmarks are less sure on average tells nothing of a frame."""
-MOST_FRAMES: Final = 80
-"""As many of a clip are enough: neighbours err alike."""
+MOST_FRAMES, LONGEST = 80, 360
+"""As many of a clip are enough, for neighbours err alike; and of one that lasts long."""
+ENOUGH_HZ: Final = 2.5
+"""As many a second are looked at in a long clip."""
 
 
 class JointTrack(NamedTuple):
@@ -83,7 +85,9 @@ def useful_times(sighting: Sighting) -> Vector:
         return np.empty(0)
     also = np.interp(at, other.times_s, other.confidence.mean(axis=1)) >= LEAST_SURE
     times = at[sure & also]
-    picked = np.unique(np.linspace(0, len(times) - 1, min(MOST_FRAMES, len(times))).astype(int))
+    lasts_s = float(np.ptp(times)) if len(times) else 0.0
+    most = min(max(MOST_FRAMES, int(ENOUGH_HZ * lasts_s)), LONGEST, len(times))
+    picked = np.unique(np.linspace(0, len(times) - 1, most).astype(int))
     kept: Vector = times[picked]
     return kept
 

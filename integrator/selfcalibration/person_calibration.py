@@ -8,10 +8,17 @@ from common.body.body import Vector
 from common.rig.camera import Rig, centre
 from common.rig.rig_file import CalibrationError
 from integrator.selfcalibration import person_prior as prior
+from integrator.selfcalibration.film_worth import measured_worth
 from integrator.selfcalibration.joint_tracks import Sighting
 from integrator.selfcalibration.lateness import likely_lateness_s
+from integrator.selfcalibration.rig_certainty import (
+    STEP,
+    covariance_of,
+    late_errors_frames,
+    unsure_of,
+)
 from integrator.selfcalibration.rig_evidence import Evidence, gathered
-from integrator.selfcalibration.rig_fit import Fit, fitted, sides_of
+from integrator.selfcalibration.rig_fit import Fit, fitted, on_time, sides_of
 from integrator.selfcalibration.rig_guess import FOCALS, LATE, RIG, pinholes
 from integrator.selfcalibration.rig_quality import CameraQuality, PersonCalibration, Quality
 from integrator.selfcalibration.rig_residuals import Explained, explained, misfits
@@ -20,14 +27,12 @@ from integrator.selfcalibration.world_axes import origin_of, published_rig
 
 FEWEST: Final = 12
 """Moments in which both views must see the person."""
-FEW: Final = 24
-"""As many tell which start is right."""
+FEW, FEW_EACH = 24, 6
+"""As many tell which start is right, and of each clip where there are several."""
 STARTS: Final = 5
 """As many of the likeliest starts are followed."""
 AT_FIRST: Final = 15
 """Moments that tell where the person was at first."""
-STEP: Final = 1e-4
-"""By which numbers are moved to see what moves with them."""
 
 
 def calibrated_by_person(
@@ -45,7 +50,7 @@ def calibrated_by_person(
     """
     known = known_of(sightings[0].size_px[0], stature_m, len(sightings), fov_deg)
     evidence = gathered(sightings, known)
-    moments = sum(len(clip.first.times_s) for clip in evidence.clips)
+    moments = evidence.moments
     if moments < FEWEST or not all(all(clip.units_px) for clip in evidence.clips):
         raise CalibrationError(
             f"both cameras see the same person in {moments} moments only: film somebody, whole in "
@@ -63,7 +68,8 @@ def calibrated_by_person(
 
 def best_fit(evidence: Evidence, sightings: tuple[Sighting, ...]) -> Fit:
     """The best of all starts: cameras alone first, then all, then with all moments."""
-    few, every = evidence.thinned(FEW), np.ones(len(evidence.known.mean), np.bool_)
+    few = evidence.thinned(max(FEW, FEW_EACH * len(evidence.clips)))
+    every = np.ones(len(evidence.known.mean), np.bool_)
     cameras = every & (np.arange(len(every)) < RIG)
     cameras[FOCALS] = False
     late_s = np.array([likely_lateness_s(one.first, one.second) for one in sightings])
@@ -73,8 +79,12 @@ def best_fit(evidence: Evidence, sightings: tuple[Sighting, ...]) -> Fit:
     starts.sort(key=lambda start: float((misfits(start, few, sides_of(start, few)) ** 2).sum()))
     rough = [fitted(start, few, cameras, 1, 8) for start in starts[:STARTS]]
     rough.sort(key=lambda each: each.cost)
-    better = [fitted(each.guess, few, every, 2, 8) for each in rough[:2]]
-    return fitted(min(better, key=lambda each: each.cost).guess, evidence, every, 2, 12)
+    timed = [on_time(each.guess, few) for each in rough[:2]]
+    better = [fitted(each, few, every, 2, 8) for each in timed]
+    nearly = fitted(min(better, key=lambda each: each.cost).guess, evidence, every, 2, 12)
+    timely = nearly._replace(guess=on_time(nearly.guess, evidence))
+    worth = measured_worth(_explained(timely, evidence))
+    return fitted(timely.guess, evidence._replace(worth=worth), every, 2, 12)
 
 
 def _explained(found: Fit, evidence: Evidence) -> list[Explained]:
@@ -89,7 +99,7 @@ def _quality(
     seen: list[Explained],
     period_s: float,
 ) -> Quality:
-    covariance = np.linalg.pinv(found.jacobian.T @ found.jacobian)
+    covariance = covariance_of(found)
     told = _told(found.guess, person_m)
     moved = np.stack(
         [
@@ -112,15 +122,16 @@ def _quality(
     gaps_m = np.concatenate([np.abs(one.met.gap_m[one.used]) for one in seen])
     unit_px = np.mean([clip.units_px for clip in evidence.clips])
     late = found.guess[LATE:] / period_s
-    late_error = np.sqrt(np.diag(covariance)[LATE:]) / period_s
+    late_error = late_errors_frames(covariance, period_s)
     return Quality(
         cameras,
         evidence.known.stature_m,
-        sum(len(clip.first.times_s) for clip in evidence.clips),
+        evidence.moments,
         1e3 * float(np.median(gaps_m)),
         float(np.median(gaps_m) / evidence.known.stature_m * unit_px),
         tuple(late.tolist()),
         tuple(late_error.tolist()),
+        unsure_of(found, period_s),
     )
 
 

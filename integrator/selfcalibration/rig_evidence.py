@@ -21,6 +21,13 @@ CLOSE: Final = 0.03
 LEAST_SURE: Final = 0.12
 """Landmarks less sure than this are left out."""
 
+INDEPENDENT_HZ: Final = 1.0
+"""How often in a second a landmark errs anew: the network errs alike in neighbouring frames."""
+MOST_INDEPENDENT: Final = 5.0
+"""For so many moments a clip counts at first, however long: a network has habits that no length of
+film undoes. A minute of r01 and r04 gave rigs that were off by 46 and 59 mm without this, 25 and 23
+with it. What the film itself says of that is asked later: `film_worth.py`."""
+
 Sides = NDArray[np.bool_]
 """(n, 3) whether one view has the sides of a part the other way round than the other."""
 
@@ -56,10 +63,22 @@ class Evidence(NamedTuple):
     clips: tuple[ClipEvidence, ...]
     size_px: tuple[int, int]
     known: Known
+    worth: float
+    """As how many moments whose landmarks err by themselves all together count."""
+
+    @property
+    def moments(self) -> int:
+        """How many there are."""
+        return sum(len(clip.first.times_s) for clip in self.clips)
+
+    @property
+    def own_share(self) -> float:
+        """Share of all landmarks that err by themselves."""
+        return min(1.0, self.worth / max(self.moments, 1))
 
     def thinned(self, most: int) -> "Evidence":
         """The same of fewer moments."""
-        step = max(1, sum(len(clip.first.times_s) for clip in self.clips) // most)
+        step = max(1, self.moments // most)
         return self._replace(
             clips=tuple(
                 clip._replace(first=JointTrack(*(part[::step] for part in clip.first)))
@@ -79,7 +98,14 @@ def gathered(sightings: tuple[Sighting, ...], known: Known) -> Evidence:
             height_px(one.second) / prior.CROWN_SHARE,
         )
         clips.append(ClipEvidence(first, smooth.second, units))
-    return Evidence(tuple(clips), sightings[0].size_px, known)
+    worth = sum(min(own_moments(clip), MOST_INDEPENDENT) for clip in clips)
+    return Evidence(tuple(clips), sightings[0].size_px, known, worth)
+
+
+def own_moments(clip: ClipEvidence) -> float:
+    """In how many moments of a clip landmarks err anew, habits left out."""
+    at_s = clip.first.times_s
+    return min(float(len(at_s)), INDEPENDENT_HZ * float(np.ptp(at_s))) if len(at_s) else 0.0
 
 
 def sigma_m(track: JointTrack, stature_m: float) -> NDArray[np.float64]:

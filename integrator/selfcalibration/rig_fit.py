@@ -8,8 +8,10 @@ from scipy.optimize import least_squares
 
 from common.body.body import Vector
 from integrator.selfcalibration import person_prior as prior
-from integrator.selfcalibration.rig_evidence import Evidence, Sides
-from integrator.selfcalibration.rig_residuals import Explained, explained, misfits
+from integrator.selfcalibration.lateness import MOST_S
+from integrator.selfcalibration.rig_evidence import Evidence, Sides, own_moments
+from integrator.selfcalibration.rig_guess import LATE
+from integrator.selfcalibration.rig_residuals import UNSEEN, Explained, explained, misfits
 from integrator.selfcalibration.sight_lines import Numbers
 
 EXCHANGE_COST: Final = 0.5
@@ -57,6 +59,28 @@ def fitted(start: Vector, evidence: Evidence, free: Sides, rounds: int, steps: i
     return Fit(guess, float(found.cost), sides, found.jac)
 
 
+def on_time(guess: Vector, evidence: Evidence) -> Vector:
+    """The guess with view 2 of each clip as late as lets its sight lines meet best."""
+    found = guess.copy()
+    for n, clip in enumerate(evidence.clips):
+        period_s = float(np.median(np.diff(clip.second.times_s)))
+        tried = [*np.arange(-MOST_S, MOST_S + period_s, period_s).tolist(), float(guess[LATE + n])]
+        costs, share = [], own_moments(clip) / len(clip.first.times_s)
+        for late_s in tried:
+            found[LATE + n] = late_s
+            believed = 2.0 * np.log1p((late_s / evidence.known.sigma[LATE + n]) ** 2 / 2.0)
+            costs.append(2.0 * share * _apart(found, evidence, n) + believed)
+        found[LATE + n] = tried[int(np.argmin(costs))]
+    return found
+
+
+def _apart(guess: Vector, evidence: Evidence, number: int) -> float:
+    """How badly a clip is explained, each part with its sides as they fit better."""
+    whole = [np.full((len(evidence.clips[number].first.times_s), 3), other) for other in (0, 1)]
+    both = [explained(guess, evidence, number, sides.astype(bool)) for sides in whole]
+    return float(np.minimum(*(_costs(one) for one in both)).sum())
+
+
 def sides_of(guess: Vector, evidence: Evidence) -> tuple[Sides, ...]:
     """Of each clip, where one view must have the sides of a part the other way round."""
     found = []
@@ -71,8 +95,9 @@ def sides_of(guess: Vector, evidence: Evidence) -> tuple[Sides, ...]:
 
 def _costs(one: Explained) -> NDArray[np.float64]:
     """(n, 3) how badly each part is explained."""
-    gaps = np.where(one.used, np.where(one.met.before, np.log1p(one.met.gap**2 / 2), 5.0), 0.0)
-    lengths = np.where(one.lengths_used, np.log1p(one.lengths**2 / 2), 0.0)
+    unseen = np.log1p(UNSEEN**2 / 2)
+    gaps = np.where(one.used, np.where(one.met.before, np.log1p(one.met.gap**2 / 2), 5.0), unseen)
+    lengths = np.where(one.lengths_used, np.log1p(one.lengths**2 / 2), unseen)
     costs = np.zeros((len(gaps), 3))
     for part in range(3):
         costs[:, part] = gaps[:, part == prior.PART_OF_JOINT].sum(axis=1)

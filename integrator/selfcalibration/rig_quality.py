@@ -33,6 +33,8 @@ class Quality(msgspec.Struct, frozen=True):
     late_frames: tuple[float, ...]
     """By how many frames view 2 is late in each clip."""
     late_error_frames: tuple[float, ...]
+    unsure: tuple[str, ...] = ()
+    """What is not known well enough to be relied on; empty where all is."""
 
 
 class PersonCalibration(NamedTuple):

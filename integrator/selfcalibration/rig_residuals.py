@@ -32,13 +32,8 @@ FLOOR_M: Final = 0.02
 ON_THE_RIGHT, SIDE_EDGE = 2.45, 0.2
 """Sigmas against a camera 2 to the right of camera 1, and how abruptly: far away, mirror images are
 told apart by the facing alone, and where that is unsure the paper's rig has it on the left (C1)."""
-FOCALS_ALIKE: Final = 0.1
+FOCALS_ALIKE: Final = 0.3
 """How far the focal lengths of both cameras differ, mostly (of their logarithm)."""
-INDEPENDENT_HZ: Final = 1.0
-"""How often in a second a landmark errs anew: the network errs alike in neighbouring frames."""
-MOST_INDEPENDENT: Final = 5.0
-"""For so many moments all count, however many: a network has habits that no length of film undoes.
-A minute of r01 and r04 gave rigs that were off by 46 and 59 mm without this, 25 and 23 with it."""
 FLOOR_FRAMES, FACING_FRAMES = 6.0, 8.0
 """For so many independent ones all lowest feet, and all facings, of a clip count."""
 UNSEEN: Final = 1.0
@@ -70,18 +65,22 @@ def softened(residual: Numbers) -> Numbers:
 def misfits(guess: Vector, evidence: Evidence, sides: tuple[Sides, ...]) -> Vector:
     """All that is made small: what is believed, and what each clip shows."""
     rows = prior_misfits(guess, evidence.known)
-    moments = sum(len(clip.first.times_s) for clip in evidence.clips)
     for n, clip in enumerate(evidence.clips):
         one = explained(guess, evidence, n, sides[n])
-        rows += data_misfits(one, own_share(clip.first.times_s, moments))
+        rows += data_misfits(one, evidence.own_share)
         rows += standing_misfits(one, evidence.known.stature_m)
         rows.append(facing_misfits(guess, one, clip.first))
     return np.concatenate(rows)
 
 
 def explained(guess: Vector, evidence: Evidence, number: int, sides: Sides) -> Explained:
-    """Points, and how well segments keep their lengths, of one of the clips."""
-    clip, stature_m = evidence.clips[number], evidence.known.stature_m
+    """Points, and how well segments keep their lengths, of one of the clips.
+
+    Landmarks err by shares of the person as the guess has it: by shares of another, all would fit
+    better the smaller the whole world is.
+    """
+    clip = evidence.clips[number]
+    stature_m = float(np.exp(guess[BODY])[prior.UPRIGHT].sum()) / prior.CROWN_SHARE
     cameras, middle_px = pinholes(guess), np.array(evidence.size_px) / 2
     times_s = clip.first.times_s + float(guess[LATE + number])
     second = exchanged(at_times(clip.second, times_s), sides)
@@ -107,17 +106,6 @@ def _length_misfits(met: Meeting, lengths_m: Vector) -> Numbers:
     own_m = LENGTH_ERROR / prior.CROWN_SHARE * float(lengths_m[prior.UPRIGHT].sum())
     misfit: Numbers = (long_m - lengths_m[prior.LENGTH_OF]) / np.sqrt(variance + own_m**2)
     return misfit
-
-
-def own_share(times_s: Vector, moments: int) -> float:
-    """Share of all landmarks that err by themselves.
-
-    Args:
-        times_s: When a clip was looked at.
-        moments: In how many all clips were.
-    """
-    apart_s = (float(times_s[-1]) - float(times_s[0])) / max(len(times_s) - 1, 1)
-    return min(1.0, INDEPENDENT_HZ * apart_s, MOST_INDEPENDENT / moments)
 
 
 def data_misfits(one: Explained, own: float) -> list[Vector]:

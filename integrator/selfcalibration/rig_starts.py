@@ -12,9 +12,10 @@ from integrator.selfcalibration.rig_evidence import Evidence, Known
 from integrator.selfcalibration.rig_guess import BODY, LATE, PLACE, rotation
 from integrator.selfcalibration.sight_lines import Numbers
 
-FOCAL_SHARE: Final = 1.25
-"""Focal length over the picture's width: a lens of 44 degrees, common for room cameras."""
-FOCAL_SPREAD: Final = 0.22
+FOCAL_SHARE: Final = 1.1
+"""Focal length over the picture's width: a lens of 49 degrees; telephones see wider, room cameras
+less wide."""
+FOCAL_SPREAD: Final = 0.3
 STATED_SPREAD: Final = 0.02
 """How far focal lengths are from that, mostly (of their logarithm), and from a stated one."""
 LEVEL_DEG: Final = {"pitch": 6.0, "roll": 2.5}

@@ -58,6 +58,13 @@ def person(
         highlight=False,
         soft_wrap=True,
     )
+    if quality.unsure:
+        console.print(
+            f"not known well enough: {', '.join(quality.unsure)}: film somebody who walks to "
+            f"and fro all over the room, for a minute or more",
+            highlight=False,
+            soft_wrap=True,
+        )
     console.print(f"written to {out}", highlight=False, soft_wrap=True)
 
 
