@@ -140,7 +140,7 @@ class UnfinishedRun:
             file.close()
 
     def remove(self) -> None:
-        """Nothing of this is needed any more; nor is the run's folder, where it holds no results."""
+        """Nothing of this is needed any more; a run folder without results goes too."""
         self.close()
         discard(self._folder)
         with contextlib.suppress(OSError):
