@@ -1,10 +1,11 @@
 """A room on four hosts, each with a clock of its own: slow, lossy and cut cables between them.
 
-Two viewers, integrator and recogniser as `docs/serving.md` starts them, with keys as `tritrack keys`
-makes them; on the recogniser's host somebody listens. Hosts are simulated (`tests/hosts.py`).
+Two viewers, integrator and recogniser as `docs/serving.md` starts them, with keys that `tritrack
+keys` made; on the recogniser's host somebody listens. Hosts are simulated (`tests/hosts.py`).
 """
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -53,7 +54,7 @@ with open_client(settings.bus, settings.room, 120.0) as bus, open(sys.argv[2], "
 """
 WAIT_S: Final = 150.0
 NEAR_M: Final = 0.02
-"""Bodies of the same instant differ by less where a guide came late; those of others by far more."""
+"""Bodies of the same frames differ by less where a guide came late or a view was missing before."""
 
 
 class Heard(NamedTuple):
@@ -84,7 +85,7 @@ def network() -> Iterator[Hosts]:
 
 @pytest.fixture(scope="module")
 def long_clip(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Some twenty seconds."""
+    """Half a minute."""
     folder = copied(clip, tmp_path_factory.mktemp("far") / "walk")
     refilmed(folder, lambda film: [*film, *(3 * [*film[::-1], *film])][:450])
     return folder
@@ -191,70 +192,82 @@ def apart_m(heard: Heard, offline: dict[int, dict[str, Any]]) -> np.ndarray:
     return np.array([np.linalg.norm(a - b, axis=1).mean() for a, b in pairs if len(b)])
 
 
-@pytest.mark.slow
-def test_clocks_three_seconds_apart_do_not_confuse_instants(
-    room: Callable[[], Room], offline: dict[int, dict[str, Any]]
-) -> None:
-    """Each viewer estimates how far the room's clock is from its own."""
-    heard = room().over()
+def refuse_confusion(heard: Heard, offline: dict[int, dict[str, Any]]) -> None:
+    """Every frame comes once and in its order; what both views tell is of one instant."""
     frames = [body["frame"] for body in heard.bodies]
     assert frames == sorted(set(frames))
-    assert len(frames) >= len(offline) - 3
-    same = [body["views"] == offline[body["frame"]]["views"] for body in heard.bodies]
-    assert np.mean(same) > 0.8
     assert np.quantile(apart_m(heard, offline), 0.95) < NEAR_M
-    assert heard.newest("integrator")["latency_p50_ms"] < 500
+
+
+def share_of_both(heard: Heard, offline: dict[int, dict[str, Any]]) -> float:
+    """Of the frames that lock-step has of both views, those that the room has of both."""
+    wanted = {frame for frame, body in offline.items() if body["views"] == "both"}
+    both = {body["frame"] for body in heard.bodies if body["views"] == "both"}
+    return len(both & wanted) / len(wanted)
+
+
+@pytest.mark.slow
+def test_clocks_seconds_apart_do_not_confuse_instants(
+    room: Callable[[], Room], offline: dict[int, dict[str, Any]]
+) -> None:
+    """Viewers and recogniser ask how far the room's clock is from their own."""
+    heard = room().over()
+    refuse_confusion(heard, offline)
+    assert share_of_both(heard, offline) > 0.8
+    assert "the room's clock is -3.0" in heard.logs["viewer1"]
     assert heard.postures
-
-
-def show(heard, offline):
-    from collections import Counter
-
-    frames = [b["frame"] for b in heard.bodies]
-    print(
-        len(frames),
-        len(offline),
-        Counter(b["views"] for b in heard.bodies),
-        "sorted",
-        frames == sorted(set(frames)),
-    )
-    a = apart_m(heard, offline)
-    print("apart", len(a), np.quantile(a, [0.5, 0.95, 1.0]) if len(a) else None)
-    for p in ("integrator", "viewer 1", "viewer 2", "recognizer"):
-        try:
-            print(heard.newest(p))
-        except IndexError:
-            print(p, "none")
-    for k, v in heard.logs.items():
-        print("==", k)
-        print(v[-1500:])
-    print({d for p in heard.pulses for d in p["detail"].splitlines()})
+    for process in ("integrator", "recognizer", "viewer 1"):
+        assert 0.0 < heard.newest(process)["latency_p50_ms"] < 500
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("cable", [Cable(0.2), Cable(loss=0.05)], ids=["200 ms", "5 %"])
-@pytest.mark.parametrize("whose", [("viewer2",), ("viewer1", "viewer2")], ids=["one", "both"])
-def test_explore(room, network, offline, cable, whose):
-    for part in whose:
-        network.cable(part, cable)
-    r = room()
-    try:
-        heard = r.over()
-    finally:
-        show(r.heard(), offline)
-    assert 0
+@pytest.mark.parametrize("slow", [("viewer2",), ("viewer1", "viewer2")], ids=["one", "both"])
+def test_slow_cables_make_bodies_late_and_are_named(
+    slow: tuple[str, ...],
+    room: Callable[[], Room],
+    network: Hosts,
+    offline: dict[int, dict[str, Any]],
+) -> None:
+    """200 ms each way: the quicker view waits for the slower one."""
+    for host in slow:
+        network.cable(host, Cable(0.2))
+    heard = room().over()
+    refuse_confusion(heard, offline)
+    assert share_of_both(heard, offline) > 0.5
+    for host in slow:
+        assert re.search(rf"view {host[-1]} is heard 0\.[2-4]\d s late", heard.told())
+    assert heard.newest("integrator")["latency_p50_ms"] > 190
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("whose", ["viewer1", "integrator"])
-def test_cut(room, network, offline, whose):
-    r = room()
-    try:
-        r.until(lambda h: h.bodies and h.bodies[-1]["frame"] > 60)
-        network.cable(whose, Cable(cut=True))
-        time.sleep(6)
-        network.cable(whose)
-        heard = r.over()
-    finally:
-        show(r.heard(), offline)
-    assert 0
+def test_lossy_cables_lose_little(
+    room: Callable[[], Room], network: Hosts, offline: dict[int, dict[str, Any]]
+) -> None:
+    """5 % of the packets of both viewers, each way."""
+    for host in ("viewer1", "viewer2"):
+        network.cable(host, Cable(loss=0.05))
+    heard = room().over()
+    refuse_confusion(heard, offline)
+    assert share_of_both(heard, offline) > 0.7
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("host", ["viewer1", "integrator"])
+def test_after_a_cut_of_six_seconds_all_are_back(
+    host: str, room: Callable[[], Room], network: Hosts, offline: dict[int, dict[str, Any]]
+) -> None:
+    """The other viewer goes on alone meanwhile; where the integrator is cut off, nobody does."""
+    started = room()
+    started.until(lambda heard: heard.bodies and heard.bodies[-1]["frame"] > 60)
+    network.cable(host, Cable(cut=True))
+    time.sleep(6.0)
+    network.cable(host)
+    heard = started.over()
+    refuse_confusion(heard, offline)
+    lost, *_ = re.findall(r"view 1 is lost \(it says nothing", heard.told())
+    assert lost
+    assert "view 1 is back" in heard.told()
+    ends = [body for body in heard.bodies if body["frame"] > 300]
+    assert np.mean([body["views"] == "both" for body in ends]) > 0.8
+    if host == "viewer1":
+        assert sum(body["views"] == "2" for body in heard.bodies) > 45

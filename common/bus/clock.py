@@ -50,7 +50,9 @@ def exchanged(bus: "Bus", question: ClockQuestion) -> tuple[Exchange, ClockAnswe
     """One question to the room's clock; None where nobody answers in time."""
     sent_s = time.monotonic()
     answer = bus.ask(question, ClockAnswer, ASK_S)
-    return answer and (Exchange(sent_s, answer.now_s, time.monotonic()), answer)
+    if answer is None:
+        return None
+    return Exchange(sent_s, answer.now_s, time.monotonic()), answer
 
 
 def asked(bus: "Bus") -> Offset:

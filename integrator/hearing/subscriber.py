@@ -92,7 +92,7 @@ class Subscriber:
         for report in reports:
             self._present = presence.heard(self._present, report, now_s)
             late_s = now_s - report.clock_s
-            self._links = link_lag.heard(self._links, report.viewer, late_s)
+            self._links = link_lag.heard(self._links, report.viewer, now_s, late_s)
             if late_s < self._period_s + link_lag.lag_s(self._links):
                 self._paired = pairing.awaited(self._paired, report.viewer)
             self._paired, more = pairing.step(self._paired, report)
