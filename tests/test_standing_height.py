@@ -20,6 +20,13 @@ def test_raised_arms_are_no_height() -> None:
     assert standing_rows(drawn(80, arms_up=True)) == standing_rows(drawn(80)) == (30.0, 110.0)
 
 
+def test_two_legs_without_what_joins_them_have_a_height() -> None:
+    """An hour of film had such a silhouette: the median of its columns lies where nothing is."""
+    mask = np.zeros((120, 160), np.bool_)
+    mask[50:90, 20:26] = mask[50:90, 60:66] = True
+    assert standing_rows(mask) == (50.0, 90.0)
+
+
 def test_a_squat_does_not_shrink_the_scale() -> None:
     """T20: the height of standing frames holds for the squats between them."""
     rows = [standing_rows(drawn(tall)) for tall in (80, 80, 79, 60, 50, 60, 80, 81)]

@@ -8,8 +8,9 @@ from typing import Any, Final, NamedTuple
 
 from rich.console import Console
 
-from common.config import Settings
-from common.video.clip_sources import footage_of
+from common.config import Settings, SettingsError
+from common.video.clip_sources import ClipError, footage_of
+from common.video.decoding import DecoderDied, Undecodable
 from tritrack.store import journal
 from tritrack.terminal import say, warn
 from tritrack.unfinished.run_identity import identity_of, word_of
@@ -94,11 +95,11 @@ def begun(wanted: Wanted, console: Console) -> Iterator[Begun]:
     run = UnfinishedRun(wanted.folder, identity, head, saved)
     try:
         yield Begun(run, {MADE_OF: word_of(identity)})
+    except (ClipError, SettingsError, Undecodable, DecoderDied):
+        run.remove()
+        raise
     except CannotResume:
         run.close()
-        raise
-    except Exception:
-        run.remove()
         raise
     except BaseException:
         run.close()

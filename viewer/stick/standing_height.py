@@ -41,7 +41,8 @@ def standing_rows(mask: Mask) -> tuple[float, float]:
     rows, columns = np.nonzero(mask)
     bottom = int(rows.max()) + 1
     half = max(1.0, MIDDLE_SHARE * (bottom - int(rows.min())))
-    middle = np.abs(columns - np.median(columns)) <= half
+    beside = np.abs(columns - np.median(columns))
+    middle = beside <= max(half, beside.min())  # the middle of two parts may lie between them
     return float(rows[middle].min()), float(bottom)
 
 
