@@ -267,7 +267,7 @@ def test_after_a_cut_of_six_seconds_all_are_back(
     lost, *_ = re.findall(r"view 1 is lost \(it says nothing", heard.told())
     assert lost
     assert "view 1 is back" in heard.told()
-    ends = [body for body in heard.bodies if body["frame"] > 300]
-    assert np.mean([body["views"] == "both" for body in ends]) > 0.8
+    end = {frame: body for frame, body in offline.items() if frame > 300}
+    assert share_of_both(heard, end) > 0.8
     if host == "viewer1":
         assert sum(body["views"] == "2" for body in heard.bodies) > 45
