@@ -17,7 +17,7 @@ IDENTITY = {"the settings": "1", "cam1.avi": "2"}
 class State(NamedTuple):
     """Of a stage."""
 
-    count: int
+    instants: int
 
 
 def body(frame: int) -> Body:
