@@ -35,7 +35,7 @@ from common.method import DEFAULT, PAPER, Method, departures
 from tritrack.accuracy.accuracy import compare, summary
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.overrides import overridden
-from tritrack.store.runs import poses
+from tritrack.store.pose_arrays import poses
 
 SILHOUETTE_FIELDS = ("steady_light", "pixel_evidence", "body_colours", "alpha_matte", "slow_light")
 """With these alone it is the paper's search on our silhouettes."""

@@ -13,6 +13,7 @@ mended, and the mean confidence.
 import argparse
 import shutil
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -63,7 +64,7 @@ def bumped(
     writer.release()
 
 
-def told(bodies: list[Body], truth: Path, camera: int, at_s: float) -> str:
+def told(bodies: Sequence[Body], truth: Path, camera: int, at_s: float) -> str:
     """What came of a clip."""
     with np.load(truth) as known:
         names, real = known["joint_names"].tolist(), known["joints3d"]

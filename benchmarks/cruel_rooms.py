@@ -33,7 +33,8 @@ from synth.write import Filming, write_clip, write_rig
 from tritrack.accuracy.accuracy import compare
 from tritrack.live.table import table_of_rows
 from tritrack.offline.lockstep import Decoders, Tracked, track_clip
-from tritrack.store.runs import believed, poses
+from tritrack.store.pose_arrays import poses
+from tritrack.store.runs import believed
 
 LOST_MM: Final = 60.0
 NO_POSE_MM: Final = 500.0

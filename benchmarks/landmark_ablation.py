@@ -36,7 +36,7 @@ from integrator.rig.undistortion import undistorted_rig
 from tritrack.accuracy.accuracy import Compared, compare, summary
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.overrides import overridden
-from tritrack.store.runs import poses
+from tritrack.store.pose_arrays import poses
 from viewer.landmarks import own_landmarks
 
 

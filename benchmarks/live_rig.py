@@ -9,6 +9,7 @@ instants later than AFTER_S.
 """
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -71,7 +72,7 @@ def live_bodies(settings: Settings, decoders: Decoders) -> list[Body]:
     return bodies
 
 
-def told(bodies: list[Body], truth: Path) -> str:
+def told(bodies: Sequence[Body], truth: Path) -> str:
     """How far off they are."""
     with np.load(truth) as known:
         names, real = known["joint_names"].tolist(), known["joints3d"]

@@ -33,7 +33,7 @@ from tritrack.accuracy.accuracy import compare, picked, summary
 from tritrack.live.table import table_of_rows
 from tritrack.offline.film_tracking import Film, follow_clip
 from tritrack.overrides import overridden
-from tritrack.store.runs import poses
+from tritrack.store.pose_arrays import poses
 from viewer.room.background_source import background_of_film
 
 

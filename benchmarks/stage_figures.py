@@ -28,7 +28,7 @@ from recognizer.model_file import load
 from synth.write import ClipSet, write_set
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.joint_arrays import all_joints_m
-from tritrack.store.runs import poses
+from tritrack.store.pose_arrays import poses
 
 POSTURE: Final = "kick_right_forward"
 SIZE: Final = (320, 240)

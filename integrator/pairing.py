@@ -98,6 +98,11 @@ def begin(state: State, viewer: ViewerNumber) -> State:
     )
 
 
+def awaited(state: State, viewer: ViewerNumber) -> State:
+    """A viewer that was waited for in vain is worth waiting for, as one now waits longer."""
+    return state._replace(away=_with(state.away, viewer - 1, False))
+
+
 def away(state: State, viewer: ViewerNumber) -> tuple[State, list[Pair]]:
     """A viewer is known to be gone: nothing waits for it until it reports again."""
     return _settled(state._replace(away=_with(state.away, viewer - 1, True)))

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import ANGLES_IN_POSE
+from common.bus import clock
 from common.bus.bus import Bus, open_client
 from common.bus.inbox import Inbox
 from common.bus.messages import Body, Performance, Posture
@@ -113,13 +114,16 @@ def run(
     heart = Heart(bus, "recognizer", pace)
     bodies = bus.subscribe(Body)
     heart.beat("ready")
+    ahead_s: float | None = None
     while not stop.is_set():
         body = bodies.take(HEAR_S)
         if body is not None:
+            if ahead_s is None:  # now the integrator is there to answer
+                ahead_s = clock.asked(bus).offset_s
             state, posture = step(state, body)
             bus.publish(posture)
             told = words(posture.event) if posture.event else told
-            pace.done(body.clock_s, time.monotonic())
+            pace.done(body.clock_s - ahead_s, time.monotonic())
             heart.beat("running", told, **_lost(bodies))
     heart.beat("ended", told, **_lost(bodies))
 

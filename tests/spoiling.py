@@ -19,6 +19,11 @@ def copied(clip: Path, folder: Path) -> Path:
     return folder
 
 
+def changed(path: Path) -> None:
+    """The last byte of a file is another."""
+    path.write_bytes(path.read_bytes()[:-1] + b"?")
+
+
 def film_of(video: Path) -> Film:
     capture = cv2.VideoCapture(str(video))
     film: Film = []

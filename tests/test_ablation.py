@@ -11,7 +11,7 @@ import pytest
 from common.config import Settings
 from common.method import DEFAULT, PAPER, Method, Mode, departures
 from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.store.runs import poses
+from tritrack.store.pose_arrays import poses
 
 
 @pytest.fixture(scope="module")

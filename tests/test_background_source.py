@@ -83,7 +83,7 @@ class FakeCamera(Decoder):
         super().__init__()
         self.film, self.given = film, 0
 
-    def frames(self, source, size, every=1, large=None):  # type: ignore[no-untyped-def]
+    def frames(self, source, size, every=1, large=None, start=0):  # type: ignore[no-untyped-def]
         while True:
             yield Decoded(self.given, 0.0, self.film[self.given % len(self.film)])
             self.given += 1

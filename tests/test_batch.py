@@ -11,6 +11,7 @@ from common.bus.messages import ViewerNumber
 from common.config import Settings
 from tritrack.offline.batch import track_all
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.unfinished.work import Course
 
 VIEWS: tuple[tuple[ViewerNumber, ...], ...] = ((1, 2), (1,))
 
@@ -36,6 +37,6 @@ def test_a_bar_hears_of_every_frame_of_a_clip(
     if not calibrated:
         (folder / "calibration.json").unlink()
     with Decoders() as decoders:
-        done = track_clip(Settings(clip=str(folder)), decoders, views, tell=shares.append)
+        done = track_clip(Settings(clip=str(folder)), decoders, views, course=Course(shares.append))
     assert shares == sorted(shares)
     assert (len(shares), shares[-1]) == (len(done.bodies), 1.0)

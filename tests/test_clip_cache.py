@@ -7,10 +7,9 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
-from spoiling import copied, edit_json
+from spoiling import changed, copied, edit_json
 
 from common.config import Settings
-from common.packages import ROOT
 from common.video.clip_sources import ClipError
 from tritrack.offline import clip_cache
 from tritrack.offline.clip_cache import key_of, read, write
@@ -19,10 +18,6 @@ from tritrack.offline.clip_cache import key_of, read, write
 @pytest.fixture
 def own(clip: Path, tmp_path: Path) -> Settings:
     return Settings(clip=str(copied(clip, tmp_path / "own")))
-
-
-def changed(path: Path) -> None:
-    path.write_bytes(path.read_bytes()[:-1] + b"?")
 
 
 @pytest.mark.parametrize(
@@ -75,21 +70,6 @@ def test_a_camera_is_no_recorded_clip(tmp_path: Path) -> None:
     settings = msgspec.convert({"camera_1": {"device": 0}}, Settings)
     with pytest.raises(ClipError, match="camera 0 is no recorded clip"):
         key_of(settings, "tracker")
-
-
-def test_the_tracker_is_named_by_all_our_code_and_by_its_models(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    before = clip_cache.tracker_id()
-    assert clip_cache.tracker_id() == before
-    with monkeypatch.context() as patched:
-        patched.setattr(clip_cache, "DIGEST", "of other sources")
-        assert clip_cache.tracker_id() != before
-    shutil.copytree(ROOT / "viewer", tmp_path / "viewer")
-    monkeypatch.setattr(clip_cache, "ROOT", tmp_path)
-    before = clip_cache.tracker_id()
-    changed(next((tmp_path / "viewer").rglob("*.npz")))
-    assert clip_cache.tracker_id() != before
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.99])

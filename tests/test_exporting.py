@@ -15,7 +15,7 @@ from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body
 from tritrack.exporting import OWN_NAMES, ExportError, Format, export_run
 from tritrack.store.past_run import PastRunError, open_run
-from tritrack.store.runs import poses
+from tritrack.store.pose_arrays import poses
 
 
 @pytest.fixture

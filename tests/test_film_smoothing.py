@@ -1,5 +1,7 @@
 """A film's joints smoothed from both ends: held against filterpy, and against a rigid body."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 from filterpy.common import Q_discrete_white_noise
@@ -91,7 +93,7 @@ def shaken(joints_m: np.ndarray) -> np.ndarray:
     return np.asarray(joints_m + noise)
 
 
-def places(bodies: list[Body]) -> np.ndarray:
+def places(bodies: Sequence[Body]) -> np.ndarray:
     return np.array([body.joints_m for body in bodies])
 
 
@@ -99,7 +101,7 @@ def test_a_shaken_body_is_nearer_to_the_true_one_calm_and_rigid() -> None:
     true_m = swinging()
     shaky, calm = bodies_of(shaken(true_m)), calmed(bodies_of(shaken(true_m)), RIG)
 
-    def off(bodies: list[Body]) -> float:
+    def off(bodies: Sequence[Body]) -> float:
         return float(np.linalg.norm(places(bodies) - true_m, axis=2).mean())
 
     def jerk(joints_m: np.ndarray) -> float:

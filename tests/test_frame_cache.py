@@ -19,10 +19,15 @@ class Counting:
         self.came, self.readings = 0, 0
 
     def frames(
-        self, source: Source, size: Size, every: int = 1, large: Size | None = None
+        self,
+        source: Source,
+        size: Size,
+        every: int = 1,
+        large: Size | None = None,
+        start: int = 0,
     ) -> Iterator[Decoded]:
         self.readings += 1
-        for index in range(0, 10, every):
+        for index in range(-(-start // every) * every, 10, every):
             picture = np.full((size[1], size[0], 3), hash(source) % 7 + index, np.uint8)
             yield Decoded(index, 0.1 * index, picture, picture if large else None)
         self.came = 10
@@ -62,6 +67,21 @@ def test_a_film_that_is_too_large_is_decoded_again() -> None:
         decoder.readings = 0
         assert indices(reel) == indices(reel) == list(range(10))
         assert decoder.readings == readings
+
+
+def test_of_a_film_that_claims_to_be_too_large_nothing_is_kept() -> None:
+    decoder = Counting()
+    reel = Reel(decoder, 10 * BYTES, due=11)
+    assert indices(reel) == indices(reel) == list(range(10))
+    assert decoder.readings == 2
+
+
+def test_a_reading_may_start_anywhere_whether_it_was_kept_or_not() -> None:
+    reel = Reel(Counting())
+    for _ in range(2):
+        assert [got.index for got in reel.frames("a.avi", SIZE, start=7)] == [7, 8, 9]
+        assert [got.index for got in reel.frames("a.avi", SIZE, 3, start=4)] == [6, 9]
+        assert indices(reel) == list(range(10))
 
 
 def test_a_reading_that_was_broken_off_is_begun_afresh() -> None:

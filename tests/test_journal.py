@@ -13,7 +13,8 @@ from common.bus.messages import Body, Posture
 from common.config import Settings
 from tritrack.store.journal import BEFORE, NAME, Head, Journal, put_aside, read_journal
 from tritrack.store.past_run import open_run
-from tritrack.store.runs import poses, write_run
+from tritrack.store.pose_arrays import poses
+from tritrack.store.runs import write_run
 
 HEAD = Head(settings=Settings(clip="clips/walk"), facts={"clip": "walk"})
 

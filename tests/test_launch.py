@@ -24,7 +24,7 @@ from tritrack.live.session import live
 from tritrack.live.supervise import PartFailed
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.joint_arrays import on_disk
-from tritrack.store.runs import poses
+from tritrack.store.pose_arrays import poses
 
 QUIET = Console(quiet=True)
 

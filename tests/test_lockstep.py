@@ -17,7 +17,7 @@ from common.config import Settings, SettingsError
 from tritrack.offline.batch import track_all
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.overrides import overridden
-from tritrack.store.runs import poses
+from tritrack.store.pose_arrays import poses
 
 QUIET = Console(quiet=True)
 

@@ -9,7 +9,7 @@ import pytest
 
 from common.config import BodySettings, Settings
 from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.store.runs import poses
+from tritrack.store.pose_arrays import poses
 
 CLIPS = ("r01_t1_03_walk_toward", "r04_t1_05_raise_right_lateral")
 

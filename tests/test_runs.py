@@ -15,7 +15,8 @@ from common.bus.messages import Body, Performance, Posture
 from common.config import Settings
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.joint_arrays import on_disk
-from tritrack.store.runs import RunError, poses, write_postures, write_run
+from tritrack.store.pose_arrays import poses
+from tritrack.store.runs import RunError, write_postures, write_run
 
 N = 69
 CONTRACT = {

@@ -49,7 +49,7 @@ def track(source: str | Path, views: tuple[ViewerNumber, ...] = (1, 2)) -> list[
     from tritrack.offline.lockstep import Decoders, track_clip
 
     with Decoders() as decoders:
-        return track_clip(load(Path(source)), decoders, views).bodies
+        return list(track_clip(load(Path(source)), decoders, views).bodies)
 
 
 @overload

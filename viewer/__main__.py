@@ -9,7 +9,7 @@ from typing import Any, Final
 from common.bus import clock
 from common.bus.bus import Bus, open_client
 from common.bus.bus_keys import VIEWERS
-from common.bus.control_messages import ClockAnswer, ClockQuestion, Command, Ended
+from common.bus.control_messages import ClockQuestion, Command, Ended
 from common.bus.inbox import Inbox
 from common.bus.messages import Guide, Picture, ViewerNumber
 from common.bus.process import BEGIN_S, READY_S, Heart, ProcessContext, process
@@ -31,8 +31,6 @@ from viewer.viewer_warmup import warm_up
 
 WAIT_SHARE: Final = 0.5
 """How long a viewer waits for the guide of its last frame, in frame periods."""
-EXCHANGES: Final = 5
-ASK_S: Final = 0.5
 
 log = logging.getLogger(__name__)
 
@@ -196,7 +194,7 @@ def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | No
     asked, offset = clock.init(), clock.Offset(0.0, 0.0)
     until_s = time.monotonic() + BEGIN_S
     start_s: float | None = None
-    while start_s is None or len(asked) < EXCHANGES:
+    while start_s is None or len(asked) < clock.EXCHANGES:
         if stop.is_set():
             return None
         if time.monotonic() > until_s:
@@ -204,12 +202,11 @@ def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | No
                 f"viewer {viewer} is ready, but the run did not begin within {BEGIN_S:g} s: "
                 "start the other viewer, or take it out of the settings"
             )
-        sent_s = time.monotonic()
-        answer = bus.ask(ClockQuestion(viewer=viewer, ready=True), ClockAnswer, ASK_S)
-        if answer is not None:
-            exchange = clock.Exchange(sent_s, answer.now_s, time.monotonic())
-            asked, offset = clock.step(asked, exchange)
-            start_s = answer.start_s
+        is_ready = len(asked) >= clock.EXCHANGES - 1  # the start may come soon after that is said
+        told = clock.exchanged(bus, ClockQuestion(viewer=viewer, ready=is_ready))
+        if told is not None:
+            asked, offset = clock.step(asked, told[0])
+            start_s = told[1].start_s
         stop.wait(0.02)
     log.info("the room's clock is %.6f s from ours (within %.6f)", offset.offset_s, offset.error_s)
     return RoomClock(start_s, offset.offset_s)

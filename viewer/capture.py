@@ -40,7 +40,7 @@ class CapturedFrame(msgspec.Struct, frozen=True):
 
 
 def recorded(
-    view: View, every: int, decoder: Reader, source: OutsideSource | None = None
+    view: View, every: int, decoder: Reader, source: OutsideSource | None = None, start: int = 0
 ) -> Iterator[CapturedFrame]:
     """Every n-th frame of a video, as fast as they come.
 
@@ -49,13 +49,14 @@ def recorded(
         every: The n.
         decoder: Reads it.
         source: Is asked for the landmarks of every frame, and waited for.
+        start: The first frame that is asked for, by its place in the video.
 
     Raises:
         Undecodable: When there is none.
         DecoderDied: When the decoder broke; the frames before that are good.
     """
     large = source.large if source else None
-    for decoded in decoder.frames(view.source, view.size, every, large):
+    for decoded in decoder.frames(view.source, view.size, every, large, start):
         moment_s = view.captured_s(decoded.index)
         next_s = view.captured_s(decoded.index + every)
         people = source.people(decoded, PATIENCE_S) if source else ()

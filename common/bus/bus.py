@@ -23,8 +23,9 @@ LEASE_MS: Final = 4000
 """A process that hangs counts as gone after this, by Zenoh's own 10 s. One that was stopped for
 less goes on where it was: what was said to it meanwhile waits. Who is silent is known sooner."""
 
-HANDSHAKE_MS: Final = 1000
-"""How long a peer that accepts a connection may take to prove that it is one of ours."""
+HANDSHAKE_MS: Final = 3000
+"""How long a peer that accepts a connection may take to prove that it is one of ours: over a link
+that is slow by 0.2 s each way, with keys, both need 2 s for that."""
 
 ENVELOPE_BYTES: Final = 1 << 16
 """What Zenoh's own words around a message may take. What is larger than both is dropped piece by

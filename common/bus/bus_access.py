@@ -23,7 +23,7 @@ _VIEWER: Final = (Report, Picture, Ended, Pulse, Answer), (ClockQuestion,)
 RIGHTS: Final[dict[Part, Right]] = {
     "viewer1": Right("viewer 1", *_VIEWER, viewer=1),
     "viewer2": Right("viewer 2", *_VIEWER, viewer=2),
-    "recognizer": Right("recognizer", (Posture, Pulse)),
+    "recognizer": Right("recognizer", (Posture, Pulse), (ClockQuestion,)),
     "animator": Right("animator", (Command, Pulse)),
     "supervisor": Right(says=(Answer,)),
     "metrics": Right("metrics", (Pulse,)),

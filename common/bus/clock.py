@@ -1,6 +1,17 @@
 """The room's clock as another host sees it: questions, answers, the quickest of them believed."""
 
-from typing import Final, NamedTuple
+import time
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from common.bus.control_messages import ClockAnswer, ClockQuestion
+
+if TYPE_CHECKING:
+    from common.bus.bus import Bus
+
+ASK_S: Final = 0.5
+"""How long an answer is waited for."""
+EXCHANGES: Final = 5
+"""As many are enough to begin with."""
 
 HISTORY: Final = 32
 """How many exchanges are remembered: few enough that clocks do not drift apart meanwhile
@@ -33,6 +44,26 @@ class Offset(NamedTuple):
 
 State = tuple[Exchange, ...]
 """The exchanges of late, oldest first."""
+
+
+def exchanged(bus: "Bus", question: ClockQuestion) -> tuple[Exchange, ClockAnswer] | None:
+    """One question to the room's clock; None where nobody answers in time."""
+    sent_s = time.monotonic()
+    answer = bus.ask(question, ClockAnswer, ASK_S)
+    if answer is None:
+        return None
+    return Exchange(sent_s, answer.now_s, time.monotonic()), answer
+
+
+def asked(bus: "Bus") -> Offset:
+    """How far the room's clock is from this host's, asked now; 0 where nobody answers."""
+    state, offset = init(), Offset(0.0, 0.0)
+    for _ in range(EXCHANGES):
+        told = exchanged(bus, ClockQuestion(viewer=1, ready=False))
+        if told is None:
+            break
+        state, offset = step(state, told[0])
+    return offset
 
 
 def init() -> State:

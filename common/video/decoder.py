@@ -8,7 +8,7 @@ import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import IO, Any, NamedTuple
+from typing import IO, Any, Final, NamedTuple
 
 import cv2
 import numpy as np
@@ -21,6 +21,7 @@ from common.video.decoding import (
     INFO,
     MAGIC,
     REFUSED,
+    SKIPPED,
     TIMES,
     TIMES_AT_ONCE,
     Image,
@@ -28,6 +29,9 @@ from common.video.decoding import (
     cure,
     named,
 )
+
+SIGN_OF_LIFE: Final = 100
+"""Of so many frames that are passed over the asker hears: grabbing many takes a while."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +66,7 @@ def main() -> None:
 def serve(request: dict[str, Any], answers: IO[bytes]) -> None:
     """Say what a source is, send its frames at each size given, else their times; then END."""
     source, sizes = request["source"], request["sizes"]
-    film = opened(source, request["every"])
+    film = opened(source, request["every"], request["start"])
     first = next((grab for grab in film.grabs if grab.picture is not None), None)
     if first is None or first.picture is None:
         refusal = f"{named(source)} gives no picture: {cure(source)}"
@@ -79,6 +83,9 @@ def serve(request: dict[str, Any], answers: IO[bytes]) -> None:
         if grab.picture is not None:
             pictures = [reduced(grab.picture, (width, height)) for width, height in sizes]
             say(answers, FRAME, grab, *(picture.data for picture in pictures))
+        elif grab.index % SIGN_OF_LIFE == 0:
+            say(answers, SKIPPED, grab)
+            answers.flush()
     say(answers, END, Grabbed(came, time.monotonic(), None))
 
 
@@ -96,23 +103,29 @@ def say_times(source: Source, answers: IO[bytes]) -> None:
         answers.flush()
 
 
-def opened(source: Source, every: int) -> OpenFilm:
-    """A video, a camera, or a still picture as a film of one frame."""
+def opened(source: Source, every: int, start: int) -> OpenFilm:
+    """A video, a camera, or a still picture as a film of one frame.
+
+    Args:
+        source: Of the pictures.
+        every: Only frames whose index is a multiple of it are decoded to pictures ...
+        start: ... and only the very first one and those from this index on.
+    """
     if isinstance(source, str) and cv2.haveImageReader(source) and cv2.imcount(source) == 1:
         return OpenFilm(0.0, 1, iter([Grabbed(0, time.monotonic(), cv2.imread(source))]))
     capture = cv2.VideoCapture(source)
     fps, frames = capture.get(cv2.CAP_PROP_FPS), capture.get(cv2.CAP_PROP_FRAME_COUNT)
-    return OpenFilm(max(0.0, fps), max(0, round(frames)), grabs(capture, every))
+    return OpenFilm(max(0.0, fps), max(0, round(frames)), grabs(capture, every, start))
 
 
-def grabs(capture: cv2.VideoCapture, every: int) -> Iterator[Grabbed]:
-    """Every frame, decoded to a picture where its index is a multiple of `every`."""
+def grabs(capture: cv2.VideoCapture, every: int, start: int) -> Iterator[Grabbed]:
+    """Every frame, decoded to a picture where that is wanted."""
     for index in itertools.count():
         if not capture.grab():
             return
         now_s = time.monotonic()
-        picture = capture.retrieve()[1] if index % every == 0 else None
-        yield Grabbed(index, now_s, picture)
+        is_wanted = index % every == 0 and (index >= start or index == 0)
+        yield Grabbed(index, now_s, capture.retrieve()[1] if is_wanted else None)
 
 
 def reduced(picture: Image, size: tuple[int, int]) -> Image:

@@ -22,6 +22,7 @@ MAGIC: Final = b"ttf1"
 INFO: Final = b"i"
 TIMES: Final = b"t"
 FRAME: Final = b"f"
+SKIPPED: Final = b"s"
 END: Final = b"e"
 REFUSED: Final = b"r"
 
@@ -127,24 +128,31 @@ class Decoder:
             Undecodable: When it has none.
             DecoderDied: When the child broke on it.
         """
-        info, *after = self._answers(source, [], 1)
+        info, *after = self._answers(source, [], 1, 0)
         told = msgspec.json.decode(info.payload.tobytes(), type=VideoInfo)
         shown = [np.frombuffer(one.payload, "<f8") for one in after if one.kind == TIMES]
         shown_s = tuple(np.concatenate(shown).tolist()) if shown else ()
         return msgspec.structs.replace(told, shown_s=shown_s)
 
     def frames(
-        self, source: Source, size: Size, every: int = 1, large: Size | None = None
+        self,
+        source: Source,
+        size: Size,
+        every: int = 1,
+        large: Size | None = None,
+        start: int = 0,
     ) -> Generator[Decoded, None, None]:
         """Every n-th picture of a source, reduced to `size` (width, height), and to `large` too.
+
+        Those whose index is less than `start` are passed over, which is faster than to decode them.
 
         Raises:
             Undecodable: When it has none.
             DecoderDied: When the child broke on it; what came before is good.
         """
         sizes = [size] if large is None else [size, large]
-        for answer in self._answers(source, sizes, every):
-            if answer.kind == FRAME:
+        for answer in self._answers(source, sizes, every, start):
+            if answer.kind == FRAME and answer.index >= start:
                 pictures = _pictures(answer.payload, sizes)
                 yield Decoded(answer.index, answer.grabbed_s, *pictures)
             elif answer.kind == END:
@@ -162,14 +170,14 @@ class Decoder:
             self._child = None
 
     def _answers(
-        self, source: Source, sizes: list[Size], every: int
+        self, source: Source, sizes: list[Size], every: int, start: int
     ) -> Generator[_Answer, None, None]:
-        """INFO, then FRAMEs if any size is asked for, else TIMES; then END."""
+        """INFO, then FRAMEs and SKIPPEDs if any size is asked for, else TIMES; then END."""
         if self._child is None:
             self._child = Child(f"{__package__}.decoder", self._stall_s)
         frames, whole = 0, False
         try:
-            request = {"source": source, "sizes": sizes, "every": every}
+            request = {"source": source, "sizes": sizes, "every": every, "start": start}
             self._child.ask(json.dumps(request).encode())
             while not whole:
                 answer = _next_answer(self._child, sizes)

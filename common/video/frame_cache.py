@@ -17,9 +17,14 @@ class Reader(Protocol):
         """How many frames the source that was last read to its end really had."""
 
     def frames(
-        self, source: Source, size: Size, every: int = 1, large: Size | None = None
+        self,
+        source: Source,
+        size: Size,
+        every: int = 1,
+        large: Size | None = None,
+        start: int = 0,
     ) -> Iterator[Decoded]:
-        """Every n-th picture of a source, reduced to `size`, and to `large` too."""
+        """Every n-th picture of a source from `start` on, reduced to `size`, and to `large` too."""
 
 
 class Reel:
@@ -29,9 +34,16 @@ class Reel:
     does not notice that a file has changed.
     """
 
-    def __init__(self, decoder: Reader, most_bytes: int = MOST_BYTES) -> None:
-        """Nothing kept yet."""
+    def __init__(self, decoder: Reader, most_bytes: int = MOST_BYTES, due: int = 0) -> None:
+        """Nothing kept yet.
+
+        Args:
+            decoder: Reads the clip.
+            most_bytes: What is kept at most.
+            due: How many frames it claims to have; of one that claims too many none is kept.
+        """
         self._decoder = decoder
+        self._due = due
         self._most_bytes = most_bytes
         self._named: tuple[Source, Size] | None = None
         self._kept: list[Decoded] = []
@@ -42,20 +54,27 @@ class Reel:
         return self._decoder.came
 
     def frames(
-        self, source: Source, size: Size, every: int = 1, large: Size | None = None
+        self,
+        source: Source,
+        size: Size,
+        every: int = 1,
+        large: Size | None = None,
+        start: int = 0,
     ) -> Iterator[Decoded]:
-        """Every n-th picture of a source, reduced to `size`; what is asked for larger is not kept.
+        """Every n-th picture from `start` on, reduced to `size`; what is larger too is not kept.
 
         Raises:
             Undecodable: When it has none.
             DecoderDied: When the decoder broke on it; what came before is good.
         """
         if large is not None:
-            return self._decoder.frames(source, size, every, large)
+            return self._decoder.frames(source, size, every, large, start)
         if (source, size) == self._named:
-            return (got for got in self._kept if got.index % every == 0)
-        pictures = self._decoder.frames(source, size, every)
-        return self._keeping(pictures, source, size) if every == 1 else pictures
+            wanted = (got for got in self._kept if got.index % every == 0)
+            return (got for got in wanted if got.index >= start)
+        pictures = self._decoder.frames(source, size, every, start=start)
+        is_whole = every == 1 and start == 0
+        return self._keeping(pictures, source, size) if is_whole else pictures
 
     def _keeping(
         self, pictures: Iterator[Decoded], source: Source, size: Size
@@ -63,11 +82,17 @@ class Reel:
         """Hand all pictures on, and keep them once they are known to be all and to fit."""
         kept: list[Decoded] = []
         fits = self._most_bytes // (3 * size[0] * size[1])
-        for got in pictures:
-            if len(kept) <= fits:
+        if self._due > fits:
+            yield from pictures
+            return
+        came = 0
+        for came, got in enumerate(pictures, 1):
+            if came <= fits:
                 kept.append(got)
+            elif kept:
+                kept = []
             yield got
-        if len(kept) <= fits:
+        if came <= fits:
             self._named, self._kept = (source, size), kept
 
 
@@ -84,9 +109,14 @@ class Told:
         return self._reader.came
 
     def frames(
-        self, source: Source, size: Size, every: int = 1, large: Size | None = None
+        self,
+        source: Source,
+        size: Size,
+        every: int = 1,
+        large: Size | None = None,
+        start: int = 0,
     ) -> Iterator[Decoded]:
-        """Every n-th picture of a source, reduced to `size`, and to `large` too."""
-        for got in self._reader.frames(source, size, every, large):
+        """Every n-th picture of a source from `start` on, reduced to `size`, and to `large` too."""
+        for got in self._reader.frames(source, size, every, large, start):
             self._tell(min(1.0, (got.index + 1) / self._due))
             yield got

@@ -8,6 +8,7 @@ from common.bus.bus import Bus
 from common.bus.control_messages import ClockQuestion, Command, Ended
 from common.bus.messages import Report, ViewerNumber
 from integrator import pairing, presence
+from integrator.hearing import link_lag
 from integrator.hearing.run_start import Starter
 from integrator.live_rig.rig_change import set_back
 from integrator.pairing import Pair
@@ -48,7 +49,8 @@ class Subscriber:
         self._alive = bus.watch_alive()
         self._paired = pairing.init(period_s, viewers)
         self._present = presence.init(period_s, viewers)
-        self._wait_s = OVERDUE_PERIODS * period_s
+        self._links = link_lag.init(period_s)
+        self._period_s, self._overdue_s = period_s, OVERDUE_PERIODS * period_s
         self.late_s = 0.0
         """By how much the times of view 2 are set back."""
         self._looked_s = self._round_s = time.monotonic()
@@ -67,8 +69,13 @@ class Subscriber:
 
     @property
     def news(self) -> tuple[str, ...]:
-        """Which views were lost and found, and why."""
-        return self._present.news
+        """Which views were lost and found, and why; whose link is slow."""
+        return (*self._present.news, *self._links.news)
+
+    @property
+    def _wait_s(self) -> float:
+        """How long after its picture a report that has no partner goes on alone."""
+        return self._overdue_s + link_lag.lag_s(self._links)
 
     def pairs(self) -> list[Pair]:
         """What is complete now, or overdue; waits a moment for a report."""
@@ -84,6 +91,10 @@ class Subscriber:
         now_s = time.monotonic()
         for report in reports:
             self._present = presence.heard(self._present, report, now_s)
+            late_s = now_s - report.clock_s
+            self._links = link_lag.heard(self._links, report.viewer, now_s, late_s)
+            if late_s < self._period_s + link_lag.lag_s(self._links):
+                self._paired = pairing.awaited(self._paired, report.viewer)
             self._paired, more = pairing.step(self._paired, report)
             complete += more
         if not reports or now_s - self._looked_s > LOOK_S:
@@ -95,7 +106,8 @@ class Subscriber:
             self._paired, alone = pairing.overdue(self._paired, now_s, wait_s)
             complete += alone
             self._present, told = presence.step(self._present, now_s)
-            for line in told:
+            self._links, slow = link_lag.told(self._links, now_s - self._present.began_s)
+            for line in (*told, *slow):
                 log.warning(line)
         return complete
 

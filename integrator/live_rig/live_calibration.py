@@ -1,6 +1,6 @@
 """The rig of a run that has none, or whose cameras are moved: asked for, and changed to."""
 
-from typing import Protocol
+from typing import Final, NamedTuple, Protocol
 
 from common.config import Settings
 from common.method import METHODS
@@ -12,6 +12,8 @@ from integrator.live_rig.rig_solver import RigSolver
 from integrator.merge_state import State
 from integrator.pairing import Pair
 from integrator.rig_gate.moved_cameras import turned_rig
+
+BELIEVED_BY_NONE: Final = "the rig that is not believable stayed"
 
 
 class Solver(Protocol):
@@ -25,6 +27,24 @@ class Solver(Protocol):
 
     def close(self) -> None:
         """End what goes on."""
+
+
+class Looking(NamedTuple):
+    """How far the look for a rig is."""
+
+    search: rig_search.State
+    looks: bool
+    """Whether it goes on."""
+    late_s: float = 0.0
+    """By how much the times of view 2 are to be set back."""
+    stays: str = "the rig stayed assumed"
+    """What is said where none is found."""
+    doubted: int = -1
+    """The rig that was doubted last, by its number."""
+    now_s: float = 0.0
+    lately: seen_lately.State = seen_lately.State()
+    news: tuple[str, ...] = ()
+    """What was said."""
 
 
 class LiveCalibration:
@@ -41,17 +61,19 @@ class LiveCalibration:
             late_s: What is known of view 2 already.
             solver: Finds rigs; None: in a child process.
         """
-        self.news: tuple[str, ...] = ()
-        self.late_s = late_s
-        """By how much the times of view 2 are to be set back."""
-        settings = state.settings
-        search = rig_search.init(state.smooth.period_s, settings.body.stature_m)
-        self._search = search._replace(late_s=late_s)
+        search = rig_search.init(state.smooth.period_s, state.settings.body.stature_m)
+        self.looking = Looking(search._replace(late_s=late_s), looks, late_s)
         self._solver = solver or RigSolver()
-        self._looks, self._stays = looks, "the rig stayed assumed"
-        self._doubted = -1
-        self._now_s = 0.0
-        self._lately = seen_lately.State()
+
+    @property
+    def news(self) -> tuple[str, ...]:
+        """What became of the rig, a line each time."""
+        return self.looking.news
+
+    @property
+    def late_s(self) -> float:
+        """By how much the times of view 2 are to be set back."""
+        return self.looking.late_s
 
     def __enter__(self) -> "LiveCalibration":
         """Nothing is started before it is needed."""
@@ -60,16 +82,18 @@ class LiveCalibration:
     def __exit__(self, *_: object) -> None:
         """End what is still looked for."""
         self._solver.close()
-        if self._looks and self._stays:
-            self._tell(f"{self._stays}: {rig_search.why_none(self._search)}")
+        at = self.looking
+        if at.looks and at.stays:
+            self._tell(f"{at.stays}: {rig_search.why_none(at.search)}")
 
     def heard(self, pair: Pair) -> None:
         """One instant more."""
-        self._now_s = pair.newest.captured_s
-        self._lately = seen_lately.step(self._lately, pair)
-        if not self._looks or self._search.is_over:
+        lately = seen_lately.step(self.looking.lately, pair)
+        at = self.looking = self.looking._replace(now_s=pair.newest.captured_s, lately=lately)
+        if not at.looks or at.search.is_over:
             return
-        self._search, job = rig_search.step(self._search, pair)
+        search, job = rig_search.step(at.search, pair)
+        self.looking = at._replace(search=search)
         if job is not None:
             self._solver.ask(job)
 
@@ -80,12 +104,13 @@ class LiveCalibration:
         solved = self._solver.answer()
         if solved is None:
             return state
-        self._search, is_taken = rig_search.answered(self._search, solved)
+        search, is_taken = rig_search.answered(self.looking.search, solved)
+        self.looking = self.looking._replace(search=search)
         if is_taken:
-            assert self._search.rig is not None
-            self.late_s, self._stays = self._search.late_s, ""
-            state = rig_change.with_rig(state, self._search.rig)
-            self._tell(rig_change.word_of(solved, self.late_s, self._search.moved))
+            assert search.rig is not None
+            self.looking = self.looking._replace(late_s=search.late_s, stays="")
+            state = rig_change.with_rig(state, search.rig)
+            self._tell(rig_change.word_of(solved, search.late_s, search.moved))
         return state
 
     def _after_moves(self, state: State) -> State:
@@ -96,28 +121,29 @@ class LiveCalibration:
         self._tell(rig_change.word_of_moved(state))
         was_sure = not state.stands.unconfirmed
         before, state = state.rig, rig_change.with_rig(state, turned_rig(state.rig, state.stands))
-        self._looks = True
+        at = self.looking = self.looking._replace(looks=True)
         if state.scale_source == "assumed":
-            self._search = rig_search.anew(self._search, None)
+            self.looking = at._replace(search=rig_search.anew(at.search, None))
             return state
-        stood = self._search.stood
+        stood = at.search.stood
         if stood is None or was_sure:
-            stood = seen_lately.stand_before(self._lately, before, self._now_s)
-        self._lately, self._stays = seen_lately.State(), ""
-        self._search = rig_search.anew(self._search, state.rig, moved, stood)
+            stood = seen_lately.stand_before(at.lately, before, at.now_s)
+        search = rig_search.anew(at.search, state.rig, moved, stood)
+        self.looking = at._replace(search=search, lately=seen_lately.State(), stays="")
         return state
 
     def _look_where_doubted(self, state: State) -> None:
         """Begin to look where both views contradict the rig; once for each rig."""
-        if self._doubted == state.calibration or not diagnostics.doubt(state):
+        if self.looking.doubted == state.calibration or not diagnostics.doubt(state):
             return
-        self._doubted = state.calibration
-        if not self._looks or self._search.is_over or self._search.moved:
-            self._looks, self._search = True, rig_search.anew(self._search, state.rig)
-            self._stays = "the rig that is not believable stayed"
+        at = self.looking = self.looking._replace(doubted=state.calibration)
+        if not at.looks or at.search.is_over or at.search.moved:
+            search, stays = rig_search.anew(at.search, state.rig), BELIEVED_BY_NONE
+            self.looking = at._replace(looks=True, search=search, stays=stays)
 
     def _tell(self, text: str) -> None:
-        self.news = (*self.news, f"{self._now_s:.1f} s: {text}")
+        at = self.looking
+        self.looking = at._replace(news=(*at.news, f"{at.now_s:.1f} s: {text}"))
 
 
 def is_by_person(clip: Clip, settings: Settings) -> bool:

@@ -9,7 +9,7 @@ import typer
 from common.bus.messages import ViewerNumber
 from common.config import BusSettings, Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
-from tritrack.commands.options import Out, Record, Size, writable, writable_file
+from tritrack.commands.options import Out, Record, Resume, Size, writable, writable_file
 from tritrack.exporting import OWN_NAMES, Format, Scale, export_run
 from tritrack.faults import refuse_unfollowed
 from tritrack.terminal import json_text
@@ -32,9 +32,13 @@ def track(
         bool, typer.Option("--trust-calibration", help="Go on with a calibration that seems wrong.")
     ] = False,
     record: Record = False,
+    resume: Resume = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Track clips offline: the same as live, deterministic, as fast as it goes.
+
+    What is stopped, by Ctrl-C or by a crash, goes on where it was with the same command and
+    --resume, and gives the same poses as without a stop.
 
     Ends with exit code 3 where a clip's body is believed in less than half of its frames.
 
@@ -42,9 +46,16 @@ def track(
     """
     from tritrack.offline.batch import track_all
 
-    seen = VIEWERS[views]
     facts = track_all(
-        clips, out, mode, seen, size, console, trusted=trust_calibration, record=record
+        clips,
+        out,
+        mode,
+        VIEWERS[views],
+        size,
+        console,
+        trusted=trust_calibration,
+        record=record,
+        resume=resume,
     )
     tell(facts, json_wanted, line_of_runs(facts["clips"], out))
     refuse_unfollowed(facts["clips"])
@@ -101,9 +112,12 @@ def single(
     background: Annotated[
         Path | None, typer.Option(help="A picture of the scene without anybody, if there is one.")
     ] = None,
+    resume: Resume = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Animate a body from any video of one camera: no calibration, no empty room is needed.
+
+    What is stopped goes on where it was with the same command and --resume.
 
     Ends with exit code 3 where a video's body is believed in less than half of its frames.
 
@@ -112,7 +126,7 @@ def single(
     from tritrack.overrides import overridden
     from tritrack.single.single import Given, single_all
 
-    given = Given(notes, background)
+    given = Given(notes, background, resume)
     facts = single_all(videos, out, given, overridden(Settings(), mode, size), console)
     if json_wanted:
         print(json_text(facts))

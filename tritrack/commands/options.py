@@ -56,6 +56,9 @@ Record = Annotated[
     bool,
     typer.Option(help="Keep outlines and joints as recording.mcap: tritrack replay, Foxglove."),
 ]
+Resume = Annotated[
+    bool, typer.Option("--resume", help="Go on with what was cut short; leave out what is done.")
+]
 Size = Annotated[
     str | None, typer.Option(help="Bound of the working picture, instead of the settings'.")
 ]

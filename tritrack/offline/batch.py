@@ -2,25 +2,29 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 from rich.console import Console
 
 from common import config
-from common.bus.messages import Body, Message, Report, ScaleSource, ViewerNumber
+from common.bus.messages import Body, Report, ScaleSource, ViewerNumber
 from common.config import Settings, SettingsError
 from common.method import Mode
 from common.video.clip_facts import Clip, both_cameras
 from common.video.clip_sources import ClipError
 from common.video.decoding import DecoderDied, Undecodable
 from integrator.frame_numbers import frame_times
-from tritrack.offline.lockstep import Decoders, Tracked, Watch, measured_before, track_clip
+from tritrack.offline.lockstep import Decoders, Tracked, measured_before, track_clip
+from tritrack.offline.performance import Watch
 from tritrack.overrides import overridden
 from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_files
 from tritrack.store.recording import Head, recording_to, refuse_without_library
 from tritrack.store.runs import believed, write_run
-from tritrack.terminal import bar, by_share, complain, warn
+from tritrack.terminal import Tell, bar, by_share, complain, warn
+from tritrack.unfinished.resuming import Wanted, begun, done_before
+from tritrack.unfinished.unfinished_run import CannotResume
+from tritrack.unfinished.work import Course, Kept
 
 
 def track_all(
@@ -33,6 +37,7 @@ def track_all(
     *,
     trusted: bool = False,
     record: bool = False,
+    resume: bool = False,
 ) -> dict[str, Any]:
     """Track clip after clip and write a run folder for each.
 
@@ -47,6 +52,7 @@ def track_all(
         console: For progress, warnings and errors.
         trusted: A calibration is trusted even where it seems wrong.
         record: Keep what the viewers report, so that it can be replayed.
+        resume: Go on with what was cut short, and leave out what is done.
 
     Raises:
         ClipsFailed: When there is nothing to track, when two runs would have one folder, and at
@@ -63,21 +69,39 @@ def track_all(
                 settings = overridden(config.load(path), mode, size)
                 if trusted:
                     settings = msgspec.structs.replace(settings, trust_calibration=True)
-                heard: list[Message] = []
-                watch = _recorder(heard) if record else None
-                tracked = track_clip(settings, decoders, views, watch=watch, tell=tell)
-            except (SettingsError, ClipError, DecoderDied, Undecodable) as error:
+                told = {"the views": views, "what is recorded": record}
+                wanted = Wanted(out / name, settings, told, resume)
+                given = _Given(views, record, tell, console)
+                done[name] = done_before(wanted, console) or _tracked(wanted, given, decoders)
+            except (SettingsError, ClipError, DecoderDied, Undecodable, CannotResume) as error:
                 complain(console, str(error))
-                continue
-            for warning in tracked.facts["warnings"]:
-                warn(console, f"{name}: {warning}")
-            done[name] = {**tracked.facts, "clip": name, "believed": believed(tracked.bodies)}
-            write_run(out / name, tracked.bodies, settings, done[name])
-            if record:
-                _write_recording(out / name, tracked, settings, heard, console)
     if len(done) < len(runs):
         raise ClipsFailed(f"{len(runs) - len(done)} of {len(runs)} clips could not be tracked")
     return {"clips": done}
+
+
+class _Given(NamedTuple):
+    views: tuple[ViewerNumber, ...]
+    record: bool
+    tell: Tell
+    console: Console
+
+
+def _tracked(wanted: Wanted, given: _Given, decoders: Decoders) -> dict[str, Any]:
+    """Track a clip and write its run; what the summary tells of it."""
+    folder, settings, console = wanted.folder, wanted.settings, given.console
+    with begun(wanted, console) as (work, made_of):
+        heard = work.messages("heard") if given.record else None
+        course, watch = Course(given.tell, work), None if heard is None else _recorder(heard)
+        tracked = track_clip(settings, decoders, given.views, watch=watch, course=course)
+        for warning in tracked.facts["warnings"]:
+            warn(console, f"{folder.name}: {warning}")
+        named = {"clip": folder.name, "believed": believed(tracked.bodies)}
+        facts = {**tracked.facts, **named, **made_of}
+        write_run(folder, tracked.bodies, settings, facts)
+        if heard is not None:
+            _write_recording(folder, tracked, settings, heard, console)
+    return facts
 
 
 def head_of(
@@ -108,17 +132,18 @@ def head_of(
     )
 
 
-def _recorder(heard: list[Message]) -> Watch:
+def _recorder(heard: Kept) -> Watch:
     """Gathers what is said of every instant, in the order in which it is said."""
 
     def watch(_frames: object, reports: dict[int, Report], body: Body) -> None:
-        heard.extend([*reports.values(), body])
+        for message in (*reports.values(), body):
+            heard.append(message)
 
     return watch
 
 
 def _write_recording(
-    folder: Path, tracked: Tracked, settings: Settings, heard: list[Message], console: Console
+    folder: Path, tracked: Tracked, settings: Settings, heard: Kept, console: Console
 ) -> None:
     clip = tracked.clip
     if not heard:

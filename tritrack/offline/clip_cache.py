@@ -3,8 +3,6 @@
 import hashlib
 import io
 import json
-from collections.abc import Iterator
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -12,21 +10,17 @@ import msgspec
 import numpy as np
 
 from common.atomic_file import replacing
-from common.cache_folder import DIGEST, add
-from common.config import LANDMARK_SOURCES, Settings
+from common.cache_folder import add
+from common.config import Settings
 from common.npz_file import Arrays, read_arrays
-from common.packages import PACKAGES, ROOT
-from common.video.clip_sources import ClipError, companions_folder, footage_of
-from common.video.clips import find_calibration
+from common.video.clip_sources import ClipError
 from tritrack.offline.lockstep import Tracked
 from tritrack.store.past_run import MAX_BYTES
-from tritrack.store.runs import poses
+from tritrack.store.pose_arrays import poses
+from tritrack.unfinished.run_identity import files_of
 
 KEPT: Final = ("frame", "angles_deg", "joints_m", "joints_px", "confidence", "status")
 """Arrays of `poses.npz` that recognisers and pictures are made of."""
-
-LIBRARIES: Final = ("opencv-python-headless", "scipy")
-"""What changes what is tracked and names no compiled code."""
 
 
 class CachedRun(NamedTuple):
@@ -36,17 +30,6 @@ class CachedRun(NamedTuple):
     """clip, performer, posture_meant, warnings, as in `summary.json`."""
     arrays: Arrays
     """KEPT, as in `poses.npz`."""
-
-
-def tracker_id() -> str:
-    """A word for the tracker itself: another after any change of our code, models or libraries."""
-    digest = hashlib.sha256(DIGEST.encode())
-    for package in PACKAGES:
-        for path in sorted((ROOT / package).rglob("*.npz")):
-            add(digest, path.relative_to(ROOT).as_posix(), path.read_bytes())
-    for name in LIBRARIES:
-        add(digest, name, version(name).encode())
-    return digest.hexdigest()
 
 
 def key_of(settings: Settings, tracker: str) -> str:
@@ -59,7 +42,7 @@ def key_of(settings: Settings, tracker: str) -> str:
     digest = hashlib.sha256(tracker.encode())
     add(digest, "settings", msgspec.json.encode(plain))
     add(digest, "clip", Path(settings.clip).resolve().name.encode())
-    for path in _files(settings):
+    for path in files_of(settings):
         try:
             add(digest, path.name, path.read_bytes())
         except OSError as error:
@@ -100,20 +83,3 @@ def read(folder: Path, key: str) -> CachedRun | None:
         return CachedRun(facts, {name: held[name] for name in KEPT})
     except (OSError, ValueError, KeyError):
         return None
-
-
-def _files(settings: Settings) -> Iterator[Path]:
-    """All that is read of a clip, in a fixed order."""
-    named = footage_of(settings)
-    for view in named:
-        if isinstance(view.source, int):
-            raise ClipError(f"camera {view.source} is no recorded clip: name a clip folder")
-        yield Path(view.source)
-        if view.settings.background:
-            yield Path(view.settings.background)
-    folder = companions_folder(settings, named)
-    calibration = find_calibration(settings, folder)
-    notes = folder / "meta.json"
-    if settings.landmarks not in LANDMARK_SOURCES:
-        yield from sorted(Path(settings.landmarks).rglob("*.json"))
-    yield from (path for path in (calibration, notes) if path is not None and path.is_file())

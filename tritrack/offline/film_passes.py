@@ -4,7 +4,9 @@ What the thesis learns from all of a film, the background (3.1.2) and the scale 
 before the first body; from there on the steps are those of a live run.
 """
 
+import time
 from collections.abc import Sequence
+from itertools import islice
 from typing import Final, NamedTuple
 
 import msgspec
@@ -28,7 +30,8 @@ from integrator.rig.assumed_rig import assumed_camera
 from integrator.single.sight import Annotations
 from tritrack.offline.film_smoothing import calmed
 from tritrack.offline.frame_pairs import share_of
-from tritrack.terminal import Tell
+from tritrack.unfinished.unfinished_run import BODIES
+from tritrack.unfinished.work import Course
 from viewer import track
 from viewer.background.background import learn
 from viewer.capture import recorded
@@ -36,8 +39,9 @@ from viewer.landmarks.outside_source import OutsideSource
 from viewer.room.background_source import FilmBackground
 from viewer.stick.standing_height import standing_of, standing_rows
 
-MOST_FRAMES: Final = 50_000
-"""Silhouettes are kept until the standing height is known, some 10 kB each."""
+CUTTING, POSING = "silhouettes", "poses"
+"""The passes, by the names under which they are resumed."""
+REPORTS, CALM = "reports", "calm"
 MOST_COVERED: Final = 0.5
 """Share of the picture that no person covers in most frames; a camera that moves does."""
 
@@ -57,64 +61,115 @@ class FilmFacts(NamedTuple):
     """Pixels of the working picture in one of the video."""
 
 
+class Cutting(NamedTuple):
+    """Where the first pass is."""
+
+    viewer: track.State
+    start: int = 0
+    """The next frame."""
+    spent_s: float = 0.0
+
+
+class FirstPass(NamedTuple):
+    """What the first pass tells of itself."""
+
+    odd: tuple[str, ...] = ()
+    """What was odd about the film."""
+    spent_s: float = 0.0
+
+
+class Posing(NamedTuple):
+    """Where the second pass is."""
+
+    viewer: track.State
+    integrator: State
+    first: FirstPass
+    guide: Guide | None = None
+    spent_s: float = 0.0
+
+
 def silhouettes_of(
     clip: Clip,
     background: FilmBackground,
     film: FilmFacts,
     reader: Reader,
     source: OutsideSource | None = None,
-    tell: Tell = lambda _: None,
-) -> list[Report]:
-    """The first pass: the silhouette and the landmarks of every frame.
+    course: Course = Course(),
+) -> Sequence[Report]:
+    """The first pass: the silhouette and the landmarks of every frame, from where it was left.
 
     Raises:
-        ClipError: When the clip is too long, or its camera moves.
+        ClipError: When its camera moves.
         DecoderDied: When the video broke the decoder.
     """
-    view = clip.views[0]
-    viewer = track.init(_setup(film), background.background, patches=background.patches)
-    reports: list[Report] = []
-    for frame in recorded(view, clip.every, reader, source):
-        if len(reports) >= MOST_FRAMES:
-            raise ClipError(f"{view.source} has more than {MOST_FRAMES} frames: track parts of it")
-        viewer, report, _ = track.look(viewer, frame, None)
+    view, work, began = clip.views[0], course.work, time.perf_counter()
+    at = work.resumed(CUTTING, Cutting) or Cutting(
+        track.init(_setup(film), background.background, patches=background.patches)
+    )
+    before_s, reports = at.spent_s, work.messages(REPORTS)
+    for frame in recorded(view, clip.every, reader, source, at.start):
+        viewer, report, _ = track.look(at.viewer, frame, None)
         reports.append(report)
-        tell(share_of(clip, {view.number: frame}))
+        at = Cutting(viewer, frame.index + 1, before_s + time.perf_counter() - began)
+        course.tell(share_of(clip, {view.number: frame}))
+        if work.due:
+            work.save(CUTTING, at)
     _refuse_a_moving_camera(reports, str(view.source))
     return reports
 
 
 def bodies_of(
-    reports: Sequence[Report], film: FilmFacts, tell: Tell = lambda _: None
-) -> list[Body]:
-    """The second pass: the viewer tells more of each silhouette, the integrator lifts it."""
+    reports: Sequence[Report],
+    film: FilmFacts,
+    course: Course = Course(),
+    first: FirstPass = FirstPass(),
+) -> Sequence[Body]:
+    """The second pass: the viewer tells more of each silhouette, the integrator lifts it.
+
+    Args:
+        reports: What the first pass gave.
+        film: Of the film.
+        course: Is told how far it is, and keeps the bodies.
+        first: Is kept with where it was left.
+    """
+    work, began = course.work, time.perf_counter()
+    bodies = work.messages(BODIES)
     if not reports:
-        return []
-    viewer, state = _begun(reports, film)
-    guide: Guide | None = None
-    bodies: list[Body] = []
-    for report in reports:
-        annotations = _annotations(film, report.frame)
-        if guide is not None and annotations.orientation is not None:
-            guide = msgspec.structs.replace(guide, stick=True)
-        viewer, full = track.describe(viewer, report, unpack(report), guide)
-        pair = Pair(full, None) if film.number == 1 else Pair(None, full)
-        state, body, guide = merge.step(state, pair, annotations)
+        return bodies
+    at = work.resumed(POSING, Posing) or Posing(*_begun(reports, film), first)
+    before_s = at.spent_s
+    for report in islice(reports, len(bodies), None):
+        at, body = _posed(at, report, film)
         bodies.append(body)
-        tell(len(bodies) / len(reports))
-    if film.method.film_smoothing and state.rig is not None:
-        return calmed(bodies, state.rig, film.notes)
+        course.tell(len(bodies) / len(reports))
+        if work.due:
+            work.save(POSING, at._replace(spent_s=before_s + time.perf_counter() - began))
+    if film.method.film_smoothing and at.integrator.rig is not None:
+        return calmed(bodies, at.integrator.rig, film.notes, work.messages(CALM))
     return bodies
+
+
+def _posed(at: Posing, report: Report, film: FilmFacts) -> tuple[Posing, Body]:
+    """One frame of the second pass."""
+    annotations, guide = _annotations(film, report.frame), at.guide
+    if guide is not None and annotations.orientation is not None:
+        guide = msgspec.structs.replace(guide, stick=True)
+    viewer, full = track.describe(at.viewer, report, unpack(report), guide)
+    pair = Pair(full, None) if film.number == 1 else Pair(None, full)
+    state, body, guide = merge.step(at.integrator, pair, annotations)
+    return at._replace(viewer=viewer, integrator=state, guide=guide), body
 
 
 def _begun(reports: Sequence[Report], film: FilmFacts) -> tuple[track.State, State]:
     """A viewer and an integrator that know what the first pass tells of the scale (T20)."""
     settings, camera = film.settings, film.camera
     size = (reports[0].width, reports[0].height)
-    standing = standing_of(
-        [standing_rows(unpack(report)) for report in reports if report.box is not None],
-        [not report.cut for report in reports if report.box is not None],
-    )
+    seen = [
+        (standing_rows(unpack(report)), not report.cut)
+        for report in reports
+        if report.box is not None
+    ]
+    standing = standing_of([rows for rows, _ in seen], [whole for _, whole in seen])
     nothing = np.zeros((size[1], size[0], 3), np.uint8)
     viewer = track.init(_setup(film), learn([nothing]), standing=standing)
     stature_m, opening = settings.body.stature_m, Opening()

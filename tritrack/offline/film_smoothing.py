@@ -1,6 +1,6 @@
 """A film's bodies made calm and rigid: what comes after a frame tells of it too."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import groupby
 from typing import Final
 
@@ -13,6 +13,7 @@ from common.bus.messages import Body
 from common.notes.notes import Notes, held
 from common.rig.camera import Rig, centre, project
 from integrator.single.rigid_limbs import with_lengths
+from tritrack.unfinished.work import Kept
 
 NOISE_M: Final = 0.05
 """Standard deviation of a joint as one view has it."""
@@ -27,7 +28,9 @@ Covariance = tuple[float, float, float]
 """Of a place, of place and speed, of the speed: the same for all coordinates, m and s."""
 
 
-def calmed(bodies: Sequence[Body], rig: Rig, notes: Notes = Notes()) -> list[Body]:
+def calmed(
+    bodies: Sequence[Body], rig: Rig, notes: Notes = Notes(), kept: Kept | None = None
+) -> Sequence[Body]:
     """The bodies of a film with smooth joints, whose limbs keep the lengths that are their medians.
 
     Where a length is not what was found, depth gives way before the place in the picture.
@@ -38,17 +41,21 @@ def calmed(bodies: Sequence[Body], rig: Rig, notes: Notes = Notes()) -> list[Bod
         bodies: In the order of time; those without joints part the film into stretches.
         rig: Of the film's camera, twice.
         notes: The user's inputs.
+        kept: Takes what is given; None: a list.
     """
     from animator.bones import joints_of, motion_of, skeleton_of
 
-    stretches = [list(some) for seen, some in groupby(bodies, _is_posed) if seen]
+    stretches = [_of_stretch(some) for seen, some in groupby(bodies, _is_posed) if seen]
     if not stretches:
-        return list(bodies)
-    joints_m = np.concatenate([_of_stretch(some) for some in stretches])
+        return bodies
+    joints_m = np.concatenate(stretches)
     skeleton = skeleton_of(joints_m)
     rigid_m = joints_of(skeleton, motion_of(skeleton, joints_m))
     rigid = iter(with_lengths(joints_m, rigid_m, centre(rig.cameras[0])))
-    return [_with(body, next(rigid), rig, notes) if body.joints_m else body for body in bodies]
+    calm: Kept = [] if kept is None else kept
+    for body in bodies:
+        calm.append(_with(body, next(rigid), rig, notes) if body.joints_m else body)
+    return calm
 
 
 def smoothed(places_m: NDArray[np.float64], time_s: Vector) -> NDArray[np.float64]:
@@ -61,23 +68,25 @@ def smoothed(places_m: NDArray[np.float64], time_s: Vector) -> NDArray[np.float6
         places_m: (n, ...)
         time_s: (n,) increasing.
     """
-    x, v = places_m[0], np.zeros_like(places_m[0])
+    found_m, speed_m_s = places_m.copy(), np.zeros_like(places_m)
     P: Covariance = (NOISE_M**2, 0.0, START_SPEED_M_S**2)
-    known, gaps_s = [(x, v, P)], np.diff(time_s).tolist()
-    for place, dt_s in zip(places_m[1:], gaps_s, strict=True):
+    known, gaps_s = [P], np.diff(time_s).tolist()
+    x, v = found_m[0], speed_m_s[0]
+    for n, (place, dt_s) in enumerate(zip(places_m[1:], gaps_s, strict=True), 1):
         a, b, c = _ahead(P, dt_s)
         gain, speed_gain = a / (a + NOISE_M**2), b / (a + NOISE_M**2)
         off = place - (x + dt_s * v)
         x, v = x + dt_s * v + gain * off, v + speed_gain * off
         P = (a - gain * a, b - gain * b, c - speed_gain * b)
-        known.append((x, v, P))
-    found = [x]
-    for (x0, v0, P0), dt_s in zip(known[-2::-1], gaps_s[::-1], strict=True):
-        gain_x, gain_v = _gains(P0, dt_s)
+        known.append(P)
+        found_m[n], speed_m_s[n] = x, v
+    for n in range(len(gaps_s) - 1, -1, -1):
+        (gain_x, gain_v), dt_s = _gains(known[n], gaps_s[n]), gaps_s[n]
+        x0, v0 = found_m[n], speed_m_s[n]
         dx, dv = x - (x0 + dt_s * v0), v - v0
         x, v = x0 + gain_x[0] * dx + gain_x[1] * dv, v0 + gain_v[0] * dx + gain_v[1] * dv
-        found.append(x)
-    return np.stack(found[::-1])
+        found_m[n] = x
+    return found_m
 
 
 def _ahead(P: Covariance, dt_s: float) -> Covariance:
@@ -99,9 +108,11 @@ def _is_posed(body: Body) -> bool:
     return bool(body.joints_m)
 
 
-def _of_stretch(bodies: list[Body]) -> NDArray[np.float64]:
-    joints_m = np.array([body.joints_m for body in bodies])
-    return smoothed(joints_m, np.array([body.captured_s for body in bodies]))
+def _of_stretch(bodies: Iterable[Body]) -> NDArray[np.float64]:
+    joints_m, time_s = zip(
+        *((np.array(body.joints_m), body.captured_s) for body in bodies), strict=True
+    )
+    return smoothed(np.stack(joints_m), np.array(time_s))
 
 
 def _with(body: Body, joints_m: NDArray[np.float64], rig: Rig, notes: Notes) -> Body:

@@ -15,8 +15,19 @@ from common.raster.silhouette_report import with_silhouette
 from common.rig.camera import PAPER_ROTATIONS
 from common.video.clip_facts import Clip, shortfall
 from common.video.frame_cache import Reader
-from tritrack.offline.film_passes import FilmFacts, bodies_of, silhouettes_of
+from tritrack.offline.film_passes import (
+    CUTTING,
+    POSING,
+    REPORTS,
+    Cutting,
+    FilmFacts,
+    FirstPass,
+    Posing,
+    bodies_of,
+    silhouettes_of,
+)
 from tritrack.terminal import Tell
+from tritrack.unfinished.work import Course, InMemory, Work
 from viewer.background.background import Background
 from viewer.landmarks.landmark_sources import oddities, outside_sources
 from viewer.room.background_source import FilmBackground
@@ -30,8 +41,8 @@ MOSTLY: Final = 0.5
 class Followed(NamedTuple):
     """What one camera gave."""
 
-    bodies: list[Body]
-    reports: list[Report]
+    bodies: Sequence[Body]
+    reports: Sequence[Report]
     period_s: float
     """From a frame to the next, where the rate does not vary."""
     turn: NDArray[np.float64]
@@ -61,10 +72,11 @@ class Film(NamedTuple):
 
 
 class Heard(NamedTuple):
-    """Who is told which share of each pass is done."""
+    """Who is told which share of each pass is done, and where what it gives is kept."""
 
     silhouettes: Tell = lambda _: None
     poses: Tell = lambda _: None
+    work: Work = InMemory()
 
 
 def follow_clip(
@@ -73,36 +85,50 @@ def follow_clip(
     """Track a clip of one view whose background is known.
 
     Raises:
-        ClipError: When it is too long, or its camera moves.
+        ClipError: When its camera moves.
         DecoderDied: When the video broke the decoder.
         SettingsError: When the source of landmarks cannot be used.
     """
-    began = time.perf_counter()
     clip, background, notes = film
     view = clip.views[0]
     camera = clip.rig.cameras[0] if clip.rig is not None else None
     scale = view.size[0] / view.source_size[0]
     period_s = clip.every / view.fps
     known = FilmFacts(settings, method, view.number, period_s, camera, notes, scale)
-    with outside_sources(settings, clip.views) as sources:
-        outside = sources.get(view.number)
-        reports = silhouettes_of(clip, background, known, reader, outside, heard.silhouettes)
-        unlooked = oddities(sources)
+    left = heard.work.resumed(POSING, Posing)
+    if left is None:
+        reports, first = _looked_through(film, known, reader, heard)
+    else:
+        reports, first = heard.work.messages(REPORTS), left.first
     seen = time.perf_counter()
-    bodies = bodies_of(reports, known, heard.poses)
-    done = time.perf_counter()
-    odd = (background.odd, shortfall(view, reader.came), doubtful(bodies), *unlooked)
+    bodies = bodies_of(reports, known, Course(heard.poses, heard.work), first)
+    posing_s = time.perf_counter() - seen + (left.spent_s if left else 0.0)
+    odd = (background.odd, first.odd[0], doubtful(bodies), *first.odd[1:])
     facts = {
         "clip": clip.name,
         "performer": clip.meta.performer,
         "posture_meant": clip.meta.posture,
-        **_times(len(bodies), silhouettes=seen - began, poses=done - seen),
+        **_times(len(bodies), silhouettes=first.spent_s, poses=posing_s),
         "scale_source": "assumed" if camera is None else "calibrated",
         "never_uncovered": round(float(background.background.uncertain.mean()), 4),
         "warnings": [*clip.warnings, *filter(None, odd)],
     }
     turn = np.array(PAPER_ROTATIONS[0] if camera is None else camera.R)
     return Followed(bodies, reports, period_s, turn, clip, background.background, facts)
+
+
+def _looked_through(
+    film: Film, known: FilmFacts, reader: Reader, heard: Heard
+) -> tuple[Sequence[Report], FirstPass]:
+    """The first pass, and what it tells of itself."""
+    clip, work, began = film.clip, heard.work, time.perf_counter()
+    view, begun = clip.views[0], work.resumed(CUTTING, Cutting)
+    with outside_sources(known.settings, clip.views) as sources:
+        outside, course = sources.get(view.number), Course(heard.silhouettes, work)
+        reports = silhouettes_of(clip, film.background, known, reader, outside, course)
+        odd = (shortfall(view, reader.came), *oddities(sources))
+    spent_s = time.perf_counter() - began + (begun.spent_s if begun else 0.0)
+    return reports, FirstPass(odd, spent_s)
 
 
 def follow_masks(
@@ -113,7 +139,7 @@ def follow_masks(
     reports = [_or_nobody(report, least_share) for report in reports]
     period_s = reports[1].captured_s - reports[0].captured_s if len(reports) > 1 else 0.04
     film = FilmFacts(settings, METHODS[settings.mode], 1, period_s, None)
-    bodies = bodies_of(reports, film, tell)
+    bodies = bodies_of(reports, film, Course(tell))
     facts = {
         "clip": name,
         **_times(len(bodies), poses=time.perf_counter() - began),

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from typing import Final
 
 from common.bus.messages import ViewerNumber
 from common.config import SilhouetteSettings
@@ -14,6 +15,7 @@ from viewer.room.background_source import background_of_view
 
 Readers = Mapping[ViewerNumber, Reader]
 """What reads each view, by its number."""
+NONE: Final[Mapping[ViewerNumber, int]] = {}
 
 
 def backgrounds(
@@ -36,12 +38,19 @@ def share_of(clip: Clip, frames: Mapping[ViewerNumber, CapturedFrame]) -> float:
 
 
 def instants(
-    clip: Clip, readers: Readers, sources: Sources
+    clip: Clip, readers: Readers, sources: Sources, starts: Mapping[ViewerNumber, int] = NONE
 ) -> Iterator[dict[ViewerNumber, CapturedFrame]]:
-    """The frames of all views, those of one instant together, in the order of time."""
+    """The frames of all views, those of one instant together, in the order of time.
+
+    Args:
+        clip: Of the views.
+        readers: Read them.
+        sources: Of their landmarks.
+        starts: The frame of each view from which on they are given, where it is not the first.
+    """
     streams = {
-        view.number: recorded(view, clip.every, readers[view.number], sources.get(view.number))
-        for view in clip.views
+        n: recorded(view, clip.every, readers[n], sources.get(n), starts.get(n, 0))
+        for n, view in ((view.number, view) for view in clip.views)
     }
     waiting = {number: next(stream, None) for number, stream in streams.items()}
     tolerance_s = 0.5 * clip.every / clip.views[0].fps

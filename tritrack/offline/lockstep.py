@@ -1,14 +1,14 @@
 """The same steps as live, in one process and in lock-step: deterministic, as fast as it goes."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from typing import Any, NamedTuple, get_args
 
 import msgspec
 
 from common.body.body import Bdp
-from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.bus.messages import Body, ViewerNumber
 from common.config import Settings
 from common.method import METHODS, Method
 from common.video.clip_facts import Clip, both_cameras, shortfall
@@ -16,21 +16,18 @@ from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reel
-from integrator import diagnostics, merge, merge_state, opening_posture
+from integrator import diagnostics, merge_state, opening_posture
 from integrator.frame_numbers import frame_times
-from integrator.live_rig.live_calibration import LiveCalibration
-from integrator.live_rig.rig_solver import SolverAtOnce
 from integrator.merge_state import Start
-from integrator.pairing import Pair
 from tritrack.moved_facts import moved_facts
 from tritrack.offline.film_tracking import Film, Heard, follow_clip, unseen
-from tritrack.offline.frame_pairs import backgrounds, instants, share_of
+from tritrack.offline.frame_pairs import backgrounds
 from tritrack.offline.opening_clip import body_of
+from tritrack.offline.performance import Performance, Prepared, Watch, performed
 from tritrack.offline.rig_check import Witness, doubts, refuse_absurd_rig, trust_facts
 from tritrack.offline.rig_from_person import Looked, by_person, calibration_facts
-from tritrack.terminal import Tell
+from tritrack.unfinished.work import Course
 from viewer import track
-from viewer.capture import CapturedFrame
 from viewer.landmarks.landmark_sources import Sources, oddities, outside_sources
 from viewer.room.background_source import FilmBackground, background_of_view
 
@@ -39,13 +36,9 @@ class Tracked(NamedTuple):
     """What tracking a clip gave."""
 
     clip: Clip
-    bodies: list[Body]
+    bodies: Sequence[Body]
     facts: dict[str, Any]
     """For the summary: seconds of each stage, scale_source, warnings."""
-
-
-Watch = Callable[[dict[ViewerNumber, CapturedFrame], dict[int, Report], Body], object]
-"""Looks at the frames of an instant, the reports on them and the body they gave."""
 
 
 class Decoders:
@@ -67,38 +60,13 @@ class Decoders:
         self._doors.close()
 
 
-class Prepared(NamedTuple):
-    """A clip that can be followed."""
-
-    clip: Clip
-    reels: dict[ViewerNumber, Reel]
-    viewers: dict[ViewerNumber, track.State]
-    integrator: merge_state.State
-    odd: list[str]
-    """What is odd about its backgrounds."""
-    seconds: float
-    """What that took."""
-
-
-class Performance(NamedTuple):
-    """What following a clip gave."""
-
-    bodies: list[Body]
-    integrator: merge_state.State
-    noticed: diagnostics.State
-    news: tuple[str, ...]
-    """What became of the rig."""
-    seconds: dict[str, float]
-    """Of each stage."""
-
-
 def track_clip(
     settings: Settings,
     decoders: Decoders,
     views: tuple[ViewerNumber, ...] = (1, 2),
     watch: Watch | None = None,
     method: Method | None = None,
-    tell: Tell = lambda _: None,
+    course: Course = Course(),
 ) -> Tracked:
     """Track one clip from its videos to its bodies; `watch` is shown every instant.
 
@@ -108,7 +76,7 @@ def track_clip(
         views: The cameras to use.
         watch: Is shown every instant of a clip whose scale is known before.
         method: Instead of that of the settings' mode.
-        tell: Hears how much of the clip is over.
+        course: Is told how much of the clip is over, and keeps what it gives.
 
     Raises:
         ClipError: When the clip cannot be used.
@@ -124,13 +92,12 @@ def track_clip(
     if method.stick_lifting and not alone:
         raise ClipError(f"{clip.name}: the thesis's mode is for one camera: add --views 1")
     if alone and (method.stick_lifting or (method.proposals and clip.rig is None)):
-        return _in_two_passes(clip, settings, method, decoders, tell)
+        return _in_two_passes(clip, settings, method, decoders, course)
     with outside_sources(settings, clip.views) as sources:
         looked = by_person(clip, settings, method, decoders.of, sources)
         ready = _prepared(looked, settings, method, decoders, began)
         witness = Witness()
-        watches = (witness, watch) if watch else (witness,)
-        done = _performed(ready, sources, watches, tell)
+        done = performed(ready, sources, witness, watch, course)
         trust = trust_facts(looked.clip, witness, insisted=settings.trust_calibration)
         facts = _facts(ready, done, sources) | calibration_facts(looked) | trust
         facts |= moved_facts(done.bodies)
@@ -139,14 +106,15 @@ def track_clip(
 
 
 def _in_two_passes(
-    clip: Clip, settings: Settings, method: Method, decoders: Decoders, tell: Tell
+    clip: Clip, settings: Settings, method: Method, decoders: Decoders, course: Course
 ) -> Tracked:
     """One camera whose scale all of the clip must tell, or that is followed as the thesis does."""
     view = clip.views[0]
-    reel = Reel(decoders.of[view.number])
+    reel = Reel(decoders.of[view.number], due=view.frames)
     learnt, odd = background_of_view(view, settings.silhouette, reel)
     film = Film(clip, FilmBackground(learnt, [], odd))
-    followed = follow_clip(film, settings, method, reel, Heard(tell))
+    heard = Heard(course.tell, work=course.work)
+    followed = follow_clip(film, settings, method, reel, heard)
     return Tracked(clip, followed.bodies, followed.facts)
 
 
@@ -157,7 +125,7 @@ def _prepared(
     clip, odd = looked.clip, [looked.warning] if looked.warning else []
     rig, alone = both_cameras(clip), len(clip.views) == 1
     known = body_of(settings, lambda own: track_clip(own, decoders).bodies)
-    reels = {view.number: Reel(decoders.of[view.number]) for view in clip.views}
+    reels = {view.number: Reel(decoders.of[view.number], due=view.frames) for view in clip.views}
     viewers: dict[ViewerNumber, track.State] = {}
     learnt = backgrounds(clip, settings.silhouette, reels)
     for view, (background, noted) in zip(clip.views, learnt, strict=True):
@@ -170,37 +138,6 @@ def _prepared(
     start = Start(alone, "person" if looked.found else None, opening, frame_times(clip))
     integrator = merge_state.init(rig, period_s, settings, method, start)
     return Prepared(clip, reels, viewers, integrator, odd, time.perf_counter() - began)
-
-
-def _performed(
-    ready: Prepared, sources: Sources, watches: Sequence[Watch], tell: Tell
-) -> Performance:
-    """Every instant of a clip, its viewers and the integrator in lock-step."""
-    viewers, state, noticed = dict(ready.viewers), ready.integrator, diagnostics.State()
-    guide: Guide | None = None
-    bodies: list[Body] = []
-    spent = {"viewers": 0.0, "integrator": 0.0}
-    calibration = LiveCalibration(state, looks=False, solver=SolverAtOnce())
-    began = time.perf_counter()
-    for frames in instants(ready.clip, ready.reels, sources):
-        start = time.perf_counter()
-        reports: dict[int, Report] = {}
-        for number, frame in frames.items():
-            viewers[number], reports[number] = track.step(viewers[number], frame, guide)
-        middle = time.perf_counter()
-        pair = Pair(reports.get(1), reports.get(2))
-        state, body, guide = merge.step(state, pair)
-        noticed = diagnostics.step(noticed, pair)
-        bodies.append(body)
-        calibration.heard(pair)
-        state = calibration.changed(state)
-        for watch in watches:
-            watch(frames, reports, body)
-        tell(share_of(ready.clip, frames))
-        spent["viewers"] += middle - start
-        spent["integrator"] += time.perf_counter() - middle
-    spent["following"] = time.perf_counter() - began
-    return Performance(bodies, state, noticed, calibration.news, spent)
 
 
 def _facts(ready: Prepared, done: Performance, sources: Sources) -> dict[str, Any]:

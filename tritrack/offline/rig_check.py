@@ -1,6 +1,6 @@
 """Whether the rig of a run is believable: what both viewers saw is kept and asked at its end."""
 
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import msgspec
 
@@ -16,28 +16,36 @@ MOST_FRAMES: Final = 3_000
 """So much of a run is kept."""
 
 
+class Seen(NamedTuple):
+    """What was seen until now."""
+
+    rows: dict[int, list[Row]]
+    """Of each view."""
+    moved: bool = False
+    """A camera was moved."""
+
+
 class Witness:
     """Keeps the landmarks of both views, instant by instant, while the cameras stand."""
 
     def __init__(self) -> None:
         """Nothing was seen yet."""
-        self._moved = False
-        self._rows: dict[int, list[Row]] = {1: [], 2: []}
+        self.seen = Seen({1: [], 2: []})
 
     def __call__(
         self, _: dict[ViewerNumber, CapturedFrame], reports: dict[int, Report], body: Body
     ) -> None:
         """One instant more; the given rig is not held against what is seen after a move."""
-        self._moved = self._moved or bool(body.moved)
-        if self._moved:
+        self.seen = self.seen._replace(moved=self.seen.moved or bool(body.moved))
+        if self.seen.moved:
             return
         for number, report in reports.items():
-            if len(self._rows[number]) < MOST_FRAMES:
-                self._rows[number].append(row_of(report))
+            if len(self.seen.rows[number]) < MOST_FRAMES:
+                self.seen.rows[number].append(row_of(report))
 
     def sighting(self, clip: Clip) -> Sighting:
         """What both saw."""
-        first, second = (track_of_rows(self._rows[number]) for number in (1, 2))
+        first, second = (track_of_rows(self.seen.rows[number]) for number in (1, 2))
         return Sighting(first, second, clip.views[0].size)
 
 

@@ -22,7 +22,7 @@ from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.overrides import overridden
 from tritrack.store.clip_paths import without_plain_files
 from tritrack.store.past_run import PastRunError, is_run, open_run
-from tritrack.store.runs import poses
+from tritrack.store.pose_arrays import poses
 from tritrack.terminal import bar, json_text
 from tritrack.training.training import TrainingError
 

@@ -23,15 +23,20 @@ from tritrack.single.ledger import facts_of, ledger
 from tritrack.single.mask_file import MaskFileError, MaskSequence, is_mask_file, read_masks
 from tritrack.single.overlay_film import write_overlay
 from tritrack.store.clip_paths import ClipsFailed
-from tritrack.store.runs import believed, poses, write_run
+from tritrack.store.pose_arrays import mapped_poses
+from tritrack.store.runs import believed, write_run
 from tritrack.terminal import Tell, bar, by_pass, complain, say, warn
+from tritrack.unfinished.resuming import Begun, Wanted, done_before
+from tritrack.unfinished.resuming import begun as begun_of
+from tritrack.unfinished.unfinished_run import CannotResume
+from tritrack.unfinished.work import InMemory, Work
 from viewer.room.background_source import LOOKED_AT, background_of_film
 
 PASSES: Final = ("learning the room", "cutting out", "posing", "drawing")
 """What is done with all frames of a film, one after the other."""
 UNUSABLE: Final = (
     *(SettingsError, ClipError, DecoderDied, Undecodable),
-    *(MaskFileError, NotesError),
+    *(MaskFileError, NotesError, CannotResume),
 )
 """What is wrong with one video, and lets the others be followed."""
 
@@ -43,6 +48,8 @@ class Given(NamedTuple):
     """Instead of the notes beside each."""
     background: Path | None = None
     """A picture of the scene without anybody."""
+    resume: bool = False
+    """Go on with what was cut short, and leave out what is done."""
 
 
 class Job(NamedTuple):
@@ -86,8 +93,11 @@ def single_all(
             try:
                 _refuse_the_same(path, out / name, name in done)
                 job = job_of(path, given, settings)
-                done[name] = follow(job, out / name, decoder, console, begun)
-                say(console, line_of(name, done[name]))
+                wanted = Wanted(out / name, job.settings, {"the notes": job.notes}, given.resume)
+                before = None if job.masks else done_before(wanted, console)
+                done[name] = before or _kept(job, wanted, decoder, console, begun)
+                if before is None:
+                    say(console, line_of(name, done[name]))
             except UNUSABLE as error:
                 if len(videos) == 1:
                     raise
@@ -110,7 +120,8 @@ def _refuse_the_empty(done: dict[str, Any]) -> None:
     if empty:
         raise ClipsFailed(
             f"nobody was found in {len(empty)} of {len(done)} videos: look for an outline in "
-            f"{done[empty[0]]['overlay']}; without one, they stand still or are too small"
+            f"{done[empty[0]].get('overlay', 'its overlay')}; without one, they stand still or are "
+            "too small"
         )
 
 
@@ -146,8 +157,23 @@ def job_of(path: Path, given: Given, settings: Settings) -> Job:
     return Job(path, settings, None, load_notes(file) if given.notes or file.exists() else Notes())
 
 
+def _kept(
+    job: Job, wanted: Wanted, decoder: Decoder, console: Console, begun: Callable[[str], Tell]
+) -> dict[str, Any]:
+    """Follow one video; what is done of it is on disk while that goes on."""
+    if job.masks is not None:
+        return follow(job, wanted.folder, decoder, console, begun, Begun(InMemory(), {}))
+    with begun_of(wanted, console) as run:
+        return follow(job, wanted.folder, decoder, console, begun, run)
+
+
 def follow(
-    job: Job, folder: Path, decoder: Decoder, console: Console, begun: Callable[[str], Tell]
+    job: Job,
+    folder: Path,
+    decoder: Decoder,
+    console: Console,
+    begun: Callable[[str], Tell],
+    run: Begun,
 ) -> dict[str, Any]:
     """Follow one video and write its run folder; what the summary tells of it, and the overlay.
 
@@ -157,33 +183,34 @@ def follow(
         ClipError, DecoderDied: When it cannot be used.
         RunError, FilmError: When the folder cannot be written.
     """
-    found = _found(job, decoder, begun)
-    arrays = poses(found.bodies)
-    facts = {
-        **found.facts,
-        "frames_with_pose": sum(bool(body.joints_m) for body in found.bodies),
-        "believed": believed(found.bodies),
-        "effort": facts_of(ledger(take_of(arrays), job.notes)),
-        "notes": msgspec.to_builtins(job.notes),
-    }
-    write_run(folder, found.bodies, job.settings, facts)
-    odd = write_files(folder, arrays, found.background)
+    found = _found(job, decoder, begun, run.work)
+    with mapped_poses(found.bodies, folder) as arrays:
+        facts = {
+            **found.facts,
+            "frames_with_pose": sum(bool(body.joints_m) for body in found.bodies),
+            "believed": believed(found.bodies),
+            "effort": facts_of(ledger(take_of(arrays), job.notes)),
+            "notes": msgspec.to_builtins(job.notes),
+            **run.facts,
+        }
+        write_run(folder, found.bodies, job.settings, facts)
+        odd, sure = write_files(folder, arrays, found.background), mean_confidence(arrays)
     film = write_overlay(found, folder / "overlay", decoder, begun("drawing"))
     for warning in (*facts["warnings"], *odd):
         warn(console, f"{folder.name}: {warning}")
     shown = {"overlay": str(film.path), "overlay_codec": film.codec.name}
-    return {**facts, "frames": len(found.bodies), "confidence": mean_confidence(arrays), **shown}
+    return {**facts, "frames": len(found.bodies), "confidence": sure, **shown}
 
 
-def _found(job: Job, decoder: Decoder, begun: Callable[[str], Tell]) -> Followed:
+def _found(job: Job, decoder: Decoder, begun: Callable[[str], Tell], work: Work) -> Followed:
     if job.masks is not None:
         return follow_masks(job.masks.name, job.masks.reports, job.settings, begun("posing"))
     clip = open_clip(job.settings, decoder, (1,))
-    view, reel = clip.views[0], Reel(decoder)
+    view, reel = clip.views[0], Reel(decoder, due=clip.views[0].frames)
     looking = Told(reel, min(view.frames, LOOKED_AT), begun("learning the room"))
     background = background_of_film(view, job.settings.silhouette, looking)
     film, method = Film(clip, background, job.notes), METHODS[job.settings.mode]
-    heard = Heard(begun("cutting out"), begun("posing"))
+    heard = Heard(begun("cutting out"), begun("posing"), work)
     return follow_clip(film, job.settings, method, reel, heard)
 
 

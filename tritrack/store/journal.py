@@ -64,7 +64,7 @@ class Journal:
         self.odd: list[str] = []
         """What could not be written, a line each time that it begins."""
         self._folder = folder
-        self._head = _framed(HEAD, msgspec.msgpack.encode(head))
+        self._head = framed(HEAD, msgspec.msgpack.encode(head))
         self._most_bytes = most_bytes
         self._file: int | None = None
         self._bytes = 0
@@ -75,7 +75,7 @@ class Journal:
 
     def keep(self, messages: Iterable[Message]) -> None:
         """Write these too, whole or not at all; they are the system's when this returns."""
-        new = b"".join(_framed(_MARKS[type(one)], encode(one)) for one in messages)
+        new = b"".join(framed(_MARKS[type(one)], encode(one)) for one in messages)
         try:
             self._write(new)
             self._failing = False
@@ -173,7 +173,8 @@ def put_aside(folder: Path, aside: Path) -> bool:
     return True
 
 
-def _framed(mark: bytes, payload: bytes) -> bytes:
+def framed(mark: bytes, payload: bytes) -> bytes:
+    """A record: what goes before it, then what it holds."""
     return FRAME.pack(MAGIC, mark, len(payload), zlib.crc32(payload)) + payload
 
 

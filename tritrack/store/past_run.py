@@ -91,9 +91,10 @@ def open_run(folder: Path) -> PastRun:
 
 
 def _cut_short(folder: Path, told: "Told") -> PastRun:
-    from tritrack.store.runs import poses, rows_of, summary_of
+    from tritrack.store.pose_arrays import poses
+    from tritrack.store.runs import Rows, summary_of
 
-    bodies = rows_of(told.bodies)
+    bodies = Rows(told.bodies)
     named = [posture.name for posture in told.postures if posture.name]
     facts = {
         **told.head.facts,

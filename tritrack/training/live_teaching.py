@@ -16,7 +16,7 @@ from recognizer.postures import PostureModel
 from recognizer.training.lesson import LEAST_TAKES, Lesson, taught
 from tritrack.live.launch import Heard
 from tritrack.live.session import live
-from tritrack.store.runs import poses
+from tritrack.store.pose_arrays import poses
 from tritrack.training import coach
 from tritrack.training.coach import STAND, State, look_at
 from tritrack.training.teaching import kept, model_to_teach

@@ -27,6 +27,7 @@ from tritrack.store.cores import made
 from tritrack.store.past_run import PastRunError, is_run, open_run
 from tritrack.store.runs import RunError
 from tritrack.terminal import bar, complain, warn
+from tritrack.unfinished.run_identity import tracker_id
 
 BATCH: Final = 8
 """Clips that share a pair of decoders, whose start takes as long as a clip or two; as many are
@@ -130,7 +131,7 @@ def kept_of(
         ClipsFailed: When clips cannot be used; which and why was said before.
         RunError: When the cache cannot be written.
     """
-    tracker = clip_cache.tracker_id()
+    tracker = tracker_id()
     keys, due = {}, []
     for path in clips:
         settings = overridden(config.load(path), mode, None)

@@ -41,8 +41,8 @@ def standing_rows(mask: Mask) -> tuple[float, float]:
     rows, columns = np.nonzero(mask)
     bottom = int(rows.max()) + 1
     half = max(1.0, MIDDLE_SHARE * (bottom - int(rows.min())))
-    column = np.quantile(columns, 0.5, method="nearest")  # one of its own: it may be in two parts
-    middle = np.abs(columns - column) <= half
+    beside = np.abs(columns - np.median(columns))
+    middle = beside <= max(half, beside.min())  # the middle of two parts may lie between them
     return float(rows[middle].min()), float(bottom)
 
 

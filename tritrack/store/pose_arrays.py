@@ -1,0 +1,138 @@
+"""The arrays of a run's poses: in memory, or mapped from files where they are many."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from itertools import islice
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES, LIMBS
+from common.body.extremities import EXTREMITY_NAMES
+from common.bus.messages import Body, Lifting
+
+AT_ONCE: Final = 2_000
+"""Rows in memory: some 10 kB each until they are arrays."""
+
+Laid = Callable[[dict[str, Any]], dict[str, Any]]
+
+
+def poses(bodies: Iterable[Body]) -> dict[str, Any]:
+    """The arrays of a run; a row without a pose is NaN.
+
+    What `poses.npz` holds of each joint, `on_disk` lays together: the 15, then the extremities.
+    """
+    held = list(bodies)
+    return _arrays(held, _told_by(held))
+
+
+@contextmanager
+def mapped_poses(
+    bodies: Iterable[Body], folder: Path, laid: Laid = lambda arrays: arrays
+) -> Iterator[dict[str, Any]]:
+    """The same of however many bodies; of many the arrays are mapped from files, then removed.
+
+    Args:
+        bodies: Are gone through twice.
+        folder: For the files.
+        laid: Lays arrays together, `on_disk`.
+    """
+    told, coming = _told_by(bodies), iter(bodies)
+    arrays = laid(_arrays(list(islice(coming, AT_ONCE)), told))
+    if len(arrays["frame"]) < AT_ONCE:
+        yield arrays
+        return
+    with TemporaryDirectory(prefix=".poses.", dir=folder) as held:
+        files = {name: Path(held, name) for name in arrays if not name.endswith("_names")}
+        rows = 0
+        while len(arrays["frame"]):
+            rows += len(arrays["frame"])
+            for name, path in files.items():
+                with path.open("ab") as file:
+                    file.write(arrays[name].tobytes())
+            arrays = laid(_arrays(list(islice(coming, AT_ONCE)), told))
+        mapped = {
+            name: np.memmap(path, arrays[name].dtype, "r", shape=(rows, *arrays[name].shape[1:]))
+            for name, path in files.items()
+        }
+        yield {name: mapped.get(name, array) for name, array in arrays.items()}
+
+
+class _Told(NamedTuple):
+    """Of what a run's bodies tell beside their joints."""
+
+    extremities: bool
+    """All that have joints."""
+    liftings: bool
+    """Any."""
+
+
+def _told_by(bodies: Iterable[Body]) -> _Told:
+    without = lifted = False
+    for body in bodies:
+        without = without or bool(body.joints_m and not body.extremities_m)
+        lifted = lifted or body.lifting is not None
+    return _Told(not without, lifted)
+
+
+def _arrays(bodies: Sequence[Body], told: _Told) -> dict[str, Any]:
+    n = len(bodies)
+
+    def rows(values: Iterable[Any], shape: tuple[int, ...]) -> Any:
+        empty = np.full(shape, np.nan)
+        table = [np.reshape(value, shape) if len(value) else empty for value in values]
+        return np.array(table, np.float64).reshape(n, *shape)
+
+    in_pose = list(ANGLES_IN_POSE)
+    return {
+        "frame": np.array([body.frame for body in bodies], np.int64),
+        "time_s": np.array([body.captured_s for body in bodies], np.float64),
+        "joints_m": rows((body.joints_m for body in bodies), (len(JOINT_NAMES), 3)),
+        "joint_names": np.array(JOINT_NAMES),
+        **(_extremities(bodies, rows) if told.extremities else {}),
+        "joints_px": rows((body.joints_px for body in bodies), (2, len(JOINT_NAMES), 2)),
+        "angles_deg": rows(
+            ([body.pose[i] for i in in_pose] if body.pose else () for body in bodies),
+            (len(ANGLE_NAMES),),
+        ),
+        "angle_names": np.array(ANGLE_NAMES),
+        "angles_raw_deg": rows((body.angles_raw_deg for body in bodies), (len(ANGLE_NAMES),)),
+        "confidence": np.array(
+            [body.confidence or (0.0,) * len(JOINT_NAMES) for body in bodies], np.float64
+        ).reshape(n, len(JOINT_NAMES)),
+        "status": np.array([body.status for body in bodies], "U9"),
+        "views": np.array([body.views for body in bodies], "U4"),
+        "score": np.array([body.score for body in bodies], np.float64).reshape(n, 2),
+        "facing": np.array([body.facing for body in bodies], "U6").reshape(n, 2),
+        **(_liftings([body.lifting for body in bodies]) if told.liftings else {}),
+    }
+
+
+def _extremities(bodies: Sequence[Body], rows: Callable[..., Any]) -> dict[str, Any]:
+    """Nose, heels, toes and knuckles."""
+    count = len(EXTREMITY_NAMES)
+    sure = (body.extremities_confidence or (0.0,) * count for body in bodies)
+    return {
+        "extremities_m": rows((body.extremities_m for body in bodies), (count, 3)),
+        "extremities_px": rows((body.extremities_px for body in bodies), (2, count, 2)),
+        "extremities_confidence": np.array(list(sure), np.float64).reshape(-1, count),
+    }
+
+
+def _liftings(told: Sequence[Lifting | None]) -> dict[str, Any]:
+    """What one view alone decided by itself, where it did: the arrays that retouching needs."""
+    nothing = Lifting("", 1.0, ())
+    each = [one or nothing for one in told]
+
+    def limbs(values: Iterable[tuple[float, ...]], otherwise: float) -> Any:
+        missing = (otherwise,) * len(LIMBS)
+        return np.array([value or missing for value in values], np.float64).reshape(-1, len(LIMBS))
+
+    return {
+        "orientation": np.array([one.orientation for one in each], "U14"),
+        "orientation_confidence": np.array([one.orientation_confidence for one in each]),
+        "depth_confidence": limbs((one.depth_confidence for one in each), 1.0),
+        "depth_error_deg": limbs((one.depth_error_deg for one in each), np.nan),
+    }

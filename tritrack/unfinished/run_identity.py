@@ -1,0 +1,86 @@
+"""Of what a run is: its settings, the files that it reads, and the program itself, as digests."""
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from importlib.metadata import version
+from pathlib import Path
+from typing import Final
+
+import msgspec
+
+from common.cache_folder import DIGEST, add
+from common.config import LANDMARK_SOURCES, Settings
+from common.packages import PACKAGES, ROOT
+from common.video.clip_sources import ClipError, companions_folder, footage_of
+from common.video.clips import find_calibration
+
+Identity = dict[str, str]
+"""A digest of each thing that a run depends on, by what a message calls it."""
+
+LIBRARIES: Final = ("opencv-python-headless", "scipy")
+"""What changes what is tracked and names no compiled code."""
+
+
+def identity_of(settings: Settings, told: Mapping[str, object]) -> Identity:
+    """What a run over a recorded clip depends on; where its files lie is no part of it.
+
+    Args:
+        settings: As resolved for the run.
+        told: What else its command says of it, by name.
+
+    Raises:
+        ClipError: When the clip has no files, or the settings name a camera.
+    """
+    plain = msgspec.structs.replace(settings, clip="", calibration="")
+    found = {"the program": tracker_id(), "the settings": _digest(plain)}
+    found |= {name: _digest(value) for name, value in told.items()}
+    for path in files_of(settings):
+        try:
+            with path.open("rb") as file:
+                found[path.name] = hashlib.file_digest(file, "sha256").hexdigest()
+        except OSError:
+            found[path.name] = ""  # who opens the clip says it better
+    return found
+
+
+def differing(before: Identity, now: Identity) -> list[str]:
+    """What is not what it was, by name."""
+    names = [*before, *(name for name in now if name not in before)]
+    return [name for name in names if before.get(name) != now.get(name)]
+
+
+def word_of(identity: Identity) -> str:
+    """All of it in one word."""
+    return _digest(identity)[:32]
+
+
+def tracker_id() -> str:
+    """A word for the tracker itself: another after any change of our code, models or libraries."""
+    digest = hashlib.sha256(DIGEST.encode())
+    for package in PACKAGES:
+        for path in sorted((ROOT / package).rglob("*.npz")):
+            add(digest, path.relative_to(ROOT).as_posix(), path.read_bytes())
+    for name in LIBRARIES:
+        add(digest, name, version(name).encode())
+    return digest.hexdigest()
+
+
+def files_of(settings: Settings) -> Iterator[Path]:
+    """All that is read of a clip, in a fixed order."""
+    named = footage_of(settings)
+    for view in named:
+        if isinstance(view.source, int):
+            raise ClipError(f"camera {view.source} is no recorded clip: name a clip folder")
+        yield Path(view.source)
+        if view.settings.background:
+            yield Path(view.settings.background)
+    folder = companions_folder(settings, named)
+    calibration = find_calibration(settings, folder)
+    notes = folder / "meta.json"
+    if settings.landmarks not in LANDMARK_SOURCES:
+        yield from sorted(Path(settings.landmarks).rglob("*.json"))
+    yield from (path for path in (calibration, notes) if path is not None and path.is_file())
+
+
+def _digest(value: object) -> str:
+    return hashlib.sha256(msgspec.json.encode(value)).hexdigest()
