@@ -20,7 +20,7 @@ from viewer.background.image_stack import median
 from viewer.background.moved_objects import Patch, patches_of
 from viewer.background.occluded_background import learn_around, learn_uncovered
 from viewer.room.judged_background import best_of
-from viewer.room.room_people import AROUND, looked_at
+from viewer.room.room_people import AROUND, are_sure, looked_at
 from viewer.room.standing_body import standing
 
 SAMPLE = 40
@@ -76,7 +76,8 @@ def of_clip(
     Where contours say that nobody is in the opening, that is the room. They do take furniture for
     somebody: then the network of landmarks is asked, and the backgrounds of both cases are made,
     the likelier first, until one has the outlines that the landmarks in later frames ask for. Of
-    what changes and of who hides the same place all through, one is estimated each: the better.
+    what changes and, where the network is sure, of who hides the same place all through, one is
+    estimated each: the better.
 
     Args:
         opening: The first frames.
@@ -95,9 +96,10 @@ def of_clip(
     opened = learnt(laid_over, opening)
     makers: list[Callable[[], Background]] = [lambda: learn_uncovered(sample)]
     if any(look.is_somebody for look in looks):
-        body = standing(median(even_light(judges)), looks)
-        estimates = [makers[0], lambda: learn_behind(judges, body, regions)]
-        makers = [lambda: best_of(estimates, judges, looks, settings, good=1.0)]
+        if are_sure(looks):
+            body = standing(median(even_light(judges)), looks)
+            estimates = [makers[0], lambda: learn_behind(judges, body, regions)]
+            makers = [lambda: best_of(estimates, judges, looks, settings, good=1.0)]
         makers.append(lambda: learn_around(judges, regions))
         if still:
             makers.insert(len(makers) if somebody else 0, lambda: opened)
