@@ -41,6 +41,7 @@ def test_the_tracker_is_named_by_all_our_code_and_by_its_models(
         assert tracker_id() != before
     shutil.copytree(ROOT / "viewer", tmp_path / "viewer")
     monkeypatch.setattr(run_identity, "ROOT", tmp_path)
-    before = tracker_id()
-    changed(next((tmp_path / "viewer").rglob("*.npz")))
-    assert tracker_id() != before
+    for kind in ("*.npz", "*.onnx"):
+        before = tracker_id()
+        changed(next((tmp_path / "viewer").rglob(kind)))
+        assert tracker_id() != before

@@ -17,7 +17,8 @@ from common.video.clips import find_calibration
 Identity = dict[str, str]
 """A digest of each thing that a run depends on, by what a message calls it."""
 
-LIBRARIES: Final = ("opencv-python-headless", "scipy")
+MODELS: Final = ("*.npz", "*.onnx")
+LIBRARIES: Final = ("opencv-python-headless", "scipy", "onnxruntime")
 """What changes what is tracked and names no compiled code."""
 
 
@@ -58,7 +59,8 @@ def tracker_id() -> str:
     """A word for the tracker itself: another after any change of our code, models or libraries."""
     digest = hashlib.sha256(DIGEST.encode())
     for package in PACKAGES:
-        for path in sorted((ROOT / package).rglob("*.npz")):
+        models = (path for kind in MODELS for path in (ROOT / package).rglob(kind))
+        for path in sorted(models):
             add(digest, path.relative_to(ROOT).as_posix(), path.read_bytes())
     for name in LIBRARIES:
         add(digest, name, version(name).encode())
