@@ -28,6 +28,10 @@ INCHES: Final = 0.125
 """What one of them is on paper; letters have a fixed size."""
 LETTERS: Final = 2.05
 """How many letters of the small print one of them takes."""
+SMALL: Final = 8
+"""Points of the small print ..."""
+BOLD: Final = 1.15
+"""... and how much wider fat letters are."""
 BOX: Final = 4.0
 """Height of a box, and of the head of a package in the middle."""
 LEVEL: Final = 5.4
@@ -96,13 +100,20 @@ def write(axes: Any, box: Box, above: tuple[float, float], width: float) -> None
     style = {"ha": "center", "va": "center", "zorder": 3}
     if box.says:
         name = box.names[0].split("/", 1)[1]
-        axes.text(x, y + 0.8, f"{name}/", size=10, weight="bold", **style)
+        size = fitting(f"{name}/", width / BOLD, 10)
+        axes.text(x, y + 0.8, f"{name}/", size=size, weight="bold", **style)
         said = textwrap.wrap(box.says, letters, max_lines=2, placeholder=" ...")
         axes.text(x, y + 2.5, "\n".join(said), size=8, **style)
         return
     stems = ", ".join(Path(name).stem for name in box.names)
     said = textwrap.wrap(stems, letters, break_long_words=False)
-    axes.text(x, y + BOX / 2, "\n".join(said), size=9 if len(said) < 3 else 8, **style)
+    size = fitting(max(said, key=len), width, 9 if len(said) < 3 else SMALL)
+    axes.text(x, y + BOX / 2, "\n".join(said), size=size, **style)
+
+
+def fitting(line: str, width: float, largest: float) -> float:
+    """The size of letters, points, at which a line stays in its box."""
+    return min(largest, SMALL * LETTERS * width / len(line))
 
 
 def rectangle(
