@@ -60,6 +60,7 @@ def test_what_no_process_says_does_not_fit() -> None:
 def listen(endpoint: str, heard: list[tuple[str, bytes]], over: threading.Event) -> None:
     """All that is said in the room, from when its hub answers until the test is over.
 
+    What was said before is asked for: the hub keeps what a late comer needs.
     Once a body is heard, the stranger asks the run to save what it saw, with the run's own word,
     which goes behind the number of all that it says; the run answers.
     """
@@ -80,6 +81,9 @@ def listen(endpoint: str, heard: list[tuple[str, bytes]], over: threading.Event)
             continue
         with session:
             session.declare_subscriber("tritrack/room/**", hear)
+            for reply in session.get("tritrack/room/**", timeout=2.0):
+                if reply.ok is not None:
+                    hear(reply.ok)
             while not words and not over.wait(0.1):
                 pass
             ours = (1).to_bytes(8, "big") + b"".join(words[:1])
