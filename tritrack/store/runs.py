@@ -56,7 +56,7 @@ def write_run(
             np.savez(file, allow_pickle=False, **arrays)
         _write_json(folder / "summary.json", summary_of(rows, settings, facts))
     except OSError as error:
-        raise _unwritable(folder, error) from error
+        raise unwritable(folder, error) from error
 
 
 class Rows:
@@ -95,7 +95,7 @@ def write_postures(folder: Path, postures: Iterable[Posture], performed: str) ->
             folder / "posture.json", {"posture": performed, "events": events, "frames": rows}
         )
     except OSError as error:
-        raise _unwritable(folder, error) from error
+        raise unwritable(folder, error) from error
 
 
 def believed(bodies: Iterable[Body]) -> float | None:
@@ -137,7 +137,8 @@ def versions() -> dict[str, str]:
     return told | {"python": platform.python_version()}
 
 
-def _unwritable(folder: Path, error: OSError) -> RunError:
+def unwritable(folder: Path, error: OSError) -> RunError:
+    """What is said of a run folder that takes no more."""
     reason = error.strerror or str(error)
     return RunError(f"cannot write {folder}: {reason}; free some space or name another --out")
 

@@ -7,6 +7,7 @@ import os
 import zlib
 from array import array
 from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any, Final, Generic, TypeVar, overload
 
@@ -15,6 +16,7 @@ import msgspec
 from common.bus.message_codec import encode
 from common.bus.messages import Message, Report
 from tritrack.store.journal import FRAME, HEAD, KINDS, MAGIC, framed
+from tritrack.store.runs import unwritable
 
 Kind = TypeVar("Kind", bound=Message)
 
@@ -41,6 +43,19 @@ class Torn(ValueError):
     """A file that does not hold what it held."""
 
 
+@contextmanager
+def writing(folder: Path) -> Iterator[None]:
+    """Tell of a folder that cannot be written.
+
+    Raises:
+        RunError: Instead of any OSError; the text says why.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise unwritable(folder, error) from error
+
+
 class MessageFile(Sequence[Kind], Generic[Kind]):
     """Messages that are appended, and read as often as one likes."""
 
@@ -54,37 +69,42 @@ class MessageFile(Sequence[Kind], Generic[Kind]):
 
         Raises:
             Torn: When the file does not come so far, or is damaged before it.
-            OSError: When it cannot be written.
+            RunError: When it cannot be written; also when messages are appended or read.
         """
         self._path = path
         self._starts = array("Q")
         if place is not None:
             self._size = self._scanned(place)
-            self._file: IO[bytes] = path.open("r+b", AT_ONCE)
-            self._file.truncate(self._size)
-            self._file.seek(self._size)
+            with self._writing():
+                self._file: IO[bytes] = path.open("r+b", AT_ONCE)
+                self._file.truncate(self._size)
+                self._file.seek(self._size)
             return
-        self._file = path.open("wb", AT_ONCE)
         first = framed(HEAD, head) if head else b""
-        self._file.write(first)
+        with self._writing():
+            self._file = path.open("wb", AT_ONCE)
+            self._file.write(first)
         self._size = len(first)
 
     def append(self, message: Kind) -> None:
         """One message more."""
         record = framed(MARKS[type(message)], encode(message))
         self._starts.append(self._size)
-        self._file.write(record)
+        with self._writing():
+            self._file.write(record)
         self._size += len(record)
 
     def synced(self) -> Place:
         """How far it has come; so far it outlives a power cut."""
-        self._file.flush()
-        os.fsync(self._file.fileno())
+        with self._writing():
+            self._file.flush()
+            os.fsync(self._file.fileno())
         return Place(len(self), self._size)
 
     def close(self) -> None:
-        """Append no more; it can be read on."""
-        self._file.close()
+        """Append no more; it can be read on. What the disk has not taken was told."""
+        with suppress(OSError):
+            self._file.close()
 
     def __len__(self) -> int:
         """How many messages."""
@@ -106,7 +126,8 @@ class MessageFile(Sequence[Kind], Generic[Kind]):
 
     def _read_from(self, first: int) -> Iterator[Kind]:
         if not self._file.closed:
-            self._file.flush()
+            with self._writing():
+                self._file.flush()
         left = len(self) - first
         with self._path.open("rb", AT_ONCE) as file:
             if left:
@@ -114,6 +135,9 @@ class MessageFile(Sequence[Kind], Generic[Kind]):
             for _ in range(left):
                 _magic, mark, length, _sum = FRAME.unpack(file.read(FRAME.size))
                 yield _DECODERS[mark].decode(file.read(length))
+
+    def _writing(self) -> AbstractContextManager[None]:
+        return writing(self._path.parent)
 
     def _scanned(self, place: Place) -> int:
         """Find the records before a place; its size."""

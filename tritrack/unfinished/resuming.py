@@ -12,6 +12,7 @@ from common.config import Settings, SettingsError
 from common.video.clip_sources import ClipError, footage_of
 from common.video.decoding import DecoderDied, Undecodable
 from tritrack.store import journal
+from tritrack.store.runs import RunError
 from tritrack.terminal import say, warn
 from tritrack.unfinished.run_identity import identity_of, word_of
 from tritrack.unfinished.unfinished_run import (
@@ -19,6 +20,7 @@ from tritrack.unfinished.unfinished_run import (
     STATE,
     CannotResume,
     UnfinishedRun,
+    discard,
     saved_in,
 )
 from tritrack.unfinished.work import InMemory, Work
@@ -101,10 +103,12 @@ def begun(wanted: Wanted, console: Console) -> Iterator[Begun]:
     except CannotResume:
         run.close()
         raise
-    except BaseException:
+    except BaseException as error:
         run.close()
         if (wanted.folder / FOLDER / STATE).is_file():
             warn(console, f"{wanted.folder.name}: what is done is kept: --resume goes on with it")
+        elif isinstance(error, RunError):  # the disk takes no more
+            discard(wanted.folder)
         raise
     run.remove()
 

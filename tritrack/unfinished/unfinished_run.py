@@ -17,7 +17,7 @@ import msgspec
 from common.atomic_file import replacing
 from tritrack.store import journal
 from tritrack.store.runs import RunError
-from tritrack.unfinished.message_file import MessageFile, Place, Torn
+from tritrack.unfinished.message_file import MessageFile, Place, Torn, writing
 from tritrack.unfinished.run_identity import Identity, differing
 from tritrack.unfinished.state_codec import UnreadableState, packed, unpacked
 
@@ -72,11 +72,9 @@ class UnfinishedRun:
         self._saved = saved
         self._files: dict[str, MessageFile[Any]] = {}
         self._due_s = time.monotonic() + SAVES_S
-        try:
+        with writing(folder):
             if saved is None:
                 discard(folder)
-        except OSError as error:
-            raise _unwritable(folder, error) from error
 
     @property
     def due(self) -> bool:
@@ -94,13 +92,12 @@ class UnfinishedRun:
         path = self._folder / (journal.NAME if is_journal else f"{FOLDER}/{name}.bin")
         head = msgspec.msgpack.encode(self._head) if is_journal else b""
         place = self._saved.places.get(name) if self._saved else None
-        try:
+        with writing(self._folder):
             (self._folder / FOLDER).mkdir(parents=True, exist_ok=True)
+        try:
             self._files[name] = MessageFile(path, head, place)
         except Torn as error:
             raise CannotResume(f"{error}: {CURE}") from error
-        except OSError as error:
-            raise _unwritable(self._folder, error) from error
         return self._files[name]
 
     def resumed(self, stage: str, kind: type[State]) -> State | None:
@@ -122,16 +119,14 @@ class UnfinishedRun:
         Raises:
             RunError: When it cannot be written.
         """
-        try:
-            places = {name: file.synced() for name, file in self._files.items()}
-            saved = Saved(self._identity, stage, places, packed(state))
-            content = msgspec.msgpack.encode(saved)
-            with replacing(self._folder / FOLDER / STATE) as new, new.open("wb") as file:
-                file.write(zlib.crc32(content).to_bytes(SUM_BYTES, "little") + content)
-                file.flush()
-                os.fsync(file.fileno())
-        except OSError as error:
-            raise _unwritable(self._folder, error) from error
+        places = {name: file.synced() for name, file in self._files.items()}
+        saved = Saved(self._identity, stage, places, packed(state))
+        content = msgspec.msgpack.encode(saved)
+        new_state = replacing(self._folder / FOLDER / STATE)
+        with writing(self._folder), new_state as new, new.open("wb") as file:
+            file.write(zlib.crc32(content).to_bytes(SUM_BYTES, "little") + content)
+            file.flush()
+            os.fsync(file.fileno())
         self._due_s = time.monotonic() + SAVES_S
 
     def close(self) -> None:
@@ -194,7 +189,3 @@ def discard(folder: Path) -> None:
     journal.remove(folder)
     with contextlib.suppress(FileNotFoundError):
         shutil.rmtree(folder / FOLDER)
-
-
-def _unwritable(folder: Path, error: OSError) -> RunError:
-    return RunError(f"cannot write {folder}: {error.strerror}; free some space or name another")
