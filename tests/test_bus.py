@@ -233,7 +233,7 @@ def test_the_clock_answers_and_survives_a_bad_question(
     def reply(question: ClockQuestion) -> ClockAnswer:
         if not question.ready:
             raise KeyError("a mistake of the process's own")
-        return ClockAnswer(now_s=12.5, start_s=float(question.viewer))
+        return ClockAnswer(now_s=12.5, start_s=float(question.viewer or 0))
 
     with ExitStack() as doors:
         viewer = client(place, doors)
@@ -374,7 +374,7 @@ def test_the_local_bus_keeps_answers_and_announces_as_the_live_one() -> None:
     assert bus.latest(Guide, 0.0) == a_guide(2)
     question = ClockQuestion(viewer=1, ready=True)
     assert bus.ask(question, ClockAnswer, 0.0) is None
-    bus.answer(ClockQuestion, lambda asked: ClockAnswer(now_s=float(asked.viewer)))
+    bus.answer(ClockQuestion, lambda asked: ClockAnswer(now_s=float(asked.viewer or 0)))
     assert bus.ask(question, ClockAnswer, 0.0) == ClockAnswer(now_s=1.0)
     bus.announce("viewer-1")
     watcher = bus.watch_alive()

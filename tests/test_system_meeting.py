@@ -123,6 +123,14 @@ def test_the_start_is_fixed_once_when_every_viewer_is_ready(
         assert starter.answer(question(number)) == ClockAnswer(now_s=1007.0, start_s=fixed_s)
 
 
+def test_who_only_asks_for_the_time_begins_no_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    Clock(monkeypatch, "integrator.hearing.run_start")
+    starter = run_start.Starter(frozenset((1,)))
+    for only_time in (ClockQuestion(), ClockQuestion(ready=True)):
+        assert starter.answer(only_time) == ClockAnswer(now_s=1000.0, start_s=None)
+    assert starter.answer(question(1)).start_s is not None
+
+
 def test_a_clip_waits_for_who_looks_at_its_page_but_not_for_ever(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

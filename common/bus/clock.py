@@ -59,7 +59,7 @@ def asked(bus: "Bus") -> Offset:
     """How far the room's clock is from this host's, asked now; 0 where nobody answers."""
     state, offset = init(), Offset(0.0, 0.0)
     for _ in range(EXCHANGES):
-        told = exchanged(bus, ClockQuestion(viewer=1, ready=False))
+        told = exchanged(bus, ClockQuestion())
         if told is None:
             break
         state, offset = step(state, told[0])

@@ -49,10 +49,12 @@ class Ended(Message, frozen=True, kw_only=True):
 
 
 class ClockQuestion(Message, frozen=True, kw_only=True):
-    """A viewer asks what the room's clock says, and whether it may begin."""
+    """Somebody asks what the room's clock says; a viewer, whether it may begin too."""
 
-    viewer: ViewerNumber
-    ready: bool
+    viewer: ViewerNumber | None = None
+    """Who asks; None: somebody for whom no run waits."""
+    ready: bool = False
+    """That viewer can begin."""
 
 
 class ClockAnswer(Message, frozen=True, kw_only=True):

@@ -24,7 +24,7 @@ class Starter:
     def answer(self, question: ClockQuestion) -> ClockAnswer:
         """What the clock says now; the start, if it is fixed. Called by the bus's own thread."""
         now_s = time.monotonic()
-        if question.ready:
+        if question.ready and question.viewer is not None:
             self._missing.discard(question.viewer)
         if not self._missing and self._ready_s is None:
             self._ready_s = now_s
