@@ -61,7 +61,7 @@ def person(
     if quality.unsure:
         console.print(
             f"not known well enough: {', '.join(quality.unsure)}: film somebody who walks to "
-            f"and fro all over the room, for a minute or more",
+            "and fro all over the room, for a minute or more",
             highlight=False,
             soft_wrap=True,
         )

@@ -22,7 +22,7 @@ from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_file
 from tritrack.store.recording import Head, recording_to, refuse_without_library
 from tritrack.store.runs import believed, write_run
 from tritrack.terminal import Tell, bar, by_share, complain, warn
-from tritrack.unfinished.resuming import Wanted, begun, done_before
+from tritrack.unfinished.resuming import Wanted, done_before, resumable
 from tritrack.unfinished.unfinished_run import CannotResume
 from tritrack.unfinished.work import Course, Kept
 
@@ -90,7 +90,7 @@ class _Given(NamedTuple):
 def _tracked(wanted: Wanted, given: _Given, decoders: Decoders) -> dict[str, Any]:
     """Track a clip and write its run; what the summary tells of it."""
     folder, settings, console = wanted.folder, wanted.settings, given.console
-    with begun(wanted, console) as (work, made_of):
+    with resumable(wanted, console) as (work, made_of):
         heard = work.messages("heard") if given.record else None
         course, watch = Course(given.tell, work), None if heard is None else _recorder(heard)
         tracked = track_clip(settings, decoders, given.views, watch=watch, course=course)

@@ -103,7 +103,7 @@ def follow_clip(
     seen = time.perf_counter()
     bodies = bodies_of(reports, known, Course(heard.poses, heard.work), first)
     posing_s = time.perf_counter() - seen + (left.spent_s if left else 0.0)
-    odd = (background.odd, first.odd[0], doubtful(bodies), *first.odd[1:])
+    odd = (background.odd, *first.odd, doubtful(bodies))
     facts = {
         "clip": clip.name,
         "performer": clip.meta.performer,

@@ -26,8 +26,7 @@ from tritrack.store.clip_paths import ClipsFailed
 from tritrack.store.pose_arrays import mapped_poses
 from tritrack.store.runs import believed, write_run
 from tritrack.terminal import Tell, bar, by_pass, complain, say, warn
-from tritrack.unfinished.resuming import Begun, Wanted, done_before
-from tritrack.unfinished.resuming import begun as begun_of
+from tritrack.unfinished.resuming import Begun, Wanted, done_before, resumable
 from tritrack.unfinished.unfinished_run import CannotResume
 from tritrack.unfinished.work import InMemory, Work
 from viewer.room.background_source import LOOKED_AT, background_of_film
@@ -163,7 +162,7 @@ def _kept(
     """Follow one video; what is done of it is on disk while that goes on."""
     if job.masks is not None:
         return follow(job, wanted.folder, decoder, console, begun, Begun(InMemory(), {}))
-    with begun_of(wanted, console) as run:
+    with resumable(wanted, console) as run:
         return follow(job, wanted.folder, decoder, console, begun, run)
 
 

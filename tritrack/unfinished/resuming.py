@@ -70,7 +70,7 @@ def done_before(wanted: Wanted, console: Console) -> dict[str, Any] | None:
 
 
 @contextmanager
-def begun(wanted: Wanted, console: Console) -> Iterator[Begun]:
+def resumable(wanted: Wanted, console: Console) -> Iterator[Begun]:
     """The work of a run, as far as it had come; what it keeps goes when its results are written.
 
     Where the run is stopped it stays, and that is said. Where its clip cannot be used it goes.
