@@ -332,7 +332,10 @@ class Clicking(NamedTuple):
 def clicking(address: str, size: tuple[int, int]) -> Iterator[Clicking]:
     with open_tab(str(CHROMIUM), SOFT) as tab:
         looking = Looking(tab, address, size)
-        assert looking.until("document.body?.dataset.loaded === '2'"), "the pictures do not come"
+        ready = (
+            "document.body?.dataset.loaded === '2' && document.body.dataset.picked !== undefined"
+        )
+        assert looking.until(ready), "the pictures do not come"
         yield Clicking(looking)
 
 
@@ -566,3 +569,27 @@ def test_near_by_a_click_is_finer_and_drags_move_points_or_the_picture(tmp_path:
             assert looking.until("document.body.dataset.picked === '1'")
             assert chosen() == pytest.approx((under[0] - 100 / (4 * scale), under[1]), abs=0.05)
         command.ended()
+
+
+@pytest.mark.slow
+@needs_browser
+def test_nothing_can_be_clicked_before_the_points_that_are_asked_for_are_known() -> None:
+    """Or a click would put an empty sheet in the place of one that was kept."""
+    album = Album((64, 48), {1: Running(Camera(), 0, (64, 48))})
+    hello = msgspec.structs.replace(POLES, size=album.size, pictures=album.pictures)
+    page = MarkingPage(hello, album.jpeg, free_port())
+    prompt = "document.querySelector('#next').innerText"
+    try:
+        with open_tab(str(CHROMIUM), SOFT) as tab:
+            looking = Looking(tab, page.address, SIZES["desk"])
+            assert looking.until("document.querySelector('#words')?.innerText === 'ready'")
+            time.sleep(0.5)
+            looking.key("n")
+            looking.key("Enter", 13)
+            assert looking.ask(prompt) == ""
+            assert looking.ask("document.querySelectorAll('#adding button').length") == 0
+            assert page.next_wish() is None
+            page.show(Shown(clicked_poles(), "", 0, Solved((Seen(False, ""),), ()), "", True))
+            assert looking.until(f"{prompt}.startsWith('all points are there')")
+    finally:
+        page.close()

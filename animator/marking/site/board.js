@@ -4,9 +4,9 @@ const MOST_UNDONE = 300;
 const FINE = 100; // of a pixel
 
 export class Board {
-  constructor(hello) {
+  constructor(hello, sheet) {
     this.hello = hello;
-    this.sheet = { marks: [], numbers: {} };
+    this.sheet = sheet;
     this.before = [];
     this.camera = 0; // place in hello.pictures
     this.picked = null; // a mark that has a point in this camera

@@ -1,5 +1,6 @@
 // The marking page: what is clicked goes to the server, which answers with what it gives.
 
+import { Board } from "./board.js";
 import { listen } from "./hands.js";
 import { isLockedOut, LOCKED_OUT } from "./knock.js";
 import { element } from "./lists.js";
@@ -9,29 +10,17 @@ const AGAIN_MS = 500; // between two tries to reach the server
 
 const at = (id) => document.getElementById(id);
 const me = Math.random().toString(36).slice(2);
-let stage, socket;
+let greeting, stage, socket;
 let [count, flying, waiting] = [0, 0, false]; // sheets: said, not answered yet, changed since
 let saved = true;
 
 const heard = {
   hello(hello) {
-    if (stage) { // after a pause of the connection
-      if (hello.run !== stage.board.hello.run) location.reload();
-      return;
-    }
-    stage = new Stage(hello, act);
-    listen(stage, act, save);
-    at("title").textContent = `${hello.title}: ${hello.method}`;
-    document.title = `${hello.method} · ${hello.title} · tritrack`;
-    at("adding").replaceChildren(...Object.keys(hello.hints).map((kind) => {
-      const add = element("button", kind === "pole" ? "Add a pole" : `Add a point on the ${kind}`);
-      add.addEventListener("click", () => act(() => stage.board.add({ kind, px: [null, null], at_m: kind === "pole" ? [0, 0] : null })));
-      return add;
-    }));
-    at("save").hidden = !hello.writes;
-    at("save").textContent = `Save ${hello.writes}`;
+    if (greeting && hello.run !== greeting.run) location.reload(); // after a pause of the connection
+    greeting ??= hello;
   },
   shown(shown) {
+    if (!stage) begin(greeting, shown.sheet);
     const own = shown.by === me;
     if (own && shown.count === flying) flying = 0;
     if (!own && !(flying || waiting)) stage.board.sheet = shown.sheet;
@@ -46,9 +35,24 @@ const heard = {
     saved = well || saved;
     at("told").textContent = text;
     at("told").className = well ? "" : "bad";
-    say();
+    if (stage) say();
   },
 };
+
+/** Show the board once its sheet is known: nothing can be clicked before, and overwrite what was kept. */
+function begin(hello, sheet) {
+  stage = new Stage(new Board(hello, sheet), act);
+  listen(stage, act, save);
+  at("title").textContent = `${hello.title}: ${hello.method}`;
+  document.title = `${hello.method} · ${hello.title} · tritrack`;
+  at("adding").replaceChildren(...Object.keys(hello.hints).map((kind) => {
+    const add = element("button", kind === "pole" ? "Add a pole" : `Add a point on the ${kind}`);
+    add.addEventListener("click", () => act(() => stage.board.add({ kind, px: [null, null], at_m: kind === "pole" ? [0, 0] : null })));
+    return add;
+  }));
+  at("save").hidden = !hello.writes;
+  at("save").textContent = `Save ${hello.writes}`;
+}
 
 function connect() {
   socket = new WebSocket(`${location.protocol.replace("http", "ws")}//${location.host}/live`);

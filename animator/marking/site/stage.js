@@ -1,6 +1,5 @@
 // What is seen of the board: the picture and the loupe, which still is shown, the lists beside.
 
-import { Board } from "./board.js";
 import { element, label, Numbers, Points, READ_PX, showResult } from "./lists.js";
 import { drawMarks, drawPicture, INKS, Lens, penOf } from "./picture.js";
 import { drawPlan } from "./plan.js";
@@ -11,8 +10,9 @@ const at = (id) => document.getElementById(id);
 
 export class Stage {
   /** `act` does something to the board, and says what it changed. */
-  constructor(hello, act) {
-    this.board = new Board(hello);
+  constructor(board, act) {
+    const { hello } = board;
+    this.board = board;
     [this.view, this.loupe] = [at("view"), at("loupe")];
     this.lenses = hello.pictures.map(() => new Lens(this.view, hello.size));
     this.stills = hello.pictures.map(() => ({ place: 0, image: null }));
@@ -129,7 +129,8 @@ export class Stage {
       words.append("next: ", element("b", solved.names[next] ?? `point ${next + 1}`), ` · ${hello.hints[sheet.marks[next].kind][number - 1]}`);
     } else if (other >= 0) {
       words.append(`all points of camera ${number} are there; go on in `, element("b", `camera ${hello.pictures[other].number}`));
-    } else words.append("all points are there: drag what is off, or move it by the arrow keys");
+    } else if (!sheet.marks.length) words.append("no points are asked for: add one");
+    else words.append("all points are there: drag what is off, or move it by the arrow keys");
     if (at("next").textContent !== words.textContent) at("next").replaceChildren(words);
   }
 
