@@ -12,7 +12,7 @@ from spoiling import Film, copied, film_of, refilmed, write_film
 from common.config import CameraSettings, Settings, SilhouetteSettings
 from common.video.clip_facts import View
 from common.video.clips import open_clip
-from common.video.decoding import Decoded, Decoder
+from common.video.decoding import ALL, Decoded, Decoder
 from viewer.background.background import Background
 from viewer.room.background_source import background_of_run, background_of_view
 
@@ -83,7 +83,7 @@ class FakeCamera(Decoder):
         super().__init__()
         self.film, self.given = film, 0
 
-    def frames(self, source, size, every=1, large=None, start=0):  # type: ignore[no-untyped-def]
+    def frames(self, source, size, wanted=ALL):  # type: ignore[no-untyped-def]
         while True:
             yield Decoded(self.given, 0.0, self.film[self.given % len(self.film)])
             self.given += 1

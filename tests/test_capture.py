@@ -26,6 +26,7 @@ from common.video.decoding import (
     DecoderDied,
     Image,
     Undecodable,
+    Wanted,
 )
 from viewer.capture import WAITING, CapturedFrame, Live, RoomClock, recorded
 
@@ -103,7 +104,7 @@ def test_a_pixel_is_the_mean_of_what_it_covers(tmp_path: Path, decoder: Decoder)
 
 def test_a_second_larger_picture_comes_beside_the_first(tmp_path: Path, decoder: Decoder) -> None:
     video = written(tmp_path / "cam1.avi", size=(128, 96))
-    both = list(decoder.frames(video, SIZE, large=(128, 96)))
+    both = list(decoder.frames(video, SIZE, Wanted(large=(128, 96))))
     alone = list(decoder.frames(video, SIZE))
     for one, same in zip(both, alone, strict=True):
         assert one.large is not None
@@ -117,7 +118,7 @@ def test_a_second_larger_picture_comes_beside_the_first(tmp_path: Path, decoder:
 def test_every_third_frame_keeps_its_index_and_the_rest_is_counted(
     tmp_path: Path, decoder: Decoder
 ) -> None:
-    frames = list(decoder.frames(written(tmp_path / "cam1.avi"), SIZE, every=3))
+    frames = list(decoder.frames(written(tmp_path / "cam1.avi"), SIZE, Wanted(3)))
     assert [frame.index for frame in frames] == list(range(0, FRAMES, 3))
     assert [shown(frame.picture) for frame in frames] == list(range(0, FRAMES, 3))
     assert decoder.came == FRAMES
@@ -404,6 +405,6 @@ def test_a_view_whose_decoder_is_stuck_can_be_left(tmp_path: Path) -> None:
 def test_filmed_people_are_read_to_their_end(data_dir: Path, decoder: Decoder, folder: str) -> None:
     for video in sorted((data_dir / "real" / folder).glob("*.[am][vk][iv]")):
         claimed = decoder.probe(str(video)).frames
-        indices = [frame.index for frame in decoder.frames(str(video), (160, 120), every=20)]
+        indices = [frame.index for frame in decoder.frames(str(video), (160, 120), Wanted(20))]
         assert indices == list(range(0, claimed, 20))
         assert decoder.came == claimed

@@ -5,7 +5,7 @@ from itertools import islice
 
 import numpy as np
 
-from common.video.decoding import Decoded, Size, Source
+from common.video.decoding import ALL, Decoded, Size, Source, Wanted
 from common.video.frame_cache import Reel, Told
 
 SIZE = (4, 3)
@@ -18,23 +18,16 @@ class Counting:
     def __init__(self) -> None:
         self.came, self.readings = 0, 0
 
-    def frames(
-        self,
-        source: Source,
-        size: Size,
-        every: int = 1,
-        large: Size | None = None,
-        start: int = 0,
-    ) -> Iterator[Decoded]:
+    def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:
         self.readings += 1
-        for index in range(-(-start // every) * every, 10, every):
+        for index in range(-(-wanted.start // wanted.every) * wanted.every, 10, wanted.every):
             picture = np.full((size[1], size[0], 3), hash(source) % 7 + index, np.uint8)
-            yield Decoded(index, 0.1 * index, picture, picture if large else None)
+            yield Decoded(index, 0.1 * index, picture, picture if wanted.large else None)
         self.came = 10
 
 
 def indices(reel: Reel, source: Source = "a.avi", every: int = 1) -> list[int]:
-    return [got.index for got in reel.frames(source, SIZE, every)]
+    return [got.index for got in reel.frames(source, SIZE, Wanted(every))]
 
 
 def test_a_second_reading_gives_the_same_pictures_without_decoding() -> None:
@@ -79,8 +72,8 @@ def test_of_a_film_that_claims_to_be_too_large_nothing_is_kept() -> None:
 def test_a_reading_may_start_anywhere_whether_it_was_kept_or_not() -> None:
     reel = Reel(Counting())
     for _ in range(2):
-        assert [got.index for got in reel.frames("a.avi", SIZE, start=7)] == [7, 8, 9]
-        assert [got.index for got in reel.frames("a.avi", SIZE, 3, start=4)] == [6, 9]
+        assert [got.index for got in reel.frames("a.avi", SIZE, Wanted(start=7))] == [7, 8, 9]
+        assert [got.index for got in reel.frames("a.avi", SIZE, Wanted(3, start=4))] == [6, 9]
         assert indices(reel) == list(range(10))
 
 
@@ -105,7 +98,7 @@ def test_larger_pictures_are_decoded_for_whoever_asks_and_are_not_kept() -> None
     decoder = Counting()
     reel = Reel(decoder)
     indices(reel)
-    asked = list(reel.frames("a.avi", SIZE, large=(8, 6)))
+    asked = list(reel.frames("a.avi", SIZE, Wanted(large=(8, 6))))
     assert all(got.large is not None for got in asked)
     assert all(got.large is None for got in reel.frames("a.avi", SIZE))
     assert decoder.readings == 2

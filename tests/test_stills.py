@@ -87,9 +87,7 @@ class Camera:
     def __init__(self) -> None:
         self.stopped, self.pulled = threading.Event(), threading.Event()
 
-    def frames(
-        self, source: Source, size: Size, every: int = 1, large: Size | None = None
-    ) -> Generator[Decoded, None, None]:
+    def frames(self, source: Source, size: Size) -> Generator[Decoded, None, None]:
         for n in range(10_000):
             picture: Image = np.full((size[1], size[0], 3), 20 + n % 200, np.uint8)
             yield Decoded(n, 0.0, picture)

@@ -11,7 +11,7 @@ from common.bus.mailbox import Mailbox
 from common.bus.messages import Landmarks
 from common.bus.rate import Clock, wait_until
 from common.video.clip_facts import View
-from common.video.decoding import Decoded, Decoder, Image
+from common.video.decoding import Decoded, Decoder, Image, Wanted
 from common.video.frame_cache import Reader
 from viewer.landmarks.outside_source import OutsideSource
 
@@ -56,7 +56,7 @@ def recorded(
         DecoderDied: When the decoder broke; the frames before that are good.
     """
     large = source.large if source else None
-    for decoded in decoder.frames(view.source, view.size, every, large, start):
+    for decoded in decoder.frames(view.source, view.size, Wanted(every, start, large)):
         moment_s = view.captured_s(decoded.index)
         next_s = view.captured_s(decoded.index + every)
         people = source.people(decoded, PATIENCE_S) if source else ()
@@ -156,7 +156,8 @@ class Live:
     def _run(self) -> None:
         """Hand on each frame at its moment; in a thread of its own."""
         view, large = self._view, self._source.large if self._source else None
-        frames = self._decoder.frames(view.source, view.size, self._every, large)
+        wanted = Wanted(self._every, large=large)
+        frames = self._decoder.frames(view.source, view.size, wanted)
         try:
             for decoded in frames:
                 frame = self._timed(decoded)

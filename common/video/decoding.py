@@ -8,7 +8,7 @@ sends them through a pipe.
 import json
 import struct
 from collections.abc import Generator
-from typing import Any, Final, Self
+from typing import Any, Final, NamedTuple, Self
 
 import msgspec
 import numpy as np
@@ -75,6 +75,20 @@ class VideoInfo(msgspec.Struct, frozen=True):
     """When a file's pictures are to be shown, by its packets: in their order, not in time's."""
 
 
+class Wanted(NamedTuple):
+    """Which pictures of a source are asked for, and in which sizes besides the first."""
+
+    every: int = 1
+    """Every n-th."""
+    start: int = 0
+    """None before this place in the source."""
+    large: Size | None = None
+    """A second size of each."""
+
+
+ALL: Final = Wanted()
+
+
 class Decoded(msgspec.Struct, frozen=True):
     """One picture of a source."""
 
@@ -135,24 +149,19 @@ class Decoder:
         return msgspec.structs.replace(told, shown_s=shown_s)
 
     def frames(
-        self,
-        source: Source,
-        size: Size,
-        every: int = 1,
-        large: Size | None = None,
-        start: int = 0,
+        self, source: Source, size: Size, wanted: Wanted = ALL
     ) -> Generator[Decoded, None, None]:
-        """Every n-th picture of a source, reduced to `size` (width, height), and to `large` too.
+        """The wanted pictures of a source, reduced to `size`.
 
-        Those whose index is less than `start` are passed over, which is faster than to decode them.
+        Those before `wanted.start` are passed over, which is faster than to decode them.
 
         Raises:
             Undecodable: When it has none.
             DecoderDied: When the child broke on it; what came before is good.
         """
-        sizes = [size] if large is None else [size, large]
-        for answer in self._answers(source, sizes, every, start):
-            if answer.kind == FRAME and answer.index >= start:
+        sizes = [size] if wanted.large is None else [size, wanted.large]
+        for answer in self._answers(source, sizes, wanted.every, wanted.start):
+            if answer.kind == FRAME and answer.index >= wanted.start:
                 pictures = _pictures(answer.payload, sizes)
                 yield Decoded(answer.index, answer.grabbed_s, *pictures)
             elif answer.kind == END:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from typing import Final, Protocol
 
-from common.video.decoding import Decoded, Size, Source
+from common.video.decoding import ALL, Decoded, Size, Source, Wanted
 
 MOST_BYTES: Final = 1 << 27
 """What a reel keeps at most: 38 s at 320x240 and 15 frames a second, 2.5 minutes at 160x120."""
@@ -16,15 +16,8 @@ class Reader(Protocol):
     def came(self) -> int:
         """How many frames the source that was last read to its end really had."""
 
-    def frames(
-        self,
-        source: Source,
-        size: Size,
-        every: int = 1,
-        large: Size | None = None,
-        start: int = 0,
-    ) -> Iterator[Decoded]:
-        """Every n-th picture of a source from `start` on, reduced to `size`, and to `large` too."""
+    def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:
+        """The wanted pictures of a source, reduced to `size`."""
 
 
 class Reel:
@@ -53,28 +46,18 @@ class Reel:
         """How many frames the source that was last decoded to its end really had."""
         return self._decoder.came
 
-    def frames(
-        self,
-        source: Source,
-        size: Size,
-        every: int = 1,
-        large: Size | None = None,
-        start: int = 0,
-    ) -> Iterator[Decoded]:
-        """Every n-th picture from `start` on, reduced to `size`; what is larger too is not kept.
+    def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:
+        """The wanted pictures, reduced to `size`; those of a second size are not kept.
 
         Raises:
             Undecodable: When it has none.
             DecoderDied: When the decoder broke on it; what came before is good.
         """
-        if large is not None:
-            return self._decoder.frames(source, size, every, large, start)
-        if (source, size) == self._named:
-            wanted = (got for got in self._kept if got.index % every == 0)
-            return (got for got in wanted if got.index >= start)
-        pictures = self._decoder.frames(source, size, every, start=start)
-        is_whole = every == 1 and start == 0
-        return self._keeping(pictures, source, size) if is_whole else pictures
+        if wanted.large is None and (source, size) == self._named:
+            due = (got for got in self._kept if got.index >= wanted.start)
+            return (got for got in due if got.index % wanted.every == 0)
+        pictures = self._decoder.frames(source, size, wanted)
+        return self._keeping(pictures, source, size) if wanted == ALL else pictures
 
     def _keeping(
         self, pictures: Iterator[Decoded], source: Source, size: Size
@@ -108,15 +91,8 @@ class Told:
         """How many frames the source that was last read to its end really had."""
         return self._reader.came
 
-    def frames(
-        self,
-        source: Source,
-        size: Size,
-        every: int = 1,
-        large: Size | None = None,
-        start: int = 0,
-    ) -> Iterator[Decoded]:
-        """Every n-th picture of a source from `start` on, reduced to `size`, and to `large` too."""
-        for got in self._reader.frames(source, size, every, large, start):
+    def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:
+        """The wanted pictures of a source, reduced to `size`."""
+        for got in self._reader.frames(source, size, wanted):
             self._tell(min(1.0, (got.index + 1) / self._due))
             yield got

@@ -9,7 +9,7 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager, nullco
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import FrameType
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import msgspec
 from rich.console import Console
@@ -90,23 +90,12 @@ def live(
         journal = _journal(out, clip, settings, heard.notes)
         heard = heard._replace(journal=journal)
         try:
-            with TemporaryDirectory(prefix=KEPT, dir=out) as kept:
-                parts = live_parts(settings, clip, context._replace(kept=Path(kept)), zygote)
-                names = [part.name for part in (*parts, *desk.parts)]
-                with (
-                    screen.shown(names) as show,
-                    logged("supervisor", log),
-                    _kept(out, clip, settings, record) as keep,
-                ):
-
-                    def look(heard: Heard) -> None:
-                        show(heard)
-                        if tell(heard):
-                            stop.set()
-
-                    heard = heard._replace(keep=keep)
-                    zygote.wait(stop, lambda: look(heard))
-                    run(parts, settings, stop, look, heard, desk)
+            _follow(
+                _Prepared(settings, clip, out, context, zygote, desk, screen, record),
+                stop,
+                heard,
+                tell,
+            )
         finally:
             told = facts()
             write_run(out, heard.bodies.all(), settings, told)
@@ -114,6 +103,41 @@ def live(
             journal.remove()
         _show_end(desk, told, stop, console)
     return told
+
+
+class _Prepared(NamedTuple):
+    """All that a run is of, before its processes start."""
+
+    settings: Settings
+    clip: Clip
+    out: Path
+    context: ProcessContext
+    zygote: Zygote
+    desk: PageDesk
+    screen: Screen
+    record: bool
+
+
+def _follow(
+    run_of: _Prepared, stop: threading.Event, heard: Heard, tell: Callable[[Heard], bool | None]
+) -> None:
+    """Run the processes until the clip ends or `stop` is set."""
+    settings, clip, out, context, zygote, desk, screen, record = run_of
+    with ExitStack() as doors:
+        kept = doors.enter_context(TemporaryDirectory(prefix=KEPT, dir=out))
+        parts = live_parts(settings, clip, context._replace(kept=Path(kept)), zygote)
+        show = doors.enter_context(screen.shown([part.name for part in (*parts, *desk.parts)]))
+        doors.enter_context(logged("supervisor", context.log))
+        keep = doors.enter_context(_kept(out, clip, settings, record))
+
+        def look(heard: Heard) -> None:
+            show(heard)
+            if tell(heard):
+                stop.set()
+
+        heard = heard._replace(keep=keep)
+        zygote.wait(stop, lambda: look(heard))
+        run(parts, settings, stop, look, heard, desk)
 
 
 def _admitted(settings: Settings, record: bool, console: Console) -> Settings:

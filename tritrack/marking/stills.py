@@ -16,7 +16,16 @@ from animator.marking.sheet import Pictures
 from common.config import Settings, working_size
 from common.video.clip_sources import ClipError, Footage, footage_of
 from common.video.clips import SAME_ASPECT, probed
-from common.video.decoding import Decoded, Decoder, DecoderDied, Image, Size, Source, Undecodable
+from common.video.decoding import (
+    Decoded,
+    Decoder,
+    DecoderDied,
+    Image,
+    Size,
+    Source,
+    Undecodable,
+    Wanted,
+)
 from tritrack.terminal import bar
 
 MOST_STILLS: Final = 100
@@ -29,10 +38,8 @@ JPEG_QUALITY: Final = 92
 class Reader(Protocol):
     """Gives a source's pictures."""
 
-    def frames(
-        self, source: Source, size: Size, every: int = 1, large: Size | None = None
-    ) -> Generator[Decoded, None, None]:
-        """Every n-th picture, reduced to a size."""
+    def frames(self, source: Source, size: Size) -> Generator[Decoded, None, None]:
+        """All its pictures, reduced to a size."""
 
     def stop(self) -> None:
         """End that, from any thread."""
@@ -158,7 +165,7 @@ def common_size(sizes: Sequence[Size]) -> Size:
 def _film(decoder: Decoder, view: Footage, size: Size, frames: int, console: Console) -> Film:
     every = max(1, math.ceil(frames / MOST_STILLS))
     with bar(console) as progress:
-        taken = islice(decoder.frames(view.source, size, every), MOST_STILLS)
+        taken = islice(decoder.frames(view.source, size, Wanted(every)), MOST_STILLS)
         told = progress.track(taken, total=math.ceil(frames / every) or None, description="reading")
         stills = [(decoded.index, _jpeg(decoded.picture)) for decoded in told]
     return Film(tuple(jpeg for _, jpeg in stills), tuple(index for index, _ in stills))

@@ -7,7 +7,7 @@ import numpy as np
 from rich.progress import Progress
 
 from common.rig.rig_file import CalibrationError
-from common.video.decoding import Decoded, Decoder, Image, Size, VideoInfo
+from common.video.decoding import Decoded, Decoder, Image, Size, VideoInfo, Wanted
 from common.video.frame_times import timed
 from integrator.board.board import BOARDS, Board
 from integrator.board.board_corners import corners_in
@@ -59,7 +59,7 @@ def _looked(decoder: Decoder, video: str, boards: Sequence[Board], tell: Tell) -
     rate_hz = info.fps if info.fps > 0 else USUAL_HZ
     size, every = _reduced(info), max(1, round(rate_hz / LOOKS_HZ))
     times, px, first, board = [], [], None, None
-    for shown in decoder.frames(video, size, every):
+    for shown in decoder.frames(video, size, Wanted(every)):
         first = shown.picture if first is None else first
         for one in boards if board is None else (board,):
             corners = corners_in(shown.picture, one)

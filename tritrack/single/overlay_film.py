@@ -13,7 +13,7 @@ from common.body.body import Vector
 from common.bus.messages import Body, Report
 from common.config import working_size
 from common.raster.silhouette_report import unpack
-from common.video.decoding import Decoder
+from common.video.decoding import Decoder, Wanted
 from tritrack.offline.film_tracking import Followed
 from tritrack.terminal import Tell
 
@@ -88,5 +88,5 @@ def _pictures(found: Followed, decoder: Decoder) -> Iterator[Picture]:
         return
     view = found.clip.views[0]
     size = working_size(view.source_size, SHOWN)
-    for decoded in decoder.frames(view.source, size, found.clip.every):
+    for decoded in decoder.frames(view.source, size, Wanted(found.clip.every)):
         yield decoded.picture
