@@ -22,6 +22,13 @@ def sleeps() -> None:
     time.sleep(600.0)
 
 
+def ignores() -> None:
+    """A part that hangs when it shall end."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    print("deaf", flush=True)
+    time.sleep(600.0)
+
+
 def ends() -> None:
     """A part whose work is done."""
 
@@ -186,6 +193,25 @@ def test_what_fails_before_it_ever_worked_fails_the_run_with_its_reason() -> Non
             one.look(100.0, {})
 
 
+def test_what_is_killed_before_it_ever_worked_is_started_again(sleeper: Watched) -> None:
+    """Whoever killed it, it did not fail of itself: a short want of memory ends no run."""
+    killed(sleeper)
+    assert sleeper.look(100.0, {}).endswith("it is started again in 0.5 s (1 of 5 times)")
+    sleeper.refuse_failure()
+    sleeper.look(100.0 + BACK_OFF_S, {})
+    assert sleeper.running.process.is_alive()
+
+
+def test_what_does_not_end_when_it_is_asked_to_is_killed_and_named_but_has_not_failed(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    one = Watched(Part("integrator", ignores, (), end_s=0.2))
+    until(lambda: "deaf" in capfd.readouterr().out)
+    assert one.end() == "integrator: it did not end when asked to, and was killed"
+    assert one.running.process.exitcode == -signal.SIGKILL
+    one.refuse_failure()
+
+
 def test_a_fault_is_told_from_what_a_user_can_mend() -> None:
     with watched(Part("viewer 1", breaks, (), leads=True)) as one:
         until(lambda: one.running.process.exitcode is not None)
@@ -198,7 +224,7 @@ def test_a_fault_is_told_from_what_a_user_can_mend() -> None:
 
 
 def test_nothing_runs_after_the_end(sleeper: Watched) -> None:
-    sleeper.end()
+    assert sleeper.end() == ""
     assert not sleeper.running.process.is_alive()
 
 

@@ -71,13 +71,19 @@ def run(
         desk: Of the page, which runs already and goes on when the run is over.
 
     Raises:
-        PartFailed: When a process fails before it has worked at all, or was given up; the others
-            are stopped first.
+        PartFailed: When a process fails of itself before it has worked at all, or was given up;
+            the others are stopped first.
         BusError: When the integrator cannot be reached.
     """
     with ExitStack() as doors:
         hub = doors.enter_context(watched(parts[0]))
-        bus = doors.enter_context(_client(settings, hub, stop, lambda: show(heard)))
+
+        def look_at_hub() -> None:
+            _look_after([hub], heard)
+            hub.refuse_failure()
+            show(heard)
+
+        bus = doors.enter_context(_client(settings, stop, look_at_hub))
         if bus is None:
             return
         listening = Subscriber(bus, heard)
@@ -97,8 +103,7 @@ def run(
             listening.catch_up()
             if desk is not None:
                 desk.leave(heard)
-            for one in reversed(crew):
-                one.end()
+            heard.notes.extend(filter(None, [one.end() for one in reversed(crew)]))
             listening.catch_up()
             if listening.dropped:
                 heard.notes.append(
@@ -185,22 +190,20 @@ class Subscriber:
 
 @contextmanager
 def _client(
-    settings: Settings, hub: Watched, stop: threading.Event, show: Callable[[], None]
+    settings: Settings, stop: threading.Event, look: Callable[[], None]
 ) -> Iterator[Bus | None]:
     """The supervisor's own place on the bus, as soon as the hub's process has opened it.
 
-    None when the run was stopped before that.
+    None when the run was stopped before that; `look` is called between two tries.
 
     Raises:
-        PartFailed: When the hub failed instead.
         BusError: When it does not open.
     """
     until_s = time.monotonic() + READY_S
     bus: Bus | None = None
     with ExitStack() as door:
         while bus is None and not stop.is_set():
-            hub.refuse_failure()
-            show()
+            look()
             try:
                 bus = door.enter_context(
                     open_client(settings.bus, settings.room, TRY_S, "supervisor")

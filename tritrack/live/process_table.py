@@ -141,14 +141,16 @@ def started(part: Part) -> Running:
     return Running(part, process, ours)
 
 
-def end(one: Running) -> None:
-    """Ask, wait, then kill."""
+def end(one: Running) -> bool:
+    """Ask, wait, then kill; whether it ended without that."""
     if one.process.is_alive():
         one.process.terminate()
         one.process.join(one.part.end_s)
-    if one.process.is_alive():
-        one.process.kill()
-        one.process.join()
+    if not one.process.is_alive():
+        return True
+    one.process.kill()
+    one.process.join()
+    return False
 
 
 def last_words(one: Running) -> str:

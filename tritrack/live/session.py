@@ -76,9 +76,8 @@ def live(
     title = name or Path(settings.clip).name or "tritrack"
     with _stopped_by_signals(console) as stop, ExitStack() as doors:
         log = _new_log(out)
-        context = ProcessContext(True, log)
         zygote = Zygote(inherited)
-        desk = PageDesk(settings, out, title, context, zygote)
+        desk = PageDesk(settings, out, title, ProcessContext(True, log), zygote)
         doors.callback(desk.close)
         clip = _opened_or_nothing(settings, name, out, new=new)
         screen = Screen(clip, settings, console, lambda: desk.address)
@@ -91,7 +90,7 @@ def live(
         heard = heard._replace(journal=journal)
         try:
             _follow(
-                _Prepared(settings, clip, out, context, zygote, desk, screen, record),
+                _Prepared(settings, clip, out, log, zygote, desk, screen, record),
                 stop,
                 heard,
                 tell,
@@ -111,7 +110,7 @@ class _Prepared(NamedTuple):
     settings: Settings
     clip: Clip
     out: Path
-    context: ProcessContext
+    log: Path
     zygote: Zygote
     desk: PageDesk
     screen: Screen
@@ -122,12 +121,13 @@ def _follow(
     run_of: _Prepared, stop: threading.Event, heard: Heard, tell: Callable[[Heard], bool | None]
 ) -> None:
     """Run the processes until the clip ends or `stop` is set."""
-    settings, clip, out, context, zygote, desk, screen, record = run_of
+    settings, clip, out, log, zygote, desk, screen, record = run_of
     with ExitStack() as doors:
         kept = doors.enter_context(TemporaryDirectory(prefix=KEPT, dir=out))
-        parts = live_parts(settings, clip, context._replace(kept=Path(kept)), zygote)
+        context = ProcessContext(True, log, Path(kept))
+        parts = live_parts(settings, clip, context, zygote)
         show = doors.enter_context(screen.shown([part.name for part in (*parts, *desk.parts)]))
-        doors.enter_context(logged("supervisor", context.log))
+        doors.enter_context(logged("supervisor", log))
         keep = doors.enter_context(_kept(out, clip, settings, record))
 
         def look(heard: Heard) -> None:

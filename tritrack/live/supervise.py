@@ -49,7 +49,9 @@ class Watched:
         self._asked = False
         """It was told to end."""
         self._came_up = False
-        """It has worked once: what fails before that fails for good."""
+        """It has worked once: what fails of itself before that fails for good."""
+        self._cut_off = False
+        """It did not end when it was asked to, and was killed."""
         self._alive_s, self._quiet_s = 0.0, 0.0
         self._looked_s = time.monotonic()
         self._again_s: float | None = None
@@ -74,7 +76,7 @@ class Watched:
             reached: Whether what it says gets here: nobody is held to what cannot be heard.
 
         Raises:
-            PartFailed: When it fails before it ever worked.
+            PartFailed: When it fails of itself before it ever worked.
         """
         since_s = min(now_s - self._looked_s, LOOK_AT_MOST_S)
         self._looked_s = now_s
@@ -91,13 +93,16 @@ class Watched:
         return self._hung()
 
     def refuse_failure(self) -> None:
-        """Say why it failed, if it did; who was asked to end and had no ears for it yet did not.
+        """Say why it failed, if it did.
+
+        Who was asked to end and had no ears for it yet did not, nor who took too long to end.
 
         Raises:
             PartFailed: When its process ended with an error, or it was given up.
         """
         code = 0 if self._again_s is not None else self.running.process.exitcode
-        if self.given_up or (code and not (self._asked and code == -signal.SIGTERM)):
+        ended = self._cut_off or (self._asked and code == -signal.SIGTERM)
+        if self.given_up or (code and not ended):
             raise self._failure(self.given_up or last_words(self.running))
 
     def ask(self) -> None:
@@ -106,10 +111,12 @@ class Watched:
             self._asked = True
             self.running.process.terminate()
 
-    def end(self) -> None:
-        """End its process and start no other."""
+    def end(self) -> str:
+        """End its process and start no other; what is to be told of that, or ""."""
         self.ask()
-        end(self.running)
+        self._cut_off |= not end(self.running)
+        late = f"{self.part.name}: it did not end when asked to, and was killed"
+        return late if self._cut_off else ""
 
     def _listen(self, since_s: float, pulse: Pulse | None, reached: bool) -> None:
         self._alive_s += since_s
@@ -121,7 +128,8 @@ class Watched:
 
     def _died(self, now_s: float, pulses: dict[str, Pulse]) -> str:
         why = last_words(self.running)
-        if not self._came_up:
+        of_itself = (self.running.process.exitcode or 0) > 0
+        if of_itself and not self._came_up:
             raise self._failure(why)
         if self._tries == TRIES:
             self.given_up = f"{why}; after {TRIES} new starts it is given up"
