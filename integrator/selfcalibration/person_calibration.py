@@ -100,15 +100,31 @@ def _quality(
     period_s: float,
 ) -> Quality:
     covariance = covariance_of(found)
-    told = _told(found.guess, person_m)
-    moved = np.stack(
-        [
-            (_told(found.guess + step, person_m) - told) / STEP
-            for step in STEP * np.eye(len(covariance))
-        ]
+    gaps_m = np.concatenate([np.abs(one.met.gap_m[one.used]) for one in seen])
+    unit_px = np.mean([clip.units_px for clip in evidence.clips])
+    late = found.guess[LATE:] / period_s
+    late_error = late_errors_frames(covariance, period_s)
+    return Quality(
+        _cameras(found.guess, covariance, rig, person_m),
+        evidence.known.stature_m,
+        evidence.moments,
+        1e3 * float(np.median(gaps_m)),
+        float(np.median(gaps_m) / evidence.known.stature_m * unit_px),
+        tuple(late.tolist()),
+        tuple(late_error.tolist()),
+        unsure_of(found, period_s),
     )
+
+
+def _cameras(
+    guess: Vector, covariance: Vector, rig: Rig, person_m: Vector
+) -> tuple[CameraQuality, ...]:
+    """Each camera as it is published, with what the guess's covariance makes of its errors."""
+    told = _told(guess, person_m)
+    steps = STEP * np.eye(len(covariance))
+    moved = np.stack([(_told(guess + step, person_m) - told) / STEP for step in steps])
     errors = np.sqrt(np.diag(moved.T @ covariance @ moved)).reshape(2, 7).tolist()
-    cameras = tuple(
+    return tuple(
         CameraQuality(
             camera.name,
             camera.K[0][0],
@@ -118,20 +134,6 @@ def _quality(
             tuple(error[4:]),
         )
         for camera, error in zip(rig.cameras, errors, strict=True)
-    )
-    gaps_m = np.concatenate([np.abs(one.met.gap_m[one.used]) for one in seen])
-    unit_px = np.mean([clip.units_px for clip in evidence.clips])
-    late = found.guess[LATE:] / period_s
-    late_error = late_errors_frames(covariance, period_s)
-    return Quality(
-        cameras,
-        evidence.known.stature_m,
-        evidence.moments,
-        1e3 * float(np.median(gaps_m)),
-        float(np.median(gaps_m) / evidence.known.stature_m * unit_px),
-        tuple(late.tolist()),
-        tuple(late_error.tolist()),
-        unsure_of(found, period_s),
     )
 
 
