@@ -88,3 +88,22 @@ def test_what_the_cylinders_cannot_show_is_kept_beside_them() -> None:
     pose, rest = pose_and_rest(BODY, rest_pose(), found)
     assert joints(BODY, pose)[AT] + rest[AT] @ trunk_axes(BODY, pose).T == pytest.approx(found)
     assert np.abs(rest[AT[:2]]).max() > 0.005
+
+
+def test_a_neck_does_not_rise_with_the_shoulders() -> None:
+    """Raised arms lift the shoulders; the spine between pelvis and neck keeps its length."""
+    found = twelve(posed(torso_y=-30.0))
+    found[:2] += (0.01, 0.04, 0.0)
+    pose, rest = pose_and_rest(BODY, rest_pose(), found)
+    landmarks = joints(BODY, pose) + rest @ trunk_axes(BODY, pose).T
+    neck, pelvis = (JOINT_NAMES.index(name) for name in ("neck", "pelvis"))
+    still = rest_pose()
+    length_m = np.linalg.norm(np.diff(joints(BODY, still)[[pelvis, neck]], axis=0))
+    assert np.linalg.norm(landmarks[neck] - landmarks[pelvis]) == pytest.approx(length_m, abs=2e-3)
+    between = landmarks[AT[:2]].mean(axis=0) - landmarks[neck]
+    assert between @ trunk_axes(BODY, pose) == pytest.approx(
+        (joints(BODY, still)[AT[:2]].mean(axis=0) - joints(BODY, still)[neck])
+        @ trunk_axes(BODY, still)
+        + (0.0, 0.04, 0.0),
+        abs=2e-3,
+    )

@@ -123,14 +123,14 @@ def pose_and_rest(
 ) -> tuple[Vector, NDArray[np.float64]]:
     """The pose of found joints, and what the landmarks still miss, (15, 3) in the trunk's axes.
 
-    Shoulders rise with their arms and people differ: both are more than cylinders can show.
+    Shoulders rise with their arms and people differ: both are more than cylinders can show. The
+    neck does not rise with them: it stays on the trunk, between them.
     """
     pose = pose_of(found, body, before)
     rest = np.zeros((len(JOINT_NAMES), 3))
     landmarks = joints(body, pose)
     rest[AT] = (found - landmarks[AT]) @ trunk_axes(body, pose)
     rest[PELVIS] = rest[AT[pose_network.HIPS]].mean(axis=0)
-    rest[NECK] = rest[AT[pose_network.SHOULDERS]].mean(axis=0)
     return pose, rest
 
 
