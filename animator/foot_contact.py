@@ -1,5 +1,7 @@
 """When a foot stands: it is low and slow, and stays until it is neither."""
 
+import math
+from heapq import heappop, heappush, heappushpop
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
@@ -71,12 +73,37 @@ def _held(
     comes: NDArray[np.bool_], stays: NDArray[np.bool_], ankle_m: Vector
 ) -> list[tuple[int, int]]:
     found, first = [], -1
-    for i in range(len(comes)):
+    over_floor = ankle_m[:, [0, 2]].tolist()
+    mostly = (_Median(), _Median())
+    for i, (x, z) in enumerate(over_floor):
         if first >= 0:
-            here = np.median(ankle_m[first:i], axis=0)
-            if not stays[i] or np.linalg.norm((ankle_m[i] - here)[[0, 2]]) > WANDERS_M:
+            far_m = math.hypot(x - mostly[0].value(), z - mostly[1].value())
+            if not stays[i] or far_m > WANDERS_M:
                 found.append((first, i))
                 first = -1
         if first < 0 and comes[i]:
-            first = i
+            first, mostly = i, (_Median(), _Median())
+        if first >= 0:
+            mostly[0].add(x)
+            mostly[1].add(z)
     return [*found, (first, len(comes))] if first >= 0 else found
+
+
+class _Median:
+    """Of numbers that come one by one: who stands for an hour costs no more a row."""
+
+    def __init__(self) -> None:
+        self._below: list[float] = []
+        """Heap of the smaller half, negated: as many as above, or one more."""
+        self._above: list[float] = []
+
+    def add(self, value: float) -> None:
+        largest = -heappushpop(self._below, -value)
+        heappush(self._above, largest)
+        if len(self._above) > len(self._below):
+            heappush(self._below, -heappop(self._above))
+
+    def value(self) -> float:
+        if len(self._below) > len(self._above):
+            return -self._below[0]
+        return (self._above[0] - self._below[0]) / 2

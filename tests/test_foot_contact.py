@@ -4,16 +4,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from animator.bones import OF_JOINTS, joints_of, skeleton_of
 from animator.bvh import steady
-from animator.foot_contact import Stance, stances
-from animator.planted_feet import knees, planted
+from animator.foot_contact import WANDERS_M, Stance, _held, stances
+from animator.planted_feet import GIVES_M, knees, planted
 from common.body.body import JOINT_NAMES
 from common.body.extremities import ALL_JOINT_NAMES, extremities
 
 RATE_HZ, STEP_S, STRIDE_M = 15.0, 0.6, 0.5
 TIMES = np.arange(60) / RATE_HZ
+FEET = ("knee", "ankle", "heel", "toe")
 
 
 def walking(noise_m: float = 0.0) -> np.ndarray:
@@ -61,6 +64,42 @@ def test_feet_that_take_turns_are_told_apart() -> None:
         own = [stance for stance in found if stance.side == side]
         assert [stance.first for stance in own] == pytest.approx(begins, abs=2)
     assert all(6 <= stance.end - stance.first <= 12 for stance in found if stance.end < 60)
+
+
+def held_plainly(
+    comes: np.ndarray, stays: np.ndarray, ankle_m: np.ndarray
+) -> list[tuple[int, int]]:
+    """The same with the median of all rows so far, anew at each row."""
+    found, first = [], -1
+    for i in range(len(comes)):
+        if first >= 0:
+            here = np.median(ankle_m[first:i], axis=0)
+            if not stays[i] or np.linalg.norm((ankle_m[i] - here)[[0, 2]]) > WANDERS_M:
+                found.append((first, i))
+                first = -1
+        if first < 0 and comes[i]:
+            first = i
+    return [*found, (first, len(comes))] if first >= 0 else found
+
+
+@given(st.integers(0, 2**32 - 1), st.floats(0.001, 0.05), st.floats(0.5, 1.0))
+@settings(max_examples=60, deadline=None)
+def test_a_foot_is_held_as_by_the_plain_median(seed: int, noise_m: float, rest: float) -> None:
+    rng = np.random.default_rng(seed)
+    ankle_m = np.cumsum(rng.normal(0.0, noise_m, (80, 3)), axis=0) * rng.integers(0, 2, (80, 1))
+    stays = rng.random(80) < rest
+    comes = stays & (rng.random(80) < 0.5)
+    assert _held(comes, stays, ankle_m) == held_plainly(comes, stays, ankle_m)
+
+
+def test_who_stands_for_an_hour_is_told_in_a_moment() -> None:
+    """54000 rows: with the median of all rows so far anew at each, more than a minute."""
+    still = np.repeat(walking()[:1], 54_000, axis=0)
+    still += np.random.default_rng(1).normal(0.0, 0.002, (54_000, 1, 3))
+    assert sorted(stances(still, np.arange(54_000) / RATE_HZ)) == [
+        Stance("l", 0, 54_000),
+        Stance("r", 0, 54_000),
+    ]
 
 
 def test_a_gap_in_the_run_ends_a_contact() -> None:
@@ -111,6 +150,26 @@ def test_the_skeleton_of_an_animation_stands_as_still() -> None:
     assert max(slides) < 0.005
     pelvis = np.linalg.norm(made[:, 0] - noisy[:, 0], axis=1)
     assert np.percentile(pelvis, 95) < 0.02
+
+
+def test_straight_legs_stay_straight_though_hips_come_nearer() -> None:
+    """Bones of 0.83 m whose hip is 6 mm lower would push the knee out by 50 mm: the foot gives."""
+    standing = np.repeat(walking()[:1], 60, axis=0)
+    for side in "lr":
+        at = [JOINT_NAMES.index(f"{side}_{name}") for name in ("hip", "knee", "ankle")]
+        standing[:, at[2], 1:] = 0.068, 0.0
+        standing[:, at[1]] = standing[:, [at[0], at[2]]].mean(axis=1)
+        standing[:, at[1], 2] += 0.01
+    upper = [i for i, name in enumerate(ALL_JOINT_NAMES) if name[2:] not in FEET]
+    standing[:, upper, 1] -= 0.003 * np.sin(TIMES * 4.0)[:, None]
+    skeleton, motion, _ = steady(standing, TIMES)
+    made = joints_of(skeleton, motion)
+    for side in "lr":
+        knee = JOINT_NAMES.index(f"{side}_knee")
+        assert np.linalg.norm(made[:, knee] - standing[:, knee], axis=1).max() < 0.01
+        rises = ankle(made, side) - ankle(standing, side)
+        assert np.abs(rises[:, 1]).max() < GIVES_M
+        assert slide_m(ankle(made, side)) < 1e-3
 
 
 def test_a_body_in_the_air_is_not_touched() -> None:

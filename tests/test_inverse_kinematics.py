@@ -88,3 +88,31 @@ def test_what_the_cylinders_cannot_show_is_kept_beside_them() -> None:
     pose, rest = pose_and_rest(BODY, rest_pose(), found)
     assert joints(BODY, pose)[AT] + rest[AT] @ trunk_axes(BODY, pose).T == pytest.approx(found)
     assert np.abs(rest[AT[:2]]).max() > 0.005
+
+
+def test_a_neck_does_not_rise_with_the_arms() -> None:
+    """Raised arms lift both shoulders by a tenth of the spine; that keeps its length within 1 %."""
+    neck, pelvis = (JOINT_NAMES.index(name) for name in ("neck", "pelvis"))
+    lengths_m, shoulders_m = [], []
+    for height, lift_m in (("hanging", -0.013), ("level", 0.03), ("up", 0.073)):
+        turn_deg = {"hanging": 0.0, "level": 90.0, "up": 179.0}[height]
+        found = twelve(posed(r_shoulder_x=turn_deg, l_shoulder_x=turn_deg, torso_y=-30.0))
+        found[:6, 1] += lift_m
+        pose, rest = pose_and_rest(BODY, rest_pose(), found)
+        landmarks = joints(BODY, pose) + rest @ trunk_axes(BODY, pose).T
+        lengths_m.append(np.linalg.norm(landmarks[neck] - landmarks[pelvis]))
+        shoulders_m.append(landmarks[AT[:2], 1].mean() - landmarks[pelvis, 1])
+    assert lengths_m == pytest.approx([lengths_m[0]] * 3, rel=0.01)
+    assert shoulders_m[2] - shoulders_m[0] == pytest.approx(0.086, abs=0.002)
+
+
+def test_a_neck_is_as_high_as_its_shoulders_say() -> None:
+    """Of two people with hanging arms the one with shoulders 3 cm higher has such a neck."""
+    neck = JOINT_NAMES.index("neck")
+    heights_m = []
+    for higher_m in (0.0, 0.03):
+        found = twelve(posed())
+        found[:6, 1] += higher_m
+        pose, rest = pose_and_rest(BODY, rest_pose(), found)
+        heights_m.append(joints(BODY, pose)[neck, 1] + rest[neck, 1])
+    assert heights_m[1] - heights_m[0] == pytest.approx(0.03, abs=1e-3)

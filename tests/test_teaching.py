@@ -68,6 +68,23 @@ def test_takes_that_do_not_agree_write_nothing(
     assert not (tmp_path / "mine.npz").exists()
 
 
+def test_a_file_that_knows_more_is_not_written_over(
+    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The second posture of one's own, written where the first is; the first again is no loss."""
+    mine, takes = tmp_path / "mine.npz", filmed(monkeypatch, NEW, NEW, NEW)
+    teach("bow", takes, mine, plan, QUIET)
+    teach("bow", takes, mine, plan, QUIET)
+    monkeypatch.setattr(teaching, "recordings", lambda *_: pytest.fail("they were tracked"))
+    with pytest.raises(TrainingError, match=r"knows bow, which would be lost: .* --add-to .*mine"):
+        teach(NEW, takes, mine, plan, QUIET)
+    takes = filmed(monkeypatch, *["raise_both_lateral"] * 3)
+    assert teach("jump", takes, mine, plan._replace(add_to=mine), QUIET)["knows"][-2:] == [
+        "bow",
+        "jump",
+    ]
+
+
 @pytest.mark.parametrize("posture", ["", "Star Jump", "../up", "9lives", "x" * 60])
 def test_what_is_no_name_is_refused(plan: Plan, tmp_path: Path, posture: str) -> None:
     with pytest.raises(TrainingError, match="is no name of a posture"):

@@ -10,7 +10,7 @@ from common.compiled import compiled, compiling
 from integrator.proposal.network_weights import JOINTS, PoseNetwork
 from integrator.proposal.silhouette_window import Floats, Look
 
-SHOULDERS, HIPS = slice(0, 2), slice(6, 8)
+SHOULDERS, ELBOWS, HIPS = slice(0, 2), slice(2, 4), slice(6, 8)
 OTHER_SIDES: Final = [i ^ 1 for i in range(len(JOINTS))]
 """Where the same joint of the other side is."""
 

@@ -38,6 +38,10 @@ JOINTS_OFF: Final = np.array(
     ]
 )
 """(12, 3) the same, to the left, up and before."""
+RISE: Final = (0.055, 0.080)
+"""How far shoulders stand above the cylinders' when both upper arms are level, and how much farther
+when they point straight up (less far: straight down), in lengths from pelvis to neck: robust least
+squares of what the true necks of r01 and r04, whose spines keep their lengths, leave of it."""
 PLATT: Final = (0.99, -0.64)
 """Platt scaling: slope and offset of the logit by which the network's confidence, learnt with
 made-up people, becomes how often a joint of r01, of r04 and of people made up anew was less than
@@ -123,7 +127,8 @@ def pose_and_rest(
 ) -> tuple[Vector, NDArray[np.float64]]:
     """The pose of found joints, and what the landmarks still miss, (15, 3) in the trunk's axes.
 
-    Shoulders rise with their arms and people differ: both are more than cylinders can show.
+    Shoulders rise with their arms and people differ: both are more than cylinders can show. The
+    neck is where the shoulders say, but does not rise with the arms.
     """
     pose = pose_of(found, body, before)
     rest = np.zeros((len(JOINT_NAMES), 3))
@@ -131,7 +136,18 @@ def pose_and_rest(
     rest[AT] = (found - landmarks[AT]) @ trunk_axes(body, pose)
     rest[PELVIS] = rest[AT[pose_network.HIPS]].mean(axis=0)
     rest[NECK] = rest[AT[pose_network.SHOULDERS]].mean(axis=0)
+    rest[NECK, 1] -= _shoulders_rise(found, landmarks)
     return pose, rest
+
+
+def _shoulders_rise(found: NDArray[np.float64], landmarks: NDArray[np.float64]) -> float:
+    """How far the arms of found joints (12, 3) lift the shoulders, of a body with landmarks."""
+    trunk = landmarks[NECK] - landmarks[PELVIS]
+    length_m = float(np.linalg.norm(trunk))
+    arms = found[pose_network.ELBOWS] - found[pose_network.SHOULDERS]
+    lengths_m = np.maximum(np.linalg.norm(arms, axis=1, keepdims=True), 1e-9)
+    up = float((arms / lengths_m).mean(axis=0) @ trunk) / length_m
+    return length_m * (RISE[0] + RISE[1] * up)
 
 
 def without_arms(rest: NDArray[np.float64]) -> NDArray[np.float64]:

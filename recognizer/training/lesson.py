@@ -80,7 +80,9 @@ def refuse_known(known: PostureModel, posture: str) -> None:
         LearningError: When it has.
     """
     if posture in known.names:
-        raise LearningError(f"{posture} is known already: choose another name")
+        raise LearningError(
+            f"{posture} is known already: choose another name, or add to a model that lacks it"
+        )
 
 
 def _judged(known: PostureModel, posture: str, takes: Sequence[Rows], i: int) -> Take:

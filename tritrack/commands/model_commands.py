@@ -94,7 +94,7 @@ def teach(
         float, typer.Option(min=0.0, max=60.0, help="Seconds that are counted before a take.")
     ] = 3.0,
     add_to: Annotated[
-        Path, typer.Option(help="A model file, or shipped: it keeps what it knows.")
+        Path, typer.Option(help="A model file, or shipped: what it knows is kept in --out.")
     ] = Path("shipped"),
     recognizer: RecognizerName = "default",
     cache: Cache = CACHE,

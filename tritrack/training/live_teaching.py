@@ -101,12 +101,13 @@ def teach_live(
         count_s: How long is counted before each take.
 
     Raises:
-        TrainingError: When the name is none, or the run ends before three takes agree.
+        TrainingError: When the name is none, `out` knows postures that would be lost, or the run
+            ends before three takes agree.
         LearningError: When the name is known already.
         ModelError: When a model cannot be read or written.
         LiveRefused and what else `live` raises: When the run cannot begin, or fails.
     """
-    known = model_to_teach(posture, plan)
+    known = model_to_teach(posture, plan, out)
     teaching = Teaching(posture, known, console, count_s)
     settings = msgspec.structs.replace(settings, mode=known.card.recognizer)
     run = out.with_suffix("").with_name(f"{out.stem}_{posture}")

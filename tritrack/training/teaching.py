@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from rich.console import Console
 
-from recognizer.model_file import save
+from recognizer.model_file import load, save
 from recognizer.postures import PostureModel
 from recognizer.training.lesson import LEAST_TAKES, Lesson, refuse_known, taught
 from tritrack.store.cores import spread
@@ -31,12 +31,13 @@ def teach(
         console: For progress and warnings.
 
     Raises:
-        TrainingError: When the name is none, there are too few takes, or one is named twice.
+        TrainingError: When the name is none, there are too few takes, one is named twice, or the
+            file knows postures that would be lost.
         RecordingError, ClipsFailed: When a take cannot be used.
         LearningError: When the takes do not agree, or the name is known already.
         ModelError: When the file cannot be written, or the model to add to cannot be read.
     """
-    known = model_to_teach(posture, plan)
+    known = model_to_teach(posture, plan, out)
     twice = [path for path, times in Counter(path.resolve() for path in paths).items() if times > 1]
     if twice:
         raise TrainingError(f"{twice[0]} is named twice: each take is a performance of its own")
@@ -49,11 +50,11 @@ def teach(
     return kept(lesson, posture, [take.clip for take in takes], out)
 
 
-def model_to_teach(posture: str, plan: Plan) -> PostureModel:
+def model_to_teach(posture: str, plan: Plan, out: Path) -> PostureModel:
     """The model that a posture is added to.
 
     Raises:
-        TrainingError: When the name is none.
+        TrainingError: When the name is none, or `out` knows postures that would be lost.
         LearningError: When the model knows it.
         ModelError: When it cannot be read.
     """
@@ -63,6 +64,13 @@ def model_to_teach(posture: str, plan: Plan) -> PostureModel:
         )
     known = model_named(plan.add_to or Path("shipped"), plan.recognizer)
     refuse_known(known, posture)
+    kept_names = (*known.names, posture)
+    lost = [name for name in load(out).names if name not in kept_names] if out.exists() else []
+    if lost:
+        raise TrainingError(
+            f"{out} knows {', '.join(lost)}, which would be lost: keep it with --add-to {out}, or"
+            " name another --out"
+        )
     return known
 
 
