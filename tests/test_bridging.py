@@ -22,6 +22,7 @@ MOST_ADDED_S = 0.005
 
 
 @pytest.mark.slow
+@pytest.mark.live
 @pytest.mark.parametrize("protocol", ["osc", "vmc"])
 def test_every_body_arrives_with_little_added(protocol: str) -> None:
     """Held against a subscriber in this process, which hears the same bodies, once both do."""
