@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 from installing import pip, refuse_without_network
 from source_map import tracked
+from visiting import visited
 
 from common.cache_folder import compiled_folder
 
@@ -69,6 +70,10 @@ RESULTS: Final = {
 
 ENDLESS: Final = ("tritrack retouch",)
 """Pages that serve until Ctrl-C: each is fetched once, then ended so."""
+LIVE: Final = ("tritrack live",)
+"""Runs with a page, which somebody opens as soon as its address is printed; the demo goes on alone
+when nobody came for half a minute.
+"""
 
 
 def commands() -> list[str]:
@@ -132,6 +137,9 @@ def typed(command: str, copy: Path, shell: dict[str, str]) -> tuple[int, str]:
         if command.startswith(ENDLESS):
             said = fetched(process)
             os.killpg(process.pid, signal.SIGINT)
+        elif command.startswith(LIVE):
+            assert process.stdout is not None
+            said = visited(process.stdout)
         said += process.communicate(timeout=LIMIT_S)[0]
         return process.returncode, said
 
