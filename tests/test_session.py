@@ -13,7 +13,7 @@ import numpy as np
 import psutil
 import pytest
 from rich.console import Console
-from spoiling import copied, cut_off, uncalibrated
+from spoiling import copied, cut_off, edit_json, uncalibrated
 from waiting import until
 
 from common.bus.control_messages import Pulse
@@ -69,10 +69,18 @@ def test_free_settings_open_no_page_where_none_was_wanted() -> None:
     assert len({first.bus.endpoint, second.bus.endpoint}) == 2
 
 
+def slowed(clip: Path, folder: Path, rate_hz: float) -> Path:
+    """The clip at another rate, with which a busy machine keeps up."""
+    copied(clip, folder)
+    edit_json(folder / "meta.json", lambda meta: meta.update(fps=rate_hz))
+    return folder
+
+
 @pytest.mark.slow
+@pytest.mark.live
 @pytest.mark.parametrize("view", [1, 2])
 def test_one_camera_is_a_run_with_one_viewer(clip: Path, tmp_path: Path, view: int) -> None:
-    folder = copied(clip, tmp_path / "alone")
+    folder = slowed(clip, tmp_path / "alone", 5.0)
     (folder / f"cam{3 - view}.avi").unlink()
     facts = live(settings_of(folder), tmp_path / "out", Console(quiet=True))
     assert set(facts["processes"]) == {f"viewer {view}", "integrator", "recognizer"}
@@ -82,10 +90,11 @@ def test_one_camera_is_a_run_with_one_viewer(clip: Path, tmp_path: Path, view: i
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_each_oddity_is_told_once_and_kept_in_the_summary(
     clip: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    folder = copied(clip, tmp_path / "odd [x]")
+    folder = slowed(clip, tmp_path / "odd [x]", 7.5)  # slower, the person would tell the rig
     uncalibrated(folder)
     cut_off(folder)
     facts = live(settings_of(folder), tmp_path / "out", Console(stderr=True))
