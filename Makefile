@@ -2,6 +2,8 @@ PYTHON ?= python3.11
 VENV := .venv
 BIN := $(VENV)/bin
 
+NEWER := 3.12 3.13
+
 .PHONY: setup demo test matrix check bench docs clean
 
 setup: $(VENV)/.installed
@@ -20,8 +22,10 @@ demo: setup
 test: setup
 	$(BIN)/python -m pytest -m "not slow" -n 2 --dist loadfile --durations=15
 
-matrix:
-	.ci/matrix
+matrix: $(NEWER:%=matrix-%)
+
+matrix-%:
+	.ci/matrix $*
 
 check: setup
 	$(BIN)/ruff check .

@@ -3,6 +3,7 @@
 import base64
 import itertools
 import json
+import re
 import socket
 import subprocess
 import tempfile
@@ -10,7 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import cv2
 import numpy as np
@@ -32,6 +33,9 @@ FLAGS = (
     "--disable-quic",
     "--remote-debugging-port=0",
 )
+LISTENS: Final = re.compile(r"DevTools listening on (\S+)\n")
+START_S: Final = 60.0
+END_S: Final = 20.0
 
 
 class NotNow(RuntimeError):
@@ -106,22 +110,43 @@ def waited(tab: Tab, until: Callable[[np.ndarray, str], bool], seconds: float = 
         time.sleep(0.3)
 
 
+def unmoving(tab: Tab, seconds: float = 30.0) -> np.ndarray:
+    """The first screenshot that is as the one before, or the last one in time."""
+    before = [tab.screenshot()]
+
+    def is_as_before(seen: np.ndarray, _: str) -> bool:
+        before.append(seen)
+        return np.array_equal(before.pop(0), seen)
+
+    return waited(tab, is_as_before, seconds)
+
+
 @contextmanager
 def open_tab(chromium: str, drawn_by: tuple[str, ...] = WEBGL) -> Iterator[Tab]:
     """A fresh browser with one empty page; gone afterwards."""
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         command = [chromium, *FLAGS, *drawn_by, f"--user-data-dir={profile}", "about:blank"]
-        with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as browser:
+        log = Path(profile) / "log.txt"  # a pipe that nobody empties would hold it up
+        with log.open("w") as said, subprocess.Popen(command, stderr=said) as browser:
             try:
-                assert browser.stderr is not None
-                address = next(
-                    line.split()[-1] for line in browser.stderr if "DevTools listening" in line
-                )
-                with connect(address, max_size=None) as socket:
+                with connect(devtools(browser, log), max_size=None) as socket:
                     yield Tab(socket)
             finally:
                 browser.terminate()
-                browser.wait(20)
+                try:
+                    browser.wait(END_S)
+                except subprocess.TimeoutExpired:
+                    browser.kill()
+
+
+def devtools(browser: "subprocess.Popen[bytes]", log: Path) -> str:
+    """Where the browser listens, once it says so."""
+    until_s = time.monotonic() + START_S
+    while not (found := LISTENS.search(log.read_text())):
+        assert browser.poll() is None, log.read_text()
+        assert time.monotonic() < until_s, log.read_text()
+        time.sleep(0.02)
+    return found[1]
 
 
 def saved(picture: np.ndarray, path: Path) -> Path:

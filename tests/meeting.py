@@ -37,16 +37,25 @@ def a_body(frame: int, joints_m: np.ndarray) -> Body:
     )
 
 
+EARLY = -1
+"""Frame of every body that is said before the first."""
+
+
 @contextmanager
-def saying(frames: int = 120, wait_s: float = 0.0) -> Iterator[str]:
-    """The endpoint of a hub that says so many bodies, 30 a second, over and over in that time."""
+def saying(frames: int = 120, begin: threading.Event | None = None) -> Iterator[str]:
+    """The endpoint of a hub that says so many bodies, 30 a second.
+
+    Where there is an event it says an early one over and over until that is set: who hears it is
+    there, and will miss none.
+    """
     endpoint, joints_m = free_endpoint(), random_joints(3)
     over = threading.Event()
 
     def say() -> None:
         with open_hub(BusSettings(endpoint), "room") as bus:
             bus.announce("integrator")
-            over.wait(wait_s)
+            while begin is not None and not begin.is_set() and not over.wait(1 / HZ):
+                bus.publish(a_body(EARLY, joints_m[0]))
             for frame in range(frames):
                 if over.wait(1 / HZ):
                     return

@@ -448,3 +448,15 @@ def test_a_listener_without_a_word_hears_a_run_that_has_one(endpoint: str) -> No
             hub.publish(a_report(1, 3))
             heard = inbox.take(0.1)
         assert heard == a_report(1, 3)
+
+
+def test_a_session_that_does_not_close_in_time_is_no_failure(
+    endpoint: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Stuck:
+        def close(self) -> None:
+            raise zenoh.ZError("close operation timed out!")
+
+    monkeypatch.setattr(zenoh, "open", lambda _: Stuck())
+    with open_hub(BusSettings(endpoint), ROOM):
+        pass

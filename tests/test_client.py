@@ -3,10 +3,11 @@
 import asyncio
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
-from meeting import free_endpoint, saying
+from meeting import EARLY, free_endpoint, saying
 
 from common.bus.bus import BusError
 from common.bus.messages import Body
@@ -16,9 +17,13 @@ EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"
 
 
 def test_a_loop_hears_every_body_and_ends_with_the_run() -> None:
-    with saying(frames=20, wait_s=2.0) as endpoint:
-        frames = [body.frame for body in subscribe(endpoint, wait_s=5.0)]
-    assert frames == list(range(20))
+    frames: list[int] = []
+    begin = threading.Event()
+    with saying(20, begin) as endpoint:
+        for body in subscribe(endpoint, wait_s=5.0):
+            frames.append(body.frame)
+            begin.set()
+    assert [frame for frame in frames if frame != EARLY] == list(range(20))
 
 
 def test_an_async_loop_hears_them_too_and_lets_others_run() -> None:
@@ -30,15 +35,19 @@ def test_an_async_loop_hears_them_too_and_lets_others_run() -> None:
             await asyncio.sleep(0.01)
             ticks += 1
 
-    async def hear(endpoint: str) -> list[Body]:
+    async def hear(endpoint: str) -> list[int]:
+        frames: list[int] = []
         ticking = asyncio.create_task(tick())
-        heard = [body async for body in subscribe(endpoint, kind=Body, wait_s=5.0)]
+        async for body in subscribe(endpoint, kind=Body, wait_s=5.0):
+            frames.append(body.frame)
+            begin.set()
         ticking.cancel()
-        return heard
+        return frames
 
-    with saying(frames=20, wait_s=2.0) as endpoint:
-        heard = asyncio.run(hear(endpoint))
-    assert [body.frame for body in heard] == list(range(20))
+    begin = threading.Event()
+    with saying(20, begin) as endpoint:
+        frames = asyncio.run(hear(endpoint))
+    assert [frame for frame in frames if frame != EARLY] == list(range(20))
     assert ticks > 20
 
 
@@ -61,21 +70,26 @@ def test_track_gives_the_bodies_of_a_clip(clip: Path) -> None:
     assert sum(bool(body.joints_m) for body in bodies) > len(bodies) / 2
 
 
-def run_example(name: str, argument: str) -> str:
-    done = subprocess.run(
-        [sys.executable, str(EXAMPLES / name), argument],
-        capture_output=True,
-        check=False,
+def run_example(name: str, argument: str, began: threading.Event | None = None) -> str:
+    """What it prints, of which the first line sets an event."""
+    example = subprocess.Popen(
+        [sys.executable, "-u", str(EXAMPLES / name), argument],
+        stdout=subprocess.PIPE,
         text=True,
-        timeout=120,
     )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+    assert example.stdout is not None
+    said = example.stdout.readline()
+    if began is not None:
+        began.set()
+    said += example.communicate(timeout=120)[0]
+    assert example.returncode == 0
+    return said
 
 
 def test_the_example_of_a_live_elbow_ends_with_the_run() -> None:
-    with saying(frames=90, wait_s=2.0) as endpoint:
-        lines = run_example("live_elbow.py", endpoint).splitlines()
+    begin = threading.Event()
+    with saying(20, begin) as endpoint:
+        lines = run_example("live_elbow.py", endpoint, begin).splitlines()
     assert lines[-1] == "the run is over"
     assert len(lines) > 10
     assert lines[0].endswith("degrees")

@@ -3,10 +3,15 @@
 import json
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 from rich.console import Console
+
+pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
+
+from visiting import visited
 
 from tritrack import demo
 
@@ -24,6 +29,7 @@ def test_a_demo_that_names_another_posture_has_failed(
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_the_demo_runs_ends_by_itself_and_leaves_nothing_but_its_run_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -40,8 +46,11 @@ def test_the_demo_runs_ends_by_itself_and_leaves_nothing_but_its_run_folder(
         )
         for n in (1, 2)
     ]
+    with ThreadPoolExecutor() as visitors:
+        told = list(visitors.map(visited, [run.stderr for run in runs]))
     for n, run in enumerate(runs, 1):
         said, errors = run.communicate(timeout=120)
+        errors = told[n - 1] + errors
         assert run.returncode == 0, errors
         facts = json.loads(said)
         assert facts["posture"] == facts["posture_meant"] == demo.POSTURE

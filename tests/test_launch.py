@@ -63,6 +63,7 @@ def lived(slow_clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Lived:
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_a_live_run_is_two_viewer_processes_and_an_integrator(
     lived: Lived,
 ) -> None:
@@ -77,6 +78,7 @@ def test_a_live_run_is_two_viewer_processes_and_an_integrator(
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_a_live_run_equals_an_offline_one(slow_clip: Path, lived: Lived) -> None:
     """One code path, two shells; P2: report t used the guide of t - 1."""
     out, facts = lived
@@ -89,6 +91,7 @@ def test_a_live_run_equals_an_offline_one(slow_clip: Path, lived: Lived) -> None
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_a_live_run_with_keys_gives_the_same_bodies(slow_clip: Path, tmp_path: Path) -> None:
     """As one without, which equals an offline one: each part may say all that it has to."""
     pytest.importorskip("cryptography", reason="keys are an extra: install tritrack[keys]")
@@ -107,6 +110,7 @@ def test_a_live_run_with_keys_gives_the_same_bodies(slow_clip: Path, tmp_path: P
 
 
 @pytest.mark.slow
+@pytest.mark.live
 @pytest.mark.parametrize("view", [1, 2])
 def test_a_live_run_with_one_viewer_equals_tracking_one_view(
     slow_clip: Path, tmp_path: Path, view: ViewerNumber
@@ -127,6 +131,7 @@ def test_a_live_run_with_one_viewer_equals_tracking_one_view(
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_a_run_folder_holds_all_that_it_should(lived: Lived) -> None:
     out, _ = lived
     names = {path.name for path in out.iterdir()}
@@ -134,12 +139,14 @@ def test_a_run_folder_holds_all_that_it_should(lived: Lived) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_no_process_is_left_behind(lived: Lived) -> None:
     assert [p for p in psutil.Process().children(recursive=True) if "decoder" in p.name()] == []
     assert multiprocessing.active_children() == []
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_what_foreign_sessions_say_is_counted_and_dropped(clip: Path, tmp_path: Path) -> None:
     """A malformed, truncated, oversized, NaN or foreign message does no harm, 40 MB/s of them.
 

@@ -79,6 +79,7 @@ def test_who_never_shows_one_motion_is_not_waited_for_for_ever(
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_a_recording_that_plays_as_live_teaches_a_posture(plan: Plan, tmp_path: Path) -> None:
     """Viewers, integrator and recogniser as processes; it is shown eight times, with pauses."""
     rig, someone = default_rig(160, 120), person(5501)
@@ -94,6 +95,7 @@ def test_a_recording_that_plays_as_live_teaches_a_posture(plan: Plan, tmp_path: 
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_a_recording_in_which_nobody_shows_it_teaches_nothing(
     clip: Path, plan: Plan, tmp_path: Path
 ) -> None:

@@ -2,8 +2,6 @@
 
 import json
 import os
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -33,23 +31,6 @@ def test_the_same_clip_gives_the_same_bytes(clip: Path, tmp_path: Path) -> None:
         track_all([clip], tmp_path / out, None, (1, 2), None, QUIET)
     first, second = ((tmp_path / out / clip.name / "poses.npz") for out in ("first", "second"))
     assert first.read_bytes() == second.read_bytes()
-
-
-@pytest.mark.slow
-def test_another_process_that_compiles_anew_gives_the_same_bytes(
-    clip: Path, tmp_path: Path
-) -> None:
-    runs = [
-        subprocess.Popen(
-            [sys.executable, "-m", "tritrack", "track", str(clip), "--out", str(tmp_path / out)],
-            env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / f"cache {out}")},
-        )
-        for out in ("first", "second")
-    ]
-    assert [run.wait() for run in runs] == [0, 0]
-    first, second = ((tmp_path / out / clip.name / "poses.npz") for out in ("first", "second"))
-    assert first.read_bytes() == second.read_bytes()
-    assert any((tmp_path / "cache first").rglob("*.nbc"))
 
 
 def test_nothing_is_written_but_the_run_folder(clip: Path, tmp_path: Path) -> None:

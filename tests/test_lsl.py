@@ -30,6 +30,7 @@ def test_without_the_library_the_cure_is_named(monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_an_inlet_hears_every_body_with_the_time_of_its_frame() -> None:
     pylsl = pytest.importorskip("pylsl", reason="pip install 'tritrack[lsl]'")
     name = f"tritrack-test-{time.monotonic_ns()}"

@@ -175,13 +175,10 @@ def test_beyond_this_machine_no_picture_is_shown_without_the_token() -> None:
 def title_of(looking: Looking, address: str) -> dict[str, str]:
     """What a foreign page tried, and what came of it."""
     looking.tab.call("Page.navigate", url=address)
-    told: dict[str, str] = {}
-    until_s = time.monotonic() + 20
-    while len(told) < 3 and time.monotonic() < until_s:
-        title = looking.ask("document.title")
-        told = json.loads(title) if title.startswith("{") else {}
-        time.sleep(0.05)
-    return told
+    title = looking.until(
+        "document.title.startsWith('{') && document.title.split(':').length > 3 && document.title"
+    )
+    return dict(json.loads(title or "{}"))
 
 
 REFUSED = {"image": "refused", "socket": "refused", "page": "refused"}

@@ -92,6 +92,7 @@ def listen(endpoint: str, heard: list[tuple[str, bytes]], over: threading.Event)
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_live_messages_of_every_topic_fit(clip: Path, tmp_path: Path) -> None:
     """Heard by Zenoh alone, as a stranger's program does."""
     settings = free_settings(Settings(clip=str(clip), pictures=True, page=PageSettings(port=0)))

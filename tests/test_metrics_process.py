@@ -50,8 +50,7 @@ class Outsider(threading.Thread):
             )
             assert pid is not None
             os.kill(pid, signal.SIGKILL)
-            self._until("sick", lambda: self._health()[0] == 503)
-            self.sick = self._health()[1]
+            self._until("sick", self._is_sick)
             self._until("well again", lambda: self._health()[0] == 200)
             self._until("counted", lambda: self._restarts() >= 1)
             self.seen = self._samples()
@@ -71,6 +70,10 @@ class Outsider(threading.Thread):
             return asked(self._address, "/healthz")
         except OSError:
             return 0, "nobody answers yet"
+
+    def _is_sick(self) -> bool:
+        code, self.sick = self._health()
+        return code == 503 and f"{self._victim}: it " in self.sick
 
     def _samples(self) -> Samples:
         return read(asked(self._address, "/metrics")[1])

@@ -36,7 +36,10 @@ def sleeps(word: str) -> None:
 def ended_within(pid: int, wait_s: float) -> bool:
     until_s = time.monotonic() + wait_s
     while time.monotonic() < until_s:
-        if not psutil.pid_exists(pid) or psutil.Process(pid).status() == psutil.STATUS_ZOMBIE:
+        try:
+            if psutil.Process(pid).status() == psutil.STATUS_ZOMBIE:
+                return True
+        except psutil.NoSuchProcess:
             return True
         time.sleep(0.02)
     return False

@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip("viser", reason="the page is an extra: install tritrack[page]")
 
 import viser
-from browser import Tab, open_tab, saved, waited
+from browser import Tab, open_tab, saved, unmoving, waited
 from test_take import ARM, WRIST, body, take
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
@@ -176,7 +176,8 @@ def test_a_pointer_drags_a_joint_and_a_click_turns_a_limb(
     """The wrist is let go where the pointer is: within 3 of the video's 320 pixels."""
     with open_tab(str(CHROMIUM)) as tab:
         tab.call("Page.navigate", url=page.address)
-        seen = waited(tab, lambda picture, text: "frame 0" in text and picture[400, 300, 0] < 120)
+        waited(tab, lambda picture, text: "frame 0" in text and picture[400, 300, 0] < 120)
+        seen = unmoving(tab)
         where = saved(seen, tmp_path / "retouch.png")
         first, last = picture_corners(seen, 40)
         px = (last - first) / SIZE
@@ -201,8 +202,9 @@ def test_a_pointer_drags_a_joint_and_a_click_turns_a_limb(
         turned = held(page.notes, 0).depth
         assert turned == {"l_upper_arm": "away"}, f"look at {saved(tab.screenshot(), where)}"
         tab.call("Runtime.evaluate", expression=PRESS_NEXT)
-        waited(tab, lambda _, text: "frame 16" in text, 30.0)
-        assert "does the person face forward left?" in tab.text()
+        asked = "does the person face forward left?"
+        waited(tab, lambda _, text: "frame 16" in text and asked in text, 30.0)
+        assert asked in tab.text()
         assert "upper arm lean" not in tab.text(), "what was said is asked again"
 
 

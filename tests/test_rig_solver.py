@@ -57,6 +57,7 @@ def test_a_job_of_too_little_is_refused_with_the_reason() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_the_process_finds_what_is_found_here_and_asking_waits_for_nothing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -103,6 +103,7 @@ def test_systemd_understands_every_line_of_a_unit(instance: str, tmp_path: Path)
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_the_processes_of_a_rig_find_each_other_in_any_order(clip: Path, tmp_path: Path) -> None:
     """The viewers first, who wait for the integrator: as on two hosts that are switched on."""
     pytest.importorskip("websockets", reason="pip install 'tritrack[page]'")

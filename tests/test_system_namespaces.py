@@ -52,6 +52,10 @@ with open_client(settings.bus, settings.room, 120.0) as bus, open(sys.argv[2], "
                 message = box.take(0.0)
         file.flush()
 """
+FRAMES: Final = 450
+"""Half a minute, for a cable that is cut and mended."""
+FEW: Final = 225
+"""For a cable that stays as it is from the first frame to the last."""
 WAIT_S: Final = 150.0
 NEAR_M: Final = 0.02
 """Bodies of the same frames differ by less where a guide came late or a view was missing before."""
@@ -84,25 +88,33 @@ def network() -> Iterator[Hosts]:
 
 
 @pytest.fixture(scope="module")
-def long_clip(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Half a minute."""
-    folder = copied(clip, tmp_path_factory.mktemp("far") / "walk")
-    refilmed(folder, lambda film: [*film, *(3 * [*film[::-1], *film])][:450])
-    return folder
+def clips(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[int, Path]:
+    """There and back, by the number of frames; the short one is how the long one begins."""
+    folder = tmp_path_factory.mktemp("far")
+    found = {frames: copied(clip, folder / f"walk of {frames}") for frames in (FRAMES, FEW)}
+    for frames, each in found.items():
+        refilmed(each, lambda film, n=frames: [*film, *(3 * [*film[::-1], *film])][:n])  # type: ignore[misc]
+    return found
 
 
 @pytest.fixture(scope="module")
-def offline(long_clip: Path) -> dict[int, dict[str, Any]]:
-    """The bodies that lock-step gives, by their frames."""
+def offline(clips: dict[int, Path]) -> dict[int, dict[str, Any]]:
+    """The bodies that lock-step gives of the long clip, by their frames."""
     with Decoders() as decoders:
-        bodies = track_clip(Settings(clip=str(long_clip)), decoders).bodies
+        bodies = track_clip(Settings(clip=str(clips[FRAMES])), decoders).bodies
     return {
         body.frame: {"views": body.views, "joints_m": np.array(body.joints_m)} for body in bodies
     }
 
 
 @pytest.fixture(scope="module")
-def rigs(network: Hosts, long_clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def few(offline: dict[int, dict[str, Any]]) -> dict[int, dict[str, Any]]:
+    """Those of the short one."""
+    return {frame: body for frame, body in offline.items() if frame < FEW}
+
+
+@pytest.fixture(scope="module")
+def rigs(network: Hosts, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What each host has: settings, the authority, the two files of its part."""
     folder = tmp_path_factory.mktemp("rigs")
     hub = network.address["integrator"]
@@ -114,11 +126,19 @@ def rigs(network: Hosts, long_clip: Path, tmp_path_factory: pytest.TempPathFacto
         held = {"recognizer": ("recognizer", "client")}.get(part, (part,))
         for name in ("ca.pem", *(f"{name}.{end}" for name in held for end in ("pem", "key"))):
             shutil.copy(folder / "made" / name, own / "keys")
-        (own / "room.toml").write_text(
-            f'clip = "{long_clip}"\nroom = "far"\n[bus]\nendpoint = "tls/{hub}:7447"\n'
+        (own / "any.toml").write_text(
+            f'room = "far"\n[bus]\nendpoint = "tls/{hub}:7447"\n'
             'keys = "keys"\nsession = "one"\n[page]\nport = 0\n'
         )
     return folder
+
+
+def looks_at(rigs: Path, clip: Path) -> None:
+    """Let every host's settings name a clip."""
+    for part in PARTS:
+        text = f'clip = "{clip}"\n{(rigs / part / "any.toml").read_text()}'
+        for name in ("room.toml", "ear.toml"):
+            (rigs / part / name).write_text(text)
 
 
 class Room:
@@ -175,12 +195,17 @@ class Room:
 
 
 @pytest.fixture
-def room(network: Hosts, rigs: Path, tmp_path: Path) -> Iterator[Callable[[], Room]]:
-    """Starts the parts, once; cables are good again afterwards."""
-    ear = rigs / "recognizer" / "ear.toml"
-    ear.write_text((rigs / "recognizer" / "room.toml").read_text())
+def room(
+    network: Hosts, rigs: Path, clips: dict[int, Path], tmp_path: Path
+) -> Iterator[Callable[[int], Room]]:
+    """Starts the parts before a clip of so many frames, once; cables are good again afterwards."""
+
+    def started(frames: int) -> Room:
+        looks_at(rigs, clips[frames])
+        return Room(network, rigs, tmp_path, doors)
+
     with ExitStack() as doors:
-        yield lambda: Room(network, rigs, tmp_path, doors)
+        yield started
     for part in PARTS:
         network.cable(part)
 
@@ -208,12 +233,12 @@ def share_of_both(heard: Heard, offline: dict[int, dict[str, Any]]) -> float:
 
 @pytest.mark.slow
 def test_clocks_seconds_apart_do_not_confuse_instants(
-    room: Callable[[], Room], offline: dict[int, dict[str, Any]]
+    room: Callable[[int], Room], few: dict[int, dict[str, Any]]
 ) -> None:
     """Viewers and recogniser ask how far the room's clock is from their own."""
-    heard = room().over()
-    refuse_confusion(heard, offline)
-    assert share_of_both(heard, offline) > 0.8
+    heard = room(FEW).over()
+    refuse_confusion(heard, few)
+    assert share_of_both(heard, few) > 0.8
     told = re.search(
         r"the room's clock is (\S+) s from ours \(within (\S+)\)", heard.logs["viewer1"]
     )
@@ -229,16 +254,16 @@ def test_clocks_seconds_apart_do_not_confuse_instants(
 @pytest.mark.parametrize("slow", [("viewer2",), ("viewer1", "viewer2")], ids=["one", "both"])
 def test_slow_cables_make_bodies_late_and_are_named(
     slow: tuple[str, ...],
-    room: Callable[[], Room],
+    room: Callable[[int], Room],
     network: Hosts,
-    offline: dict[int, dict[str, Any]],
+    few: dict[int, dict[str, Any]],
 ) -> None:
     """200 ms each way: the quicker view waits for the slower one."""
     for host in slow:
         network.cable(host, Cable(0.2))
-    heard = room().over()
-    refuse_confusion(heard, offline)
-    assert share_of_both(heard, offline) > 0.5
+    heard = room(FEW).over()
+    refuse_confusion(heard, few)
+    assert share_of_both(heard, few) > 0.5
     for host in slow:
         assert re.search(rf"view {host[-1]} is heard 0\.[2-4]\d s late", heard.told())
     assert heard.newest("integrator")["latency_p50_ms"] > 190
@@ -246,23 +271,23 @@ def test_slow_cables_make_bodies_late_and_are_named(
 
 @pytest.mark.slow
 def test_lossy_cables_lose_little(
-    room: Callable[[], Room], network: Hosts, offline: dict[int, dict[str, Any]]
+    room: Callable[[int], Room], network: Hosts, few: dict[int, dict[str, Any]]
 ) -> None:
     """5 % of the packets of both viewers, each way."""
     for host in ("viewer1", "viewer2"):
         network.cable(host, Cable(loss=0.05))
-    heard = room().over()
-    refuse_confusion(heard, offline)
-    assert share_of_both(heard, offline) > 0.7
+    heard = room(FEW).over()
+    refuse_confusion(heard, few)
+    assert share_of_both(heard, few) > 0.7
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("host", ["viewer1", "integrator"])
 def test_after_a_cut_of_six_seconds_all_are_back(
-    host: str, room: Callable[[], Room], network: Hosts, offline: dict[int, dict[str, Any]]
+    host: str, room: Callable[[int], Room], network: Hosts, offline: dict[int, dict[str, Any]]
 ) -> None:
     """The other viewer goes on alone meanwhile; where the integrator is cut off, nobody does."""
-    started = room()
+    started = room(FRAMES)
     started.until(lambda heard: heard.bodies and heard.bodies[-1]["frame"] > 60)
     network.cable(host, Cable(cut=True))
     time.sleep(6.0)

@@ -128,6 +128,7 @@ def test_zygote_and_forks_end_when_their_supervisor_is_killed(
     assert ended_within(own, SOON_S)
 
 
+@pytest.mark.live
 def test_a_run_that_is_stopped_does_not_wait_for_it() -> None:
     code = (
         "import threading, time; from tritrack.live.process_table import inherited; "

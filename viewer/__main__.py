@@ -29,6 +29,9 @@ from viewer.room.background_source import background_of_run
 from viewer.unheard import Unheard
 from viewer.viewer_warmup import warm_up
 
+LAST_WORDS_S: Final = 1.0
+"""A link between hosts may be slow: how long a viewer stays when it has said that its clip is over.
+What it leaves unsent is lost, and the run would wait a minute for it."""
 WAIT_SHARE: Final = 0.5
 """How long a viewer waits for the guide of its last frame, in frame periods."""
 
@@ -166,6 +169,7 @@ def main(
             if room_clock is not None:
                 with Live(view, settings.every, room_clock, sources.get(viewer)) as live:
                     run(view, state, live, bus, stop, warnings)
+                stop.wait(0.0 if context.supervised else LAST_WORDS_S)
 
 
 def _prepared(

@@ -126,13 +126,26 @@ def open_client(
 
 @contextmanager
 def _bus(session: Any, room: str, run: str) -> Iterator[LiveBus]:
-    # A session that is not closed keeps its process from ending.
-    with session:
-        bus = LiveBus(session, room, run)
+    bus = LiveBus(session, room, run)
+    try:
+        yield bus
+    finally:
         try:
-            yield bus
-        finally:
             bus.close()
+        finally:
+            _close(session)
+
+
+def _close(session: Any) -> None:
+    """Close a session: one that is open keeps its process from ending.
+
+    Zenoh gives up after ten seconds where a link is slow or loses packets (its issue 2675); all
+    has been said by then.
+    """
+    try:
+        session.close()
+    except zenoh.ZError as error:
+        log.info("the bus was left without a farewell: %s", _first_line(error))
 
 
 def _reach(settings: BusSettings, part: Part, room: str, until_s: float) -> Any | None:
