@@ -19,6 +19,7 @@ from tritrack.offline.film_smoothing import (
     START_SPEED_M_S,
     calmed,
     smoothed,
+    steadied,
 )
 
 RIG = paper_rig((320, 240), (400.0, 400.0), (4.5, 4.5))
@@ -27,17 +28,17 @@ TIME_S = np.arange(N) / 25
 
 
 def test_places_are_smoothed_as_filterpy_smooths_them() -> None:
-    """Its filter and its smoother, step by step, at a rate that varies."""
+    """Its filter and its smoother, step by step, at a rate and with a noise that vary."""
     rng = np.random.default_rng(8)
     time_s = np.cumsum(rng.choice([0.02, 0.04, 0.1], 30))
+    variances = NOISE_M**2 * rng.choice([1.0, 30.0], (30, 1))
     seen = np.cumsum(rng.normal(0.0, 0.1, 30))
     reference = KalmanFilter(dim_x=2, dim_z=1)
     reference.H = np.array([[1.0, 0.0]])
-    reference.R = np.array([[NOISE_M**2]])
     reference.x = np.array([[seen[0]], [0.0]])
-    reference.P = np.diag([NOISE_M**2, START_SPEED_M_S**2])
+    reference.P = np.diag([variances[0, 0], START_SPEED_M_S**2])
     states, steps = [(reference.x.copy(), reference.P.copy())], []
-    for gap_s, place in zip(np.diff(time_s), seen[1:], strict=True):
+    for gap_s, place, variance in zip(np.diff(time_s), seen[1:], variances[1:], strict=True):
         steps.append(
             (
                 np.array([[1.0, gap_s], [0.0, 1.0]]),
@@ -45,17 +46,29 @@ def test_places_are_smoothed_as_filterpy_smooths_them() -> None:
             )
         )
         reference.predict(F=steps[-1][0], Q=steps[-1][1])
-        reference.update(place)
+        reference.update(place, R=float(variance[0]))
         states.append((reference.x.copy(), reference.P.copy()))
     X, P = (np.array(each) for each in zip(*states, strict=True))
     F, Q = (list(each) for each in zip((np.eye(2), np.zeros((2, 2))), *steps, strict=True))
     found = reference.rts_smoother(X, P, F, Q)[0][:, 0, 0]
-    assert smoothed(seen[:, None], time_s)[:, 0] == pytest.approx(found, abs=1e-9)
+    assert smoothed(seen[:, None], time_s, variances)[:, 0] == pytest.approx(found, abs=1e-9)
 
 
 def test_who_moves_evenly_is_left_alone() -> None:
     ramp = 1.3 * TIME_S[:, None]
-    assert np.abs(smoothed(ramp, TIME_S) - ramp)[5:-5].max() < 0.005
+    assert np.abs(steadied(ramp, TIME_S) - ramp)[5:-5].max() < 0.005
+
+
+def test_a_joint_that_jumps_aside_for_a_moment_does_not_pull_the_frames_around_it() -> None:
+    """Two wrong frames in sixty: without them, it is where it was."""
+    still = np.zeros((N, 2, 3))
+    jumps = still.copy()
+    jumps[30:32, 0, 0] = 0.6
+    found = steadied(jumps, TIME_S)
+    plainly = smoothed(jumps, TIME_S, np.full((N, 1, 1), NOISE_M**2))
+    beside = np.r_[24:30, 32:38]
+    assert np.abs(found[beside, 0, 0]).max() < 0.25 * np.abs(plainly[beside, 0, 0]).max()
+    assert np.abs(found[:, 1]).max() == 0.0
 
 
 def swinging() -> np.ndarray:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from integrator.landmarks import proposal_misfit
 from integrator.landmarks.landmark_rays import Rays
-from integrator.landmarks.proposal_misfit import FARTHEST, LATELY, USUAL, WIDER
+from integrator.landmarks.proposal_misfit import FARTHEST, LATELY, USUAL, WIDER, Misfit
 
 STATURE_M = 2.0
 UP_M = np.array([0.0, 1.0, 0.0])
@@ -26,22 +26,42 @@ def rays_to(joints_m: np.ndarray, sure: tuple[float, float] = (0.8, 0.8)) -> Ray
 
 def after(instants: int, proposed_m: np.ndarray, rays: Rays, before: float = 0.0) -> float:
     """How far a proposal has been off after so many equal instants, statures."""
-    found = before**2
+    found = Misfit(before**2, np.full(6, before**2))
     for _ in range(instants):
         found = proposal_misfit.step(found, proposed_m, rays, STATURE_M)
-    return math.sqrt(found)
+    return math.sqrt(found.whole)
 
 
 def test_a_proposal_on_its_rays_is_not_off_and_is_not_widened() -> None:
     assert after(3, BODY_M, rays_to(BODY_M)) == pytest.approx(0.0, abs=1e-9)
-    assert proposal_misfit.wider_m(0.0, STATURE_M) == 0.0
+    never = Misfit(0.0, np.zeros(6))
+    assert not proposal_misfit.wider_m(never, rays_to(BODY_M), STATURE_M).any()
 
 
 def test_one_who_stays_raised_is_off_by_that_in_statures() -> None:
     level_m = BODY_M * (1.0, 0.0, 1.0) + UP_M  # as high as the cameras
     assert after(99, level_m + 0.3 * UP_M, rays_to(level_m)) == pytest.approx(0.15)
-    found_m = proposal_misfit.wider_m(0.15**2, STATURE_M)
-    assert found_m == pytest.approx(WIDER * (0.15 - USUAL) * STATURE_M)
+    misfit = Misfit(0.15**2, np.zeros(6))
+    found_m = proposal_misfit.wider_m(misfit, rays_to(level_m), STATURE_M)
+    assert found_m == pytest.approx(np.full(12, WIDER * (0.15 - USUAL) * STATURE_M))
+
+
+def test_wrists_that_are_off_alone_are_doubted_by_one_view_and_all_alike_by_two() -> None:
+    level_m = BODY_M * (1.0, 0.0, 1.0) + UP_M
+    wrong_m = level_m.copy()
+    wrong_m[4:6] += 0.4 * UP_M  # 0.2 statures
+    alone = rays_to(level_m, (0.8, 0.0))
+    misfit = None
+    for _ in range(99):
+        misfit = proposal_misfit.step(misfit, wrong_m, alone, STATURE_M)
+    assert misfit is not None
+    assert np.sqrt(misfit.pairs) == pytest.approx([0.0, 0.0, 0.2, 0.0, 0.0, 0.0])
+    all_alike_m = WIDER * (0.2 / math.sqrt(6) - USUAL) * STATURE_M
+    found_m = proposal_misfit.wider_m(misfit, alone, STATURE_M)
+    assert found_m[4:6] == pytest.approx(WIDER * (0.2 - USUAL) * STATURE_M)
+    assert np.delete(found_m, [4, 5]) == pytest.approx(all_alike_m)
+    found_m = proposal_misfit.wider_m(misfit, rays_to(level_m), STATURE_M)
+    assert found_m == pytest.approx(all_alike_m)
 
 
 def test_one_whose_sides_a_view_exchanged_is_not_off() -> None:

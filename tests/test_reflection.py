@@ -10,6 +10,7 @@ from common.rig.camera import paper_rig, project
 from integrator.single.reflection import (
     Front,
     agrees,
+    as_deep,
     faces,
     front_of,
     leaning,
@@ -27,6 +28,14 @@ def body(yaw: float) -> np.ndarray:
     pose[POSE_INDEX["r_shoulder_x"]] = 60.0
     pose[POSE_INDEX["l_hip_x"]], pose[POSE_INDEX["l_knee_x"]] = 50.0, -60.0
     return np.asarray(joints(body_vector(thesis_bdp(1.75)), pose))
+
+
+def test_joints_as_deep_as_others_stay_in_the_picture() -> None:
+    seen, other = body(20.0), body(60.0) + np.array([0.2, 0.1, 0.3])
+    moved = as_deep(CAMERA, seen, other)
+    assert project(CAMERA, moved) == pytest.approx(project(CAMERA, seen))
+    forward = np.array(CAMERA.R)[2]
+    assert moved @ forward == pytest.approx(other @ forward)
 
 
 @pytest.mark.parametrize("yaw", [-140.0, -40.0, 20.0, 120.0])

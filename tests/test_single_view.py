@@ -4,14 +4,22 @@ import msgspec
 import numpy as np
 import pytest
 
-from common.body.body import JOINT_NAMES, LIMBS
-from common.body.proportions import THESIS_RATIOS, thesis_bdp
+from common.body.body import JOINT_NAMES, LIMBS, POSE_INDEX, rest_pose
+from common.body.kinematics import joints
+from common.body.proportions import THESIS_RATIOS, body_vector, thesis_bdp
 from common.body.stick_body import ADULT, ANGLE, THESIS, Stickman, joints_px, standing
 from common.bus.messages import Box, Fit, Report, ViewerNumber
 from common.method import DEFAULT, METHODS
 from common.raster.silhouette_report import pack
 from common.rig.camera import paper_rig, project
-from integrator.single import depth_signs, lifted_stick, reflection, single_view
+from integrator.single import (
+    bent_limbs,
+    depth_signs,
+    lifted_stick,
+    lone_proposal,
+    reflection,
+    single_view,
+)
 from integrator.single.reflection import Front
 from integrator.single.sight import Annotations, Hypothesis, Sight
 
@@ -140,6 +148,22 @@ def test_a_view_left_alone_knows_which_way_both_had_the_body() -> None:
         assert known.front is None
         assert known.signs.bearing.orientation.startswith(towards)
     assert single_view.begun(sight, None).front == Front()
+
+
+def test_limits_turn_a_limb_in_depth_and_leave_the_picture_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A knee that bends to the front is no knee; where its ankle is seen, it is."""
+    turned = rest_pose()
+    turned[POSE_INDEX["torso_y"]], turned[POSE_INDEX["l_knee_x"]] = 40.0, 50.0
+    astray_m = joints(body_vector(thesis_bdp(1.75)), turned)
+    monkeypatch.setattr(bent_limbs, "bent", lambda sight, joints_m: astray_m)
+    sight = sight_of(report_of(ADULT), printed=False)
+    found = lone_proposal.step(lone_proposal.Before(None, None, None), sight).found
+    assert found.pose[POSE_INDEX["l_knee_x"]] <= 0.0
+    assert project(CAMERA, found.joints_m) == pytest.approx(project(CAMERA, astray_m))
+    moved_m = np.linalg.norm(found.joints_m - astray_m, axis=1)
+    assert moved_m[AT["l_ankle"]] > 0.1 > moved_m[AT["r_ankle"]]
 
 
 def test_a_stick_body_is_asked_for_where_what_is_proposed_fits_badly() -> None:

@@ -1,6 +1,5 @@
 """One body of what the outlines propose and what each view's picture shows of the joints."""
 
-import math
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -19,6 +18,7 @@ from integrator.landmarks.joint_mixture import (
     most_probable,
 )
 from integrator.landmarks.landmark_rays import Rays
+from integrator.landmarks.proposal_misfit import Misfit
 from integrator.proposal import pose_network
 from integrator.proposal.network_weights import JOINTS
 from integrator.proposal.pose_network import OTHER_SIDES
@@ -45,8 +45,8 @@ class Memory(NamedTuple):
     exchanges: Exchanges
     lengths_m: Vector
     """(10,) of `limb_springs.ENDS`."""
-    misfit: float
-    """How far proposals were beside the rays: of `proposal_misfit`."""
+    misfit: Misfit
+    """How far proposals were beside the rays."""
 
 
 class Fused(NamedTuple):
@@ -85,9 +85,9 @@ def step(
     if turned[1]:
         proposed_m, confidence = proposed_m[OTHER_SIDES], confidence[OTHER_SIDES]
     misfit = proposal_misfit.step(
-        0.0 if before is None else before.misfit, proposed_m, rays, stature_m
+        None if before is None else before.misfit, proposed_m, rays, stature_m
     )
-    wider_m = proposal_misfit.wider_m(misfit, stature_m)
+    wider_m = proposal_misfit.wider_m(misfit, rays, stature_m)
     values, places_m, precisions = _weighed(proposed_m, confidence, wider_m, rays, stature_m)
     exchanges, decided = exchanged_sides.step(
         _exchanges(before, turned[1]),
@@ -114,7 +114,7 @@ def _exchanges(before: Memory | None, turned: bool) -> Exchanges | None:
 def _weighed(
     proposed_m: NDArray[np.float64],
     confidence: Vector,
-    wider_m: float,
+    wider_m: Vector,
     rays: Rays,
     stature_m: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
@@ -124,7 +124,7 @@ def _weighed(
         proposed_m,
         _share(confidence, PROPOSED_RIGHT),
         np.hypot(PROPOSED.right + PROPOSED.unsure * (1.0 - confidence), wider_m),
-        math.hypot(PROPOSED.roughly, wider_m),
+        np.hypot(PROPOSED.roughly, wider_m),
         rays.centres_m,
         rays.directions,
         shown,
@@ -165,7 +165,7 @@ def _modes(
     proposed_m: Any,
     sure: Any,
     spreads_m: Any,
-    roughly_m: float,
+    roughly_m: Any,
     centres_m: Any,
     directions: Any,
     seen: Any,
@@ -194,7 +194,7 @@ def _modes(
                     along,
                     sureties,
                     spreads,
-                    roughly_m,
+                    roughly_m[joint],
                     stature_m,
                 )
                 values[joint, first, second] = most_probable(

@@ -75,7 +75,8 @@ def step(before: Before, sight: Sight) -> Proposed:
         joints_m[at] = _at_depth(camera, place, joints_m[at])
     yaw = reflection.yaw_deg(camera, joints_m)
     agrees = annotations.orientation is None or reflection.agrees(yaw, annotations.orientation)
-    pose, joints_m = posed(sight, joints_m)
+    pose, limited_m = posed(sight, joints_m)
+    joints_m = reflection.as_deep(camera, joints_m, limited_m)
     lifting = Lifting(
         annotations.orientation or reflection.faces(reflection.yaw_deg(camera, joints_m)),
         1.0 if annotations.orientation else float(confidence[PELVIS]),

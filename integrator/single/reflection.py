@@ -122,6 +122,11 @@ def mirrored(camera: Camera, joints_m: Joints, limb: int) -> Joints:
     return _at_depths(camera, joints_m, depths_m)
 
 
+def as_deep(camera: Camera, joints_m: Joints, other_m: Joints) -> Joints:
+    """The joints where the picture has them, as far away as another body's are."""
+    return _at_depths(camera, joints_m, _depths(camera, other_m))
+
+
 def _depths(camera: Camera, joints_m: Joints) -> Joints:
     found: Joints = (joints_m - centre(camera)) @ arrays_of(camera).R[2]
     return found
