@@ -43,9 +43,10 @@ def live_bodies(settings: Settings, decoders: Decoders) -> list[Body]:
     clip = msgspec.structs.replace(open_clip(settings, decoders.of[1]), rig=None)
     period_s = clip.every / clip.views[0].fps
     learnt = openings(clip, settings.silhouette, decoders.of)
+    setups = {view.number: track.Setup(view.number, None, settings, method) for view in clip.views}
     viewers = {
-        view.number: track.init(track.Setup(view.number, None, settings, method), opening.background)
-        for view, opening in zip(clip.views, learnt, strict=True)
+        number: track.init(setup, opening.background)
+        for (number, setup), opening in zip(setups.items(), learnt, strict=True)
     }
     state = merge_state.init(None, period_s, settings, method, Start(by_person=True))
     search = rig_search.init(period_s, settings.body.stature_m)
