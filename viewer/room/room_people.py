@@ -51,7 +51,8 @@ def looked_at(pictures: Sequence[Image]) -> list[Look]:
 
     A look at all of a picture is coarse. Who is seen in several stays about where the surest looks
     have them: there all are looked at again, widely, as feet are easily left out, then closely;
-    somebody may be seen there who was too small in all of the picture. Where that is not sure either they may all be led astray together, and the first looks count.
+    somebody may be seen there who was too small in all of the picture. Where that is not sure
+    either they may all be led astray together, and the first looks count.
     """
     found = (found_anywhere(picture) for picture in pictures)
     first = looks = [Look(landmarks, nobody < NOBODY) for landmarks, nobody in found]
