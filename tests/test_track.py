@@ -33,6 +33,7 @@ from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
 from common.rig.camera import project
 from viewer import track
+from viewer.background.background import learn
 from viewer.capture import CapturedFrame
 from viewer.paper import pose_search
 
@@ -313,3 +314,14 @@ def test_two_viewers_need_no_more_than_what_a_guide_says() -> None:
     """P2: reports of a walk through both viewers and the integrator use the guide before."""
     told = Stage().show([opening()] * 3)
     assert [t.guide.frames for t in told] == [(0, 0), (1, 1), (2, 2)]
+
+
+@pytest.mark.parametrize(("mode", "known"), [("default", True), ("paper", False)])
+def test_who_is_in_the_first_frame_is_known_where_landmarks_are_asked_for(
+    mode: str, known: bool
+) -> None:
+    """So the outline next to them is followed, not the largest."""
+    setup = viewer(1).setup._replace(method=METHODS[mode])
+    somebody = landmarks_of(standing())
+    state = track.init(setup, learn([np.zeros((240, 320, 3), np.uint8)]), somebody=somebody)
+    assert (state.landmarks == somebody) == known
