@@ -62,7 +62,7 @@ def looked_at(pictures: Sequence[Image]) -> list[Look]:
         low_px, high_px = _place([look.landmarks for look in looks if look.is_somebody])
         found = (found_between(picture, low_px, high_px, margin) for picture in pictures)
         looks = [
-            Look(landmarks, look.is_somebody or nobody < NOBODY)
+            Look(landmarks, is_somebody=True) if look.is_somebody or nobody < NOBODY else look
             for look, (landmarks, nobody) in zip(looks, found, strict=True)
         ]
     return looks if are_sure(looks) else first
