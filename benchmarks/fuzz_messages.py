@@ -52,7 +52,7 @@ from integrator.merge_state import Start
 from integrator.pairing import Pair
 from integrator.single.sight import Annotations
 from tritrack.live.table import table_of_rows
-from tritrack.offline.frame_pairs import backgrounds
+from tritrack.offline.frame_pairs import openings
 from tritrack.offline.lockstep import Decoders, track_clip
 from viewer import track
 
@@ -82,7 +82,7 @@ def honest(path: Path) -> Honest:
         clip = open_clip(settings, decoders.of[1])
         assert clip.rig is not None, f"{path} has no calibration"
         reels = {view.number: Reel(decoders.of[view.number]) for view in clip.views}
-        background, _ = backgrounds(clip, settings.silhouette, reels)[0]
+        background = openings(clip, settings.silhouette, reels)[0].background
     setup = track.Setup(1, clip.rig.cameras[0], settings, method, alone=False)
     viewer = track.init(setup, background)
     start = Start(alone=False, times=frame_times(clip))

@@ -27,7 +27,7 @@ from integrator.live_rig.rig_change import set_back, with_rig
 from integrator.live_rig.rig_job import Solved, solved
 from integrator.merge_state import Start
 from integrator.pairing import Pair
-from tritrack.offline.frame_pairs import backgrounds, instants
+from tritrack.offline.frame_pairs import instants, openings
 from tritrack.offline.lockstep import Decoders, track_clip
 from viewer import track
 from viewer.landmarks.landmark_sources import outside_sources
@@ -42,10 +42,11 @@ def live_bodies(settings: Settings, decoders: Decoders) -> list[Body]:
     method = METHODS[settings.mode]
     clip = msgspec.structs.replace(open_clip(settings, decoders.of[1]), rig=None)
     period_s = clip.every / clip.views[0].fps
-    learnt = backgrounds(clip, settings.silhouette, decoders.of)
+    learnt = openings(clip, settings.silhouette, decoders.of)
+    setups = {view.number: track.Setup(view.number, None, settings, method) for view in clip.views}
     viewers = {
-        view.number: track.init(track.Setup(view.number, None, settings, method), background)
-        for view, (background, _) in zip(clip.views, learnt, strict=True)
+        number: track.init(setup, opening.background)
+        for (number, setup), opening in zip(setups.items(), learnt, strict=True)
     }
     state = merge_state.init(None, period_s, settings, method, Start(by_person=True))
     search = rig_search.init(period_s, settings.body.stature_m)

@@ -9,12 +9,17 @@ import numpy as np
 import pytest
 from spoiling import Film, copied, film_of, refilmed, write_film
 
+from common.body.body import JOINT_NAMES
 from common.config import CameraSettings, Settings, SilhouetteSettings
 from common.video.clip_facts import View
 from common.video.clips import open_clip
 from common.video.decoding import ALL, Decoded, Decoder
 from viewer.background.background import Background
-from viewer.room.background_source import background_of_run, background_of_view
+from viewer.room.background_source import (
+    background_of_run,
+    background_of_view,
+    opening_of_view,
+)
 
 GREY_LEVELS = 5
 """T7's bound of what a learnt background may be off."""
@@ -56,6 +61,24 @@ def test_somebody_in_the_opening_frames_is_noticed(
     _, odd = background_of_view(view_of(folder, decoder), SilhouetteSettings(), decoder)
     assert "cam1.avi does not open with an empty room" in odd
     assert "camera_1.background" in odd
+
+
+def test_who_stays_all_through_is_known_from_the_first_frame(
+    clip: Path, decoder: Decoder, tmp_path: Path
+) -> None:
+    """All of a clip tells where they are, which its first frame alone may not."""
+    view = view_of(clip, decoder)
+    assert opening_of_view(view, SilhouetteSettings(), decoder).somebody is None
+    folder = copied(clip, tmp_path / "clip")
+    refilmed(folder, lambda film: film[40:], cameras=(1,))
+    opening = opening_of_view(view_of(folder, decoder), SilhouetteSettings(), decoder)
+    assert opening.somebody is not None
+    with np.load(clip / "truth.npz", allow_pickle=False) as truth:
+        mask = np.unpackbits(truth["mask_cam1"][40], axis=1)[:, : view.size[0]] > 0
+    rows, columns = np.nonzero(mask)
+    pelvis_px = opening.somebody.joints_px[JOINT_NAMES.index("pelvis")]
+    assert columns.min() < pelvis_px[0] < columns.max()
+    assert rows.min() < pelvis_px[1] < rows.max()
 
 
 def test_a_plate_goes_before_the_clip(clip: Path, decoder: Decoder, tmp_path: Path) -> None:

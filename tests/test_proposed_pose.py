@@ -1,5 +1,6 @@
 """The pose of two views, held against a proposal that fits badly, with and without confidence."""
 
+import msgspec
 import numpy as np
 import pytest
 from rolling import BODY, ROLLED, on_one_leg, outlines, told
@@ -7,7 +8,9 @@ from rolling import BODY, ROLLED, on_one_leg, outlines, told
 from common.body.body import JOINT_NAMES, POSE_INDEX, Vector
 from common.body.kinematics import joints
 from common.body.proportions import body_vector
+from common.bus.messages import Landmarks, Report
 from common.method import DEFAULT
+from common.rig.camera import Camera, project
 from integrator.fit import proposed_pose
 from integrator.fit.proposed_pose import Before, Instant, ProposedPose
 from integrator.proposal import pose_proposal
@@ -28,9 +31,19 @@ def proposing(monkeypatch: pytest.MonkeyPatch, confidence: float) -> None:
     monkeypatch.setattr(pose_proposal, "step", lambda *_: given)
 
 
-def found() -> ProposedPose:
+def shown(report: Report, camera: Camera, sure: float) -> Report:
+    """With landmarks of what is proposed, so sure."""
+    places_px = project(camera, joints(body_vector(BODY), bent_over())).tolist()
+    landmarks = Landmarks(tuple((x, y) for x, y in places_px), (sure,) * len(JOINT_NAMES))
+    return msgspec.structs.replace(report, landmarks=landmarks)
+
+
+def found(sures: tuple[float, float] | None = None) -> ProposedPose:
     first, second = outlines(on_one_leg())
     seen = (told(1, first), told(2, second))
+    if sures is not None:
+        one, other = ROLLED.cameras
+        seen = (shown(seen[0], one, sures[0]), shown(seen[1], other, sures[1]))
     return proposed_pose.step(
         Before(pose=on_one_leg(35.0), matched=True), Instant(BODY, ROLLED, seen, 1 / 15, DEFAULT)
     )
@@ -43,3 +56,15 @@ def test_a_confident_proposal_is_left_as_it_is(matched: bool) -> None:
     pose = found()
     assert pose.matched == matched
     assert (pose.confidence[0] == CONFIDENT) != matched
+
+
+@pytest.mark.usefixtures("proposing")
+@pytest.mark.parametrize("confidence", [0.05])
+@pytest.mark.parametrize(("sures", "matched"), [((0.55, 0.55), False), ((0.55, 0.4), True)])
+def test_a_pose_that_both_views_landmarks_show_is_not_matched_to_outlines(
+    sures: tuple[float, float], matched: bool
+) -> None:
+    """Clothes of the wall's colour leave ragged outlines, to which no pose should be bent."""
+    pose = found(sures)
+    assert pose.confidence.mean() < CONFIDENT
+    assert pose.matched == matched

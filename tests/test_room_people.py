@@ -1,9 +1,11 @@
 """Who is in pictures of which nothing else is known, held against a rendered room."""
 
 import msgspec
+import pytest
 from test_own_landmarks import acted
 
 from common.body.body import JOINT_NAMES
+from viewer.landmarks.own_landmarks import found_anywhere
 from viewer.room.room_people import are_sure, looked_at
 
 
@@ -24,3 +26,16 @@ def test_looks_that_are_hardly_sure_tell_no_body_from_the_room() -> None:
     assert are_sure([look, look, doubtful])
     assert not are_sure([look, doubtful, doubtful])
     assert not are_sure(looked_at([empty]))
+
+
+def test_whom_a_wide_look_misses_is_found_where_other_pictures_have_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    shot, *_ = acted()
+    missed = shot.frame1.copy()
+    monkeypatch.setattr(
+        "viewer.room.room_people.found_anywhere",
+        lambda picture: (found_anywhere(picture)[0], 0.9 if picture is missed else 0.0),
+    )
+    *_, found = looked_at([*[shot.frame1] * 3, missed])
+    assert found.is_somebody

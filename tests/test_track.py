@@ -28,11 +28,12 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Guide, Landmarks, Report, ViewerNumber
-from common.method import METHODS
+from common.method import DEFAULT, METHODS, Method
 from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
 from common.rig.camera import project
 from viewer import track
+from viewer.background.background import learn
 from viewer.capture import CapturedFrame
 from viewer.paper import pose_search
 
@@ -313,3 +314,14 @@ def test_two_viewers_need_no_more_than_what_a_guide_says() -> None:
     """P2: reports of a walk through both viewers and the integrator use the guide before."""
     told = Stage().show([opening()] * 3)
     assert [t.guide.frames for t in told] == [(0, 0), (1, 1), (2, 2)]
+
+
+@pytest.mark.parametrize(("method", "known"), [(DEFAULT, True), (METHODS["paper"], False)])
+def test_who_is_in_the_first_frame_is_known_where_landmarks_are_asked_for(
+    method: Method, known: bool
+) -> None:
+    """So the outline next to them is followed, not the largest."""
+    setup = viewer(1).setup._replace(method=method)
+    somebody = landmarks_of(standing())
+    state = track.init(setup, learn([np.zeros((240, 320, 3), np.uint8)]), somebody=somebody)
+    assert (state.landmarks == somebody) == known

@@ -78,6 +78,7 @@ def init(
     *,
     patches: Sequence[Patch] = (),
     standing: Standing | None = None,
+    somebody: Landmarks | None = None,
 ) -> State:
     """A viewer that has seen nothing but the background.
 
@@ -86,6 +87,7 @@ def init(
         background: The picture without people.
         patches: What of the background changes, where a whole film was looked at before.
         standing: How tall the person stands, likewise.
+        somebody: Who is in the first frame, likewise: without that, what is largest is followed.
     """
     return State(
         setup,
@@ -94,6 +96,7 @@ def init(
         tuple(patches),
         pose_search.init(setup.viewer, setup.camera, setup.settings.search),
         standing,
+        somebody if setup.method.landmarks else None,
         moved=_watched(setup, background, None),
     )
 

@@ -12,7 +12,7 @@ from common.method import Method
 from common.rig.camera import Rig
 from integrator.fit import pose_refinement, visual_hull
 from integrator.landmarks import landmark_fusion
-from integrator.landmarks.landmark_rays import rays_of
+from integrator.landmarks.landmark_rays import Rays, rays_of
 from integrator.pairing import Pair, Seen
 from integrator.prior_body import prior
 from integrator.proposal import pose_proposal
@@ -68,16 +68,18 @@ def step(before: Before, now: Instant) -> ProposedPose:
     A pose in which the network is not confident and that fits badly is looked for in the
     silhouettes without clutter, where the network is more confident in those. What the pictures
     show of the joints is made one with it; where even that is not confident and fits badly, the
-    pose is matched to the silhouettes.
+    pose is matched to the silhouettes, unless landmarks are trusted: then these are ragged.
     """
     known, was = _proposed(before, now), rest_pose() if before.pose is None else before.pose
     if now.method.clutter_removal and not known.is_confident:
         now, known = _without_clutter(before, now, known)
-    known, landmarks = _with_landmarks(before, now, known)
+    rays = rays_of(now.rig, now.seen)
+    known, landmarks = _with_landmarks(before, now, known, rays)
     body = body_vector(now.bdp)
     pose, beside_m = pose_proposal.pose_and_rest(body, was, known.joints_m)
     better, confidence = None, known.confidence
-    if now.method.refinement and not known.is_confident:
+    is_held = known.is_confident or (rays is not None and rays.are_trusted)
+    if now.method.refinement and not is_held:
         previous = pose_refinement.Previous(before.pose, before.matched)
         better = pose_refinement.refined(pose, confidence, previous, body, now.rig, now.seen)
     if better is not None:
@@ -103,10 +105,9 @@ def _proposed(before: Before, now: Instant) -> PoseProposal:
 
 
 def _with_landmarks(
-    before: Before, now: Instant, known: PoseProposal
+    before: Before, now: Instant, known: PoseProposal, rays: Rays | None
 ) -> tuple[PoseProposal, landmark_fusion.Memory | None]:
     """The proposal made one with what the pictures show of the joints, where they show any."""
-    rays = rays_of(now.rig, now.seen)
     if rays is None:
         return known, before.landmarks
     sure = known.confidence[pose_proposal.AT]

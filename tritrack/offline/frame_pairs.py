@@ -8,23 +8,23 @@ from common.bus.messages import ViewerNumber
 from common.config import SilhouetteSettings
 from common.video.clip_facts import Clip, View
 from common.video.frame_cache import Reader
-from viewer.background.background import Background
 from viewer.capture import CapturedFrame, recorded
 from viewer.landmarks.landmark_sources import Sources
-from viewer.room.background_source import background_of_view
+from viewer.room.background_source import Opening, opening_of_view
 
 Readers = Mapping[ViewerNumber, Reader]
 """What reads each view, by its number."""
 NONE: Final[Mapping[ViewerNumber, int]] = {}
 
 
-def backgrounds(
-    clip: Clip, settings: SilhouetteSettings, readers: Readers
-) -> list[tuple[Background, str]]:
-    """The background of every view, learnt side by side: mostly it is waiting for the decoders."""
+def openings(clip: Clip, settings: SilhouetteSettings, readers: Readers) -> list[Opening]:
+    """What is known of every view before its first frame, learnt side by side.
 
-    def learnt(view: View) -> tuple[Background, str]:
-        return background_of_view(view, settings, readers[view.number])
+    Mostly it is waiting for the decoders.
+    """
+
+    def learnt(view: View) -> Opening:
+        return opening_of_view(view, settings, readers[view.number])
 
     with ThreadPoolExecutor(len(clip.views)) as pool:
         return [*pool.map(learnt, clip.views)]

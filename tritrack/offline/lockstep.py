@@ -21,7 +21,7 @@ from integrator.frame_numbers import frame_times
 from integrator.merge_state import Start
 from tritrack.moved_facts import moved_facts
 from tritrack.offline.film_tracking import Film, Heard, follow_clip, unseen
-from tritrack.offline.frame_pairs import backgrounds
+from tritrack.offline.frame_pairs import openings
 from tritrack.offline.opening_clip import body_of
 from tritrack.offline.performance import Performance, Prepared, Watch, performed
 from tritrack.offline.rig_check import Witness, doubts, refuse_absurd_rig, trust_facts
@@ -127,12 +127,12 @@ def _prepared(
     known = body_of(settings, lambda own: track_clip(own, decoders).bodies)
     reels = {view.number: Reel(decoders.of[view.number], due=view.frames) for view in clip.views}
     viewers: dict[ViewerNumber, track.State] = {}
-    learnt = backgrounds(clip, settings.silhouette, reels)
-    for view, (background, noted) in zip(clip.views, learnt, strict=True):
-        odd += [noted] if noted else []
+    learnt = openings(clip, settings.silhouette, reels)
+    for view, opens in zip(clip.views, learnt, strict=True):
+        odd += [opens.odd] if opens.odd else []
         camera = None if rig is None else rig.cameras[view.number - 1]
         setup = track.Setup(view.number, camera, settings, method, alone)
-        viewers[view.number] = track.init(setup, background)
+        viewers[view.number] = track.init(setup, opens.background, somebody=opens.somebody)
     period_s = clip.every / clip.views[0].fps
     opening = opening_posture.init(known)
     start = Start(alone, "person" if looked.found else None, opening, frame_times(clip))

@@ -14,7 +14,7 @@ from common.video.frame_cache import Reader
 from integrator.selfcalibration.joint_tracks import Sighting, track_of
 from integrator.selfcalibration.lateness import LEAST_LATE
 from integrator.selfcalibration.rig_quality import PersonCalibration
-from tritrack.offline.frame_pairs import backgrounds, instants
+from tritrack.offline.frame_pairs import instants, openings
 from viewer import track
 from viewer.landmarks.landmark_sources import Sources
 
@@ -43,10 +43,14 @@ def sighting_of(
     Raises:
         DecoderDied: When a video broke the decoder.
     """
-    learnt = backgrounds(clip, settings.silhouette, readers)
+    learnt = openings(clip, settings.silhouette, readers)
     viewers = {
-        view.number: track.init(track.Setup(view.number, None, settings, method), background)
-        for view, (background, _) in zip(clip.views, learnt, strict=True)
+        view.number: track.init(
+            track.Setup(view.number, None, settings, method),
+            opening.background,
+            somebody=opening.somebody,
+        )
+        for view, opening in zip(clip.views, learnt, strict=True)
     }
     reports: dict[ViewerNumber, list[Report]] = {view.number: [] for view in clip.views}
     for n, frames in enumerate(instants(clip, readers, sources)):

@@ -64,15 +64,18 @@ def found_anywhere(picture: Image) -> tuple[Landmarks, float]:
     return _told(best), best.nobody
 
 
-def found_between(picture: Image, low_px: Vector, high_px: Vector, margin: float) -> Landmarks:
-    """Somebody in a picture whose joints lie about between two corners.
+def found_between(
+    picture: Image, low_px: Vector, high_px: Vector, margin: float
+) -> tuple[Landmarks, float]:
+    """Somebody in a picture whose joints lie about between two corners, and how probably nobody is.
 
     Args:
         picture: (H, W, 3)
         low_px: (2,) likewise `high_px`.
         margin: How far the body reaches beyond them, in their longer distance.
     """
-    return _told(_look(picture, None, _between(low_px, high_px, margin)))
+    look = _look(picture, None, _between(low_px, high_px, margin))
+    return _told(look), look.nobody
 
 
 def _told(best: _Look) -> Landmarks:

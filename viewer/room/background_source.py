@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from common.atomic_file import replacing
+from common.bus.messages import Landmarks
 from common.config import SilhouetteSettings
 from common.video.clip_facts import View
 from common.video.decoding import Decoder, Image
@@ -35,6 +36,16 @@ LEFT_HIDDEN = 0.01
 """Who stays on a spot hides 2 to 20 % of the picture all through a clip, who roams up to 0.4 %."""
 
 
+class Opening(NamedTuple):
+    """What a viewer knows of a recorded view before its first frame."""
+
+    background: Background
+    odd: str
+    """What is odd about how that is known; "" if nothing is."""
+    somebody: Landmarks | None
+    """Of the first frame, where all of the clip was looked at and tells who is there."""
+
+
 class FilmBackground(NamedTuple):
     """The picture of one camera without people, all through a film."""
 
@@ -59,19 +70,25 @@ def background_of_view(
         Undecodable: When the plate or the file has no picture.
         DecoderDied: When the decoder broke on it.
     """
+    found = opening_of_view(view, settings, decoder)
+    return found.background, found.odd
+
+
+def opening_of_view(view: View, settings: SilhouetteSettings, decoder: Reader) -> Opening:
+    """The same, and who is seen first; arguments and errors as above."""
     if isinstance(view.source, int) and not view.background:
-        return learn(_now(view, settings.empty_frames, decoder)), ""
+        return Opening(learn(_now(view, settings.empty_frames, decoder)), "", None)
     if view.background:
         plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
-        return learn(plate), ""
+        return Opening(learn(plate), "", None)
     opening, coming = _looked_at(view, settings.empty_frames, decoder)
     return of_clip(opening, list(coming), settings, view)
 
 
 def of_clip(
     opening: Sequence[Image], sample: Sequence[Image], settings: SilhouetteSettings, view: View
-) -> tuple[Background, str]:
-    """The background of a clip, and what is odd about how that is known.
+) -> Opening:
+    """The background of a clip, what is odd about how that is known, and who is seen first.
 
     Where contours say that nobody is in the opening, that is the room. They do take furniture for
     somebody: then the network of landmarks is asked, and the backgrounds of both cases are made,
@@ -88,7 +105,7 @@ def of_clip(
     laid_over = overlaid_opening(opening)
     still = is_still(laid_over)
     if still and is_empty_opening(laid_over, sample):
-        return learnt(laid_over, opening), ""
+        return Opening(learnt(laid_over, opening), "", None)
     somebody = looked_at(opening[:1])[0].is_somebody
     judges = sample[:: max(1, math.ceil(len(sample) / PEOPLE))]
     looks = looked_at(judges)
@@ -105,11 +122,13 @@ def of_clip(
             makers.insert(len(makers) if somebody else 0, lambda: opened)
     best = best_of(makers, judges, looks, settings)
     if best is opened:
-        return best, ""
-    return best, (
+        return Opening(best, "", None)
+    odd = (
         f"{view.source} does not open with an empty room: the background is estimated from the "
         f"clip (name an empty picture with camera_{view.number}.background)"
     )
+    first = looks[0].landmarks if looks[0].is_somebody and are_sure(looks) else None
+    return Opening(best, odd, first)
 
 
 def background_of_run(

@@ -50,8 +50,9 @@ def looked_at(pictures: Sequence[Image]) -> list[Look]:
     """Who is in each of the pictures, (H, W, 3) each.
 
     A look at all of a picture is coarse. Who is seen in several stays about where the surest looks
-    have them: there all are looked at again, widely, as feet are easily left out, then closely.
-    Where that is not sure either they may all be led astray together, and the first looks count.
+    have them: there all are looked at again, widely, as feet are easily left out, then closely;
+    somebody may be seen there who was too small in all of the picture. Where that is not sure
+    either they may all be led astray together, and the first looks count.
     """
     found = (found_anywhere(picture) for picture in pictures)
     first = looks = [Look(landmarks, nobody < NOBODY) for landmarks, nobody in found]
@@ -59,11 +60,10 @@ def looked_at(pictures: Sequence[Image]) -> list[Look]:
         return looks
     for margin in MARGINS:
         low_px, high_px = _place([look.landmarks for look in looks if look.is_somebody])
+        found = (found_between(picture, low_px, high_px, margin) for picture in pictures)
         looks = [
-            look._replace(landmarks=found_between(picture, low_px, high_px, margin))
-            if look.is_somebody
-            else look
-            for look, picture in zip(looks, pictures, strict=True)
+            Look(landmarks, is_somebody=True) if look.is_somebody or nobody < NOBODY else look
+            for look, (landmarks, nobody) in zip(looks, found, strict=True)
         ]
     return looks if are_sure(looks) else first
 
