@@ -49,3 +49,14 @@ def test_errors_are_as_large_as_the_variances_say() -> None:
         said = found.variance_m2(np.broadcast_to(axis, point.shape)).mean()
         drawn = (found.points_m @ axis).var()
         assert drawn == pytest.approx(said, rel=0.05)
+
+
+@pytest.mark.parametrize("place_m", [(0.5, 1.2, 1.9), (1.5, 0.9, -5.0)], ids=["near", "far"])
+def test_errors_of_the_same_pixels_miss_by_as_many_sigmas_near_and_far(
+    place_m: tuple[float, float, float],
+) -> None:
+    """Taken as so many metres anywhere they do not, and focal lengths come out too short."""
+    rng = np.random.default_rng(3)
+    points = np.broadcast_to(place_m, (20_000, 1, 3))
+    spoiled = [pixels + rng.normal(0, 0.8, pixels.shape) for pixels in shown(points)]
+    assert met((spoiled[0], spoiled[1]), (0.8, 0.8)).gap.std() == pytest.approx(1.0, rel=0.05)
