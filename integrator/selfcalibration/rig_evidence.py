@@ -108,10 +108,11 @@ def own_moments(clip: ClipEvidence) -> float:
     return min(float(len(at_s)), INDEPENDENT_HZ * float(np.ptp(at_s))) if len(at_s) else 0.0
 
 
-def sigma_m(track: JointTrack, stature_m: float) -> NDArray[np.float64]:
-    """(n, 15) how far landmarks err along each axis, by their confidence; inf for unsure ones."""
+def sigma_px(track: JointTrack, unit_px: float) -> NDArray[np.float64]:
+    """(n, 15) how far landmarks err along each axis of the picture, by their confidence and how
+    high the person is in it; inf for unsure ones."""
     sure = np.clip(track.confidence, 1e-6, 0.98)
-    spread = CLOSE * stature_m / np.sqrt(-2.0 * np.log1p(-sure))
+    spread = CLOSE * unit_px / np.sqrt(-2.0 * np.log1p(-sure))
     return np.where(track.confidence >= LEAST_SURE, spread, np.inf)
 
 

@@ -14,7 +14,7 @@ from integrator.selfcalibration.rig_evidence import (
     Known,
     Sides,
     exchanged,
-    sigma_m,
+    sigma_px,
 )
 from integrator.selfcalibration.rig_guess import BODY, FOCALS, LATE, PLACE, pinholes
 from integrator.selfcalibration.sight_lines import Meeting, Numbers, directions, meeting
@@ -74,13 +74,8 @@ def misfits(guess: Vector, evidence: Evidence, sides: tuple[Sides, ...]) -> Vect
 
 
 def explained(guess: Vector, evidence: Evidence, number: int, sides: Sides) -> Explained:
-    """Points, and how well segments keep their lengths, of one of the clips.
-
-    Landmarks err by shares of the person as the guess has it: by shares of another, all would fit
-    better the smaller the whole world is.
-    """
+    """Points, and how well segments keep their lengths, of one of the clips."""
     clip = evidence.clips[number]
-    stature_m = float(np.exp(guess[BODY])[prior.UPRIGHT].sum()) / prior.CROWN_SHARE
     cameras, middle_px = pinholes(guess), np.array(evidence.size_px) / 2
     times_s = clip.first.times_s + float(guess[LATE + number])
     second = exchanged(at_times(clip.second, times_s), sides)
@@ -88,7 +83,7 @@ def explained(guess: Vector, evidence: Evidence, number: int, sides: Sides) -> E
         directions(cameras[0], middle_px, clip.first.joints_px),
         directions(cameras[1], middle_px, second.joints_px),
     )
-    sigmas = (sigma_m(clip.first, stature_m), sigma_m(second, stature_m))
+    sigmas = (sigma_px(clip.first, clip.units_px[0]), sigma_px(second, clip.units_px[1]))
     used = np.isfinite(sigmas[0]) & np.isfinite(sigmas[1])
     met = meeting(cameras, rays, (np.where(used, sigmas[0], 1.0), np.where(used, sigmas[1], 1.0)))
     near, far = prior.ENDS.T

@@ -63,11 +63,13 @@ def directions(camera: Pinhole, middle_px: Vector, pixels: Numbers) -> Numbers:
 def meeting(
     cameras: tuple[Pinhole, Pinhole],
     rays: tuple[Numbers, Numbers],
-    sigmas_m: tuple[Numbers, Numbers],
+    sigmas_px: tuple[Numbers, Numbers],
 ) -> Meeting:
-    """Triangulate points from their rays (..., 3) and how far each ray errs there (...).
+    """Triangulate points from their rays (..., 3) and how far each errs in its picture (...).
 
-    In the plane of both rays each fixes what the other leaves open; across it both vote.
+    In the plane of both rays each fixes what the other leaves open; across it both vote. What a
+    ray errs by in metres grows with the way to its camera: taken as so many metres anywhere,
+    errors miss by less in the world of too short a focal length, and that is then found.
     """
     (one, other), (first, second) = cameras, rays
     base = other.centre_m - one.centre_m
@@ -78,7 +80,8 @@ def meeting(
     far_2 = (cosine * along_1 - along_2) / sine_2
     normal = np.cross(first, second) / np.sqrt(sine_2)[..., None]
     gap_m = normal @ base
-    spread_1, spread_2 = sigmas_m[0] ** 2, sigmas_m[1] ** 2
+    spread_1 = _spread_m(one, first, far_1, sigmas_px[0]) ** 2
+    spread_2 = _spread_m(other, second, far_2, sigmas_px[1]) ** 2
     both, told = spread_1 + spread_2, np.maximum(sine_2, NARROW)
     points = one.centre_m + far_1[..., None] * first
     points += (spread_1 / both * gap_m)[..., None] * normal
@@ -90,3 +93,10 @@ def meeting(
         gap_m,
         (far_1 > NEAREST_M) & (far_2 > NEAREST_M),
     )
+
+
+def _spread_m(camera: Pinhole, rays: Numbers, far_m: Numbers, sigma_px: Numbers) -> Numbers:
+    """(...) how far rays err across themselves, so far from the camera."""
+    depth_m = np.maximum(far_m, NEAREST_M) * (rays @ camera.R[2])
+    spread: Numbers = sigma_px / camera.focal_px * depth_m
+    return spread
