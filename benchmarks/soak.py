@@ -39,7 +39,7 @@ from tritrack.live.launch import Heard
 from tritrack.live.session import live
 from viewer import track
 from viewer.capture import CapturedFrame
-from viewer.room.background_source import background_of_view
+from viewer.room.background_source import opening_of_view
 
 HZ: Final = 15.0
 SIZE: Final = (160, 120)
@@ -92,7 +92,7 @@ class Steps:
         self._viewers: dict[ViewerNumber, track.State] = {}
         for view in clip.views:
             with Decoder() as decoder:
-                background, _ = background_of_view(view, settings.silhouette, decoder)
+                background = opening_of_view(view, settings.silhouette, decoder).background
                 pictures = decoder.frames(view.source, view.size)
                 self.films[view.number] = [got.picture for got in pictures]
             camera = clip.rig.cameras[view.number - 1] if clip.rig else None

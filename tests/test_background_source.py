@@ -16,8 +16,7 @@ from common.video.clips import open_clip
 from common.video.decoding import ALL, Decoded, Decoder
 from viewer.background.background import Background
 from viewer.room.background_source import (
-    background_of_run,
-    background_of_view,
+    opening_of_run,
     opening_of_view,
 )
 
@@ -47,7 +46,7 @@ def share_off(room: Background, true: np.ndarray) -> float:
 
 
 def test_the_opening_frames_show_the_room(clip: Path, decoder: Decoder) -> None:
-    room, odd = background_of_view(view_of(clip, decoder), SilhouetteSettings(), decoder)
+    room, odd, _ = opening_of_view(view_of(clip, decoder), SilhouetteSettings(), decoder)
     assert odd == ""
     assert share_off(room, room_of(clip)) < 0.001
 
@@ -58,7 +57,7 @@ def test_somebody_in_the_opening_frames_is_noticed(
     """Missing empty frames: the background comes from the clip, which is said, with a cure."""
     folder = copied(clip, tmp_path / "clip")
     refilmed(folder, lambda film: film[40:60] + 6 * film[:8], cameras=(1,))
-    _, odd = background_of_view(view_of(folder, decoder), SilhouetteSettings(), decoder)
+    _, odd, _ = opening_of_view(view_of(folder, decoder), SilhouetteSettings(), decoder)
     assert "cam1.avi does not open with an empty room" in odd
     assert "camera_1.background" in odd
 
@@ -85,7 +84,7 @@ def test_a_plate_goes_before_the_clip(clip: Path, decoder: Decoder, tmp_path: Pa
     plate = np.full((120, 160, 3), (10, 120, 200), np.uint8)
     cv2.imwrite(str(tmp_path / "plate.png"), plate)
     camera = CameraSettings(background=str(tmp_path / "plate.png"))
-    room, odd = background_of_view(view_of(clip, decoder, camera), SilhouetteSettings(), decoder)
+    room, odd, _ = opening_of_view(view_of(clip, decoder, camera), SilhouetteSettings(), decoder)
     assert odd == ""
     assert share_off(room, plate) == 0.0
 
@@ -94,7 +93,7 @@ def test_a_plate_may_be_a_film_and_larger(clip: Path, decoder: Decoder, tmp_path
     larger = cv2.resize(room_of(clip).astype(np.uint8), (320, 240), interpolation=cv2.INTER_NEAREST)
     write_film(tmp_path / "plate.avi", 8 * [larger])
     camera = CameraSettings(background=str(tmp_path / "plate.avi"))
-    room, odd = background_of_view(view_of(clip, decoder, camera), SilhouetteSettings(), decoder)
+    room, odd, _ = opening_of_view(view_of(clip, decoder, camera), SilhouetteSettings(), decoder)
     assert odd == ""
     assert share_off(room, room_of(clip)) < 0.01
 
@@ -116,7 +115,7 @@ def test_a_cameras_room_is_what_it_shows_first(clip: Path, decoder: Decoder) -> 
     """No more frames are taken than the settings say; the person comes after them."""
     camera = FakeCamera(film_of(clip / "cam1.avi"))
     view = msgspec.structs.replace(view_of(clip, decoder), source=0, frames=0)
-    room, odd = background_of_view(view, SilhouetteSettings(empty_frames=8), camera)
+    room, odd, _ = opening_of_view(view, SilhouetteSettings(empty_frames=8), camera)
     assert odd == ""
     assert camera.given <= 8
     assert share_off(room, room_of(clip)) < 0.001
@@ -129,9 +128,9 @@ def test_a_viewer_that_is_started_again_knows_its_cameras_room(clip: Path, tmp_p
     first, again, other = tmp_path / "first", FakeCamera(film[40:48]), tmp_path / "other"
     first.mkdir()
     other.mkdir()
-    learnt, _ = background_of_run(view, SilhouetteSettings(), FakeCamera(film), first)
-    room, odd = background_of_run(view, SilhouetteSettings(), again, first)
+    learnt, _, _ = opening_of_run(view, SilhouetteSettings(), FakeCamera(film), first)
+    room, odd, _ = opening_of_run(view, SilhouetteSettings(), again, first)
     assert all(np.array_equal(*pair) for pair in zip(room, learnt, strict=True))
     assert (odd, again.given) == ("", 0)
-    room, _ = background_of_run(view, SilhouetteSettings(), again, other)
+    room, _, _ = opening_of_run(view, SilhouetteSettings(), again, other)
     assert share_off(room, room_of(clip)) > 0.02

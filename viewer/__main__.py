@@ -25,7 +25,7 @@ from viewer.background.new_background import Learning
 from viewer.capture import CapturedFrame, Live, RoomClock
 from viewer.jpeg import jpeg_of
 from viewer.landmarks.landmark_sources import outside_sources
-from viewer.room.background_source import background_of_run
+from viewer.room.background_source import opening_of_run
 from viewer.unheard import Unheard
 from viewer.viewer_warmup import warm_up
 
@@ -167,6 +167,8 @@ def main(
             heart.beat("ready", "\n".join(warnings))
             room_clock = met(bus, viewer, stop)
             if room_clock is not None:
+                if time.monotonic() + room_clock.offset_s > room_clock.start_s:
+                    state = state._replace(landmarks=None)  # started again: its clip goes on
                 with Live(view, settings.every, room_clock, sources.get(viewer)) as live:
                     run(view, state, live, bus, stop, warnings)
                 stop.wait(0.0 if context.supervised else LAST_WORDS_S)
@@ -179,14 +181,14 @@ def _prepared(
     with Decoder() as decoder:
         clip = open_clip(settings, decoder, (viewer,))
         view = clip.views[0]
-        background, odd = background_of_run(view, settings.silhouette, decoder, context.kept)
-    warnings = (*clip.warnings, *([odd] if odd else []))
+        opening = opening_of_run(view, settings.silhouette, decoder, context.kept)
+    warnings = (*clip.warnings, *([opening.odd] if opening.odd else []))
     for warning in warnings:
         log.warning(warning)
     camera = clip.rig.cameras[0] if clip.rig else None
     alone = len(footage_of(settings)) == 1
     setup = track.Setup(viewer, camera, settings, METHODS[settings.mode], alone)
-    return view, track.init(setup, background), warnings
+    return view, track.init(setup, opening.background, somebody=opening.somebody), warnings
 
 
 def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | None:

@@ -15,7 +15,7 @@ from common.video.clip_facts import View
 from common.video.clips import open_clip
 from tritrack.offline.lockstep import Decoders
 from viewer.capture import recorded
-from viewer.room.background_source import background_of_view
+from viewer.room.background_source import opening_of_view
 from viewer.silhouette import silhouette
 
 HALF: Final = 0.5
@@ -59,7 +59,7 @@ def _of_view(
     packed, width = truth[f"mask_cam{view.number}"], int(truth["mask_shape"][1])
     row_of = truth.get(f"frames_cam{view.number}", np.arange(len(packed)))
     decoder = decoders.of[view.number]
-    background, _ = background_of_view(view, settings.silhouette, decoder)
+    background = opening_of_view(view, settings.silhouette, decoder).background
     state = silhouette.init(background, settings.silhouette, METHODS[settings.mode])
     shares, empty, ghosts = [], 0, 0
     for frame in recorded(view, every, decoder):

@@ -37,7 +37,7 @@ from viewer.paper.arms import facade_arms, flank_arms
 from viewer.paper.legs import facade_legs, flank_legs
 from viewer.paper.posed_model import PosedModel
 from viewer.paper.position import located
-from viewer.room.background_source import background_of_view
+from viewer.room.background_source import opening_of_view
 from viewer.silhouette import silhouette
 
 SMALL, LARGE = (160, 120), (640, 480)
@@ -173,7 +173,7 @@ def _silhouettes_s(settings: Settings, decoders: Decoders) -> float:
     total_s = 0.0
     for view in open_clip(settings, decoders.of[1]).views:
         decoder = decoders.of[view.number]
-        background, _ = background_of_view(view, settings.silhouette, decoder)
+        background = opening_of_view(view, settings.silhouette, decoder).background
         state = silhouette.init(background, settings.silhouette, METHODS[settings.mode])
         for frame in recorded(view, 1, decoder):
             began = time.perf_counter()

@@ -29,7 +29,7 @@ from tritrack.offline.rig_from_person import Looked, by_person, calibration_fact
 from tritrack.unfinished.work import Course
 from viewer import track
 from viewer.landmarks.landmark_sources import Sources, oddities, outside_sources
-from viewer.room.background_source import FilmBackground, background_of_view
+from viewer.room.background_source import FilmBackground, opening_of_view
 
 
 class Tracked(NamedTuple):
@@ -111,8 +111,8 @@ def _in_two_passes(
     """One camera whose scale all of the clip must tell, or that is followed as the thesis does."""
     view = clip.views[0]
     reel = Reel(decoders.of[view.number], due=view.frames)
-    learnt, odd = background_of_view(view, settings.silhouette, reel)
-    film = Film(clip, FilmBackground(learnt, [], odd))
+    opening = opening_of_view(view, settings.silhouette, reel)
+    film = Film(clip, FilmBackground(opening.background, [], opening.odd))
     heard = Heard(course.tell, work=course.work)
     followed = follow_clip(film, settings, method, reel, heard)
     return Tracked(clip, followed.bodies, followed.facts)

@@ -56,10 +56,8 @@ class FilmBackground(NamedTuple):
     """What is odd about how that is known; "" if nothing is."""
 
 
-def background_of_view(
-    view: View, settings: SilhouetteSettings, decoder: Reader
-) -> tuple[Background, str]:
-    """What a view shows without the person, and what is odd about how that is known.
+def opening_of_view(view: View, settings: SilhouetteSettings, decoder: Reader) -> Opening:
+    """What a view shows without the person, and who is seen first.
 
     Args:
         view: A recorded file's, or a camera's: nobody is taken to be before that one now.
@@ -70,12 +68,6 @@ def background_of_view(
         Undecodable: When the plate or the file has no picture.
         DecoderDied: When the decoder broke on it.
     """
-    found = opening_of_view(view, settings, decoder)
-    return found.background, found.odd
-
-
-def opening_of_view(view: View, settings: SilhouetteSettings, decoder: Reader) -> Opening:
-    """The same, and who is seen first; arguments and errors as above."""
     if isinstance(view.source, int) and not view.background:
         return Opening(learn(_now(view, settings.empty_frames, decoder)), "", None)
     if view.background:
@@ -131,9 +123,9 @@ def of_clip(
     return Opening(best, odd, first)
 
 
-def background_of_run(
+def opening_of_run(
     view: View, settings: SilhouetteSettings, decoder: Decoder, kept: Path | None
-) -> tuple[Background, str]:
+) -> Opening:
     """The same in a live run, where a viewer may be started again with somebody before its camera.
 
     Args:
@@ -141,15 +133,15 @@ def background_of_run(
         kept: The run's folder for what was learnt of a camera's background; None: it keeps nothing.
     """
     if kept is None or not isinstance(view.source, int) or view.background:
-        return background_of_view(view, settings, decoder)
+        return opening_of_view(view, settings, decoder)
     path = kept / f"background_{view.number}.npz"
     if path.exists():
         with np.load(path, allow_pickle=False) as found:
-            return Background(**found), ""
-    background, odd = background_of_view(view, settings, decoder)
+            return Opening(Background(**found), "", None)
+    opening = opening_of_view(view, settings, decoder)
     with replacing(path) as new, new.open("wb") as file:
-        np.savez(file, allow_pickle=False, **background._asdict())
-    return background, odd
+        np.savez(file, allow_pickle=False, **opening.background._asdict())
+    return opening
 
 
 def background_of_film(view: View, settings: SilhouetteSettings, decoder: Reader) -> FilmBackground:
@@ -160,11 +152,11 @@ def background_of_film(view: View, settings: SilhouetteSettings, decoder: Reader
     are patches on it, also on a background that was given.
 
     Args:
-        view: Of the film; likewise `settings`, `decoder`: as for `background_of_view`.
+        view: Of the film; likewise `settings`, `decoder`: as for `opening_of_view`.
         settings: How many opening frames show nobody.
         decoder: Reads the file; left at its start.
     """
-    background, odd = background_of_view(view, settings, decoder)
+    background, odd, _ = opening_of_view(view, settings, decoder)
     if isinstance(view.source, int):
         return FilmBackground(background, [], odd)
     sample = list(_looked_at(view, settings.empty_frames, decoder)[1])
