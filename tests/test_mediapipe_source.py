@@ -153,15 +153,6 @@ def test_leaving_it_ends_the_child(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert not child.is_running()
 
 
-def test_ctrl_c_is_not_for_the_child(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    install_fake(monkeypatch, tmp_path)
-    with MediaPipe(view_of()) as source:
-        source.ready()
-        (child,) = children()
-        child.send_signal(signal.SIGINT)
-        assert column(source.people(shaded(0, 5), 10.0)) == pytest.approx(5)
-
-
 def test_a_mediapipe_that_does_not_work_is_refused_with_how_to_install_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -13,6 +13,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Final, NamedTuple
 from urllib.request import urlopen
 
@@ -102,24 +103,24 @@ def copy(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def shell(copy: Path, tmp_path: Path) -> dict[str, str]:
+def shell(copy: Path, tmp_path: Path) -> Iterator[dict[str, str]]:
     """A user's environment: no cache but pip's, no virtual environment but the one to be made."""
     refuse_without_network(tmp_path)
     for port in PORTS:
         with socket.socket() as door:
             if door.connect_ex(("127.0.0.1", port)) == 0:
                 pytest.skip(f"another program holds port {port}, which the README's commands use")
-    (tmp_path / "tmp").mkdir()
     ours = {"VIRTUAL_ENV", "TRITRACK_DATA", "TRITRACK_LOG", "NUMBA_CACHE_DIR", "PYTHONPATH"}
     inherited = {name: value for name, value in os.environ.items() if name not in ours}
     here = str(Path(sys.executable).parent)
     places = [place for place in os.environ["PATH"].split(os.pathsep) if place != here]
-    return inherited | {
-        "PATH": os.pathsep.join([str(copy / ".venv/bin"), *places]),
-        "PIP_CACHE_DIR": pip("cache", "dir").stdout.strip(),
-        "XDG_CACHE_HOME": str(tmp_path / "cache"),
-        "TMPDIR": str(tmp_path / "tmp"),
-    }
+    with TemporaryDirectory() as short:  # as a user's is: sockets have names of 107 letters at most
+        yield inherited | {
+            "PATH": os.pathsep.join([str(copy / ".venv/bin"), *places]),
+            "PIP_CACHE_DIR": pip("cache", "dir").stdout.strip(),
+            "XDG_CACHE_HOME": str(tmp_path / "cache"),
+            "TMPDIR": short,
+        }
 
 
 def typed(command: str, copy: Path, shell: dict[str, str]) -> tuple[int, str]:
@@ -197,11 +198,11 @@ def test_the_first_command_says_what_goes_on_before_anything_that_takes_long(cop
 
 @pytest.mark.slow
 def test_the_commands_of_the_readme_work_one_after_the_other(
-    copy: Path, shell: dict[str, str], tmp_path: Path
+    copy: Path, shell: dict[str, str]
 ) -> None:
     for command in commands():
         code, said = typed(command, copy, shell)
         assert code == 0, f"{command} ended with {code}:\n{said}"
         assert "Traceback" not in said, f"{command}:\n{said}"
         assert not list(wrong_with(result_of(command), copy, said)), f"{command}:\n{said}"
-    assert list((tmp_path / "tmp").iterdir()) == []
+    assert list(Path(shell["TMPDIR"]).iterdir()) == []

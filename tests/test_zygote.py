@@ -33,6 +33,17 @@ if __name__ == "__main__":
 """
 
 
+WITHOUT = """
+import threading
+from tritrack.live.process_table import inherited
+from tritrack.live.zygote import SPAWN, Zygote
+if __name__ == "__main__":
+    zygote = Zygote(inherited)
+    zygote.wait(threading.Event(), lambda: None)
+    print(zygote.context is SPAWN)
+"""
+
+
 @pytest.fixture(scope="module")
 def zygote() -> Zygote:
     one = Zygote(inherited)
@@ -151,3 +162,20 @@ def test_a_file_of_the_working_directory_is_not_taken_for_a_library(tmp_path: Pa
     )
     done = subprocess.run([sys.executable, "-c", code], check=False, cwd=tmp_path, timeout=120)
     assert done.returncode == 0
+
+
+def test_where_temporary_files_lie_too_deep_for_a_socket_parts_begin_without_it(
+    tmp_path: Path,
+) -> None:
+    """A socket's name has 107 letters at most; nobody waits for what does not come."""
+    deep = tmp_path / ("deep" * 25)
+    deep.mkdir()
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT],
+        env={**os.environ, "TMPDIR": str(deep)},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=15.0,
+    )
+    assert (done.stdout, done.stderr) == ("True\n", "")

@@ -26,7 +26,8 @@ class Broken(RuntimeError):
 class Child:
     """A process that answers lines with bytes; it has nothing to save and is ended by a kill.
 
-    It gets the number of the pipe that it answers on as its argument, then `told`.
+    It gets the number of the pipe that it answers on as its argument, then `told`. What a terminal
+    says to all is not for it, also while it imports: Ctrl-C must not look like a broken film.
     """
 
     def __init__(
@@ -51,6 +52,7 @@ class Child:
             stderr=subprocess.DEVNULL,
             bufsize=0,
             pass_fds=[write_end, *files],
+            process_group=0,
         )
         os.close(write_end)
         self._requests = cast(io.FileIO, self._process.stdin)

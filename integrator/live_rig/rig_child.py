@@ -6,7 +6,6 @@ It gives way to the processes of the run: a third of what they get, where there 
 
 import base64
 import os
-import signal
 import sys
 from typing import Final
 
@@ -19,8 +18,6 @@ POLITE: Final = 5
 
 def main() -> None:
     """Answer until the asker is gone."""
-    # Ctrl-C reaches the asker too, who ends this process.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.nice(POLITE)
     with os.fdopen(int(sys.argv[1]), "wb") as answers:
         for line in sys.stdin:

@@ -5,6 +5,7 @@ shares with the others what it does not change. The zygote opens no door and beg
 it dies so do its forks, and the next that is started brings up another one.
 """
 
+import logging
 import multiprocessing
 import os
 import sys
@@ -24,6 +25,8 @@ WARM_S: Final = 20.0
 """So long a run waits for its zygote at most: when all is compiled anew, its parts do without."""
 LOOK_S: Final = 0.05
 
+log = logging.getLogger(__name__)
+
 
 class Zygote:
     """The zygote of this process: one for all its runs."""
@@ -34,13 +37,18 @@ class Zygote:
         Args:
             inherited: Arranges what processes of a run take over from this one.
         """
-        self._warm = False
+        self._warm = self._coming = False
         if sys.platform != "linux":  # elsewhere libraries do not bear a fork
             return
         FORK.set_forkserver_preload([WARMED])
         with inherited():
             os.environ.update(_same_modules())
-            forkserver.ensure_running()
+            try:
+                forkserver.ensure_running()
+            except OSError as error:  # as where the folder of temporary files has a long name
+                log.info("no zygote, each part imports for itself: %s", error)
+                return
+        self._coming = True
         threading.Thread(target=self._await, name="zygote", daemon=True).start()
 
     @property
@@ -51,7 +59,9 @@ class Zygote:
     def wait(self, stop: threading.Event, look: Callable[[], None]) -> None:
         """Until it is warm, or that takes too long, or the run shall end; `look` meanwhile."""
         until_s = time.monotonic() + WARM_S
-        while not (self._warm or stop.wait(LOOK_S)) and time.monotonic() < until_s:
+        while self._coming and not (self._warm or stop.wait(LOOK_S)):
+            if time.monotonic() > until_s:
+                break
             look()
 
     def _await(self) -> None:
@@ -61,6 +71,7 @@ class Zygote:
             first.start()
             first.join()
             self._warm = first.exitcode == 0
+        self._coming = self._warm
 
 
 def forked_by() -> int | None:
