@@ -13,7 +13,7 @@ $(VENV)/.installed: pyproject.toml constraints.txt
 	@command -v $(PYTHON) >/dev/null || { echo "tritrack needs Python 3.11 or newer: install it, or name it: make PYTHON=/path/to/python3.11"; exit 1; }
 	@echo "once, some two minutes: libraries into $(VENV)"
 	@$(PYTHON) -m venv $(VENV)
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[page,export,mcap,metrics,osc,lsl,keys,learn,report,single,cluster,docs,dev]'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[page,export,usd,mcap,metrics,osc,lsl,keys,learn,report,single,cluster,docs,dev]'
 	@touch $@
 
 demo: setup

@@ -17,6 +17,12 @@ from tritrack.exporting import OWN_NAMES, ExportError, Format, export_run
 from tritrack.store.past_run import PastRunError, open_run
 from tritrack.store.pose_arrays import poses
 
+LIBRARIES: dict[Format, tuple[str, str, str]] = {
+    "usd": ("pxr", "usd-core", "usd"),
+    "c3d": ("ezc3d", "ezc3d", "export"),
+}
+"""Module, distribution and extra of the formats that need one."""
+
 
 @pytest.fixture
 def run(tmp_path: Path) -> Path:
@@ -70,10 +76,11 @@ def test_an_animation_is_written_where_it_is_asked_for(run: Path, tmp_path: Path
     assert open_run(run).poses["frame"].tolist() == [0, 1, 2, 3, 4, 5]
 
 
-@pytest.mark.parametrize("to", ["bvh", "gltf", "trc", "mot", "c3d", "csv"])
+@pytest.mark.parametrize("to", ["bvh", "gltf", "usd", "trc", "mot", "c3d", "csv"])
 def test_every_format_is_written_beside_the_run(run: Path, to: Format) -> None:
-    if to == "c3d":
-        pytest.importorskip("ezc3d", reason="pip install 'tritrack[export]'")
+    if to in LIBRARIES:
+        library, _, extra = LIBRARIES[to]
+        pytest.importorskip(library, reason=f"pip install 'tritrack[{extra}]'")
     facts = export_run(run, to, None)
     assert Path(facts["file"]) == run / OWN_NAMES[to]
     assert facts["frames"] == (6 if to == "csv" else 5)
@@ -90,10 +97,15 @@ def test_centimetres_are_for_bvh_alone(run: Path) -> None:
         export_run(run, "gltf", None, "cm")
 
 
-def test_c3d_without_its_library_names_the_cure(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "ezc3d", None)
-    with pytest.raises(ExportError, match=r"C3D needs ezc3d: pip install 'tritrack\[export\]'"):
-        export_run(run, "c3d", None)
+@pytest.mark.parametrize("to", LIBRARIES)
+def test_a_format_without_its_library_names_the_cure(
+    run: Path, to: Format, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    module, library, extra = LIBRARIES[to]
+    monkeypatch.setitem(sys.modules, module, None)
+    cure = rf"{to.upper()} needs {library}: pip install 'tritrack\[{extra}\]'"
+    with pytest.raises(ExportError, match=cure):
+        export_run(run, to, None)
 
 
 def test_a_folder_that_cannot_be_written_is_named(run: Path, tmp_path: Path) -> None:

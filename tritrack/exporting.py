@@ -8,17 +8,19 @@ from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
+from animator.exchange import LibraryMissing
 from common.atomic_file import replacing
 from common.body.body import ANGLE_NAMES, JOINT_NAMES
 from common.body.extremities import EXTREMITY_NAMES
 from tritrack.store.joint_arrays import all_joints_m
 from tritrack.store.past_run import PastRun, open_run
 
-Format = Literal["bvh", "gltf", "trc", "mot", "c3d", "csv"]
+Format = Literal["bvh", "gltf", "usd", "trc", "mot", "c3d", "csv"]
 Scale = Literal["m", "cm"]
 OWN_NAMES: Final[dict[Format, str]] = {
     "bvh": "body.bvh",
     "gltf": "body.glb",
+    "usd": "body.usdc",
     "trc": "markers.trc",
     "mot": "body.mot",
     "c3d": "markers.c3d",
@@ -56,13 +58,17 @@ def export_run(folder: Path, to: Format, out: Path | None, scale: Scale = "m") -
 
     Raises:
         PastRunError: When there is no such run.
-        ExportError: When it has no poses, or the file cannot be written.
+        ExportError: When it has no poses, the format's library is not installed, or the file cannot
+            be written.
     """
     if scale != "m" and to != "bvh":
         raise ExportError(f"--scale is for bvh: {to} has a unit of its own, leave it out")
     run = open_run(folder)
     path = out or folder / OWN_NAMES[to]
-    written = _WRITERS[to](run, path.name, scale)
+    try:
+        written = _WRITERS[to](run, path.name, scale)
+    except LibraryMissing as error:
+        raise ExportError(str(error)) from error
     files = {path: written.content}
     if written.beside is not None:
         files[path.with_suffix(written.beside[0])] = written.beside[1]
@@ -127,6 +133,13 @@ def _gltf(run: PastRun, _name: str, _scale: Scale) -> Written:
     return Written(gltf_bytes(made.skeleton, made.motion, made.step_s), made.facts)
 
 
+def _usd(run: PastRun, _name: str, _scale: Scale) -> Written:
+    from animator.exchange.usd import usd_bytes
+
+    made = _animated(run)
+    return Written(usd_bytes(made.skeleton, made.motion, made.step_s), made.facts)
+
+
 def _mot(run: PastRun, name: str, _scale: Scale) -> Written:
     from animator.exchange.opensim_model import mot_text, osim_text
 
@@ -143,13 +156,10 @@ def _trc(run: PastRun, name: str, _scale: Scale) -> Written:
 
 
 def _c3d(run: PastRun, _name: str, _scale: Scale) -> Written:
-    from animator.exchange.marker_files import LibraryMissing, c3d_bytes
+    from animator.exchange.marker_files import c3d_bytes
 
     joints_m, step_s, facts = _markers(run)
-    try:
-        return Written(c3d_bytes(joints_m, step_s), facts)
-    except LibraryMissing as error:
-        raise ExportError(str(error)) from error
+    return Written(c3d_bytes(joints_m, step_s), facts)
 
 
 def _markers(run: PastRun) -> tuple[Any, float, dict[str, Any]]:
@@ -214,6 +224,7 @@ def _cells(values: Any, digits: int) -> list[str]:
 _WRITERS: Final[dict[Format, Callable[[PastRun, str, Scale], Written]]] = {
     "bvh": _bvh,
     "gltf": _gltf,
+    "usd": _usd,
     "trc": _trc,
     "mot": _mot,
     "c3d": _c3d,

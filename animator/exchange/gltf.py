@@ -5,26 +5,21 @@ Source: Khronos glTF 2.0 specification, sections 3.6 (accessors), 3.7.3 (skins),
 """
 
 import struct
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from animator.bones import BONES, Motion, Skeleton, offset_m, rest_origins_m
-from animator.solids import unit_cylinder
-from animator.turns import arc
-from common.body.body import Vector
+from animator.exchange.sticks import COLOUR, Sticks, sticks_of
+from animator.turns import unbroken
 
 FLOAT, USHORT, UINT = 5126, 5123, 5125
 VERTICES, INDICES = 34962, 34963
 """What the specification calls ARRAY_BUFFER and ELEMENT_ARRAY_BUFFER."""
 KINDS: Final = {(): "SCALAR", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4"}
 DTYPES: Final = {"float32": FLOAT, "uint16": USHORT, "uint32": UINT}
-THICKNESS: Final = 0.12
-"""Radius of a stick as a share of its length."""
-COLOUR: Final = [0.55, 0.6, 0.65, 1.0]
-_UP: Final = np.array([0.0, 1.0, 0.0])
 
 
 class _Buffer:
@@ -55,17 +50,6 @@ class _Buffer:
         return len(self.accessors) - 1
 
 
-class _Sticks(NamedTuple):
-    """The figure at rest: a cylinder along each bone."""
-
-    places_m: NDArray[np.float32]
-    """(n, 3)"""
-    faces: NDArray[np.uint32]
-    """(m, 3)"""
-    bones: NDArray[np.uint16]
-    """(n,) which bone a point goes with."""
-
-
 def gltf_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
     """A GLB file.
 
@@ -75,7 +59,7 @@ def gltf_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
         step_s: Seconds a frame.
     """
     buffer = _Buffer()
-    figure = _figure(buffer, _sticks(skeleton))
+    figure = _figure(buffer, sticks_of(skeleton))
     moves = _animation(buffer, motion, step_s)
     inverse = np.tile(np.eye(4, dtype=np.float32), (len(skeleton.bones), 1, 1))
     inverse[:, 3, :3] = -rest_origins_m(skeleton)  # a matrix is written column by column
@@ -85,7 +69,9 @@ def gltf_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
         "scenes": [{"nodes": [0, len(_nodes(skeleton)) - 1]}],
         "nodes": _nodes(skeleton),
         "meshes": [{"name": "Body", "primitives": [figure]}],
-        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": COLOUR, "metallicFactor": 0.0}}],
+        "materials": [
+            {"pbrMetallicRoughness": {"baseColorFactor": [*COLOUR, 1.0], "metallicFactor": 0.0}}
+        ],
         "skins": [
             {
                 "joints": [*range(len(skeleton.bones))],
@@ -118,24 +104,7 @@ def _nodes(skeleton: Skeleton) -> list[dict[str, Any]]:
     return [*nodes, {"name": "Body", "mesh": 0, "skin": 0}]
 
 
-def _sticks(skeleton: Skeleton) -> _Sticks:
-    unit, origins_m = unit_cylinder(), rest_origins_m(skeleton)
-    places, faces, bones = [], [], []
-    for i, tip_m in enumerate(skeleton.tips_m):
-        length_m = max(float(np.linalg.norm(tip_m)), 1e-3)
-        scaled = unit.vertices * (THICKNESS * length_m, length_m, THICKNESS * length_m)
-        turned = arc(_UP, tip_m[None] / length_m).apply(scaled)
-        faces.append(unit.faces + i * len(unit.vertices))
-        places.append(origins_m[i] + turned)
-        bones.append(np.full(len(turned), i))
-    return _Sticks(
-        np.concatenate(places).astype(np.float32),
-        np.concatenate(faces).astype(np.uint32),
-        np.concatenate(bones).astype(np.uint16),
-    )
-
-
-def _figure(buffer: _Buffer, sticks: _Sticks) -> dict[str, Any]:
+def _figure(buffer: _Buffer, sticks: Sticks) -> dict[str, Any]:
     joints = np.zeros((len(sticks.bones), 4), np.uint16)
     joints[:, 0] = sticks.bones
     weights = np.zeros((len(sticks.bones), 4), np.float32)
@@ -154,7 +123,7 @@ def _figure(buffer: _Buffer, sticks: _Sticks) -> dict[str, Any]:
 def _animation(buffer: _Buffer, motion: Motion, step_s: float) -> dict[str, Any]:
     times = buffer.add((np.arange(len(motion.root_m)) * step_s).astype(np.float32))
     tracks = [(0, "translation", motion.root_m)]
-    tracks += [(i, "rotation", _unbroken(own.as_quat())) for i, own in enumerate(motion.turns)]
+    tracks += [(i, "rotation", unbroken(own.as_quat())) for i, own in enumerate(motion.turns)]
     samplers = [
         {"input": times, "output": buffer.add(values.astype(np.float32))}
         for _node, _path, values in tracks
@@ -164,14 +133,6 @@ def _animation(buffer: _Buffer, motion: Motion, step_s: float) -> dict[str, Any]
         for i, (node, path, _) in enumerate(tracks)
     ]
     return {"name": "Motion", "samplers": samplers, "channels": channels}
-
-
-def _unbroken(xyzw: Vector) -> Vector:
-    """Of q and -q, which are one turn, the one next to the frame before: players interpolate."""
-    turned = (xyzw[1:] * xyzw[:-1]).sum(axis=1) < 0
-    signs = np.where(np.logical_xor.accumulate(np.concatenate([[False], turned])), -1.0, 1.0)
-    unbroken: Vector = xyzw * signs[:, None]
-    return unbroken
 
 
 def _glb(content: bytes, data: bytes) -> bytes:

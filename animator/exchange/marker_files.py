@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from animator.bones import Joints
+from animator.exchange import LibraryMissing
 from common.body.body import Vector
 from common.body.extremities import ALL_JOINT_NAMES
 
@@ -15,10 +16,6 @@ MM_IN_M: Final = 1000.0
 TO_FORWARD_X: Final = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
 """From a run's axes (+x left of who faces camera 1, +y up, +z towards it) to OpenSim's (+x forward,
 +y up, +z right): a quarter turn about the vertical."""
-
-
-class LibraryMissing(RuntimeError):
-    """A format whose library is not installed; the text says how to get it."""
 
 
 def forward_x(places_m: Vector) -> Vector:

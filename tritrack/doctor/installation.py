@@ -32,6 +32,7 @@ EXTRAS: Final = (
     ("learning of postures", "hmmlearn", "learn"),
     ("plots of reports and of angles", "matplotlib", "report"),
     ("C3D files", "ezc3d", "export"),
+    ("USD files", "usd-core", "usd"),
     ("recordings", "mcap", "mcap"),
     ("OSC and VMC bridges", "python-osc", "osc"),
     ("LSL bridge", "pylsl", "lsl"),

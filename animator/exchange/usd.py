@@ -1,0 +1,125 @@
+"""USD: a skinned figure of sticks that moves, for film and game pipelines, by Pixar's library.
+
+Source: OpenUSD 26.11, UsdSkel (the schemas SkelRoot, Skeleton, SkelAnimation and their binding).
+Metres, +y up, the figure faces +z; one time code a frame, the first is 0.
+"""
+
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from animator.bones import Motion, Skeleton, offset_m, rest_origins_m
+from animator.exchange import LibraryMissing
+from animator.exchange.sticks import COLOUR, Sticks, sticks_of
+from animator.turns import unbroken
+
+
+def usd_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
+    """A USD file, binary.
+
+    Args:
+        skeleton: A body.
+        motion: (n,) of it.
+        step_s: Seconds a frame.
+
+    Raises:
+        LibraryMissing: Without usd-core.
+    """
+    try:
+        from pxr import Usd, UsdGeom, UsdSkel
+    except ImportError as error:
+        raise LibraryMissing("USD needs usd-core: pip install 'tritrack[usd]'") from error
+    stage = Usd.Stage.CreateInMemory()
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
+    UsdGeom.SetStageMetersPerUnit(stage, UsdGeom.LinearUnits.meters)
+    stage.SetTimeCodesPerSecond(1.0 / step_s)
+    stage.SetFramesPerSecond(1.0 / step_s)
+    stage.SetStartTimeCode(0)
+    stage.SetEndTimeCode(len(motion.root_m) - 1)
+    root = UsdSkel.Root.Define(stage, "/Body")
+    stage.SetDefaultPrim(root.GetPrim())
+    bones = _define_skeleton(stage, skeleton)
+    moves = _define_motion(stage, skeleton, motion)
+    UsdSkel.BindingAPI.Apply(bones.GetPrim()).CreateAnimationSourceRel().SetTargets(
+        [moves.GetPath()]
+    )
+    figure = _define_figure(stage, sticks_of(skeleton))
+    UsdSkel.BindingAPI.Apply(figure.GetPrim()).CreateSkeletonRel().SetTargets([bones.GetPath()])
+    return _binary(stage)
+
+
+def _define_skeleton(stage: Any, skeleton: Skeleton) -> Any:
+    from pxr import UsdSkel, Vt
+
+    bones = UsdSkel.Skeleton.Define(stage, "/Body/Skeleton")
+    bones.CreateJointsAttr(_paths(skeleton))
+    offsets_m = np.array([offset_m(skeleton, i) for i in range(len(skeleton.bones))])
+    bones.CreateRestTransformsAttr(Vt.Matrix4dArray.FromNumpy(_shifts(offsets_m)))
+    bones.CreateBindTransformsAttr(Vt.Matrix4dArray.FromNumpy(_shifts(rest_origins_m(skeleton))))
+    return bones
+
+
+def _define_motion(stage: Any, skeleton: Skeleton, motion: Motion) -> Any:
+    """Of each bone its place and turn in its parent's axes, frame by frame."""
+    from pxr import UsdSkel, Vt
+
+    moves = UsdSkel.Animation.Define(stage, "/Body/Skeleton/Motion")
+    moves.CreateJointsAttr(_paths(skeleton))
+    count = len(skeleton.bones)
+    moves.CreateScalesAttr(Vt.Vec3hArray.FromNumpy(np.ones((count, 3), np.float16)))
+    offsets_m = np.array([offset_m(skeleton, i) for i in range(count)], np.float32)
+    turns = np.stack([unbroken(own.as_quat()) for own in motion.turns], axis=1)
+    places, quaternions = moves.CreateTranslationsAttr(), moves.CreateRotationsAttr()
+    for frame, root_m in enumerate(motion.root_m):
+        offsets_m[0] = root_m
+        places.Set(Vt.Vec3fArray.FromNumpy(offsets_m), frame)
+        own = np.ascontiguousarray(turns[frame], np.float32)  # x, y, z, w, as the library keeps it
+        quaternions.Set(Vt.QuatfArray.FromNumpy(own), frame)
+    return moves
+
+
+def _define_figure(stage: Any, sticks: Sticks) -> Any:
+    from pxr import Gf, UsdGeom, UsdSkel, Vt
+
+    figure = UsdGeom.Mesh.Define(stage, "/Body/Sticks")
+    figure.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(sticks.places_m))
+    figure.CreateFaceVertexCountsAttr([3] * len(sticks.faces))
+    corners = np.ascontiguousarray(sticks.faces.reshape(-1), np.int32)
+    figure.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(corners))
+    figure.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+    figure.CreateDisplayColorAttr([Gf.Vec3f(*COLOUR)])
+    figure.CreateExtentAttr(
+        [sticks.places_m.min(axis=0).tolist(), sticks.places_m.max(axis=0).tolist()]
+    )
+    binding = UsdSkel.BindingAPI.Apply(figure.GetPrim())
+    binding.CreateJointIndicesPrimvar(False, 1).Set(
+        Vt.IntArray.FromNumpy(sticks.bones.astype(np.int32))
+    )
+    binding.CreateJointWeightsPrimvar(False, 1).Set([1.0] * len(sticks.bones))
+    binding.CreateGeomBindTransformAttr(Gf.Matrix4d(1.0))
+    return figure
+
+
+def _paths(skeleton: Skeleton) -> list[str]:
+    """Each bone's name behind those that carry it, as UsdSkel tells a tree: parents first."""
+    paths: list[str] = []
+    for bone in skeleton.bones:
+        paths.append(f"{paths[bone.parent]}/{bone.name}" if bone.parent >= 0 else bone.name)
+    return paths
+
+
+def _shifts(places_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Matrices (n, 4, 4) that turn nothing; the library multiplies rows, the place stands last."""
+    shifts = np.tile(np.eye(4), (len(places_m), 1, 1))
+    shifts[:, 3, :3] = places_m
+    return shifts
+
+
+def _binary(stage: Any) -> bytes:
+    with tempfile.TemporaryDirectory() as folder:  # the library writes to paths alone
+        path = Path(folder) / "body.usdc"
+        stage.GetRootLayer().Export(str(path))
+        return path.read_bytes()
