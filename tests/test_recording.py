@@ -10,6 +10,7 @@ import pytest
 from staging import report
 
 from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, rest_pose
+from common.body.extremities import EXTREMITY_NAMES, extremities
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body, Posture, Report
@@ -24,13 +25,16 @@ HEAD = Head(name="walk", settings=Settings(), period_s=1 / 15, alone=False, rig=
 
 def standing(frame: int) -> Body:
     pose = rest_pose()
+    joints_m = joints(body_vector(thesis_bdp(1.7)), pose)
     return Body(
         frame=frame,
         captured_s=frame / 15,
         clock_s=frame / 15,
         status="tracking",
         views="both",
-        joints_m=tuple(map(tuple, joints(body_vector(thesis_bdp(1.7)), pose).tolist())),
+        joints_m=tuple(map(tuple, joints_m.tolist())),
+        extremities_m=tuple(map(tuple, extremities(joints_m, 1.7).tolist())),
+        extremities_confidence=(0.0, 0.0, 0.8, 0.0, 0.0, 0.0, 0.0),
         pose=tuple(pose.tolist()),
         angles_raw_deg=tuple(pose[list(ANGLES_IN_POSE)].tolist()),
         confidence=(0.5,) * 15,
@@ -73,9 +77,14 @@ def test_an_mcap_library_finds_a_scene_that_fits_its_schema(folder: Path) -> Non
     assert len(entity["spheres"]) == len(JOINT_NAMES)
     head = entity["spheres"][JOINT_NAMES.index("head_top")]["pose"]["position"]
     assert head["z"] == pytest.approx(standing(0).joints_m[JOINT_NAMES.index("head_top")][1])
+    points = [list(each.values()) for each in entity["lines"][0]["points"]]
+    toe_m = list(standing(0).extremities_m[EXTREMITY_NAMES.index("l_toe")])
+    assert points.count([toe_m[2], toe_m[0], toe_m[1]]) == 2  # the sole's and the instep's end
     assert [each["id"] for each in scenes[1][1]["deletions"]] == ["body"]
     numbers: list[dict[str, Any]] = [json.loads(m.data) for _, c, m in found if c.topic != "/scene"]
     assert numbers[0]["joints_m"]["l_wrist"]["y"] == standing(0).joints_m[5][1]
+    assert numbers[0]["joints_m"]["l_toe"] == dict(zip("xyz", toe_m, strict=True))
+    assert numbers[0]["confidence"]["l_toe"] == 0.8
     assert numbers[1]["joints_m"] == {}
 
 

@@ -9,6 +9,7 @@ from typing import Any, Final
 import msgspec
 
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES, LIMB_ENDS
+from common.body.extremities import ALL_JOINT_NAMES
 from common.bus.messages import Body, Point
 
 SCENE: Final = "foxglove.SceneUpdate"
@@ -26,22 +27,31 @@ _GIRDLES: Final = [
     [JOINT_NAMES.index(f"{side}_{joint}") for side in "lr"] for joint in ("shoulder", "hip")
 ]
 _LINES: Final = [*LIMB_ENDS.tolist(), *_GIRDLES]
+_FURTHER_LINES: Final = [
+    [ALL_JOINT_NAMES.index(f"{side}_{joint}") for joint in ends]
+    for side in "lr"
+    for ends in (("wrist", "knuckle"), ("ankle", "heel"), ("ankle", "toe"), ("heel", "toe"))
+]
+"""Hands and feet, of a body that tells them."""
 
 
 def scene_of(body: Body) -> bytes:
-    """A SceneUpdate as JSON: the lines between a body's joints, and balls coloured by confidence.
+    """A SceneUpdate as JSON: lines between a body's joints and to the ends of hands and feet, and
+    at the 15 joints balls coloured by confidence.
 
     A body without a pose takes the figure away.
     """
     if not body.joints_m:
         gone = {"timestamp": time_of(body.captured_s), "type": 0, "id": "body"}
         return msgspec.json.encode({"deletions": [gone], "entities": []})
+    places_m = (*body.joints_m, *body.extremities_m)
+    drawn = [*_LINES, *(_FURTHER_LINES if body.extremities_m else [])]
     lines = {
         "type": LINE_LIST,
         "pose": _STILL,
         "thickness": RADIUS_M / 2,
         "scale_invariant": False,
-        "points": [_place(body.joints_m[end]) for ends in _LINES for end in ends],
+        "points": [_place(places_m[end]) for ends in drawn for end in ends],
         "color": _colour(1.0),
         "colors": [],
         "indices": [],
@@ -69,14 +79,14 @@ def scene_of(body: Body) -> bytes:
 
 def numbers_of(body: Body) -> bytes:
     """A body's numbers by name, as JSON: angles_deg.l_elbow_x, joints_m.l_wrist.y and so on."""
-    joints = {
-        name: _xyz(place) for name, place in zip(JOINT_NAMES, body.joints_m or (), strict=False)
-    }
+    places_m = (*(body.joints_m or ()), *body.extremities_m)
+    joints = {name: _xyz(place) for name, place in zip(ALL_JOINT_NAMES, places_m, strict=False)}
     angles = {
         name: body.pose[i] for name, i in zip(ANGLE_NAMES, ANGLES_IN_POSE, strict=True) if body.pose
     }
     told = {"frame": body.frame, "status": body.status, "views": body.views}
-    confidence = dict(zip(JOINT_NAMES, body.confidence, strict=False))
+    sure = (*body.confidence, *body.extremities_confidence)
+    confidence = dict(zip(ALL_JOINT_NAMES, sure, strict=False))
     return msgspec.json.encode(
         told | {"joints_m": joints, "angles_deg": angles, "confidence": confidence}
     )
@@ -119,9 +129,9 @@ def schemas() -> dict[str, bytes]:
             "frame": {"type": "integer"},
             "status": {"type": "string"},
             "views": {"type": "string"},
-            "joints_m": _object(dict.fromkeys(JOINT_NAMES, xyz)),
+            "joints_m": _object(dict.fromkeys(ALL_JOINT_NAMES, xyz)),
             "angles_deg": _object(dict.fromkeys(ANGLE_NAMES, _NUMBER)),
-            "confidence": _object(dict.fromkeys(JOINT_NAMES, _NUMBER)),
+            "confidence": _object(dict.fromkeys(ALL_JOINT_NAMES, _NUMBER)),
         }
     )
     return {SCENE: msgspec.json.encode(scene), NUMBERS: msgspec.json.encode(numbers)}
