@@ -59,6 +59,14 @@ def says_what_it_has(path: str) -> None:
     sleeps(f"{path}.pid")
 
 
+def is_a_site(folder: str) -> None:
+    """A part with a run of its own, which has a zygote in its turn."""
+    own = Zygote(inherited)
+    assert own.context is not SPAWN, "it was not ready at once"
+    started(Part("viewer 1", sleeps, (f"{folder}/part",), zygote=own))
+    sleeps(f"{folder}/site")
+
+
 def fails() -> None:
     raise ValueError("no camera")
 
@@ -137,6 +145,45 @@ def test_zygote_and_forks_end_when_their_supervisor_is_killed(
     parent.wait()
     assert ended_within(pid, SOON_S)
     assert ended_within(own, SOON_S)
+
+
+@pytest.mark.parametrize("stopped", [False, True], ids=["works", "is stopped"])
+def test_a_site_has_a_zygote_of_its_own_by_one_fork_more_and_takes_it_along(
+    zygote: Zygote, tmp_path: Path, stopped: bool
+) -> None:
+    one = started(Part("hall", is_a_site, (str(tmp_path),), nests=True, zygote=zygote))
+    part, site = (psutil.Process(written(tmp_path / name)) for name in ("part", "site"))
+    own, common = part.parent(), site.parent()
+    assert own is not None
+    assert common is not None
+    assert own.parent() == site
+    assert common.parent() == psutil.Process()
+    memory = part.memory_full_info()
+    assert memory.uss < memory.rss / 4, "what was loaded once is not shared"
+    if stopped:
+        part.suspend()
+    site.kill()
+    assert ended_within(own.pid, SOON_S)
+    assert ended_within(part.pid, SOON_S)
+    assert common.is_running()
+    end(one)
+
+
+def test_a_zygote_that_is_asked_to_end_with_all_of_a_service_stays_for_its_forks(
+    zygote: Zygote, tmp_path: Path
+) -> None:
+    """As systemd ends a service; who works heeds SIGTERM, at once or as soon as it can."""
+    one = started(Part("hall", is_a_site, (str(tmp_path),), nests=True, zygote=zygote))
+    part, site = (psutil.Process(written(tmp_path / name)) for name in ("part", "site"))
+    zygotes = [site.parent(), part.parent()]
+    for each in filter(None, zygotes):
+        each.terminate()
+    assert not ended_within(site.pid, 0.5)
+    assert part.is_running()
+    part.terminate()
+    assert ended_within(part.pid, SOON_S)
+    assert end(one)
+    assert one.process.exitcode == -signal.SIGTERM
 
 
 @pytest.mark.live

@@ -188,6 +188,7 @@ def _guarded(
 ) -> None:
     """Run a part; what it cannot do is said in one line, not in a traceback."""
     end_with_parent(forked_by())
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))  # the zygote is deaf to it
     try:
         main(*arguments)
     except Exception as error:

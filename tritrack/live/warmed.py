@@ -6,6 +6,7 @@ gives its server no other moment.
 
 import gc
 import os
+import signal
 from contextlib import suppress
 from typing import Final
 
@@ -23,7 +24,7 @@ from viewer import track
 from viewer.background.background import learn
 from viewer.viewer_warmup import warm_up as warm_viewer
 
-PID: Final = os.getpid()
+PID = os.getpid()
 """Of who forks the parts."""
 PROCESSES: Final = (viewer_process, integrator_process, recognizer_process)
 SIZE: Final = (160, 120)
@@ -52,5 +53,17 @@ def warm_up() -> None:
     gc.freeze()
 
 
-end_with(os.getppid())
+def begin(starter: int) -> None:
+    """Fork from now on, and end with who started this process, by its number, not before.
+
+    SIGTERM waits in each fork until that can heed it: said to all processes of a service, as by
+    systemd, it must not end who forks, and all forks with it.
+    """
+    global PID  # noqa: PLW0603 - a fork that forks in its turn has it anew
+    PID = os.getpid()
+    signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGTERM,))
+    end_with(starter)
+
+
+begin(os.getppid())
 warm_up()
