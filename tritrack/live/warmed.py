@@ -4,7 +4,6 @@ Imported by the zygote alone (`zygote.py`), and the work is done as it is import
 gives its server no other moment.
 """
 
-import gc
 import os
 import signal
 from contextlib import suppress
@@ -16,6 +15,8 @@ import numpy as np
 from common.config import Settings
 from common.method import METHODS
 from common.parent_death import end_with
+from common.settled import settle
+from common.video import decoder
 from integrator import __main__ as integrator_process
 from integrator.integrator_warmup import warm_up as warm_integrator
 from recognizer import __main__ as recognizer_process
@@ -26,7 +27,7 @@ from viewer.viewer_warmup import warm_up as warm_viewer
 
 PID = os.getpid()
 """Of who forks the parts."""
-PROCESSES: Final = (viewer_process, integrator_process, recognizer_process)
+PROCESSES: Final = (viewer_process, integrator_process, recognizer_process, decoder)
 SIZE: Final = (160, 120)
 """Of the pictures that are made up; what is compiled does for any."""
 
@@ -49,8 +50,7 @@ def warm_up() -> None:
         from animator import __main__ as animator_process
 
         animator_process.warm_up()
-    gc.collect()
-    gc.freeze()
+    settle()
 
 
 def begin(starter: int) -> None:

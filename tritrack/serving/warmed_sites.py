@@ -3,10 +3,10 @@
 Imported by the zygote of a service alone (`tritrack/live/zygote.py`).
 """
 
-import gc
 from contextlib import suppress
 from typing import Final
 
+from common.settled import settle
 from tritrack.live import warmed
 from tritrack.offline import lockstep
 from tritrack.serving import site_process
@@ -18,5 +18,4 @@ with suppress(ImportError):  # the metrics are an extra
 
     LOADED.append(metrics_process)
 
-gc.collect()
-gc.freeze()
+settle()
