@@ -224,7 +224,7 @@ def test_a_site_whose_own_zygote_is_killed_goes_on_and_the_others_do_not_notice(
         hall = service.supervisor_of(own, "hall")
         (zygote,) = hall.children()
         parts = zygote.children()
-        assert len(parts) == 4
+        assert len(parts) == 6, "four parts and the viewers' decoders"
         zygote.kill()
         assert psutil.wait_procs(parts, timeout=2.0)[1] == []
         service.until_well("hall", "lobby")
