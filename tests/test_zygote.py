@@ -5,11 +5,12 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
 
 import psutil
 import pytest
-from test_parent_death import SOON_S, ended_within, sleeps, written
+from test_parent_death import PATIENCE_S, SOON_S, ended_within, sleeps, written
 
 from tritrack.live.process_table import Part, end, inherited, started
 from tritrack.live.supervise import PartFailed, watched
@@ -145,6 +146,24 @@ def test_zygote_and_forks_end_when_their_supervisor_is_killed(
     parent.wait()
     assert ended_within(pid, SOON_S)
     assert ended_within(own, SOON_S)
+
+
+def test_who_starts_a_part_again_is_not_held_up_while_the_next_zygote_loads(
+    zygote: Zygote, tmp_path: Path
+) -> None:
+    """A supervisor that stood still for so long would be taken for hung."""
+    one = started(Part("viewer 1", sleeps, (str(tmp_path / "first"),), zygote=zygote))
+    before = psutil.Process(written(tmp_path / "first")).ppid()
+    os.kill(before, signal.SIGKILL)
+    assert ended_within(before, SOON_S)
+    one.process.join(SOON_S)
+    began_s = time.monotonic()
+    assert not zygote.ready()
+    assert time.monotonic() - began_s < 0.5
+    while not zygote.ready():
+        assert time.monotonic() - began_s < PATIENCE_S
+        time.sleep(0.1)
+    assert zygote.context is not SPAWN
 
 
 @pytest.mark.parametrize("stopped", [False, True], ids=["works", "is stopped"])

@@ -20,7 +20,7 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext, supp
 from importlib import import_module
 from multiprocessing import forkserver, util
 from multiprocessing.context import ForkServerContext, SpawnContext
-from typing import Final
+from typing import Any, Final
 
 SPAWN: Final = multiprocessing.get_context("spawn")
 FORK: Final = multiprocessing.get_context("forkserver")
@@ -46,21 +46,19 @@ class Zygote:
             loaded: The module that it imports, `warmed` or one that imports that.
         """
         self._warm = self._coming = False
+        self._inherited = inherited
         if sys.platform != "linux":  # elsewhere libraries do not bear a fork
             return
         FORK.set_forkserver_preload([loaded])
-        warm = forked_by() is not None
-        with inherited(), _forked() if warm else nullcontext():
-            os.environ.update(_same_modules())
-            try:
-                forkserver.ensure_running()
-            except OSError as error:  # as where the folder of temporary files has a long name
-                log.info("no zygote, each part imports for itself: %s", error)
-                return
-        self._warm, self._coming = warm, not warm
-        if warm:
-            return
-        threading.Thread(target=self._await, name="zygote", daemon=True).start()
+        self._warm = forked_by() is not None
+        try:
+            with _forked() if self._warm else nullcontext():
+                self._begun()
+        except OSError as error:  # as where the folder of temporary files has a long name
+            log.info("no zygote, each part imports for itself: %s", error)
+            self._warm = False
+        else:
+            self._expect()
 
     @property
     def context(self) -> ForkServerContext | SpawnContext:
@@ -72,8 +70,36 @@ class Zygote:
         until_s = time.monotonic() + most_s
         while self._coming and not (self._warm or stop.wait(LOOK_S)):
             if time.monotonic() > until_s:
+                self._coming = False
                 break
             look()
+
+    def ready(self) -> bool:
+        """Whether a process may begin now; asked in the main thread.
+
+        A zygote that died is begun anew: who asks again and again need not stand still until it is
+        warm, as who starts a process at once does.
+        """
+        if self._warm and self._begun():
+            self._warm = False
+            self._expect()
+        return self._warm or not self._coming
+
+    def _begun(self) -> bool:
+        """See that it runs; whether it did not."""
+        server: Any = forkserver._forkserver
+        before = server._forkserver_pid
+        with self._inherited():
+            os.environ.update(_same_modules())
+            forkserver.ensure_running()
+        return bool(server._forkserver_pid != before)
+
+    def _expect(self) -> None:
+        """Notice when it is warm."""
+        self._coming = not self._warm
+        if self._warm:
+            return
+        threading.Thread(target=self._await, name="zygote", daemon=True).start()
 
     def _await(self) -> None:
         """Its first fork is there as soon as it is warm, and says whether it is."""
