@@ -68,6 +68,7 @@ def can_fork() -> bool:
 
 
 def _run(module: str, requests: Connection, answers: Connection, told: tuple[str, ...]) -> None:
+    os.setpgrp()  # what is said to all of a run's group is not for it
     signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))  # the zygote is deaf to it
     silence = os.open(os.devnull, os.O_WRONLY)
     for said in (1, 2):
