@@ -110,6 +110,20 @@ def test_why_a_part_fails_and_how_it_was_killed_is_known_as_of_any_other(
         assert one.running.process.exitcode == -signal.SIGKILL
 
 
+def test_who_ends_with_its_zygote_before_it_was_heard_is_started_again(
+    zygote: Zygote, tmp_path: Path
+) -> None:
+    """It did not fail of itself."""
+    with watched(Part("viewer 1", sleeps, (str(tmp_path / "pid"),), zygote=zygote)) as one:
+        before = psutil.Process(written(tmp_path / "pid")).ppid()
+        os.kill(before, signal.SIGKILL)
+        assert ended_within(before, SOON_S)
+        one.running.process.join()
+        assert one.look(time.monotonic(), {}) == (
+            "viewer 1: it ended with its zygote; it is started again in 0.5 s (1 of 5 times)"
+        )
+
+
 def test_forks_end_with_their_zygote_and_the_next_has_another(
     zygote: Zygote, tmp_path: Path
 ) -> None:

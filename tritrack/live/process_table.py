@@ -20,6 +20,8 @@ from tritrack.live.zygote import SPAWN, Zygote, forked_by
 
 END_S: Final = 5.0
 """What most processes may take to close their doors."""
+WITH_ZYGOTE: Final = 255
+"""What multiprocessing gives as the exit code of a fork whose zygote is dead; none of ours."""
 OF_TERMINALS: Final = (signal.SIGINT, signal.SIGHUP)
 FRUGAL: Final = {
     "OMP_NUM_THREADS": "1",
@@ -167,6 +169,8 @@ def last_words(one: Running) -> str:
     except EOFError:
         pass
     code = one.process.exitcode or 0
+    if code == WITH_ZYGOTE:
+        return "it ended with its zygote"
     return f"killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
 
 
