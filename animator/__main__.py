@@ -1,6 +1,5 @@
 """The animator process: everything that is said, shown on the live page."""
 
-import gc
 import logging
 import os
 import threading
@@ -22,6 +21,7 @@ from common.bus.process import READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
 from common.rig.camera import paper_rig
+from common.settled import settle
 
 HEAR_S: Final = 0.05
 PERIOD_S: Final = 1 / TOPICS[Body].hz
@@ -177,7 +177,7 @@ def main(
         log.info("the page is at %s", told)
         try:
             warm_up()
-            gc.freeze()
+            settle()
             facts = _shown(page, settings, stop, ending)
             if facts is not None:
                 page.end(facts)

@@ -4,6 +4,7 @@ Run from the checkout: .venv/bin/python benchmarks/chaos.py [--trials N] [--only
 """
 
 import argparse
+import itertools
 import json
 import os
 import signal
@@ -82,14 +83,17 @@ class Trial:
         self.seen: dict[int, psutil.Process] = {}
 
     def parts(self) -> dict[str, psutil.Process]:
-        """Its processes by their names, and each decoder by that of its viewer."""
+        """Its processes by their names, and each decoder by that of its viewer: both are forks of
+        the zygote, and one pipe is theirs alone."""
         children = psutil.Process(self.run.pid).children()
         (zygote,) = spoken_of(children, "forkserver")
         begun = [*spoken_of(children, "spawn_main"), *zygote.children()]
         in_order = sorted(begun, key=lambda one: (one.create_time(), one.pid))
         named = {"zygote": zygote, **dict(zip(STARTED, in_order, strict=False))}
-        for number in (1, 2):
-            for one in named[f"viewer {number}"].children():
+        held = {one: pipes(one) for one in zygote.children()}
+        shared = set.intersection(*held.values())
+        for number, one in itertools.product((1, 2), in_order[len(STARTED) :]):
+            if held.get(one, set()) & held[named[f"viewer {number}"]] - shared:
                 named[f"decoder {number}"] = one
         return named
 
@@ -152,6 +156,12 @@ class Trial:
 
 def spoken_of(processes: Sequence[psutil.Process], word: str) -> list[psutil.Process]:
     return [one for one in processes if word in " ".join(one.cmdline())]
+
+
+def pipes(process: psutil.Process) -> set[str]:
+    """The pipes that a process holds an end of."""
+    held = Path(f"/proc/{process.pid}/fd").iterdir()
+    return {name for name in map(os.readlink, held) if name.startswith("pipe:")}
 
 
 def kill(process: psutil.Process) -> None:

@@ -1,6 +1,5 @@
 """The integrator process: pairs of reports in, bodies and guides out; the room's clock."""
 
-import gc
 import threading
 import time
 from typing import Final
@@ -12,6 +11,7 @@ from common.bus.process import PAGE_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
 from common.method import METHODS
+from common.settled import settle
 from common.video.clip_facts import Clip
 from integrator import commands, diagnostics, merge, merge_state, opening_posture
 from integrator.frame_numbers import frame_times
@@ -112,8 +112,7 @@ def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContex
         )
         state = estate.taken_up(state)
         warm_up(settings, clip.views[0].size)
-        gc.collect()
-        gc.freeze()
+        settle()
         bus.announce("integrator")  # viewers say then what was not heard: it listens at once
         run(state, viewers, period_s, bus, stop, page_wait_s(settings, clip, context), estate)
         stop.wait(SUPERVISED_S if context.supervised else LAST_WORDS_S)

@@ -1,6 +1,5 @@
 """The recognizer process: bodies in, the posture's name out."""
 
-import gc
 import threading
 import time
 from pathlib import Path
@@ -18,6 +17,7 @@ from common.bus.process import READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
 from common.method import METHODS
+from common.settled import settle
 from recognizer import events, spotting
 from recognizer.features import ROW_NAMES, rows
 from recognizer.model_file import ModelError, load
@@ -184,6 +184,5 @@ def main(settings: Settings, period_s: float, context: ProcessContext = ProcessC
         open_client(settings.bus, settings.room, READY_S, "recognizer") as bus,
     ):
         bus.announce("recognizer")
-        gc.collect()
-        gc.freeze()
+        settle()
         run(model, settings, bus, period_s, stop)

@@ -107,6 +107,12 @@ class Service:
                 continue
         return found
 
+    def supervisor_of(self, own: psutil.Process, name: str) -> psutil.Process:
+        """The process of a site: it is forked of the service's zygote."""
+        pids = self.all_of(own, name)
+        (found,) = (one for one in zygote_of(own).children() if one.pid in pids)
+        return found
+
     def frames(self, name: str) -> float:
         """Bodies of a site so far."""
         found = read(asked(self.address, "/metrics")[1])
@@ -116,6 +122,12 @@ class Service:
         """The same, when the last of them is there: a supervisor and four parts."""
         self.until(f"all of {name}", lambda: len(self.pids_of(own, name)) == 5)
         return self.pids_of(own, name)
+
+
+def zygote_of(own: psutil.Process) -> psutil.Process:
+    """The one process of the service that has forked others."""
+    (found,) = (one for one in own.children() if one.children())
+    return found
 
 
 @pytest.fixture
@@ -161,8 +173,7 @@ def test_a_site_that_is_killed_is_started_again_and_the_other_goes_on(service: S
         service.until_well("hall", "lobby")
         hall, lobby = (service.all_of(own, name) for name in ("hall", "lobby"))
         service.until("hall to have measured something", lambda: service.frames("hall") > 10)
-        (supervisor,) = hall & {one.pid for one in own.children()}
-        os.kill(supervisor, signal.SIGKILL)
+        service.supervisor_of(own, "hall").kill()
         told = (0, "")
 
         def is_told() -> bool:
@@ -180,6 +191,60 @@ def test_a_site_that_is_killed_is_started_again_and_the_other_goes_on(service: S
         own.send_signal(signal.SIGTERM)
         assert own.wait(SOON_S) == 0
     assert list((service.folder / "runs" / "hall" / "saved").glob("cut_short_*"))
+
+
+def test_all_sites_come_back_where_the_zygote_was_killed_that_they_share(
+    service: Service,
+) -> None:
+    service.write(hall="160x120", lobby="160x120")
+    with service.running() as own:
+        service.until_well("hall", "lobby")
+        before = {name: service.all_of(own, name) for name in ("hall", "lobby")}
+        everybody = own.children(recursive=True)
+        zygote_of(own).kill()
+        assert (
+            psutil.wait_procs(
+                [one for one in everybody if one.pid in before["hall"] | before["lobby"]],
+                timeout=2.0,
+            )[1]
+            == []
+        )
+        service.until_well("hall", "lobby")
+        own.send_signal(signal.SIGTERM)
+        assert own.wait(SOON_S) == 0
+
+
+def test_a_site_whose_own_zygote_is_killed_goes_on_and_the_others_do_not_notice(
+    service: Service,
+) -> None:
+    service.write(hall="160x120", lobby="160x120")
+    with service.running() as own:
+        service.until_well("hall", "lobby")
+        lobby = service.all_of(own, "lobby")
+        hall = service.supervisor_of(own, "hall")
+        (zygote,) = hall.children()
+        service.until("four parts and two decoders", lambda: len(zygote.children()) == 6)
+        parts = zygote.children()
+        zygote.kill()
+        assert psutil.wait_procs(parts, timeout=2.0)[1] == []
+        old = {one.pid for one in parts}
+        service.until("new parts", lambda: len(service.pids_of(own, "hall") - old) == 5)
+        service.until_well("hall", "lobby")
+        assert hall.is_running(), "its run was cut in two"
+        assert service.pids_of(own, "lobby") == lobby
+        own.send_signal(signal.SIGTERM)
+        assert own.wait(SOON_S) == 0
+
+
+def test_sigterm_to_all_processes_ends_each_run_in_order(service: Service) -> None:
+    """As systemd stops a service."""
+    service.write(hall="160x120")
+    with service.running() as own:
+        service.until_well("hall")
+        service.until("hall to have measured something", lambda: service.frames("hall") > 10)
+        os.killpg(own.pid, signal.SIGTERM)
+        assert own.wait(SOON_S) == 0
+    assert (service.folder / "runs" / "hall" / "summary.json").is_file()
 
 
 def test_nothing_outlives_a_service_that_is_killed(service: Service) -> None:

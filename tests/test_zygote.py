@@ -5,11 +5,12 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
 
 import psutil
 import pytest
-from test_parent_death import SOON_S, ended_within, sleeps, written
+from test_parent_death import PATIENCE_S, SOON_S, ended_within, sleeps, written
 
 from tritrack.live.process_table import Part, end, inherited, started
 from tritrack.live.supervise import PartFailed, watched
@@ -59,6 +60,14 @@ def says_what_it_has(path: str) -> None:
     sleeps(f"{path}.pid")
 
 
+def is_a_site(folder: str) -> None:
+    """A part with a run of its own, which has a zygote in its turn."""
+    own = Zygote(inherited)
+    assert own.context is not SPAWN, "it was not ready at once"
+    started(Part("viewer 1", sleeps, (f"{folder}/part",), zygote=own))
+    sleeps(f"{folder}/site")
+
+
 def fails() -> None:
     raise ValueError("no camera")
 
@@ -101,6 +110,20 @@ def test_why_a_part_fails_and_how_it_was_killed_is_known_as_of_any_other(
         assert one.running.process.exitcode == -signal.SIGKILL
 
 
+def test_who_ends_with_its_zygote_before_it_was_heard_is_started_again(
+    zygote: Zygote, tmp_path: Path
+) -> None:
+    """It did not fail of itself."""
+    with watched(Part("viewer 1", sleeps, (str(tmp_path / "pid"),), zygote=zygote)) as one:
+        before = psutil.Process(written(tmp_path / "pid")).ppid()
+        os.kill(before, signal.SIGKILL)
+        assert ended_within(before, SOON_S)
+        one.running.process.join()
+        assert one.look(time.monotonic(), {}) == (
+            "viewer 1: it ended with its zygote; it is started again in 0.5 s (1 of 5 times)"
+        )
+
+
 def test_forks_end_with_their_zygote_and_the_next_has_another(
     zygote: Zygote, tmp_path: Path
 ) -> None:
@@ -137,6 +160,63 @@ def test_zygote_and_forks_end_when_their_supervisor_is_killed(
     parent.wait()
     assert ended_within(pid, SOON_S)
     assert ended_within(own, SOON_S)
+
+
+def test_who_starts_a_part_again_is_not_held_up_while_the_next_zygote_loads(
+    zygote: Zygote, tmp_path: Path
+) -> None:
+    """A supervisor that stood still for so long would be taken for hung."""
+    one = started(Part("viewer 1", sleeps, (str(tmp_path / "first"),), zygote=zygote))
+    before = psutil.Process(written(tmp_path / "first")).ppid()
+    os.kill(before, signal.SIGKILL)
+    assert ended_within(before, SOON_S)
+    one.process.join(SOON_S)
+    began_s = time.monotonic()
+    assert not zygote.ready()
+    assert time.monotonic() - began_s < 0.5
+    while not zygote.ready():
+        assert time.monotonic() - began_s < PATIENCE_S
+        time.sleep(0.1)
+    assert zygote.context is not SPAWN
+
+
+@pytest.mark.parametrize("stopped", [False, True], ids=["works", "is stopped"])
+def test_a_site_has_a_zygote_of_its_own_by_one_fork_more_and_takes_it_along(
+    zygote: Zygote, tmp_path: Path, stopped: bool
+) -> None:
+    one = started(Part("hall", is_a_site, (str(tmp_path),), nests=True, zygote=zygote))
+    part, site = (psutil.Process(written(tmp_path / name)) for name in ("part", "site"))
+    own, common = part.parent(), site.parent()
+    assert own is not None
+    assert common is not None
+    assert own.parent() == site
+    assert common.parent() == psutil.Process()
+    memory = part.memory_full_info()
+    assert memory.uss < memory.rss / 4, "what was loaded once is not shared"
+    if stopped:
+        part.suspend()
+    site.kill()
+    assert ended_within(own.pid, SOON_S)
+    assert ended_within(part.pid, SOON_S)
+    assert common.is_running()
+    end(one)
+
+
+def test_a_zygote_that_is_asked_to_end_with_all_of_a_service_stays_for_its_forks(
+    zygote: Zygote, tmp_path: Path
+) -> None:
+    """As systemd ends a service; who works heeds SIGTERM, at once or as soon as it can."""
+    one = started(Part("hall", is_a_site, (str(tmp_path),), nests=True, zygote=zygote))
+    part, site = (psutil.Process(written(tmp_path / name)) for name in ("part", "site"))
+    zygotes = [site.parent(), part.parent()]
+    for each in filter(None, zygotes):
+        each.terminate()
+    assert not ended_within(site.pid, 0.5)
+    assert part.is_running()
+    part.terminate()
+    assert ended_within(part.pid, SOON_S)
+    assert end(one)
+    assert one.process.exitcode == -signal.SIGTERM
 
 
 @pytest.mark.live

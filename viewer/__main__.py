@@ -1,6 +1,5 @@
 """The viewer process: one camera's frames in, its reports out."""
 
-import gc
 import logging
 import threading
 import time
@@ -16,6 +15,7 @@ from common.bus.process import BEGIN_S, READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config import Settings
 from common.method import METHODS
+from common.settled import settle
 from common.video.clip_facts import View, shortfall
 from common.video.clip_sources import footage_of
 from common.video.clips import open_clip
@@ -161,8 +161,7 @@ def main(
         view, state, warnings = _prepared(settings, viewer, context)
         with outside_sources(settings, (view,)) as sources:
             warm_up(state, view.size)
-            gc.collect()
-            gc.freeze()
+            settle()
             bus.announce(name)
             heart.beat("ready", "\n".join(warnings))
             room_clock = met(bus, viewer, stop)

@@ -10,7 +10,9 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
-from typing import Final, cast
+from typing import Final
+
+from common.video.forked_child import ForkedChild, can_fork
 
 PIPE_BYTES: Final = 1 << 20
 """How far a child may run ahead of its reader: 18 pictures of 160x120; as much as Linux grants."""
@@ -44,18 +46,15 @@ class Child:
         self._stall_s = stall_s
         # A pipe of its own: what libraries print from their import on must not mix with answers.
         read_end, write_end = os.pipe()
-        # -P: a stranger's numpy.py in the working directory is not ours to run.
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", module, str(write_end), *told],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            bufsize=0,
-            pass_fds=[write_end, *files],
-            process_group=0,
+        heard, asked = os.pipe()
+        self._requests = io.FileIO(asked, "w")
+        self._process = (
+            ForkedChild(module, heard, write_end, told)
+            if can_fork() and not files
+            else _executed(module, heard, write_end, told, files)
         )
+        os.close(heard)
         os.close(write_end)
-        self._requests = cast(io.FileIO, self._process.stdin)
         os.set_blocking(read_end, False)
         self._answers = io.FileIO(read_end)
         self._poll = select.poll()
@@ -108,8 +107,9 @@ class Child:
     def close(self) -> None:
         """End it and let go of its pipes."""
         self.kill()
-        with self._process, self._answers:
-            pass
+        self._process.wait()
+        self._requests.close()
+        self._answers.close()
 
     def _last_words(self) -> str:
         try:
@@ -118,3 +118,18 @@ class Child:
             self.kill()
             return "it closed its pipe"
         return f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
+
+
+def _executed(
+    module: str, requests: int, answers: int, told: Sequence[str], files: Sequence[int]
+) -> subprocess.Popen[bytes]:
+    """The module in a new Python."""
+    # -P: a stranger's numpy.py in the working directory is not ours to run.
+    return subprocess.Popen(
+        [sys.executable, "-P", "-m", module, str(answers), *told],
+        stdin=requests,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        pass_fds=[answers, *files],
+        process_group=0,
+    )

@@ -20,8 +20,16 @@ from tritrack.live.zygote import SPAWN, Zygote, forked_by
 
 END_S: Final = 5.0
 """What most processes may take to close their doors."""
+WITH_ZYGOTE: Final = 255
+"""What multiprocessing gives as the exit code of a fork whose zygote is dead; none of ours."""
 OF_TERMINALS: Final = (signal.SIGINT, signal.SIGHUP)
-ONE_THREAD: Final = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
+FRUGAL: Final = {
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "NUMBA_NUM_THREADS": "1",
+    "MALLOC_ARENA_MAX": "1",
+}
+"""One thread a library, and one heap for all threads: glibc would make one for each of Zenoh's."""
 
 
 class Part(NamedTuple):
@@ -59,7 +67,7 @@ def live_parts(
     """The table of a live run: who listens comes before who speaks (P2)."""
     period_s = clip.every / clip.views[0].fps
     parts = [
-        Part("integrator", integrator_main, (settings, clip, context), beats=True),
+        Part("integrator", integrator_main, (settings, clip, context), beats=True, nests=True),
         Part("recognizer", recognizer_main, (settings, period_s, context)),
     ]
     if settings.metrics:
@@ -68,7 +76,7 @@ def live_parts(
     for view in clip.views:
         seen_by = (settings, view.number, context)
         name = f"viewer {view.number}"
-        parts.append(Part(name, viewer_main, seen_by, leads=True, beats=True))
+        parts.append(Part(name, viewer_main, seen_by, leads=True, beats=True, nests=True))
     return [part._replace(zygote=zygote) for part in parts]
 
 
@@ -161,19 +169,22 @@ def last_words(one: Running) -> str:
     except EOFError:
         pass
     code = one.process.exitcode or 0
+    if code == WITH_ZYGOTE:
+        return "it ended with its zygote"
     return f"killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
 
 
 @contextmanager
 def inherited() -> Iterator[None]:
-    """What a process takes over from its supervisor: one thread a library, deaf to its terminal.
+    """What a process takes over from its supervisor: one thread a library, one heap, deaf to its
+    terminal.
 
     A terminal sends Ctrl-C, and word of its own end, to all processes; only the supervisor, who
     ends the others in order, shall hear that, also while they are still importing.
     """
     resource_tracker.ensure_running()  # its own start would lift the block again
     before = dict(os.environ)
-    os.environ.update(ONE_THREAD)
+    os.environ.update(FRUGAL)
     heard = signal.pthread_sigmask(signal.SIG_BLOCK, OF_TERMINALS)
     try:
         yield
@@ -188,6 +199,7 @@ def _guarded(
 ) -> None:
     """Run a part; what it cannot do is said in one line, not in a traceback."""
     end_with_parent(forked_by())
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))  # the zygote is deaf to it
     try:
         main(*arguments)
     except Exception as error:

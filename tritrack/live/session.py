@@ -17,6 +17,7 @@ from rich.console import Console
 from common.bus.process import ProcessContext, logged
 from common.config import Settings
 from common.method import METHODS
+from common.settled import settle
 from common.video.clip_facts import Clip, both_cameras
 from tritrack.live.free_ports import own_session, refuse_held_ports, with_free_endpoint
 from tritrack.live.launch import Heard, nothing_heard, run
@@ -136,6 +137,7 @@ def _follow(
                 stop.set()
 
         heard = heard._replace(keep=keep)
+        settle()
         zygote.wait(stop, lambda: look(heard))
         run(parts, settings, stop, look, heard, desk)
 

@@ -12,7 +12,7 @@ from common.bus.control_messages import Pulse
 from common.bus.message_codec import TOPICS
 from common.bus.rate import silent
 from tritrack.faults import FAULTY, Fault
-from tritrack.live.process_table import Part, end, last_words, started
+from tritrack.live.process_table import WITH_ZYGOTE, Part, end, last_words, started
 
 TRIES: Final = 5
 """How often a part is started again before it is given up."""
@@ -83,7 +83,7 @@ class Watched:
         if self.given_up or self.done:
             return ""
         if self._again_s is not None:
-            if now_s >= self._again_s:
+            if now_s >= self._again_s and (self.part.zygote is None or self.part.zygote.ready()):
                 self._again_s, self.running = None, started(self.part)
                 self._alive_s = self._quiet_s = 0.0
             return ""
@@ -128,7 +128,7 @@ class Watched:
 
     def _died(self, now_s: float, pulses: dict[str, Pulse]) -> str:
         why = last_words(self.running)
-        of_itself = (self.running.process.exitcode or 0) > 0
+        of_itself = 0 < (self.running.process.exitcode or 0) != WITH_ZYGOTE
         if of_itself and not self._came_up:
             raise self._failure(why)
         if self._tries == TRIES:

@@ -4,8 +4,8 @@ Imported by the zygote alone (`zygote.py`), and the work is done as it is import
 gives its server no other moment.
 """
 
-import gc
 import os
+import signal
 from contextlib import suppress
 from typing import Final
 
@@ -15,6 +15,8 @@ import numpy as np
 from common.config import Settings
 from common.method import METHODS
 from common.parent_death import end_with
+from common.settled import settle
+from common.video import decoder
 from integrator import __main__ as integrator_process
 from integrator.integrator_warmup import warm_up as warm_integrator
 from recognizer import __main__ as recognizer_process
@@ -23,9 +25,9 @@ from viewer import track
 from viewer.background.background import learn
 from viewer.viewer_warmup import warm_up as warm_viewer
 
-PID: Final = os.getpid()
+PID = os.getpid()
 """Of who forks the parts."""
-PROCESSES: Final = (viewer_process, integrator_process, recognizer_process)
+PROCESSES: Final = (viewer_process, integrator_process, recognizer_process, decoder)
 SIZE: Final = (160, 120)
 """Of the pictures that are made up; what is compiled does for any."""
 
@@ -48,9 +50,20 @@ def warm_up() -> None:
         from animator import __main__ as animator_process
 
         animator_process.warm_up()
-    gc.collect()
-    gc.freeze()
+    settle()
 
 
-end_with(os.getppid())
+def begin(starter: int) -> None:
+    """Fork from now on, and end with who started this process, by its number, not before.
+
+    SIGTERM waits in each fork until that can heed it: said to all processes of a service, as by
+    systemd, it must not end who forks, and all forks with it.
+    """
+    global PID  # noqa: PLW0603 - a fork that forks in its turn has it anew
+    PID = os.getpid()
+    signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGTERM,))
+    end_with(starter)
+
+
+begin(os.getppid())
 warm_up()

@@ -11,7 +11,7 @@ from common.bus.message_codec import decode
 from tritrack.live.free_ports import with_free_endpoint
 from tritrack.live.process_table import Part
 from tritrack.live.supervise import PartFailed, Watched
-from tritrack.live.zygote import SPAWN
+from tritrack.live.zygote import SPAWN, Zygote
 from tritrack.outside.run_figures import RunFigures, step
 from tritrack.serving.site_status import Status, status_of
 from tritrack.serving.sites import Site
@@ -27,9 +27,10 @@ SITE: Final = "site"
 class Room:
     """A site that was started."""
 
-    def __init__(self, site: Site) -> None:
-        """Started now; an endpoint that it leaves open is chosen."""
+    def __init__(self, site: Site, zygote: Zygote | None = None) -> None:
+        """Started now, of that zygote if it is warm; an endpoint left open is chosen."""
         self.site = site
+        self._zygote = zygote
         self.figures = RunFigures()
         self.failure = ""
         """Why it does not run; "" while it does."""
@@ -80,7 +81,13 @@ class Room:
         settings = with_free_endpoint(self.site.settings)
         site = self.site._replace(settings=settings)
         part = Part(
-            self.site.name, site_main, (site, self._theirs), beats=True, nests=True, end_s=END_S
+            self.site.name,
+            site_main,
+            (site, self._theirs),
+            beats=True,
+            nests=True,
+            end_s=END_S,
+            zygote=self._zygote,
         )
         return Watched(part)
 

@@ -14,12 +14,16 @@ from rich.live import Live as LiveDisplay
 
 from common.config import SettingsError
 from tritrack.live.free_ports import refuse_held_metrics, refuse_held_ports, with_free_endpoint
+from tritrack.live.process_table import inherited
 from tritrack.live.table import table_of
+from tritrack.live.zygote import Zygote
 from tritrack.serving.served_rooms import House
 from tritrack.serving.sites import Sites, load_sites
 from tritrack.terminal import say, warn
 
 LOOK_S: Final = 0.1
+WARM_S: Final = 300.0
+"""So long rooms wait for the zygote at most: where all is compiled anew, that is done once."""
 CHANGED_S: Final = 1.0
 """How often is looked whether a file has changed."""
 
@@ -73,13 +77,15 @@ def serve(path: Path, console: Console) -> None:
     """
     file = SitesWatch(path)
     _refuse_what_is_held(file.sites)
+    zygote = Zygote(inherited, f"{__package__}.warmed_sites")
     with (
         _signals(console) as (stop, anew),
         LiveDisplay(console=console, transient=True) as display,
-        House(lambda told: say(console, told), lambda told: warn(console, told)) as house,
+        House(zygote, lambda told: say(console, told), lambda told: warn(console, told)) as house,
         _answers(file.sites, house),
     ):
-        house.become(file.sites.sites)
+        zygote.wait(stop, lambda: None, WARM_S)
+        house.become({} if stop.is_set() else file.sites.sites)
         while not stop.wait(LOOK_S):
             house.look()
             display.update(table_of(house.names, house.pulses, str(path)))

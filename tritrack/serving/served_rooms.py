@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Self
 
 from common.bus.control_messages import Pulse
+from tritrack.live.zygote import Zygote
 from tritrack.serving.room import Room
 from tritrack.serving.site_changes import changes
 from tritrack.serving.sites import Site
@@ -13,8 +14,11 @@ from tritrack.serving.sites import Site
 class House:
     """The rooms that are served, by their names."""
 
-    def __init__(self, say: Callable[[str], None], lament: Callable[[str], None]) -> None:
+    def __init__(
+        self, zygote: Zygote, say: Callable[[str], None], lament: Callable[[str], None]
+    ) -> None:
         """None yet; each piece of news is said, what went wrong is lamented."""
+        self._zygote = zygote
         self._rooms: dict[str, Room] = {}
         self._states: dict[str, str] = {}
         self._say, self._lament = say, lament
@@ -43,7 +47,7 @@ class House:
         stop, start = changes(wanted, {name: room.site for name, room in self._rooms.items()})
         self._end([self._rooms.pop(name) for name in stop])
         for site in start:
-            self._rooms[site.name] = Room(site)
+            self._rooms[site.name] = Room(site, self._zygote)
 
     def look(self) -> None:
         """See how each room is; what died is started again."""

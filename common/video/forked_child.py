@@ -1,0 +1,78 @@
+"""A child process that is forked of what this one was forked of: it begins loaded, and shares that.
+
+Where this process is a part of a run, its zygote (`tritrack/live/zygote.py`) is there to fork
+others too: a process with threads must not fork itself.
+"""
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from multiprocessing import forkserver
+from multiprocessing.connection import Connection
+from typing import Any, Final
+
+FORK: Final = multiprocessing.get_context("forkserver")
+
+
+class ForkedChild:
+    """A Python module run by a fork; to its starter what `subprocess.Popen` of it would be."""
+
+    def __init__(self, module: str, requests: int, answers: int, told: Sequence[str]) -> None:
+        """Start it.
+
+        Args:
+            module: Its `main` is run.
+            requests: Open file that becomes its standard input.
+            answers: Open file whose number is its first argument.
+            told: Further arguments.
+        """
+        files = Connection(os.dup(requests), writable=False), Connection(os.dup(answers))
+        self._process = FORK.Process(target=_run, args=(module, *files, tuple(told)), daemon=True)
+        self._process.start()
+        for one in files:
+            one.close()
+        self.pid = self._process.pid or 0
+
+    def kill(self) -> None:
+        """End it, from any thread."""
+        self._process.kill()
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Its exit code, negative the signal that killed it.
+
+        Raises:
+            TimeoutExpired: When it lives on.
+        """
+        self._process.join(timeout)
+        if self._process.exitcode is None:
+            raise subprocess.TimeoutExpired(str(self.pid), timeout or 0.0)
+        return self._process.exitcode
+
+
+def can_fork() -> bool:
+    """Whether this process was forked of one that forks others too, and may have children.
+
+    Where it has begun no server of forks itself, multiprocessing would begin one, as it looks for
+    no other: that of its own birth serves as well, and with it this process would die.
+    """
+    if forkserver.get_inherited_fds() is None or multiprocessing.current_process().daemon:
+        return False
+    server: Any = forkserver._forkserver
+    if server._forkserver_pid is None:
+        server.ensure_running = lambda: None
+    return True
+
+
+def _run(module: str, requests: Connection, answers: Connection, told: tuple[str, ...]) -> None:
+    os.setpgrp()  # what is said to all of a run's group is not for it
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))  # the zygote is deaf to it
+    silence = os.open(os.devnull, os.O_WRONLY)
+    for said in (1, 2):
+        os.dup2(silence, said)
+    sys.stdin = os.fdopen(os.dup(requests.fileno()))
+    sys.argv = [module, str(os.dup(answers.fileno())), *told]
+    import_module(module).main()

@@ -1,0 +1,21 @@
+"""What sites are forked from: what a run's parts have, and what its supervisor and metrics have.
+
+Imported by the zygote of a service alone (`tritrack/live/zygote.py`).
+"""
+
+from contextlib import suppress
+from typing import Final
+
+from common.settled import settle
+from tritrack.live import warmed
+from tritrack.offline import lockstep
+from tritrack.serving import site_process
+
+LOADED: Final = [warmed, lockstep, site_process]
+
+with suppress(ImportError):  # the metrics are an extra
+    from tritrack.outside import metrics_process
+
+    LOADED.append(metrics_process)
+
+settle()
