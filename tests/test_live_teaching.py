@@ -92,6 +92,10 @@ def test_a_recording_that_plays_as_live_teaches_a_posture(plan: Plan, tmp_path: 
     assert len(facts["takes"]) == 3
     assert all(take["margin"] > 0.0 for take in facts["takes"])
     assert load(out).names == (*KNOWN, "both_up")
+    again = plan._replace(add_to=out, again=True)
+    facts = teach_live("both_up", settings, out, again, Console(quiet=True), 0.0)
+    assert facts["again"]
+    assert load(out).names == (*KNOWN, "both_up")
 
 
 @pytest.mark.slow

@@ -82,7 +82,7 @@ def train(
 
 
 def teach(
-    posture: Annotated[str, typer.Argument(help="The new posture's name, as star_jump.")],
+    posture: Annotated[str, typer.Argument(help="The posture's name, as star_jump.")],
     out: Annotated[Path, typer.Option(help="The model file to write.", callback=writable_file)],
     takes: Annotated[
         list[Path] | None, typer.Argument(help="Clips of it or their runs, one a take.")
@@ -96,13 +96,18 @@ def teach(
     add_to: Annotated[
         Path, typer.Option(help="A model file, or shipped: what it knows is kept in --out.")
     ] = Path("shipped"),
+    again: Annotated[
+        bool,
+        typer.Option("--again", help="Learn a posture that it knows anew, by these takes alone."),
+    ] = False,
     recognizer: RecognizerName = "default",
     cache: Cache = CACHE,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Teach a model one posture more, by three takes of it or more, filmed or before cameras.
 
-    Says whether the takes agree, and which other posture the new one is nearest to.
+    Says whether the takes agree, and which other posture it is nearest to. With --again the
+    posture is one that the model knows: name new takes to replace it, old and new ones to add.
 
     Example: tritrack teach star_jump take1/ take2/ take3/ --out mine.npz
     """
@@ -112,7 +117,7 @@ def teach(
     from tritrack.training import teaching
     from tritrack.training.training import Plan
 
-    plan = Plan(None, recognizer, cache, add_to)
+    plan = Plan(None, recognizer, cache, add_to, again)
     if live is not None:
         from tritrack.training.live_teaching import teach_live
 
