@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from animator.bones import OF_JOINTS, joints_of, skeleton_of
 from animator.bvh import steady
-from animator.foot_contact import WANDERS_M, Stance, _held, stances
-from animator.planted_feet import planted
+from animator.skeleton.bones import OF_JOINTS, joints_of, skeleton_of
+from animator.skeleton.foot_contact import WANDERS_M, Stance, _held, stances
+from animator.skeleton.planted_feet import planted
 from common.body.body import JOINT_NAMES
 from common.body.extremities import ALL_JOINT_NAMES, extremities
 

@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 from test_own_landmarks import RIG
 
-from common.config import SilhouetteSettings
+from common.config.part_settings import SilhouetteSettings
 from common.raster.similarity import Mask
 from common.video.decoding import Image
 from synth.motion.motions import MOTION, performance

@@ -8,7 +8,8 @@ from acting import perform
 from rich.console import Console
 
 from common.bus.messages import Body
-from common.config import PageSettings, Settings
+from common.config.part_settings import PageSettings
+from common.config.settings import Settings
 from recognizer.model_file import load, save
 from recognizer.training.learning import train
 from synth.motion.streaming import streamed

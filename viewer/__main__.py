@@ -14,7 +14,7 @@ from common.bus.inbox import Inbox
 from common.bus.messages import Guide, Picture, ViewerNumber
 from common.bus.process import BEGIN_S, READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clip_facts import View, shortfall
 from common.video.clip_sources import footage_of

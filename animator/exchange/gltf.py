@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.bones import BONES, Motion, Skeleton, offset_m, rest_origins_m
+from animator.skeleton.bones import BONES, Motion, Skeleton, offset_m, rest_origins_m
 from animator.solids import unit_cylinder
 from animator.turns import arc
 from common.body.body import Vector

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from animator.bones import Joints
+from animator.skeleton.bones import Joints
 from common.body.body import Vector
 from common.body.extremities import ALL_JOINT_NAMES
 

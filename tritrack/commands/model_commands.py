@@ -5,7 +5,7 @@ from typing import Annotated, Final, Literal
 
 import typer
 
-from common import config
+from common.config import config_file
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import (
     CACHE,
@@ -121,7 +121,7 @@ def teach(
     if live is not None:
         from tritrack.training.live_teaching import teach_live
 
-        facts = teach_live(posture, config.load(live), out, plan, console, count_in)
+        facts = teach_live(posture, config_file.load(live), out, plan, console, count_in)
     else:
         facts = teaching.teach(posture, takes or [], out, plan, console)
     tell(facts, json_wanted, teaching.line(facts))

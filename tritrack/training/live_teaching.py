@@ -8,7 +8,7 @@ import numpy as np
 from rich.console import Console
 
 from common.bus.messages import Body
-from common.config import Settings
+from common.config.settings import Settings
 from recognizer.__main__ import MOVING
 from recognizer.features import Rows, rows
 from recognizer.learning_error import LearningError

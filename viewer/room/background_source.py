@@ -10,7 +10,7 @@ import numpy as np
 
 from common.atomic_file import replacing
 from common.bus.messages import Landmarks
-from common.config import SilhouetteSettings
+from common.config.part_settings import SilhouetteSettings
 from common.video.clip_facts import View
 from common.video.decoding import Decoder, Image
 from common.video.frame_cache import Reader

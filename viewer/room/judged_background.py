@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import cv2
 import numpy as np
 
-from common.config import SilhouetteSettings
+from common.config.part_settings import SilhouetteSettings
 from common.method import DEFAULT
 from common.raster.similarity import Mask
 from common.video.decoding import Image

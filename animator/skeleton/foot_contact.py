@@ -7,7 +7,7 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.bones import Joints
+from animator.skeleton.bones import Joints
 from common.body.body import JOINT_NAMES, Vector
 
 Side = Literal["l", "r"]

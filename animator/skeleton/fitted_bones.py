@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.bones import Joints, Skeleton
+from animator.skeleton.bones import Joints, Skeleton
 from common.body.body import Vector
 from common.body.extremities import ALL_JOINT_NAMES
 

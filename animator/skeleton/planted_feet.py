@@ -5,9 +5,9 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.bones import Joints, Skeleton
-from animator.fitted_bones import fitted
-from animator.foot_contact import SIDES, Stance, stances
+from animator.skeleton.bones import Joints, Skeleton
+from animator.skeleton.fitted_bones import fitted
+from animator.skeleton.foot_contact import SIDES, Stance, stances
 from common.body.body import Vector
 from common.body.extremities import ALL_JOINT_NAMES
 from common.nearest_rows import nearest
