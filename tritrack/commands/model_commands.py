@@ -49,6 +49,25 @@ def train(
 
     Example: tritrack train clips/*/ --out postures.npz
     """
+    if what != "postures":
+        _train_network(what, out, json_wanted)
+        return
+    if not runs:
+        raise typer.BadParameter("name clips or run folders to learn postures from")
+    refuse_without(*LEARN)
+    from tritrack.training.training import Plan, train_postures
+
+    facts = train_postures(runs, out, Plan(mode, recognizer, cache), console)
+    line = (
+        f"{len(facts['sequences'])} postures learnt, {len(facts['knows'])} known; written to {out}"
+    )
+    tell(facts, json_wanted, line)
+
+
+def _train_network(
+    what: Literal["proposals", "silhouettes", "landmarks"], out: Path, json_wanted: bool
+) -> None:
+    """Learn one of the networks in the package from people that are made up for it."""
     if what == "proposals":
         from tritrack.training.proposal_training import train_proposals
 
@@ -68,17 +87,6 @@ def train(
 
         facts = train_landmarks(out, 0, console)
         tell(facts, json_wanted, f"{facts['pictures']} pictures learnt, written to {out}")
-        return
-    if not runs:
-        raise typer.BadParameter("name clips or run folders to learn postures from")
-    refuse_without(*LEARN)
-    from tritrack.training.training import Plan, train_postures
-
-    facts = train_postures(runs, out, Plan(mode, recognizer, cache), console)
-    line = (
-        f"{len(facts['sequences'])} postures learnt, {len(facts['knows'])} known; written to {out}"
-    )
-    tell(facts, json_wanted, line)
 
 
 def teach(
