@@ -44,41 +44,43 @@ def with_full_paths(settings: Settings, path: Path) -> Settings:
     Raises:
         SettingsError: When a variable is not set, or the landmarks name no folder.
     """
-    folder = path.parent
-
-    def full(name: str) -> str:
-        filled = os.path.expandvars(name)
-        if "$" in filled:
-            raise SettingsError(f"{path}: {name} names a variable that is not set: export it")
-        return str(folder / filled) if name else ""
-
-    def camera(given: CameraSettings | None) -> CameraSettings | None:
-        if given is None:
-            return None
-        return msgspec.structs.replace(
-            given, source=full(given.source), background=full(given.background)
-        )
-
-    def landmarks(given: str) -> str:
-        if given in LANDMARK_SOURCES:
-            return given
-        if not Path(full(given)).is_dir():
-            known = ", ".join(LANDMARK_SOURCES)
-            raise SettingsError(
-                f"{path}: there is no folder {full(given)} of landmarks: write its path, or {known}"
-            )
-        return full(given)
-
     return msgspec.structs.replace(
         settings,
-        landmarks=landmarks(settings.landmarks),
-        clip=full(settings.clip),
-        calibration=full(settings.calibration),
-        opening=full(settings.opening),
-        camera_1=camera(settings.camera_1),
-        camera_2=camera(settings.camera_2),
+        landmarks=_landmarks(settings.landmarks, path),
+        clip=_full(settings.clip, path),
+        calibration=_full(settings.calibration, path),
+        opening=_full(settings.opening, path),
+        camera_1=_camera(settings.camera_1, path),
+        camera_2=_camera(settings.camera_2, path),
         recognizer=msgspec.structs.replace(
-            settings.recognizer, model=full(settings.recognizer.model)
+            settings.recognizer, model=_full(settings.recognizer.model, path)
         ),
-        bus=msgspec.structs.replace(settings.bus, keys=full(settings.bus.keys)),
+        bus=msgspec.structs.replace(settings.bus, keys=_full(settings.bus.keys, path)),
     )
+
+
+def _full(name: str, path: Path) -> str:
+    filled = os.path.expandvars(name)
+    if "$" in filled:
+        raise SettingsError(f"{path}: {name} names a variable that is not set: export it")
+    return str(path.parent / filled) if name else ""
+
+
+def _camera(given: CameraSettings | None, path: Path) -> CameraSettings | None:
+    if given is None:
+        return None
+    return msgspec.structs.replace(
+        given, source=_full(given.source, path), background=_full(given.background, path)
+    )
+
+
+def _landmarks(given: str, path: Path) -> str:
+    if given in LANDMARK_SOURCES:
+        return given
+    folder = _full(given, path)
+    if not Path(folder).is_dir():
+        known = ", ".join(LANDMARK_SOURCES)
+        raise SettingsError(
+            f"{path}: there is no folder {folder} of landmarks: write its path, or {known}"
+        )
+    return folder
