@@ -19,7 +19,7 @@ from common.bus.message_codec import TOPICS
 from common.bus.messages import Body, Performance, Picture, Posture, Report
 from common.bus.process import READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
-from common.config import Settings
+from common.config.settings import Settings
 from common.rig.camera import paper_rig
 from common.settled import settle
 

@@ -7,10 +7,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from animator.bones import BONES, Joints, Motion, Skeleton, motion_of, offset_m, skeleton_of
 from animator.even_steps import EvenSteps, even_steps
 from animator.inbetween import at, between
-from animator.planted_feet import Planted, on_its_feet, planted
+from animator.skeleton.bones import (
+    BONES,
+    Joints,
+    Motion,
+    Skeleton,
+    motion_of,
+    offset_m,
+    skeleton_of,
+)
+from animator.skeleton.planted_feet import Planted, on_its_feet, planted
 from common.body.body import Vector
 
 ROOT_CHANNELS: Final = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"

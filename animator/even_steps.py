@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.bones import Joints
+from animator.skeleton.bones import Joints
 from common.body.body import Vector
 
 MOST_FRAMES: Final = 1_000_000

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
-from animator.bones import Motion
+from animator.skeleton.bones import Motion
 from common.body.body import Vector
 
 Frames = NDArray[np.int64]

@@ -29,8 +29,8 @@ import cv2
 import msgspec
 import numpy as np
 
-from common import config
 from common.bus.messages import ViewerNumber
+from common.config import config_file
 from common.method import DEFAULT, PAPER, Method, departures
 from tritrack.accuracy.accuracy import compare, summary
 from tritrack.offline.lockstep import Decoders, track_clip
@@ -83,7 +83,7 @@ def measured(
     found: dict[str, list[tuple[Any, float, int]]] = {}
     with Decoders() as decoders:
         for clip in clips:
-            settings = overridden(config.load(clip), "default", size)
+            settings = overridden(config_file.load(clip), "default", size)
             began_s = time.process_time()
             done = track_clip(settings, decoders, views, method=row.method)
             spent_s = time.process_time() - began_s

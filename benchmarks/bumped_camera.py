@@ -22,7 +22,7 @@ import numpy as np
 
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Body
-from common.config import Settings
+from common.config.settings import Settings
 from common.rig.camera import arrays_of
 from common.rig.rig_file import load_rig
 from tritrack.offline.lockstep import Decoders, track_clip

@@ -24,7 +24,7 @@ from rich.console import Console
 
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Body
-from common.config import Settings
+from common.config.settings import Settings
 from common.video.clips import open_clip
 from tritrack.accuracy.accuracy import JOINTS
 from tritrack.live.table import table_of_rows

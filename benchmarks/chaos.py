@@ -24,7 +24,8 @@ from rich.console import Console
 from common.bus.bus import BusError, open_client
 from common.bus.control_messages import Pulse
 from common.bus.messages import Body
-from common.config import BusSettings, PageSettings, Settings
+from common.config.part_settings import BusSettings, PageSettings
+from common.config.settings import Settings
 from common.video.clips import open_clip
 from tritrack import demo
 from tritrack.live.free_ports import free_settings

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from common.config import Settings
+from common.config.settings import Settings
 from common.rig.camera import Rig, project
 from synth.motion.motions import EMPTY, POSTURES, Motion, performance
 from synth.person.people import Colour, Look, Person, person

@@ -25,7 +25,7 @@ from rich.console import Console
 
 from animator.take import Take, depth_of, take_of
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS
-from common.config import Settings
+from common.config.settings import Settings
 from common.rig.camera import Rig, project
 from synth.motion.motions import Motion
 from synth.person.people import person

@@ -18,7 +18,8 @@ from rich.console import Console
 
 from common.bus.live_bus import NUMBER_BYTES
 from common.bus.message_codec import MAX_BYTES
-from common.config import BusSettings, PageSettings, Settings
+from common.config.part_settings import BusSettings, PageSettings
+from common.config.settings import Settings
 from tritrack import demo
 from tritrack.live.free_ports import free_settings
 from tritrack.live.session import live

@@ -13,10 +13,10 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.bones import joints_of
 from animator.bvh import steady
-from animator.foot_contact import SIDES, stances
-from animator.planted_feet import planted
+from animator.skeleton.bones import joints_of
+from animator.skeleton.foot_contact import SIDES, stances
+from animator.skeleton.planted_feet import planted
 from common.body.body import JOINT_NAMES
 from common.body.extremities import ALL_JOINT_NAMES
 from tritrack.store.joint_arrays import all_joints_m

@@ -14,7 +14,7 @@ from unittest.mock import patch
 
 from numba.core.dispatcher import Dispatcher
 
-from common.config import Settings
+from common.config.settings import Settings
 from integrator import merge
 from recognizer import __main__ as recognizer
 from viewer import track

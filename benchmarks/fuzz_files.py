@@ -33,7 +33,8 @@ from mutations import ODD, damaged, strange
 from rich.console import Console
 
 import recognizer.__main__ as recogniser
-from common.config import Settings, load
+from common.config.config_file import load
+from common.config.settings import Settings
 from common.notes.notes_file import load_notes
 from common.rig.rig_file import load_rig
 from common.video.clips import open_clip

@@ -41,7 +41,7 @@ from common.bus.control_messages import (
 )
 from common.bus.message_codec import TOPICS, MalformedMessage, decode, encode
 from common.bus.messages import Body, Guide, Message, Picture, Report
-from common.config import load
+from common.config.config_file import load
 from common.method import METHODS
 from common.rig.camera import Rig
 from common.video.clips import open_clip

@@ -22,7 +22,7 @@ import numpy as np
 from common.body.body import POSE_INDEX, rest_pose
 from common.body.kinematics import ARM_LIMBS
 from common.body.proportions import LOWER_LEG_HEIGHT, UPPER_LEG_HEIGHT, body_vector, thesis_bdp
-from common.config import Settings
+from common.config.settings import Settings
 from common.raster.bits import count, pack_words
 from common.raster.kernel import draw_body, view_of
 from integrator.fit.silhouette_pair import products

@@ -25,9 +25,10 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 import msgspec
 import numpy as np
 
-from common import config
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Body, Report
+from common.config import config_file
+from common.config.settings import Settings
 from common.rig.camera import Rig
 from common.video.clip_facts import both_cameras
 from common.video.clips import open_clip
@@ -83,7 +84,7 @@ def followed(clips: Sequence[Path], source: str, size: str | None) -> dict[str, 
     found: dict[str, list[Compared]] = {"alone": [], "both": []}
     with Decoders() as decoders:
         for clip in clips:
-            settings = overridden(config.load(clip), "default", size)
+            settings = overridden(config_file.load(clip), "default", size)
             settings = msgspec.structs.replace(settings, landmarks=source)
             single = Alone(rig_of(clip, decoders, settings))
             done = track_clip(settings, decoders, watch=single.watch)
@@ -94,7 +95,7 @@ def followed(clips: Sequence[Path], source: str, size: str | None) -> dict[str, 
     return found
 
 
-def rig_of(clip: Path, decoders: Decoders, settings: config.Settings) -> Rig:
+def rig_of(clip: Path, decoders: Decoders, settings: Settings) -> Rig:
     """Both cameras of a calibrated clip."""
     rig = both_cameras(open_clip(settings, decoders.of[1]))
     if rig is None:

@@ -17,7 +17,7 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 import cv2
 import numpy as np
 
-from common.config import Settings
+from common.config.settings import Settings
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from viewer.background.occluded_background import learn_uncovered

@@ -18,7 +18,8 @@ import numpy as np
 
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Body, Guide, Report
-from common.config import BodySettings, Settings
+from common.config.part_settings import BodySettings
+from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clips import open_clip
 from integrator import merge, merge_state

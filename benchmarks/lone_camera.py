@@ -23,7 +23,7 @@ import numpy as np
 from camera_loss import signs_of
 from rich.console import Console
 
-from common.config import load
+from common.config.config_file import load
 from common.method import METHODS
 from common.rig.camera import Camera
 from common.video.clips import open_clip

@@ -14,7 +14,8 @@ from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES
 from common.body.extremities import EXTREMITY_NAMES
 from common.bus.message_codec import TOPICS
 from common.bus.messages import PROTOCOL
-from common.config import BusSettings, Settings
+from common.config.part_settings import BusSettings
+from common.config.settings import Settings
 
 
 def schema() -> dict[str, Any]:

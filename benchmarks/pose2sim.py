@@ -19,9 +19,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from common import config
 from common.body.proportions import body_vector
 from common.bus.messages import Body, Report
+from common.config import config_file
 from common.raster.kernel import draw_body, view_of
 from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
@@ -193,7 +193,7 @@ def main() -> None:
     found: dict[str, Pair] = {}
     with Decoders() as decoders:
         for path in write_settings(asked.data.resolve(), asked.out, asked.size, asked.every):
-            settings = config.load(path)
+            settings = config_file.load(path)
             rows: list[Row] = []
             tracked = track_clip(settings, decoders, watch=lambda *row, to=rows: to.append(row))
             write_run(asked.out / path.stem, tracked.bodies, settings, tracked.facts)

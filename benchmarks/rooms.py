@@ -24,7 +24,7 @@ import psutil
 from prometheus_client.parser import text_string_to_metric_families
 from rich.console import Console
 
-from common.config import size_of
+from common.config.picture_size import size_of
 from synth.write import ClipSet, write_set
 from tritrack.live.table import table_of_rows
 

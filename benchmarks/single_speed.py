@@ -16,7 +16,8 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
 from rich.console import Console
 
-from common.config import SettingsError, load
+from common.config.config_file import load
+from common.config.settings_error import SettingsError
 from common.video.clip_sources import ClipError
 from common.video.decoding import DecoderDied, Undecodable
 from tritrack.bench.single_bench import followed, parts_ms

@@ -24,7 +24,8 @@ from rich.console import Console
 
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Body, Guide, Report, ViewerNumber
-from common.config import PageSettings, Settings
+from common.config.part_settings import PageSettings
+from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip
 from common.video.clips import open_clip

@@ -15,11 +15,11 @@ import numpy as np
 from house_figure import save
 from numpy.typing import NDArray
 
-from animator.foot_contact import SIDES, stances
-from animator.planted_feet import planted
+from animator.skeleton.foot_contact import SIDES, stances
+from animator.skeleton.planted_feet import planted
 from common.body.body import ANGLE_INDEX, JOINT_NAMES, LIMB_ENDS
 from common.bus.messages import Body, Report
-from common.config import Settings
+from common.config.settings import Settings
 from common.raster.silhouette_report import unpack
 from common.video.decoding import Image
 from recognizer.__main__ import SHIPPED, step

@@ -23,3 +23,15 @@ def is_exposed(endpoint: str) -> bool:
     """Whether other machines may reach an endpoint, as tcp/192.168.1.5:7447."""
     where = ADDRESS.fullmatch(endpoint)
     return where is not None and not is_loopback(where["host"])
+
+
+def address_of(text: str) -> tuple[str, int]:
+    """Host and port of an address as it is written, `127.0.0.1:9464`.
+
+    Raises:
+        ValueError: When it is none.
+    """
+    host, _, port = text.rpartition(":")
+    if not (host and port.isdecimal() and 0 < int(port) < 65536):
+        raise ValueError(f"metrics must look like 127.0.0.1:9464, got {text!r}")
+    return host, int(port)

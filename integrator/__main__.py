@@ -9,7 +9,7 @@ from common.bus.control_messages import Cameras, Command
 from common.bus.messages import Guide, ViewerNumber
 from common.bus.process import PAGE_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS
 from common.settled import settle
 from common.video.clip_facts import Clip

@@ -8,7 +8,7 @@ import numpy as np
 from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Report, ViewerNumber
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS
 from common.raster.kernel import draw_body, view_of
 from common.raster.silhouette_report import pack, silhouette_report, unpack

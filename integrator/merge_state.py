@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from common.body.body import ANGLE_NAMES, Vector
 from common.bus.messages import Facing, ScaleSource
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import Method
 from common.rig.camera import Rig
 from integrator.frame_numbers import FrameTimes

@@ -15,7 +15,7 @@ from common.bus.inbox import Inbox
 from common.bus.messages import Body, Performance, Posture
 from common.bus.process import READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS
 from common.settled import settle
 from recognizer import events, spotting

@@ -6,7 +6,7 @@ from pathlib import Path
 import zenoh
 from meeting import free_endpoint
 
-from common.config import BusSettings
+from common.config.part_settings import BusSettings
 
 
 def with_keys(folder: Path, endpoint: str = "") -> BusSettings:

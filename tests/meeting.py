@@ -12,7 +12,7 @@ from moving import random_joints
 from common.body.body import rest_pose
 from common.bus.bus import open_hub
 from common.bus.messages import Body
-from common.config import BusSettings
+from common.config.part_settings import BusSettings
 
 HZ = 30.0
 

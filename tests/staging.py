@@ -11,7 +11,7 @@ from posing import posed
 from common.body.body import Bdp, Vector
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body, Box, Guide, Report, ViewerNumber
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS, Method
 from common.raster.kernel import draw_body, view_of
 from common.raster.silhouette_report import box_of, pack

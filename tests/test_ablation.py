@@ -8,7 +8,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import DEFAULT, PAPER, Method, Mode, departures
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.pose_arrays import poses

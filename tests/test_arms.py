@@ -12,7 +12,7 @@ from posing import BODY, angle, laid_over, picture, posed
 import viewer.paper.posed_model
 from common.body.body import LIMBS, POSE_INDEX, Vector
 from common.body.kinematics import segments
-from common.config import SearchSettings
+from common.config.part_settings import SearchSettings
 from viewer.paper.arms import facade_arms, flank_arms, inward_limit_deg
 
 PAPERS = SearchSettings()

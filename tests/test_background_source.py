@@ -10,7 +10,8 @@ import pytest
 from spoiling import Film, copied, film_of, refilmed, write_film
 
 from common.body.body import JOINT_NAMES
-from common.config import CameraSettings, Settings, SilhouetteSettings
+from common.config.part_settings import CameraSettings, SilhouetteSettings
+from common.config.settings import Settings
 from common.video.clip_facts import View
 from common.video.clips import open_clip
 from common.video.decoding import ALL, Decoded, Decoder

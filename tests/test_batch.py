@@ -8,7 +8,7 @@ from rich.console import Console
 from spoiling import copied, refilmed
 
 from common.bus.messages import ViewerNumber
-from common.config import Settings
+from common.config.settings import Settings
 from tritrack.offline.batch import track_all
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.unfinished.work import Course

@@ -20,7 +20,7 @@ from common.bus.inbox import BOUND, Alive, Inbox
 from common.bus.mailbox import Mailbox
 from common.bus.message_codec import MAX_BYTES, encode
 from common.bus.messages import Guide, Picture, Posture, Report
-from common.config import BusSettings
+from common.config.part_settings import BusSettings
 
 ROOM = "hall"
 SOON_S = 5.0
@@ -251,7 +251,7 @@ def test_the_clock_answers_and_survives_a_bad_question(
 PART = """
 import sys, time
 from common.bus.bus import open_client
-from common.config import BusSettings
+from common.config.part_settings import BusSettings
 with open_client(BusSettings(sys.argv[1]), sys.argv[2], 5.0) as bus:
     bus.announce("viewer-1")
     time.sleep(60)

@@ -20,7 +20,7 @@ from common.bus.control_messages import ClockAnswer, ClockQuestion, Ended, Pulse
 from common.bus.inbox import Alive, Inbox
 from common.bus.message_codec import TOPICS, encode, key_of
 from common.bus.messages import Guide, Message, Picture, Report
-from common.config import BusSettings
+from common.config.part_settings import BusSettings
 
 ROOM = "hall"
 SOON_S = 5.0

@@ -17,7 +17,7 @@ from common.bus.bus import BusError, open_client, open_hub
 from common.bus.bus_keys import HUB, PARTS, KeysError, Part, refuse_missing
 from common.bus.inbox import Alive
 from common.bus.messages import Body
-from common.config import BusSettings
+from common.config.part_settings import BusSettings
 from tritrack import subscribe
 from tritrack.keys.authority import make_keys
 

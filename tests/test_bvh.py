@@ -9,9 +9,9 @@ from clients import answer_of
 from moving import BODY, random_joints
 from scipy.spatial.transform import Rotation
 
-from animator.bones import joints_of
 from animator.bvh import bvh_text, euler_zxy_deg, steady
 from animator.even_steps import NoMotion
+from animator.skeleton.bones import joints_of
 from common.body.body import JOINT_NAMES, rest_pose
 from common.body.kinematics import joints
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from spoiling import changed, copied, edit_json
 
-from common.config import Settings
+from common.config.settings import Settings
 from common.video.clip_sources import ClipError
 from tritrack.offline import clip_cache
 from tritrack.offline.clip_cache import key_of, read, write

@@ -9,7 +9,8 @@ import cv2
 import numpy as np
 import pytest
 
-from common.config import CameraSettings, Settings
+from common.config.part_settings import CameraSettings
+from common.config.settings import Settings
 from common.rig.camera import paper_rig, project
 from common.video.clip_facts import Clip, View, shortfall
 from common.video.clip_sources import ClipError

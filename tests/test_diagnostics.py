@@ -1,7 +1,8 @@
 """What is odd about a performance, a line each."""
 
 from common.bus.messages import Box, Report
-from common.config import BodySettings, Settings
+from common.config.part_settings import BodySettings
+from common.config.settings import Settings
 from common.method import DEFAULT
 from common.rig.camera import paper_rig
 from integrator import diagnostics, merge_state

@@ -11,7 +11,7 @@ from animator.page.door import (
     is_own,
     refuse_port,
 )
-from common.config import PageSettings
+from common.config.part_settings import PageSettings
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,8 @@ import msgspec
 import pytest
 from spoiling import copied, edit_json
 
-from common.config import CameraSettings, Settings
+from common.config.part_settings import CameraSettings
+from common.config.settings import Settings
 from common.rig.rig_file import load_rig
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip

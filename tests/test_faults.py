@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from common.config import SettingsError
+from common.config.settings_error import SettingsError
 from tritrack.faults import Fault, Unfollowed, code_of, refuse_unfollowed, told
 
 

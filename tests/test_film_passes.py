@@ -7,7 +7,7 @@ import pytest
 
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Body, Report
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS, Mode
 from common.notes.notes import Note, Notes
 from common.raster.silhouette_report import silhouette_report

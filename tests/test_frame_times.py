@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from spoiling import write_film, write_uneven
 
-from common.config import CameraSettings, Settings
+from common.config.part_settings import CameraSettings
+from common.config.settings import Settings
 from common.video.clip_facts import View, shortfall
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, VideoInfo

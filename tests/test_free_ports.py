@@ -8,7 +8,8 @@ import pytest
 
 from animator.page.door import PageError
 from common.bus.bus_keys import KeysError
-from common.config import BusSettings, PageSettings, Settings
+from common.config.part_settings import BusSettings, PageSettings
+from common.config.settings import Settings
 from tritrack.live.free_ports import (
     PortHeld,
     free_settings,

@@ -9,9 +9,9 @@ from clients import answer_of
 from moving import random_joints
 from scipy.spatial.transform import Rotation
 
-from animator.bones import BONES, joints_of
 from animator.bvh import steady
 from animator.exchange.gltf import gltf_bytes
+from animator.skeleton.bones import BONES, joints_of
 from common.body.body import JOINT_NAMES
 
 WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}

@@ -6,7 +6,7 @@ import msgspec
 
 from common.body.proportions import thesis_bdp
 from common.bus.control_messages import Ended
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS
 from common.rig.camera import paper_rig
 from integrator import merge_state

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 from test_background import HEIGHT, WIDTH, shot
 
-from common.config import SilhouetteSettings
+from common.config.part_settings import SilhouetteSettings
 from common.method import DEFAULT
 from viewer.background.hidden_background import learn_behind
 from viewer.silhouette import silhouette

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from animator.bones import BONES, Motion
 from animator.inbetween import between, key_frames
+from animator.skeleton.bones import BONES, Motion
 
 
 @pytest.mark.parametrize(("frames", "thesis"), [(82, 17), (200, 33)], ids=["walking", "dancing"])

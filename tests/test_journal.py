@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from common.bus.messages import Body, Posture
-from common.config import Settings
+from common.config.settings import Settings
 from tritrack.store.journal import BEFORE, NAME, Head, Journal, put_aside, read_journal
 from tritrack.store.past_run import open_run
 from tritrack.store.pose_arrays import poses

@@ -1,11 +1,13 @@
 """Which background is taken, held against a room of which one is known to be wrong."""
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
+import pytest
 from test_own_landmarks import RIG
 
-from common.config import SilhouetteSettings
+from common.config.part_settings import SilhouetteSettings
 from common.raster.similarity import Mask
 from common.video.decoding import Image
 from synth.motion.motions import MOTION, performance
@@ -15,6 +17,7 @@ from viewer.background.background import Background, learn
 from viewer.background.occluded_background import learn_around
 from viewer.room.judged_background import best_of
 from viewer.room.room_people import AROUND, looked_at
+from viewer.silhouette import silhouette
 
 EMPTY = SilhouetteSettings()
 
@@ -33,8 +36,26 @@ def test_a_background_with_somebody_in_it_gives_way_to_the_empty_room() -> None:
     empty, frames, _ = film()
     right, wrong = learn([empty]), learn(frames[:1])
     looks = looked_at(frames)
-    for makers in ([lambda: wrong, lambda: right], [lambda: right, lambda: wrong]):
-        assert best_of(makers, frames, looks, EMPTY) is right
+    alone = [[[lambda: wrong], [lambda: right]], [[lambda: right], [lambda: wrong]]]
+    together = [[[lambda: wrong, lambda: right]], [[lambda: right, lambda: wrong]]]
+    for groups in (*alone, *together):
+        assert best_of(groups, frames, looks, EMPTY) is right
+
+
+def test_each_background_is_judged_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a group all are, though the first is good."""
+    empty, frames, _ = film()
+    right, wrong = learn([empty]), learn(frames[:1])
+    looks, begun = looked_at(frames), []
+    init = silhouette.init
+
+    def counted(background: Background, *rest: Any) -> Any:
+        begun.append(background)
+        return init(background, *rest)
+
+    monkeypatch.setattr(silhouette, "init", counted)
+    assert best_of([[lambda: right, lambda: wrong]], frames, looks, EMPTY) is right
+    assert len(begun) == 2
 
 
 def test_what_is_good_is_taken_at_once() -> None:
@@ -45,7 +66,7 @@ def test_what_is_good_is_taken_at_once() -> None:
     def never() -> Background:
         raise AssertionError("a second background was made")
 
-    assert best_of([lambda: right, never], frames, looked_at(frames), EMPTY) is right
+    assert best_of([[lambda: right], [never]], frames, looked_at(frames), EMPTY) is right
 
 
 def test_the_room_around_somebody_is_known_and_behind_them_it_is_flagged() -> None:

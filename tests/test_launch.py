@@ -16,7 +16,9 @@ import zenoh
 from rich.console import Console
 
 from common.bus.messages import Body, ViewerNumber
-from common.config import BusSettings, PageSettings, Settings, SettingsError
+from common.config.part_settings import BusSettings, PageSettings
+from common.config.settings import Settings
+from common.config.settings_error import SettingsError
 from tritrack.live.free_ports import PortHeld, free_settings
 from tritrack.live.launch import Heard, nothing_heard, run
 from tritrack.live.process_table import Part

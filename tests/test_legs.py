@@ -7,7 +7,7 @@ from posing import BODY, SIZE, angle, laid_over, picture, posed
 from common.body.body import LIMBS, POSE_INDEX
 from common.body.kinematics import segments
 from common.body.proportions import body_vector, thesis_bdp
-from common.config import SearchSettings
+from common.config.part_settings import SearchSettings
 from viewer.paper.legs import facade_legs, flank_legs, squats
 
 PAPERS = SearchSettings()

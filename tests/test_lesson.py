@@ -49,9 +49,23 @@ def test_two_takes_are_too_few(known: PostureModel) -> None:
         taught(known, NEW, [perform(NEW, n) for n in range(2)])
 
 
-def test_a_name_that_is_known_is_refused(known: PostureModel) -> None:
-    with pytest.raises(LearningError, match="squat is known already"):
-        taught(known, "squat", [perform("squat", n) for n in range(3)])
+def test_a_posture_that_was_taught_badly_is_learnt_anew_in_its_place_and_the_others_stay(
+    known: PostureModel,
+) -> None:
+    """Here what is called a squat is a kick at first: nothing of that is left."""
+    kicks, squats = ([perform(posture, n) for n in range(3)] for posture in (NEW, "squat"))
+    badly = taught(known, "squat", kicks).model
+    assert name(badly, perform(NEW, 9)) == "squat"
+    lesson = taught(badly, "squat", squats)
+    assert lesson.mistaken == ()
+    assert lesson.model.names == KNOWN
+    assert name(lesson.model, perform("squat", 9)) == "squat"
+    fresh = taught(known, "squat", squats).model
+    for array in ("start", "transition", "mean", "variance", "fit"):
+        assert np.array_equal(getattr(lesson.model, array), getattr(fresh, array))
+        assert np.array_equal(getattr(lesson.model, array)[1:], getattr(known, array)[1:])
+    for array in ("rest_mean", "rest_variance"):
+        assert np.array_equal(getattr(lesson.model, array), getattr(known, array))
 
 
 def test_a_take_without_motion_is_named(known: PostureModel) -> None:

@@ -205,6 +205,8 @@ def test_pictures_and_body_move_an_event_appears_and_the_end_is_played(
     assert looking.until("!document.querySelector('#ending').hidden")
     assert "it was dark <b>" in looking.ask("document.querySelector('#ending').innerText")
     assert looking.until("document.querySelector('#words').innerText.includes('over')")
+    looking.key("s", 83)  # nobody is there any more who could save
+    begun_s = time.monotonic()
     looking.key("Home", 36)
     assert looking.until("document.body.dataset.frame === '0'")
     looking.drawn()
@@ -220,6 +222,8 @@ def test_pictures_and_body_move_an_event_appears_and_the_end_is_played(
     assert looking.until("document.body.dataset.frame === '29'"), "the player does not play"
     looking.ask("document.querySelector('#events button').click()")
     assert looking.until("document.body.dataset.frame === '3'"), "an event leads to its begin"
+    time.sleep(max(0.0, begun_s + 4.5 - time.monotonic()))
+    assert looking.ask("document.querySelector('#told').textContent") == ""
 
 
 @pytest.mark.slow
@@ -258,7 +262,10 @@ def test_another_run_at_the_same_address_begins_afresh(page: LivePage, looking: 
 def test_buttons_ask_and_answers_are_shown(page: LivePage, looking: Looking) -> None:
     page.show(snapshot_at(0))
     assert looking.until("!document.querySelector('#actions').hidden")
-    looking.ask("document.querySelector('#record').click()")
+    looking.ask("document.querySelector('#speed').focus()")
+    looking.key("s", 83)  # letters choose a speed there
+    looking.ask("document.activeElement.blur()")
+    looking.key("r", 82)
     assert until(lambda: [each.what for each in page.asked()]) == ["record"]
     page.answer(Answer(what="record", well=True, text="recording <i>"))
     assert looking.until("document.querySelector('#record').ariaPressed === 'true'")

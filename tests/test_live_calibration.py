@@ -9,7 +9,8 @@ from rich.console import Console
 from staging import PERIOD_S, RIG
 from test_rig_search import GOOD, both
 
-from common.config import PageSettings, Settings
+from common.config.part_settings import PageSettings
+from common.config.settings import Settings
 from common.method import METHODS
 from common.rig.camera import Rig
 from common.rig.picture_shift import Shift

@@ -8,7 +8,8 @@ from acting import perform
 from rich.console import Console
 
 from common.bus.messages import Body
-from common.config import PageSettings, Settings
+from common.config.part_settings import PageSettings
+from common.config.settings import Settings
 from recognizer.model_file import load, save
 from recognizer.training.learning import train
 from synth.motion.streaming import streamed
@@ -91,6 +92,10 @@ def test_a_recording_that_plays_as_live_teaches_a_posture(plan: Plan, tmp_path: 
     facts = teach_live("both_up", settings, out, plan, Console(quiet=True), 0.0)
     assert len(facts["takes"]) == 3
     assert all(take["margin"] > 0.0 for take in facts["takes"])
+    assert load(out).names == (*KNOWN, "both_up")
+    again = plan._replace(add_to=out, again=True)
+    facts = teach_live("both_up", settings, out, again, Console(quiet=True), 0.0)
+    assert facts["again"]
     assert load(out).names == (*KNOWN, "both_up")
 
 

@@ -11,7 +11,8 @@ import pytest
 from rich.console import Console
 from spoiling import Film, copied, cut_off, edit_json, refilmed
 
-from common.config import Settings, SettingsError
+from common.config.settings import Settings
+from common.config.settings_error import SettingsError
 from tritrack.offline.batch import track_all
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.overrides import overridden

@@ -26,7 +26,7 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Guide
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import DEFAULT, Mode
 from common.rig.camera import project
 from integrator import merge, merge_state

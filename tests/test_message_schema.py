@@ -16,7 +16,8 @@ from test_message_codec import SAID
 
 from common.bus.message_codec import TOPICS, encode
 from common.bus.messages import Message
-from common.config import PageSettings, Settings
+from common.config.part_settings import PageSettings
+from common.config.settings import Settings
 from tritrack.live.free_ports import free_settings
 from tritrack.live.session import live
 

@@ -20,7 +20,9 @@ from rich.console import Console
 from spoiling import copied, edit_json, refilmed
 from test_metrics_server import asked, free_address
 
-from common.config import PageSettings, Settings, SettingsError
+from common.config.part_settings import PageSettings
+from common.config.settings import Settings
+from common.config.settings_error import SettingsError
 from tritrack.commands.live_commands import metrics
 from tritrack.live import session
 from tritrack.live.free_ports import free_settings

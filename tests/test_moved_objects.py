@@ -3,7 +3,7 @@
 import numpy as np
 from test_background import HEIGHT, WIDTH, passer_by, room, shot, walker
 
-from common.config import SilhouetteSettings
+from common.config.part_settings import SilhouetteSettings
 from common.method import DEFAULT
 from viewer.background.background import Background, learn
 from viewer.background.moved_objects import AT_REST_S, Patch, patches_of

@@ -4,7 +4,7 @@ import numpy as np
 from local_bus import LocalBus
 
 from common.bus.control_messages import Command
-from common.config import Settings
+from common.config.settings import Settings
 from viewer.background.new_background import Learning
 
 SETTINGS = Settings()

@@ -4,10 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from common import config
 from common.body.proportions import thesis_bdp
 from common.bus.messages import Body
-from common.config import Settings, SettingsError
+from common.config import config_file
+from common.config.settings import Settings
+from common.config.settings_error import SettingsError
 from common.video.clip_sources import ClipError
 from tritrack.offline.lockstep import Decoders, measured_before, track_clip
 from tritrack.offline.opening_clip import body_of
@@ -62,7 +63,7 @@ def test_an_opening_clip_has_none_itself(tmp_path: Path) -> None:
 def test_the_opening_is_named_from_where_the_settings_are(tmp_path: Path) -> None:
     file = tmp_path / "run.toml"
     file.write_text('clip = "walk"\nopening = "tpose"\n')
-    assert config.load(file).opening == str(tmp_path / "tpose")
+    assert config_file.load(file).opening == str(tmp_path / "tpose")
 
 
 def test_a_missing_opening_clip_is_named(clip: Path) -> None:

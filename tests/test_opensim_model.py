@@ -8,10 +8,10 @@ import pytest
 from clients import answer_of
 from moving import random_joints
 
-from animator.bones import joints_of
 from animator.bvh import steady
 from animator.exchange.marker_files import forward_x, trc_text
 from animator.exchange.opensim_model import mot_text, osim_text
+from animator.skeleton.bones import joints_of
 from common.body.body import JOINT_NAMES
 
 PLAYED = """

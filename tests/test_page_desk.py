@@ -16,7 +16,8 @@ from test_page_server import free_port
 from common.bus.control_messages import Answer, Command, Wish
 from common.bus.messages import Body
 from common.bus.process import ProcessContext
-from common.config import PageSettings, Settings
+from common.config.part_settings import PageSettings
+from common.config.settings import Settings
 from tritrack.live.free_ports import free_settings
 from tritrack.live.launch import nothing_heard
 from tritrack.live.page_desk import LAST_S, SAVED, PageDesk

@@ -7,7 +7,7 @@ import pytest
 from spoiling import copied, refilmed
 
 from common.bus.messages import ViewerNumber
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import Mode
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.unfinished.state_codec import packed, unpacked

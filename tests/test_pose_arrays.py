@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from common.bus.messages import Body, Lifting
-from common.config import Settings
+from common.config.settings import Settings
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store import pose_arrays
 from tritrack.store.joint_arrays import on_disk

@@ -15,7 +15,7 @@ from common.body.body import JOINT_NAMES, POSE_INDEX, Vector
 from common.body.kinematics import joints as joints_of
 from common.body.proportions import body_vector, stature
 from common.bus.message_codec import decode, encode
-from common.config import Settings
+from common.config.settings import Settings
 from common.raster.similarity import Mask
 from integrator.proposal import pose_proposal
 from integrator.proposal.pose_proposal import (

@@ -21,7 +21,7 @@ from integrator.proposal.pose_proposal import CONFIDENT
 
 VECTOR = body_vector(BODY)
 REHEARSED = """
-from common.config import Settings
+from common.config.settings import Settings
 from integrator.fit import pose_refinement, visual_hull
 from integrator.integrator_warmup import warm_up
 warm_up(Settings(), (160, 120))

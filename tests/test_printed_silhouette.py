@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from test_silhouette import HEIGHT, WIDTH, body, dressed, room, shot
 
-from common.config import SilhouetteSettings
+from common.config.part_settings import SilhouetteSettings
 from common.method import PAPER
 from common.raster.similarity import Mask
 from viewer.background.background import learn

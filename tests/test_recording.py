@@ -14,7 +14,7 @@ from common.body.extremities import EXTREMITY_NAMES, extremities
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body, Posture, Report
-from common.config import Settings
+from common.config.settings import Settings
 from tritrack.store.foxglove_scene import SCENE
 from tritrack.store.recording import Head, RecordingError, read_recording, recording_to
 

@@ -11,7 +11,8 @@ from local_bus import LocalBus
 from rich.console import Console
 
 from common.bus.messages import Body, Posture, Report, ViewerNumber
-from common.config import PageSettings, Settings
+from common.config.part_settings import PageSettings
+from common.config.settings import Settings
 from tritrack.live.free_ports import free_settings
 from tritrack.live.session import live
 from tritrack.offline.batch import track_all

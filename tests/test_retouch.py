@@ -208,6 +208,31 @@ def test_a_pointer_drags_a_joint_and_a_click_turns_a_limb(
         assert "upper arm lean" not in tab.text(), "what was said is asked again"
 
 
+@pytest.mark.slow
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here: the page is not looked at")
+def test_on_a_phone_all_of_the_picture_is_above_the_panel(
+    page: RetouchPage, tmp_path: Path
+) -> None:
+    with open_tab(str(CHROMIUM)) as tab:
+        tab.call(
+            "Emulation.setDeviceMetricsOverride",
+            width=390,
+            height=844,
+            deviceScaleFactor=1,
+            mobile=True,
+        )
+        tab.call("Page.navigate", url=page.address)
+        waited(tab, lambda picture, text: "frame 0" in text and picture[250, 60, 0] < 120)
+        seen = unmoving(tab)
+        where = saved(seen, tmp_path / "retouch.png")
+        first, last = picture_corners(seen, 40)
+        px = (last - first) / SIZE
+        assert px[0] == pytest.approx(px[1], rel=0.05), f"look at {where}"
+        assert first[0] > 0, f"look at {where}"
+        assert last[0] < 300, "the body from the side is to the right of it"
+        assert last[1] < 420
+
+
 PRESS_NEXT = """
 [...document.querySelectorAll("button")].find(b => b.innerText.includes("Next uncertain")).click()
 """

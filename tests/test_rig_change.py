@@ -6,7 +6,7 @@ from staging import PERSON, RIG, Stage, between, exact, opening, report, standin
 
 from common.body.proportions import stature
 from common.bus.messages import ViewerNumber
-from common.config import Settings
+from common.config.settings import Settings
 from common.rig.camera import Rig, paper_rig
 from integrator.live_rig.rig_change import set_back, with_rig
 

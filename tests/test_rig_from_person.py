@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from common.config import BodySettings, Settings
+from common.config.part_settings import BodySettings
+from common.config.settings import Settings
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.pose_arrays import poses
 

@@ -3,7 +3,8 @@
 import time
 from pathlib import Path
 
-from common.config import BusSettings, PageSettings, Settings
+from common.config.part_settings import BusSettings, PageSettings
+from common.config.settings import Settings
 from tritrack.serving.room import AGAIN_S, Room
 from tritrack.serving.sites import Site
 

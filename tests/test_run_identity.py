@@ -7,7 +7,7 @@ import msgspec
 import pytest
 from spoiling import changed, copied
 
-from common.config import Settings
+from common.config.settings import Settings
 from common.packages import ROOT
 from tritrack.unfinished import run_identity
 from tritrack.unfinished.run_identity import differing, identity_of, tracker_id

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from common.config import BusSettings, CameraSettings, PageSettings, Settings
+from common.config.part_settings import BusSettings, CameraSettings, PageSettings
+from common.config.settings import Settings
 from tritrack.doctor.installation import Finding
 from tritrack.doctor.run_needs import examine_run
 from tritrack.live.free_ports import free_settings

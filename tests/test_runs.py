@@ -12,7 +12,7 @@ import pytest
 from common.body.body import ANGLE_NAMES, JOINT_NAMES
 from common.body.extremities import EXTREMITY_NAMES
 from common.bus.messages import Body, Performance, Posture
-from common.config import Settings
+from common.config.settings import Settings
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.joint_arrays import on_disk
 from tritrack.store.pose_arrays import poses

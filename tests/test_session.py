@@ -18,7 +18,8 @@ from waiting import until
 
 from common.bus.control_messages import Pulse
 from common.bus.messages import Posture
-from common.config import PageSettings, Settings
+from common.config.part_settings import PageSettings
+from common.config.settings import Settings
 from tritrack.live.free_ports import free_settings, refuse_held_ports
 from tritrack.live.run_facts import performed
 from tritrack.live.screen import warnings_of

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from common.config import Settings, SilhouetteSettings
+from common.config.part_settings import SilhouetteSettings
+from common.config.settings import Settings
 from common.method import DEFAULT
 from common.raster.similarity import Mask
 from common.video.decoding import Image

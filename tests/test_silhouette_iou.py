@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from common.config import Settings
+from common.config.settings import Settings
 from tritrack.accuracy.silhouette_iou import iou, overlaps, shrunk
 from tritrack.offline.lockstep import Decoders
 

@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 from spoiling import film_of, write_film, write_uneven
 
-from common.config import Settings
+from common.config.settings import Settings
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import save_notes
 from tritrack.offline.batch import track_all

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from common.config import Settings
+from common.config.settings import Settings
 from tritrack.bench.single_bench import figures
 
 

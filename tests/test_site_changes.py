@@ -5,7 +5,7 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.config import Settings
+from common.config.settings import Settings
 from tritrack.serving.site_changes import changes
 from tritrack.serving.sites import Site
 

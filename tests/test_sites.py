@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from common.config import SettingsError
+from common.config.settings_error import SettingsError
 from tritrack.serving.sites import load_sites
 
 INLINE = """

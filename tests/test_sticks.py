@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from moving import random_joints
 
-from animator.bones import rest_origins_m, skeleton_of
 from animator.exchange.sticks import THICKNESS, sticks_of
+from animator.skeleton.bones import rest_origins_m, skeleton_of
 
 
 def test_a_stick_spans_its_bone_and_no_other() -> None:

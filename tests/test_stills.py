@@ -12,7 +12,8 @@ from pole_room import SIZE, write_films
 from rich.console import Console
 
 from animator.marking.marking_page import LIVE
-from common.config import CameraSettings, Settings
+from common.config.part_settings import CameraSettings
+from common.config.settings import Settings
 from common.video.clip_sources import ClipError
 from common.video.decoding import Decoded, DecoderDied, Image, Size, Source
 from tritrack.marking.stills import MOST_STILLS, Album, Running, common_size, open_album

@@ -16,7 +16,7 @@ import pytest
 from command_line import unknown_in
 from meeting import free_endpoint
 
-from common.config import load
+from common.config.config_file import load
 from tritrack import subscribe
 
 ROOT: Final = Path(__file__).parents[1]

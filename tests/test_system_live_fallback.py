@@ -22,7 +22,8 @@ from spoiling import Film, copied, edit_json, refilmed
 from common.bus.bus import BusError, open_client
 from common.bus.control_messages import Pulse
 from common.bus.messages import Body, Views
-from common.config import BusSettings, PageSettings, Settings
+from common.config.part_settings import BusSettings, PageSettings
+from common.config.settings import Settings
 from tritrack.live import session
 from tritrack.live.free_ports import free_settings
 from tritrack.live.process_table import Part, live_parts

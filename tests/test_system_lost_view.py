@@ -8,7 +8,7 @@ from staging import Stage, between, exact, opening, silhouettes, standing
 
 from common.body.body import JOINT_NAMES, Vector
 from common.bus.messages import Body, ViewerNumber
-from common.config import Settings
+from common.config.settings import Settings
 
 
 @pytest.fixture(autouse=True, scope="module")

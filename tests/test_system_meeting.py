@@ -13,7 +13,8 @@ from common.bus.bus import open_client, open_hub
 from common.bus.control_messages import Cameras, ClockAnswer, ClockQuestion, Ended, Pulse
 from common.bus.inbox import BOUND
 from common.bus.messages import Body, Guide, Message
-from common.config import BusSettings, PageSettings, Settings
+from common.config.part_settings import BusSettings, PageSettings
+from common.config.settings import Settings
 from common.method import DEFAULT
 from common.rig.camera import paper_rig
 from common.video.clip_facts import View

@@ -20,7 +20,7 @@ import pytest
 from hosts import Cable, Hosts, Unsimulated, hosts_of
 from spoiling import copied, refilmed
 
-from common.config import Settings
+from common.config.settings import Settings
 from tritrack.offline.lockstep import Decoders, track_clip
 
 PARTS: Final = {
@@ -37,7 +37,8 @@ import json, sys, threading
 from common.bus.bus import open_client
 from common.bus.control_messages import Pulse
 from common.bus.messages import Body, Posture
-from common.config import BusSettings, load
+from common.config.config_file import load
+from common.config.part_settings import BusSettings
 import msgspec
 from pathlib import Path
 settings = load(Path(sys.argv[1]))

@@ -6,7 +6,7 @@ from pathlib import Path
 import cv2
 import pytest
 
-from common.config import Settings
+from common.config.settings import Settings
 from recognizer.__main__ import SHIPPED, init, step
 from recognizer.model_file import load
 from tritrack.live.run_facts import performed

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from acting import perform
 from rich.console import Console
@@ -9,6 +10,7 @@ from rich.console import Console
 from recognizer.evaluation import Recording
 from recognizer.learning_error import LearningError
 from recognizer.model_file import load
+from recognizer.postures import PER_POSTURE
 from tritrack.training import teaching
 from tritrack.training.teaching import line, teach
 from tritrack.training.training import Plan, TrainingError, train_postures
@@ -49,6 +51,37 @@ def test_three_takes_make_a_model_that_knows_one_posture_more(
     assert "me" in model.card.performers
     assert "learnt from 3 takes, 3 postures known" in line(facts)
     assert f"nearest other posture is {facts['rivals'][0]}" in line(facts)
+
+
+def test_a_known_name_is_learnt_anew_where_that_is_asked_for(
+    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Into the same file; the other postures keep every number."""
+    mine, takes = tmp_path / "mine.npz", filmed(monkeypatch, NEW, NEW, NEW)
+    teach("bow", takes, mine, plan, QUIET)
+    before, own = load(mine), plan._replace(add_to=mine)
+    takes = filmed(monkeypatch, *["raise_both_lateral"] * 4)
+    with pytest.raises(TrainingError, match="bow is known already: --again"):
+        teach("bow", takes, mine, own, QUIET)
+    facts = teach("bow", takes, mine, own._replace(again=True), QUIET)
+    assert "bow learnt again from 4 takes, 3 postures known" in line(facts)
+    after = load(mine)
+    assert after.names == before.names == ("squat", "walk_toward", "bow")
+    assert after.card.sequences["bow"] == 4
+    for array in PER_POSTURE:
+        if hasattr(before, array):
+            then, now = getattr(before, array), getattr(after, array)
+            assert np.array_equal(now[:2], then[:2])
+            assert array == "start" or not np.array_equal(now[2], then[2])
+
+
+def test_a_name_that_is_not_known_cannot_be_learnt_anew(
+    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is misspelt, or another model is meant."""
+    takes = filmed(monkeypatch, NEW, NEW, NEW)
+    with pytest.raises(TrainingError, match=r"sqat cannot be learnt again: .* squat, walk_toward"):
+        teach("sqat", takes, tmp_path / "mine.npz", plan._replace(again=True), QUIET)
 
 
 def test_a_take_that_differs_is_named_with_what_it_looks_like(

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import pytest
 
 from common.bus.messages import Body
-from common.config import Settings
+from common.config.settings import Settings
 from tritrack.store.journal import Head, read_journal
 from tritrack.unfinished.unfinished_run import BODIES, CannotResume, UnfinishedRun, saved_in
 

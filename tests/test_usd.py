@@ -8,9 +8,9 @@ import pytest
 from clients import answer_of
 from moving import random_joints
 
-from animator.bones import BONES, joints_of
 from animator.bvh import steady
 from animator.exchange.usd import usd_bytes
+from animator.skeleton.bones import BONES, joints_of
 from common.body.body import JOINT_NAMES
 
 pytest.importorskip("pxr", reason="pip install 'tritrack[usd]'")

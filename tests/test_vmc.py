@@ -8,7 +8,7 @@ from moving import random_joints
 from osc_reader import read_osc
 from scipy.spatial.transform import Rotation
 
-from animator.bones import BONES
+from animator.skeleton.bones import BONES
 from common.body.body import JOINT_NAMES
 from common.body.extremities import extremities
 from common.bus.messages import Body

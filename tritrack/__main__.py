@@ -91,10 +91,10 @@ def doctor(
 
     findings = examine()
     if settings_file is not None:
-        from common import config
+        from common.config import config_file
         from tritrack.doctor.run_needs import examine_run
 
-        settings = config.load(settings_file)
+        settings = config_file.load(settings_file)
         findings += examine_run(settings, out)
         keys_folder = keys_folder or (Path(settings.bus.keys) if settings.bus.keys else None)
     findings += [] if keys_folder is None else examined_keys(keys_folder)

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Final, Generic, TypeVar, overload
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, POSE_INDEX
 from common.bus.messages import Body, Message, Posture, Report, ViewerNumber
-from common.config import BusSettings, Settings, load
+from common.config.config_file import load
+from common.config.part_settings import BusSettings
+from common.config.settings import Settings
 
 if TYPE_CHECKING:
     from common.bus.bus import Bus

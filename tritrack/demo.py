@@ -7,7 +7,8 @@ from typing import Any, Final
 import msgspec
 from rich.console import Console
 
-from common.config import PageSettings, Settings
+from common.config.part_settings import PageSettings
+from common.config.settings import Settings
 from synth.motion.motions import performance
 from synth.person.people import person
 from synth.picture.exposure import default_rig

@@ -95,9 +95,9 @@ class _Animated(NamedTuple):
 
 
 def _animated(run: PastRun) -> _Animated:
-    from animator.bones import joints_of
     from animator.bvh import steady
     from animator.even_steps import NoMotion
+    from animator.skeleton.bones import joints_of
 
     joints_m = run.poses["joints_m"]
     try:
@@ -165,7 +165,7 @@ def _c3d(run: PastRun, _name: str, _scale: Scale) -> Written:
 def _markers(run: PastRun) -> tuple[Any, float, dict[str, Any]]:
     """The run's joints in even steps with its gaps, seconds a frame, and what is told of them."""
     from animator.even_steps import NoMotion, even_steps, with_gaps
-    from animator.planted_feet import planted
+    from animator.skeleton.planted_feet import planted
 
     joints_m, time_s = all_joints_m(run.poses), run.poses["time_s"]
     try:

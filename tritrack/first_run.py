@@ -23,7 +23,7 @@ def compile_all() -> None:
 
 
 def _run_all() -> None:
-    from common.config import Settings
+    from common.config.settings import Settings
     from recognizer.__main__ import model_of, warm_up
     from tritrack.demo import made_clip
     from tritrack.offline.lockstep import Decoders, track_clip

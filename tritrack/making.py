@@ -4,7 +4,8 @@ from pathlib import Path
 
 from rich.console import Console
 
-from common.config import SettingsError, size_of
+from common.config.picture_size import size_of
+from common.config.settings_error import SettingsError
 from synth.motion.motions import POSTURES
 from synth.write import ClipSet, SynthError, write_set
 from tritrack.terminal import bar

@@ -2,7 +2,8 @@
 
 import msgspec
 
-from common.config import Settings, SettingsError
+from common.config.settings import Settings
+from common.config.settings_error import SettingsError
 from common.method import Mode
 
 

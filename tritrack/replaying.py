@@ -14,7 +14,7 @@ from common.bus.control_messages import Cameras
 from common.bus.message_codec import encode
 from common.bus.messages import Body, Message, Moment, Report
 from common.bus.rate import wait_until
-from common.config import BusSettings
+from common.config.part_settings import BusSettings
 from common.method import METHODS
 from integrator import merge, merge_state, opening_posture
 from integrator.live_rig.rig_change import set_back, with_rig

@@ -13,7 +13,7 @@ from common.bus.inbox import Inbox
 from common.bus.messages import Guide, Picture, ViewerNumber
 from common.bus.process import BEGIN_S, READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS
 from common.settled import settle
 from common.video.clip_facts import View, shortfall
@@ -121,11 +121,7 @@ def run(
             if state.setup.settings.pictures:
                 bus.publish(_picture(view.number, frame))
             heart.beat("running", **_news(live, guides, warnings))
-            background, answer = learning.step(frame.picture)
-            if background is not None:
-                state = track.with_background(state, background)
-            if answer is not None:
-                bus.publish(answer)
+            state = _obeyed(learning, state, frame, bus)
             before = frame.index
     except DecoderDied as error:
         why = str(error)
@@ -137,6 +133,16 @@ def run(
         log.warning(cut_off)
         warnings = (*warnings, cut_off)
     heart.beat("ended", **_news(live, guides, warnings))
+
+
+def _obeyed(learning: Learning, state: track.State, frame: CapturedFrame, bus: Bus) -> track.State:
+    """The state after what was commanded, which is answered."""
+    background, answer = learning.step(frame.picture)
+    if background is not None:
+        state = track.with_background(state, background)
+    if answer is not None:
+        bus.publish(answer)
+    return state
 
 
 def main(

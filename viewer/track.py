@@ -8,7 +8,7 @@ import numpy as np
 
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Box, Facing, Guide, Landmarks, Measure, Pixel, Report, ViewerNumber
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import Method
 from common.raster.silhouette_report import pack
 from common.raster.similarity import Mask

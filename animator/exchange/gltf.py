@@ -11,8 +11,8 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.bones import BONES, Motion, Skeleton, offset_m, rest_origins_m
 from animator.exchange.sticks import COLOUR, Sticks, sticks_of
+from animator.skeleton.bones import BONES, Motion, Skeleton, offset_m, rest_origins_m
 from animator.turns import unbroken
 
 FLOAT, USHORT, UINT = 5126, 5123, 5125

@@ -7,8 +7,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from animator.bones import Joints
 from animator.exchange import LibraryMissing
+from animator.skeleton.bones import Joints
 from common.body.body import Vector
 from common.body.extremities import ALL_JOINT_NAMES
 

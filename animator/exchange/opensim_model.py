@@ -10,8 +10,8 @@ from typing import Final
 
 import numpy as np
 
-from animator.bones import BONES, Motion, Skeleton, offset_m
 from animator.bvh import euler_zxy_deg
+from animator.skeleton.bones import BONES, Motion, Skeleton, offset_m
 from common.body.body import Vector
 from common.body.extremities import ALL_JOINT_NAMES
 

@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.bones import Skeleton, rest_origins_m
+from animator.skeleton.bones import Skeleton, rest_origins_m
 from animator.solids import unit_cylinder
 from animator.turns import arc
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.bones import Motion, Skeleton, offset_m, rest_origins_m
 from animator.exchange import LibraryMissing
 from animator.exchange.sticks import COLOUR, Sticks, sticks_of
+from animator.skeleton.bones import Motion, Skeleton, offset_m, rest_origins_m
 from animator.turns import unbroken
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Final, NamedTuple
 from urllib.parse import parse_qs, urlsplit
 
-from common.config import PageSettings
+from common.config.part_settings import PageSettings
 from common.endpoint import is_loopback
 
 HOST: Final = "127.0.0.1"

@@ -22,6 +22,9 @@ GAP_M: Final = 0.9
 FOV_RAD: Final = math.radians(30.0)
 ASPECT: Final = 1.25
 """Width over height of what a browser leaves beside the panel."""
+STANDS_BACK: Final = 0.25
+"""In a window that is higher than wide, a phone's, the panel lies over the lower half: so much of
+the height the middle of all is above the window's."""
 BALL_M: Final = 0.022
 """Radius of a joint: large enough to be taken hold of."""
 FRONT_M: Final = 0.02
@@ -117,15 +120,28 @@ class Easel:
         scene = self._scene
         scene.set_up_direction("+y")
         scene.world_axes.visible = False
-        across_m = self._wide_m + 2 * GAP_M
-        away_m = max(1.2 * TALL_M, 1.1 * across_m / ASPECT) / (2 * math.tan(FOV_RAD / 2))
-        server.initial_camera.look_at = np.array([across_m / 2, TALL_M / 2, 0.0])
-        server.initial_camera.position = np.array([across_m / 2, TALL_M / 2, away_m])
+        for camera, value in self._camera(ASPECT, 0.0).items():
+            setattr(server.initial_camera, camera, value)
         server.initial_camera.fov = FOV_RAD
+        server.on_client_connect(self._stand_back)
         scene.configure_default_lights(enabled=False)
         scene.configure_environment_map(None)
         scene.add_light_hemisphere("/sky", ground_color=(170, 178, 188), intensity=SKY_LIGHT)
         scene.add_light_directional("/sun", intensity=SUN_LIGHT, position=(1.0, 4.0, 5.0))
+
+    def _camera(self, aspect: float, up: float) -> dict[str, Vector]:
+        """Where to look from so that all is seen, its middle by a share of the height higher."""
+        across_m = self._wide_m + 2 * GAP_M
+        tall_m = max(1.2 * TALL_M, 1.1 * across_m / aspect)
+        middle = np.array([across_m / 2, TALL_M / 2 - up * tall_m, 0.0])
+        away = np.array([0.0, 0.0, tall_m / (2 * math.tan(FOV_RAD / 2))])
+        return {"position": middle + away, "look_at": middle}  # looks along when it is moved
+
+    def _stand_back(self, client: Any) -> None:
+        """Show all of it in a phone's window too, above the panel."""
+        if client.camera.aspect < 1.0:
+            for camera, value in self._camera(client.camera.aspect, STANDS_BACK).items():
+                setattr(client.camera, camera, value)
 
     def _hit(self, event: Any) -> None:
         if event.instance_index is not None and event.instance_index < len(LIMBS):

@@ -77,6 +77,18 @@ ELBOW_SHARE, WRIST_SHARE = 0.186 / 0.415, 0.332 / 0.415
 cylinders end where the paper cuts the silhouette (arms in halves, trunk to legs 4 : 6), joints
 where bodies bend: the published landmarks lie on the cylinders at mean adult lengths (upper arm
 0.186 statures, forearm 0.146, hand 0.108, of which the outer quarter is too thin to be seen)."""
+BONE_SHARES: Final = {
+    "trunk": 0.322,
+    "head": 0.137,
+    "upper_arm": 0.154,
+    "lower_arm": 0.141,
+    "upper_leg": 0.244,
+    "lower_leg": 0.249,
+    "shoulders": 0.203,
+    "hips": 0.092,
+}
+"""From joint to joint as landmarks show them, in statures; the trunk from pelvis to neck, the head
+from there to the crown, shoulders and hips from side to side."""
 HIP_SHARE, KNEE_SHARE, ANKLE_SHARE = 0.530, 0.285, 0.039
 """Heights of hip, knee and ankle above the sole, in statures."""
 

@@ -17,7 +17,7 @@ from common.bus.live_bus import LiveBus
 from common.bus.mailbox import Mailbox
 from common.bus.message_codec import MAX_BYTES, Said
 from common.bus.messages import Message
-from common.config import BusSettings
+from common.config.part_settings import BusSettings
 
 LEASE_MS: Final = 4000
 """A process that hangs counts as gone after this, by Zenoh's own 10 s. One that was stopped for

@@ -8,7 +8,7 @@ from common.bus.control_messages import ClockQuestion
 from common.bus.mailbox import Mailbox
 from common.bus.message_codec import TOPICS, MalformedMessage, Said, decode, key_of, pattern_of
 from common.bus.messages import Message
-from common.config import MOST_SESSION
+from common.config.part_settings import MOST_SESSION
 
 QUESTIONS: Final[dict[type[Message], str]] = {ClockQuestion: "tritrack/{room}/clock"}
 """Where each kind of question is answered."""

@@ -20,7 +20,7 @@ from common.bus.message_codec import (
     refuse_size,
 )
 from common.bus.messages import Message, Picture
-from common.config import MOST_SESSION
+from common.config.part_settings import MOST_SESSION
 
 AT_ONCE: Final = 4
 """Newest-only samples that may wait for our own thread: two viewers speak at the same moment.

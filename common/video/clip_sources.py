@@ -4,7 +4,8 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from common.bus.messages import ViewerNumber
-from common.config import CameraSettings, Settings
+from common.config.part_settings import CameraSettings
+from common.config.settings import Settings
 from common.video.decoding import Source
 
 COMPANIONS: Final = {".json", ".npz", ".txt", ".csv", ".toml", ".md", ".png", ".jpg", ".jpeg"}

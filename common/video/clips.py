@@ -10,7 +10,8 @@ from typing import Final
 import msgspec
 
 from common.bus.messages import ViewerNumber
-from common.config import Settings, size_of, working_size
+from common.config.picture_size import size_of, working_size
+from common.config.settings import Settings
 from common.rig.camera import Camera, Rig
 from common.rig.rig_file import CalibrationError, fitted, load_rig
 from common.video.clip_facts import Clip, Meta, View

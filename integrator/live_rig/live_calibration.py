@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple, Protocol
 
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip
 from integrator import diagnostics

@@ -5,23 +5,16 @@ from typing import Final
 import numpy as np
 
 from common.body.body import JOINT_NAMES
+from common.body.proportions import BONE_SHARES
 
 AT: Final = {name: n for n, name in enumerate(JOINT_NAMES)}
 PELVIS, NECK = AT["pelvis"], AT["neck"]
 ANKLES: Final = [AT["l_ankle"], AT["r_ankle"]]
-LENGTHS: Final = (
-    ("trunk", 0.322, 0.03),
-    ("head", 0.137, 0.05),
-    ("upper_arm", 0.154, 0.04),
-    ("lower_arm", 0.141, 0.06),
-    ("upper_leg", 0.244, 0.04),
-    ("lower_leg", 0.249, 0.04),
-    ("shoulders", 0.203, 0.12),
-    ("hips", 0.092, 0.2),
-)
-"""Name, share of the stature, and how far people differ in it (sigma of its logarithm)."""
-SHARES: Final = np.array([share for _, share, _ in LENGTHS])
-SPREADS: Final = np.array([spread for _, _, spread in LENGTHS])
+LENGTHS: Final = tuple(BONE_SHARES)
+"""What the body's lengths are called, in order."""
+SHARES: Final = np.array(list(BONE_SHARES.values()))
+SPREADS: Final = np.array([0.03, 0.05, 0.04, 0.06, 0.04, 0.04, 0.12, 0.2])
+"""How far people differ in each (sigma of its logarithm)."""
 
 TRUNK, ARMS, LEGS = 0, 1, 2
 """Parts whose sides a view may exchange by themselves; the trunk has none."""

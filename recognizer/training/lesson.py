@@ -1,4 +1,4 @@
-"""A new posture from a few takes of it: whether they agree, and what it may be mistaken for."""
+"""A posture from a few takes of it: whether they agree, and what it may be mistaken for."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -16,7 +16,7 @@ class Take(NamedTuple):
     """One performance, judged by a model that learnt the others and not this one."""
 
     margin: float
-    """How much likelier the new posture makes a frame than the likeliest of the others, log; below
+    """How much likelier a frame is of the taught posture than of the likeliest other, log; below
     0 the take is mistaken."""
     rival: str
     """The likeliest of the others."""
@@ -26,7 +26,7 @@ class Lesson(NamedTuple):
     """What came of teaching."""
 
     model: PostureModel
-    """Knows the new posture too; the others are as they were."""
+    """Knows the taught posture too; the others are as they were."""
     takes: tuple[Take, ...]
 
     @property
@@ -38,19 +38,18 @@ class Lesson(NamedTuple):
 def taught(
     known: PostureModel, posture: str, takes: Sequence[Rows], performers: Sequence[str] = ()
 ) -> Lesson:
-    """A model that knows one posture more.
+    """A model that knows one posture more, or one of its own by these takes alone.
 
     Args:
         known: What it is added to.
-        posture: The new name.
+        posture: The name; of one that is known nothing is kept but its place.
         takes: (n, 20) of each performance.
         performers: Whose they are, for the card.
 
     Raises:
-        LearningError: When the model knows the name, or there are too few takes, or one shows too
-            little, or most takes are not known again by what the others teach.
+        LearningError: When there are too few takes, or one shows too little, or most takes are
+            not known again by what the others teach.
     """
-    refuse_known(known, posture)
     if len(takes) < LEAST_TAKES:
         raise LearningError(
             f"{len(takes)} takes of {posture}: film at least {LEAST_TAKES}, the same motion each"
@@ -71,18 +70,6 @@ def taught(
             f" they are likelier {rivals}; film the same motion each time, or another posture"
         )
     return lesson
-
-
-def refuse_known(known: PostureModel, posture: str) -> None:
-    """Refuse a name that a model has.
-
-    Raises:
-        LearningError: When it has.
-    """
-    if posture in known.names:
-        raise LearningError(
-            f"{posture} is known already: choose another name, or add to a model that lacks it"
-        )
 
 
 def _judged(known: PostureModel, posture: str, takes: Sequence[Rows], i: int) -> Take:

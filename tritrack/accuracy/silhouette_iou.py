@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS
 from common.npz_file import Arrays
 from common.raster.similarity import Mask

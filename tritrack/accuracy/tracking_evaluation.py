@@ -9,9 +9,9 @@ import msgspec
 import numpy as np
 from rich.console import Console
 
-from common import config
 from common.body.body import Bdp
-from common.config import Settings
+from common.config import config_file
+from common.config.settings import Settings
 from common.method import Mode
 from common.npz_file import Arrays, DamagedFile, read_arrays
 from tritrack.accuracy import accuracy_plots, accuracy_report, worst_frames
@@ -108,7 +108,7 @@ def _runs_of(
     stand = run_names([path for path in given if _is_run(path)])
     clips = run_names([path for path in given if not _is_run(path)])
     for name in [
-        name for name, path in clips.items() if not _truth_of(config.load(path)).is_file()
+        name for name, path in clips.items() if not _truth_of(config_file.load(path)).is_file()
     ]:
         warn(console, f"{clips.pop(name)} has no truth.npz: left out")
     into = runs or out / "runs"
@@ -144,7 +144,7 @@ def _case(run: Path, clip: Path | None, mode: Mode | None, size: str | None) -> 
                 f"{run} was tracked with {what} {was}, not {wanted}: name another --runs"
             )
     if clip is not None:
-        settings = msgspec.structs.replace(settings, clip=config.load(clip).clip)
+        settings = msgspec.structs.replace(settings, clip=config_file.load(clip).clip)
     path = _truth_of(settings)
     if not path.is_file():
         raise EvaluationError(f"{run} needs {path}, which is not there: name its clip beside it")

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 
 from common.body.body import Vector
-from common.config import Settings
+from common.config.settings import Settings
 from common.npz_file import Arrays
 from common.rig.camera import project
 from common.video.clip_facts import View, both_cameras

@@ -18,7 +18,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from common.config import PageSettings, SearchSettings, Settings
+from common.config.part_settings import PageSettings, SearchSettings
+from common.config.settings import Settings
 from common.method import DEFAULT, METHODS, Mode
 from common.video.clips import open_clip
 from integrator import integrator_warmup

@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 
 import cv2
 
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS, Mode
 from common.video.clips import open_clip
 from common.video.decoding import Decoder

@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from animator.bones import Skeleton, offset_m, skeleton_of, turned_axes
+from animator.skeleton.bones import Skeleton, offset_m, skeleton_of, turned_axes
 from common.body.body import JOINT_NAMES, Vector
 from common.bus.messages import Body
 from tritrack.bridges.osc import message

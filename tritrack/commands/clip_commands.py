@@ -7,7 +7,8 @@ from typing import Annotated, Any, Final, Literal
 import typer
 
 from common.bus.messages import ViewerNumber
-from common.config import BusSettings, Settings
+from common.config.part_settings import BusSettings
+from common.config.settings import Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import Out, Record, Resume, Size, writable, writable_file
 from tritrack.exporting import OWN_NAMES, Format, Scale, export_run

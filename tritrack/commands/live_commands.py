@@ -6,9 +6,11 @@ from typing import Annotated, Literal, cast
 import msgspec
 import typer
 
-from common import config
 from common.bus.messages import ViewerNumber
-from common.config import BusSettings, Settings
+from common.config import config_file
+from common.config.part_settings import BusSettings
+from common.config.settings import Settings
+from common.config.settings_error import SettingsError
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import ModeName, Out, Record, Size
 from tritrack.extras import refuse_without
@@ -53,7 +55,7 @@ def live(
     """
     from tritrack.live.session import live as run_live
 
-    settings = waiting(overridden(config.load(settings_file), mode, size), wait)
+    settings = waiting(overridden(config_file.load(settings_file), mode, size), wait)
     name = settings_file.stem if settings_file.is_file() else ""
     facts = run_live(settings, out, console, name, record)
     tell(facts, json_wanted, f"posture: {facts['posture'] or 'none'}; written to {out}")
@@ -125,7 +127,7 @@ def metrics(settings_file: ConfigPath) -> None:
 
     settings = live_settings(settings_file)
     if not settings.metrics:
-        raise config.SettingsError(f"{settings_file}: set metrics = '127.0.0.1:9464', say")
+        raise SettingsError(f"{settings_file}: set metrics = '127.0.0.1:9464', say")
     refuse_held_metrics(settings.metrics)
     from tritrack.outside.metrics_process import main as metrics_main
 
@@ -171,6 +173,6 @@ def live_settings(path: Path) -> Settings:
     """The settings of a process of a live run."""
     from tritrack.live.session import refuse_mode
 
-    settings = config.load(path)
+    settings = config_file.load(path)
     refuse_mode(settings)
     return settings

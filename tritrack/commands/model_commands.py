@@ -5,7 +5,7 @@ from typing import Annotated, Final, Literal
 
 import typer
 
-from common import config
+from common.config import config_file
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import (
     CACHE,
@@ -49,6 +49,25 @@ def train(
 
     Example: tritrack train clips/*/ --out postures.npz
     """
+    if what != "postures":
+        _train_network(what, out, json_wanted)
+        return
+    if not runs:
+        raise typer.BadParameter("name clips or run folders to learn postures from")
+    refuse_without(*LEARN)
+    from tritrack.training.training import Plan, train_postures
+
+    facts = train_postures(runs, out, Plan(mode, recognizer, cache), console)
+    line = (
+        f"{len(facts['sequences'])} postures learnt, {len(facts['knows'])} known; written to {out}"
+    )
+    tell(facts, json_wanted, line)
+
+
+def _train_network(
+    what: Literal["proposals", "silhouettes", "landmarks"], out: Path, json_wanted: bool
+) -> None:
+    """Learn one of the networks in the package from people that are made up for it."""
     if what == "proposals":
         from tritrack.training.proposal_training import train_proposals
 
@@ -68,21 +87,10 @@ def train(
 
         facts = train_landmarks(out, 0, console)
         tell(facts, json_wanted, f"{facts['pictures']} pictures learnt, written to {out}")
-        return
-    if not runs:
-        raise typer.BadParameter("name clips or run folders to learn postures from")
-    refuse_without(*LEARN)
-    from tritrack.training.training import Plan, train_postures
-
-    facts = train_postures(runs, out, Plan(mode, recognizer, cache), console)
-    line = (
-        f"{len(facts['sequences'])} postures learnt, {len(facts['knows'])} known; written to {out}"
-    )
-    tell(facts, json_wanted, line)
 
 
 def teach(
-    posture: Annotated[str, typer.Argument(help="The new posture's name, as star_jump.")],
+    posture: Annotated[str, typer.Argument(help="The posture's name, as star_jump.")],
     out: Annotated[Path, typer.Option(help="The model file to write.", callback=writable_file)],
     takes: Annotated[
         list[Path] | None, typer.Argument(help="Clips of it or their runs, one a take.")
@@ -96,13 +104,18 @@ def teach(
     add_to: Annotated[
         Path, typer.Option(help="A model file, or shipped: what it knows is kept in --out.")
     ] = Path("shipped"),
+    again: Annotated[
+        bool,
+        typer.Option("--again", help="Learn a posture that it knows anew, by these takes alone."),
+    ] = False,
     recognizer: RecognizerName = "default",
     cache: Cache = CACHE,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Teach a model one posture more, by three takes of it or more, filmed or before cameras.
 
-    Says whether the takes agree, and which other posture the new one is nearest to.
+    Says whether the takes agree, and which other posture it is nearest to. With --again the
+    posture is one that the model knows: name new takes to replace it, old and new ones to add.
 
     Example: tritrack teach star_jump take1/ take2/ take3/ --out mine.npz
     """
@@ -112,11 +125,11 @@ def teach(
     from tritrack.training import teaching
     from tritrack.training.training import Plan
 
-    plan = Plan(None, recognizer, cache, add_to)
+    plan = Plan(None, recognizer, cache, add_to, again)
     if live is not None:
         from tritrack.training.live_teaching import teach_live
 
-        facts = teach_live(posture, config.load(live), out, plan, console, count_in)
+        facts = teach_live(posture, config_file.load(live), out, plan, console, count_in)
     else:
         facts = teaching.teach(posture, takes or [], out, plan, console)
     tell(facts, json_wanted, teaching.line(facts))

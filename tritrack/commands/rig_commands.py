@@ -1,13 +1,16 @@
 """The calibrate commands: where the cameras are, from a person, a board, or markers (4.1)."""
 
 from pathlib import Path
-from typing import Annotated, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Final, Literal
 
 import typer
 
 from tritrack.commands.command_output import JsonWanted, console, tell_rows
 from tritrack.commands.options import writable_file
 from tritrack.extras import refuse_without
+
+if TYPE_CHECKING:
+    from tritrack.offline.rig_of_boards import Shown
 
 calibrate_app = typer.Typer(
     help="Find out where the cameras are: from a person, a printed board, markers, poles (4.1).",
@@ -102,7 +105,7 @@ def board(
     """
     from integrator.board.board_print import print_board
     from integrator.rig.calibration import refuse_to_replace
-    from tritrack.offline.rig_of_boards import Shown, calibrate_by_videos
+    from tritrack.offline.rig_of_boards import Shown
 
     if print_ is None and not videos:
         raise typer.BadParameter("name the video of each camera, or --print board.pdf")
@@ -113,15 +116,22 @@ def board(
         console.print(f"written to {print_}", highlight=False, soft_wrap=True)
     if videos:
         refuse_to_replace(out, force)
-        quality, drawn = calibrate_by_videos(videos, Shown(square, chessboard, floor), out, console)
-        tell_rows(quality.cameras, json_wanted)
-        console.print(
-            f"corners miss by {quality.reprojection_px:.2f} px; {quality.shared_rests} poses seen "
-            f"by several cameras; the board lies on the floor at {quality.floor_s:.1f} s\n"
-            f"written to {out}, what the board covered of each picture to {drawn}",
-            highlight=False,
-            soft_wrap=True,
-        )
+        _calibrate(videos, Shown(square, chessboard, floor), out, json_wanted)
+
+
+def _calibrate(videos: list[Path], shown: "Shown", out: Path, json_wanted: bool) -> None:
+    """Calibrate by films of the board, and tell how well they agree."""
+    from tritrack.offline.rig_of_boards import calibrate_by_videos
+
+    quality, drawn = calibrate_by_videos(videos, shown, out, console)
+    tell_rows(quality.cameras, json_wanted)
+    console.print(
+        f"corners miss by {quality.reprojection_px:.2f} px; {quality.shared_rests} poses seen "
+        f"by several cameras; the board lies on the floor at {quality.floor_s:.1f} s\n"
+        f"written to {out}, what the board covered of each picture to {drawn}",
+        highlight=False,
+        soft_wrap=True,
+    )
 
 
 @calibrate_app.command()

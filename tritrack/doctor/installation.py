@@ -150,7 +150,7 @@ def _decoder() -> Finding:
 def _bus() -> Finding:
     from common.bus.bus import open_client, open_hub
     from common.bus.control_messages import ClockAnswer, ClockQuestion
-    from common.config import BusSettings
+    from common.config.part_settings import BusSettings
 
     with socket.socket() as door:
         door.bind(("127.0.0.1", 0))
@@ -179,7 +179,7 @@ def _extra(use: str, package: str, extra: str) -> Finding:
 
 
 def _mediapipe() -> Finding:
-    from common.config import SettingsError
+    from common.config.settings_error import SettingsError
     from common.video.clip_facts import View
     from viewer.landmarks.mediapipe_source import INSTALL, MediaPipe
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
-from common.config import Settings
+from common.config.settings import Settings
 from common.video.clips import open_clip
 from tritrack.doctor.installation import Finding
 from tritrack.live.free_ports import refuse_held_endpoint, refuse_held_metrics, refuse_held_page

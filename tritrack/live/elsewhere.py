@@ -2,7 +2,7 @@
 
 import msgspec
 
-from common.config import Settings
+from common.config.settings import Settings
 from common.rig.rig_file import CalibrationError, load_rig
 from common.video.clip_facts import Clip, both_cameras
 from common.video.clip_sources import ClipError, companions_folder, footage_of

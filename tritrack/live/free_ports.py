@@ -10,7 +10,9 @@ from typing import Final
 import msgspec
 
 from common.bus.bus_keys import PARTS, refuse_missing
-from common.config import AUTO, PageSettings, Settings, address_of
+from common.config.part_settings import AUTO, PageSettings
+from common.config.settings import Settings
+from common.endpoint import address_of
 
 TCP: Final = re.compile(r"(?:tcp|tls)/(?P<host>[^/]+):(?P<port>\d+)")
 SESSION_BYTES: Final = 8

@@ -12,7 +12,7 @@ from common.bus.control_messages import Cameras, Pulse
 from common.bus.inbox import Inbox
 from common.bus.messages import Body, Message, Posture, Report
 from common.bus.process import READY_S
-from common.config import Settings
+from common.config.settings import Settings
 from tritrack.live.page_desk import PageDesk
 from tritrack.live.process_table import Part
 from tritrack.live.recorded import MessageLog

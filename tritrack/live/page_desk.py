@@ -12,7 +12,7 @@ from common.bus.bus import Bus
 from common.bus.control_messages import Answer, Command, Wish
 from common.bus.inbox import Inbox
 from common.bus.process import ProcessContext
-from common.config import Settings
+from common.config.settings import Settings
 from tritrack.live.process_table import Part, page_part
 from tritrack.live.recorded import MessageLog
 from tritrack.live.supervise import Watched

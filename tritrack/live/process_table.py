@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 
 from animator.page.door import Entrance
 from common.bus.process import ProcessContext
-from common.config import Settings
+from common.config.settings import Settings
 from common.parent_death import end_with_parent
 from common.video.clip_facts import Clip
 from tritrack.faults import code_of, told

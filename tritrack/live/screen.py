@@ -8,7 +8,7 @@ from rich.live import Live as LiveDisplay
 from rich.markup import escape
 
 from common.bus.control_messages import Pulse
-from common.config import Settings
+from common.config.settings import Settings
 from common.video.clip_facts import Clip
 from tritrack.live.launch import Heard
 from tritrack.live.table import table_of

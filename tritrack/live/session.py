@@ -15,7 +15,7 @@ import msgspec
 from rich.console import Console
 
 from common.bus.process import ProcessContext, logged
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS
 from common.settled import settle
 from common.video.clip_facts import Clip, both_cameras

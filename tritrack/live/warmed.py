@@ -12,7 +12,7 @@ from typing import Final
 import cv2
 import numpy as np
 
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS
 from common.parent_death import end_with
 from common.settled import settle

@@ -10,8 +10,9 @@ from rich.console import Console
 from animator.marking.marking_page import MarkingPage
 from animator.marking.sheet import Hello, Marked, Save, Sheet, SheetError, Shown, refuse_sheet
 from animator.page.door import entrance_of, invitation_of
-from common import config
 from common.bus.process import ProcessContext, process
+from common.config import config_file
+from common.config.part_settings import PageSettings
 from common.rig.rig_file import CalibrationError
 from integrator.rig.calibration import read_points, write_text
 from integrator.rig.markers import Markers
@@ -63,7 +64,7 @@ def mark_markers(asked: Asked, console: Console) -> Result:
             something cannot be worked with.
     """
     before = read_points(asked.points, Markers) if asked.points.exists() else None
-    settings = config.load(asked.clip)
+    settings = config_file.load(asked.clip)
     with open_album(settings, console) as album:
         if before is not None:
             refuse_other_size(asked.points, before, album.size, bool(before.cameras))
@@ -78,7 +79,7 @@ def mark_poles(asked: Asked, out: Path, console: Console) -> Result:
         As `mark_markers`.
     """
     before = read_points(asked.points, Poles) if asked.points.exists() else None
-    settings = config.load(asked.clip)
+    settings = config_file.load(asked.clip)
     with open_album(settings, console) as album:
         if len(album.views) < 2:
             raise CalibrationError(f"{asked.clip} has one view: poles tell of two cameras")
@@ -134,7 +135,7 @@ def _serve(
     method: MarkingMethod,
     album: Album,
     asked: Asked,
-    page_settings: config.PageSettings,
+    page_settings: PageSettings,
     writes: str,
     console: Console,
 ) -> Result:

@@ -13,7 +13,8 @@ from rich.console import Console
 
 from animator.marking.marking_page import LIVE, still_address
 from animator.marking.sheet import Pictures
-from common.config import Settings, working_size
+from common.config.picture_size import working_size
+from common.config.settings import Settings
 from common.video.clip_sources import ClipError, Footage, footage_of
 from common.video.clips import SAME_ASPECT, probed
 from common.video.decoding import (

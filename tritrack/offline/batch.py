@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 import msgspec
 from rich.console import Console
 
-from common import config
 from common.bus.messages import Body, Report, ScaleSource, ViewerNumber
-from common.config import Settings, SettingsError
+from common.config import config_file
+from common.config.settings import Settings
+from common.config.settings_error import SettingsError
 from common.method import Mode
 from common.video.clip_facts import Clip, both_cameras
 from common.video.clip_sources import ClipError
@@ -66,7 +67,7 @@ def track_all(
     with Decoders() as decoders, bar(console) as progress:
         for (name, path), tell in by_share(progress, [*runs.items()], "tracking"):
             try:
-                settings = overridden(config.load(path), mode, size)
+                settings = overridden(config_file.load(path), mode, size)
                 if trusted:
                     settings = msgspec.structs.replace(settings, trust_calibration=True)
                 told = {"the views": views, "what is recorded": record}

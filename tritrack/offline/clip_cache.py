@@ -11,7 +11,7 @@ import numpy as np
 
 from common.atomic_file import replacing
 from common.cache_folder import add
-from common.config import Settings
+from common.config.settings import Settings
 from common.npz_file import Arrays, read_arrays
 from common.video.clip_sources import ClipError
 from tritrack.offline.lockstep import Tracked

@@ -14,7 +14,7 @@ import numpy as np
 
 from common.body.proportions import thesis_bdp
 from common.bus.messages import Body, Guide, Report, ScaleSource, ViewerNumber
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import Method
 from common.notes.notes import Notes, held
 from common.raster.silhouette_report import unpack

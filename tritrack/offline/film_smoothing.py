@@ -45,7 +45,7 @@ def calmed(
         notes: The user's inputs.
         kept: Takes what is given; None: a list.
     """
-    from animator.bones import joints_of, motion_of, skeleton_of
+    from animator.skeleton.bones import joints_of, motion_of, skeleton_of
 
     stretches = [_of_stretch(some) for seen, some in groupby(bodies, _is_posed) if seen]
     if not stretches:

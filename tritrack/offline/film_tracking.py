@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bus.messages import Body, Report
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS, Method
 from common.notes.notes import Notes
 from common.raster.silhouette_report import with_silhouette

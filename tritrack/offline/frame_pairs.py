@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Final
 
 from common.bus.messages import ViewerNumber
-from common.config import SilhouetteSettings
+from common.config.part_settings import SilhouetteSettings
 from common.video.clip_facts import Clip, View
 from common.video.frame_cache import Reader
 from viewer.capture import CapturedFrame, recorded

@@ -9,7 +9,7 @@ import msgspec
 
 from common.body.body import Bdp
 from common.bus.messages import Body, ViewerNumber
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import METHODS, Method
 from common.video.clip_facts import Clip, both_cameras, shortfall
 from common.video.clip_sources import ClipError

@@ -5,10 +5,11 @@ from pathlib import Path
 
 import msgspec
 
-from common import config
 from common.body.body import Bdp
 from common.bus.messages import Body
-from common.config import Settings, SettingsError
+from common.config import config_file
+from common.config.settings import Settings
+from common.config.settings_error import SettingsError
 from common.video.clip_sources import ClipError
 
 
@@ -25,7 +26,7 @@ def body_of(settings: Settings, track: Callable[[Settings], Sequence[Body]]) -> 
     """
     if not settings.opening:
         return None
-    own = config.load(Path(settings.opening))
+    own = config_file.load(Path(settings.opening))
     if own.opening:
         raise SettingsError(f"{settings.opening}: an opening clip has none itself: remove opening")
     own = msgspec.structs.replace(own, mode=settings.mode, size=settings.size)

@@ -6,7 +6,7 @@ from typing import Any, Final, NamedTuple
 import msgspec
 
 from common.bus.messages import Report, ViewerNumber
-from common.config import Settings
+from common.config.settings import Settings
 from common.method import Method
 from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip, View

@@ -5,8 +5,8 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
-from common import config
-from common.config import BodySettings
+from common.config import config_file
+from common.config.part_settings import BodySettings
 from common.method import METHODS
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError, fitted
@@ -39,7 +39,7 @@ def calibrated_by_clips(paths: Sequence[Path], given: Given) -> tuple[Rig, Quali
     with ExitStack() as doors:
         decoders: list[Reader] = [doors.enter_context(Decoder()) for _ in range(2)]
         for path in paths:
-            settings = config.load(path)
+            settings = config_file.load(path)
             clip = open_clip(settings)
             if len(clip.views) < 2 or not all(view.frames for view in clip.views):
                 raise CalibrationError(f"{path} has not two recorded views: name clips of a rig")

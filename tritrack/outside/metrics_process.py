@@ -15,7 +15,7 @@ from common.bus.mailbox import Mailbox
 from common.bus.messages import Body, Posture
 from common.bus.process import BEAT_S, READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
-from common.config import Settings
+from common.config.settings import Settings
 from tritrack.outside.health import ailments
 from tritrack.outside.metrics import families
 from tritrack.outside.metrics_server import served

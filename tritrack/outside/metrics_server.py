@@ -11,7 +11,7 @@ from prometheus_client import CollectorRegistry, make_wsgi_app
 from prometheus_client.core import Metric
 from prometheus_client.registry import Collector
 
-from common.config import address_of
+from common.endpoint import address_of
 
 SLOW_S: Final = 5.0
 """Who takes longer to send a request is hung up on."""

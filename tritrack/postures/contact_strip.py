@@ -8,8 +8,8 @@ import numpy as np
 
 from animator.page.inset import Image, draw_contours, inset, limb_contours, limb_ends
 from animator.scene import figure
-from common import config
 from common.bus.messages import Body, Picture, Report, ViewerNumber
+from common.config import config_file
 from common.method import Mode
 from common.rig.camera import Rig
 from common.video.clip_facts import both_cameras
@@ -42,7 +42,7 @@ def contact_strip(path: Path, mode: Mode | None, decoders: Decoders) -> bytes:
         ClipError: When the clip cannot be used.
     """
     instants: list[Instant] = []
-    settings = overridden(config.load(path), mode, None)
+    settings = overridden(config_file.load(path), mode, None)
     tracked = track_clip(settings, decoders, watch=lambda *now: instants.append(now))
     moving = [now for now in instants if now[2].status in MOVING] or instants
     moving = moving[-settings.recognizer.window_frames :]

@@ -8,8 +8,8 @@ from typing import Any, Final
 import numpy as np
 from rich.console import Console
 
-from common import config
-from common.config import RecognizerSettings
+from common.config import config_file
+from common.config.part_settings import RecognizerSettings
 from common.method import Mode
 from common.video.clips import meta_of
 from recognizer.__main__ import MOVING, SHIPPED
@@ -93,14 +93,14 @@ def _refuse_nameless(path: Path) -> None:
         facts = _run(path)[0]
         named = "acts" in facts or facts.get("posture_meant")
     else:
-        meta = meta_of(config.load(path))
+        meta = meta_of(config_file.load(path))
         named = meta.acts or meta.posture
     if not named:
         raise TrainingError(f"{path} names neither acts nor a posture in its meta.json")
 
 
 def _clip(path: Path, mode: Mode | None, decoders: Decoders) -> tuple[dict[str, Any], Rows]:
-    tracked = track_clip(overridden(config.load(path), mode, None), decoders)
+    tracked = track_clip(overridden(config_file.load(path), mode, None), decoders)
     return tracked.facts, _rows(poses(tracked.bodies))
 
 

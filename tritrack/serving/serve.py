@@ -12,7 +12,7 @@ from typing import Final
 from rich.console import Console
 from rich.live import Live as LiveDisplay
 
-from common.config import SettingsError
+from common.config.settings_error import SettingsError
 from tritrack.live.free_ports import refuse_held_metrics, refuse_held_ports, with_free_endpoint
 from tritrack.live.process_table import inherited
 from tritrack.live.table import table_of

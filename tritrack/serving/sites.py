@@ -8,7 +8,10 @@ from typing import Final, NamedTuple
 
 import msgspec
 
-from common.config import Settings, SettingsError, address_of, load, with_full_paths
+from common.config.config_file import load, with_full_paths
+from common.config.settings import Settings
+from common.config.settings_error import SettingsError
+from common.endpoint import address_of
 from tritrack.live.free_ports import ports
 
 NAME: Final = re.compile(r"\w[\w.-]*", re.ASCII)

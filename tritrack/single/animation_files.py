@@ -8,10 +8,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.bones import joints_of
 from animator.bvh import bvh_text, steady
 from animator.even_steps import NoMotion
 from animator.inbetween import at, between, key_frames
+from animator.skeleton.bones import joints_of
 from common.atomic_file import replacing
 from common.body.body import JOINT_NAMES
 from tritrack.single.angle_plot import angle_plot

@@ -11,7 +11,7 @@ from animator.film import Film, Picture, write_film
 from animator.overlay import SHOWN, overlay
 from common.body.body import Vector
 from common.bus.messages import Body, Report
-from common.config import working_size
+from common.config.picture_size import working_size
 from common.raster.silhouette_report import unpack
 from common.video.decoding import Decoder, Wanted
 from tritrack.offline.film_tracking import Followed

@@ -12,7 +12,9 @@ from rich.console import Console
 
 from animator.take import Take, take_of
 from common.bus.process import ProcessContext, process
-from common.config import CameraSettings, Settings, working_size
+from common.config.part_settings import CameraSettings
+from common.config.picture_size import working_size
+from common.config.settings import Settings
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path, save_notes
 from common.video.clip_facts import Clip

@@ -19,7 +19,7 @@ import msgspec
 from common.bus.control_messages import Cameras
 from common.bus.message_codec import MAX_BYTES, MalformedMessage, decode, encode
 from common.bus.messages import PROTOCOL, Body, Message, Posture
-from common.config import Settings
+from common.config.settings import Settings
 
 NAME: Final = "journal.bin"
 BEFORE: Final = "journal.before.bin"

@@ -17,7 +17,7 @@ from common.body.body import Bdp
 from common.bus.control_messages import Cameras
 from common.bus.message_codec import MalformedMessage, decode, encode
 from common.bus.messages import PROTOCOL, Body, Message, Moment, Posture, Report, ScaleSource
-from common.config import Settings
+from common.config.settings import Settings
 from common.rig.camera import Rig
 from integrator.frame_numbers import FrameTimes
 from tritrack.store import foxglove_scene

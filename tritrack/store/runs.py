@@ -13,7 +13,7 @@ import numpy as np
 
 from common.atomic_file import replacing
 from common.bus.messages import Body, Posture, Status
-from common.config import Settings
+from common.config.settings import Settings
 from tritrack.store.joint_arrays import on_disk
 from tritrack.store.pose_arrays import mapped_poses
 from tritrack.terminal import json_text

@@ -8,7 +8,7 @@ import numpy as np
 from rich.console import Console
 
 from common.bus.messages import Body
-from common.config import Settings
+from common.config.settings import Settings
 from recognizer.__main__ import MOVING
 from recognizer.features import Rows, rows
 from recognizer.learning_error import LearningError
@@ -101,9 +101,8 @@ def teach_live(
         count_s: How long is counted before each take.
 
     Raises:
-        TrainingError: When the name is none, `out` knows postures that would be lost, or the run
-            ends before three takes agree.
-        LearningError: When the name is known already.
+        TrainingError: When the name cannot be taught, `out` knows postures that would be lost, or
+            the run ends before three takes agree.
         ModelError: When a model cannot be read or written.
         LiveRefused and what else `live` raises: When the run cannot begin, or fails.
     """
@@ -118,4 +117,4 @@ def teach_live(
             f" {run}: try again, the same motion each time"
         )
     names = [f"take {n}" for n in range(1, len(teaching.lesson.takes) + 1)]
-    return {**kept(teaching.lesson, posture, names, out), "run": str(run)}
+    return {**kept(teaching.lesson, posture, names, out, plan), "run": str(run)}

@@ -8,8 +8,9 @@ import cv2
 import numpy as np
 from rich.console import Console
 
-from common import config
-from common.config import RecognizerSettings, Settings
+from common.config import config_file
+from common.config.part_settings import RecognizerSettings
+from common.config.settings import Settings
 from common.method import Mode
 from common.video.clip_sources import ClipError
 from common.video.clips import meta_of
@@ -110,7 +111,7 @@ def _announced(path: Path) -> Recording:
         return Recording(
             facts.get("performer", ""), facts.get("posture_meant", ""), nothing, str(path)
         )
-    meta = meta_of(config.load(path))
+    meta = meta_of(config_file.load(path))
     return Recording(meta.performer, meta.posture, nothing, str(path))
 
 
@@ -134,7 +135,7 @@ def kept_of(
     tracker = tracker_id()
     keys, due = {}, []
     for path in clips:
-        settings = overridden(config.load(path), mode, None)
+        settings = overridden(config_file.load(path), mode, None)
         keys[path] = clip_cache.key_of(settings, tracker)
         if clip_cache.read(cache, keys[path]) is None:
             due.append(Due(path, settings, keys[path]))

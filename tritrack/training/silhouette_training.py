@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from rich.console import Console
 
-from common.config import SilhouetteSettings
+from common.config.part_settings import SilhouetteSettings
 from common.method import DEFAULT
 from common.raster.similarity import Mask
 from common.video.decoding import Image

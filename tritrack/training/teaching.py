@@ -1,4 +1,4 @@
-"""Teaching a model one posture more by a few takes of it."""
+"""Teaching a model one posture more, or one of its own anew, by a few takes of it."""
 
 import re
 from collections import Counter
@@ -10,7 +10,7 @@ from rich.console import Console
 
 from recognizer.model_file import load, save
 from recognizer.postures import PostureModel
-from recognizer.training.lesson import LEAST_TAKES, Lesson, refuse_known, taught
+from recognizer.training.lesson import LEAST_TAKES, Lesson, taught
 from tritrack.store.cores import spread
 from tritrack.training.recordings import recordings
 from tritrack.training.training import Plan, TrainingError, model_named
@@ -31,10 +31,10 @@ def teach(
         console: For progress and warnings.
 
     Raises:
-        TrainingError: When the name is none, there are too few takes, one is named twice, or the
-            file knows postures that would be lost.
+        TrainingError: When the name cannot be taught, there are too few takes, one is named
+            twice, or the file knows postures that would be lost.
         RecordingError, ClipsFailed: When a take cannot be used.
-        LearningError: When the takes do not agree, or the name is known already.
+        LearningError: When the takes do not agree.
         ModelError: When the file cannot be written, or the model to add to cannot be read.
     """
     known = model_to_teach(posture, plan, out)
@@ -47,15 +47,15 @@ def teach(
         takes = recordings(paths, known.card.recognizer, plan.cache, console, posture)
     performers = sorted({take.performer for take in takes if take.performer})
     lesson = taught(known, posture, [take.rows for take in takes], performers)
-    return kept(lesson, posture, [take.clip for take in takes], out)
+    return kept(lesson, posture, [take.clip for take in takes], out, plan)
 
 
 def model_to_teach(posture: str, plan: Plan, out: Path) -> PostureModel:
     """The model that a posture is added to.
 
     Raises:
-        TrainingError: When the name is none, or `out` knows postures that would be lost.
-        LearningError: When the model knows it.
+        TrainingError: When the name is none, is known and shall not be learnt anew, or shall be and
+            is not known; or `out` knows postures that would be lost.
         ModelError: When it cannot be read.
     """
     if not NAME.fullmatch(posture):
@@ -63,7 +63,16 @@ def model_to_teach(posture: str, plan: Plan, out: Path) -> PostureModel:
             f"{posture!r} is no name of a posture: small letters, digits and _, as star_jump"
         )
     known = model_named(plan.add_to or Path("shipped"), plan.recognizer)
-    refuse_known(known, posture)
+    if posture in known.names and not plan.again:
+        raise TrainingError(
+            f"{posture} is known already: --again learns it anew from these takes alone, or choose"
+            " another name"
+        )
+    if plan.again and posture not in known.names:
+        raise TrainingError(
+            f"{posture} cannot be learnt again: {plan.add_to} (--add-to) knows"
+            f" {', '.join(known.names)}"
+        )
     kept_names = (*known.names, posture)
     lost = [name for name in load(out).names if name not in kept_names] if out.exists() else []
     if lost:
@@ -74,7 +83,9 @@ def model_to_teach(posture: str, plan: Plan, out: Path) -> PostureModel:
     return known
 
 
-def kept(lesson: Lesson, posture: str, takes: Sequence[str], out: Path) -> dict[str, Any]:
+def kept(
+    lesson: Lesson, posture: str, takes: Sequence[str], out: Path, plan: Plan
+) -> dict[str, Any]:
     """Write what was learnt; what the command tells of it.
 
     Raises:
@@ -84,6 +95,7 @@ def kept(lesson: Lesson, posture: str, takes: Sequence[str], out: Path) -> dict[
     return {
         "model": str(out),
         "posture": posture,
+        "again": plan.again,
         "takes": [
             {"clip": take, "margin": told.margin, "rival": told.rival}
             for take, told in zip(takes, lesson.takes, strict=True)
@@ -94,7 +106,7 @@ def kept(lesson: Lesson, posture: str, takes: Sequence[str], out: Path) -> dict[
 
 
 def rivals(lesson: Lesson) -> list[str]:
-    """The postures that the new one is nearest to, the nearest take first."""
+    """The postures that the taught one is nearest to, the nearest take first."""
     near = sorted(lesson.takes, key=lambda take: take.margin)
     return list(dict.fromkeys(take.rival for take in near))
 
@@ -103,7 +115,7 @@ def line(facts: dict[str, Any]) -> str:
     """What was learnt, in words."""
     mistaken = [take for take in facts["takes"] if take["margin"] <= 0.0]
     told = [
-        f"{facts['posture']} learnt from {len(facts['takes'])} takes,"
+        f"{facts['posture']} learnt {'again ' * facts['again']}from {len(facts['takes'])} takes,"
         f" {len(facts['knows'])} postures known; written to {facts['model']}"
     ]
     told += [

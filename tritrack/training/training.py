@@ -34,6 +34,8 @@ class Plan(NamedTuple):
     """Folder that keeps what tracking made of clips."""
     add_to: Path = Path("shipped")
     """Of teaching: the model that a posture is added to, which tells its kind."""
+    again: bool = False
+    """Of teaching: the posture is one of that model's, learnt anew."""
 
 
 def train_postures(

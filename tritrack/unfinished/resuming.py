@@ -8,7 +8,8 @@ from typing import Any, Final, NamedTuple
 
 from rich.console import Console
 
-from common.config import Settings, SettingsError
+from common.config.settings import Settings
+from common.config.settings_error import SettingsError
 from common.video.clip_sources import ClipError, footage_of
 from common.video.decoding import DecoderDied, Undecodable
 from tritrack.store import journal

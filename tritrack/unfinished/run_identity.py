@@ -9,7 +9,7 @@ from typing import Final
 import msgspec
 
 from common.cache_folder import DIGEST, add
-from common.config import LANDMARK_SOURCES, Settings
+from common.config.settings import LANDMARK_SOURCES, Settings
 from common.packages import PACKAGES, ROOT
 from common.video.clip_sources import ClipError, companions_folder, footage_of
 from common.video.clips import find_calibration

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES
+from common.body.proportions import BONE_SHARES
 from common.bus.messages import Landmarks
 
 Bytes = NDArray[np.uint8]
@@ -27,12 +28,15 @@ BONES: Final = tuple(
     )
 )
 """Near and far end, and radius, in statures: about as people are."""
-LENGTHS: Final = {(_AT["pelvis"], _AT["neck"]): 0.32} | {
-    (_AT[f"{s}_{near}"], _AT[f"{s}_{far}"]): length
-    for s in _SIDES
-    for near, far, length in (("hip", "knee", 0.25), ("knee", "ankle", 0.24))
-}
-"""Of long bones, in statures: the least foreshortened tells the stature."""
+LONG_BONES: Final = tuple(
+    (_AT[near], _AT[far], BONE_SHARES[bone])
+    for near, far, bone in (
+        ("pelvis", "neck", "trunk"),
+        *((f"{s}_hip", f"{s}_knee", "upper_leg") for s in _SIDES),
+        *((f"{s}_knee", f"{s}_ankle", "lower_leg") for s in _SIDES),
+    )
+)
+"""Near and far end, and length in statures: the least foreshortened tells the stature."""
 _TRUNK: Final = [_AT[name] for name in ("l_shoulder", "r_shoulder", "r_hip", "l_hip")]
 _HANDS: Final = [(_AT[f"{s}_elbow"], _AT[f"{s}_wrist"]) for s in _SIDES]
 _ANKLES: Final = [_AT[f"{s}_ankle"] for s in _SIDES]
@@ -46,8 +50,7 @@ def stature_px(landmarks: Landmarks) -> float:
     """How tall the body would be upright in the picture, by its least foreshortened long bone."""
     places = np.array(landmarks.joints_px)
     return max(
-        float(np.hypot(*(places[far] - places[near]))) / length
-        for (near, far), length in LENGTHS.items()
+        float(np.hypot(*(places[far] - places[near]))) / length for near, far, length in LONG_BONES
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bus.messages import Landmarks
-from common.config import SettingsError
+from common.config.settings_error import SettingsError
 from common.video.clip_facts import View
 from common.video.decoding import Decoded, Size
 from viewer.landmarks.fifteen_joints import facing_deg, fifteen, fifteen_shares

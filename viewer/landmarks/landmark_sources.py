@@ -5,7 +5,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from common.bus.messages import ViewerNumber
-from common.config import Settings
+from common.config.settings import Settings
 from common.video.clip_facts import View
 from common.video.clip_sources import footage_of
 from viewer.landmarks.keypoint_files import KeypointFiles

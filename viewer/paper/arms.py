@@ -5,7 +5,7 @@ from typing import Final
 
 from common.body.body import LIMITS_DEG, POSE_INDEX, wrapped_deg
 from common.body.kinematics import ARM_LIMBS
-from common.config import SearchSettings
+from common.config.part_settings import SearchSettings
 from viewer.paper.posed_model import PosedModel, SearchRange, matched, searched, turn
 
 SIDES: Final = ("r", "l")

@@ -4,7 +4,7 @@ from typing import Final
 
 from common.body.body import LIMITS_DEG
 from common.body.kinematics import LEG_LIMBS
-from common.config import SearchSettings
+from common.config.part_settings import SearchSettings
 from viewer.paper.posed_model import PosedModel, SearchRange, searched, turn
 
 SIDES: Final = ("r", "l")

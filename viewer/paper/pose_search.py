@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from common.body.body import POSE_INDEX, rest_pose
 from common.body.proportions import body_vector, stature, thesis_bdp
 from common.bus.messages import Facing, Guide, Report, ViewerNumber
-from common.config import SearchSettings
+from common.config.part_settings import SearchSettings
 from common.raster.kernel import CENTRE_X, CENTRE_Y
 from common.raster.similarity import Mask
 from common.rig.camera import Camera

@@ -10,7 +10,7 @@ import numpy as np
 
 from common.atomic_file import replacing
 from common.bus.messages import Landmarks
-from common.config import SilhouetteSettings
+from common.config.part_settings import SilhouetteSettings
 from common.video.clip_facts import View
 from common.video.decoding import Decoder, Image
 from common.video.frame_cache import Reader
@@ -103,16 +103,15 @@ def of_clip(
     looks = looked_at(judges)
     regions = [look.region(judges[0].shape, AROUND) for look in looks]
     opened = learnt(laid_over, opening)
-    makers: list[Callable[[], Background]] = [lambda: learn_uncovered(sample)]
+    groups: list[list[Callable[[], Background]]] = [[lambda: learn_uncovered(sample)]]
     if any(look.is_somebody for look in looks):
         if are_sure(looks):
             body = standing(median(even_light(judges)), looks)
-            estimates = [makers[0], lambda: learn_behind(judges, body, regions)]
-            makers = [lambda: best_of(estimates, judges, looks, settings, good=1.0)]
-        makers.append(lambda: learn_around(judges, regions))
+            groups[0].append(lambda: learn_behind(judges, body, regions))
+        groups.append([lambda: learn_around(judges, regions)])
         if still:
-            makers.insert(len(makers) if somebody else 0, lambda: opened)
-    best = best_of(makers, judges, looks, settings)
+            groups.insert(len(groups) if somebody else 0, [lambda: opened])
+    best = best_of(groups, judges, looks, settings)
     if best is opened:
         return Opening(best, "", None)
     odd = (

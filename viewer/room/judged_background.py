@@ -1,12 +1,12 @@
 """Which of several backgrounds explains what the landmarks show: none of them is taken on trust."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
 
-from common.config import SilhouetteSettings
+from common.config.part_settings import SilhouetteSettings
 from common.method import DEFAULT
 from common.raster.similarity import Mask
 from common.video.decoding import Image
@@ -34,36 +34,45 @@ class Judged(NamedTuple):
 
     background: Background
     worth: float
-    """In [0, 1]; 0 where no frame told."""
+    """In [0, 1]."""
 
 
 def best_of(
-    makers: Sequence[Maker],
+    groups: Sequence[Sequence[Maker]],
     pictures: Sequence[Image],
     looks: Sequence[Look],
     settings: SilhouetteSettings,
-    good: float = GOOD,
 ) -> Background:
-    """The background whose outlines fit the landmarks best; the first that is good is taken.
+    """The background whose outlines fit the landmarks best; the first group that is good is taken.
 
     Args:
-        makers: Make the backgrounds, the likeliest first.
+        groups: Make the backgrounds, the likeliest first; of a group all are made, and the best
+            stands for it.
         pictures: Of the clip, (H, W, 3) each.
         looks: What the network makes of each.
         settings: How a person is told from the room.
-        good: Which one needs no other; 1: all are made.
     """
     shown = [pair for pair in zip(pictures, looks, strict=True) if pair[1].is_somebody]
     told = shown[:: max(1, -(-len(shown) // JUDGED))]
-    best: Judged | None = None
-    for make in makers:
+    if not told:
+        return groups[0][0]()
+
+    def judged(make: Maker) -> Judged:
         background = make()
-        now = Judged(background, _worth(background, told, settings))
-        best = now if best is None or now.worth > best.worth + SURELY else best
-        if best.worth >= good or not told:
+        return Judged(background, _worth(background, told, settings))
+
+    return _first((_first(map(judged, makers), 1.0) for makers in groups), GOOD).background
+
+
+def _first(tried: Iterable[Judged], good: float) -> Judged:
+    """The first that is so good, else the best; no more are made than that takes."""
+    found: Judged | None = None
+    for now in tried:
+        found = now if found is None or now.worth > found.worth + SURELY else found
+        if found.worth >= good:
             break
-    assert best is not None
-    return best.background
+    assert found is not None
+    return found
 
 
 def _worth(
@@ -76,7 +85,7 @@ def _worth(
         middle = np.mean(look.landmarks.joints_px, axis=0)
         near_px = (float(middle[0]), float(middle[1]))
         worth.append(fit(silhouette.step(state, picture, near_px)[1].mask, look))
-    return float(np.mean(worth)) if worth else 0.0
+    return float(np.mean(worth))
 
 
 def fit(mask: Mask, look: Look) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bus.messages import Box
-from common.config import SilhouetteSettings
+from common.config.part_settings import SilhouetteSettings
 from common.method import DEFAULT, Method
 from common.raster.silhouette_report import box_of, is_cut
 from common.raster.similarity import Mask

@@ -105,7 +105,7 @@ function show(frame) {
   scrub.max = history.frames.length - 1;
   scrub.value = history.at;
   scrub.setAttribute("aria-valuetext", `frame ${frame.frame}, ${frame.time_s.toFixed(1)} seconds`);
-  at("clock").textContent = history.following ? `${frame.time_s.toFixed(1)} s` : `${frame.time_s.toFixed(2)} of ${history.span[1].toFixed(1)} s`;
+  at("clock").textContent = history.following ? `${frame.time_s.toFixed(1)} s` : `${frame.time_s.toFixed(2)} of ${history.span[1].toFixed(2)} s`;
   const moves = history.following || history.playing;
   at("play").textContent = moves ? "❚❚" : "▶";
   at("play").setAttribute("aria-label", moves ? "pause" : "play");
@@ -181,10 +181,12 @@ at("room").addEventListener("keydown", (event) => {
 const KEYS = {
   " ": toggle, l: follow, Home: () => step(-history.frames.length), End: () => step(history.frames.length),
   ArrowLeft: (event) => step(event.shiftKey ? -15 : -1), ArrowRight: (event) => step(event.shiftKey ? 15 : 1),
-  r: () => at("record").click(), s: () => at("save").click(),
+  r: () => press("record"), s: () => press("save"),
 };
+function press(id) { if (!at("actions").hidden) at(id).click(); }
 addEventListener("keydown", (event) => {
-  const own = /^(INPUT|SELECT|BUTTON|SUMMARY)$/.test(event.target.tagName);
+  if (event.target.tagName === "SELECT") return; // letters choose there
+  const own = /^(INPUT|BUTTON|SUMMARY)$/.test(event.target.tagName);
   if (event.ctrlKey || event.altKey || event.metaKey || !(event.key in KEYS) || (own && event.key.length > 1) || (own && event.key === " ")) return;
   event.preventDefault();
   KEYS[event.key](event);

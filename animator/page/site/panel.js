@@ -107,8 +107,8 @@ export function showEnding(facts, frames) {
     clip: facts.clip, person: facts.performer, posture: spoken(facts.posture ?? ""),
     frames: `${facts.frames ?? frames.length}, ${facts.frames_with_pose ?? posed} with a pose`,
     "written to": facts.out, scale: facts.scale_source,
-    missed: Object.entries(facts.processes ?? {}).filter(([name, each]) => name !== "animator" && each.deadline_misses)
-      .map(([name, each]) => `${name}: ${each.deadline_misses}`).join(", ") || "no deadline",
+    "deadlines missed": Object.entries(facts.processes ?? {}).filter(([name, each]) => name !== "animator" && each.deadline_misses)
+      .map(([name, each]) => `${name}: ${each.deadline_misses}`).join(", ") || "none",
   };
   at("summary").replaceChildren(...Object.entries(rows).filter(([, value]) => value)
     .flatMap(([name, value]) => [element("dt", name), element("dd", value)]));

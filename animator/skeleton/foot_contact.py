@@ -1,4 +1,4 @@
-"""When a foot stands: it is low and slow, and stays until it is neither."""
+"""When a foot stands: it is low and slow, and stays until it is neither for a while."""
 
 import math
 from heapq import heappop, heappush, heappushpop
@@ -7,13 +7,13 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.bones import Joints
+from animator.skeleton.bones import Joints
 from common.body.body import JOINT_NAMES, Vector
 
 Side = Literal["l", "r"]
 SIDES: Final[tuple[Side, Side]] = ("l", "r")
 
-COMES_M_S, GOES_M_S = 0.30, 0.50
+COMES_M_S, GOES_M_S = 0.30, 0.60
 """Speed of the ankle below which a foot comes to stand, and beyond which it goes."""
 LOW_M, HIGH_M = 0.04, 0.07
 """Height of the ankle above where it stands, likewise."""
@@ -21,6 +21,9 @@ WANDERS_M: Final = 0.05
 """A foot that comes farther from where it stood so far stands anew."""
 STANDS_S: Final = 0.15
 """Shorter it only touches the floor."""
+STEPS_S: Final = 0.3
+"""What stands again so soon, within WANDERS_M of where it did and not lifted, has not stepped: a
+track that starts is off for a few frames."""
 LOWEST: Final = 20
 """Where ankles stand is this percentile of the lower one's height, in a run."""
 
@@ -53,10 +56,34 @@ def stances(joints_m: Joints, time_s: Vector) -> list[Stance]:
         with np.errstate(invalid="ignore"):
             comes = (low < LOW_M) & (slow < COMES_M_S)
             stays = (low < HIGH_M) & (slow < GOES_M_S)
-        for first, end in _held(comes, stays, ankle):
-            if time_s[end - 1] - time_s[first] >= STANDS_S - 1e-9:
-                found.append(Stance(side, first, end))
+        held = [
+            (first, end)
+            for first, end in _held(comes, stays, ankle)
+            if time_s[end - 1] - time_s[first] >= STANDS_S - 1e-9
+        ]
+        found += [Stance(side, *contact) for contact in _bridged(held, ankle, low < HIGH_M, time_s)]
     return found
+
+
+def _bridged(
+    held: list[tuple[int, int]], ankle_m: Vector, is_low: NDArray[np.bool_], time_s: Vector
+) -> list[tuple[int, int]]:
+    """Contacts between which a foot slips off for a moment are one, where the first one was."""
+    whole: list[tuple[int, int]] = []
+    stood_m = np.full(2, np.inf)
+    for first, end in held:
+        here_m = np.median(ankle_m[first:end, [0, 2]], axis=0)
+        if (
+            whole
+            and time_s[first] - time_s[whole[-1][1] - 1] <= STEPS_S + 1e-9
+            and math.dist(here_m, stood_m) <= WANDERS_M
+            and is_low[whole[-1][1] : first].all()
+        ):
+            whole[-1] = (whole[-1][0], end)
+            continue
+        whole.append((first, end))
+        stood_m = here_m
+    return whole
 
 
 def _speeds(places_m: Vector, time_s: Vector) -> Vector:

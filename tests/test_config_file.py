@@ -4,14 +4,13 @@ import re
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from common.config import Settings, SettingsError, load, size_of, working_size
+from common.config.config_file import load
+from common.config.settings import Settings
+from common.config.settings_error import SettingsError
 
 CONFIGS = Path(__file__).parents[1] / "configs"
 RUNS = sorted(path for path in CONFIGS.glob("*.toml") if "tritrack live" in path.read_text())
-sizes = st.tuples(st.integers(32, 4096), st.integers(32, 4096))
 
 
 def written(tmp_path: Path, text: str) -> Path:
@@ -31,16 +30,6 @@ def refused(tmp_path: Path, text: str) -> str:
 
 def test_an_empty_file_is_all_defaults(tmp_path: Path) -> None:
     assert load(written(tmp_path, "")) == Settings()
-
-
-def test_the_defaults_are_the_papers() -> None:
-    """P1, P41: 160x120; windows of 64 and 32 degrees down to 4."""
-    settings = Settings()
-    assert size_of(settings.size) == (160, 120)
-    search = settings.search
-    assert (search.arm_window_deg, search.leg_window_deg, search.stop_deg) == (64, 32, 4)
-    assert settings.body.stature_m == 1.75
-    assert not settings.pictures
 
 
 @pytest.mark.parametrize("path", RUNS, ids=lambda path: path.stem)
@@ -165,38 +154,6 @@ def test_landmarks_are_a_word_or_a_folder_beside_the_file(
 
 def test_a_clip_folder_has_our_own_landmarks(tmp_path: Path) -> None:
     assert load(tmp_path).landmarks == "own"
-
-
-@given(sizes)
-def test_a_size_is_read_as_it_is_written(size: tuple[int, int]) -> None:
-    assert size_of(f"{size[0]}x{size[1]}") == size
-
-
-@pytest.mark.parametrize(
-    "text", ["", "x", "160", "160x", "160x120x3", "-160x120", "1e3x100", "²x9"]
-)
-def test_what_is_no_size_is_refused(text: str) -> None:
-    with pytest.raises(ValueError, match="size must look like 160x120"):
-        size_of(text)
-
-
-@given(sizes, sizes)
-def test_a_working_size_keeps_the_shape_within_the_bound(
-    source: tuple[int, int], bound: tuple[int, int]
-) -> None:
-    """P1: aspect kept to a pixel's rounding, as large as fits, never larger than the source."""
-    width, height = working_size(source, bound)
-    assert 1 <= width <= min(source[0], bound[0])
-    assert 1 <= height <= min(source[1], bound[1])
-    assert (width, height) == source or width == bound[0] or height == bound[1]
-    shrink = min(1.0, bound[0] / source[0], bound[1] / source[1])
-    assert (width, height) == pytest.approx((source[0] * shrink, source[1] * shrink), abs=1.0)
-
-
-def test_the_bound_is_reached() -> None:
-    assert working_size((640, 480), (160, 120)) == (160, 120)
-    assert working_size((1920, 1080), (160, 120)) == (160, 90)
-    assert working_size((100, 80), (160, 120)) == (100, 80)
 
 
 def test_a_video_is_told_from_a_settings_file(tmp_path: Path) -> None:

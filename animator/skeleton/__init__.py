@@ -1,0 +1,1 @@
+"""A skeleton of fixed bones through a run, and feet that stand still in it."""

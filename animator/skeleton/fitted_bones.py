@@ -1,0 +1,71 @@
+"""A body of fixed bones as near as it can be to joints that were tracked one by one."""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from animator.skeleton.bones import Joints, Skeleton
+from common.body.body import Vector
+from common.body.extremities import ALL_JOINT_NAMES
+
+Floats = NDArray[np.float64]
+
+ROUNDS: Final = 5
+"""Of the fit: joints that are 1 cm off have bones within a hundredth of a millimetre of theirs."""
+NO_BONE: Final = 1e-9
+"""Is added where both ends of a bone are in one place, which has no direction."""
+_AT: Final = {name: i for i, name in enumerate(ALL_JOINT_NAMES)}
+
+
+def fitted(skeleton: Skeleton, joints_m: Joints, weights: Floats) -> Joints:
+    """The joints of the skeleton that are nearest to these, by weighted least squares.
+
+    Of a bone that is too short for where its ends were tracked both ends give, and the bones
+    beyond; aimed one after the other, all of it would come to lie at the farther end.
+
+    Args:
+        skeleton: Of the run.
+        joints_m: (n, 15 or 22, 3) without NaN; the pelvis between the hips.
+        weights: Likewise, how reluctantly each is moved along each axis; the pelvis' do not count.
+
+    Returns:
+        (n, 15 or 22, 3); what no bone leads to, nose and heels, is left where it was.
+
+    Source: Mueller et al. 2007, Position based dynamics, with all constraints solved at once.
+    """
+    names = ["r_hip", *(bone.ends for bone in skeleton.bones)]
+    free = [_AT[name] for name in names]
+    ends, lengths_m = _bones(skeleton, names)
+    tracked, gives = joints_m[:, free], 1.0 / weights[:, free]
+    shares = [(ends * gives[:, None, :, axis]) @ ends.T for axis in range(3)]
+    wanted, places = ends @ tracked, tracked
+    for _ in range(ROUNDS):
+        along = ends @ places
+        along = along / np.maximum(np.linalg.norm(along, axis=2, keepdims=True), 1e-9)
+        turned = along.transpose(2, 0, 1)
+        normal = np.zeros_like(shares[0])
+        for share, part in zip(shares, turned, strict=True):
+            normal += share * part[:, :, None] * part[:, None, :]
+        normal += NO_BONE * np.eye(len(ends))
+        lack_m = (along * wanted).sum(axis=2) - lengths_m
+        pull = np.linalg.solve(normal, lack_m[..., None]) * along
+        places = tracked - gives * (ends.T @ pull)
+    found = joints_m.copy()
+    found[:, free] = places
+    found[:, _AT["pelvis"]] = (found[:, _AT["l_hip"]] + found[:, _AT["r_hip"]]) / 2
+    return found
+
+
+def _bones(skeleton: Skeleton, names: list[str]) -> tuple[Floats, Vector]:
+    """Which of these joints each bone leads to, (bones, joints), 1 where it ends and -1 where it
+    starts, the pelvis half of either hip, and how long it is; the first from hip to hip."""
+    ends = np.array([_at(names, bone.ends) - _at(names, bone.starts) for bone in skeleton.bones])
+    lengths_m = np.linalg.norm(skeleton.tips_m, axis=1)
+    ends[0], lengths_m[0] = _at(names, "l_hip") - _at(names, "r_hip"), 2 * lengths_m[0]
+    return ends, lengths_m
+
+
+def _at(names: list[str], joint: str) -> Vector:
+    parts = ("l_hip", "r_hip") if joint == "pelvis" else (joint,)
+    return np.array([float(name in parts) / len(parts) for name in names])

@@ -1,0 +1,1 @@
+"""The settings: frozen values with defaults; a TOML file only departs from them."""

@@ -1,0 +1,86 @@
+"""A settings file: TOML that departs from the defaults, its paths relative to it."""
+
+import os
+from pathlib import Path
+
+import msgspec
+
+from common.config.part_settings import CameraSettings
+from common.config.settings import LANDMARK_SOURCES, Settings
+from common.config.settings_error import SettingsError
+
+
+def load(path: Path) -> Settings:
+    """Read a settings file, or take a clip folder as one with nothing else set.
+
+    Relative paths in the file are relative to the file.
+
+    Raises:
+        SettingsError: When it cannot be read, holds an unknown or ill-typed setting, or its
+            landmarks name no folder.
+    """
+    if path.is_dir():
+        return Settings(clip=str(path))
+    if not path.exists():
+        raise SettingsError(f"there is no clip folder and no settings file {path}: check the path")
+    try:
+        text = path.read_bytes()
+    except OSError as error:
+        raise SettingsError(f"cannot read the settings {path}: {error.strerror}") from error
+    try:
+        settings = msgspec.toml.decode(text, type=Settings)
+    except UnicodeDecodeError as error:
+        raise SettingsError(
+            f"{path} is no settings file: name a TOML file, or a clip folder"
+        ) from error
+    except msgspec.DecodeError as error:
+        raise SettingsError(f"{path}: {error}") from error
+    return with_full_paths(settings, path)
+
+
+def with_full_paths(settings: Settings, path: Path) -> Settings:
+    """Settings that stand in a file: relative paths from there, environment variables filled in.
+
+    Raises:
+        SettingsError: When a variable is not set, or the landmarks name no folder.
+    """
+    return msgspec.structs.replace(
+        settings,
+        landmarks=_landmarks(settings.landmarks, path),
+        clip=_full(settings.clip, path),
+        calibration=_full(settings.calibration, path),
+        opening=_full(settings.opening, path),
+        camera_1=_camera(settings.camera_1, path),
+        camera_2=_camera(settings.camera_2, path),
+        recognizer=msgspec.structs.replace(
+            settings.recognizer, model=_full(settings.recognizer.model, path)
+        ),
+        bus=msgspec.structs.replace(settings.bus, keys=_full(settings.bus.keys, path)),
+    )
+
+
+def _full(name: str, path: Path) -> str:
+    filled = os.path.expandvars(name)
+    if "$" in filled:
+        raise SettingsError(f"{path}: {name} names a variable that is not set: export it")
+    return str(path.parent / filled) if name else ""
+
+
+def _camera(given: CameraSettings | None, path: Path) -> CameraSettings | None:
+    if given is None:
+        return None
+    return msgspec.structs.replace(
+        given, source=_full(given.source, path), background=_full(given.background, path)
+    )
+
+
+def _landmarks(given: str, path: Path) -> str:
+    if given in LANDMARK_SOURCES:
+        return given
+    folder = _full(given, path)
+    if not Path(folder).is_dir():
+        known = ", ".join(LANDMARK_SOURCES)
+        raise SettingsError(
+            f"{path}: there is no folder {folder} of landmarks: write its path, or {known}"
+        )
+    return folder

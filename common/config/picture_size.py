@@ -1,0 +1,23 @@
+"""How large pictures are worked on."""
+
+from common.config.settings_error import within
+
+
+def size_of(text: str) -> tuple[int, int]:
+    """A picture size as it is written, `160x120`.
+
+    Raises:
+        ValueError: When it is no size, or none between 32x32 and 4096x4096.
+    """
+    width, _, height = text.partition("x")
+    if not (width.isdecimal() and height.isdecimal()):
+        raise ValueError(f"size must look like 160x120, got {text!r}")
+    within("width", int(width), 32, 4096)
+    within("height", int(height), 32, 4096)
+    return int(width), int(height)
+
+
+def working_size(source: tuple[int, int], bound: tuple[int, int]) -> tuple[int, int]:
+    """Largest size of the source's shape within the bound; never larger than the source."""
+    shrink = min(1.0, bound[0] / source[0], bound[1] / source[1])
+    return max(1, round(source[0] * shrink)), max(1, round(source[1] * shrink))

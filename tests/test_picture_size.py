@@ -1,0 +1,41 @@
+"""Sizes of pictures as they are written, and what is worked on of a source."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from common.config.picture_size import size_of, working_size
+
+sizes = st.tuples(st.integers(32, 4096), st.integers(32, 4096))
+
+
+@given(sizes)
+def test_a_size_is_read_as_it_is_written(size: tuple[int, int]) -> None:
+    assert size_of(f"{size[0]}x{size[1]}") == size
+
+
+@pytest.mark.parametrize(
+    "text", ["", "x", "160", "160x", "160x120x3", "-160x120", "1e3x100", "²x9"]
+)
+def test_what_is_no_size_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match="size must look like 160x120"):
+        size_of(text)
+
+
+@given(sizes, sizes)
+def test_a_working_size_keeps_the_shape_within_the_bound(
+    source: tuple[int, int], bound: tuple[int, int]
+) -> None:
+    """P1: aspect kept to a pixel's rounding, as large as fits, never larger than the source."""
+    width, height = working_size(source, bound)
+    assert 1 <= width <= min(source[0], bound[0])
+    assert 1 <= height <= min(source[1], bound[1])
+    assert (width, height) == source or width == bound[0] or height == bound[1]
+    shrink = min(1.0, bound[0] / source[0], bound[1] / source[1])
+    assert (width, height) == pytest.approx((source[0] * shrink, source[1] * shrink), abs=1.0)
+
+
+def test_the_bound_is_reached() -> None:
+    assert working_size((640, 480), (160, 120)) == (160, 120)
+    assert working_size((1920, 1080), (160, 120)) == (160, 90)
+    assert working_size((100, 80), (160, 120)) == (100, 80)
