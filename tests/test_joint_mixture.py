@@ -22,11 +22,19 @@ def told(
     surety: float = 0.8,
     sureties: tuple[float, float] = (0.8, 0.8),
     wider_m: float = 0.0,
+    others: tuple[np.ndarray, float] | None = None,
 ) -> Witnesses:
-    spreads_m = np.array([0.02 + wider_m, 0.03, 0.03])
-    sure = np.array(sureties)
+    """What is said; `others`: rays to where else the views may see it, and how probably."""
+    elsewhere, other = (np.zeros((2, 3)), 0.0) if others is None else others
     return Witnesses(
-        proposed_m, surety, CENTRES_M, directions, sure, spreads_m, PROPOSED.roughly + wider_m, 1.75
+        proposed_m,
+        surety,
+        CENTRES_M,
+        np.stack([directions, elsewhere], axis=1),
+        np.stack([sureties, (other, other)], axis=1),
+        np.array([0.02 + wider_m, 0.03, 0.03]),
+        PROPOSED.roughly + wider_m,
+        1.75,
     )
 
 
@@ -49,6 +57,29 @@ def test_two_rays_that_meet_outvote_a_proposal_that_is_far_away() -> None:
 def test_a_ray_that_leads_elsewhere_does_not_pull() -> None:
     elsewhere = TRUE_M - np.array([0.0, 0.5, 0.0])
     place_m, _, _ = place_of(told(TRUE_M, rays_through(TRUE_M, elsewhere)))
+    assert np.linalg.norm(place_m - TRUE_M) < 0.005
+
+
+def test_where_a_view_may_see_it_too_is_believed_if_all_else_agrees() -> None:
+    """One view shows the other arm first; its second place, the other view and outlines agree."""
+    true = rays_through(TRUE_M, TRUE_M)
+    wrong = rays_through(TRUE_M, TRUE_M + np.array([0.0, 0.4, 0.1]))
+    proposed_m = TRUE_M + np.array([0.06, 0.1, 0.06])
+    first, others = np.stack([true[0], wrong[1]]), np.stack([wrong[0], true[1]])
+    found, plain = (
+        np.linalg.norm(
+            place_of(told(proposed_m, first, 0.3, (0.6, 0.6), others=(others, sure)))[0] - TRUE_M
+        )
+        for sure in (0.2, 0.0)
+    )
+    assert found < 0.02
+    assert found < 0.5 * plain
+
+
+def test_where_a_view_may_see_it_too_counts_for_nothing_beside_those_who_agree() -> None:
+    rays = rays_through(TRUE_M, TRUE_M)
+    others = rays_through(TRUE_M + 0.3, TRUE_M + 0.3), 0.15
+    place_m, _, _ = place_of(told(TRUE_M, rays, others=others))
     assert np.linalg.norm(place_m - TRUE_M) < 0.005
 
 

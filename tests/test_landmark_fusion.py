@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from staging import PERSON, RIG, report, silhouettes, standing
 
-from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
+from common.body.body import JOINT_NAMES, OTHER_SIDE, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector
 from common.bus.messages import Landmarks
@@ -103,6 +103,29 @@ def test_a_view_that_exchanges_the_legs_is_found_out() -> None:
     assert np.linalg.norm(found.joints_m - true_m[AT], axis=1).max() < 0.02
 
 
+def test_a_view_that_shows_both_wrists_in_one_place_tells_the_other_as_its_second() -> None:
+    """Not exchanged, but doubled: half of what a map shows is of the other side."""
+    true_m = walking()
+    left, right = JOINT_NAMES.index("l_wrist"), JOINT_NAMES.index("r_wrist")
+    doubled_m = true_m.copy()
+    doubled_m[left] = true_m[right]
+    masks = silhouettes(standing())
+    first = msgspec.structs.replace(
+        shown(RIG.cameras[0], doubled_m, sure=0.6),
+        second_px=shown(RIG.cameras[0], true_m).joints_px,
+        second_confidence=(0.3,) * len(JOINT_NAMES),
+    )
+    second = shown(RIG.cameras[1], true_m)
+    seen = rays_of(
+        RIG, (report(1, masks[0], landmarks=first), report(2, masks[1], landmarks=second))
+    )
+    assert seen is not None
+    proposed_m = true_m[AT] + (0.0, 0.0, 0.1)
+    found = fused(proposed_m, seen, 0.5)
+    at = list(AT).index(left)
+    assert np.linalg.norm(found.joints_m[at] - true_m[left]) < 0.05
+
+
 def test_what_speaks_against_each_other_is_less_sure() -> None:
     true_m = walking()
     agreed = fused(true_m[AT], rays(true_m, true_m), 0.8)
@@ -152,8 +175,13 @@ def test_facing_is_zero_towards_the_camera_and_ninety_to_the_right_of_its_pictur
 def test_landmarks_of_a_lens_that_bends_are_straightened_with_the_outline() -> None:
     bent = msgspec.structs.replace(RIG.cameras[0], distortion=(-0.2, 0.05, 0.0, 0.0, 0.0))
     true_m = walking()
-    told = report(1, silhouettes(standing())[0], landmarks=shown(bent, true_m))
+    seen, second_m = shown(bent, true_m), true_m[OTHER_SIDE]
+    second_px = shown(bent, second_m).joints_px
+    seen = msgspec.structs.replace(seen, second_px=second_px, second_confidence=seen.confidence)
+    told = report(1, silhouettes(standing())[0], landmarks=seen)
     straight = undistorted_report(told, bent).landmarks
     assert straight is not None
-    expected = project(undistorted_camera(bent), true_m)
-    assert np.array(straight.joints_px) == pytest.approx(expected, abs=0.05)
+    ideal = undistorted_camera(bent)
+    assert np.array(straight.joints_px) == pytest.approx(project(ideal, true_m), abs=0.05)
+    assert np.array(straight.second_px) == pytest.approx(project(ideal, second_m), abs=0.05)
+    assert straight.extremities_px == ()

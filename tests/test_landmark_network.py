@@ -63,14 +63,30 @@ def test_a_map_with_one_peak_puts_the_joint_there_between_the_cells() -> None:
     maps[:, 7, 3] = 0.0
     maps[:, 7, 4] = 0.0
     joints, about = landmark_network._peaks(maps)
-    assert joints == pytest.approx(np.tile([4.0, 7.5], (15, 1)) * SIDE / CELLS)
-    assert about == pytest.approx(np.ones(15))
+    assert joints[:, 0] == pytest.approx(np.tile([4.0, 7.5], (15, 1)) * SIDE / CELLS)
+    assert about[:, 0] == pytest.approx(np.ones(15))
+    assert about[:, 1] == pytest.approx(np.zeros(15), abs=1e-6)
 
 
-def test_a_map_with_two_peaks_is_half_as_sure() -> None:
+def test_a_map_with_two_peaks_tells_both_and_is_as_sure_of_each_as_it_shows_it() -> None:
     maps = np.full((15, CELLS, CELLS), -20.0, np.float32)
-    maps[:, 3, 3] = maps[:, 20, 20] = 0.0
-    assert landmark_network._peaks(maps)[1] == pytest.approx(np.full(15, 0.5), abs=1e-4)
+    maps[:, 3, 5] = np.log(0.75)
+    maps[:, 20, 18] = np.log(0.25)
+    joints, about = landmark_network._peaks(maps)
+    assert about == pytest.approx(np.tile([0.75, 0.25], (15, 1)), abs=1e-4)
+    due = np.array([[5.5, 3.5], [18.5, 20.5]]) * SIDE / CELLS
+    assert joints == pytest.approx(np.tile(due, (15, 1, 1)))
+
+
+def test_the_slope_of_a_peak_is_hardly_taken_for_another() -> None:
+    rows, columns = np.indices((CELLS, CELLS))
+    bell = -0.5 * ((rows - 10.2) ** 2 + (columns - 6.8) ** 2)
+    maps = np.tile(bell.astype(np.float32), (15, 1, 1))
+    about = landmark_network._peaks(maps)[1]
+    assert about[:, 0].min() > 0.75
+    _, share, offset = landmark_network.PLATT_OF_SECOND
+    sure = 1.0 / (1.0 + np.exp(-offset) * (1.0 / about[:, 1] - 1.0) ** share)
+    assert sure.max() < 0.01
 
 
 @pytest.mark.parametrize("bin_", range(BINS))
@@ -98,6 +114,29 @@ def test_its_confidence_is_how_often_it_is_right() -> None:
         held = (sure >= low) & (sure < low + 0.2)
         if held.sum() >= 100:
             assert right[held].mean() == pytest.approx(sure[held].mean(), abs=0.1)
+
+
+def test_where_else_a_joint_may_be_is_as_sure_as_it_is_there() -> None:
+    """Of those that are not where they are shown first; left and right aside."""
+    plain, other = off(), off(exchanged=True)
+    crossed = np.nanmean(other, axis=1) < np.nanmean(plain, axis=1)
+    first = np.where(crossed[:, None], other, plain) < 0.03
+    there = np.stack(
+        [
+            np.linalg.norm(
+                f.second - (one.joints_px[OTHER_SIDE] if swapped else one.joints_px), axis=1
+            )
+            / one.stature_px
+            < 0.03
+            for one, f, swapped in zip(shown(), found(), crossed, strict=True)
+        ]
+    )
+    sure = np.stack([one.second_confidence for one in found()])
+    told = np.stack([one.inside for one in shown()])
+    for low, high in ((0.0, 0.1), (0.1, 1.0)):
+        held = told & (sure >= low) & (sure < high)
+        assert held.sum() >= 100
+        assert (there & ~first)[held].mean() == pytest.approx(sure[held].mean(), abs=0.1)
 
 
 def test_it_tells_front_from_back() -> None:

@@ -70,6 +70,8 @@ LANDMARKS = Landmarks(
     extremities_confidence=(0.0, 0.25, 1.0, 0.5, 0.5, 0.5, 0.5),
     facing_deg=-90.0,
     facing_confidence=0.75,
+    second_px=((9.5, -2.5),) * len(JOINT_NAMES),
+    second_confidence=(0.0, 0.25) + (0.125,) * (len(JOINT_NAMES) - 2),
 )
 REPORT = Report(
     frame=7,
@@ -296,6 +298,9 @@ def test_a_stick_body_that_no_viewer_would_fit_is_refused(
         ("confidence", (0.5,)),
         ("confidence", (1.1,) * len(JOINT_NAMES)),
         ("confidence", (float("nan"),) * len(JOINT_NAMES)),
+        ("second_px", ((1.0, 2.0),)),
+        ("second_px", ()),
+        ("second_confidence", (1.1,) * len(JOINT_NAMES)),
         ("facing_deg", 181.0),
         ("facing_confidence", -0.1),
     ],

@@ -21,7 +21,9 @@ def rays_to(joints_m: np.ndarray, sure: tuple[float, float] = (0.8, 0.8)) -> Ray
     along = joints_m[None] - CENTRES_M[:, None]
     along /= np.linalg.norm(along, axis=2, keepdims=True)
     confidence = np.repeat(np.array(sure)[:, None], 12, axis=1)
-    return Rays(CENTRES_M, along, confidence, np.stack([np.eye(3)] * 2), (0.0, 0.0), (0.0, 0.0))
+    nowhere = np.zeros_like(confidence)
+    turns = np.stack([np.eye(3)] * 2)
+    return Rays(CENTRES_M, along, confidence, along, nowhere, turns, (0.0, 0.0), (0.0, 0.0))
 
 
 def after(instants: int, proposed_m: np.ndarray, rays: Rays, before: float = 0.0) -> float:

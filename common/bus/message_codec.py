@@ -186,11 +186,16 @@ def _refuse_false_landmarks(landmarks: Landmarks) -> None:
     for name in ("extremities_px", "extremities_confidence"):
         if len(getattr(landmarks, name)) not in (0, len(EXTREMITY_NAMES)):
             raise MalformedMessage(f"{name} has no {len(EXTREMITY_NAMES)} entries")
+    for name in ("second_px", "second_confidence"):
+        if len(getattr(landmarks, name)) not in (0, len(JOINT_NAMES)):
+            raise MalformedMessage(f"{name} has no {len(JOINT_NAMES)} entries")
     if len(landmarks.extremities_px) != len(landmarks.extremities_confidence):
         raise MalformedMessage("extremities without their confidence")
+    if len(landmarks.second_px) != len(landmarks.second_confidence):
+        raise MalformedMessage("second places without their confidence")
     shares = (
-        *(*landmarks.confidence, *landmarks.extremities_confidence),
-        landmarks.facing_confidence,
+        *(*landmarks.confidence, *landmarks.second_confidence),
+        *(*landmarks.extremities_confidence, landmarks.facing_confidence),
     )
     if not all(0.0 <= share <= 1.0 for share in shares):
         raise MalformedMessage("landmarks of confidences beyond 0 to 1")

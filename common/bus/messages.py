@@ -7,7 +7,7 @@ import msgspec
 from common.body.body import Bdp
 from common.rig.picture_shift import Shift
 
-PROTOCOL: Final = 8
+PROTOCOL: Final = 9
 
 ViewerNumber = Literal[1, 2]
 Facing = Literal["facade", "flank"]
@@ -96,6 +96,10 @@ class Landmarks(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """EXTREMITY_NAMES order, as joints_px; empty: the source does not look for them."""
     extremities_confidence: tuple[float, ...] = ()
     """EXTREMITY_NAMES order, as confidence."""
+    second_px: tuple[Pixel, ...] = ()
+    """Where else each joint may be, as joints_px; empty: the source tells one place alone."""
+    second_confidence: tuple[float, ...] = ()
+    """How probably it is there instead, as confidence."""
 
 
 class Report(Moment, frozen=True, kw_only=True):

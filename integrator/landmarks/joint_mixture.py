@@ -34,9 +34,12 @@ SHOWN: Final = Spread(right=0.016, unsure=0.014, roughly=0.051, often=0.55, far=
 LEAST, MOST = 0.01, 0.98
 """Nobody is believed more or less surely."""
 ROUNDS: Final = 4
+SECOND: Final = 0.02
+"""Less probably nobody is where a view may see a joint too."""
 HELD: Final = 4.0
 """1 / m^2: so tightly a proposed joint is held where nothing else speaks."""
-STARTS: Final = 4
+NONE, BOTH = -1, 2
+"""Of rays: no ray of a view, and how many a view has."""
 
 
 class Witnesses(NamedTuple):
@@ -49,9 +52,9 @@ class Witnesses(NamedTuple):
     centres_m: Any
     """(2, 3) the cameras."""
     directions: Any
-    """(2, 3) of its rays."""
+    """(2, BOTH, 3) of its rays: of each view where it shows the joint, and where else it may."""
     sureties: Any
-    """(2,) how probably each landmark is right; 0: there is none."""
+    """(2, BOTH) how probably each landmark is right; 0: there is none."""
     spreads_m: Any
     """(3,) of the proposed joint and of both landmarks, where they are right."""
     roughly_m: float
@@ -73,40 +76,51 @@ def most_probable(told: Any, place_m: Any, precision: Any) -> float:
     """
     best = -np.inf
     normal, right, here = np.zeros(6), np.zeros(3), np.zeros(3)
-    for start in range(STARTS):
-        if not _start(told, start, here):
-            continue
-        for _ in range(ROUNDS):
-            _weigh(told, here, normal, right)
-            _solve(normal, right, here)
-        found = _weigh(told, here, normal, right)
-        if found > best:
-            best = found
-            place_m[:] = here
-            precision[:] = normal
+    for first in range(NONE, BOTH):
+        for second in range(NONE, BOTH):
+            if not _start(told, first, second, here):
+                continue
+            for _ in range(ROUNDS):
+                _weigh(told, here, normal, right)
+                _solve(normal, right, here)
+            found = _weigh(told, here, normal, right)
+            if found > best:
+                best = found
+                place_m[:] = here
+                precision[:] = normal
     return best
 
 
 @compiled
-def _start(told: Any, start: int, here: Any) -> bool:
-    """Where to climb from; whether there is such a place."""
-    if start == 0:
-        here[:] = told.proposed_m
+def _start(told: Any, first: int, second: int, here: Any) -> bool:
+    """Where to climb from, by one ray of each view, or none; whether there is such a place."""
+    here[:] = told.proposed_m
+    for view, ray in enumerate((first, second)):
+        if ray != NONE:
+            if told.sureties[view, ray] <= 0.0:
+                return False
+            _drop(told.centres_m[view], told.directions[view, ray], here)
+    if NONE in (first, second):
         return True
-    if start < 3:
-        view = start - 1
-        along = 0.0
-        for i in range(3):
-            along += (told.proposed_m[i] - told.centres_m[view, i]) * told.directions[view, i]
-        for i in range(3):
-            here[i] = told.centres_m[view, i] + along * told.directions[view, i]
-        return bool(told.sureties[view] > 0.0)
-    if told.sureties[0] <= 0.0 or told.sureties[1] <= 0.0:
-        return False
-    one, two = told.directions[0], told.directions[1]
+    return _meet(told.centres_m, told.directions[0, first], told.directions[1, second], here)
+
+
+@compiled
+def _drop(centre_m: Any, direction: Any, here: Any) -> None:
+    """Move a place to where a ray is nearest to it."""
+    along = 0.0
+    for i in range(3):
+        along += (here[i] - centre_m[i]) * direction[i]
+    for i in range(3):
+        here[i] = centre_m[i] + along * direction[i]
+
+
+@compiled
+def _meet(centres_m: Any, one: Any, two: Any, here: Any) -> bool:
+    """The middle between two rays where they are nearest; whether there is one."""
     cosine = first = second = 0.0
     for i in range(3):
-        apart = told.centres_m[0, i] - told.centres_m[1, i]
+        apart = centres_m[0, i] - centres_m[1, i]
         cosine += one[i] * two[i]
         first += one[i] * apart
         second += two[i] * apart
@@ -114,8 +128,8 @@ def _start(told: Any, start: int, here: Any) -> bool:
     if sine_squared < 1e-6:
         return False
     for i in range(3):
-        near = told.centres_m[0, i] + one[i] * (cosine * second - first) / sine_squared
-        other = told.centres_m[1, i] + two[i] * (second - cosine * first) / sine_squared
+        near = centres_m[0, i] + one[i] * (cosine * second - first) / sine_squared
+        other = centres_m[1, i] + two[i] * (second - cosine * first) / sine_squared
         here[i] = 0.5 * (near + other)
     return True
 
@@ -126,46 +140,80 @@ def _weigh(told: Any, here: Any, normal: Any, right: Any) -> float:
     square = 0.0
     for i in range(3):
         square += (here[i] - told.proposed_m[i]) ** 2
-    total, weight = _likelihood(square, told.spreads_m[0], told.roughly_m, told.surety, PROPOSED, 3)
-    weight += HELD
+    surety, spread_m = told.surety, told.spreads_m[0]
+    unlikely = 1.0 - surety
+    is_right = _bell(square, spread_m, surety, 3)
+    is_rough = _bell(square, told.roughly_m, unlikely * PROPOSED.often, 3)
+    total = is_right + is_rough + _anywhere(told.roughly_m, unlikely, PROPOSED, 3)
+    weight = (is_right / spread_m**2 + is_rough / told.roughly_m**2) / total + HELD
     normal[0] = normal[3] = normal[5] = weight
     normal[1] = normal[2] = normal[4] = 0.0
     for i in range(3):
         right[i] = weight * told.proposed_m[i]
+    found = math.log(total)
     for view in range(2):
-        if told.sureties[view] <= 0.0:
-            continue
-        centre, along = told.centres_m[view], told.directions[view]
-        x, y, z = here[0] - centre[0], here[1] - centre[1], here[2] - centre[2]
-        deep = x * along[0] + y * along[1] + z * along[2]
-        square = max(0.0, x * x + y * y + z * z - deep * deep)
-        roughly = SHOWN.roughly * told.stature_m
-        said, weight = _likelihood(
-            square, told.spreads_m[1 + view], roughly, told.sureties[view], SHOWN, 2
-        )
-        total += said
-        at = centre[0] * along[0] + centre[1] * along[1] + centre[2] * along[2]
-        k = 0
-        for i in range(3):
-            right[i] += weight * (centre[i] - at * along[i])
-            for j in range(i, 3):
-                normal[k] += weight * ((1.0 if i == j else 0.0) - along[i] * along[j])
-                k += 1
-    return total
+        if told.sureties[view, 0] > 0.0:
+            found += _look(told, view, here, normal, right)
+    return found
 
 
 @compiled
-def _likelihood(
-    square: float, right: float, roughly: float, surety: float, kind: Any, axes: int
-) -> tuple[float, float]:
-    """Of one witness who is so far off (squared, m^2): log probability, and weight, 1 / m^2."""
-    is_right = surety * math.exp(-square / (2 * right * right)) / right**axes
-    rest = (1.0 - surety) * kind.often / roughly**axes
-    is_rough = rest * math.exp(-square / (2 * roughly * roughly))
-    beyond = (1.0 - surety) * (1.0 - kind.often) / (kind.far * roughly) ** axes
-    anywhere = beyond * math.exp(-4.5)
-    total = is_right + is_rough + anywhere + 1e-30
-    return math.log(total), (is_right / (right * right) + is_rough / (roughly * roughly)) / total
+def _look(told: Any, view: int, here: Any, normal: Any, right: Any) -> float:
+    """The log probability by what one view shows; the normal equations get its share of them.
+
+    It shows the joint at its first place or at its second: whichever is nearer pulls.
+    """
+    first, second = told.directions[view]
+    surety, other = told.sureties[view]
+    centre_m, spread_m, roughly_m = (
+        told.centres_m[view],
+        told.spreads_m[1 + view],
+        SHOWN.roughly * told.stature_m,
+    )
+    square = _beside(centre_m, first, here)
+    unlikely = 1.0 - surety - other
+    is_right = _bell(square, spread_m, surety, 2)
+    is_rough = _bell(square, roughly_m, unlikely * SHOWN.often, 2)
+    is_second = _bell(_beside(centre_m, second, here), spread_m, other, 2) if other > 0.0 else 0.0
+    total = is_right + is_rough + is_second + _anywhere(roughly_m, unlikely, SHOWN, 2)
+    weight = (is_right / spread_m**2 + is_rough / roughly_m**2) / total
+    _pull(centre_m, first, weight, normal, right)
+    if is_second > 0.0:
+        _pull(centre_m, second, is_second / spread_m**2 / total, normal, right)
+    return math.log(total)
+
+
+@compiled
+def _beside(centre_m: Any, along: Any, here: Any) -> float:
+    """How far a place is beside a ray, squared."""
+    x, y, z = here[0] - centre_m[0], here[1] - centre_m[1], here[2] - centre_m[2]
+    deep = x * along[0] + y * along[1] + z * along[2]
+    return max(0.0, x * x + y * y + z * z - deep * deep)
+
+
+@compiled
+def _pull(centre_m: Any, along: Any, weight: float, normal: Any, right: Any) -> None:
+    """What a ray adds to the normal equations."""
+    at = centre_m[0] * along[0] + centre_m[1] * along[1] + centre_m[2] * along[2]
+    k = 0
+    for i in range(3):
+        right[i] += weight * (centre_m[i] - at * along[i])
+        for j in range(i, 3):
+            normal[k] += weight * ((1.0 if i == j else 0.0) - along[i] * along[j])
+            k += 1
+
+
+@compiled
+def _bell(square: float, spread_m: float, often: float, axes: int) -> float:
+    """How probably somebody who is so often of this kind is so far off (squared, m^2)."""
+    return often * math.exp(-square / (2 * spread_m * spread_m)) / spread_m**axes
+
+
+@compiled
+def _anywhere(roughly_m: float, unlikely: float, kind: Any, axes: int) -> float:
+    """How probably somebody who is neither right nor roughly right says so."""
+    beyond = unlikely * (1.0 - kind.often) / (kind.far * roughly_m) ** axes
+    return beyond * math.exp(-4.5) + 1e-30
 
 
 @compiled

@@ -10,9 +10,11 @@ from common.compiled import compiled
 from integrator.landmarks import exchanged_sides, limb_springs, proposal_misfit, turned_about
 from integrator.landmarks.exchanged_sides import Exchanged, Exchanges
 from integrator.landmarks.joint_mixture import (
+    BOTH,
     LEAST,
     MOST,
     PROPOSED,
+    SECOND,
     SHOWN,
     Witnesses,
     most_probable,
@@ -120,14 +122,15 @@ def _weighed(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """`_modes` of what confidences say of how sure and how wide each witness is."""
     shown = np.where(rays.confidence > 0.0, _share(rays.confidence, SHOWN_RIGHT), 0.0)
+    others = np.where(rays.others_confidence < SECOND, 0.0, rays.others_confidence)
     found: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] = _modes(
         proposed_m,
         _share(confidence, PROPOSED_RIGHT),
         np.hypot(PROPOSED.right + PROPOSED.unsure * (1.0 - confidence), wider_m),
         np.hypot(PROPOSED.roughly, wider_m),
         rays.centres_m,
-        rays.directions,
-        shown,
+        np.stack([rays.directions, rays.others], axis=2),
+        np.stack([shown, np.minimum(others, MOST - shown)], axis=2),
         stature_m * (SHOWN.right + SHOWN.unsure * (1.0 - rays.confidence)),
         stature_m,
     )
@@ -177,7 +180,7 @@ def _modes(
     n = len(proposed_m)
     values, places_m = np.empty((n, 2, 2)), np.empty((n, 2, 2, 3))
     precisions = np.empty((n, 2, 2, 6))
-    along, sureties, spreads = np.empty((2, 3)), np.empty(2), np.empty(3)
+    along, sureties, spreads = np.empty((2, BOTH, 3)), np.empty((2, BOTH)), np.empty(3)
     for joint in range(n):
         spreads[0] = spreads_m[joint]
         for first in range(2):

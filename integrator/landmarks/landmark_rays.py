@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Landmarks, Report
+from common.bus.messages import Pixel, Report
 from common.rig.camera import Camera, Rig, arrays_of
 from integrator.proposal.network_weights import JOINTS
 
@@ -27,6 +27,10 @@ class Rays(NamedTuple):
     """(2, 12, 3) unit length."""
     confidence: NDArray[np.float64]
     """(2, 12) of `Landmarks.confidence`; 0: that view has no landmarks."""
+    others: NDArray[np.float64]
+    """(2, 12, 3) of where else a view may see them, as `directions`."""
+    others_confidence: NDArray[np.float64]
+    """(2, 12) likewise; 0: that view has one place alone."""
     rotations: NDArray[np.float64]
     """(2, 3, 3) from the world to each camera."""
     facing_deg: tuple[float, float]
@@ -50,11 +54,14 @@ def rays_of(rig: Rig, seen: tuple[Report | None, Report | None]) -> Rays | None:
     shown = [None if report is None else report.landmarks for report in seen]
     if shown == [None, None]:
         return None
-    directions, confidence = np.zeros((2, len(AT), 3)), np.zeros((2, len(AT)))
+    directions, confidence = np.zeros((2, 2, len(AT), 3)), np.zeros((2, 2, len(AT)))
     for view, (camera, landmarks) in enumerate(zip(rig.cameras, shown, strict=True)):
         if landmarks is not None:
-            directions[view] = _directions(camera, landmarks)
-            confidence[view] = np.array(landmarks.confidence)[AT]
+            directions[0, view] = _directions(camera, landmarks.joints_px)
+            confidence[0, view] = np.array(landmarks.confidence)[AT]
+        if landmarks is not None and landmarks.second_px:
+            directions[1, view] = _directions(camera, landmarks.second_px)
+            confidence[1, view] = np.array(landmarks.second_confidence)[AT]
     cameras = [arrays_of(camera) for camera in rig.cameras]
     facings = [
         (0.0, 0.0) if each is None else (each.facing_deg, each.facing_confidence) for each in shown
@@ -62,16 +69,18 @@ def rays_of(rig: Rig, seen: tuple[Report | None, Report | None]) -> Rays | None:
     (facing_1, sure_1), (facing_2, sure_2) = facings
     return Rays(
         np.stack([camera.centre for camera in cameras]),
-        directions,
-        confidence,
+        directions[0],
+        confidence[0],
+        directions[1],
+        confidence[1],
         np.stack([camera.R for camera in cameras]),
         (facing_1, facing_2),
         (sure_1, sure_2),
     )
 
 
-def _directions(camera: Camera, landmarks: Landmarks) -> NDArray[np.float64]:
-    known, places_px = arrays_of(camera), np.array(landmarks.joints_px)[AT]
+def _directions(camera: Camera, joints_px: tuple[Pixel, ...]) -> NDArray[np.float64]:
+    known, places_px = arrays_of(camera), np.array(joints_px)[AT]
     plane = np.ones((len(AT), 3))
     plane[:, :2] = (places_px - known.middle_px) / known.focal_px
     found: NDArray[np.float64] = plane @ known.R

@@ -1,6 +1,7 @@
 """Lens distortion undone: the kernel and the network take pictures without distortion."""
 
 from functools import lru_cache
+from itertools import islice
 
 import cv2
 import msgspec
@@ -72,11 +73,13 @@ def _undistorted_px(place: Pixel | None, camera: Camera) -> Pixel | None:
 def _undistorted_landmarks(shown: Landmarks | None, camera: Camera) -> Landmarks | None:
     if shown is None:
         return None
-    K, places_px = np.array(camera.K), np.array([(*shown.joints_px, *shown.extremities_px)])
+    K, kinds = np.array(camera.K), ("joints_px", "second_px", "extremities_px")
+    lengths = [len(getattr(shown, kind)) for kind in kinds]
+    places_px = np.array([[place for kind in kinds for place in getattr(shown, kind)]])
     straight = cv2.undistortPoints(places_px, K, np.array(camera.distortion), P=K)[:, 0]
-    places = tuple((u, v) for u, v in straight.tolist())
-    joints = len(shown.joints_px)
-    return msgspec.structs.replace(shown, joints_px=places[:joints], extremities_px=places[joints:])
+    places = iter([(u, v) for u, v in straight.tolist()])
+    told = {kind: tuple(islice(places, n)) for kind, n in zip(kinds, lengths, strict=True)}
+    return msgspec.structs.replace(shown, **told)
 
 
 def undistorted(mask: Mask, camera: Camera) -> Mask:

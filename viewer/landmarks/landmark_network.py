@@ -21,9 +21,13 @@ FARTHEST: Final = 0.8
 DEEP: Final = 25.0
 """A cell whose logit lies so far below the highest adds nothing that a float32 could tell."""
 SHIPPED: Final = Path(__file__).with_name("landmarks.onnx")
+APART: Final = 2
+"""The next peak of a map is more cells than this from the highest, down or across."""
 PLATT: Final = (1.07, 0.67, 0.41)
 """Of the network's own confidence, of how much of a joint's map lies about its peak, and 1: the
 logit of how often a joint was less than 0.03 statures off."""
+PLATT_OF_SECOND: Final = (-0.24, 2.82, 0.33)
+"""Likewise of where else a joint may be: how often it was there, and not at the highest."""
 
 
 class Found(NamedTuple):
@@ -37,6 +41,10 @@ class Found(NamedTuple):
     facing_confidence: float
     nobody: float
     """How probably there is no person in the window."""
+    second: NDArray[np.float64]
+    """(15, 2) where else each joint may be, as `joints`."""
+    second_confidence: Vector
+    """(15,) how probably it is there instead, likewise."""
 
 
 @lru_cache(maxsize=1)
@@ -60,41 +68,63 @@ def find(planes: Planes) -> Found:
     maps, told = shipped().run(None, {"planes": planes})
     joints, about = _peaks(maps[0])
     bins, nobody, sure = told[0, :BINS], told[0, BINS], told[0, BINS + 1 :]
-    confidence = _sigmoid(PLATT[0] * sure + PLATT[1] * _logit(about) + PLATT[2])
-    facing_deg, facing_confidence = _facing(bins.astype(np.float64))
-    return Found(joints, confidence, facing_deg, facing_confidence, float(_sigmoid(nobody)))
+    first, second = (
+        _sigmoid(slope * sure + share * _logit(near) + offset)
+        for near, (slope, share, offset) in zip(about.T, (PLATT, PLATT_OF_SECOND), strict=True)
+    )
+    facing = _facing(bins.astype(np.float64))
+    return Found(joints[:, 0], first, *facing, float(_sigmoid(nobody)), joints[:, 1], second)
 
 
 @compiled
 def _peaks(maps: Any) -> tuple[Any, Any]:
-    """Where each map of logits (15, CELLS, CELLS) is highest, and its share about there.
+    """Where each map of logits (15, CELLS, CELLS) is highest, and next to that, (15, 2, 2), and
+    its shares about there, (15, 2).
 
-    Between cells the peak is that of the bell through the three sums of cells about the highest:
+    Between cells a peak is that of the bell through the three sums of cells about the highest:
     maps are taught to be bells, and a mean over few cells would lean to the middle one.
     """
-    joints, about = np.empty((len(maps), 2)), np.empty(len(maps))
+    joints, about = np.empty((len(maps), 2, 2)), np.empty((len(maps), 2))
+    shares = np.empty((CELLS, CELLS))
     for j in range(len(maps)):
-        best, row, column = -np.inf, 0, 0
+        best, total = maps[j].max(), 0.0
         for i in range(CELLS):
             for k in range(CELLS):
-                if maps[j, i, k] > best:
-                    best, row, column = maps[j, i, k], i, k
-        total, near = 0.0, 0.0
-        rows, columns = np.full(3, 1e-9), np.full(3, 1e-9)
-        for i in range(CELLS):
-            for k in range(CELLS):
-                if maps[j, i, k] < best - DEEP:
-                    continue
-                share = np.exp(maps[j, i, k] - best)
-                total += share
-                if abs(i - row) <= 1 and abs(k - column) <= 1:
-                    near += share
-                    rows[i - row + 1] += share
-                    columns[k - column + 1] += share
-        joints[j, 0] = (column + 0.5 + _between(columns)) * SIDE / CELLS
-        joints[j, 1] = (row + 0.5 + _between(rows)) * SIDE / CELLS
-        about[j] = near / total
+                below = maps[j, i, k] - best
+                shares[i, k] = np.exp(below) if below >= -DEEP else 0.0
+                total += shares[i, k]
+        row, column = _highest(shares, -CELLS, -CELLS)
+        about[j, 0] = _peak(shares, row, column, joints[j, 0]) / total
+        row, column = _highest(shares, row, column)
+        about[j, 1] = _peak(shares, row, column, joints[j, 1]) / total
     return joints, about
+
+
+@compiled
+def _highest(shares: Any, row: int, column: int) -> tuple[int, int]:
+    """The cell with the largest share of those that are APART from another."""
+    best, at = -1.0, (0, 0)
+    for i in range(CELLS):
+        for k in range(CELLS):
+            is_apart = abs(i - row) > APART or abs(k - column) > APART
+            if is_apart and shares[i, k] > best:
+                best, at = shares[i, k], (i, k)
+    return at
+
+
+@compiled
+def _peak(shares: Any, row: int, column: int, place: Any) -> float:
+    """What lies about a cell; `place` (2,) gets where the bell about it has its peak."""
+    near = 0.0
+    rows, columns = np.full(3, 1e-9), np.full(3, 1e-9)
+    for i in range(max(row - 1, 0), min(row + 2, CELLS)):
+        for k in range(max(column - 1, 0), min(column + 2, CELLS)):
+            near += shares[i, k]
+            rows[i - row + 1] += shares[i, k]
+            columns[k - column + 1] += shares[i, k]
+    place[0] = (column + 0.5 + _between(columns)) * SIDE / CELLS
+    place[1] = (row + 0.5 + _between(rows)) * SIDE / CELLS
+    return near
 
 
 @compiled

@@ -29,6 +29,8 @@ class _Look(NamedTuple):
     facing: tuple[float, float]
     """Degrees, and how sure."""
     nobody: float
+    second_px: NDArray[np.float64]
+    second_confidence: Vector
 
     @property
     def surety(self) -> float:
@@ -84,14 +86,20 @@ def _told(best: _Look) -> Landmarks:
         confidence=tuple(best.confidence.tolist()),
         facing_deg=best.facing[0],
         facing_confidence=best.facing[1],
+        second_px=tuple((float(x), float(y)) for x, y in best.second_px),
+        second_confidence=tuple(best.second_confidence.tolist()),
     )
 
 
 def _look(picture: Image, mask: Mask | None, window: Window) -> _Look:
     found = find(planes_of(picture, mask, window))
-    joints_px = found.joints * (window.side / SIDE) + (window.left, window.top)
+    joints_px, second_px = (
+        places * (window.side / SIDE) + (window.left, window.top)
+        for places in (found.joints, found.second)
+    )
     facing = (found.facing_deg, found.facing_confidence)
-    return _Look(joints_px, found.confidence, facing, found.nobody)
+    second = found.second_confidence
+    return _Look(joints_px, found.confidence, facing, found.nobody, second_px, second)
 
 
 def _search(picture: Image) -> _Look:
