@@ -92,6 +92,16 @@ def test_a_test_bears_the_name_of_what_it_tests() -> None:
     assert tests - modules == set(SYSTEM)
 
 
+def test_newer_pythons_are_tried_with_tests_that_are_there() -> None:
+    listed = re.search(
+        r"^core=\((.+?)\)", (ROOT / ".ci/matrix").read_text(), re.DOTALL | re.MULTILINE
+    )
+    assert listed is not None
+    names = listed[1].split()
+    assert names
+    assert [name for name in names if not (ROOT / f"tests/test_{name}.py").is_file()] == []
+
+
 @pytest.mark.parametrize(
     ("module", "heavy"),
     [
