@@ -38,8 +38,8 @@ class Front(NamedTuple):
     """Whether the person was seen from the side just before."""
     doubted_s: float = 0.0
     """For how long proposals have said otherwise."""
-    shown: bool = False
-    """Whether a picture has told it."""
+    first: bool = True
+    """Nobody was seen before."""
 
 
 def yaw_deg(camera: Camera, joints_m: Joints) -> float:
@@ -64,8 +64,8 @@ def front_of(
 
     People turn from front to back through their side, where the outline is theirs alone: after
     that a picture that surely shows it is believed, else a proposal; elsewhere it goes on as it
-    was. How it began tells the first picture that shows it, and while pictures say that it goes
-    on so, proposals do not insist.
+    was. How it began tells the first picture, if that is sure, and while pictures say that it
+    goes on so, proposals do not insist.
 
     Args:
         before: At the frame before.
@@ -79,15 +79,15 @@ def front_of(
         seen_away = abs(shown_deg) > 90.0
     if named is not None and named not in ("left", "right"):
         due = named.startswith("backward")
-        return Front(due, shown=True), due != away
+        return Front(due, first=False), due != away
     if named is not None or _is_aside(yaw):
-        return before._replace(aside=True, doubted_s=0.0), False
-    if seen_away is not None and (before.aside or not before.shown):
-        before = Front(seen_away, shown=True)
+        return Front(before.away, aside=True, first=False), False
+    if seen_away is not None and (before.aside or before.first):
+        before = Front(seen_away)
     doubted_s = 0.0 if seen_away == before.away else before.doubted_s + dt_s
     if before.aside or away == before.away or doubted_s > INSISTS_S:
-        return Front(away, shown=before.shown), False
-    return before._replace(doubted_s=doubted_s), True
+        return Front(away, first=False), False
+    return Front(before.away, doubted_s=doubted_s, first=False), True
 
 
 def _is_aside(yaw: float, wide_deg: float = SIDEWAYS_DEG) -> bool:
