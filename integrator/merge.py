@@ -226,4 +226,4 @@ def _smoothed(state: State, fits: bool, dt_s: float) -> tuple[State, Vector]:
 def _without_pose(state: State) -> State:
     """Nobody is in any view: what was learnt of the body is kept, its pose is not."""
     fresh = smoothing.init(len(ANGLE_NAMES), state.smooth.period_s)
-    return state._replace(found=None, doubted=0, smooth=fresh)
+    return state._replace(found=None, doubted=0, met=False, smooth=fresh)

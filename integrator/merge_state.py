@@ -69,6 +69,8 @@ class State(NamedTuple):
     """How often the rig was changed: places before and after do not compare."""
     doubted: int = 0
     """For how many frames the body has not been believed."""
+    met: bool = False
+    """Whether it was believed since somebody came."""
     stands: MovedCameras = MovedCameras()
     """How the cameras stand, against how they stood when the rig was told."""
 

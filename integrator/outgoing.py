@@ -82,15 +82,16 @@ def weighed(
 
     A frame in which the user placed joints is believed. What the network remembers of a wrong body
     it would go on with. One view that is alone keeps what it remembers: it knows front from back
-    by that alone.
+    by that alone; of whom it never believed it is lost at once, as nothing says that it is anybody.
     """
     found = state.found
     assert found is not None
     assert state.rig is not None
     places_m = _places_m(state, found.pose)
     if annotations.joints_px or is_believed(places_m, state.rig, pair, scores):
-        return state._replace(doubted=0)
-    state = state._replace(doubted=state.doubted + 1)
+        return state._replace(doubted=0, met=True)
+    least = LOST_FRAMES if found.alone is not None and not state.met else 1
+    state = state._replace(doubted=max(least, state.doubted + 1))
     if state.doubted % LOST_FRAMES or found.alone is not None:
         return state
     return state._replace(found=found._replace(memory=None))

@@ -193,6 +193,19 @@ def test_a_body_that_fits_nothing_is_predicted_then_lost_then_found() -> None:
     assert errors_m(again, standing()).mean() < 0.12
 
 
+def test_one_view_that_never_believed_anybody_is_lost_at_once() -> None:
+    """A door that opens where nobody was; a body that was believed is predicted for a while."""
+    banner = NOBODY.copy()
+    banner[2:14, 10:150] = True
+    first = Stage(views=(1,)).see((banner, None)).body
+    assert (first.status, first.joints_m) == ("lost", ())
+    stage = Stage(views=(1,))
+    assert stage.show([standing()] * 3)[-1].body.status == "tracking"
+    assert stage.see((banner, None)).body.status == "predicted"
+    stage.see((NOBODY, None))
+    assert stage.see((banner, None)).body.status == "lost"
+
+
 @pytest.mark.parametrize("silent", [0, 1])
 def test_one_viewer_alone_carries_on(silent: int) -> None:
     """The other falls silent while tracking: position across the line of sight, views named."""

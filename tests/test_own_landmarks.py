@@ -75,6 +75,19 @@ def test_in_an_empty_room_nobody_is_seen() -> None:
     assert own_landmarks(acted()[3], nobody(), None) is None
 
 
+def test_an_outline_of_which_the_picture_shows_nobody_has_landmarks_that_are_not_sure_at_all() -> (
+    None
+):
+    """A door that opened: the outline is there, and as tall as a person."""
+    door = acted()[3].copy()
+    cv2.rectangle(door, (200, 40), (250, 190), (60, 90, 130), cv2.FILLED)
+    mask = np.zeros((240, 320), np.bool_)
+    mask[40:190, 200:250] = True
+    found = own_landmarks(door, seen(mask), None)
+    assert found is not None
+    assert (max(found.confidence), found.facing_confidence) == (0.0, 0.0)
+
+
 def test_whoever_faces_the_camera_is_told_to() -> None:
     shot = acted()[0]
     found = own_landmarks(shot.frame1, seen(shot.mask1), None)

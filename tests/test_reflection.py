@@ -72,17 +72,42 @@ def test_the_six_ways_are_named_by_the_yaw() -> None:
 
 def test_front_turns_to_back_through_the_side_alone() -> None:
     """A proposal that jumps from front to back is seen from behind; through the side it is not."""
-    front, behind = front_of(Front(), 150.0, None, 0.1)
+    front, behind = front_of(Front(), 150.0, None, None, 0.1)
     assert (front.away, behind) == (False, True)
-    front, behind = front_of(front, 100.0, None, 0.1)
+    front, behind = front_of(front, 100.0, None, None, 0.1)
     assert (front.away, behind) == (False, False)
-    assert front_of(front, 150.0, None, 0.1) == (Front(away=True), False)
+    assert front_of(front, 150.0, None, None, 0.1) == (Front(away=True, first=False), False)
 
 
 def test_who_insists_is_believed_and_the_user_at_once() -> None:
     front = Front()
     for _ in range(40):
-        front, behind = front_of(front, 150.0, None, 0.1)
+        front, behind = front_of(front, 150.0, None, None, 0.1)
     assert (front.away, behind) == (True, False)
-    assert front_of(Front(), 150.0, "backward_right", 0.1) == (Front(away=True), False)
-    assert front_of(Front(), 150.0, "forward_right", 0.1)[1]
+    assert front_of(Front(), 150.0, None, "backward_right", 0.1) == (
+        Front(away=True, first=False),
+        False,
+    )
+    assert front_of(Front(), 150.0, None, "forward_right", 0.1)[1]
+
+
+def test_a_first_picture_that_surely_shows_a_back_is_believed_and_no_proposal_insists() -> None:
+    front = Front()
+    for _ in range(40):  # 4 s
+        front, behind = front_of(front, -5.0, -150.0, None, 0.1)
+        assert (front.away, behind) == (True, True)
+    assert front_of(front, -5.0, None, None, 0.1) == (Front(True, False, 0.1, first=False), True)
+
+
+def test_a_picture_that_shows_nearly_a_profile_tells_nothing() -> None:
+    for shown_deg in (-60.0, 60.0, 125.0):
+        assert front_of(Front(), 5.0, shown_deg, None, 0.1)[0] == Front(first=False)
+        assert front_of(Front(aside=True), 150.0, shown_deg, None, 0.1)[0].away
+
+
+def test_a_picture_turns_nobody_about_who_was_not_seen_from_the_side() -> None:
+    """Landmarks take front for back for long at a time, and nobody turns at once."""
+    front = Front(first=False)
+    assert front_of(front, 5.0, 170.0, None, 0.1) == (front, False)
+    aside = front_of(front, 95.0, 170.0, None, 0.1)[0]
+    assert front_of(aside, 5.0, 170.0, None, 0.1) == (Front(True, False, 0.0, first=False), True)
