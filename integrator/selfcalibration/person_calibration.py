@@ -17,7 +17,7 @@ from integrator.selfcalibration.rig_certainty import (
     late_errors_frames,
     unsure_of,
 )
-from integrator.selfcalibration.rig_evidence import Evidence, gathered
+from integrator.selfcalibration.rig_evidence import Evidence, gathered, own_moments
 from integrator.selfcalibration.rig_fit import Fit, fitted, on_time, sides_of
 from integrator.selfcalibration.rig_guess import FOCALS, LATE, RIG, pinholes
 from integrator.selfcalibration.rig_quality import CameraQuality, PersonCalibration, Quality
@@ -82,9 +82,11 @@ def best_fit(evidence: Evidence, sightings: tuple[Sighting, ...]) -> Fit:
     timed = [on_time(each.guess, few) for each in rough[:2]]
     better = [fitted(each, few, every, 2, 8) for each in timed]
     nearly = fitted(min(better, key=lambda each: each.cost).guess, evidence, every, 2, 12)
-    timely = nearly._replace(guess=on_time(nearly.guess, evidence))
-    worth = measured_worth(_explained(timely, evidence))
-    return fitted(timely.guess, evidence._replace(worth=worth), every, 2, 12)
+    timely = on_time(nearly.guess, evidence)
+    by_time = sum(own_moments(clip) for clip in evidence.clips)
+    freed = fitted(timely, evidence._replace(worth=by_time), every, 2, 12)
+    worth = measured_worth(_explained(freed, evidence))
+    return fitted(freed.guess, evidence._replace(worth=worth), every, 2, 12)
 
 
 def _explained(found: Fit, evidence: Evidence) -> list[Explained]:

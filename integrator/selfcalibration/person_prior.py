@@ -9,6 +9,7 @@ from common.body.body import JOINT_NAMES
 AT: Final = {name: n for n, name in enumerate(JOINT_NAMES)}
 PELVIS, NECK = AT["pelvis"], AT["neck"]
 ANKLES: Final = [AT["l_ankle"], AT["r_ankle"]]
+SHOULDERS: Final = [AT["l_shoulder"], AT["r_shoulder"]]
 LENGTHS: Final = (
     ("trunk", 0.322, 0.03),
     ("head", 0.137, 0.05),
