@@ -17,19 +17,21 @@ def film_of(gaps: Numbers) -> Explained:
 
 def fresh(moments: int) -> Numbers:
     """Of many joints, so that their means are sure."""
-    return np.random.default_rng(1).normal(0, 0.7, (moments, 3000))
+    return np.random.default_rng(1).normal(0, 1, (moments, 3000))
 
 
 def test_twice_as_many_moments_that_err_anew_count_twice() -> None:
-    once, twice = (measured_worth([film_of(fresh(n))]) for n in (60, 120))
+    once, twice = (measured_worth([film_of(fresh(n))]) for n in (600, 1200))
     assert twice == pytest.approx(2 * once, rel=0.1)
 
 
 def test_errors_that_last_ten_moments_count_a_tenth() -> None:
     lasting = np.repeat(fresh(30), 10, axis=0)
-    assert measured_worth([film_of(lasting)]) == pytest.approx(
-        0.1 * measured_worth([film_of(fresh(300))]), rel=0.15
-    )
+    assert measured_worth([film_of(lasting)]) == pytest.approx(measured_worth([film_of(fresh(30))]))
+
+
+def test_a_film_of_as_many_moments_as_numbers_are_fitted_counts_half() -> None:
+    assert measured_worth([film_of(fresh(20))]) == pytest.approx(10, rel=0.1)
 
 
 def test_several_clips_count_as_one_of_their_length() -> None:

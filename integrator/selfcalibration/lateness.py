@@ -16,6 +16,9 @@ FINE: Final = 2
 """Places between two frames that are tried."""
 AS_GOOD: Final = 0.01
 """Correlations that differ by less say the same."""
+SLOW_S: Final = 1.0
+"""Whoever walks rises slowly in one picture and may sink in the other: means of so long are left
+out. With them the clocks of a sixth of made-up walks were more than a frame off, by up to 21."""
 LEAST_SHARED: Final = 15
 """Frames that both views must have, moved against each other."""
 LEFT: Final = [n for n, name in enumerate(JOINT_NAMES) if name.startswith("l_")]
@@ -34,8 +37,10 @@ def likely_lateness_s(first: JointTrack, second: JointTrack) -> float:
     period_s = float(np.median(np.diff(first.times_s))) if len(first.times_s) > 1 else 1.0
     shifts = np.arange(0.0, MOST_S, period_s / FINE)
     shifts = np.concatenate([-shifts[:0:-1], shifts])
-    here = _rows(first)
-    scores = np.array([_alike(here, _rows(at_times(second, first.times_s + s))) for s in shifts])
+    around = round(SLOW_S / period_s / 2)
+    here = _quick(_rows(first), around)
+    there = (at_times(second, first.times_s + s) for s in shifts)
+    scores = np.array([_alike(here, _quick(_rows(track), around)) for track in there])
     best = int(np.argmax(scores))
     as_it_is = scores[len(shifts) // 2]
     return 0.0 if as_it_is >= scores[best] - AS_GOOD else float(shifts[best])
@@ -48,6 +53,22 @@ def _rows(track: JointTrack) -> Numbers:
     rows[track.confidence < 0.1] = np.nan
     left, right = rows[:, LEFT], rows[:, RIGHT]
     return np.hstack([rows[:, MIDDLE], (left + right) / 2, np.abs(left - right)])
+
+
+def _quick(rows: Numbers, around: int) -> Numbers:
+    """The rows less their means over so many frames before and after each."""
+    seen = np.isfinite(rows)
+    sums = [_windowed(part, around) for part in (np.where(seen, rows, 0.0), seen.astype(float))]
+    quick: Numbers = rows - sums[0] / np.maximum(sums[1], 1.0)
+    return quick
+
+
+def _windowed(values: Numbers, around: int) -> Numbers:
+    """(n, k) sums over so many rows before and after each."""
+    sums = np.pad(np.cumsum(values, axis=0), ((1, 0), (0, 0)))
+    at = np.arange(len(values))
+    windows: Numbers = sums[np.minimum(at + around, at[-1]) + 1] - sums[np.maximum(at - around, 0)]
+    return windows
 
 
 def _alike(one: Numbers, other: Numbers) -> float:

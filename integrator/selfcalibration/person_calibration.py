@@ -1,5 +1,6 @@
 """From what both views saw of a person to a calibration, its quality and its error bars."""
 
+import math
 from typing import Final
 
 import numpy as np
@@ -17,9 +18,9 @@ from integrator.selfcalibration.rig_certainty import (
     late_errors_frames,
     unsure_of,
 )
-from integrator.selfcalibration.rig_evidence import Evidence, gathered
+from integrator.selfcalibration.rig_evidence import Evidence, gathered, own_moments
 from integrator.selfcalibration.rig_fit import Fit, fitted, on_time, sides_of
-from integrator.selfcalibration.rig_guess import FOCALS, LATE, RIG, pinholes
+from integrator.selfcalibration.rig_guess import FOCALS, LATE, PLACE, RIG, pinholes
 from integrator.selfcalibration.rig_quality import CameraQuality, PersonCalibration, Quality
 from integrator.selfcalibration.rig_residuals import Explained, explained, misfits
 from integrator.selfcalibration.rig_starts import known_of, level_starts
@@ -31,6 +32,9 @@ FEW, FEW_EACH = 24, 6
 """As many tell which start is right, and of each clip where there are several."""
 STARTS: Final = 5
 """As many of the likeliest starts are followed."""
+YAW: Final = PLACE["yaw_2"]
+ELSEWHERE: Final = math.cos(math.radians(45.0))
+"""Starts that end with camera 2 turned by less are one: two that are followed would end alike."""
 AT_FIRST: Final = 15
 """Moments that tell where the person was at first."""
 
@@ -78,13 +82,22 @@ def best_fit(evidence: Evidence, sightings: tuple[Sighting, ...]) -> Fit:
         starts += level_starts(evidence, np.zeros(len(late_s)))
     starts.sort(key=lambda start: float((misfits(start, few, sides_of(start, few)) ** 2).sum()))
     rough = [fitted(start, few, cameras, 1, 8) for start in starts[:STARTS]]
-    rough.sort(key=lambda each: each.cost)
-    timed = [on_time(each.guess, few) for each in rough[:2]]
+    timed = [on_time(each.guess, few) for each in _unlike(rough)]
     better = [fitted(each, few, every, 2, 8) for each in timed]
     nearly = fitted(min(better, key=lambda each: each.cost).guess, evidence, every, 2, 12)
-    timely = nearly._replace(guess=on_time(nearly.guess, evidence))
-    worth = measured_worth(_explained(timely, evidence))
-    return fitted(timely.guess, evidence._replace(worth=worth), every, 2, 12)
+    timely = on_time(nearly.guess, evidence)
+    by_time = sum(own_moments(clip) for clip in evidence.clips)
+    freed = fitted(timely, evidence._replace(worth=by_time), every, 2, 12)
+    worth = measured_worth(_explained(freed, evidence))
+    return fitted(freed.guess, evidence._replace(worth=worth), every, 2, 12)
+
+
+def _unlike(rough: list[Fit]) -> list[Fit]:
+    """The best fit, and the best of those with camera 2 elsewhere, such as the mirror image."""
+    best = min(rough, key=lambda each: each.cost)
+    off = [math.cos(each.guess[YAW] - best.guess[YAW]) for each in rough]
+    others = [one for one, near in zip(rough, off, strict=True) if near < ELSEWHERE]
+    return [best, *sorted(others, key=lambda each: each.cost)[:1]]
 
 
 def _explained(found: Fit, evidence: Evidence) -> list[Explained]:

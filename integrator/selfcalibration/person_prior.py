@@ -10,6 +10,7 @@ from common.body.proportions import BONE_SHARES
 AT: Final = {name: n for n, name in enumerate(JOINT_NAMES)}
 PELVIS, NECK = AT["pelvis"], AT["neck"]
 ANKLES: Final = [AT["l_ankle"], AT["r_ankle"]]
+SHOULDERS: Final = [AT["l_shoulder"], AT["r_shoulder"]]
 LENGTHS: Final = tuple(BONE_SHARES)
 """What the body's lengths are called, in order."""
 SHARES: Final = np.array(list(BONE_SHARES.values()))

@@ -25,7 +25,9 @@ FACING_DEG: Final = 20.0
 UNSURE_FACING, SURE_FACING = 0.6, 0.85
 """Front and back are mistaken for seconds by a network that is less sure than this."""
 FEWEST_FACINGS: Final = 12
-UPRIGHT_DEG: Final = 1.5
+UPRIGHT_DEG, ALL_WAYS = 1.5, 0.15
+"""How far people lean who stand, and what share of it is left where they have faced all ways: a
+lean turns with whose it is (made-up rigs, seeds from 1000 on)."""
 TALL_SHARE: Final = 0.93
 """Whose neck is at least so far from the ankles, of the most that it is, stands upright."""
 FLOOR_M: Final = 0.02
@@ -132,7 +134,19 @@ def standing_misfits(one: Explained, stature_m: float) -> list[Vector]:
     if stands.any():
         stands &= tall >= TALL_SHARE * np.percentile(tall[stands], 80)
         lean = np.degrees(np.median(axis[stands] / tall[stands, None], axis=0)[[0, 2]])
-    return [few * softened(above / FLOOR_M), lean / UPRIGHT_DEG]
+    lean_deg = UPRIGHT_DEG * min(1.0, math.hypot(_one_way(points, used), ALL_WAYS))
+    return [few * softened(above / FLOOR_M), lean / lean_deg]
+
+
+def _one_way(points_m: Numbers, used: NDArray[np.bool_]) -> float:
+    """How much the person (n, 15, 3) faces the same way all the time, in [0, 1]."""
+    seen = used[:, prior.SHOULDERS].all(axis=1)
+    if not seen.any():
+        return 1.0
+    left, right = points_m[seen][:, prior.SHOULDERS].swapaxes(0, 1)
+    across = (left - right)[:, [0, 2]]
+    long_m = np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-6)
+    return float(np.linalg.norm((across / long_m).mean(axis=0)))
 
 
 def facing_misfits(guess: Vector, one: Explained, first: JointTrack) -> Vector:
