@@ -1,4 +1,5 @@
-PYTHON ?= python3.11
+# The first of these that runs here.
+PYTHON ?= $(firstword $(foreach v,3.11 3.12 3.13,$(shell python$(v) -c "import sys; print(sys.executable)" 2>/dev/null)) python3.11)
 VENV := .venv
 BIN := $(VENV)/bin
 

@@ -72,6 +72,7 @@ def body_of(
         calibration=state.calibration,
         agreement=told,
         moved=state.stands.doubtful,
+        made_of=_made_of(pair),
     )
 
 
@@ -214,6 +215,7 @@ def no_detection(state: State, pair: Pair) -> tuple[Body, Guide]:
         scale_source=state.scale_source,
         calibration=state.calibration,
         moved=state.stands.doubtful,
+        made_of=_made_of(pair),
     )
     guide = Guide(
         **_moment(state, pair),
@@ -231,6 +233,12 @@ def _moment(state: State, pair: Pair) -> dict[str, Any]:
     """Which frame is spoken of, and when it was taken."""
     newest = pair.newest
     return {"frame": state.number, "captured_s": newest.captured_s, "clock_s": newest.clock_s}
+
+
+def _made_of(pair: Pair) -> tuple[int, int]:
+    """Which frame of each viewer is in a pair; -1: none."""
+    first, second = (-1 if report is None else report.frame for report in pair)
+    return first, second
 
 
 def _status(state: State, cut: bool) -> Status:

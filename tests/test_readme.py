@@ -64,7 +64,7 @@ RESULTS: Final = {
     "tritrack evaluate postures": Result(("report/postures/report.html",), r"all: \d/2"),
     "tritrack calibrate person": Result(("calibration.json",), "cam2"),
     "tritrack calibrate markers": Result(says="cam2"),
-    "tritrack calibrate poles": Result(("configs/calibration.json",), "cam2"),
+    "tritrack calibrate poles": Result(("example_calibration.json",), "cam2"),
     "tritrack bench": Result(says="limb match"),
 }
 """By how a command begins; every command of the README is here."""

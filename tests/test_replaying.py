@@ -57,6 +57,17 @@ def test_a_body_whose_reports_were_lost_is_left_out(run: Path) -> None:
     assert all(body.captured_s == pair.newest.captured_s for body, pair in made_of)
 
 
+def test_a_body_of_one_view_is_made_of_that_view_again_whatever_came_too_late(run: Path) -> None:
+    recording = read_recording(run)
+    for n, alone in ((3, (3, -1)), (5, (-1, 5))):
+        assert recording.bodies[n].made_of == (n, n)
+        recording.bodies[n] = msgspec.structs.replace(recording.bodies[n], made_of=alone)
+    made_of = [pair for _, pair in pairs(recording)]
+    assert made_of[3].second is None
+    assert made_of[5].first is None
+    assert len(made_of) == len(recording.bodies)
+
+
 def test_all_that_was_said_is_said_again_in_its_order(run: Path) -> None:
     recording, bus = read_recording(run), LocalBus()
     few = recording._replace(reports=tuple(each[:9] for each in recording.reports))  # type: ignore[arg-type]

@@ -2,7 +2,8 @@
 
 import threading
 import time
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -79,33 +80,32 @@ def integrated(recording: Recording) -> Replayed:
 
 
 def pairs(recording: Recording) -> Iterator[tuple[Body, Pair]]:
-    """Each recorded body with the reports that it was made of; one whose reports are lost is not.
-
-    A body tells the frame of viewer 1 that it is made of, -1 for none, and when the newer of its
-    reports was taken.
-    """
-    first = {report.frame: report for report in recording.reports[0]}
-    second, tolerance_s = list(recording.reports[1]), 0.5 * recording.head.period_s
+    """Each recorded body with the reports that it was made of, if none of these is lost."""
+    first, second = (_by_frame(reports) for reports in recording.reports)
     late_s = {told.calibration: told.late_s for told in recording.cameras}
-    at = 0
+    tolerance_s = 0.5 * recording.head.period_s
     for body in recording.bodies:
         late = late_s.get(body.calibration, 0.0)
-        one = first.get(body.frame)
-        if one is not None and not _meets(one, body, tolerance_s):
-            one = None
-        while at < len(second) and second[at].captured_s - late < body.captured_s - tolerance_s:
-            at += 1
-        other = set_back(second[at], late) if at < len(second) else None
-        if other is not None and not _meets(other, body, tolerance_s):
-            other = None
-        at += other is not None
-        if one is not None or other is not None:
+        one = _near(first[body.made_of[0]], body, tolerance_s)
+        others = [set_back(report, late) for report in second[body.made_of[1]]]
+        other = _near(others, body, tolerance_s)
+        found = (-1 if one is None else one.frame, -1 if other is None else other.frame)
+        if found == body.made_of != (-1, -1):
             yield body, Pair(one, other)
 
 
-def _meets(report: Report, body: Body, tolerance_s: float) -> bool:
-    near = abs(report.captured_s - body.captured_s) <= tolerance_s + 1e-9
-    return near and report.clock_s <= body.clock_s
+def _by_frame(reports: Sequence[Report]) -> defaultdict[int, list[Report]]:
+    """A viewer that is started again may count its frames anew."""
+    by_frame = defaultdict[int, list[Report]](list)
+    for report in reports:
+        by_frame[report.frame].append(report)
+    return by_frame
+
+
+def _near(reports: Sequence[Report], body: Body, tolerance_s: float) -> Report | None:
+    """The last report that was taken when the body was."""
+    near = [r for r in reports if abs(r.captured_s - body.captured_s) <= tolerance_s + 1e-9]
+    return near[-1] if near else None
 
 
 def replay_on_bus(

@@ -7,7 +7,7 @@ import msgspec
 from common.body.body import Bdp
 from common.rig.picture_shift import Shift
 
-PROTOCOL: Final = 9
+PROTOCOL: Final = 10
 
 ViewerNumber = Literal[1, 2]
 Facing = Literal["facade", "flank"]
@@ -236,6 +236,8 @@ class Body(Moment, frozen=True, kw_only=True):
     """None where one view alone shows the body, and until enough was seen."""
     moved: tuple[ViewerNumber, ...] = ()
     """Cameras that were moved, and whose new place the person has not confirmed yet."""
+    made_of: tuple[int, int] = (-1, -1)
+    """Frames of the reports of viewer 1 and 2 that it is made of; -1: none of that viewer."""
 
 
 class Performance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
