@@ -5,6 +5,7 @@ import socket
 import time
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from common.config.part_settings import BusSettings, CameraSettings, PageSettings
@@ -56,6 +57,12 @@ def test_a_port_that_is_taken_is_named(sound: Settings, tmp_path: Path) -> None:
     }
     assert f"127.0.0.1:{port}" in seen["port of the bus"].detail
     assert "set another [bus] endpoint" in seen["port of the bus"].cure
+
+
+def test_metrics_are_looked_at_only_where_there_are_some(sound: Settings, tmp_path: Path) -> None:
+    assert "port of the metrics" not in found(sound, tmp_path)
+    metered = msgspec.structs.replace(sound, metrics="127.0.0.1:9464")
+    assert "port of the metrics" in found(metered, tmp_path)
 
 
 def test_a_camera_that_is_missing_is_named(sound: Settings, tmp_path: Path) -> None:

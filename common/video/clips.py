@@ -10,6 +10,7 @@ from typing import Final
 import msgspec
 
 from common.bus.messages import ViewerNumber
+from common.config.explained import explained
 from common.config.picture_size import size_of, working_size
 from common.config.settings import Settings
 from common.rig.camera import Camera, Rig
@@ -90,7 +91,8 @@ def _meta(folder: Path) -> Meta:
     except FileNotFoundError:
         return Meta()
     except (OSError, msgspec.DecodeError, RecursionError) as error:
-        raise ClipError(f"cannot read {path} ({error}): mend it or take it away") from error
+        why = error.strerror if isinstance(error, OSError) else explained(error, Meta)
+        raise ClipError(f"cannot read {path} ({why}): mend it or take it away") from error
     if meta.fps is not None and not (math.isfinite(meta.fps) and meta.fps > 0):
         raise ClipError(f"{path} names a rate of {meta.fps} frames a second: mend or remove fps")
     for name, moments in meta.capture_s.items():

@@ -27,9 +27,10 @@ def examine_run(settings: Settings, out: Path) -> list[Finding]:
     looks: list[tuple[str, Callable[[], str | None]]] = [
         ("port of the bus", lambda: refuse_held_endpoint(settings)),
         ("port of the page", lambda: refuse_held_page(settings)),
-        ("port of the metrics", lambda: refuse_held_metrics(settings.metrics)),
         ("pictures", lambda: _pictures(settings)),
     ]
+    if settings.metrics:
+        looks.insert(2, ("port of the metrics", lambda: refuse_held_metrics(settings.metrics)))
     return [*(_looked(what, look) for what, look in looks), _disk(out), _clock(time.time())]
 
 

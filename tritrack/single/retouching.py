@@ -12,6 +12,7 @@ from rich.console import Console
 
 from animator.take import Take, take_of
 from common.bus.process import ProcessContext, process
+from common.config.explained import explained
 from common.config.part_settings import CameraSettings
 from common.config.picture_size import working_size
 from common.config.settings import Settings
@@ -96,7 +97,9 @@ def _clip_of(run: PastRun, video: Path | None) -> Clip:
     try:
         settings = msgspec.convert(run.summary.get("settings", {}), Settings)
     except msgspec.ValidationError as error:
-        raise RetouchError(f"{run.folder}/summary.json: {error}; track the clip again") from error
+        raise RetouchError(
+            f"{run.folder}/summary.json: {explained(error, Settings)}; track the clip again"
+        ) from error
     if video is not None:
         camera = CameraSettings(source=str(video))
         settings = msgspec.structs.replace(settings, clip="", camera_1=camera)
