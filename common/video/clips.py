@@ -134,13 +134,10 @@ def probed(source: Source, decoder: Decoder) -> VideoInfo:
     """What a file or camera is.
 
     Raises:
-        ClipError: When it is not there, is empty, or has no picture.
+        ClipError: When it is not there, may not be read, is empty, or has no picture.
     """
     if isinstance(source, str):
-        if not Path(source).is_file():
-            raise ClipError(f"there is no file {source}: check the path")
-        if Path(source).stat().st_size == 0:
-            raise ClipError(f"{source} is empty: copy or record it again")
+        _refuse_unreadable(Path(source))
     try:
         info = decoder.probe(source)
     except (Undecodable, DecoderDied) as error:
@@ -159,6 +156,22 @@ def _refuse_another_scene(named: Footage, plate: VideoInfo, info: VideoInfo) -> 
             f"{named.source} {info.width}x{info.height}: take an empty frame of the same camera, "
             "uncropped"
         )
+
+
+def _refuse_unreadable(path: Path) -> None:
+    if path.is_dir():
+        raise ClipError(f"{path} is a folder: name a file in it")
+    if not path.is_file():
+        raise ClipError(f"there is no file {path}: check the path")
+    try:
+        with path.open("rb") as file:
+            empty = not file.read(1)
+    except OSError as error:
+        raise ClipError(
+            f"cannot read {path}: {error.strerror}; see that you may read it (chmod u+r)"
+        ) from error
+    if empty:
+        raise ClipError(f"{path} is empty: copy or record it again")
 
 
 def _refuse_a_lost_head(path: Path) -> None:
