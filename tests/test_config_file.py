@@ -69,7 +69,7 @@ def test_what_is_misspelt_or_ill_typed_is_refused_with_its_place(
         ("size = '160'", "look like 160x120"),
         ("metrics = '9464'", "look like 127.0.0.1:9464"),
         ("metrics = 'localhost:0'", "look like 127.0.0.1:9464"),
-        ("size = '16x120'", "width must be from 32"),
+        ("size = '16x120'", "size must be from 32x32 to 4096x4096 pixels, got 16x120"),
         ("[page]\nport = 70000", "got 70000"),
         ("landmarks = ''", "must be own, none, mediapipe or a folder"),
         ("landmarks = 'mediapip'", "no folder .*mediapip of landmarks.*own, none, mediapipe"),

@@ -10,7 +10,7 @@ import pytest
 
 from common.config.part_settings import BusSettings, CameraSettings, PageSettings
 from common.config.settings import Settings
-from tritrack.doctor.installation import Finding
+from tritrack.doctor.installation import Finding, refused
 from tritrack.doctor.run_needs import examine_run
 from tritrack.live.free_ports import free_settings
 
@@ -87,3 +87,24 @@ def test_a_clock_that_was_never_set_is_named(
 ) -> None:
     monkeypatch.setattr(time, "time", lambda: 86_400.0)
     assert faults(sound, tmp_path) == {"clock"}
+
+
+@pytest.mark.parametrize(
+    ("said", "detail", "cure"),
+    [
+        ("x is held: another run; end that", "x is held: another run", "end that"),
+        ("there is no file x: check the path", "there is no file x", "check the path"),
+        ("cam1: R is no rotation: calibrate", "cam1: R is no rotation", "calibrate"),
+        ("no sockets", "no sockets", "mend that"),
+    ],
+)
+def test_what_is_refused_is_parted_into_fault_and_cure(said: str, detail: str, cure: str) -> None:
+    finding = refused("port", ValueError(said))
+    assert (finding.ok, finding.detail, finding.cure) == (False, detail, cure)
+
+
+def test_a_film_that_is_none_is_named_with_the_whole_cure(sound: Settings, tmp_path: Path) -> None:
+    (tmp_path / "cam2.avi").write_bytes(b"RIFF no film")
+    pictures = found(sound, tmp_path)["pictures"]
+    assert pictures.detail.endswith("cam2.avi gives no picture")
+    assert pictures.cure.startswith("convert it, for example to MJPEG (ffmpeg -i")

@@ -36,13 +36,11 @@ def person(
     clips: Annotated[list[Path], typer.Argument(help="Clips of one rig, or settings files.")],
     stature: Annotated[
         float,
-        typer.Option(help="How tall the person is, metres: 0.5 to 2.6.", callback=stature_given),
+        typer.Option(help="Of the person: 0.5 to 2.6 metres.", callback=stature_given),
     ] = 1.75,
     fov: Annotated[
         float | None,
-        typer.Option(
-            help="How wide the cameras see, if known: 10 to 150 degrees.", callback=fov_given
-        ),
+        typer.Option(help="How wide the cameras see: 10 to 150 degrees.", callback=fov_given),
     ] = None,
     out: Written = OUT,
     force: Forced = False,
@@ -135,7 +133,8 @@ def _calibrate(videos: list[Path], shown: "Shown", out: Path, json_wanted: bool)
     tell_rows(quality.cameras, json_wanted)
     console.print(
         f"corners miss by {quality.reprojection_px:.2f} px; "
-        f"{counted(quality.shared_rests, 'pose')} seen by several cameras; the board lies on the floor at {quality.floor_s:.1f} s\n"
+        f"{counted(quality.shared_rests, 'pose')} seen by several cameras; "
+        f"the board lies on the floor at {quality.floor_s:.1f} s\n"
         f"written to {out}, what the board covered of each picture to {drawn}",
         highlight=False,
         soft_wrap=True,

@@ -79,7 +79,7 @@ def open_run(folder: Path) -> PastRun:
         return _cut_short(folder, told)
     path = folder / "poses.npz"
     if not path.exists():
-        raise PastRunError(f"{folder} is no run folder: {_how_to_track(folder)}")
+        raise PastRunError(f"{folder} has no poses.npz: {_how_to_track(folder)}")
     try:
         poses = parted(read_arrays(path, MAX_BYTES))
         summary = json.loads((folder / "summary.json").read_text())
