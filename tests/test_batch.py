@@ -2,6 +2,7 @@
 
 from io import StringIO
 from pathlib import Path
+from typing import Any
 
 import pytest
 from rich.console import Console
@@ -48,7 +49,10 @@ ADVICE = "the cameras are exchanged: change their order"
 
 @pytest.mark.parametrize("advice", ["", ADVICE])
 def test_a_calibration_that_is_not_believable_is_in_the_last_line_too(advice: str) -> None:
-    clips = {"walk": {"believed": 1.0, "trust": {"advice": advice}}, "run": {"believed": 1.0}}
+    clips: dict[str, dict[str, Any]] = {
+        "walk": {"believed": 1.0, "trust": {"advice": advice}},
+        "run": {"believed": 1.0},
+    }
     line = line_of_runs(clips, Path("runs"))
     assert line.startswith("2 clips tracked, written to runs; believed in 100%")
     assert ("not believable: the calibration of walk" in line) == bool(advice)

@@ -179,7 +179,7 @@ def test_a_run_that_may_not_be_read_is_not_called_damaged(
 
 def test_a_run_without_its_summary_and_a_clip_are_told_apart(run: Path, tmp_path: Path) -> None:
     (run / "summary.json").unlink()
-    with pytest.raises(PastRunError, match=r"has lost its summary\.json: track the clip again"):
+    with pytest.raises(PastRunError, match=r"has no summary\.json: track the clip again"):
         open_run(run)
     (tmp_path / "walk").mkdir()
     with pytest.raises(PastRunError, match=r"walk has no poses\.npz: name one"):

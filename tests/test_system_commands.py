@@ -287,7 +287,7 @@ def test_what_can_be_worked_with_runs_on_with_one_line(
 def test_a_good_clip_gives_no_warning(tritrack: Commands, clip: Path, tmp_path: Path) -> None:
     said = tritrack("track", clip, "--out", tmp_path)
     assert (said.code, said.out) == (0, "")
-    told = f"1 clips tracked, written to {tmp_path}; believed in 100% of the frames with a person\n"
+    told = f"1 clip tracked, written to {tmp_path}; believed in 100% of the frames with a person\n"
     assert said.err == told
 
 

@@ -63,8 +63,8 @@ def refuse_unfollowed(clips: Mapping[str, Mapping[str, Any]]) -> None:
         worst = min(poor, key=lambda name: poor[name])
         raise Unfollowed(
             f"in {len(poor)} of {counted(len(clips), 'clip')} the body is believed in less than "
-            f"half of the frames ({worst}: {poor[worst]:.0%}): name an empty picture of the room, or light it "
-            "better"
+            f"half of the frames ({worst}: {poor[worst]:.0%}): name an empty picture of the room, "
+            "or light it better"
         )
 
 

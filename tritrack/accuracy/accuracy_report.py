@@ -25,8 +25,8 @@ def line(report: Mapping[str, Any]) -> str:
     told = report["all"]
     return (
         f"{counted(told['clips'], 'clip')}, {told['frames']} frames: "
-        f"mean {_number(told['abs_mm']['mean'])} mm{_between(told['between']['abs_mm'], 'mean')}, median "
-        f"{_number(told['abs_mm']['median'])}, inner angles "
+        f"mean {_number(told['abs_mm']['mean'])} mm{_between(told['between']['abs_mm'], 'mean')}, "
+        f"median {_number(told['abs_mm']['median'])}, inner angles "
         f"{_number(told['angle_deg']['all'])} degrees, lost {_share(told['lost'])}, silhouettes "
         f"{_number(report['silhouettes']['mean'], 3)}"
     )

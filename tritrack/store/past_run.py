@@ -84,7 +84,7 @@ def open_run(folder: Path) -> PastRun:
         poses = parted(read_arrays(path, MAX_BYTES))
         summary = json.loads((folder / "summary.json").read_text())
     except FileNotFoundError as error:
-        raise PastRunError(f"{folder} has lost its summary.json: track the clip again") from error
+        raise PastRunError(f"{folder} has no summary.json: track the clip again") from error
     except OSError as error:
         raise PastRunError(
             f"cannot read {error.filename or folder}: {error.strerror}; see that you may read it"
