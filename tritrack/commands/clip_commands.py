@@ -79,11 +79,12 @@ def track(
 def line_of_runs(clips: Mapping[str, Mapping[str, Any]], out: Path) -> str:
     """How many clips were tracked, and in how many of their frames the body is believed."""
     shares = [facts["believed"] for facts in clips.values() if facts["believed"] is not None]
-    sure = f"; believed in {sum(shares) / len(shares):.0%} of the frames with a person"
     doubted = [name for name, facts in clips.items() if (facts.get("trust") or {}).get("advice")]
     rig = f"; not believable: the calibration of {', '.join(doubted)}, see the warning above"
     line = f"{counted(len(clips), 'clip')} tracked, written to {out}"
-    return line + (sure if shares else "") + (rig if doubted else "")
+    if shares:
+        line += f"; believed in {sum(shares) / len(shares):.0%} of the frames with a person"
+    return line + (rig if doubted else "")
 
 
 def synth(
