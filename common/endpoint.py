@@ -4,6 +4,11 @@ import ipaddress
 import re
 from typing import Final
 
+FORM: Final = re.compile(
+    r"(?:(?:tcp|tls|udp|quic|ws)/(?P<host>[^/]*):\+?(?P<port>\d+)(?:[?#].*)?"
+    r"|(?:unixsock-stream|unixpipe|vsock|serial)/.+)"
+)
+"""How an endpoint is written, by all kinds that Zenoh knows."""
 ADDRESS: Final = re.compile(r"[^/]*/(?P<host>.*):\+?\d+(?:[?#].*)?", re.DOTALL)
 """All that Zenoh takes for a host and its port; other kinds of endpoint lie within this machine."""
 
@@ -19,6 +24,23 @@ def is_loopback(host: str) -> bool:
         return host == "localhost"
 
 
+def is_host(text: str) -> bool:
+    """Whether something can be looked up as a name or address: letters of each part, at most 63."""
+    try:
+        text.encode("idna")
+    except UnicodeError:
+        return False
+    return text.isprintable() and not set(text) & set("/@?# ")
+
+
+def is_endpoint(text: str) -> bool:
+    """Whether something has the form of an endpoint, tcp/127.0.0.1:7447; no name is looked up."""
+    form = FORM.fullmatch(text)
+    if form is None:
+        return False
+    return form["port"] is None or (is_host(form["host"]) and _is_port(form["port"]))
+
+
 def is_exposed(endpoint: str) -> bool:
     """Whether other machines may reach an endpoint, as tcp/192.168.1.5:7447."""
     where = ADDRESS.fullmatch(endpoint)
@@ -32,6 +54,10 @@ def address_of(text: str) -> tuple[str, int]:
         ValueError: When it is none.
     """
     host, _, port = text.rpartition(":")
-    if not (host and port.isdecimal() and 0 < int(port) < 65536):
+    if not (host and is_host(host) and _is_port(port)):
         raise ValueError(f"metrics must look like 127.0.0.1:9464, got {text!r}")
     return host, int(port)
+
+
+def _is_port(text: str) -> bool:
+    return text.isdecimal() and 0 < int(text) < 65536

@@ -37,7 +37,7 @@ def assumed(merged: merge_state.State) -> list[str]:
         ]
     return [
         "no calibration: a rig of the paper's kind is assumed, its scale from a stature of "
-        f"{merged.settings.body.stature_m:g} m (make one: tritrack calibrate poles)"
+        f"{merged.settings.body.stature_m:g} m (make one: tritrack calibrate person)"
     ]
 
 

@@ -1,5 +1,6 @@
 """Bridges as processes: every body arrives at a receiver of another make, and soon."""
 
+import io
 import json
 import socket
 import statistics
@@ -7,13 +8,17 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from meeting import EARLY, saying
 from osc_reader import read_osc
+from rich.console import Console
 
+from common.bus.messages import Body
 from tritrack import subscribe
+from tritrack.bridges import bridging
 
 pytest.importorskip("pythonosc", reason="pip install 'tritrack[osc]'")
 
@@ -62,3 +67,18 @@ def test_every_body_arrives_with_little_added(protocol: str) -> None:
     added_s = statistics.median(arrived[frame] - heard[frame] for frame in range(150))
     print(f"{protocol}: {1e3 * added_s:.2f} ms added")
     assert added_s < MOST_ADDED_S
+
+
+def test_who_waits_for_a_run_is_told_so_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    heard = Console(file=io.StringIO(), width=500)
+
+    def subscribed(*_: object, **__: object) -> Iterator[Body]:
+        assert isinstance(heard.file, io.StringIO)
+        yield from ()
+        assert heard.file.getvalue() == (
+            "waiting for a run at tcp/127.0.0.1:7447 (room attic), at most 60 s\n"
+        )
+
+    monkeypatch.setattr(bridging, "subscribe", subscribed)
+    endpoint = "tcp/127.0.0.1:7447"
+    assert bridging.bridge("osc", endpoint, "attic", "127.0.0.1:9000", heard) == 0

@@ -21,6 +21,7 @@ from common.bus.mailbox import Mailbox
 from common.bus.message_codec import MAX_BYTES, encode
 from common.bus.messages import Guide, Picture, Posture, Report
 from common.config.part_settings import BusSettings
+from common.config.settings_error import SettingsError
 
 ROOM = "hall"
 SOON_S = 5.0
@@ -252,6 +253,7 @@ PART = """
 import sys, time
 from common.bus.bus import open_client
 from common.config.part_settings import BusSettings
+from common.config.settings_error import SettingsError
 with open_client(BusSettings(sys.argv[1]), sys.argv[2], 5.0) as bus:
     bus.announce("viewer-1")
     time.sleep(60)
@@ -342,8 +344,8 @@ def test_a_second_hub_is_told_that_the_port_is_taken(place: Place) -> None:
 
 @pytest.mark.parametrize("endpoint", ["7447", "", "udp/127.0.0.1:7447:x"])
 def test_an_endpoint_that_is_none_is_refused(endpoint: str) -> None:
-    with pytest.raises(BusError), open_hub(BusSettings(endpoint), ROOM):
-        pass
+    with pytest.raises(SettingsError, match=r"must look like tcp/127\.0\.0\.1:7447"):
+        BusSettings(endpoint)
 
 
 def test_a_closed_bus_wakes_who_waits(endpoint: str) -> None:

@@ -156,7 +156,7 @@ def _camera_change(key: str, value: object) -> Callable[[dict[str, Any]], object
             "R of camera cam1 is no rot",
         ),
         (_camera_change("R", [[1, 0, 0], [0, 1, 0], [0, 0, -1]]), "determinant -1"),
-        (_camera_change("R", [[1, 0, 0], [0, 1, 0]]), r"length 3.*cameras\[0\]\.R"),
+        (_camera_change("R", [[1, 0, 0], [0, 1, 0]]), "cameras 1, R must have 3 entries"),
         (
             _camera_change("K", [[-400, 0, 160], [0, 400, 120], [0, 0, 1]]),
             "no positive focal",
@@ -166,7 +166,7 @@ def _camera_change(key: str, value: object) -> Callable[[dict[str, Any]], object
         (_camera_change("distortion", [0.1, 0.2, 0.3]), "3 distortion numbers"),
         (lambda content: content.update(width=0), "picture size 0x240 is not positive"),
         (lambda content: content.update(cameras=[]), "names no camera"),
-        (lambda content: content.pop("height"), "missing required field `height`"),
+        (lambda content: content.pop("height"), "height is missing"),
     ],
 )
 def test_a_calibration_that_no_cameras_could_form_is_refused(
@@ -197,7 +197,9 @@ def test_bytes_that_are_no_calibration_are_refused_with_the_files_name(
     path.write_bytes(content)
     with pytest.raises(CalibrationError, match=r"calibration\.json"):
         load_rig(path)
-    with pytest.raises(CalibrationError, match="cannot read the calibration"):
+    with pytest.raises(
+        CalibrationError, match=r"cannot read the calibration .*tritrack calibrate person"
+    ):
         load_rig(tmp_path / "absent.json")
 
 

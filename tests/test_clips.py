@@ -242,6 +242,38 @@ def test_a_video_cut_off_in_its_head_is_refused(folder: Path, decoder: Decoder) 
     assert "cam1.avi gives no picture" in refusal(Settings(clip=str(folder)), decoder)
 
 
+def test_a_file_that_may_not_be_read_is_said_to_be_so(
+    folder: Path, decoder: Decoder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened = Path.open
+
+    def closed(path: Path, *given: Any, **more: Any) -> Any:
+        if path.suffix == ".avi":
+            raise PermissionError(13, "Permission denied")
+        return opened(path, *given, **more)
+
+    monkeypatch.setattr(Path, "open", closed)
+    said = refusal(Settings(clip=str(folder)), decoder)
+    assert "cam1.avi: Permission denied; see that you may read it" in said
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("plate.png", "plate.png gives no picture: save the picture anew, as PNG or JPEG"),
+        ("plate.avi", "plate.avi gives no picture: convert it"),
+        ("", "is a folder: name a file in it"),
+    ],
+)
+def test_a_background_that_is_no_picture_is_named_with_its_own_cure(
+    folder: Path, decoder: Decoder, name: str, said: str
+) -> None:
+    if name:
+        (folder / name).write_bytes(b"no picture")
+    camera = CameraSettings(source=str(folder / "cam1.avi"), background=str(folder / name))
+    assert said in refusal(Settings(camera_1=camera), decoder)
+
+
 def test_two_videos_of_one_camera_are_not_guessed_between(folder: Path, decoder: Decoder) -> None:
     film(folder / "cam1.mkv")
     (folder / "cam1.png").write_bytes(b"a still beside the video is none of the two")
@@ -253,7 +285,7 @@ def test_two_videos_of_one_camera_are_not_guessed_between(folder: Path, decoder:
     ("text", "word"),
     [
         ("{", "cannot read"),
-        ('{"fps": "fast"}', "$.fps"),
+        ('{"fps": "fast"}', "fps must be a number, got text"),
         ('{"fps": 0}', "rate of 0"),
         ('{"capture_s": {"cam1": [0.0, 0.2, 0.1]}}', "capture_s of cam1 does not increase"),
     ],

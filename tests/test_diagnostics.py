@@ -47,6 +47,7 @@ def test_without_calibration_the_assumed_stature_is_named_from_the_start() -> No
     (told,) = diagnostics.assumed(merged(calibrated=False))
     assert "no calibration" in told
     assert "1.62 m" in told
+    assert "tritrack calibrate person" in told
     assert diagnostics.warnings(diagnostics.State(), merged(calibrated=False)) == [told]
 
 

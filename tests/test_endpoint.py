@@ -4,7 +4,7 @@ import socket
 
 import pytest
 
-from common.endpoint import is_exposed, is_loopback
+from common.endpoint import is_endpoint, is_exposed, is_host, is_loopback
 
 
 @pytest.mark.parametrize(
@@ -40,3 +40,31 @@ def test_what_is_called_loopback_is_where_the_system_takes_it_to_be() -> None:
         assert is_loopback(host)
         found = socket.getaddrinfo(host, 80, socket.AF_INET)
         assert all(str(each[4][0]).startswith("127.") for each in found)
+
+
+@pytest.mark.parametrize(
+    "endpoint",
+    [
+        "tcp/127.0.0.1:7447",
+        "tcp/[::1]:7447#iface=lo",
+        "tls/rig.local:7447",
+        "udp/rig.local:+7447",
+        "unixsock-stream//run/tritrack.sock",
+    ],
+)
+def test_what_zenoh_takes_is_an_endpoint(endpoint: str) -> None:
+    assert is_endpoint(endpoint)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "7447", "127.0.0.1:7447", "tcp/127.0.0.1", "tcp/a:0", "tcp/a:65536", "tcp/a b:1"]
+)
+def test_what_names_no_way_or_no_port_is_none(text: str) -> None:
+    assert not is_endpoint(text)
+
+
+@pytest.mark.parametrize("host", ["a" * 64, "a..b", "a\0b", "a b", "a/b"])
+def test_what_cannot_be_looked_up_is_no_host(host: str) -> None:
+    assert not is_host(host)
+    with pytest.raises((UnicodeError, ValueError, OSError)):
+        socket.getaddrinfo(host, 80)

@@ -14,6 +14,7 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body
 from tritrack.exporting import OWN_NAMES, ExportError, Format, export_run
+from tritrack.store import past_run
 from tritrack.store.past_run import PastRunError, open_run
 from tritrack.store.pose_arrays import poses
 
@@ -163,3 +164,26 @@ def test_what_is_no_run_is_named(run: Path, tmp_path: Path) -> None:
     (run / "summary.json").unlink()
     with pytest.raises(PastRunError, match=r"no summary\.json"):
         open_run(run)
+
+
+def test_a_run_that_may_not_be_read_is_not_called_damaged(
+    run: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def closed(*_: object) -> None:
+        raise PermissionError(13, "Permission denied", str(run / "poses.npz"))
+
+    monkeypatch.setattr(past_run, "read_arrays", closed)
+    with pytest.raises(PastRunError, match=r"cannot read .*npz: Permission denied; see that"):
+        open_run(run)
+
+
+def test_a_run_without_its_summary_and_a_clip_are_told_apart(run: Path, tmp_path: Path) -> None:
+    (run / "summary.json").unlink()
+    with pytest.raises(PastRunError, match=r"has no summary\.json: track the clip again"):
+        open_run(run)
+    (tmp_path / "walk").mkdir()
+    with pytest.raises(PastRunError, match=r"walk has no poses\.npz: name one"):
+        open_run(tmp_path / "walk")
+    (tmp_path / "walk" / "cam1.avi").write_bytes(b"")
+    with pytest.raises(PastRunError, match=r"it is a clip; track it first: tritrack track .*walk"):
+        open_run(tmp_path / "walk")

@@ -12,9 +12,11 @@ from tritrack.single.ledger import (
     PRINTED,
     Count,
     Ledger,
+    facts_of,
     given_inputs,
     inputs,
     ledger,
+    line_of,
     open_inputs,
 )
 
@@ -122,3 +124,10 @@ def test_a_run_without_written_doubts_was_sure_and_one_without_poses_needs_nothi
     take = sure(4, joints_m=np.full((4, 15, 3), np.nan), confidence=np.zeros((4, 15)))
     made = ledger(take, Notes())
     assert (made.frames, made.key_frames, made.open.total, made.thesis.total) == (4, 0, 0, 0)
+
+
+def test_the_line_tells_what_was_given_and_what_could_help() -> None:
+    take = sure(82)
+    told = line_of(facts_of(ledger(take, Notes(note=(Note(0, "left"),)))))
+    assert told.startswith("inputs: 1 given, 0 more could help (all by hand: ")
+    assert "thesis" not in told

@@ -109,7 +109,7 @@ def test_a_command_line_goes_before_the_settings() -> None:
     assert overridden(given, None, None) == given
     assert overridden(given, "default", None) == Settings(mode="default", size="80x60")
     assert overridden(given, None, "96x96") == Settings(mode="paper", size="96x96")
-    with pytest.raises(SettingsError, match="must be from 32 to 4096, got 5000"):
+    with pytest.raises(SettingsError, match="must be from 32x32 to 4096x4096 pixels, got 5000x50"):
         overridden(given, None, "5000x50")
 
 

@@ -46,7 +46,7 @@ def test_free_motion_is_of_no_posture(tmp_path: Path) -> None:
     ("changes", "error"),
     [
         ({"size": "64"}, "size must look like 160x120, got '64'"),
-        ({"size": "9999x9999"}, "from 32 to 4096, got 9999"),
+        ({"size": "9999x9999"}, "from 32x32 to 4096x4096 pixels, got 9999x9999"),
         ({"postures": ("squat", "dance")}, "unknown posture 'dance'; known are walk_in_place"),
         ({"motion": "free"}, "free motion is no posture"),
     ],

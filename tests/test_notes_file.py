@@ -115,7 +115,7 @@ def test_a_file_that_was_spoilt_meanwhile_is_not_overwritten(tmp_path: Path) -> 
     [
         ("[[note]]\nframe = 1\norientation = 'fwd'", "line 3, orientation: .*fwd.*forward_left"),
         ("[[note]]\nframe = -1", "line 2, frame: .*-1.*counted from 0"),
-        ("[[note]]\nframe = 'x'", "line 2, frame: .*str.*number of a frame"),
+        ("[[note]]\nframe = 'x'", "line 2, frame: .*got text.*number of a frame"),
         ("[[note]]\norientation = 'left'", "line 1, frame: .*missing.*number of a frame"),
         ("[[note]]\nframe=1\n[note.depth]\narm='away'", "line 3, depth: .*arm.*l_upper_arm"),
         ("[[note]]\nframe=1\ndepth.torso='up'", "line 3, depth: .*up.*toward"),

@@ -89,8 +89,12 @@ def test_an_mcap_library_finds_a_scene_that_fits_its_schema(folder: Path) -> Non
 
 
 def test_a_recording_that_is_absent_or_damaged_is_named(folder: Path, tmp_path: Path) -> None:
-    with pytest.raises(RecordingError, match=r"has no recording\.mcap.*--record"):
+    bare = tmp_path / "bare"
+    bare.mkdir()
+    with pytest.raises(RecordingError, match=r"there is no run folder .*none: .*--record"):
         read_recording(tmp_path / "none")
+    with pytest.raises(RecordingError, match=r"has no recording\.mcap.*--record"):
+        read_recording(bare)
     path = folder / "recording.mcap"
     path.write_bytes(path.read_bytes()[:200])
     with pytest.raises(RecordingError, match="was damaged"):

@@ -123,7 +123,7 @@ def test_clips_say_themselves_who_performs_what(clips: list[Path], runs: list[Pa
 @pytest.mark.parametrize(
     ("damage", "told"),
     [
-        ("no summary", r"run has no summary\.json: is it a run folder"),
+        ("no summary", r"run has no summary\.json: track the clip again"),
         ("half the poses", r"run was damaged .*: track the clip again"),
         ("pickled", r"run was damaged .*: track the clip again"),
     ],

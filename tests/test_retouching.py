@@ -19,7 +19,8 @@ from test_exporting import write
 from common.body.body import JOINT_NAMES
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import save_notes
-from tritrack.single.retouching import RetouchError, retouch
+from tritrack.single.retouching import RetouchError, how_to_go_on, retouch
+from tritrack.store.past_run import open_run
 
 QUIET = Console(quiet=True)
 
@@ -66,7 +67,8 @@ def test_the_page_opens_and_ctrl_c_ends_it_with_the_ledger(tmp_path: Path) -> No
     ) as process:
         assert process.stdout is not None
         assert process.stderr is not None
-        told = next(line for line in process.stderr if "the page is at" in line)
+        told = next(process.stderr)
+        assert told.startswith("the page is at"), "no log of a library comes before it"
         address = re.search(r"http://\S+\d", told)
         assert address is not None
         with urllib.request.urlopen(address[0]) as answer:
@@ -97,3 +99,13 @@ def test_a_run_without_frames_is_refused(tmp_path: Path) -> None:
     run = run_of(tmp_path / "run", tmp_path / "dance.avi", 0)
     with pytest.raises(RetouchError, match="no frame"):
         retouch(run, None, None, 8080, QUIET)
+
+
+def test_what_to_do_with_the_notes_names_the_video_and_what_they_are_of(tmp_path: Path) -> None:
+    run = open_run(run_of(tmp_path / "run", tmp_path / "gone.avi"))
+    video = Path("my dance.avi")
+    assert how_to_go_on(video, run).endswith("these notes: tritrack single 'my dance.avi'")
+    run.poses["views"] = np.full(4, "both")
+    said = how_to_go_on(video, run)
+    assert "two cameras" in said
+    assert said.endswith("tritrack single 'my dance.avi'")

@@ -5,11 +5,12 @@ import socket
 import time
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from common.config.part_settings import BusSettings, CameraSettings, PageSettings
 from common.config.settings import Settings
-from tritrack.doctor.installation import Finding
+from tritrack.doctor.installation import Finding, refused
 from tritrack.doctor.run_needs import examine_run
 from tritrack.live.free_ports import free_settings
 
@@ -58,6 +59,12 @@ def test_a_port_that_is_taken_is_named(sound: Settings, tmp_path: Path) -> None:
     assert "set another [bus] endpoint" in seen["port of the bus"].cure
 
 
+def test_metrics_are_looked_at_only_where_there_are_some(sound: Settings, tmp_path: Path) -> None:
+    assert "port of the metrics" not in found(sound, tmp_path)
+    metered = msgspec.structs.replace(sound, metrics="127.0.0.1:9464")
+    assert "port of the metrics" in found(metered, tmp_path)
+
+
 def test_a_camera_that_is_missing_is_named(sound: Settings, tmp_path: Path) -> None:
     (tmp_path / "cam2.avi").unlink()
     gone = CameraSettings(source=str(tmp_path / "cam2.avi"))
@@ -80,3 +87,24 @@ def test_a_clock_that_was_never_set_is_named(
 ) -> None:
     monkeypatch.setattr(time, "time", lambda: 86_400.0)
     assert faults(sound, tmp_path) == {"clock"}
+
+
+@pytest.mark.parametrize(
+    ("said", "detail", "cure"),
+    [
+        ("x is held: another run; end that", "x is held: another run", "end that"),
+        ("there is no file x: check the path", "there is no file x", "check the path"),
+        ("cam1: R is no rotation: calibrate", "cam1: R is no rotation", "calibrate"),
+        ("no sockets", "no sockets", "mend that"),
+    ],
+)
+def test_what_is_refused_is_parted_into_fault_and_cure(said: str, detail: str, cure: str) -> None:
+    finding = refused("port", ValueError(said))
+    assert (finding.ok, finding.detail, finding.cure) == (False, detail, cure)
+
+
+def test_a_film_that_is_none_is_named_with_the_whole_cure(sound: Settings, tmp_path: Path) -> None:
+    (tmp_path / "cam2.avi").write_bytes(b"RIFF no film")
+    pictures = found(sound, tmp_path)["pictures"]
+    assert pictures.detail.endswith("cam2.avi gives no picture")
+    assert pictures.cure.startswith("convert it, for example to MJPEG (ffmpeg -i")

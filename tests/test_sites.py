@@ -55,12 +55,15 @@ def test_a_site_is_a_settings_file_or_the_settings_themselves(tmp_path: Path) ->
     ("text", "word"),
     [
         ("", "names no site: write [[site]]"),
-        ("[[site]]\nname = 'hall'", "missing required field `settings`"),
-        ("sites = 3", "`sites`"),
+        ("[[site]]\nname = 'hall'", "site 1, settings is missing"),
+        ("sites = 3", "unknown setting sites (did you mean site?)"),
         ("[[site]]\nname = 'a/b'\nsettings = 'x.toml'", "plain word, got 'a/b'"),
         ("[[site]]\nname = '..'\nsettings = 'x.toml'", "plain word, got '..'"),
         ("[[site]]\nname = 'hall'\nsettings = 'x.toml'", "site hall: there is no clip folder"),
-        (site("hall", more="rooom = 'x'"), "`rooom` - at `$.site[0].settings`"),
+        (
+            site("hall", more="rooom = 'x'"),
+            "unknown setting site 1, settings.rooom (did you mean room?)",
+        ),
         (site("hall") + site("hall"), "2 sites have the name hall (hall, hall)"),
         ("metrics = '9464'\n" + site("hall"), "look like 127.0.0.1:9464"),
     ],

@@ -53,6 +53,10 @@ class Commands:
         return Ended(int(ended.value.code or 0), said.out, said.err)
 
 
+MOST_LETTERS = 55
+"""Of a command's first sentence: more are cut where commands are listed."""
+
+
 @pytest.fixture
 def tritrack(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Commands:
     return Commands(monkeypatch, capsys)
@@ -109,7 +113,10 @@ def test_every_command_has_help_with_an_example(tritrack: Commands, words: list[
         (["synth", "--out", "o", "--performers", "0"], "--performers"),
         (["synth", "--out", "o", "--takes", "0"], "--takes"),
         (["synth", "--out", "o", "--seed", "-1"], "--seed"),
-        (["synth", "--out", "o", "--size", "1x1"], "must be from 32 to 4096, got 1"),
+        (
+            ["synth", "--out", "o", "--size", "1x1"],
+            "must be from 32x32 to 4096x4096 pixels, got 1x1",
+        ),
         (["synth", "--out", "o", "--size", "big"], "size must look like 160x120, got 'big'"),
         (["synth", "--out", "o", "--posture", "dance"], "unknown posture 'dance'; known are walk"),
         (
@@ -125,6 +132,12 @@ def test_every_command_has_help_with_an_example(tritrack: Commands, words: list[
             ["train", "nosuch", "--out", "m.npz"],
             "there is no clip folder and no settings file nosuch",
         ),
+        (["synth", "--out", "o", "--takes", "500"], "it must be at most 100; see: "),
+        (["track", "x", "y", "--size", "abc"], "size must look like 160x120, got 'abc'; see: "),
+        (["calibrate", "person", "x", "--stature", "175"], "0.5 to 2.6 metres, got 175: 1.75?; "),
+        (["calibrate", "person", "x", "--fov", "200"], "from 10 to 150 degrees, got 200; see: "),
+        (["replay", "nosuch"], "there is no run folder nosuch: name one made with --record"),
+        (["evaluate", "tracking", "x", "--out", "/proc/x"], "cannot write /proc/x"),
         (["calibrate", "markers", "nosuch"], "cannot read the points nosuch"),
         (["calibrate", "poles", "nosuch"], "cannot read the points nosuch"),
     ],
@@ -143,6 +156,37 @@ def test_a_users_mistake_is_one_line_and_exit_code_2(
     assert error in said.errors[0]
     assert "Traceback" not in said.err
     assert list(tmp_path.iterdir()) in ([], [tmp_path / "runs"])
+
+
+@pytest.mark.parametrize("words", every_command(), ids=" ".join)
+def test_a_list_of_commands_shows_the_whole_first_sentence(words: list[str]) -> None:
+    command = typer.main.get_command(door.app)
+    for word in words:
+        command = command.commands[word]  # type: ignore[attr-defined]
+        first, dot, _ = (command.help or "").partition(".")
+        assert dot or command.help == first
+        assert len(first) <= MOST_LETTERS
+        assert command.get_short_help_str(MOST_LETTERS + 5).rstrip(".") == first
+
+
+def test_the_help_says_where_to_start_and_that_one_camera_will_do(tritrack: Commands) -> None:
+    said = " ".join(tritrack("--help").out.split())
+    assert "from two ordinary cameras, or one, in real time" in said
+    assert said.endswith("Start: doctor, demo, single, track, live.")
+
+
+@pytest.mark.parametrize("words", [["board"], ["markers"], ["poles"]], ids=" ".join)
+def test_examples_stand_apart(tritrack: Commands, words: list[str]) -> None:
+    said = tritrack("calibrate", *words, "--help").out
+    assert said.count("\n\n  Example: tritrack") == 2
+
+
+def test_the_only_clip_is_refused_in_one_line(tritrack: Commands, tmp_path: Path) -> None:
+    one = tritrack("track", tmp_path / "a", "--out", tmp_path / "runs")
+    assert (one.code, len(one.errors)) == (2, 1)
+    two = tritrack("track", tmp_path / "a", tmp_path / "b", "--out", tmp_path / "runs")
+    assert (two.code, len(two.errors)) == (2, 3)
+    assert "2 of 2 clips could not be tracked" in two.errors[2]
 
 
 def test_the_version_is_told(tritrack: Commands) -> None:
@@ -207,8 +251,8 @@ def test_what_contradicts_itself_or_cannot_be_read_is_refused(
 @pytest.mark.parametrize(
     ("text", "error"),
     [
-        ('clip = "x"\nsizze = "1x1"', "unknown field `sizze`"),
-        ('clip = "x"\nevery = "two"', r"Expected `int`, got `str` - at `\$.every`"),
+        ('clip = "x"\nsizze = "1x1"', "unknown setting sizze"),
+        ('clip = "x"\nevery = "two"', "every must be a whole number, got text"),
         ('clip = "x"\nsize = "huge"', "size must look like 160x120, got 'huge'"),
         ("clip =", "Invalid value"),
         ("", "there is nothing to look at: set clip, or camera_1"),
@@ -243,7 +287,7 @@ def test_what_can_be_worked_with_runs_on_with_one_line(
 def test_a_good_clip_gives_no_warning(tritrack: Commands, clip: Path, tmp_path: Path) -> None:
     said = tritrack("track", clip, "--out", tmp_path)
     assert (said.code, said.out) == (0, "")
-    told = f"1 clips tracked, written to {tmp_path}; believed in 100% of the frames with a person\n"
+    told = f"1 clip tracked, written to {tmp_path}; believed in 100% of the frames with a person\n"
     assert said.err == told
 
 

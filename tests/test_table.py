@@ -8,7 +8,7 @@ from rich.console import Console
 
 from common.bus.control_messages import Pulse
 from tritrack.live.table import table_of, table_of_rows
-from tritrack.terminal import bar, complain, json_text, warn
+from tritrack.terminal import bar, complain, counted, json_text, warn
 
 
 def printed(thing: object, width: int = 80) -> list[str]:
@@ -87,3 +87,15 @@ def test_json_is_strict() -> None:
     assert json_text((float("nan"), {"x": float("-inf")}, 1.5, "NaN")) == (
         '[\n null,\n {\n  "x": null\n },\n 1.5,\n "NaN"\n]'
     )
+
+
+def test_numbers_of_a_row_have_two_decimals_and_none_is_minus_nought() -> None:
+    row = {"name": "cam1", "place_m": (1.6920873965148853e-18, 1.522, -0.001), "late": -0.0}
+    (line,) = [line for line in printed(table_of_rows([row])) if "cam1" in line]
+    assert line.split() == ["cam1", "0.00", "1.52", "0.00", "0.00"]
+
+
+@pytest.mark.parametrize(("number", "said"), [(0, "0 bodies"), (1, "1 body"), (2, "2 bodies")])
+def test_one_is_not_many(number: int, said: str) -> None:
+    assert counted(number, "body", "bodies") == said
+    assert counted(number, "clip") == said.replace("bodies", "clips").replace("body", "clip")

@@ -1,5 +1,6 @@
 """Posture models from runs."""
 
+import io
 from pathlib import Path
 
 import numpy as np
@@ -52,3 +53,19 @@ def test_a_motion_too_short_to_learn_from_is_said(shown: list[Recording], tmp_pa
     shown[:] = [shown[0]._replace(rows=np.empty((0, 20)))]
     with pytest.raises(LearningError, match="none of 1 sequences has 5 frames"):
         learn(tmp_path / "m.npz")
+
+
+def test_a_model_of_few_takes_or_one_posture_is_warned_of(
+    shown: list[Recording], tmp_path: Path
+) -> None:
+    def said() -> str:
+        console = Console(file=io.StringIO(), width=500)
+        train_postures([], tmp_path / "m.npz", Plan(None, "default", tmp_path), console)
+        assert isinstance(console.file, io.StringIO)
+        return console.file.getvalue()
+
+    assert "warning: less than 3 takes of raise_right_lateral, squat: film more" in said()
+    shown[:] = [each for each in shown if each.posture == "squat"]
+    assert "warning: only squat is learnt: such a model names any motion so" in said()
+    shown[:] = [Recording("s02", name, perform(name, n)) for name in POSTURES for n in range(3)]
+    assert said() == ""

@@ -39,12 +39,20 @@ from tritrack.terminal import complain, json_text
 
 app = typer.Typer(
     name="tritrack",
-    help="Body tracking and posture recognition from two ordinary cameras, in real time.",
+    help="Body tracking and posture recognition from two ordinary cameras, or one, in real time.",
+    epilog="Start: doctor, demo, single, track, live.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+PLAIN: Final = {
+    "Value error, ": "",
+    "Input should be less than or equal to": "it must be at most",
+    "Input should be greater than or equal to": "it must be at least",
+}
+"""What the library says of a command line, and what is said instead."""
 
 log = logging.getLogger(__name__)
 
@@ -83,7 +91,9 @@ def doctor(
     ] = None,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Check the installation, and what a live run needs: ports, cameras, disk, clock, keys.
+    """Check the installation and what a live run needs.
+
+    That is ports, cameras, disk, clock and keys.
 
     Example: tritrack doctor configs/cameras.toml
     """
@@ -110,7 +120,7 @@ def bench(
     quick: Annotated[bool, typer.Option(help="Fewer repetitions.")] = False,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Measure this machine: matches, search, tracking, memory.
+    """Measure this machine: matching, tracking, memory.
 
     Example: tritrack bench
     """
@@ -157,7 +167,9 @@ def refuse_usage(error: typer.TyperException) -> int:
         return 2
     context = getattr(error, "ctx", None)
     command = context.command_path if context else "tritrack"
-    text = text.replace("Value error, ", "").rstrip(".")
+    for theirs, ours in PLAIN.items():
+        text = text.replace(theirs, ours)
+    text = text.rstrip(".")
     complain(console, f"{text}; see: {command} --help")
     return 2
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from common.packages import PACKAGES
+from tritrack.terminal import counted
 
 FULL: Final = (errno.ENOSPC, errno.EDQUOT)
 """What a full disk says, wherever it is met."""
@@ -61,9 +62,9 @@ def refuse_unfollowed(clips: Mapping[str, Mapping[str, Any]]) -> None:
     if poor:
         worst = min(poor, key=lambda name: poor[name])
         raise Unfollowed(
-            f"in {len(poor)} of {len(clips)} clips the body is believed in less than half of the "
-            f"frames ({worst}: {poor[worst]:.0%}): name an empty picture of the room, or light it "
-            "better"
+            f"in {len(poor)} of {counted(len(clips), 'clip')} the body is believed in less than "
+            f"half of the frames ({worst}: {poor[worst]:.0%}): name an empty picture of the room, "
+            "or light it better"
         )
 
 

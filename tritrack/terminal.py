@@ -28,6 +28,17 @@ def complain(console: Console, text: str) -> None:
     _line(console, f"error: {text}", "red")
 
 
+def counted(number: int, thing: str, things: str = "") -> str:
+    """How many of something: 1 clip, 2 clips.
+
+    Args:
+        number: How many.
+        thing: One of them.
+        things: Several; "": with an s.
+    """
+    return f"{number} {thing if number == 1 else things or f'{thing}s'}"
+
+
 def bar(console: Console) -> Progress:
     """How far long work is; nothing where nobody looks on, as in a file."""
     return Progress(console=console, transient=True, disable=not console.is_terminal)

@@ -1,5 +1,6 @@
 """The retouching page's door: a viser server that this machine's own browser may enter alone."""
 
+import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Final
@@ -20,6 +21,7 @@ def open_server(port: int) -> viser.ViserServer:
         PageError: When the port is 0, taken or not allowed.
     """
     refuse_port(port)
+    logging.getLogger("websockets.server").setLevel(logging.WARNING)  # it tells of every browser
     with _quiet():
         server = viser.ViserServer(host=HOST, port=port, label="tritrack", verbose=False)
     if server.get_port() != port:

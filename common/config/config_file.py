@@ -5,6 +5,7 @@ from pathlib import Path
 
 import msgspec
 
+from common.config.explained import explained
 from common.config.part_settings import CameraSettings
 from common.config.settings import LANDMARK_SOURCES, Settings
 from common.config.settings_error import SettingsError
@@ -34,7 +35,7 @@ def load(path: Path) -> Settings:
             f"{path} is no settings file: name a TOML file, or a clip folder"
         ) from error
     except msgspec.DecodeError as error:
-        raise SettingsError(f"{path}: {error}") from error
+        raise SettingsError(f"{path}: {explained(error, Settings)}") from error
     return with_full_paths(settings, path)
 
 

@@ -6,7 +6,7 @@ from typing import Final
 import msgspec
 
 from common.config.settings_error import SettingsError, within
-from common.endpoint import is_exposed
+from common.endpoint import is_endpoint, is_exposed, is_host
 
 MOST_SESSION: Final = 64
 """Letters of a session's word, which goes with every message."""
@@ -109,7 +109,7 @@ class PageSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         """Refuse what no run could mean."""
         within("port", self.port, 0, 65535)
         for name, word in (("host", self.host), ("name", self.name or "none")):
-            if not word or set(word) & set("/@?# "):
+            if not word or not is_host(word):
                 raise ValueError(f"{name} must be a plain name or address, got {word!r}")
 
 
@@ -134,6 +134,10 @@ class BusSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         if len(self.session) > MOST_SESSION or not self.session.isascii():
             raise ValueError(
                 f"session must be at most {MOST_SESSION} ASCII letters, got {self.session!r}"
+            )
+        if self.endpoint != AUTO and not is_endpoint(self.endpoint):
+            raise SettingsError(
+                f"endpoint must look like tcp/127.0.0.1:7447, or be auto, got {self.endpoint!r}"
             )
         if self.endpoint != AUTO and self.endpoint.startswith("tls/") != bool(self.keys):
             raise SettingsError(

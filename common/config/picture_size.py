@@ -1,6 +1,10 @@
 """How large pictures are worked on."""
 
-from common.config.settings_error import within
+from typing import Final
+
+SMALLEST: Final = 32
+LARGEST: Final = 4096
+"""Of either side, pixels."""
 
 
 def size_of(text: str) -> tuple[int, int]:
@@ -12,8 +16,10 @@ def size_of(text: str) -> tuple[int, int]:
     width, _, height = text.partition("x")
     if not (width.isdecimal() and height.isdecimal()):
         raise ValueError(f"size must look like 160x120, got {text!r}")
-    within("width", int(width), 32, 4096)
-    within("height", int(height), 32, 4096)
+    if not all(SMALLEST <= int(side) <= LARGEST for side in (width, height)):
+        raise ValueError(
+            f"size must be from {SMALLEST}x{SMALLEST} to {LARGEST}x{LARGEST} pixels, got {text}"
+        )
     return int(width), int(height)
 
 

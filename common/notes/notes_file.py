@@ -9,6 +9,7 @@ import msgspec
 
 from common.atomic_file import replacing
 from common.body.body import JOINT_NAMES, LIMBS
+from common.config.explained import explained
 from common.notes.notes import ORIENTATIONS, Notes
 
 MAX_BYTES: Final = 1 << 20
@@ -72,7 +73,7 @@ def load_notes(path: Path) -> Notes:
     except tomllib.TOMLDecodeError as error:
         raise NotesError(f"{path}: {error}; mend that line") from error
     except (msgspec.ValidationError, RecursionError) as error:
-        raise NotesError(f"{path}{_explained(str(error), text)}") from error
+        raise NotesError(f"{path}{_mended(error, text)}") from error
 
 
 def save_notes(path: Path, notes: Notes) -> None:
@@ -100,16 +101,16 @@ def save_notes(path: Path, notes: Notes) -> None:
         ) from error
 
 
-def _explained(error: str, text: str) -> str:
-    """What is wrong, in which line, and what to write instead, from msgspec's words."""
-    reason, _, place = error.partition(" - at ")
+def _mended(error: Exception, text: str) -> str:
+    """What is wrong, in which line, and what to write instead."""
+    reason, _, place = str(error).partition(" - at ")
     number = re.search(r"note\[(\d+)\]", place)
     words = re.findall(r"[a-z_]+", place.rpartition("note[")[2] or place) + reason.split()
     known = (*CURES, *re.findall(r"unknown field `([^`]*)`", reason))
     key = next((word for word in reversed(known) if word in words or f"`{word}`" in words), "note")
     line = _line_of(text, int(number[1]) if number else None, key)
     cure = CURES.get(key, f"known are {', '.join(CURES)}")
-    return f"{f', line {line}' if line else ''}, {key}: {reason}; {cure}"
+    return f"{f', line {line}' if line else ''}, {key}: {explained(error, Notes)}; {cure}"
 
 
 def _line_of(text: str, number: int | None, key: str) -> int | None:

@@ -6,6 +6,7 @@ from typing import Final
 import msgspec
 import numpy as np
 
+from common.config.explained import explained
 from common.rig.camera import Rig, as_matrix
 
 DISTORTIONS: Final = (0, 4, 5, 8, 12, 14)
@@ -29,9 +30,12 @@ def load_rig(path: Path, wanted: tuple[str, ...] = ()) -> Rig:
     try:
         rig = msgspec.json.decode(path.read_bytes(), type=Rig)
     except OSError as error:
-        raise CalibrationError(f"cannot read the calibration {path}: {error.strerror}") from error
+        raise CalibrationError(
+            f"cannot read the calibration {path}: {error.strerror}; make one (tritrack calibrate "
+            "person), or take it out of the settings"
+        ) from error
     except (msgspec.DecodeError, RecursionError) as error:
-        raise CalibrationError(f"{path} is no calibration: {error}") from error
+        raise CalibrationError(f"{path} is no calibration: {explained(error, Rig)}") from error
     if wanted:
         by_name = {camera.name: camera for camera in rig.cameras}
         missing = [name for name in wanted if name not in by_name]

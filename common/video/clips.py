@@ -10,6 +10,7 @@ from typing import Final
 import msgspec
 
 from common.bus.messages import ViewerNumber
+from common.config.explained import explained
 from common.config.picture_size import size_of, working_size
 from common.config.settings import Settings
 from common.rig.camera import Camera, Rig
@@ -90,7 +91,8 @@ def _meta(folder: Path) -> Meta:
     except FileNotFoundError:
         return Meta()
     except (OSError, msgspec.DecodeError, RecursionError) as error:
-        raise ClipError(f"cannot read {path} ({error}): mend it or take it away") from error
+        why = error.strerror if isinstance(error, OSError) else explained(error, Meta)
+        raise ClipError(f"cannot read {path} ({why}): mend it or take it away") from error
     if meta.fps is not None and not (math.isfinite(meta.fps) and meta.fps > 0):
         raise ClipError(f"{path} names a rate of {meta.fps} frames a second: mend or remove fps")
     for name, moments in meta.capture_s.items():
@@ -132,13 +134,10 @@ def probed(source: Source, decoder: Decoder) -> VideoInfo:
     """What a file or camera is.
 
     Raises:
-        ClipError: When it is not there, is empty, or has no picture.
+        ClipError: When it is not there, may not be read, is empty, or has no picture.
     """
     if isinstance(source, str):
-        if not Path(source).is_file():
-            raise ClipError(f"there is no file {source}: check the path")
-        if Path(source).stat().st_size == 0:
-            raise ClipError(f"{source} is empty: copy or record it again")
+        _refuse_unreadable(Path(source))
     try:
         info = decoder.probe(source)
     except (Undecodable, DecoderDied) as error:
@@ -157,6 +156,22 @@ def _refuse_another_scene(named: Footage, plate: VideoInfo, info: VideoInfo) -> 
             f"{named.source} {info.width}x{info.height}: take an empty frame of the same camera, "
             "uncropped"
         )
+
+
+def _refuse_unreadable(path: Path) -> None:
+    if path.is_dir():
+        raise ClipError(f"{path} is a folder: name a file in it")
+    if not path.is_file():
+        raise ClipError(f"there is no file {path}: check the path")
+    try:
+        with path.open("rb") as file:
+            empty = not file.read(1)
+    except OSError as error:
+        raise ClipError(
+            f"cannot read {path}: {error.strerror}; see that you may read it (chmod u+r)"
+        ) from error
+    if empty:
+        raise ClipError(f"{path} is empty: copy or record it again")
 
 
 def _refuse_a_lost_head(path: Path) -> None:

@@ -8,6 +8,7 @@ sends them through a pipe.
 import json
 import struct
 from collections.abc import Generator
+from pathlib import Path
 from typing import Any, Final, NamedTuple, Self
 
 import msgspec
@@ -33,6 +34,9 @@ TIMES_AT_ONCE: Final = 4096
 
 STALL_S: Final = 10.0
 """A child that gives nothing for so long is stuck: opening a slow camera takes 3 s."""
+
+STILLS: Final = {".png", ".jpg", ".jpeg", ".bmp", ".webp", ".tif", ".tiff"}
+"""How names of single pictures end."""
 
 Image = NDArray[np.uint8]
 """(height, width, 3), blue, green, red."""
@@ -211,8 +215,10 @@ def cure(source: Source) -> str:
     """What to do about a source that cannot be read."""
     if isinstance(source, int):
         return "see that it is plugged in and that no other program holds it"
+    if Path(source).suffix.lower() in STILLS:
+        return "save the picture anew, as PNG or JPEG"
     return (
-        "convert it, for example to MJPEG: ffmpeg -i IN -c:v mjpeg -q:v 2 OUT.avi, or copy it "
+        "convert it, for example to MJPEG (ffmpeg -i IN -c:v mjpeg -q:v 2 OUT.avi), or copy it "
         "again where it was cut off"
     )
 

@@ -7,6 +7,7 @@ from typing import TypeVar
 import msgspec
 
 from common.atomic_file import replacing
+from common.config.explained import explained
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError
 from integrator.rig.markers import Aim, Markers, line_markers
@@ -92,7 +93,7 @@ def read_points(path: Path, kind: type[Content]) -> Content:
     except OSError as error:
         raise CalibrationError(f"cannot read the points {path}: {error.strerror}") from error
     except (msgspec.DecodeError, RecursionError) as error:
-        raise CalibrationError(f"{path}: {error}") from error
+        raise CalibrationError(f"{path}: {explained(error, kind)}") from error
     except ValueError as error:
         raise CalibrationError(f"{path}: no text, or a number that is not finite") from error
     return content

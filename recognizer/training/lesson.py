@@ -52,8 +52,8 @@ def taught(
     """
     if len(takes) < LEAST_TAKES:
         raise LearningError(
-            f"{len(takes)} takes of {posture}: film at least {LEAST_TAKES}, the same motion each"
-            " time"
+            f"{len(takes)} of {LEAST_TAKES} takes of {posture}: film at least {LEAST_TAKES}, "
+            "the same motion each time"
         )
     for i, rows in enumerate(takes):
         if len(with_pose(rows)) < STATES:

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from common.templates import rendered
+from tritrack.terminal import counted
 
 
 def headline(report: Mapping[str, Any]) -> dict[str, Any]:
@@ -23,9 +24,9 @@ def line(report: Mapping[str, Any]) -> str:
     """The headline in words."""
     told = report["all"]
     return (
-        f"{told['clips']} clips, {told['frames']} frames: mean {_number(told['abs_mm']['mean'])} "
-        f"mm{_between(told['between']['abs_mm'], 'mean')}, median "
-        f"{_number(told['abs_mm']['median'])}, inner angles "
+        f"{counted(told['clips'], 'clip')}, {told['frames']} frames: "
+        f"mean {_number(told['abs_mm']['mean'])} mm{_between(told['between']['abs_mm'], 'mean')}, "
+        f"median {_number(told['abs_mm']['median'])}, inner angles "
         f"{_number(told['angle_deg']['all'])} degrees, lost {_share(told['lost'])}, silhouettes "
         f"{_number(report['silhouettes']['mean'], 3)}"
     )

@@ -1,17 +1,23 @@
 """A bridge at work: bodies of a run in, another protocol out, until the run is over."""
 
+from collections.abc import Callable
 from typing import Literal
+
+from rich.console import Console
 
 from common.bus.messages import Body
 from tritrack.bridges import vmc
 from tritrack.bridges.lsl import lsl_outlet
 from tritrack.bridges.osc import osc_packet, osc_sender
-from tritrack.client import Subscription, subscribe
+from tritrack.client import WAIT_S, Subscription, subscribe
+from tritrack.terminal import say
 
 Protocol = Literal["osc", "vmc", "lsl"]
 
 
-def bridge(protocol: Protocol, endpoint: str, room: str, to: str, keys: str = "") -> int:
+def bridge(
+    protocol: Protocol, endpoint: str, room: str, to: str, console: Console, keys: str = ""
+) -> int:
     """Hand on every body; how many.
 
     Args:
@@ -19,6 +25,7 @@ def bridge(protocol: Protocol, endpoint: str, room: str, to: str, keys: str = ""
         endpoint: Of the run.
         room: Of the run.
         to: `HOST:PORT` that OSC and VMC are sent to.
+        console: Is told at once what is waited for.
         keys: Folder of a client's keys, where the run has some.
 
     Raises:
@@ -26,17 +33,21 @@ def bridge(protocol: Protocol, endpoint: str, room: str, to: str, keys: str = ""
         BusError: When no run answers within a minute.
     """
     bodies = subscribe(endpoint, room, keys=keys)
+    waits = f"waiting for a run at {endpoint} (room {room}), at most {WAIT_S:.0f} s"
     if protocol == "lsl":
         push, sent = lsl_outlet(), 0
+        say(console, waits)
         for body in bodies:
             push(body)
             sent += 1
         return sent
-    return _by_osc(protocol, bodies, to)
+    send = osc_sender(to)
+    say(console, waits)
+    return _by_osc(protocol, bodies, send)
 
 
-def _by_osc(protocol: Protocol, bodies: Subscription[Body], to: str) -> int:
-    send, state, sent = osc_sender(to), vmc.Measured(), 0
+def _by_osc(protocol: Protocol, bodies: Subscription[Body], send: Callable[[bytes], None]) -> int:
+    state, sent = vmc.Measured(), 0
     for body in bodies:
         packet: bytes | None = None
         if protocol == "vmc":

@@ -10,10 +10,20 @@ from common.bus.messages import ViewerNumber
 from common.config.part_settings import BusSettings
 from common.config.settings import Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
-from tritrack.commands.options import Out, Record, Resume, Size, writable, writable_file
+from tritrack.commands.options import (
+    MODES,
+    WORKED_ON,
+    Out,
+    Record,
+    Resume,
+    Size,
+    size_given,
+    writable,
+    writable_file,
+)
 from tritrack.exporting import OWN_NAMES, Format, Scale, export_run
 from tritrack.faults import refuse_unfollowed
-from tritrack.terminal import json_text
+from tritrack.terminal import counted, json_text
 
 VIEWERS: Final[dict[str, tuple[ViewerNumber, ...]]] = {"12": (1, 2), "1": (1,), "2": (2,)}
 
@@ -23,10 +33,12 @@ def track(
     out: Out = Path("runs"),
     mode: Annotated[
         Literal["default", "paper", "thesis"] | None,
-        typer.Option(help="Instead of the settings' mode; the thesis's is for one view."),
+        typer.Option(
+            help=f"{MODES}; thesis: as published 2006, one camera. Else the settings' mode."
+        ),
     ] = None,
     views: Annotated[
-        Literal["12", "1", "2"], typer.Option(help="Both cameras, or only one of them.")
+        Literal["12", "1", "2"], typer.Option(help="Cameras to use: both, or only one.")
     ] = "12",
     size: Size = None,
     trust_calibration: Annotated[
@@ -36,7 +48,9 @@ def track(
     resume: Resume = False,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Track clips offline: the same as live, deterministic, as fast as it goes.
+    """Track recorded clips, as live but as fast as it goes.
+
+    The same clip gives the same poses, byte for byte.
 
     What is stopped, by Ctrl-C or by a crash, goes on where it was with the same command and
     --resume, and gives the same poses as without a stop.
@@ -65,8 +79,12 @@ def track(
 def line_of_runs(clips: Mapping[str, Mapping[str, Any]], out: Path) -> str:
     """How many clips were tracked, and in how many of their frames the body is believed."""
     shares = [facts["believed"] for facts in clips.values() if facts["believed"] is not None]
-    sure = f"; believed in {sum(shares) / len(shares):.0%} of the frames with a person"
-    return f"{len(clips)} clips tracked, written to {out}" + (sure if shares else "")
+    doubted = [name for name, facts in clips.items() if (facts.get("trust") or {}).get("advice")]
+    rig = f"; not believable: the calibration of {', '.join(doubted)}, see the warning above"
+    line = f"{counted(len(clips), 'clip')} tracked, written to {out}"
+    if shares:
+        line += f"; believed in {sum(shares) / len(shares):.0%} of the frames with a person"
+    return line + (rig if doubted else "")
 
 
 def synth(
@@ -76,9 +94,13 @@ def synth(
         typer.Option(help="The 15 postures, free motion, or all of them in one take."),
     ] = "postures",
     performers: Annotated[int, typer.Option(min=1, max=1000, help="How many people.")] = 1,
-    takes: Annotated[int, typer.Option(min=1, max=100, help="Of each posture by each person.")] = 1,
-    seed: Annotated[int, typer.Option(min=0, help="The first performer's.")] = 0,
-    size: Annotated[str, typer.Option(help="Of the pictures.")] = "320x240",
+    takes: Annotated[
+        int, typer.Option(min=1, max=100, help="Takes of each posture by each person.")
+    ] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the first performer.")] = 0,
+    size: Annotated[
+        str, typer.Option(help="Picture size, WIDTHxHEIGHT.", callback=size_given)
+    ] = "320x240",
     posture: Annotated[
         list[str] | None, typer.Option(help="Only this posture; may be given again.")
     ] = None,
@@ -94,7 +116,7 @@ def synth(
     wanted = ClipSet(motion, performers, takes, seed, tuple(posture or ()))
     made = make_clips(out, wanted, size, console)
     facts = {"clips": [str(folder) for folder in made]}
-    tell(facts, json_wanted, f"{len(made)} clips written to {out}")
+    tell(facts, json_wanted, f"{counted(len(made), 'clip')} written to {out}")
 
 
 def single(
@@ -107,16 +129,19 @@ def single(
         Path | None, typer.Option(help="Your inputs, instead of notes.toml beside the video.")
     ] = None,
     mode: Annotated[
-        Literal["default", "thesis"], typer.Option(help="The best known, or as printed.")
+        Literal["default", "thesis"],
+        typer.Option(help="default: most accurate; thesis: as published 2006."),
     ] = "default",
-    size: Annotated[str, typer.Option(help="Bound of the working picture.")] = "320x240",
+    size: Annotated[str, typer.Option(help=WORKED_ON, callback=size_given)] = "320x240",
     background: Annotated[
         Path | None, typer.Option(help="A picture of the scene without anybody, if there is one.")
     ] = None,
     resume: Resume = False,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Animate a body from any video of one camera: no calibration, no empty room is needed.
+    """Animate a body from any video of one camera.
+
+    The camera stands still; no calibration and no empty room is needed.
 
     What is stopped goes on where it was with the same command and --resume.
 
@@ -136,7 +161,9 @@ def single(
 
 def export(
     run: Annotated[Path, typer.Argument(help="A run folder.")],
-    to: Annotated[Format, typer.Option(help="Animation, movement laboratory, spreadsheet.")],
+    to: Annotated[
+        Format, typer.Option(help="Format, for animation, movement laboratory or spreadsheet.")
+    ],
     out: Annotated[
         Path | None,
         typer.Option(
@@ -154,7 +181,8 @@ def export(
     facts = export_run(run, to, out, scale)
     off = facts.get("off_mm")
     told = f"; fixed bones: {off['median']} mm off, 95 % within {off['p95']} mm" if off else ""
-    tell(facts, json_wanted, f"{facts['frames']} frames written to {facts['file']}{told}")
+    line = f"{counted(facts['frames'], 'frame')} written to {facts['file']}{told}"
+    tell(facts, json_wanted, line)
 
 
 def replay(
@@ -172,7 +200,7 @@ def replay(
     keys: Annotated[str, typer.Option(help="On the bus: folder of the integrator's keys.")] = "",
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Send a recorded run through the integrator again, or say it again on a bus.
+    """Integrate a recorded run again, or say it on a bus.
 
     Example: tritrack replay runs/walk
     """
@@ -180,10 +208,11 @@ def replay(
 
     if bus:
         facts = replay_on_bus(run, BusSettings(endpoint=bus, keys=keys), speed, console)
-        tell(facts, json_wanted, f"{facts['said']} messages said")
+        tell(facts, json_wanted, f"{counted(facts['said'], 'message')} said")
         return
     facts = replay_run(run, out)
-    line = f"{facts['bodies']} bodies, {facts['same']} of them the same byte for byte"
+    bodies = counted(facts["bodies"], "body", "bodies")
+    line = f"{bodies}, {facts['same']} of them the same byte for byte"
     tell(facts, json_wanted, line)
 
 
@@ -193,10 +222,12 @@ def retouch(
     notes: Annotated[
         Path | None, typer.Option(help="Instead of notes.toml beside the video.")
     ] = None,
-    port: Annotated[int, typer.Option(min=1, max=65535, help="Of the page.")] = 8080,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="Port of the page.")] = 8080,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Look at a run frame by frame, and say what its video does not show. Ctrl-C ends it.
+    """Correct a run frame by frame, on a page. Ctrl-C ends it.
+
+    Say there what the video does not show; then `tritrack single` fits it again.
 
     Example: tritrack retouch runs/dance
     """

@@ -18,11 +18,13 @@ def keys(
         list[str] | None,
         typer.Option(help="Name or address by which others call the integrator; once for each."),
     ] = None,
-    days: Annotated[int, typer.Option(min=1, max=3650, help="How long they hold.")] = 365,
+    days: Annotated[int, typer.Option(min=1, max=3650, help="Days that the keys hold.")] = 365,
     force: Annotated[bool, typer.Option(help="Replace the keys that are there.")] = False,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Make keys for a bus that other machines reach: an authority, a certificate for each part.
+    """Make keys for a bus that other machines reach.
+
+    They are an authority and a certificate for each part.
 
     Example: tritrack keys keys --host rig.local --host 192.168.1.5
     """

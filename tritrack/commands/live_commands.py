@@ -15,6 +15,7 @@ from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import ModeName, Out, Record, Size
 from tritrack.extras import refuse_without
 from tritrack.overrides import overridden
+from tritrack.terminal import counted
 
 Wait = Annotated[
     bool, typer.Option(help="A clip begins when the page is opened, or half a minute later.")
@@ -28,7 +29,9 @@ def demo(
     wait: Wait = True,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Run the whole system on a synthetic person: two viewers, integrator, recognizer, page.
+    """Run the whole system on a synthetic person.
+
+    Two viewers, integrator, recognizer and page work as in a live run.
 
     Example: tritrack demo
     """
@@ -49,7 +52,9 @@ def live(
     wait: Wait = True,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Track live: on recorded clips at their own pace, or on cameras. Ctrl-C ends it.
+    """Track live, on cameras or recorded clips. Ctrl-C ends it.
+
+    Clips run at their own pace.
 
     Example: tritrack live configs/live.toml --out runs/monday
     """
@@ -64,7 +69,9 @@ def live(
 def serve(
     sites_file: Annotated[Path, typer.Argument(help="The sites (TOML): names and settings.")],
 ) -> None:
-    """Serve several rooms, each with its own settings, until stopped. SIGHUP reads the file anew.
+    """Track live in several rooms, until stopped.
+
+    Each has its own settings. SIGHUP reads the file of sites anew.
 
     Example: tritrack serve configs/sites.toml
     """
@@ -77,7 +84,7 @@ def view(
     settings_file: ConfigPath,
     viewer: Annotated[int, typer.Option(min=1, max=2, help="Which camera this process looks at.")],
 ) -> None:
-    """Run one viewer alone, for a rig spread over hosts.
+    """Run one viewer alone, of a rig spread over hosts.
 
     Example: tritrack view configs/live.toml --viewer 1
     """
@@ -117,7 +124,9 @@ def recognize(settings_file: ConfigPath) -> None:
 
 
 def metrics(settings_file: ConfigPath) -> None:
-    """Serve figures and health alone, on the integrator's host: /metrics and /healthz.
+    """Serve figures and health alone: /metrics, /healthz.
+
+    It runs on the integrator's host.
 
     Example: tritrack metrics configs/live.toml
     """
@@ -127,7 +136,7 @@ def metrics(settings_file: ConfigPath) -> None:
 
     settings = live_settings(settings_file)
     if not settings.metrics:
-        raise SettingsError(f"{settings_file}: set metrics = '127.0.0.1:9464', say")
+        raise SettingsError(f'{settings_file} has no metrics: add metrics = "127.0.0.1:9464"')
     refuse_held_metrics(settings.metrics)
     from tritrack.outside.metrics_process import main as metrics_main
 
@@ -151,22 +160,26 @@ def waiting(settings: Settings, wait: bool) -> Settings:
 
 
 def bridge(
-    protocol: Annotated[Literal["osc", "vmc", "lsl"], typer.Argument(help="Spoken to others.")],
-    to: Annotated[str, typer.Option(help="HOST:PORT that listens; 9000 or 39539 here.")] = "",
-    endpoint: Annotated[str, typer.Option(help="Of the run.")] = BusSettings().endpoint,
-    room: Annotated[str, typer.Option(help="Of the run.")] = Settings().room,
+    protocol: Annotated[Literal["osc", "vmc", "lsl"], typer.Argument(help="Protocol to send by.")],
+    to: Annotated[
+        str, typer.Option(help="HOST:PORT to send to; else this machine, 9000, of VMC 39539.")
+    ] = "",
+    endpoint: Annotated[str, typer.Option(help="Bus address of the run.")] = BusSettings().endpoint,
+    room: Annotated[str, typer.Option(help="Room name of the run.")] = Settings().room,
     keys: Annotated[str, typer.Option(help="Folder of a client's keys, for a tls endpoint.")] = "",
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Hand a live run's bodies on by OSC, VMC or the Lab Streaming Layer, until it is over.
+    """Send live poses by OSC, VMC or LSL.
+
+    It waits for the run, a minute at most, and ends with it. LSL is the Lab Streaming Layer.
 
     Example: tritrack bridge vmc --to 127.0.0.1:39539
     """
     from tritrack.bridges.bridging import bridge as run_bridge
 
     there = to or ("127.0.0.1:39539" if protocol == "vmc" else "127.0.0.1:9000")
-    sent = run_bridge(protocol, endpoint, room, there, keys)
-    tell({"bodies": sent}, json_wanted, f"{sent} bodies handed on")
+    sent = run_bridge(protocol, endpoint, room, there, console, keys)
+    tell({"bodies": sent}, json_wanted, f"{counted(sent, 'body', 'bodies')} sent")
 
 
 def live_settings(path: Path) -> Settings:

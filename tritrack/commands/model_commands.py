@@ -9,6 +9,7 @@ from common.config import config_file
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import (
     CACHE,
+    MODES,
     Cache,
     ModeName,
     Out,
@@ -18,14 +19,15 @@ from tritrack.commands.options import (
     writable_file,
 )
 from tritrack.extras import refuse_without
+from tritrack.terminal import counted
 
 LEARN: Final = ("learn", "hmmlearn", "sklearn")
 """The extra of what learns models, and what it brings."""
 RecognizerName = Annotated[
-    Literal["default", "paper"], typer.Option(help="The better models, or the paper's.")
+    Literal["default", "paper"], typer.Option(help=f"Which models. {MODES}.")
 ]
 
-evaluate_app = typer.Typer(help="Measure how well people are tracked, and recognised.")
+evaluate_app = typer.Typer(help="Measure how well people are tracked and recognised.")
 
 
 def train(
@@ -43,8 +45,9 @@ def train(
     cache: Cache = CACHE,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Learn postures from clips or runs, or poses and silhouettes from synthetic people.
+    """Learn postures from clips or runs.
 
+    With --what, a network is learnt from synthetic people instead: poses, silhouettes, landmarks.
     One posture more, beside those that a model knows: tritrack teach.
 
     Example: tritrack train clips/*/ --out postures.npz
@@ -59,7 +62,8 @@ def train(
 
     facts = train_postures(runs, out, Plan(mode, recognizer, cache), console)
     line = (
-        f"{len(facts['sequences'])} postures learnt, {len(facts['knows'])} known; written to {out}"
+        f"{counted(len(facts['sequences']), 'posture')} learnt, {len(facts['knows'])} known; "
+        f"written to {out}"
     )
     tell(facts, json_wanted, line)
 
@@ -112,10 +116,11 @@ def teach(
     cache: Cache = CACHE,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Teach a model one posture more, by three takes of it or more, filmed or before cameras.
+    """Teach a model one posture more, by three takes or more.
 
-    Says whether the takes agree, and which other posture it is nearest to. With --again the
-    posture is one that the model knows: name new takes to replace it, old and new ones to add.
+    They are filmed, or done before cameras (--live). Says whether the takes agree, and which other
+    posture it is nearest to. With --again the posture is one that the model knows: name new takes
+    to replace it, old and new ones to add.
 
     Example: tritrack teach star_jump take1/ take2/ take3/ --out mine.npz
     """
@@ -160,7 +165,7 @@ def evaluate_postures(
     ] = "",
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Name the postures of people whom the models never saw: the paper's table 2.
+    """Name postures of people whom no model saw (table 2).
 
     Clips are tracked by all cores, about 450 MB each; what was tracked is kept, so that a run
     that was stopped goes on where it was.
@@ -195,7 +200,9 @@ def evaluate_spotting(
     mode: ModeName = None,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Find performances in streams that nobody cuts: how many, how soon, how many that are none.
+    """Find performances in streams that nobody cuts.
+
+    Says how many are found, how soon, and how many of what is found are none.
 
     Example: tritrack evaluate spotting runs/*_stream --out report
     """
@@ -219,7 +226,9 @@ def evaluate_tracking(
     size: Size = None,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Track clips and hold joints, silhouettes, lengths and confidence against their truth.
+    """Track clips and hold them against their truth.
+
+    Joints, silhouettes, lengths and confidence are measured.
 
     Example: tritrack evaluate tracking clips/*/ --out report
     """

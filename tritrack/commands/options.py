@@ -1,26 +1,76 @@
 """What several commands take: their shared arguments and options."""
 
-import os
+from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated, Final, Literal
 
 import typer
+
+from common.config.picture_size import size_of
+
+MODES: Final = "default: most accurate; paper: as published 2004"
+WORKED_ON: Final = "Largest working picture, WIDTHxHEIGHT."
+Checked = Callable[[float | None], float | None]
+"""Hands an option on, or refuses it."""
 
 
 def writable(folder: Path | None) -> Path | None:
     """A folder that can be written, or made: what cannot is refused before long work, not after.
 
     Raises:
-        BadParameter: When it is neither.
+        BadParameter: When it is neither: a folder for a moment there shows it, also where rights
+            tell nothing, as in /proc.
     """
     if folder is None:
         return None
     place = next(one for one in (folder, *folder.absolute().parents) if one.exists())
     if not place.is_dir():
         raise typer.BadParameter(f"cannot write {folder}: Not a directory: {place}")
-    if not os.access(place, os.W_OK | os.X_OK):
-        raise typer.BadParameter(f"cannot write {folder}: Permission denied: {place}")
+    try:
+        with TemporaryDirectory(dir=place, prefix=".tritrack-"):
+            pass
+    except OSError as error:
+        raise typer.BadParameter(f"cannot write {folder}: {error.strerror}: {place}") from error
     return folder
+
+
+def size_given(text: str | None) -> str | None:
+    """A picture size, refused before anything is opened.
+
+    Raises:
+        BadParameter: When it is none.
+    """
+    try:
+        if text is not None:
+            size_of(text)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from error
+    return text
+
+
+def measured(unit: str, low: float, high: float, hundredths: bool = False) -> Checked:
+    """What refuses a number out of bounds with its unit.
+
+    Args:
+        unit: Of the number.
+        low: At least; `high`: at most.
+        high: See `low`.
+        hundredths: Who gives centimetres is asked whether the hundredth was meant.
+    """
+
+    def check(value: float | None) -> float | None:
+        if value is None or low <= value <= high:
+            return value
+        meant = f": {value / 100:g}?" if hundredths and low <= value / 100 <= high else ""
+        raise typer.BadParameter(f"from {low:g} to {high:g} {unit}, got {value:g}{meant}")
+
+    return check
+
+
+stature_given = measured("metres", 0.5, 2.6, hundredths=True)
+fov_given = measured("degrees", 10.0, 150.0)
+square_given = measured("mm", 1.0, 1000.0)
 
 
 def writable_file(path: Path | None) -> Path | None:
@@ -39,7 +89,7 @@ def writable_file(path: Path | None) -> Path | None:
 
 Out = Annotated[Path, typer.Option(help="Folder to write into.", callback=writable)]
 ModeName = Annotated[
-    Literal["default", "paper"] | None, typer.Option(help="Instead of the settings' mode.")
+    Literal["default", "paper"] | None, typer.Option(help=f"{MODES}. Else the settings' mode.")
 ]
 OwnMode = Annotated[
     Literal["default", "paper"] | None,
@@ -60,5 +110,6 @@ Resume = Annotated[
     bool, typer.Option("--resume", help="Go on with what was cut short; leave out what is done.")
 ]
 Size = Annotated[
-    str | None, typer.Option(help="Bound of the working picture, instead of the settings'.")
+    str | None,
+    typer.Option(help=f"{WORKED_ON} Else the settings' size.", callback=size_given),
 ]

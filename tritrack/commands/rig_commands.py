@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING, Annotated, Final, Literal
 import typer
 
 from tritrack.commands.command_output import JsonWanted, console, tell_rows
-from tritrack.commands.options import writable_file
+from tritrack.commands.options import fov_given, square_given, stature_given, writable_file
 from tritrack.extras import refuse_without
+from tritrack.terminal import counted
 
 if TYPE_CHECKING:
     from tritrack.offline.rig_of_boards import Shown
 
 calibrate_app = typer.Typer(
-    help="Find out where the cameras are: from a person, a printed board, markers, poles (4.1).",
+    help="Find where the cameras are: by person, board or poles.",
     no_args_is_help=True,
 )
 
@@ -26,7 +27,7 @@ Page = Annotated[
     typer.Option(help="Click the points on a page, in pictures of this clip, or these settings."),
 ]
 Port = Annotated[
-    int | None, typer.Option(min=1, max=65535, help="Of the page, instead of the settings'.")
+    int | None, typer.Option(min=1, max=65535, help="Port of the page, instead of the settings'.")
 ]
 
 
@@ -34,17 +35,20 @@ Port = Annotated[
 def person(
     clips: Annotated[list[Path], typer.Argument(help="Clips of one rig, or settings files.")],
     stature: Annotated[
-        float, typer.Option(min=0.5, max=2.6, help="How tall the person is, metres.")
+        float,
+        typer.Option(help="Of the person: 0.5 to 2.6 metres.", callback=stature_given),
     ] = 1.75,
     fov: Annotated[
         float | None,
-        typer.Option(min=10.0, max=150.0, help="How wide the cameras see, degrees, if known."),
+        typer.Option(help="How wide the cameras see: 10 to 150 degrees.", callback=fov_given),
     ] = None,
     out: Written = OUT,
     force: Forced = False,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Calibrate both cameras by a person who moves before them: nothing is printed or measured.
+    """Calibrate both cameras by a person who moves.
+
+    Nothing is printed or measured.
 
     Example: tritrack calibrate person clips/*/ --stature 1.82 --out clips/calibration.json
     """
@@ -55,9 +59,10 @@ def person(
     rig, quality = calibrated_by_clips(clips, Given(stature, fov))
     write_rig(out, rig, quality)
     tell_rows(quality.cameras, json_wanted)
+    late = ", ".join(f"{round(frames, 1) + 0.0:+.1f}" for frames in quality.late_frames)
     console.print(
-        f"both views agree to {quality.gap_mm:.0f} mm in {quality.moments} moments; "
-        f"view 2 is late by {', '.join(f'{late:+.1f}' for late in quality.late_frames)} frames",
+        f"both views agree to {quality.gap_mm:.0f} mm in {counted(quality.moments, 'moment')}; "
+        f"view 2 is late by {late} frames",
         highlight=False,
         soft_wrap=True,
     )
@@ -80,9 +85,9 @@ def board(
         Path | None,
         typer.Option("--print", help="Write the board to print (PDF).", callback=writable_file),
     ] = None,
-    paper: Annotated[Literal["a4", "a3"], typer.Option(help="To print on.")] = "a3",
+    paper: Annotated[Literal["a4", "a3"], typer.Option(help="Paper to print on.")] = "a3",
     square: Annotated[
-        float | None, typer.Option(min=1.0, max=1000.0, help="Side of a square as measured, mm.")
+        float | None, typer.Option(help="Side of a square as measured, mm.", callback=square_given)
     ] = None,
     chessboard: Annotated[
         str | None, typer.Option(help="A chessboard of so many squares instead, such as 9x6.")
@@ -101,6 +106,7 @@ def board(
     tilted; then where both see it; at the end lay it on the floor at two or three places.
 
     Example: tritrack calibrate board --print board.pdf --paper a3
+
     Example: tritrack calibrate board cam1.mp4 cam2.mp4 --out clips/calibration.json
     """
     from integrator.board.board_print import print_board
@@ -126,8 +132,9 @@ def _calibrate(videos: list[Path], shown: "Shown", out: Path, json_wanted: bool)
     quality, drawn = calibrate_by_videos(videos, shown, out, console)
     tell_rows(quality.cameras, json_wanted)
     console.print(
-        f"corners miss by {quality.reprojection_px:.2f} px; {quality.shared_rests} poses seen "
-        f"by several cameras; the board lies on the floor at {quality.floor_s:.1f} s\n"
+        f"corners miss by {quality.reprojection_px:.2f} px; "
+        f"{counted(quality.shared_rests, 'pose')} seen by several cameras; "
+        f"the board lies on the floor at {quality.floor_s:.1f} s\n"
         f"written to {out}, what the board covered of each picture to {drawn}",
         highlight=False,
         soft_wrap=True,
@@ -141,9 +148,12 @@ def markers(
     port: Port = None,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Say how far each camera is turned, tilted and rolled away from the marked lines.
+    """Say how cameras are turned from marked lines.
+
+    That is how far each is turned, tilted and rolled.
 
     Example: tritrack calibrate markers configs/markers.toml
+
     Example: tritrack calibrate markers markers.toml --page clips/empty
     """
     from integrator.rig.calibration import run_markers
@@ -167,9 +177,12 @@ def poles(
     force: Forced = False,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Find focal lengths and distances from poles at known places, with error bars.
+    """Calibrate cameras by poles at known places.
+
+    Finds focal lengths and distances, with error bars.
 
     Example: tritrack calibrate poles configs/poles.toml --out clips/calibration.json
+
     Example: tritrack calibrate poles poles.toml --page clips/poles --out clips/calibration.json
     """
     from integrator.rig.calibration import refuse_to_replace, run_poles
@@ -221,7 +234,9 @@ def import_(
     refuse_to_replace(out, force)
     rig = imported_rig(theirs, tuple(camera or ()))
     write_rig(out, rig)
-    console.print(f"{len(rig.cameras)} cameras written to {out}", highlight=False, soft_wrap=True)
+    console.print(
+        f"{counted(len(rig.cameras), 'camera')} written to {out}", highlight=False, soft_wrap=True
+    )
 
 
 @calibrate_app.command("export")
@@ -233,7 +248,9 @@ def export_(
     ),
     force: Forced = False,
 ) -> None:
-    """Write a calibration for another program, its world with z up.
+    """Write a calibration for another program.
+
+    Its world has z up.
 
     Example: tritrack calibrate export calibration.json --to pose2sim --out Calib.toml
     """

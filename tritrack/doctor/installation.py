@@ -90,12 +90,22 @@ def table_of(findings: list[Finding]) -> Table:
     return table
 
 
+def refused(what: str, error: Exception) -> Finding:
+    """A look that ended in an error, whose text says a fault, and after its last colon the cure.
+
+    Where there is a semicolon the cure begins behind it.
+    """
+    text = str(error)
+    detail, mark, cure = text.partition("; ") if "; " in text else text.rpartition(": ")
+    return Finding(what, False, detail, cure) if mark else Finding(what, False, text, "mend that")
+
+
 def _tried(check: Callable[[], Finding]) -> Finding:
     try:
         return check()
     except Exception as error:
         name = getattr(check, "__name__", "package").strip("_")
-        return Finding(name, False, str(error), "see what it says")
+        return refused(name, error)
 
 
 def _python() -> Finding:

@@ -8,7 +8,7 @@ from typing import Final
 
 from common.config.settings import Settings
 from common.video.clips import open_clip
-from tritrack.doctor.installation import Finding
+from tritrack.doctor.installation import Finding, refused
 from tritrack.live.free_ports import refuse_held_endpoint, refuse_held_metrics, refuse_held_page
 
 LEAST_BYTES: Final = 1 << 30
@@ -27,19 +27,18 @@ def examine_run(settings: Settings, out: Path) -> list[Finding]:
     looks: list[tuple[str, Callable[[], str | None]]] = [
         ("port of the bus", lambda: refuse_held_endpoint(settings)),
         ("port of the page", lambda: refuse_held_page(settings)),
-        ("port of the metrics", lambda: refuse_held_metrics(settings.metrics)),
         ("pictures", lambda: _pictures(settings)),
     ]
+    if settings.metrics:
+        looks.insert(2, ("port of the metrics", lambda: refuse_held_metrics(settings.metrics)))
     return [*(_looked(what, look) for what, look in looks), _disk(out), _clock(time.time())]
 
 
 def _looked(what: str, look: Callable[[], str | None]) -> Finding:
-    """What is refused says why, and after a semicolon what to do."""
     try:
         return Finding(what, True, look() or "free")
     except Exception as error:
-        detail, _, cure = str(error).partition("; ")
-        return Finding(what, False, detail, cure or "see what it says")
+        return refused(what, error)
 
 
 def _pictures(settings: Settings) -> str:

@@ -65,5 +65,12 @@ def table_of_rows(rows: Sequence[Mapping[str, object]]) -> Table:
     for column in rows[0] if rows else ():
         table.add_column(column.replace("_", " "), justify="left" if column == "name" else "right")
     for row in rows:
-        table.add_row(*(f"{v:.2f}" if isinstance(v, float) else str(v) for v in row.values()))
+        table.add_row(*(_shown(value) for value in row.values()))
     return table
+
+
+def _shown(value: object) -> str:
+    """A value to two decimals, none of them -0.00; of several, one after the other."""
+    if isinstance(value, list | tuple):
+        return " ".join(_shown(each) for each in value)
+    return f"{round(value, 2) + 0.0:.2f}" if isinstance(value, float) else str(value)

@@ -42,7 +42,7 @@ def track_all(
 ) -> dict[str, Any]:
     """Track clip after clip and write a run folder for each.
 
-    A clip that cannot be used is said and left out; the others are tracked.
+    Of several, one that cannot be used is said and left out; the others are tracked.
 
     Args:
         paths: Clip folders and settings files; other plain files are said and left out.
@@ -56,6 +56,8 @@ def track_all(
         resume: Go on with what was cut short, and leave out what is done.
 
     Raises:
+        SettingsError, ClipError, DecoderDied, Undecodable, CannotResume: When the only clip cannot
+            be used.
         ClipsFailed: When there is nothing to track, when two runs would have one folder, and at
             the end when any clip could not be used.
         RunError: When a run folder cannot be written.
@@ -75,6 +77,8 @@ def track_all(
                 given = _Given(views, record, tell, console)
                 done[name] = done_before(wanted, console) or _tracked(wanted, given, decoders)
             except (SettingsError, ClipError, DecoderDied, Undecodable, CannotResume) as error:
+                if len(runs) == 1:
+                    raise
                 complain(console, str(error))
     if len(done) < len(runs):
         raise ClipsFailed(f"{len(runs) - len(done)} of {len(runs)} clips could not be tracked")

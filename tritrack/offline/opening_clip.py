@@ -26,7 +26,10 @@ def body_of(settings: Settings, track: Callable[[Settings], Sequence[Body]]) -> 
     """
     if not settings.opening:
         return None
-    own = config_file.load(Path(settings.opening))
+    try:
+        own = config_file.load(Path(settings.opening))
+    except SettingsError as error:
+        raise SettingsError(f"opening = {settings.opening!r}: {error}") from error
     if own.opening:
         raise SettingsError(f"{settings.opening}: an opening clip has none itself: remove opening")
     own = msgspec.structs.replace(own, mode=settings.mode, size=settings.size)

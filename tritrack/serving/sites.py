@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 import msgspec
 
 from common.config.config_file import load, with_full_paths
+from common.config.explained import explained
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
 from common.endpoint import address_of
@@ -84,7 +85,7 @@ def load_sites(path: Path) -> Sites:
     except UnicodeDecodeError as error:
         raise SettingsError(f"{path} is no file of sites: name a TOML file") from error
     except msgspec.DecodeError as error:
-        raise SettingsError(f"{path}: {error}") from error
+        raise SettingsError(f"{path}: {explained(error, SitesFile)}") from error
     if not said.site:
         raise SettingsError(f"{path} names no site: write [[site]], name = ..., settings = ...")
     _refuse_twice(path, "name", [(entry.name, entry.name) for entry in said.site])

@@ -149,11 +149,7 @@ def facts_of(made: Ledger) -> dict[str, Any]:
 
 def line_of(facts: dict[str, Any]) -> str:
     """The ledger's facts in one line."""
-    thesis = ", ".join(
-        f"{name} {each['by_hand']} -> {each['all']}" for name, each in facts["thesis"].items()
-    )
     return (
-        f"inputs: {facts['inputs']['all']} given, {facts['inputs_that_could_help']['all']} could "
-        f"help; by hand {facts['this_video_by_hand']}, the thesis's way "
-        f"{facts['this_video_the_thesis_way']} (its own videos: {thesis})"
+        f"inputs: {facts['inputs']['all']} given, {facts['inputs_that_could_help']['all']} more "
+        f"could help (all by hand: {facts['this_video_by_hand']})"
     )

@@ -1,5 +1,6 @@
 """The retouching of a run: its video, its poses and its notes on a page, until Ctrl-C."""
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -12,6 +13,7 @@ from rich.console import Console
 
 from animator.take import Take, take_of
 from common.bus.process import ProcessContext, process
+from common.config.explained import explained
 from common.config.part_settings import CameraSettings
 from common.config.picture_size import working_size
 from common.config.settings import Settings
@@ -23,7 +25,7 @@ from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from tritrack.single.ledger import facts_of, ledger
 from tritrack.store.past_run import PastRun, open_run
-from tritrack.terminal import bar
+from tritrack.terminal import bar, say
 
 MOST_PICTURES: Final = 20_000
 """They are kept in memory, some 40 kB each."""
@@ -87,8 +89,16 @@ def retouch(
             stop.wait()
         finally:
             page.close()
-    console.print("then fit the video again with these notes: tritrack single", highlight=False)
+    say(console, how_to_go_on(source, run))
     return {"notes": str(path), **facts_of(ledger(take, page.notes))}
+
+
+def how_to_go_on(video: Path, run: PastRun) -> str:
+    """What to do with the notes; they are of one camera's picture."""
+    command = f"tritrack single {shlex.quote(str(video))}"
+    if "both" in run.poses["views"]:
+        return f"the run has two cameras, the notes are of camera 1 alone: to fit that, {command}"
+    return f"then fit the video again with these notes: {command}"
 
 
 def _clip_of(run: PastRun, video: Path | None) -> Clip:
@@ -96,7 +106,9 @@ def _clip_of(run: PastRun, video: Path | None) -> Clip:
     try:
         settings = msgspec.convert(run.summary.get("settings", {}), Settings)
     except msgspec.ValidationError as error:
-        raise RetouchError(f"{run.folder}/summary.json: {error}; track the clip again") from error
+        raise RetouchError(
+            f"{run.folder}/summary.json: {explained(error, Settings)}; track the clip again"
+        ) from error
     if video is not None:
         camera = CameraSettings(source=str(video))
         settings = msgspec.structs.replace(settings, clip="", camera_1=camera)

@@ -28,7 +28,7 @@ from tritrack.single.overlay_film import write_overlay
 from tritrack.store.clip_paths import ClipsFailed
 from tritrack.store.pose_arrays import mapped_poses
 from tritrack.store.runs import believed, write_run
-from tritrack.terminal import Tell, bar, by_pass, complain, say, warn
+from tritrack.terminal import Tell, bar, by_pass, complain, counted, say, warn
 from tritrack.unfinished.resuming import Begun, Wanted, done_before, resumable
 from tritrack.unfinished.unfinished_run import CannotResume
 from tritrack.unfinished.work import InMemory, Work
@@ -121,9 +121,9 @@ def _refuse_the_empty(done: dict[str, Any]) -> None:
     empty = [name for name, facts in done.items() if not facts["frames_with_pose"]]
     if empty:
         raise ClipsFailed(
-            f"nobody was found in {len(empty)} of {len(done)} videos: look for an outline in "
-            f"{done[empty[0]].get('overlay', 'its overlay')}; without one, they stand still or are "
-            "too small"
+            f"nobody was found in {len(empty)} of {counted(len(done), 'video')}: open "
+            f"{done[empty[0]].get('overlay', 'its overlay')}: if nobody is outlined, the person "
+            "did not move or is too small"
         )
 
 

@@ -78,16 +78,27 @@ def open_run(folder: Path) -> PastRun:
     if told is not None:
         return _cut_short(folder, told)
     path = folder / "poses.npz"
+    if not path.exists():
+        raise PastRunError(f"{folder} has no poses.npz: {_how_to_track(folder)}")
     try:
         poses = parted(read_arrays(path, MAX_BYTES))
         summary = json.loads((folder / "summary.json").read_text())
     except FileNotFoundError as error:
-        missing = Path(str(error.filename)).name
-        raise PastRunError(f"{folder} has no {missing}: is it a run folder?") from error
-    except (OSError, ValueError) as error:
+        raise PastRunError(f"{folder} has no summary.json: track the clip again") from error
+    except OSError as error:
+        raise PastRunError(
+            f"cannot read {error.filename or folder}: {error.strerror}; see that you may read it"
+        ) from error
+    except ValueError as error:
         raise PastRunError(f"{folder} was damaged ({error}): track the clip again") from error
     _refuse_other_arrays(path, poses)
     return PastRun(folder, poses, summary if isinstance(summary, dict) else {})
+
+
+def _how_to_track(folder: Path) -> str:
+    if any(folder.glob("cam[12].*")):
+        return f"it is a clip; track it first: tritrack track {folder}"
+    return "name one that `tritrack track` wrote"
 
 
 def _cut_short(folder: Path, told: "Told") -> PastRun:

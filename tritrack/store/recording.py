@@ -107,6 +107,8 @@ def read_recording(folder: Path) -> Recording:
     """
     library = _library()
     path = folder / NAME
+    if not folder.is_dir():
+        raise RecordingError(f"there is no run folder {folder}: name one made with --record")
     if not path.is_file():
         raise RecordingError(
             f"{folder} has no {NAME}: track or run live again with --record, then replay it"

@@ -12,6 +12,7 @@ from recognizer.model_file import load, save
 from recognizer.postures import PostureModel
 from recognizer.training.lesson import LEAST_TAKES, Lesson, taught
 from tritrack.store.cores import spread
+from tritrack.terminal import counted
 from tritrack.training.recordings import recordings
 from tritrack.training.training import Plan, TrainingError, model_named
 
@@ -42,7 +43,9 @@ def teach(
     if twice:
         raise TrainingError(f"{twice[0]} is named twice: each take is a performance of its own")
     if len(paths) < LEAST_TAKES:  # before any is tracked
-        raise TrainingError(f"{len(paths)} takes: name at least {LEAST_TAKES} clips of {posture}")
+        raise TrainingError(
+            f"{counted(len(paths), 'take')}: name at least {LEAST_TAKES} clips of {posture}"
+        )
     with spread(""):
         takes = recordings(paths, known.card.recognizer, plan.cache, console, posture)
     performers = sorted({take.performer for take in takes if take.performer})

@@ -1,7 +1,7 @@
 """Posture models from clips or runs."""
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -12,7 +12,9 @@ from recognizer.__main__ import SHIPPED, SHIPPED_PAPER
 from recognizer.model_file import load, save
 from recognizer.postures import PostureModel, Recognizer
 from recognizer.training.learning import train
+from recognizer.training.lesson import LEAST_TAKES
 from tritrack.store.cores import spread
+from tritrack.terminal import warn
 from tritrack.training.recordings import recordings
 
 SHIPPED_MODELS: Final[dict[Recognizer, Path]] = {"default": SHIPPED, "paper": SHIPPED_PAPER}
@@ -62,6 +64,7 @@ def train_postures(
     for recording in given:
         learnt[recording.posture].append(recording.rows)
         performers.add(recording.performer)
+    _warn_of_few(learnt, console)
     model = train(dict(learnt), plan.recognizer, performers=sorted(performers))
     save(model, out)
     return {
@@ -70,6 +73,22 @@ def train_postures(
         "performers": sorted(performers),
         "knows": list(model.names),
     }
+
+
+def _warn_of_few(learnt: Mapping[str, Sequence[Any]], console: Console) -> None:
+    """Say what a model learns too little for to tell postures apart."""
+    if len(learnt) == 1:
+        warn(
+            console,
+            f"only {next(iter(learnt))} is learnt: such a model names any motion so; name clips of "
+            "others, or add it to a model: tritrack teach",
+        )
+    few = [name for name, takes in sorted(learnt.items()) if len(takes) < LEAST_TAKES]
+    if few:
+        warn(
+            console,
+            f"less than {LEAST_TAKES} takes of {', '.join(few)}: film more, of several people",
+        )
 
 
 def model_named(path: Path, recognizer: Recognizer) -> PostureModel:
