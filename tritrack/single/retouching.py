@@ -56,7 +56,7 @@ def retouch(
             cannot be worked with.
     """
     try:
-        from animator.page.retouch import RetouchPage
+        from animator.retouching.retouch import RetouchPage
     except ModuleNotFoundError as error:
         raise RetouchError(
             f"there is no page without {error.name}: pip install 'tritrack[page]'"
