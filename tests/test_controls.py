@@ -8,7 +8,8 @@ import pytest
 
 pytest.importorskip("viser", reason="the page is an extra: install tritrack[page]")
 
-from test_retouch import ARM, filmed, free_port
+from test_retouch import filmed, free_port
+from test_take import ARM
 
 from animator.retouching.controls import Controls
 from animator.retouching.viser_door import close_server, open_server

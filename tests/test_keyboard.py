@@ -7,7 +7,8 @@ import pytest
 pytest.importorskip("viser", reason="the page is an extra: install tritrack[page]")
 
 from browser import Tab, open_tab, saved, waited
-from test_retouch import ARM, CHROMIUM, WRIST, filmed, page, said
+from test_retouch import CHROMIUM, filmed, page, said
+from test_take import ARM, WRIST
 
 from animator.retouching.keyboard import KEYS, Key, spoken_keys
 from animator.retouching.retouch import RetouchPage

@@ -21,7 +21,6 @@ from test_page_server import free_port
 from waiting import until
 from websockets.sync.client import connect
 
-from animator.page import live
 from animator.page.door import Entrance, invitation_of
 from animator.page.live import LivePage
 from animator.scene import LEFT, RIGHT
@@ -59,14 +58,13 @@ def test_who_comes_late_is_told_the_run_so_far_and_its_end_last(page: LivePage) 
     assert [each["number"] for each in heard[3:6]] == [0, 1, 2]
 
 
-def test_what_is_kept_of_a_long_run_is_bounded(
-    page: LivePage, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_kept_of_a_long_run_is_bounded() -> None:
+    page = LivePage("a long run", free_port(), commands=True, most_bytes=60_000)
     page.set_rig(RIG)
-    monkeypatch.setattr(live, "MOST_BYTES", 60_000)
     for frame in range(12):
         page.show(snapshot_at(frame))
     heard = told(page, 3)
+    page.close()
     assert heard[2]["number"] > 0, "the oldest gave way"
 
 
