@@ -1,5 +1,6 @@
 """The retouching page's door: a viser server that this machine's own browser may enter alone."""
 
+import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Final
@@ -51,6 +52,7 @@ def _guard(server: viser.ViserServer) -> None:
 @contextmanager
 def _quiet() -> Iterator[None]:
     """Keep viser's own announcements off the terminal: the commands say what matters."""
+    logging.getLogger("websockets").setLevel(logging.WARNING)
     console = rich.get_console()
     was, console.quiet = console.quiet, True
     try:
