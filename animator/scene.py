@@ -142,9 +142,15 @@ def limb_colours(confidence: tuple[float, ...] = ()) -> Colours:
     """The colour of each limb, (10, 3): by side, faded where its far joint is not sure."""
     sides = {"l": LEFT, "r": RIGHT}
     full = np.array([sides[limb[0]] if limb[1] == "_" else TRUNK for limb in LIMBS], float)
-    strength = np.array(confidence)[list(_JOINT_OF_LIMB), None] if confidence else np.ones((10, 1))
-    faded: Colours = np.rint(UNSURE + strength * (full - UNSURE)).astype(np.uint8)
-    return faded
+    if not confidence:
+        return full.astype(np.uint8)
+    return faded(full, np.array(confidence)[list(_JOINT_OF_LIMB)])
+
+
+def faded(full: Vector, strength: Vector) -> Colours:
+    """Colours (n, 3) that go towards UNSURE as their strength (n,) falls from 1 to 0."""
+    colours: Colours = np.rint(UNSURE + strength[:, None] * (full - UNSURE)).astype(np.uint8)
+    return colours
 
 
 def frustum(camera: Camera, size: tuple[int, int]) -> Frustum:

@@ -10,6 +10,7 @@ import numpy as np
 from moving import random_joints
 
 from common.body.body import rest_pose
+from common.body.extremities import extremities
 from common.bus.bus import open_hub
 from common.bus.messages import Body
 from common.config.part_settings import BusSettings
@@ -25,6 +26,7 @@ def free_endpoint() -> str:
 
 def a_body(frame: int, joints_m: np.ndarray) -> Body:
     now_s = time.monotonic()
+    ends_m = extremities(joints_m, 1.75)
     return Body(
         frame=frame,
         captured_s=frame / HZ,
@@ -34,6 +36,8 @@ def a_body(frame: int, joints_m: np.ndarray) -> Body:
         joints_m=tuple(map(tuple, joints_m.tolist())),
         pose=tuple(rest_pose().tolist()),
         confidence=(0.5,) * 15,
+        extremities_m=tuple(map(tuple, ends_m.tolist())),
+        extremities_confidence=(0.0,) * len(ends_m),
     )
 
 

@@ -12,6 +12,7 @@ from animator.page.inset import limb_contours, limb_ends
 from animator.page.live import LivePage
 from animator.scene import Figure, Snapshot
 from common.body.body import POSE_INDEX, Vector, rest_pose
+from common.body.extremities import extremities
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.control_messages import Pulse
@@ -20,8 +21,10 @@ from common.raster.silhouette_report import pack
 from common.rig.camera import Camera, paper_rig, project
 
 RATE_HZ = 15
-BDP = thesis_bdp(1.72)
+STATURE_M = 1.72
+BDP = thesis_bdp(STATURE_M)
 LEG_M = BDP.r_upper_leg.height + BDP.r_lower_leg.height
+ANKLE_M = 0.039 * STATURE_M
 VIEWERS: tuple[ViewerNumber, ...] = (1, 2)
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
 
@@ -32,7 +35,9 @@ def snapshot_at(frame: int) -> Snapshot:
     pose = pose_at(seconds)
     masks = [silhouette(camera, pose) for camera in RIG.cameras]
     joints_m = joints(body_vector(BDP), pose)
+    ends_m = extremities(joints_m, STATURE_M)
     in_pictures = [project(camera, joints_m) for camera in RIG.cameras]
+    ends_in_pictures = [project(camera, ends_m) for camera in RIG.cameras]
     return Snapshot(
         body=Body(
             frame=frame,
@@ -42,6 +47,9 @@ def snapshot_at(frame: int) -> Snapshot:
             views="both",
             joints_m=tuple(tuple(place) for place in joints_m.tolist()),
             joints_px=tuple(tuple(map(tuple, seen.tolist())) for seen in in_pictures),
+            extremities_m=tuple(tuple(place) for place in ends_m.tolist()),
+            extremities_px=tuple(tuple(map(tuple, seen.tolist())) for seen in ends_in_pictures),
+            extremities_confidence=(0.8, 0.8, 0.8, 0.0, 0.8, 0.8, 0.0),
             confidence=(0.9,) * 9 + (0.9, 0.5, 0.2, 0.9, 0.9, 0.9),
             pose=tuple(pose.tolist()),
             score=(0.86, 0.79),
@@ -82,7 +90,7 @@ def pose_at(seconds: float) -> Vector:
     """Arms and legs swing against each other, once a second."""
     pose = rest_pose()
     swing = math.sin(2.0 * math.pi * seconds)
-    pose[POSE_INDEX["y"]] = LEG_M
+    pose[POSE_INDEX["y"]] = LEG_M + ANKLE_M
     for side, sign in (("r", 1.0), ("l", -1.0)):
         pose[POSE_INDEX[f"{side}_shoulder_x"]] = sign * 40.0 * swing
         pose[POSE_INDEX[f"{side}_hip_x"]] = 60.0 * max(0.0, -sign * swing)

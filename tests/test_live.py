@@ -21,7 +21,6 @@ from test_page_server import free_port
 from waiting import until
 from websockets.sync.client import connect
 
-from animator.page import live
 from animator.page.door import Entrance, invitation_of
 from animator.page.live import LivePage
 from animator.scene import LEFT, RIGHT
@@ -59,14 +58,13 @@ def test_who_comes_late_is_told_the_run_so_far_and_its_end_last(page: LivePage) 
     assert [each["number"] for each in heard[3:6]] == [0, 1, 2]
 
 
-def test_what_is_kept_of_a_long_run_is_bounded(
-    page: LivePage, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_kept_of_a_long_run_is_bounded() -> None:
+    page = LivePage("a long run", free_port(), commands=True, most_bytes=60_000)
     page.set_rig(RIG)
-    monkeypatch.setattr(live, "MOST_BYTES", 60_000)
     for frame in range(12):
         page.show(snapshot_at(frame))
     heard = told(page, 3)
+    page.close()
     assert heard[2]["number"] > 0, "the oldest gave way"
 
 
@@ -185,6 +183,7 @@ def test_a_browser_shows_the_body_both_views_and_asks_nobody_else(
         assert share_like(view, RIGHT) > 0.001, f"no body over view {n}: look at {whole}"
     text = looking.tab.text()
     assert "walk in place" in text
+    assert looking.ask("document.querySelector('#trust').hidden"), "nothing is told of the cameras"
     assert "15.0 frames a second · 11 ms from camera to pose · no deadline missed" in text
     assert looking.ask("document.documentElement.scrollWidth <= innerWidth"), "it is too wide"
     own = (page.address, page.address.replace("http", "ws"), "data:", "blob:")
@@ -273,13 +272,30 @@ def test_buttons_ask_and_answers_are_shown(page: LivePage, looking: Looking) -> 
 
 
 @pytest.mark.slow
+def test_front_and_back_are_offered_where_one_camera_alone_sees(
+    page: LivePage, looking: Looking
+) -> None:
+    both = snapshot_at(0)
+    assert both.body is not None
+    page.show(both)
+    shown = "[...document.querySelectorAll('#front, #back')].map(e => !e.hidden).join()"
+    assert looking.until(f"document.body.dataset.frame === '0' && {shown} === 'false,false'")
+    page.show(
+        msgspec.structs.replace(both, body=msgspec.structs.replace(both.body, frame=1, views="2"))
+    )
+    assert looking.until(f"document.body.dataset.frame === '1' && {shown} === 'true,true'")
+
+
+@pytest.mark.slow
 def test_all_that_can_be_pressed_has_a_name_and_is_reached_by_keyboard(
     page: LivePage, looking: Looking
 ) -> None:
     frame = snapshot_at(0)
     assert frame.posture is not None
     evil = msgspec.structs.replace(frame.posture, name='<img src=x onerror="alert(1)">')
-    page.show(msgspec.structs.replace(frame, posture=evil))
+    assert frame.body is not None
+    alone = msgspec.structs.replace(frame.body, views="1")  # all buttons are there
+    page.show(msgspec.structs.replace(frame, body=alone, posture=evil))
     assert looking.until("document.body.dataset.drawn")
     assert looking.ask("document.querySelectorAll('#posture img').length") == 0
     tree = looking.tab.call("Accessibility.getFullAXTree")["nodes"]

@@ -1,16 +1,24 @@
 """LSL: 77 named channels, and an inlet on this machine hears them with the time of the frame."""
 
 import math
+import statistics
+import subprocess
 import sys
+import threading
 import time
+from pathlib import Path
 
+import numpy as np
 import pytest
-from meeting import a_body
+from meeting import a_body, saying
 from moving import random_joints
 
 from common.bus.messages import Body
+from tritrack import subscribe
 from tritrack.bridges.lsl import CHANNELS, lsl_outlet, sample_of
 from tritrack.bridges.osc import BridgeError
+
+MOST_ADDED_S = 0.005
 
 
 def test_a_sample_has_a_number_for_every_channel() -> None:
@@ -48,3 +56,47 @@ def test_an_inlet_hears_every_body_with_the_time_of_its_frame() -> None:
         late_s.append(pylsl.local_clock() - stamp_s - (time.monotonic() - body.clock_s))
         assert sample == pytest.approx(sample_of(body), abs=1e-4)
     assert max(map(abs, late_s)) < 1e-3
+
+
+@pytest.mark.slow
+@pytest.mark.live
+def test_a_bridge_adds_little_to_what_a_subscriber_hears() -> None:
+    """Bodies are told apart by when they were taken, which LSL's stamps keep."""
+    pylsl = pytest.importorskip("pylsl", reason="pip install 'tritrack[lsl]'")
+    heard: dict[float, float] = {}
+    arrived: dict[float, float] = {}
+    begin, first = threading.Event(), threading.Event()
+    with saying(150, begin) as endpoint:
+        command = [sys.executable, "-m", "tritrack", "bridge", "lsl", "--endpoint", endpoint]
+        bridge = subprocess.Popen(command, cwd=Path(__file__).parents[1])
+
+        def listen() -> None:
+            for body in subscribe(endpoint, wait_s=60.0):
+                heard[body.clock_s] = time.monotonic()
+                first.set()
+
+        plain = threading.Thread(target=listen)
+        plain.start()
+        streams = pylsl.resolve_byprop("name", "tritrack", 1, 60.0)
+        if streams:
+            inlet = pylsl.StreamInlet(streams[0])
+            inlet.open_stream(10.0)
+        while streams and len(arrived) < 140:
+            _, stamp_s = inlet.pull_sample(10.0)
+            now_s = time.monotonic()
+            assert stamp_s is not None, "a body is missing"
+            arrived[stamp_s - pylsl.local_clock() + now_s] = now_s
+            if first.is_set():
+                begin.set()
+        begin.set()
+        plain.join()
+        bridge.wait(60)
+    if not streams:
+        pytest.skip("streams cannot be found on this machine: its network has no multicast")
+    taken_s = np.array(sorted(heard))
+    added_s = [
+        at_s - heard[taken_s[np.abs(taken_s - clock_s).argmin()]]
+        for clock_s, at_s in arrived.items()
+    ]
+    print(f"lsl: {1e3 * statistics.median(added_s):.2f} ms added")
+    assert statistics.median(added_s) < MOST_ADDED_S

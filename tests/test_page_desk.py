@@ -14,7 +14,7 @@ from rich.console import Console
 from test_page_server import free_port
 
 from common.bus.control_messages import Answer, Command, Wish
-from common.bus.messages import Body
+from common.bus.messages import Body, Status
 from common.bus.process import ProcessContext
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
@@ -31,19 +31,19 @@ NO_PAGE = Settings(page=PageSettings(port=0))
 class Sitting:
     """A desk without a page's process, and a run of so many seconds that was heard."""
 
-    def __init__(self, out: Path) -> None:
+    def __init__(self, out: Path, settings: Settings = NO_PAGE) -> None:
         self.bus, self.heard, self.stop = LocalBus(), nothing_heard(), threading.Event()
         self.answers = self.bus.subscribe(Answer)
-        self.desk = PageDesk(NO_PAGE, out, "a run", ProcessContext(True))
+        self.desk = PageDesk(settings, out, "a run", ProcessContext(True))
         self.desk.facts = lambda: {"clip": "a clip", "warnings": []}
         self.desk.listen(self.bus)
         self.frames = 0
 
-    def run(self, seconds: float) -> None:
+    def run(self, seconds: float, status: Status = "empty") -> None:
         for _ in range(round(seconds * RATE_HZ)):
             at_s = self.frames / RATE_HZ
             body = Body(
-                frame=self.frames, captured_s=at_s, clock_s=at_s, status="empty", views="none"
+                frame=self.frames, captured_s=at_s, clock_s=at_s, status=status, views="none"
             )
             self.heard.bodies.add([body])
             self.frames += 1
@@ -58,6 +58,42 @@ class Sitting:
 @pytest.fixture
 def sitting(tmp_path: Path) -> Sitting:
     return Sitting(tmp_path)
+
+
+def test_who_is_lost_from_sight_leaves_the_seconds_before_as_a_run_folder(tmp_path: Path) -> None:
+    """Once in fifteen seconds; who walks out of the room is not lost."""
+    sitting = Sitting(tmp_path, Settings(page=PageSettings(port=0, save_lost=True)))
+
+    def then(seconds: float, status: Status) -> None:
+        for _ in range(round(seconds)):
+            sitting.run(1.0, status)
+            sitting.desk.serve(sitting.heard, sitting.stop)
+
+    then(20, "tracking")
+    then(5, "empty")
+    then(5, "tracking")
+    assert not (tmp_path / SAVED).exists()
+    then(2, "lost")
+    past = open_run(saved(tmp_path))
+    assert past.poses["time_s"][-1] == pytest.approx(30.0 + 14 / RATE_HZ)
+    assert np.ptp(past.poses["time_s"]) == pytest.approx(LAST_S + 14 / RATE_HZ)
+    then(4, "tracking")
+    then(1, "lost")
+    assert saved(tmp_path), "too soon for another"
+    then(20, "predicted")
+    then(1, "lost")
+    assert len(list((tmp_path / SAVED).iterdir())) == 2
+    answers = [answer.text for answer in sitting.answers.drain()]
+    assert len(answers) == 2
+
+
+def test_nothing_is_written_of_who_is_lost_unless_the_settings_ask_for_it(
+    sitting: Sitting, tmp_path: Path
+) -> None:
+    sitting.run(5.0, "tracking")
+    sitting.run(1.0, "lost")
+    sitting.desk.serve(sitting.heard, sitting.stop)
+    assert not (tmp_path / SAVED).exists()
 
 
 def saved(out: Path) -> Path:

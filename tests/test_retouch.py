@@ -18,8 +18,8 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 from websockets.typing import Origin, Subprotocol
 
-from animator.page.easel import GAP_M, TALL_M
-from animator.page.retouch import RetouchPage
+from animator.retouching.easel import GAP_M, TALL_M
+from animator.retouching.retouch import RetouchPage
 from animator.take import Take
 from common.body.body import LIMB_ENDS
 from common.notes.notes import Held, Notes, held
@@ -86,45 +86,45 @@ def test_a_placed_joint_is_placed_in_its_frame_alone_unless_it_shall_hold(
     page.place(WRIST, (100.0, 50.0))
     assert said(page, tmp_path, 6).joints_px == {"l_wrist": (100.0, 50.0)}
     assert said(page, tmp_path, 7).joints_px == {}
-    page._hold.value = True
+    page._controls.hold.value = True
     page.place(WRIST, (101.0, 51.0))
     assert said(page, tmp_path, 7).joints_px == {}
     page.go_to(5)
     page.place(WRIST, (102.0, 52.0))
     assert said(page, tmp_path, 30).joints_px == {"l_wrist": (102.0, 52.0)}
-    page._let_go()
+    page.let_go()
     assert said(page, tmp_path, 30).joints_px == {}
 
 
 def test_only_what_a_browser_said_is_an_input(page: RetouchPage, tmp_path: Path) -> None:
     """The page sets its own controls when another frame is shown."""
-    page._orientation.value = "left"
-    page._if_user(SimpleNamespace(client=None), page._turned)
+    page._controls.orientation.value = "left"
+    page._controls.if_user(SimpleNamespace(client=None), page._controls.turned)
     assert page.notes == Notes()
-    page._if_user(SimpleNamespace(client=object()), page._turned)
+    page._controls.if_user(SimpleNamespace(client=object()), page._controls.turned)
     assert said(page, tmp_path, 0).orientation == "left"
 
 
 def test_the_next_uncertain_frame_is_shown_and_a_settled_one_is_not_asked(
     page: RetouchPage,
 ) -> None:
-    page._look(1)
+    page.look(1)
     assert page._row == 3
-    assert "does the left upper arm lean" in page._open.content
+    assert "does the left upper arm lean" in page._controls.open.content
     page.flip(ARM)
-    assert "nothing is uncertain" in page._open.content
-    page._look(1)
+    assert "nothing is uncertain" in page._controls.open.content
+    page.look(1)
     assert page._row == 8
-    page._look(1)
+    page.look(1)
     assert page._row == 8
-    assert "no other uncertain frame" in page._kept.content
+    assert "no other uncertain frame" in page._controls.kept.content
 
 
 def test_notes_that_cannot_be_kept_are_told(page: RetouchPage) -> None:
     page._save = lambda _: ("no space <left>", False)
     page.flip(ARM)
-    assert "no space &lt;left&gt;" in page._kept.content
-    assert "color:rgb" in page._kept.content
+    assert "no space &lt;left&gt;" in page._controls.kept.content
+    assert "color:rgb" in page._controls.kept.content
 
 
 def test_a_frame_without_a_pose_shows_its_picture_alone(page: RetouchPage) -> None:
@@ -133,7 +133,7 @@ def test_a_frame_without_a_pose_shows_its_picture_alone(page: RetouchPage) -> No
     scene = page._server.scene
     assert not scene.get_handle_by_name("/body").visible
     assert scene.get_handle_by_name("/picture").image[0, 0, 0] == 60
-    assert "nobody is seen" in page._open.content
+    assert "nobody is seen" in page._controls.open.content
 
 
 def test_a_foreign_web_page_may_not_read_or_write_notes(page: RetouchPage) -> None:

@@ -8,9 +8,16 @@ import numpy as np
 import pytest
 from show_page import BDP, RIG, pose_at, snapshot_at
 
-from animator.page.shown import hint, outline_of, probabilities, shown_frame, shown_room
+from animator.page.shown import (
+    hint,
+    outline_of,
+    probabilities,
+    shown_frame,
+    shown_room,
+    trust_of,
+)
 from animator.scene import Snapshot
-from common.bus.messages import Body, Report
+from common.bus.messages import Agreement, Body, Report
 from common.raster.silhouette_report import pack, unpack
 
 
@@ -35,15 +42,43 @@ def test_a_frame_tells_both_views_the_solids_and_the_joints() -> None:
     frame = shown_frame(snapshot_at(4), (), RIG, 7)
     assert frame is not None
     assert (frame.number, frame.words, len(frame.views)) == (7, "tracking", 2)
-    assert len(frame.solids) == 20
+    assert len(frame.solids) == 24, "ten limbs, ten balls, hands and feet"
     assert {len(solid) for solid in frame.solids} == {13}
     first = frame.views[0]
     assert first is not None
-    assert len(first.joints) == 30
+    assert len(first.joints) == 44
+    assert len(frame.confidence) == 22
     seen, knee = unpack(snapshot_at(4).reports[1]), first.joints[14:16]
     assert seen[int(knee[1]), int(knee[0])], "the left knee lies in the silhouette"
     pelvis = np.array(frame.solids[0][:3])
     assert pelvis == pytest.approx(pose_at(4 / 15)[:3], abs=BDP.torso.height)
+
+
+def test_a_body_without_extremities_is_shown_without_hands_and_feet() -> None:
+    """As runs from before 2026-11-23 have it."""
+    whole = snapshot_at(4)
+    assert whole.body is not None
+    none = {"extremities_m": (), "extremities_px": (), "extremities_confidence": ()}
+    bare = msgspec.structs.replace(whole.body, **none)
+    frame = shown_frame(msgspec.structs.replace(whole, body=bare), (), RIG, 0)
+    assert frame is not None
+    assert frame.views[0] is not None
+    assert (len(frame.solids), len(frame.views[0].joints), len(frame.confidence)) == (20, 30, 15)
+
+
+def test_how_far_cameras_are_believed_is_told_beside_the_status() -> None:
+    body = snapshot_at(0).body
+    assert body is not None
+    assert trust_of(body) == ""
+    agrees = msgspec.structs.replace(
+        body, agreement=Agreement(12.4, 3.0, 1.0, 1.0), scale_source="calibrated"
+    )
+    assert trust_of(agrees) == "cameras agree within 12 mm"
+    doubted = Agreement(88.0, 3.0, 1.0, 0.4)
+    by_person = msgspec.structs.replace(agrees, agreement=doubted, scale_source="person")
+    assert trust_of(by_person) == (
+        "calibrated by the person; cameras agree within 88 mm, the calibration is doubtful"
+    )
 
 
 def test_before_anybody_was_heard_of_there_is_nothing_to_show() -> None:

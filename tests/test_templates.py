@@ -8,11 +8,11 @@ from common.templates import rendered
 
 def test_what_is_given_is_escaped() -> None:
     given = {"well": True, "text": "<b>& <img src=x>"}
-    html = rendered("animator.page", "retouch_kept.html", given)
+    html = rendered("animator.retouching", "retouch_kept.html", given)
     assert "&lt;b&gt;&amp;" in html
     assert "<img" not in html
 
 
 def test_a_name_that_is_not_given_is_a_fault() -> None:
     with pytest.raises(UndefinedError, match="text"):
-        rendered("animator.page", "retouch_kept.html", {"well": True})
+        rendered("animator.retouching", "retouch_kept.html", {"well": True})

@@ -85,7 +85,8 @@ def test_who_faces_forward_has_the_right_hand_at_positive_x() -> None:
         reach = {"shoulder": 0.2, "elbow": 0.45, "wrist": 0.7}.get(name[2:], 0.1)
         height = heights.get(name, {"hip": 0.9, "knee": 0.5, "ankle": 0.1}.get(name[2:], 1.4))
         row[i] = (side * reach, height, 0.0)
-    _, packet = step(Measured(), a_body(0, row))
+    bare = {"extremities_m": (), "extremities_confidence": ()}  # toes point outwards
+    _, packet = step(Measured(), msgspec.structs.replace(a_body(0, row), **bare))
     assert packet is not None
     places = unity_places(packet)
     assert places["RightLowerArm"][0] == pytest.approx(0.45, abs=1e-3)

@@ -19,7 +19,7 @@ from common.bus.messages import Performance
 from common.rig.camera import Rig
 
 MOST_BYTES: Final = 32_000_000
-"""Of frames that are kept for a browser that comes late: some minutes, with pictures one."""
+"""Of a run that goes on: some minutes, with pictures one."""
 
 
 class LivePage:
@@ -30,18 +30,25 @@ class LivePage:
         port: Of this machine, free.
         commands: Whether somebody hears what the person asks for.
         entrance: Where it listens, and to whom.
+        most_bytes: Of frames that are kept for a browser that comes late.
 
     Raises:
         PageError: When the port is 0, taken or not allowed.
     """
 
     def __init__(
-        self, title: str, port: int, commands: bool, entrance: Entrance = Entrance()
+        self,
+        title: str,
+        port: int,
+        commands: bool,
+        entrance: Entrance = Entrance(),
+        most_bytes: int = MOST_BYTES,
     ) -> None:
         self._hello = Greeting(title, time.time_ns() // 1_000_000, commands)
         self._lock = threading.Lock()
         self._frames: deque[bytes] = deque()
         self._bytes = self._shown = 0
+        self._most_bytes = most_bytes
         self._rig: Rig | None = None
         self._last: dict[type, bytes] = {}
         self._server = PageServer(port, self._greeting, entrance)
@@ -75,7 +82,7 @@ class LivePage:
         with self._lock:
             self._frames.append(said)
             self._bytes += len(said)
-            while self._bytes > MOST_BYTES:
+            while self._bytes > self._most_bytes:
                 self._bytes -= len(self._frames.popleft())
         self._server.tell(said)
 

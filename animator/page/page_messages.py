@@ -6,6 +6,7 @@ import msgspec
 
 from animator.scene import LEFT, RIGHT, TRUNK, Colour
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS
+from common.body.extremities import ALL_JOINT_NAMES, EXTREMITY_LINES
 from common.body.kinematics import HEAD
 from common.bus.control_messages import Pulse
 from common.bus.messages import Performance, Status
@@ -25,7 +26,7 @@ class ShownView(msgspec.Struct, frozen=True):
     limbs: list[Numbers]
     """The fitted body's, LIMBS order; one that is not before the camera has none."""
     joints: Numbers
-    """Of JOINT_NAMES: x, y, x, y ...; empty where there is no pose."""
+    """Of ALL_JOINT_NAMES, or the first 15: x, y, x, y ...; empty where there is no pose."""
     score: float
     sees: str
     """Which side of the body."""
@@ -54,11 +55,13 @@ class ShownFrame(msgspec.Struct, frozen=True, tag="frame", tag_field="kind"):
     time_s: float
     status: Status
     words: str
+    trust: str
+    """How far the cameras are to be believed; "" while nothing tells."""
     from_views: str
     confidence: Numbers
-    """JOINT_NAMES order."""
+    """Of the joints of the views."""
     solids: list[Numbers]
-    """Cylinders, then balls: place (3), turn (w, x, y, z), size (3), colour (3) each."""
+    """Cylinders, then balls and eggs: place (3), turn (w, x, y, z), size (3), colour (3) each."""
     angles: Numbers
     """ANGLE_NAMES order, degrees; empty where there is no pose."""
     views: list[ShownView | None]
@@ -91,7 +94,11 @@ class Greeting(msgspec.Struct, frozen=True, tag="hello", tag_field="kind"):
     commands: bool
     """Whether somebody hears what the person asks for."""
     angles: tuple[str, ...] = ANGLE_NAMES
-    joints: tuple[str, ...] = JOINT_NAMES
+    joints: tuple[str, ...] = ALL_JOINT_NAMES
+    large: int = len(JOINT_NAMES)
+    """So many of the joints are drawn large."""
+    strokes: tuple[tuple[int, int], ...] = EXTREMITY_LINES
+    """Hands and feet in the views, between joints."""
     limbs: tuple[str, ...] = LIMBS
     colours: dict[str, Colour] = msgspec.field(
         default_factory=lambda: {"left": LEFT, "right": RIGHT, "trunk": TRUNK}

@@ -7,6 +7,7 @@ from typing import Any, Final
 import cv2
 import numpy as np
 
+from animator.hands_and_feet import hands_and_feet
 from animator.page.inset import limb_contours, limb_ends
 from animator.page.page_messages import (
     CYLINDERS,
@@ -48,8 +49,8 @@ SMOOTH_PX: Final = 0.7
 FACING_WORDS: Final[dict[Facing, str]] = {"facade": "front or back", "flank": "side"}
 SOURCE_WORDS: Final[dict[ScaleSource, str]] = {
     "calibrated": "",
-    "person": "calibrated by the person, ",
-    "assumed": "the rig is assumed, ",
+    "person": "calibrated by the person",
+    "assumed": "the rig is assumed",
 }
 STATUS_WORDS: Final[dict[Status, str]] = {
     "empty": "nobody in view",
@@ -80,10 +81,11 @@ def shown_frame(
         frame=body.frame,
         time_s=round(body.captured_s, 4),
         status=body.status,
-        words=words_of(body),
+        words=STATUS_WORDS[body.status],
+        trust=trust_of(body),
         from_views=body.views,
-        confidence=_rounded(body.confidence, 2),
-        solids=[] if standing is None else _solids(standing),
+        confidence=_rounded((*body.confidence, *body.extremities_confidence), 2),
+        solids=[] if standing is None else _solids(standing, body),
         angles=_rounded([body.pose[i] for i in ANGLES_IN_POSE], 1) if body.pose else [],
         views=_views(snapshot, body, standing, rig),
         posture=shown_posture(snapshot.posture),
@@ -91,14 +93,14 @@ def shown_frame(
     )
 
 
-def words_of(body: Body) -> str:
-    """How somebody is followed, and how far the cameras are to be believed."""
+def trust_of(body: Body) -> str:
+    """How far the cameras are to be believed, by what both have seen lately."""
     told = body.agreement
     if told is None:
-        return STATUS_WORDS[body.status]
+        return ""
     doubted = ", the calibration is doubtful" if told.believed < 1.0 else ""
-    agree = f"the cameras agree within {told.apart_mm:.0f} mm{doubted}"
-    return f"{STATUS_WORDS[body.status]}; {SOURCE_WORDS[body.scale_source]}{agree}"
+    agree = f"cameras agree within {told.apart_mm:.0f} mm{doubted}"
+    return "; ".join(filter(None, (SOURCE_WORDS[body.scale_source], agree)))
 
 
 def shown_room(rig: Rig) -> ShownRoom:
@@ -153,12 +155,14 @@ def _views(
 
 def _view(report: Report, body: Body, limbs: list[Any], picture: Picture | None) -> ShownView:
     own = report.viewer - 1
-    joints = body.joints_px[own] if own < len(body.joints_px) else ()
+    joints = [
+        place for places in (body.joints_px, body.extremities_px) for place in places[own : own + 1]
+    ]
     return ShownView(
         size=(report.width, report.height),
         outline=outline_of(report),
         limbs=[_rounded(contour, 1) for contour in limbs],
-        joints=_rounded(joints, 1),
+        joints=_rounded(np.concatenate(joints) if joints else (), 1),
         score=round(body.score[own], 3),
         sees=FACING_WORDS[body.facing[own]] if body.pose else "",
         hint=hint(body, report),
@@ -175,9 +179,10 @@ def hint(body: Body, report: Report) -> str:
     return report.refusal if body.status == "measuring" else ""
 
 
-def _solids(standing: Figure) -> list[Numbers]:
+def _solids(standing: Figure, body: Body) -> list[Numbers]:
     limbs = limb_shapes(standing)
-    return [*_rows(rows_of(limbs, CYLINDERS)), *_rows(round_shapes(limbs))]
+    ends = _rows(hands_and_feet(body, limbs)) if body.extremities_m else []
+    return [*_rows(rows_of(limbs, CYLINDERS)), *_rows(round_shapes(limbs)), *ends]
 
 
 def _rows(shapes: Shapes) -> list[Numbers]:

@@ -20,6 +20,12 @@ EXTREMITY_NAMES: Final = ("nose", "l_heel", "l_toe", "l_knuckle", "r_heel", "r_t
 """The landmarks that follow the 15 in `poses.npz`: the nose's tip, where heels bear, the tips of
 the big toes, the knuckles of the middle fingers."""
 ALL_JOINT_NAMES: Final = JOINT_NAMES + EXTREMITY_NAMES
+EXTREMITY_LINES: Final = tuple(
+    (ALL_JOINT_NAMES.index(f"{side}_{start}"), ALL_JOINT_NAMES.index(f"{side}_{end}"))
+    for side in "lr"
+    for start, end in (("wrist", "knuckle"), ("ankle", "heel"), ("ankle", "toe"), ("heel", "toe"))
+)
+"""Hands and feet as strokes: places in ALL_JOINT_NAMES of both ends of each."""
 
 FOOT_SHARE: Final = 0.152
 HEEL_OF_FOOT: Final = 0.24

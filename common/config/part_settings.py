@@ -99,6 +99,8 @@ class PageSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """0: no page."""
     wait: bool = True
     """A recorded clip begins when somebody looks at the page, or half a minute later."""
+    save_lost: bool = False
+    """The last 15 s become a run folder whenever somebody who was followed is lost from sight."""
     host: str = "127.0.0.1"
     """Where it listens. Beyond this machine, as at 0.0.0.0, a token in the printed address is asked
     for, and nothing hides what is sent."""

@@ -198,9 +198,13 @@ def replay(
         float, typer.Option(min=0.1, max=100.0, help="On the bus: 2 is twice as fast.")
     ] = 1.0,
     keys: Annotated[str, typer.Option(help="On the bus: folder of the integrator's keys.")] = "",
+    page: Annotated[
+        bool, typer.Option("--page", help="Play it on a page of this machine, until Ctrl-C.")
+    ] = False,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="Port of the page.")] = 8080,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Integrate a recorded run again, or say it on a bus.
+    """Integrate a recorded run again, play it, or say it on a bus.
 
     Example: tritrack replay runs/walk
     """
@@ -209,6 +213,12 @@ def replay(
     if bus:
         facts = replay_on_bus(run, BusSettings(endpoint=bus, keys=keys), speed, console)
         tell(facts, json_wanted, f"{counted(facts['said'], 'message')} said")
+        return
+    if page:
+        from tritrack.replay_page import replay_on_page
+
+        facts = replay_on_page(run, port, console)
+        tell(facts, json_wanted, f"{facts['shown']} frames shown")
         return
     facts = replay_run(run, out)
     bodies = counted(facts["bodies"], "body", "bodies")

@@ -1,5 +1,6 @@
 """What a run does for its page: starts its process, does what is asked for there, tells the end."""
 
+import math
 import socket
 import threading
 from collections.abc import Callable
@@ -23,6 +24,8 @@ SAVED: Final = "saved"
 """Folder of what the person at the page saved, below the run's."""
 LAST_S: Final = 15.0
 ANSWERS_S: Final = 0.2
+FOLLOWED: Final = ("tracking", "predicted")
+"""Status of somebody who may be lost."""
 GONE_S: Final = 2.0
 """A page at which nobody looks has closed by then."""
 
@@ -53,6 +56,8 @@ class PageDesk:
         self._bus: Bus | None = None
         self._commands: Inbox[Command] | None = None
         self._began_s: float | None = None
+        self._seen_s = self._kept_s = -math.inf
+        self._followed = False
         self._ending: Connection | None = None
         self._entrance = entrance_of(settings.page)
         if settings.page.port:
@@ -100,6 +105,8 @@ class PageDesk:
                 self._write("save", first_s, f"last_{LAST_S:.0f}_s", heard)
             elif command.what == "end_record":
                 self._finish(heard)
+        if self._settings.page.save_lost:
+            self._keep_lost(heard)
 
     def leave(self, heard: Any) -> None:
         """The run is over, and its bus about to close: write what is recorded, hear no more."""
@@ -137,6 +144,15 @@ class PageDesk:
         """End the page's process."""
         if self.watched is not None:
             self.watched.end()
+
+    def _keep_lost(self, heard: Any) -> None:
+        """Write what came before somebody was lost from sight, no moment twice."""
+        for body in heard.bodies.newest(lambda body: body.captured_s > self._seen_s):
+            self._seen_s = body.captured_s
+            if self._followed and body.status == "lost" and self._seen_s > self._kept_s + LAST_S:
+                self._kept_s = self._seen_s
+                self._write("save", self._seen_s - LAST_S, "lost", heard)
+            self._followed = body.status in FOLLOWED
 
     def _write(self, what: Wish, first_s: float, name: str, heard: Any) -> None:
         """A part of the run as a run folder of its own."""

@@ -1,5 +1,6 @@
 """A live run from its settings to its run folder."""
 
+import json
 import shutil
 import signal
 import threading
@@ -101,7 +102,7 @@ def live(
             write_run(out, heard.bodies.all(), settings, told)
             write_postures(out, heard.postures.all(), told["posture"])
             journal.remove()
-        _show_end(desk, told, stop, console)
+        _show_end(desk, {**told, **_counts(out)}, stop, console)
     return told
 
 
@@ -179,6 +180,12 @@ def _kept(
     from tritrack.store.recording import recording_to
 
     return recording_to(out, head_of(clip, settings, by_person=is_by_person(clip, settings)))
+
+
+def _counts(out: Path) -> dict[str, int]:
+    """How many frames were written, and how many with a pose: the page may have shown fewer."""
+    summary = json.loads((out / "summary.json").read_text())
+    return {name: summary[name] for name in ("frames", "frames_with_pose")}
 
 
 def _show_end(

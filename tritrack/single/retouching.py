@@ -58,7 +58,7 @@ def retouch(
             cannot be worked with.
     """
     try:
-        from animator.page.retouch import RetouchPage
+        from animator.retouching.retouch import RetouchPage
     except ModuleNotFoundError as error:
         raise RetouchError(
             f"there is no page without {error.name}: pip install 'tritrack[page]'"
@@ -80,7 +80,8 @@ def retouch(
             save_notes(path, new)
         except NotesError as error:
             return str(error), False
-        return f"{ledger(take, new).given.total} inputs, kept in {path.name}", True
+        count = ledger(take, new).given.total
+        return f"{count} input{'' if count == 1 else 's'}, kept in {path.name}", True
 
     with process("retouch", ProcessContext()) as stop:
         page = RetouchPage(take, clip.views[0].source_size, picture_of, notes, keep, port)

@@ -9,7 +9,7 @@ from typing import Any, Final
 import msgspec
 
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES, LIMB_ENDS
-from common.body.extremities import ALL_JOINT_NAMES
+from common.body.extremities import ALL_JOINT_NAMES, EXTREMITY_LINES
 from common.bus.messages import Body, Point
 
 SCENE: Final = "foxglove.SceneUpdate"
@@ -27,12 +27,6 @@ _GIRDLES: Final = [
     [JOINT_NAMES.index(f"{side}_{joint}") for side in "lr"] for joint in ("shoulder", "hip")
 ]
 _LINES: Final = [*LIMB_ENDS.tolist(), *_GIRDLES]
-_FURTHER_LINES: Final = [
-    [ALL_JOINT_NAMES.index(f"{side}_{joint}") for joint in ends]
-    for side in "lr"
-    for ends in (("wrist", "knuckle"), ("ankle", "heel"), ("ankle", "toe"), ("heel", "toe"))
-]
-"""Hands and feet, of a body that tells them."""
 
 
 def scene_of(body: Body) -> bytes:
@@ -45,7 +39,7 @@ def scene_of(body: Body) -> bytes:
         gone = {"timestamp": time_of(body.captured_s), "type": 0, "id": "body"}
         return msgspec.json.encode({"deletions": [gone], "entities": []})
     places_m = (*body.joints_m, *body.extremities_m)
-    drawn = [*_LINES, *(_FURTHER_LINES if body.extremities_m else [])]
+    drawn = [*_LINES, *(EXTREMITY_LINES if body.extremities_m else [])]
     lines = {
         "type": LINE_LIST,
         "pose": _STILL,

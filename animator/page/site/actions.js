@@ -25,6 +25,9 @@ export class Actions {
     this.waiting = setTimeout(() => showTold(false, "nobody answered"), PATIENCE_MS);
   }
 
+  /** Front and back are a question where one camera alone sees the person. */
+  alone(isAlone) { for (const what of ["front", "back"]) at(what).hidden = !isAlone; }
+
   /** Count down while the person leaves the picture. */
   leave(seconds) {
     at("background").disabled = seconds > 0;

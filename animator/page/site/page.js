@@ -99,7 +99,8 @@ function show(frame) {
   views.forEach((view, i) => view.show(frame.views[i] ?? null, frame.confidence, greeting));
   room.show(frame.solids);
   showPosture(frame.posture);
-  showTrust(frame.trust ?? "");
+  actions.alone("12".includes(frame.from_views));
+  showTrust(frame.trust);
   showStatus(history.over ? "over" : frame.status, history.over ? "the run is over: this is its recording" : history.following ? frame.words : `looking back; the run goes on`);
   const scrub = at("scrub");
   scrub.max = history.frames.length - 1;

@@ -114,5 +114,4 @@ export function showEnding(facts, frames) {
     .flatMap(([name, value]) => [element("dt", name), element("dd", value)]));
   at("warnings").replaceChildren(...(facts.warnings ?? []).map((line) => element("li", line)));
   at("ending").hidden = false;
-  if (facts.trust) showTrust(facts.trust);
 }

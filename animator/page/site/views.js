@@ -64,6 +64,7 @@ export class View {
     silhouette(pen, view.outline, Boolean(picture), pixel);
     if (!view.joints.length) return;
     limbs(pen, view.limbs, greeting, pixel);
+    strokes(pen, view.joints, greeting, pixel);
     joints(pen, view.joints, confidence, greeting, pixel);
   }
 }
@@ -100,11 +101,24 @@ function limbs(pen, contours, greeting, pixel) {
   });
 }
 
+/** Hands and feet, of a body that tells them. */
+function strokes(pen, places, greeting, pixel) {
+  pen.lineWidth = LIMB_WIDTH * pixel * 0.7;
+  for (const [from, to] of greeting.strokes) {
+    if (places.length <= 2 * Math.max(from, to)) continue;
+    pen.beginPath();
+    pen.moveTo(places[2 * from], places[2 * from + 1]);
+    pen.lineTo(places[2 * to], places[2 * to + 1]);
+    pen.strokeStyle = sideColour(greeting.joints[to], greeting.colours);
+    pen.stroke();
+  }
+}
+
 function joints(pen, places, confidence, greeting, pixel) {
-  greeting.joints.forEach((name, i) => {
+  greeting.joints.slice(0, places.length / 2).forEach((name, i) => {
     const sure = confidence[i] ?? 0;
     pen.beginPath();
-    pen.arc(places[2 * i], places[2 * i + 1], (1.6 + 1.6 * sure) * pixel, 0, 2 * Math.PI);
+    pen.arc(places[2 * i], places[2 * i + 1], (i < greeting.large ? 1.6 + 1.6 * sure : 1.3) * pixel, 0, 2 * Math.PI);
     pen.fillStyle = sideColour(name, greeting.colours);
     pen.strokeStyle = "#fff";
     pen.lineWidth = 0.8 * pixel;

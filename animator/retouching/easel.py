@@ -9,7 +9,7 @@ import viser
 from numpy.typing import NDArray
 
 from animator.overlay import STROKES
-from animator.page.shapes import add_shapes, place_shapes
+from animator.retouching.shapes import add_shapes, place_shapes
 from animator.scene import LEFT, RIGHT, TRUNK, UNSURE, Colour, Shapes
 from animator.solids import unit_ball, unit_cylinder
 from animator.turns import arc
@@ -27,6 +27,8 @@ STANDS_BACK: Final = 0.25
 the height the middle of all is above the window's."""
 BALL_M: Final = 0.022
 """Radius of a joint: large enough to be taken hold of."""
+CHOSEN: Final = 1.7
+"""So much larger is the joint that keys move."""
 FRONT_M: Final = 0.02
 """How far the stick stands before the picture, so that nothing of it drowns there."""
 SKY_LIGHT, SUN_LIGHT = 1.0, 0.9
@@ -91,13 +93,14 @@ class Easel:
         for handle in (self._balls, self._lines, self._body):
             handle.visible = posed
 
-    def show_stick(self, joints_px: Vector, placed: set[str]) -> None:
-        """The stick over the picture, (15, 2) in the video's pixels."""
+    def show_stick(self, joints_px: Vector, placed: set[str], chosen: int) -> None:
+        """The stick over the picture, (15, 2) in the video's pixels; one joint is chosen."""
         x, y = self._m_per_px * joints_px.T
         places = np.stack([x, TALL_M - y, np.full(len(x), FRONT_M)], axis=1)
         self._lines.points = places[[[stroke.near, stroke.far] for stroke in STROKES]]
         self._balls.batched_positions = places
-        self._balls.batched_scales = np.full((len(x), 3), BALL_M)
+        radii_m = np.where(np.arange(len(x)) == chosen, CHOSEN, 1.0) * BALL_M
+        self._balls.batched_scales = np.repeat(radii_m[:, None], 3, axis=1)
         self._balls.batched_colors = np.array(
             [PLACED if name in placed else _side_colour(name) for name in JOINT_NAMES], np.uint8
         )

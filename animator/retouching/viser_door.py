@@ -53,6 +53,7 @@ def _guard(server: viser.ViserServer) -> None:
 @contextmanager
 def _quiet() -> Iterator[None]:
     """Keep viser's own announcements off the terminal: the commands say what matters."""
+    logging.getLogger("websockets").setLevel(logging.WARNING)
     console = rich.get_console()
     was, console.quiet = console.quiet, True
     try:

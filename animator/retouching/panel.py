@@ -1,0 +1,36 @@
+"""What the retouching page says in pieces of HTML, from templates beside the code."""
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from animator.scene import Colour
+from animator.take import Take, doubts_at
+from common.notes.notes import Notes
+from common.templates import rendered
+
+ACCENT: Final[Colour] = (62, 142, 126)
+
+
+def piece(name: str, given: Mapping[str, Any]) -> str:
+    """A template of a page filled in."""
+    return rendered(__package__, name, given)
+
+
+def questions(take: Take, row: int, notes: Notes) -> str:
+    """The frame, what was decided in it, and what it leaves open."""
+    doubts = doubts_at(take, row, notes)
+    given = {
+        "frame": int(take.frame[row]),
+        "posed": bool(take.posed[row]),
+        "facing": spoken(str(take.orientation[row])),
+        "confidence": float(take.orientation_confidence[row]),
+        "doubts": [(doubt.kind, spoken(doubt.name), doubt.confidence) for doubt in doubts],
+    }
+    return piece("retouch_questions.html", given)
+
+
+def spoken(name: str) -> str:
+    """A name of the files as one says it: forward_left, l_upper_arm."""
+    sides = {"l": "left", "r": "right"}
+    first, *others = name.split("_")
+    return " ".join([sides.get(first, first), *others])

@@ -1,0 +1,45 @@
+"""Plays a run on the retouching page, until it is stopped or there is no more of it."""
+
+import threading
+from collections.abc import Callable
+from typing import Final
+
+ROWS_HZ: Final = 15.0
+"""So many frames a second, whatever the film's rate: enough to see a joint that jumps."""
+
+
+class Player:
+    """Shows one row after the other.
+
+    Args:
+        advance: Shows the next row; False where there is none.
+    """
+
+    def __init__(self, advance: Callable[[], bool]) -> None:
+        self._advance = advance
+        self._stops = threading.Event()
+        self._stops.set()
+        self._lock = threading.Lock()
+
+    @property
+    def playing(self) -> bool:
+        """Whether it plays now."""
+        return not self._stops.is_set()
+
+    def toggle(self) -> None:
+        """Play, or stop playing."""
+        with self._lock:
+            if self.playing:
+                self.stop()
+                return
+            self._stops = threading.Event()
+            threading.Thread(target=self._play, args=(self._stops,), daemon=True).start()
+
+    def stop(self) -> None:
+        """Stay where it is; the row that is being shown is the last."""
+        self._stops.set()
+
+    def _play(self, stops: threading.Event) -> None:
+        while not stops.wait(1.0 / ROWS_HZ):
+            if not self._advance():
+                stops.set()

@@ -1,0 +1,217 @@
+"""The retouching page: a frame with its stick, the lifted body from the side, and what to say."""
+
+import threading
+from collections.abc import Callable
+
+import numpy as np
+
+from animator.page.door import HOST
+from animator.retouching.controls import AUTO, Controls
+from animator.retouching.easel import Easel, Picture
+from animator.retouching.keyboard import bind
+from animator.retouching.player import Player
+from animator.retouching.viser_door import close_server, open_server
+from animator.take import Take, doubts_at, next_doubtful, with_notes
+from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS
+from common.notes.notes import Auto, Depth, Note, Notes, Orientation, held, noted, placed_once
+
+
+class RetouchPage:
+    """What a browser on this machine sees at `address`, until `close`.
+
+    Args:
+        take: The run.
+        size: Width and height of the video.
+        picture_of: The video's picture of a row of the run.
+        notes: What was said before.
+        save: Keeps the notes; answers what to tell the user, and whether it went well.
+        port: Of this machine, free.
+
+    Raises:
+        PageError: When the port is 0, taken or not allowed.
+    """
+
+    def __init__(
+        self,
+        take: Take,
+        size: tuple[int, int],
+        picture_of: Callable[[int], Picture],
+        notes: Notes,
+        save: Callable[[Notes], tuple[str, bool]],
+        port: int,
+    ) -> None:
+        self._take, self._picture_of, self._save = take, picture_of, save
+        self.notes = notes
+        self._row = int(np.argmax(take.posed))
+        self._joint = JOINT_NAMES.index("l_wrist")
+        self._before: list[tuple[Notes, int]] = []  # what was said, and the row, before each input
+        self._moved: tuple[int, int] | None = None
+        self._player = Player(self._advance)
+        self._lock = threading.RLock()
+        self._server = open_server(port)
+        first = picture_of(self._row)
+        self._easel = Easel(self._server, size, first, self.place, self.flip)
+        self._controls = Controls(self._server.gui, take, self)
+        bind(self._server.gui, self)
+        self._show()
+
+    @property
+    def address(self) -> str:
+        """Where a browser finds the page."""
+        return f"http://{HOST}:{self._server.get_port()}"
+
+    def close(self) -> None:
+        """Take the page down and free the port."""
+        self._player.stop()
+        close_server(self._server)
+
+    def say(self, notes: Notes, moved: tuple[int, int] | None = None) -> None:
+        """Take the user's word: it is kept at once and shown.
+
+        Args:
+            notes: All that was said, this too.
+            moved: Frame and joint, where a key moved one: presses that follow are one input.
+        """
+        with self._lock:
+            self._player.stop()
+            if moved is None or moved != self._moved:
+                self._before.append((self.notes, self._row))
+            self.notes, self._moved = notes, moved
+            self.keep()
+            self._show()
+
+    def undo(self) -> None:
+        """Unsay the last input, and show its frame."""
+        with self._lock:
+            if not self._before:
+                self._controls.tell("nothing to undo", True)
+                return
+            self._player.stop()
+            self.notes, self._row = self._before.pop()
+            self._moved = None
+            self.keep()
+            self._show()
+
+    def keep(self) -> None:
+        """Write what was said, and tell how that went."""
+        with self._lock:
+            self._controls.tell(*self._save(self.notes))
+
+    def go_to(self, row: int | None) -> None:
+        """Show another row of the run; None: nothing is left to look at there."""
+        with self._lock:
+            self._player.stop()
+            if row is None:
+                self._controls.tell("no other uncertain frame in this direction", True)
+                return
+            self._row = row
+            self._show()
+
+    def go_to_frame(self, frame: int) -> None:
+        """Show the first row that is not before a frame of the video."""
+        self.go_to(min(int(np.searchsorted(self._take.frame, frame)), len(self._take.frame) - 1))
+
+    def go(self, frames: int) -> None:
+        """Show a row so much later; at the ends of the run it stays there."""
+        self.go_to(min(max(self._row + frames, 0), len(self._take.frame) - 1))
+
+    def look(self, step: int) -> None:
+        """Show the next row that leaves something open, or that before."""
+        self.go_to(next_doubtful(self._take, self._row, self.notes, step))
+
+    def play(self) -> None:
+        """Show one row after the other, or stop it; at the end of the run from its begin."""
+        with self._lock:
+            if not self._player.playing and self._row == len(self._take.frame) - 1:
+                self.go_to(0)
+        self._player.toggle()
+
+    def choose(self, step: int) -> None:
+        """Choose the joint so many further on."""
+        self.pick((self._joint + step) % len(JOINT_NAMES))
+
+    def pick(self, joint: int) -> None:
+        """Choose the joint that keys move."""
+        with self._lock:
+            self._joint = joint
+            self._show()
+
+    def place(
+        self, joint: int, at_px: tuple[float, float], moved: tuple[int, int] | None = None
+    ) -> None:
+        """Put a joint at a place of the picture, in this frame alone unless it shall hold."""
+        with self._lock:
+            frame, name = self._frame, JOINT_NAMES[joint]
+            if self._controls.hold.value:
+                self.say(noted(self.notes, Note(frame, joints_px={name: at_px})), moved)
+            else:
+                self.say(placed_once(self.notes, frame, name, at_px), moved)
+
+    def nudge(self, across_px: float, down_px: float) -> None:
+        """Move the chosen joint in the picture."""
+        with self._lock:
+            if not self._take.posed[self._row]:
+                self._controls.tell("nobody is seen here: no joint to move", True)
+                return
+            joints_px, _ = with_notes(self._take, self._row, held(self.notes, self._frame))
+            column, row = joints_px[self._joint] + (across_px, down_px)
+            at_px = (round(float(column), 1), round(float(row), 1))
+            self.place(self._joint, at_px, (self._frame, self._joint))
+
+    def flip_chosen(self) -> None:
+        """Let the segment that ends at the chosen joint lean the other way."""
+        ends = LIMB_ENDS[:, 1].tolist()
+        if self._joint not in ends or not self._take.posed[self._row]:
+            self._controls.tell("no segment ends there", True)
+            return
+        self.flip(ends.index(self._joint))
+
+    def flip(self, limb: int) -> None:
+        """Let a segment lean the other way than it is shown, from this frame on."""
+        with self._lock:
+            _, joints_m = with_notes(self._take, self._row, held(self.notes, self._frame))
+            near, far = LIMB_ENDS[limb]
+            other: Depth = "away" if joints_m[far, 2] > joints_m[near, 2] else "toward"
+            self.say(noted(self.notes, Note(self._frame, depth={LIMBS[limb]: other})))
+
+    def face(self, way: Orientation | Auto) -> None:
+        """Say which way the person faces, from this frame on."""
+        with self._lock:
+            self.say(noted(self.notes, Note(self._frame, way)))
+
+    def lean(self, limb: str, way: Depth | Auto) -> None:
+        """Say which way a segment leans, from this frame on."""
+        with self._lock:
+            self.say(noted(self.notes, Note(self._frame, depth={limb: way})))
+
+    def let_go(self) -> None:
+        """Give the joints that are placed here back to the program, from this frame on."""
+        with self._lock:
+            placed = held(self.notes, self._frame).joints_px
+            self.say(noted(self.notes, Note(self._frame, joints_px=dict.fromkeys(placed, AUTO))))
+
+    @property
+    def _frame(self) -> int:
+        return int(self._take.frame[self._row])
+
+    def _advance(self) -> bool:
+        """The player's next row."""
+        with self._lock:
+            if not self._player.playing or self._row + 1 >= len(self._take.frame):
+                return False
+            self._row += 1
+            self._show()
+            return True
+
+    def _show(self) -> None:
+        annotations = held(self.notes, self._frame)
+        with self._server.atomic():
+            self._controls.show(self._row, self._joint, self.notes)
+            posed = bool(self._take.posed[self._row])
+            self._easel.show(self._picture_of(self._row), posed)
+            if posed:
+                joints_px, joints_m = with_notes(self._take, self._row, annotations)
+                doubts = doubts_at(self._take, self._row, self.notes)
+                doubtful = {doubt.name for doubt in doubts if doubt.kind == "depth"}
+                self._easel.show_stick(joints_px, set(annotations.joints_px), self._joint)
+                self._easel.show_body(joints_m, doubtful)

@@ -1,0 +1,66 @@
+"""A recorded run on the live page, which plays it: pause, speed, any moment, angles over time."""
+
+from pathlib import Path
+from typing import Any, Final
+
+from rich.console import Console
+
+from animator.page.live import LivePage
+from animator.scene import Snapshot
+from common.bus.messages import Body, Posture, Report
+from common.bus.process import ProcessContext, process
+from common.rig.camera import Rig
+from integrator.pairing import Pair
+from tritrack.replaying import pairs
+from tritrack.store.past_run import open_run
+from tritrack.store.recording import Recording, read_recording
+
+MOST_BYTES: Final = 160_000_000
+"""Of the frames that the page keeps for a browser: some ten minutes, as many as a browser does."""
+
+
+def replay_on_page(folder: Path, port: int, console: Console) -> dict[str, Any]:
+    """Show a recorded run on a page of this machine, until Ctrl-C.
+
+    Args:
+        folder: That of the run.
+        port: Of the page.
+        console: Is told where the page is.
+
+    Raises:
+        RecordingError, PastRunError: When there is no recording, or no run.
+        PageError: When the port is taken or not allowed.
+    """
+    recording, summary = read_recording(folder), open_run(folder).summary
+    with process("replay", ProcessContext()) as stop:
+        page = LivePage(recording.head.name, port, commands=False, most_bytes=MOST_BYTES)
+        try:
+            console.print(f"the page is at {page.address}; Ctrl-C ends it", highlight=False)
+            shown = show(page, recording)
+            page.end({**summary, "out": str(folder)})
+            stop.wait()
+        finally:
+            page.close()
+    return {"clip": recording.head.name, "shown": shown}
+
+
+def show(page: LivePage, recording: Recording) -> int:
+    """Tell a page all bodies of a recording, each with its outlines and its posture; how many."""
+    rigs: dict[int, Rig | None] = {told.calibration: told.rig for told in recording.cameras}
+    made_of = {body.captured_s: pair for body, pair in pairs(recording)}
+    postures = {posture.captured_s: posture for posture in recording.postures}
+    calibration = -1
+    for body in recording.bodies:
+        rig = rigs.get(body.calibration, recording.head.rig)
+        if rig is not None and calibration != body.calibration:
+            calibration = body.calibration
+            page.set_rig(rig)
+        posture = postures.get(body.captured_s)
+        event = () if posture is None or posture.event is None else (posture.event,)
+        page.show(_snapshot(body, made_of.get(body.captured_s), posture), event)
+    return len(recording.bodies)
+
+
+def _snapshot(body: Body, pair: Pair | None, posture: Posture | None) -> Snapshot:
+    reports: dict[int, Report] = {report.viewer: report for report in pair or () if report}
+    return Snapshot(body, reports, {}, posture)
