@@ -10,6 +10,7 @@ import math
 import sys
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -80,23 +81,23 @@ def of_both(rig: Rig, spoiled: Spoiled) -> Rig:
 RIGS: Final[dict[str, Callable[[Rig], Rig]]] = {
     "right": lambda rig: rig,
     **{
-        f"camera 2 turned {deg:+d} deg": lambda rig, by=deg: of_second(rig, turned(by))
+        f"camera 2 turned {deg:+d} deg": partial(of_second, spoiled=turned(deg))
         for deg in (1, -1, 3, -3, 8, -8)
     },
     **{
-        f"camera 2 moved {by:g} m along {'xyz'[axis]}": lambda rig, by=by, axis=axis: of_second(
-            rig, carried(by * np.eye(3)[axis])
+        f"camera 2 moved {by:g} m along {'xyz'[n]}": partial(
+            of_second, spoiled=carried(by * np.eye(3)[n])
         )
         for by in (0.1, 0.3, 1.0)
-        for axis in range(3)
+        for n in range(3)
     },
     **{
-        f"focal lengths {share:+.0%}": lambda rig, by=share: of_both(rig, zoomed(by))
+        f"focal lengths {share:+.0%}": partial(of_both, spoiled=zoomed(share))
         for share in (0.05, -0.05, 0.2, -0.2)
     },
-    "focal length of camera 2 +20%": lambda rig: of_second(rig, zoomed(0.2)),
+    "focal length of camera 2 +20%": partial(of_second, spoiled=zoomed(0.2)),
     "exchanged": exchanged_rig,
-    "of twice the size": lambda rig: of_both(rig, enlarged),
+    "of twice the size": partial(of_both, spoiled=enlarged),
 }
 LATE_FRAMES: Final = (1, -1, 2, -2, 5, -5)
 
@@ -129,8 +130,10 @@ def main() -> None:
                 cases.setdefault(name, []).append(judged(spoil(rig), seen, period_s))
             for late in LATE_FRAMES:
                 second = seen.second._replace(times_s=seen.second.times_s + late * period_s)
-                told = judged(rig, seen._replace(second=second), period_s)
-                cases.setdefault(f"view 2 late by {late:+d} frames", []).append(told)
+                name = f"view 2 late by {late:+d} frames"
+                cases.setdefault(name, []).append(
+                    judged(rig, seen._replace(second=second), period_s)
+                )
             print(folder.name, cases["right"][-1], flush=True)
     for name, told in cases.items():
         doubted = [each for each in told if each]
