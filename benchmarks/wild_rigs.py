@@ -165,7 +165,7 @@ def _seen(
     """One view's landmarks: each as wrong as its confidence says, on average."""
     n = len(joints_m)
     exact = np.stack([project(camera, joints) for joints in joints_m])
-    tall_px = np.median(np.ptp(exact[..., 1], axis=1)) / 0.95
+    tall_px = np.nanmedian(np.ptp(exact[..., 1], axis=1)) / 0.95
     sure = np.clip(0.75 + _lasting((n, len(JOINT_NAMES)), rng) * 0.2, 0.05, 0.97)
     spread = 0.03 * tall_px / np.sqrt(-2 * np.log1p(-sure))
     noise = np.stack([_lasting(sure.shape, rng) for _ in range(2)], axis=-1)
@@ -179,6 +179,7 @@ def _seen(
     to = centre(camera) - joints_m[:, 0]
     turn = np.arctan2(front[:, 0], front[:, 2]) - np.arctan2(to[:, 0], to[:, 2])
     facing = np.degrees(turn) + 12 * _lasting((n,), rng) + 180 * flipped
+    joints = np.nan_to_num(joints)
     return JointTrack(at_s, joints, sure, (facing + 180) % 360 - 180, np.full(n, 0.9))
 
 

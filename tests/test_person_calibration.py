@@ -94,6 +94,22 @@ def test_a_clock_is_not_caught_at_a_whole_frame() -> None:
     assert missed(found, shown).late_frames < 0.35
 
 
+@pytest.mark.slow
+def test_a_camera_on_one_side_is_not_found_on_the_other_where_starts_there_are_likelier() -> None:
+    """The five likeliest had it there, 173 degrees away."""
+    shown = trial(1079, pieces=20)
+    found = calibrated_by_person((shown.sighting,), shown.stature_m)
+    assert missed(found, shown).turn_deg < 3.0
+    assert found.quality.unsure == ()
+
+
+def test_who_passes_behind_a_camera_is_seen_before_and_after() -> None:
+    """A made-up view was blind for all of the film."""
+    track = trial(76, pieces=20).sighting.second
+    assert np.isfinite(track.joints_px).all()
+    assert (track.confidence.min(axis=1) > 0).mean() > 0.3
+
+
 def test_somebody_seen_by_one_camera_alone_calibrates_nothing() -> None:
     shown = filmed_by_the_papers_rig(3, "squat")
     blind = shown.sighting.second._replace(

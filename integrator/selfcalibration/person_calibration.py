@@ -30,8 +30,9 @@ FEWEST: Final = 12
 """Moments in which both views must see the person."""
 FEW, FEW_EACH = 24, 6
 """As many tell which start is right, and of each clip where there are several."""
-STARTS: Final = 5
-"""As many of the likeliest starts are followed."""
+STARTS: Final = 3
+"""As many of the likeliest starts with camera 2 on each side of camera 1 are followed: of walks all
+likely ones may be of mirror images (made-up rigs, seeds from 1000 on)."""
 YAW: Final = PLACE["yaw_2"]
 ELSEWHERE: Final = math.cos(math.radians(45.0))
 """Starts that end with camera 2 turned by less are one: two that are followed would end alike."""
@@ -81,7 +82,7 @@ def best_fit(evidence: Evidence, sightings: tuple[Sighting, ...]) -> Fit:
     if late_s.any():
         starts += level_starts(evidence, np.zeros(len(late_s)))
     starts.sort(key=lambda start: float((misfits(start, few, sides_of(start, few)) ** 2).sum()))
-    rough = [fitted(start, few, cameras, 1, 8) for start in starts[:STARTS]]
+    rough = [fitted(start, few, cameras, 1, 8) for start in _of_both_sides(starts)]
     timed = [on_time(each.guess, few) for each in _unlike(rough)]
     better = [fitted(each, few, every, 2, 8) for each in timed]
     nearly = fitted(min(better, key=lambda each: each.cost).guess, evidence, every, 2, 12)
@@ -90,6 +91,13 @@ def best_fit(evidence: Evidence, sightings: tuple[Sighting, ...]) -> Fit:
     freed = fitted(timely, evidence._replace(worth=by_time), every, 2, 12)
     worth = measured_worth(_explained(freed, evidence))
     return fitted(freed.guess, evidence._replace(worth=worth), every, 2, 12)
+
+
+def _of_both_sides(starts: list[Vector]) -> list[Vector]:
+    """The first few with camera 2 to the right of camera 1, and with it to the left."""
+    right = [start for start in starts if math.sin(start[YAW]) > 0.0]
+    left = [start for start in starts if math.sin(start[YAW]) <= 0.0]
+    return [*right[:STARTS], *left[:STARTS]]
 
 
 def _unlike(rough: list[Fit]) -> list[Fit]:
