@@ -15,6 +15,7 @@ from rich.console import Console
 from synth.picture.composites import Composite, composite
 from tritrack.terminal import bar
 from tritrack.training import torch_landmarks
+from tritrack.training.landmark_rounding import write_rounded
 from tritrack.training.picture_store import Backdrops, Part, PictureStore, draw
 from tritrack.training.training import TrainingError
 
@@ -68,11 +69,26 @@ def train_landmarks(out: Path, seed: int, console: Console) -> dict[str, Any]:
     try:
         folders = _drawn(folder, seed, console)
         work = _learnt(folders[:-1], folder / "learnt.pt", seed, console)
-        torch_landmarks.export(work.mean, out)
+        write_network(work.mean, composed(Wanted(tuple(folders[:-1]), seed, BATCHES)), out)
     except OSError as error:
         raise TrainingError(f"cannot write {folder}: {error.strerror}") from error
     right = _right(work.mean, folders[-1:], seed)
     return {"model": str(out), "pictures": work.batch * BATCH, "within_a_tenth": right}
+
+
+def write_network(network: Any, shown: list[Composite], out: Path) -> None:
+    """Write a trained network as the viewer runs it.
+
+    Args:
+        network: Whose weights are written.
+        shown: Made-up people, by whom the ranges of its layers are found.
+        out: The file, ONNX.
+    """
+    whole = out.with_name(out.name + ".whole")
+    torch_landmarks.export(network, whole)
+    planes = [np.dstack([one.picture, one.outline]).transpose(2, 0, 1) for one in shown]
+    write_rounded(whole, np.ascontiguousarray(planes), out)
+    whole.unlink()
 
 
 def _drawn(folder: Path, seed: int, console: Console) -> list[Path]:
