@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.compiled import compiled
+from common.config.settings_error import SettingsError
 from viewer.landmarks.landmark_window import PLANES, SIDE, Planes
 
 CELLS: Final = 24
@@ -20,6 +21,8 @@ FARTHEST: Final = 0.8
 """No peak is farther from the middle of its highest cell, in cells."""
 DEEP: Final = 25.0
 """A cell whose logit lies so far below the highest adds nothing that a float32 could tell."""
+OWN: Final = "own"
+"""What settings call the network in the package."""
 SHIPPED: Final = Path(__file__).with_name("landmarks.onnx")
 APART: Final = 2
 """The next peak of a map is more cells than this from the highest, down or across."""
@@ -63,6 +66,28 @@ def opened(network: Path = SHIPPED) -> Any:
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     return onnxruntime.InferenceSession(network, options, providers=["CPUExecutionProvider"])
+
+
+def network_of(landmarks: str) -> Path:
+    """The file of the network that a run's settings name."""
+    return SHIPPED if landmarks == OWN else Path(landmarks)
+
+
+def refuse_no_network(landmarks: str) -> None:
+    """Say that a file is no network of ours.
+
+    Raises:
+        SettingsError: With its name.
+    """
+    try:
+        (taken,) = opened(network_of(landmarks)).get_inputs()
+        known = (taken.name, taken.shape) == ("planes", [1, PLANES, SIDE, SIDE])
+    except Exception as error:  # whatever keeps a foreign file from its work is for the user
+        raise SettingsError(f"{landmarks} is no network: {error}") from error
+    if not known or taken.type != "tensor(uint8)":
+        raise SettingsError(
+            f"{landmarks} is no network of landmarks: tritrack train --what landmarks writes one"
+        )
 
 
 def find(planes: Planes, network: Path = SHIPPED) -> Found:
