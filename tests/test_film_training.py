@@ -10,7 +10,7 @@ from truth_teacher import keypoints_of
 from tritrack.training.training import TrainingError
 from viewer.landmarks.landmark_network import refuse_no_network
 
-for extra in ("torch", "onnx", "onnxscript", "anny"):
+for extra in ("torch", "onnx", "onnxscript"):
     pytest.importorskip(extra, reason="the extra `train` is not installed")
 
 
@@ -21,7 +21,7 @@ def lesson(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Any:
 
     folder = tmp_path_factory.mktemp("lesson")
     teacher = keypoints_of(clip, 1, folder / "keypoints")
-    return next(clip.glob("cam1.*")), str(teacher), folder, Plan(3, 2, 2, 5, 20, 16)
+    return next(clip.glob("cam1.*")), str(teacher), folder, Plan(3, 0, 2, 5, 20, 16)
 
 
 @pytest.mark.slow

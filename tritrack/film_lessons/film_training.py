@@ -102,8 +102,8 @@ def teach_on_films(
     """
     folder = out.with_name(out.name + ".work")
     looked = _looked(films, teacher, folder, console)
-    own, anny, held_back = _drawn(folder, plan, console)
-    wanted = Wanted(tuple(each.learnt for each in looked), (own, anny), 0, plan)
+    *made_up, held_back = _drawn(folder, plan, console)
+    wanted = Wanted(tuple(each.learnt for each in looked), tuple(made_up), 0, plan)
     before = _shipped()
     work = _learnt(wanted, folder / "learnt.pt", console)
     held = Wanted(tuple(each.held for each in looked), (held_back,), 0, plan)
@@ -132,17 +132,17 @@ def _looked(films: Sequence[Path], teacher: str, folder: Path, console: Console)
     return looked
 
 
-def _drawn(folder: Path, plan: Plan, console: Console) -> tuple[Path, Path, Path]:
-    """Made-up people: our own, those of Anny, and those who are held back."""
-    parts = (
+def _drawn(folder: Path, plan: Plan, console: Console) -> list[Path]:
+    """Made-up people: our own, those of Anny, and last those who are held back."""
+    parts = [
         Part(folder / "own", FIRST, plan.people),
         Part(folder / "anny", FIRST, plan.anny_people, anny=True),
         Part(folder / "held_back", FIRST + plan.people, plan.held_back),
-    )
+    ]
+    asked = [part for part in parts if part.people]
     with multiprocessing.get_context("spawn").Pool() as pool, bar(console) as progress:
-        drawn = progress.track(pool.imap(draw, parts), total=len(parts), description="drawing")
-        own, anny, held_back = drawn
-    return own, anny, held_back
+        drawn = pool.imap(draw, asked)
+        return list(progress.track(drawn, total=len(asked), description="drawing"))
 
 
 def composed(wanted: Wanted) -> list[Composite]:
