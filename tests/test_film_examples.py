@@ -64,7 +64,7 @@ def test_where_nobody_is_outlined_the_outline_is_that_of_the_joints() -> None:
 
 
 def test_a_film_is_looked_through_once_and_its_end_is_held_back(clip: Path, tmp_path: Path) -> None:
-    teacher, told = keypoints_of(clip, 1, tmp_path / "keypoints"), []
+    teacher, told = keypoints_of(clip, 1, tmp_path / "keypoints"), list[float]()
     film = next(clip.glob("cam1.*"))
     looked = looked_through(film, str(teacher), tmp_path / "work", told.append)
     learnt, held = PictureStore([looked.learnt]), PictureStore([looked.held])

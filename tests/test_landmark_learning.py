@@ -32,7 +32,7 @@ def test_batches_come_in_their_order_and_a_few_are_asked_for_ahead() -> None:
     from tritrack.training.landmark_learning import AHEAD, ahead
 
     pool: Any = Pool()
-    coming = ahead(pool, list, iter(range(10)))
+    coming: Any = ahead(pool, list, iter(range(10)))
     assert next(coming) == [0]
     assert pool.asked == list(range(AHEAD + 1))
     assert [batch for (batch,) in coming] == list(range(1, 10))

@@ -42,7 +42,5 @@ def _points(at: dict[str, np.ndarray]) -> list[float]:
     ears = shoulders + (at["neck"] - shoulders - NECK_SHARES[0] * up) / NECK_SHARES[1]
     beside = ears + TOP_SHARES[0] * up + TOP_SHARES[1] * (ears - shoulders)
     head = {"nose": ears + (at["head_top"] - beside) / TOP_SHARES[2]}
-    points = {**dict.fromkeys(("l_eye", "r_eye", "l_ear", "r_ear"), ears), **head}
-    return [
-        number for name in BODY_POINTS for number in (*(points.get(name, at.get(name)) - 0.5), 0.9)
-    ]
+    points = {**at, **dict.fromkeys(("l_eye", "r_eye", "l_ear", "r_ear"), ears), **head}
+    return [number for name in BODY_POINTS for number in (*(points[name] - 0.5), 0.9)]
