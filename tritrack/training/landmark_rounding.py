@@ -1,5 +1,7 @@
 """The network of landmarks in whole numbers of one byte: what is shipped, a third of the time."""
 
+import contextlib
+import io
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -59,7 +61,7 @@ def write_rounded(whole: Path, shown: Planes, out: Path) -> None:
         quant_pre_process(whole, plain, skip_symbolic_shape=True)
         graph = onnx.load(plain).graph
         last = {each.name for each in graph.output}
-        quantize_static(
+        _rounded(
             plain,
             rounded,
             _Shown(shown),
@@ -73,6 +75,12 @@ def write_rounded(whole: Path, shown: Planes, out: Path) -> None:
             nodes_to_exclude=[node.name for node in graph.node if last & {*node.output}],
         )
         onnx.save(_of_bytes(onnx.load(rounded)), out)
+
+
+def _rounded(*given: Any, **how: Any) -> None:
+    """onnxruntime's own, which prints what it does where a command's answer belongs."""
+    with contextlib.redirect_stdout(io.StringIO()):
+        quantize_static(*given, **how)
 
 
 def _of_bytes(model: Any) -> Any:
