@@ -159,6 +159,15 @@ def test_landmarks_are_a_word_or_a_folder_beside_the_file(
     assert folder == str(tmp_path / "pose_1")
 
 
+def test_a_network_of_ones_own_is_a_file_beside_the_settings(tmp_path: Path) -> None:
+    named = written(tmp_path, "landmarks = 'mine.onnx'")
+    with pytest.raises(SettingsError, match=r"no network .*mine\.onnx of landmarks"):
+        load(named)
+    (tmp_path / "mine.onnx").write_bytes(b"")
+    assert load(named).landmarks == str(tmp_path / "mine.onnx")
+    assert load(named).looks_itself
+
+
 def test_a_clip_folder_has_our_own_landmarks(tmp_path: Path) -> None:
     assert load(tmp_path).landmarks == "own"
 

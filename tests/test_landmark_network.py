@@ -15,7 +15,7 @@ from synth.picture.composites import Composite, composite
 from synth.picture.picture_examples import PictureExample, picture_examples
 from viewer.landmarks import landmark_network
 from viewer.landmarks.landmark_network import BINS, CELLS, Found, find
-from viewer.landmarks.landmark_window import GREY, SIDE, STEP
+from viewer.landmarks.landmark_window import SIDE
 
 OTHERS = 50_000
 """Seeds from here on are nobody's who was learnt from."""
@@ -23,10 +23,10 @@ OTHERS = 50_000
 
 @lru_cache(maxsize=1)
 def shown() -> list[Composite]:
-    """Two hundred pictures of people whom the network never saw."""
+    """Six hundred pictures of people whom the network never saw."""
     rng = np.random.default_rng(5)
     people: list[PictureExample] = [
-        example for seed in range(OTHERS, OTHERS + 14) for example in picture_examples(seed)
+        example for seed in range(OTHERS, OTHERS + 40) for example in picture_examples(seed)
     ]
     backdrops = [backdrop(seed) for seed in range(OTHERS, OTHERS + 60)]
 
@@ -35,16 +35,14 @@ def shown() -> list[Composite]:
 
     return [
         composite(one, anybody, lambda: backdrops[int(rng.integers(60))], rng)
-        for one in people[:200]
+        for one in people[:600]
     ]
 
 
 @lru_cache(maxsize=1)
 def found() -> list[Found]:
     planes = [np.dstack([one.picture, one.outline]).transpose(2, 0, 1)[None] for one in shown()]
-    return [
-        find(((one - np.float32(GREY)) / np.float32(STEP)).astype(np.float32)) for one in planes
-    ]
+    return [find(np.ascontiguousarray(one)) for one in planes]
 
 
 def off(exchanged: bool = False) -> np.ndarray:
@@ -152,7 +150,7 @@ def test_it_tells_front_from_back() -> None:
 
 def test_the_runtime_reports_nothing_to_anybody(tmp_path: Path) -> None:
     """It keeps a file in the folder for what is temporary where it does."""
-    code = "from viewer.landmarks.landmark_network import shipped; shipped()"
+    code = "from viewer.landmarks.landmark_network import opened; opened()"
     subprocess.run(
         [sys.executable, "-c", code],
         check=True,

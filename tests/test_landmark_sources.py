@@ -24,6 +24,7 @@ from viewer import track
 from viewer.background.background import learn
 from viewer.capture import Live, RoomClock, recorded
 from viewer.landmarks.keypoint_files import KeypointFiles
+from viewer.landmarks.landmark_network import SHIPPED
 from viewer.landmarks.landmark_sources import oddities, outside_sources, refuse_landmarks
 from viewer.landmarks.mediapipe_source import MediaPipe
 
@@ -123,3 +124,18 @@ def test_a_live_viewer_reports_the_landmarks_that_a_recorded_one_does(
     assert came
     assert None not in came.values()
     assert all(landmarks == offline[index] for index, landmarks in came.items())
+
+
+def test_a_network_of_ones_own_looks_in_the_viewer_and_no_other_file_does(
+    clip: Path, tmp_path: Path
+) -> None:
+    own = tmp_path / "own.onnx"
+    own.write_bytes(SHIPPED.read_bytes())
+    settings = Settings(clip=str(clip), landmarks=str(own))
+    refuse_landmarks(settings, views_of(settings))
+    with outside_sources(settings, views_of(settings)) as sources:
+        assert sources == {}
+    other = msgspec.structs.replace(settings, landmarks=str(tmp_path / "other.onnx"))
+    (tmp_path / "other.onnx").write_bytes(b"no network")
+    with pytest.raises(SettingsError, match=r"other\.onnx is no network"):
+        refuse_landmarks(other, views_of(other))

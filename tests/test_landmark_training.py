@@ -48,12 +48,14 @@ def test_the_same_batch_is_made_up_of_the_same_pictures(training: Any, people: P
 def test_work_that_was_stopped_goes_on_where_it_was(
     training: Any, people: Path, tmp_path: Path
 ) -> None:
+    from tritrack.training import landmark_learning
+
     straight = training._begun(tmp_path / "none", 0)
     stopped = training._begun(tmp_path / "none", 0)
     for batch in range(2):
         shown = wanted(training, people, batch)
         straight, stopped = training._step(straight, shown), training._step(stopped, shown)
-    training._keep(stopped, tmp_path / "kept.pt")
+    landmark_learning.keep(stopped, tmp_path / "kept.pt")
     resumed = training._begun(tmp_path / "kept.pt", 0)
     assert resumed.batch == 2
     shown = wanted(training, people, 2)

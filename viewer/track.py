@@ -20,6 +20,7 @@ from viewer.background.moved_objects import Patch
 from viewer.background.turned_picture import lens_of, turned_background
 from viewer.capture import CapturedFrame
 from viewer.expected_body import expected_body
+from viewer.landmarks.landmark_network import network_of
 from viewer.landmarks.nearest_landmarks import nearest_landmarks
 from viewer.landmarks.own_landmarks import own_landmarks
 from viewer.paper import pose_search
@@ -214,9 +215,10 @@ def _landmarks(state: State, frame: CapturedFrame, seen: Seen) -> Landmarks | No
     """The joints that the picture itself shows, where the method asks for them."""
     if not state.setup.method.landmarks:
         return None
-    source = state.setup.settings.landmarks
-    if source == "own":
-        return own_landmarks(frame.picture, seen, state.landmarks)
+    settings = state.setup.settings
+    if settings.looks_itself:
+        network = network_of(settings.landmarks)
+        return own_landmarks(frame.picture, seen, state.landmarks, network)
     return nearest_landmarks(frame.landmarks, seen.box)
 
 

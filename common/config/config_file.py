@@ -7,7 +7,7 @@ import msgspec
 
 from common.config.explained import explained
 from common.config.part_settings import CameraSettings
-from common.config.settings import LANDMARK_SOURCES, Settings
+from common.config.settings import LANDMARK_SOURCES, NETWORK, Settings
 from common.config.settings_error import SettingsError
 
 
@@ -43,7 +43,7 @@ def with_full_paths(settings: Settings, path: Path) -> Settings:
     """Settings that stand in a file: relative paths from there, environment variables filled in.
 
     Raises:
-        SettingsError: When a variable is not set, or the landmarks name no folder.
+        SettingsError: When a variable is not set, or the landmarks are not there.
     """
     return msgspec.structs.replace(
         settings,
@@ -78,10 +78,12 @@ def _camera(given: CameraSettings | None, path: Path) -> CameraSettings | None:
 def _landmarks(given: str, path: Path) -> str:
     if given in LANDMARK_SOURCES:
         return given
-    folder = _full(given, path)
-    if not Path(folder).is_dir():
+    source = _full(given, path)
+    is_network = given.endswith(NETWORK)
+    if not (Path(source).is_file() if is_network else Path(source).is_dir()):
         known = ", ".join(LANDMARK_SOURCES)
+        kind = "network" if is_network else "folder"
         raise SettingsError(
-            f"{path}: there is no folder {folder} of landmarks: write its path, or {known}"
+            f"{path}: there is no {kind} {source} of landmarks: write its path, or {known}"
         )
-    return folder
+    return source

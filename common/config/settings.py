@@ -19,7 +19,9 @@ from common.endpoint import address_of
 from common.method import Mode
 
 LANDMARK_SOURCES: Final = ("own", "none", "mediapipe")
-"""What `landmarks` may say instead of a folder."""
+"""What `landmarks` may say instead of a path."""
+NETWORK: Final = ".onnx"
+"""What the name of a network of ours ends in."""
 
 
 class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -41,7 +43,8 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Bound of the working picture: aspect kept."""
     landmarks: str = "own"
     """What tells the joints that the picture itself shows: the network in the package ("own"),
-    nothing ("none"), "mediapipe", or a folder of keypoint files."""
+    nothing ("none"), "mediapipe", a network of one's own (a file that `tritrack train --what
+    landmarks` wrote), or a folder of keypoint files."""
     every: int = 1
     """Take every n-th frame of a recorded clip."""
     fps: float = 0.0
@@ -61,13 +64,20 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     page: PageSettings = PageSettings()
     bus: BusSettings = BusSettings()
 
+    @property
+    def looks_itself(self) -> bool:
+        """Whether viewers look by a network of ours, the one in the package or another."""
+        return self.landmarks == "own" or self.landmarks.endswith(NETWORK)
+
     def __post_init__(self) -> None:
         """Refuse what no run could mean."""
         if not self.room or set(self.room) & set("/*$#? "):
             raise ValueError(f"room must be a plain word, got {self.room!r}")
         size_of(self.size)
         if not self.landmarks:
-            raise ValueError(f"landmarks must be {', '.join(LANDMARK_SOURCES)} or a folder")
+            raise ValueError(
+                f"landmarks must be {', '.join(LANDMARK_SOURCES)} or a folder or network"
+            )
         within("every", self.every, 1, 1000)
         within("fps", self.fps, 0.0, 1000.0)
         if self.metrics:

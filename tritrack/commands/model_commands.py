@@ -40,6 +40,13 @@ def train(
         Literal["postures", "proposals", "silhouettes", "landmarks"],
         typer.Option(help="What is learnt; only postures need clips."),
     ] = "postures",
+    film: Annotated[
+        list[Path] | None,
+        typer.Option(help="Of landmarks: a film to teach the shipped network on; again for more."),
+    ] = None,
+    teacher: Annotated[
+        str, typer.Option(help="Who tells the joints in films: mediapipe, or keypoint files.")
+    ] = "mediapipe",
     recognizer: RecognizerName = "default",
     mode: OwnMode = None,
     cache: Cache = CACHE,
@@ -47,11 +54,18 @@ def train(
 ) -> None:
     """Learn postures from clips or runs.
 
-    With --what, a network is learnt from synthetic people instead: poses, silhouettes, landmarks.
+    With --what, a network is learnt from synthetic people instead: poses, silhouettes, landmarks;
+    landmarks of films of your own, too: --film VIDEO, as often as there are films.
+
     One posture more, beside those that a model knows: tritrack teach.
 
     Example: tritrack train clips/*/ --out postures.npz
     """
+    if film:
+        if what != "landmarks":
+            raise typer.BadParameter("only landmarks are learnt from films: add --what landmarks")
+        _teach_on_films(film, teacher, out, json_wanted)
+        return
     if what != "postures":
         _train_network(what, out, json_wanted)
         return
@@ -91,6 +105,16 @@ def _train_network(
 
         facts = train_landmarks(out, 0, console)
         tell(facts, json_wanted, f"{facts['pictures']} pictures learnt, written to {out}")
+
+
+def _teach_on_films(films: list[Path], teacher: str, out: Path, json_wanted: bool) -> None:
+    """Teach the shipped network of landmarks by what another pose estimator sees in films."""
+    refuse_without("train", "torch", "onnx", "onnxscript", "anny")
+    from tritrack.film_lessons.film_training import teach_on_films
+
+    facts = teach_on_films(films, teacher, out, console)
+    line = f"better: {facts['verdict']}; written to {out}: name it in the settings, landmarks = ..."
+    tell(facts, json_wanted, line)
 
 
 def teach(

@@ -1,8 +1,6 @@
 """The network of landmarks, trained on pictures of synthetic people: resumable, hours."""
 
-import copy
 import multiprocessing
-from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -15,6 +13,8 @@ from rich.console import Console
 from synth.picture.composites import Composite, composite
 from tritrack.terminal import bar
 from tritrack.training import torch_landmarks
+from tritrack.training.landmark_learning import Work, ahead, begun, keep, learnt_from, resumed
+from tritrack.training.landmark_rounding import write_rounded
 from tritrack.training.picture_store import Backdrops, Part, PictureStore, draw
 from tritrack.training.training import TrainingError
 
@@ -27,27 +27,14 @@ BACKDROPS: Final = 8_000
 HELD_BACK: Final = 100
 """People who are drawn to tell how good the network is, and not learnt from."""
 BATCHES, BATCH = 12_000, 128
-RATE, WARM, STEADY_SHARE, DECAY = 2e-3, 200, 0.55, 1e-4
+RATE, WARM, STEADY_SHARE = 2e-3, 200, 0.55
 """Highest rate; batches until it is reached; share of them until it falls to nothing."""
-STEEPEST: Final = 5.0
-"""Size that a slope is cut to."""
 MEAN_OVER: Final = 1000
 """Batches over which the weights' running mean goes: that mean is what is written."""
 KEEP_EVERY: Final = 200
 """Batches after which the work so far is kept."""
 NEAR: Final = 0.1
 """What is told of how good it is: how many joints are within this share of the stature."""
-
-
-class Work(NamedTuple):
-    """How far a training is."""
-
-    network: Any
-    mean: Any
-    """The same, its weights' running mean."""
-    adam: Any
-    batch: int
-    """The next one."""
 
 
 def train_landmarks(out: Path, seed: int, console: Console) -> dict[str, Any]:
@@ -68,11 +55,26 @@ def train_landmarks(out: Path, seed: int, console: Console) -> dict[str, Any]:
     try:
         folders = _drawn(folder, seed, console)
         work = _learnt(folders[:-1], folder / "learnt.pt", seed, console)
-        torch_landmarks.export(work.mean, out)
+        write_network(work.mean, composed(Wanted(tuple(folders[:-1]), seed, BATCHES)), out)
     except OSError as error:
         raise TrainingError(f"cannot write {folder}: {error.strerror}") from error
     right = _right(work.mean, folders[-1:], seed)
     return {"model": str(out), "pictures": work.batch * BATCH, "within_a_tenth": right}
+
+
+def write_network(network: Any, shown: list[Composite], out: Path) -> None:
+    """Write a trained network as the viewer runs it.
+
+    Args:
+        network: Whose weights are written.
+        shown: Made-up people, by whom the ranges of its layers are found.
+        out: The file, ONNX.
+    """
+    whole = out.with_name(out.name + ".whole")
+    torch_landmarks.export(network, whole)
+    planes = [np.dstack([one.picture, one.outline]).transpose(2, 0, 1) for one in shown]
+    write_rounded(whole, np.ascontiguousarray(planes), out)
+    whole.unlink()
 
 
 def _drawn(folder: Path, seed: int, console: Console) -> list[Path]:
@@ -127,65 +129,26 @@ def _learnt(folders: list[Path], kept: Path, seed: int, console: Console) -> Wor
     wishes = (Wanted(tuple(folders), seed, at) for at in range(work.batch, BATCHES))
     with multiprocessing.get_context("spawn").Pool(1) as pool, bar(console) as progress:
         task = progress.add_task("learning", total=BATCHES, completed=work.batch)
-        for shown in _ahead(pool, wishes):
+        for shown in ahead(pool, composed, wishes):
             work = _step(work, shown)
             progress.advance(task)
             if work.batch % KEEP_EVERY == 0 or work.batch == BATCHES:
-                _keep(work, kept)
+                keep(work, kept)
     return work
-
-
-def _ahead(pool: Any, wishes: Iterator[Wanted], ahead: int = 4) -> Iterator[list[Composite]]:
-    """Batches in their order, a few made before they are asked for."""
-    coming = []
-    for wanted in wishes:
-        coming.append(pool.apply_async(composed, (wanted,)))
-        if len(coming) > ahead:
-            yield coming.pop(0).get()
-    for last in coming:
-        yield last.get()
 
 
 def _begun(kept: Path, seed: int) -> Work:
     """What was kept, or a fresh start."""
     torch.manual_seed(seed)
     network = torch_landmarks.LandmarkNetwork().to(memory_format=torch.channels_last)
-    mean = copy.deepcopy(network)
-    adam = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=DECAY)
-    if not kept.exists():
-        return Work(network, mean, adam, 0)
-    held = torch.load(kept, weights_only=True)
-    network.load_state_dict(held["network"])
-    mean.load_state_dict(held["mean"])
-    adam.load_state_dict(held["adam"])
-    return Work(network, mean, adam, int(held["batch"]))
-
-
-def _keep(work: Work, kept: Path) -> None:
-    """Write it, then put it in the place of what was kept before."""
-    parts = {name: getattr(work, name).state_dict() for name in ("network", "mean", "adam")}
-    new = kept.with_name("new.pt")
-    torch.save({**parts, "batch": work.batch}, new)
-    new.rename(kept)
+    return resumed(begun(network, RATE), kept)
 
 
 def _step(work: Work, shown: list[Composite]) -> Work:
     """One batch more."""
-    network, mean, adam, at = work
-    for group in adam.param_groups:
-        group["lr"] = _rate(at)
-    network.train()
-    adam.zero_grad()
-    torch_landmarks.loss(network, shown).backward()
-    torch.nn.utils.clip_grad_norm_(network.parameters(), STEEPEST)
-    adam.step()
-    share = max(1.0 / MEAN_OVER, 1.0 / (1.0 + 0.1 * at))
-    with torch.no_grad():
-        own, running = network.state_dict(), mean.state_dict()
-        for name, value in running.items():
-            if value.is_floating_point():
-                value.lerp_(own[name], share)
-    return work._replace(batch=at + 1)
+    work.network.train()
+    share = max(1.0 / MEAN_OVER, 1.0 / (1.0 + 0.1 * work.batch))
+    return learnt_from(work, shown, _rate(work.batch), share)
 
 
 def _rate(at: int) -> float:

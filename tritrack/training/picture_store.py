@@ -1,6 +1,7 @@
 """Drawn examples on disk: what the network of landmarks is trained on, many times over."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, NamedTuple, Self
 
@@ -72,6 +73,25 @@ class Backdrops(NamedTuple):
         return np.asarray(self.pictures[int(rng.integers(len(self.pictures)))])
 
 
+def is_drawn(folder: Path) -> bool:
+    """Whether all examples of a folder are there."""
+    return (folder / DRAWN).exists()
+
+
+def store(folder: Path, examples: Sequence[PictureExample]) -> None:
+    """Write examples of any source, one at least, in the place of what was begun there."""
+    folder.mkdir(parents=True, exist_ok=True)
+    np.save(folder / "bodies.npy", np.array([one.body for one in examples]))
+    outlines = [np.packbits(one.outline, axis=1) for one in examples]
+    np.save(folder / "outlines.npy", np.array(outlines))
+    np.save(folder / "labels.npy", np.array([_label(one) for one in examples], np.float32))
+    (folder / DRAWN).write_text(json.dumps({"examples": len(examples)}))
+
+
+def _label(shown: PictureExample) -> list[float]:
+    return [*shown.joints_px.ravel(), *shown.facing, shown.stature_px]
+
+
 def draw(part: Part) -> Path:
     """Draw a part where it is not drawn yet; its folder.
 
@@ -79,7 +99,7 @@ def draw(part: Part) -> Path:
         NoAnny: When people of that model are wanted, and it is not installed.
     """
     folder, first, people, anny = part
-    if (folder / DRAWN).exists():
+    if is_drawn(folder):
         return folder
     folder.mkdir(parents=True, exist_ok=True)
     most = people * PICTURES
@@ -90,7 +110,7 @@ def draw(part: Part) -> Path:
         for shown in (anny_examples if anny else picture_examples)(seed):
             bodies[len(labels)] = shown.body
             outlines.append(np.packbits(shown.outline, axis=1))
-            labels.append([*shown.joints_px.ravel(), *shown.facing, shown.stature_px])
+            labels.append(_label(shown))
     bodies.flush()
     np.save(folder / "outlines.npy", np.stack(outlines))
     np.save(folder / "labels.npy", np.array(labels, np.float32))

@@ -12,11 +12,13 @@ from torch.nn import functional
 
 from synth.picture.composites import Composite
 from viewer.landmarks.landmark_network import BINS, CELLS, FARTHEST
-from viewer.landmarks.landmark_window import GREY, PLANES, SIDE, STEP
+from viewer.landmarks.landmark_window import GREY, PLANES, SIDE
 
 WIDTHS: Final = (16, 32, 64, 96)
 """Channels after each halving of the picture."""
 JOINTS: Final = 15
+STEP: Final = 64
+"""Levels of a byte, from GREY on, that are 1 for the network."""
 SPREAD: Final = 4.0
 """Standard deviation of what a joint's map should show, pixels."""
 NEAR: Final = 0.03
@@ -69,6 +71,33 @@ class LandmarkNetwork(nn.Module):
         middle = self.mix_middle(torch.relu(middle + self.up(self.to_middle(coarse))))
         fine = self.mix_fine(torch.relu(fine + self.up(self.to_fine(middle))))
         return self.maps(fine), self.told(everything)
+
+
+def fill(
+    network: LandmarkNetwork, weights: list[tuple[NDArray[np.float32], NDArray[np.float32]]]
+) -> None:
+    """Give a network the weights and offsets of a file, whose normalisations are folded into them:
+    its own then change nothing, as long as it is not told to learn them (`eval`).
+
+    Args:
+        network: Is changed.
+        weights: Of all layers; of those of one shape in their order.
+    """
+    left, offset = list(weights), None
+    with torch.no_grad():
+        for part in network.modules():
+            if isinstance(part, nn.Conv2d | nn.Linear):
+                shape = tuple(part.weight.shape)
+                at = next(i for i, (weight, _) in enumerate(left) if weight.shape == shape)
+                weight, offset = (torch.from_numpy(np.array(values)) for values in left.pop(at))
+                part.weight.copy_(weight)
+                if part.bias is not None:
+                    part.bias.copy_(offset)
+            elif isinstance(part, nn.BatchNorm2d):
+                part.weight.fill_(1.0)
+                part.bias.copy_(offset)
+                part.running_mean.zero_()
+                part.running_var.fill_(1.0 - part.eps)
 
 
 def _layer(inputs: int, outputs: int, stride: int = 1, bent: bool = True) -> Any:

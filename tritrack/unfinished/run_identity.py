@@ -9,7 +9,7 @@ from typing import Final
 import msgspec
 
 from common.cache_folder import DIGEST, add
-from common.config.settings import LANDMARK_SOURCES, Settings
+from common.config.settings import LANDMARK_SOURCES, NETWORK, Settings
 from common.packages import PACKAGES, ROOT
 from common.video.clip_sources import ClipError, companions_folder, footage_of
 from common.video.clips import find_calibration
@@ -79,7 +79,9 @@ def files_of(settings: Settings) -> Iterator[Path]:
     folder = companions_folder(settings, named)
     calibration = find_calibration(settings, folder)
     notes = folder / "meta.json"
-    if settings.landmarks not in LANDMARK_SOURCES:
+    if settings.landmarks.endswith(NETWORK):
+        yield Path(settings.landmarks)
+    elif settings.landmarks not in LANDMARK_SOURCES:
         yield from sorted(Path(settings.landmarks).rglob("*.json"))
     yield from (path for path in (calibration, notes) if path is not None and path.is_file())
 

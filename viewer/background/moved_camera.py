@@ -58,7 +58,10 @@ class State(NamedTuple):
     @property
     def shift(self) -> Shift | None:
         """How the picture is shifted since the start of the run; None: as it was."""
-        told = shift_of(self.turn @ self.begun, self.lens.focal_px)
+        turned = self.turn @ self.begun
+        if np.array_equal(turned, np.eye(3)):
+            return None
+        told = shift_of(turned, self.lens.focal_px)
         far = max(abs(told.right_px), abs(told.down_px), abs(np.radians(told.roll_deg)) * 50.0)
         return told if far >= LEAST_PX / 2 else None
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.compiled import compiled
+from common.config.settings_error import SettingsError
 from viewer.landmarks.landmark_window import PLANES, SIDE, Planes
 
 CELLS: Final = 24
@@ -20,6 +21,8 @@ FARTHEST: Final = 0.8
 """No peak is farther from the middle of its highest cell, in cells."""
 DEEP: Final = 25.0
 """A cell whose logit lies so far below the highest adds nothing that a float32 could tell."""
+OWN: Final = "own"
+"""What settings call the network in the package."""
 SHIPPED: Final = Path(__file__).with_name("landmarks.onnx")
 APART: Final = 2
 """The next peak of a map is more cells than this from the highest, down or across."""
@@ -47,33 +50,66 @@ class Found(NamedTuple):
     """(15,) how probably it is there instead, likewise."""
 
 
-@lru_cache(maxsize=1)
-def shipped() -> Any:
-    """The network that is installed with the program, on one core.
+@lru_cache(maxsize=4)
+def opened(network: Path = SHIPPED) -> Any:
+    """A network, on one core.
 
     onnxruntime would report its use to its maker, and keep a file for it, unless it is told not to
     before it is imported: nothing leaves this machine.
+
+    Args:
+        network: A file that `tritrack train --what landmarks` wrote.
     """
     os.environ["ORT_DISABLE_TELEMETRY"] = "1"
     import onnxruntime
 
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
-    return onnxruntime.InferenceSession(SHIPPED, options, providers=["CPUExecutionProvider"])
+    return onnxruntime.InferenceSession(network, options, providers=["CPUExecutionProvider"])
 
 
-def find(planes: Planes) -> Found:
+def network_of(landmarks: str) -> Path:
+    """The file of the network that a run's settings name."""
+    return SHIPPED if landmarks == OWN else Path(landmarks)
+
+
+def refuse_no_network(landmarks: str) -> None:
+    """Say that a file is no network of ours.
+
+    Raises:
+        SettingsError: With its name.
+    """
+    try:
+        (taken,) = opened(network_of(landmarks)).get_inputs()
+        known = (taken.name, taken.shape) == ("planes", [1, PLANES, SIDE, SIDE])
+    except Exception as error:  # whatever keeps a foreign file from its work is for the user
+        raise SettingsError(f"{landmarks} is no network: {error}") from error
+    if not known or taken.type != "tensor(uint8)":
+        raise SettingsError(
+            f"{landmarks} is no network of landmarks: tritrack train --what landmarks writes one"
+        )
+
+
+def find(planes: Planes, network: Path = SHIPPED) -> Found:
     """The joints in a window, (1, PLANES, SIDE, SIDE)."""
     assert planes.shape == (1, PLANES, SIDE, SIDE)
-    maps, told = shipped().run(None, {"planes": planes})
+    maps, told = opened(network).run(None, {"planes": planes})
     joints, about = _peaks(maps[0])
     bins, nobody, sure = told[0, :BINS], told[0, BINS], told[0, BINS + 1 :]
     first, second = (
-        _sigmoid(slope * sure + share * _logit(near) + offset)
-        for near, (slope, share, offset) in zip(about.T, (PLATT, PLATT_OF_SECOND), strict=True)
+        _probable(np.ascontiguousarray(near), sure, *platt)
+        for near, platt in zip(about.T, (PLATT, PLATT_OF_SECOND), strict=True)
     )
-    facing = _facing(bins.astype(np.float64))
-    return Found(joints[:, 0], first, *facing, float(_sigmoid(nobody)), joints[:, 1], second)
+    facing_deg, facing_confidence = _facing(bins)
+    return Found(
+        joints[:, 0],
+        first,
+        facing_deg,
+        facing_confidence,
+        _sigmoid(nobody),
+        joints[:, 1],
+        second,
+    )
 
 
 @compiled
@@ -135,21 +171,35 @@ def _between(three: Any) -> float:
     return min(max(0.5 * (low - high) / bent, -FARTHEST), FARTHEST)
 
 
-def _facing(bins: Vector) -> tuple[float, float]:
+@compiled
+def _facing(bins: Any) -> tuple[float, float]:
     """The direction and how probably it is less than 45 degrees off, of BINS logits."""
-    share = np.exp(bins - bins.max())
-    share /= share.sum()
-    turn = 2 * np.pi * np.arange(BINS) / BINS
-    best = int(share.argmax())
-    near = np.cos(turn - turn[best]) > 0.9
-    mean = np.arctan2((share * np.sin(turn))[near].sum(), (share * np.cos(turn))[near].sum())
-    return float(np.degrees(mean)), float(share[np.cos(turn - mean) > np.sqrt(0.5)].sum())
+    share, best = np.empty(BINS), bins.argmax()
+    for i in range(BINS):
+        share[i] = np.exp(float(bins[i]) - float(bins[best]))
+    turn = 2.0 * np.pi / BINS
+    across, along = 0.0, 0.0
+    for i in range(BINS):
+        if np.cos(turn * (i - best)) > 0.9:
+            across += share[i] * np.sin(turn * i)
+            along += share[i] * np.cos(turn * i)
+    mean, near = np.arctan2(across, along), 0.0
+    for i in range(BINS):
+        if np.cos(turn * i - mean) > np.sqrt(0.5):
+            near += share[i]
+    return np.degrees(mean), near / share.sum()
 
 
-def _logit(share: Vector) -> Vector:
-    kept = np.clip(share, 1e-4, 1.0 - 1e-4)
-    return np.asarray(np.log(kept / (1.0 - kept)))
+@compiled
+def _probable(near: Any, sure: Any, slope: float, share: float, offset: float) -> Any:
+    """(15,) how probable joints are, of what of their maps lies near, and of logits."""
+    found = np.empty(len(near))
+    for j in range(len(near)):
+        kept = min(max(near[j], 1e-4), 1.0 - 1e-4)
+        found[j] = _sigmoid(slope * sure[j] + share * np.log(kept / (1.0 - kept)) + offset)
+    return found
 
 
-def _sigmoid(values: Any) -> Any:
-    return 1.0 / (1.0 + np.exp(-np.clip(values, -60.0, 60.0)))
+@compiled
+def _sigmoid(value: float) -> float:
+    return 1.0 / (1.0 + np.exp(-min(max(float(value), -60.0), 60.0)))

@@ -9,6 +9,7 @@ from common.config.settings import Settings
 from common.video.clip_facts import View
 from common.video.clip_sources import footage_of
 from viewer.landmarks.keypoint_files import KeypointFiles
+from viewer.landmarks.landmark_network import refuse_no_network
 from viewer.landmarks.mediapipe_source import MediaPipe, refuse_where_missing
 from viewer.landmarks.outside_source import OutsideSource
 
@@ -28,7 +29,7 @@ def outside_sources(settings: Settings, views: Sequence[View]) -> Iterator[Sourc
         SettingsError: When MediaPipe is not there or does not work, or the keypoint files are not.
     """
     with ExitStack() as doors:
-        if settings.landmarks in ("own", "none"):
+        if settings.looks_itself or settings.landmarks == "none":
             yield {}
         elif settings.landmarks == "mediapipe":
             asked = {view.number: doors.enter_context(MediaPipe(view)) for view in views}
@@ -43,11 +44,14 @@ def refuse_landmarks(settings: Settings, views: Sequence[View]) -> None:
     """Say before any process starts what `outside_sources` would fail on in one of them.
 
     Raises:
-        SettingsError: As there; that an installed MediaPipe does not work is not found out.
+        SettingsError: As there, and when a network of one's own is none; that an installed
+            MediaPipe does not work is not found out.
     """
     if settings.landmarks == "mediapipe":
         refuse_where_missing()
-    elif settings.landmarks not in ("own", "none"):
+    elif settings.looks_itself:
+        refuse_no_network(settings.landmarks)
+    elif settings.landmarks != "none":
         _files(settings, views)
 
 

@@ -1,13 +1,12 @@
 """The part of a picture that the network of landmarks looks at."""
 
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from common.bus.messages import Box
-from common.compiled import compiled
 from common.raster.similarity import Mask
 from common.video.decoding import Image
 
@@ -17,10 +16,10 @@ FRAMED: Final = 1.25
 """Side of the window over the longer side of what it is to hold."""
 PLANES: Final = 4
 """Blue, green, red, outline."""
-GREY, STEP = 128.0, 64.0
-"""What is taken for 0 and for 1; an outline that is not known is GREY."""
+GREY: Final = 128
+"""Of an outline that is not known: what the network takes for 0."""
 
-Planes = NDArray[np.float32]
+Planes = NDArray[np.uint8]
 
 
 class Window(NamedTuple):
@@ -56,10 +55,12 @@ def planes_of(picture: Image, mask: Mask | None, window: Window) -> Planes:
         mask: (H, W) the outline; None: not known.
         window: Of the picture.
     """
-    planes = np.zeros((1, PLANES, SIDE, SIDE), np.float32)
-    colours = _cut(picture, window)
-    outline = None if mask is None else _cut(mask.view(np.uint8) * np.uint8(255), window)
-    _spread(colours, colours[..., 0] if outline is None else outline, outline is not None, planes)
+    planes = np.full((1, PLANES, SIDE, SIDE), GREY, np.uint8)
+    for plane, colour in zip(planes[0], cv2.split(_cut(picture, window)), strict=False):
+        plane[:] = colour
+    if mask is not None:
+        outline = _cut(mask.view(np.uint8) * np.uint8(255), window)
+        cv2.threshold(outline, 127, 255, cv2.THRESH_BINARY, planes[0, 3])
     return planes
 
 
@@ -90,16 +91,3 @@ def _held(picture: NDArray[np.uint8], left: int, top: int, side: int) -> NDArray
     if rows[0] < rows[1] and columns[0] < columns[1]:
         held[slice(*np.subtract(rows, top)), slice(*np.subtract(columns, left))] = inside
     return held
-
-
-@compiled
-def _spread(colours: Any, outline: Any, known: bool, planes: Any) -> None:
-    """Bytes (SIDE, SIDE, 3) and (SIDE, SIDE) as planes."""
-    one = np.float32(1.0 / STEP)
-    for row in range(SIDE):
-        for column in range(SIDE):
-            for k in range(3):
-                planes[0, k, row, column] = (np.float32(colours[row, column, k]) - GREY) * one
-            if known:
-                inside = outline[row, column] > 127
-                planes[0, 3, row, column] = (255.0 if inside else 0.0) * one - GREY * one

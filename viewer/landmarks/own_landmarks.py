@@ -1,5 +1,6 @@
 """Our own source of landmarks: a small network that looks at the working picture."""
 
+from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ from common.body.body import Vector
 from common.bus.messages import Landmarks
 from common.raster.similarity import Mask
 from common.video.decoding import Image
-from viewer.landmarks.landmark_network import find
+from viewer.landmarks.landmark_network import SHIPPED, find
 from viewer.landmarks.landmark_window import SIDE, Window, planes_of, whole, window_about, window_of
 from viewer.silhouette.silhouette import Seen
 
@@ -40,7 +41,9 @@ class _Look(NamedTuple):
         return float(self.confidence.mean())
 
 
-def own_landmarks(picture: Image, seen: Seen, before: Landmarks | None) -> Landmarks | None:
+def own_landmarks(
+    picture: Image, seen: Seen, before: Landmarks | None, network: Path = SHIPPED
+) -> Landmarks | None:
     """What the network makes of a picture; None where it sees nobody.
 
     It looks where the outline is. Where it is not sure there it also looks, without the outline,
@@ -51,13 +54,17 @@ def own_landmarks(picture: Image, seen: Seen, before: Landmarks | None) -> Landm
         picture: (H, W, 3) the working picture.
         seen: The outline in it.
         before: Of the frame before.
+        network: Which one looks.
     """
     looks = []
     if seen.box is not None:
-        looks.append(_look(picture, seen.mask, window_of(seen.box)))
+        looks.append(_look(picture, seen.mask, window_of(seen.box), network))
     if not looks or looks[0].surety < SURE:
         known = None if before is None else _about(np.array(before.joints_px), before.confidence)
-        looks.append(_search(picture) if known is None else _look(picture, None, known))
+        if known is None:
+            looks.append(_search(picture, network))
+        else:
+            looks.append(_look(picture, None, known, network))
     best = max(looks, key=lambda look: look.surety)
     if seen.box is None and (best.nobody > 0.5 or best.surety < LEAST):
         return None
@@ -97,8 +104,8 @@ def _told(best: _Look) -> Landmarks:
     )
 
 
-def _look(picture: Image, mask: Mask | None, window: Window) -> _Look:
-    found = find(planes_of(picture, mask, window))
+def _look(picture: Image, mask: Mask | None, window: Window, network: Path = SHIPPED) -> _Look:
+    found = find(planes_of(picture, mask, window), network)
     joints_px, second_px = (
         places * (window.side / SIDE) + (window.left, window.top)
         for places in (found.joints, found.second)
@@ -108,11 +115,11 @@ def _look(picture: Image, mask: Mask | None, window: Window) -> _Look:
     return _Look(joints_px, found.confidence, facing, found.nobody, second_px, second)
 
 
-def _search(picture: Image) -> _Look:
+def _search(picture: Image, network: Path = SHIPPED) -> _Look:
     """Somebody anywhere: first in all of the picture, then closer."""
-    far = _look(picture, None, whole(picture.shape))
+    far = _look(picture, None, whole(picture.shape), network)
     window = _about(far.joints_px, tuple(far.confidence))
-    return far if window is None else _look(picture, None, window)
+    return far if window is None else _look(picture, None, window, network)
 
 
 def _about(joints_px: NDArray[np.float64], confidence: tuple[float, ...]) -> Window | None:
