@@ -17,6 +17,7 @@ from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.joint_arrays import on_disk
 from tritrack.store.pose_arrays import poses
 from tritrack.store.runs import RunError, write_postures, write_run
+from tritrack.terminal import json_text
 
 N = 69
 CONTRACT = {
@@ -193,6 +194,16 @@ def test_postures_name_frame_time_segment_and_scores(tmp_path: Path) -> None:
             }
         ],
     }
+
+
+@pytest.mark.parametrize("frames", [0, 1, 3])
+def test_postures_are_laid_out_as_the_rest_of_a_summary_is(tmp_path: Path, frames: int) -> None:
+    """Though they are written one by one."""
+    said = (Posture(frame=n, captured_s=n / 15, clock_s=0.0, name="squat") for n in range(frames))
+    write_postures(tmp_path, list(said), "squat")
+    text = (tmp_path / "posture.json").read_text()
+    assert len(json.loads(text)["frames"]) == frames
+    assert text == json_text(json.loads(text)) + "\n"
 
 
 def test_a_full_disk_keeps_the_run_that_was_there(
