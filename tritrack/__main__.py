@@ -104,7 +104,7 @@ def doctor(
     else:
         results.print(table_of(findings))
     if any(not finding.ok and finding.needed for finding in findings):
-        raise typer.Exit(1)
+        raise typer.Exit(2)
 
 
 def bench(
