@@ -10,7 +10,7 @@ from common.bus.messages import ViewerNumber
 from common.config.part_settings import BusSettings
 from common.config.settings import Settings
 from tritrack.commands.command_output import JsonWanted, console, tell
-from tritrack.commands.options import Out, Record, Resume, Size, writable, writable_file
+from tritrack.commands.options import Force, Out, Record, Resume, Size, writable, writable_file
 from tritrack.exporting import OWN_NAMES, Format, Scale, export_run
 from tritrack.faults import refuse_unfollowed
 from tritrack.terminal import json_text
@@ -34,6 +34,7 @@ def track(
     ] = False,
     record: Record = False,
     resume: Resume = False,
+    force: Force = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Track clips offline: the same as live, deterministic, as fast as it goes.
@@ -57,6 +58,7 @@ def track(
         trusted=trust_calibration,
         record=record,
         resume=resume,
+        force=force,
     )
     tell(facts, json_wanted, line_of_runs(facts["clips"], out))
     refuse_unfollowed(facts["clips"])
@@ -114,6 +116,7 @@ def single(
         Path | None, typer.Option(help="A picture of the scene without anybody, if there is one.")
     ] = None,
     resume: Resume = False,
+    force: Force = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Animate a body from any video of one camera: no calibration, no empty room is needed.
@@ -127,7 +130,7 @@ def single(
     from tritrack.overrides import overridden
     from tritrack.single.single import Given, single_all
 
-    given = Given(notes, background, resume)
+    given = Given(notes, background, resume, force)
     facts = single_all(videos, out, given, overridden(Settings(), mode, size), console)
     if json_wanted:
         print(json_text(facts))
