@@ -54,7 +54,6 @@ class ShownFrame(msgspec.Struct, frozen=True, tag="frame", tag_field="kind"):
     time_s: float
     status: Status
     words: str
-    from_views: str
     confidence: Numbers
     """JOINT_NAMES order."""
     solids: list[Numbers]

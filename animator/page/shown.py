@@ -81,7 +81,6 @@ def shown_frame(
         time_s=round(body.captured_s, 4),
         status=body.status,
         words=words_of(body),
-        from_views=body.views,
         confidence=_rounded(body.confidence, 2),
         solids=[] if standing is None else _solids(standing),
         angles=_rounded([body.pose[i] for i in ANGLES_IN_POSE], 1) if body.pose else [],
