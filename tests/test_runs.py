@@ -16,7 +16,7 @@ from common.config.settings import Settings
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.joint_arrays import on_disk
 from tritrack.store.pose_arrays import poses
-from tritrack.store.runs import RunError, write_postures, write_run
+from tritrack.store.runs import RunError, unwritable, write_postures, write_run
 from tritrack.terminal import json_text
 
 N = 69
@@ -235,3 +235,12 @@ def test_the_names_are_the_bodys_own(arrays: dict[str, np.ndarray]) -> None:
     assert tuple(arrays["joint_names"])[:15] == JOINT_NAMES
     assert tuple(arrays["joint_names"])[15:] == EXTREMITY_NAMES
     assert tuple(arrays["angle_names"]) == ANGLE_NAMES
+
+
+def test_space_is_what_to_free_where_it_lacks_alone(tmp_path: Path) -> None:
+    lacking = OSError(errno.ENOSPC, "No space left on device")
+    refused = OSError(errno.EACCES, "Permission denied")
+    assert [str(unwritable(tmp_path, error)) for error in (lacking, refused)] == [
+        f"cannot write {tmp_path}: No space left on device; free some space or name another --out",
+        f"cannot write {tmp_path}: Permission denied; name another --out",
+    ]

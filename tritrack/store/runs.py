@@ -12,7 +12,7 @@ from typing import Any, Final, get_args
 import msgspec
 import numpy as np
 
-from common.atomic_file import replacing
+from common.atomic_file import replacing, unwritten
 from common.bus.messages import Body, Posture, Status
 from common.config.settings import Settings
 from tritrack.store.joint_arrays import on_disk
@@ -154,8 +154,7 @@ def versions() -> dict[str, str]:
 
 def unwritable(folder: Path, error: OSError) -> RunError:
     """What is said of a run folder that takes no more."""
-    reason = error.strerror or str(error)
-    return RunError(f"cannot write {folder}: {reason}; free some space or name another --out")
+    return RunError(unwritten(folder, error, "name another --out"))
 
 
 def _write_json(path: Path, value: Any) -> None:
