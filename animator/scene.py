@@ -30,8 +30,6 @@ BEHIND, ABOVE = 1.3, 0.45
 
 NEAR_ENDS: Final = [i for i in range(len(LIMBS)) if i not in (TORSO, HEAD)]
 HANDS: Final = [LIMBS.index("r_lower_arm"), LIMBS.index("l_lower_arm")]
-BALLS: Final = 1 + len(NEAR_ENDS) + len(HANDS)
-"""How many round shapes a body has."""
 
 _DISTAL: Final = {
     "upper_leg": "knee",

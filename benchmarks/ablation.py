@@ -31,7 +31,7 @@ import numpy as np
 
 from common.bus.messages import ViewerNumber
 from common.config import config_file
-from common.method import DEFAULT, PAPER, Method, departures
+from common.method import DEFAULT, PAPER, Method
 from tritrack.accuracy.accuracy import compare, summary
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.overrides import overridden
@@ -59,6 +59,13 @@ class Result(NamedTuple):
 def with_fields(method: Method, names: Iterable[str], like: Method) -> Method:
     """A method with some fields as another has them."""
     return msgspec.structs.replace(method, **{name: getattr(like, name) for name in names})
+
+
+def departures(method: Method, printed: Method = PAPER) -> tuple[str, ...]:
+    """The fields in which a method differs from the print, in the order of their declaration."""
+    return tuple(
+        name for name in Method.__struct_fields__ if getattr(method, name) != getattr(printed, name)
+    )
 
 
 def rows() -> list[Row]:

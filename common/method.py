@@ -100,10 +100,3 @@ THESIS: Final = msgspec.structs.replace(
 
 METHODS: Final[dict[Mode, Method]] = {"default": DEFAULT, "paper": PAPER, "thesis": THESIS}
 """By the names that settings and commands use."""
-
-
-def departures(method: Method, printed: Method = PAPER) -> tuple[str, ...]:
-    """The fields in which a method differs from the print, in the order of their declaration."""
-    return tuple(
-        name for name in Method.__struct_fields__ if getattr(method, name) != getattr(printed, name)
-    )

@@ -78,13 +78,13 @@ def step(state: State, report: Report) -> tuple[State, list[Pair]]:
         return state._replace(late=state.late + 1), []
     queue = (*state.waiting[own], report)
     state = state._replace(
-        waiting=_with(state.waiting, own, queue[-QUEUE:]),
+        waiting=with_item(state.waiting, own, queue[-QUEUE:]),
         dropped=state.dropped + max(0, len(queue) - QUEUE),
     )
     if report.captured_s > state.passed_s[own] - state.period_s:
-        state = state._replace(away=_with(state.away, own, False))
+        state = state._replace(away=with_item(state.away, own, False))
     if report.next_s is not None:
-        state = state._replace(next_s=_with(state.next_s, own, report.next_s))
+        state = state._replace(next_s=with_item(state.next_s, own, report.next_s))
     return _settled(state)
 
 
@@ -92,25 +92,25 @@ def begin(state: State, viewer: ViewerNumber) -> State:
     """A viewer that had ended, or was away, is there again: it is waited for."""
     own = viewer - 1
     return state._replace(
-        over=_with(state.over, own, False),
-        away=_with(state.away, own, False),
-        next_s=_with(state.next_s, own, NEVER_S),
+        over=with_item(state.over, own, False),
+        away=with_item(state.away, own, False),
+        next_s=with_item(state.next_s, own, NEVER_S),
     )
 
 
 def awaited(state: State, viewer: ViewerNumber) -> State:
     """A viewer that was waited for in vain is worth waiting for, as one now waits longer."""
-    return state._replace(away=_with(state.away, viewer - 1, False))
+    return state._replace(away=with_item(state.away, viewer - 1, False))
 
 
 def away(state: State, viewer: ViewerNumber) -> tuple[State, list[Pair]]:
     """A viewer is known to be gone: nothing waits for it until it reports again."""
-    return _settled(state._replace(away=_with(state.away, viewer - 1, True)))
+    return _settled(state._replace(away=with_item(state.away, viewer - 1, True)))
 
 
 def end(state: State, viewer: ViewerNumber) -> tuple[State, list[Pair]]:
     """A viewer has said its last: what waits for it goes out, and nothing waits for it again."""
-    return _settled(state._replace(over=_with(state.over, viewer - 1, True)))
+    return _settled(state._replace(over=with_item(state.over, viewer - 1, True)))
 
 
 def overdue(state: State, now_s: float, wait_s: float) -> tuple[State, list[Pair]]:
@@ -180,11 +180,12 @@ def _alone(state: State, own: int) -> tuple[State, Pair]:
     report, *others = state.waiting[own]
     partner_s = report.captured_s + state.period_s / 2
     state = state._replace(
-        waiting=_with(state.waiting, own, tuple(others)),
-        passed_s=_with((partner_s, partner_s), own, report.captured_s),
+        waiting=with_item(state.waiting, own, tuple(others)),
+        passed_s=with_item((partner_s, partner_s), own, report.captured_s),
     )
     return state, Pair(report, None) if own == 0 else Pair(None, report)
 
 
-def _with(both: tuple[Item, Item], place: int, item: Item) -> tuple[Item, Item]:
+def with_item(both: tuple[Item, Item], place: int, item: Item) -> tuple[Item, Item]:
+    """What both views have, with that of one of them, 0 or 1, replaced."""
     return (item, both[1]) if place == 0 else (both[0], item)

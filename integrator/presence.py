@@ -1,12 +1,11 @@
 """Which viewers report, and why one does not: what is said when a view is lost and found again."""
 
-from typing import Final, NamedTuple, TypeVar
+from typing import Final, NamedTuple
 
 from common.bus.control_messages import Ended
 from common.bus.messages import CameraFault, Report, ViewerNumber
 from common.bus.rate import silent
-
-Item = TypeVar("Item")
+from integrator.pairing import with_item
 
 OVER_S: Final = 0.5
 """A clip that ends so much before the other's is worth a word; both never end at once."""
@@ -54,9 +53,9 @@ def heard(state: State, report: Report, now_s: float) -> State:
     if state.began_s == NEVER_S:
         state = state._replace(began_s=now_s, heard_s=(now_s, now_s))
     return state._replace(
-        heard_s=_with(state.heard_s, own, now_s),
-        gone_s=_with(state.gone_s, own, NEVER_S),
-        fault=_with(state.fault, own, report.fault),
+        heard_s=with_item(state.heard_s, own, now_s),
+        gone_s=with_item(state.gone_s, own, NEVER_S),
+        fault=with_item(state.fault, own, report.fault),
     )
 
 
@@ -65,22 +64,23 @@ def came(state: State, viewer: ViewerNumber, now_s: float) -> State:
     own = viewer - 1
     missed = state.gone_s[own] != NEVER_S or state.over_s[own] != NEVER_S
     return state._replace(
-        heard_s=_with(state.heard_s, own, now_s),
-        gone_s=_with(state.gone_s, own, now_s if missed else NEVER_S),
-        over_s=_with(state.over_s, own, NEVER_S),
+        heard_s=with_item(state.heard_s, own, now_s),
+        gone_s=with_item(state.gone_s, own, now_s if missed else NEVER_S),
+        over_s=with_item(state.over_s, own, NEVER_S),
     )
 
 
 def went(state: State, viewer: ViewerNumber, now_s: float) -> State:
     """A viewer is no longer on the bus."""
-    return state._replace(gone_s=_with(state.gone_s, viewer - 1, now_s))
+    return state._replace(gone_s=with_item(state.gone_s, viewer - 1, now_s))
 
 
 def ended(state: State, said: Ended, now_s: float) -> State:
     """A viewer has said its last."""
     own = said.viewer - 1
     return state._replace(
-        over_s=_with(state.over_s, own, now_s), why_over=_with(state.why_over, own, said.why)
+        over_s=with_item(state.over_s, own, now_s),
+        why_over=with_item(state.why_over, own, said.why),
     )
 
 
@@ -134,7 +134,3 @@ def _changed(own: int, state: State, causes: tuple[str, str]) -> list[str]:
     alone = not causes[other] and state.over_s[other] == NEVER_S
     left = f"view {other + 1} goes on alone" if alone else "nobody looks now"
     return [f"view {own + 1} is lost ({cause}); {left}"]
-
-
-def _with(both: tuple[Item, Item], place: int, item: Item) -> tuple[Item, Item]:
-    return (item, both[1]) if place == 0 else (both[0], item)

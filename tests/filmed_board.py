@@ -221,3 +221,8 @@ def pictures_of(
         for _ in range(frames):
             yield studio.picture(rig.board, pose)
         yield studio.picture(rig.board, None)
+
+
+def middle_of(board: Board) -> Vector:
+    """(3,) metres, in the board's axes."""
+    return np.array([board.columns, board.rows, 0.0]) * board.square_m / 2

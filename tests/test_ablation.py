@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from common.config.settings import Settings
-from common.method import DEFAULT, PAPER, Method, Mode, departures
+from common.method import DEFAULT, PAPER, Method, Mode
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.pose_arrays import poses
 
@@ -39,17 +39,17 @@ def test_default_mode_with_every_departure_off_is_paper_mode(
     ablation: ModuleType, clip: Path
 ) -> None:
     """To the byte: no departure is missing from the record, and none hides behind a mode's name."""
-    printed = ablation.with_fields(DEFAULT, departures(DEFAULT), PAPER)
+    printed = ablation.with_fields(DEFAULT, ablation.departures(DEFAULT), PAPER)
     off = arrays(clip, "default", printed)
     assert same(off, arrays(clip, "paper"))
     assert not same(off, arrays(clip, "default"))
 
 
 def test_every_departure_is_a_row_added_and_a_row_left_out(ablation: ModuleType) -> None:
-    names, rows = departures(DEFAULT), ablation.rows()
+    names, rows = ablation.departures(DEFAULT), ablation.rows()
     added, left = rows[: len(names) + 1], rows[len(names) + 1 : -1]
     assert set(names) == set(Method.__struct_fields__) - {"stick_lifting"}
     assert (added[0].method, added[-1].method) == (PAPER, DEFAULT)
     for name, (above, row) in zip(names, pairwise(added), strict=True):
-        assert departures(row.method, above.method) == (name,)
-    assert [departures(row.method, DEFAULT) for row in left] == [(name,) for name in names]
+        assert ablation.departures(row.method, above.method) == (name,)
+    assert [ablation.departures(row.method, DEFAULT) for row in left] == [(name,) for name in names]

@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from common.rig.absurd_rig import refuse_absurd
+from common.rig.absurd_rig import FOCALS, refuse_absurd
 from common.rig.camera import Rig, as_matrix, as_row, paper_rig
 from common.rig.rig_file import CalibrationError
 
@@ -53,4 +53,9 @@ def test_an_absurd_rig_is_named_with_what_to_do(rig: Rig, named: str) -> None:
 
 
 def test_the_papers_rig_is_not_absurd() -> None:
+    """Nor one with the same lenses up to the bounds, and not beyond them."""
     refuse_absurd(GOOD, "calibration.json")
+    for share, step in zip(FOCALS, (1.001, 0.999), strict=True):
+        refuse_absurd(paper_rig((160, 120), (160 * share * step, 200.0), (4.5, 4.5)), "it")
+        with pytest.raises(CalibrationError, match="focal length of cam1"):
+            refuse_absurd(paper_rig((160, 120), (160 * share / step, 200.0), (4.5, 4.5)), "it")

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from filmed_board import Pose, Studio, facing
+from filmed_board import Pose, Studio, facing, middle_of
 
 from common.body.body import Vector
 from common.rig.camera import Camera, project
-from integrator.board.board import BOARDS, Board, corner_places, middle_of
+from integrator.board.board import BOARDS, Board, corner_places
 from integrator.board.board_corners import corners_in
 
 SIZE = (640, 480)

@@ -5,12 +5,12 @@ from collections.abc import Iterator
 import cv2
 import numpy as np
 import pytest
-from filmed_board import FilmedRig, pictures_of, random_rig
+from filmed_board import FilmedRig, middle_of, pictures_of, random_rig
 
 from common.body.body import Vector
 from common.rig.camera import centre, project
 from common.rig.rig_file import CalibrationError
-from integrator.board.board import BOARDS, corner_places, middle_of
+from integrator.board.board import BOARDS, corner_places
 from integrator.board.board_corners import corners_in
 from integrator.board.board_rig import BoardCalibration, calibrated_by_board
 from integrator.board.still_board import Film

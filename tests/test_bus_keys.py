@@ -146,5 +146,10 @@ def test_a_file_that_is_missing_is_named_with_the_cure(keys: Path, name: str) ->
 
 def test_a_plain_bus_is_as_before() -> None:
     place = BusSettings(free_endpoint())
-    with open_hub(place, ROOM), open_client(place, ROOM, SOON_S, "viewer1"):
-        pass
+    with open_hub(place, ROOM) as hub, open_client(place, ROOM, SOON_S, "viewer1") as client:
+        heard, came, until_s = hub.subscribe(Body), None, time.monotonic() + SOON_S
+        while came is None and time.monotonic() < until_s:
+            client.publish(a_body(3, random_joints(1)[0]))
+            came = heard.take(0.1)
+    assert came is not None
+    assert came.frame == 3

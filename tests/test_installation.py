@@ -90,7 +90,7 @@ def test_the_extra_that_a_cure_names_is_not_taken_for_markup() -> None:
     [
         ([Finding("all", True, "")], None),
         ([Finding("page", False, "", needed=False)], None),
-        ([Finding("numpy", False, "")], 1),
+        ([Finding("numpy", False, "")], 2),
     ],
     ids=["sound", "less of it", "broken"],
 )

@@ -2,7 +2,9 @@
 
 import errno
 import os
+import shutil
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -11,7 +13,8 @@ from hypothesis import strategies as st
 
 from common.bus.messages import Body, Posture
 from common.config.settings import Settings
-from tritrack.store.journal import BEFORE, NAME, Head, Journal, put_aside, read_journal
+from tritrack.store.journal import MOST_BODIES, NAME, Head, Journal, parts_of
+from tritrack.store.past_journal import put_aside, read_journal
 from tritrack.store.past_run import open_run
 from tritrack.store.pose_arrays import poses
 from tritrack.store.runs import write_run
@@ -35,7 +38,8 @@ def test_what_is_kept_is_read_at_once_without_an_end(tmp_path: Path) -> None:
     one.keep([body(1)])
     told = read_journal(tmp_path)
     assert told is not None
-    assert (told.head, told.bodies, told.postures[0].name) == (HEAD, [body(0), body(1)], "squat")
+    assert (told.head, [*told.bodies]) == (HEAD, [body(0), body(1)])
+    assert [posture.name for posture in told.postures] == ["squat"]
 
 
 @given(st.integers(0, 400))
@@ -64,14 +68,37 @@ def test_a_byte_that_is_wrong_costs_what_stands_behind_it(tmp_path: Path) -> Non
 
 def test_the_disk_that_it_takes_is_bounded_and_the_newest_stay(tmp_path: Path) -> None:
     most = 2000
-    one = Journal(tmp_path, HEAD, most)
+    one = Journal(tmp_path, HEAD, most, most_parts=1)
     for frame in range(100):
         one.keep([body(frame)])
-    sizes = [(tmp_path / name).stat().st_size for name in (BEFORE, NAME)]
+    sizes = [path.stat().st_size for path in parts_of(tmp_path)]
+    assert len(sizes) == 2
     assert max(sizes) <= most
     kept = frames_in(tmp_path)
     assert kept == list(range(kept[0], 100))
     assert len(kept) > 5
+    assert one.let_go == kept[0]
+
+
+def test_older_parts_go_where_the_results_would_not_find_room(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Written of all of them they need as much again; the part before the newest stays."""
+    scarce = SimpleNamespace(free=2 * 1800 * MOST_BODIES)
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: scarce)
+    one = Journal(tmp_path, HEAD, 2000)
+    for frame in range(100):
+        one.keep([body(frame)])
+    assert len(parts_of(tmp_path)) == 2
+    assert frames_in(tmp_path) == list(range(one.let_go, 100))
+
+
+def test_frames_without_anybody_are_few_bytes_and_whole_rows(tmp_path: Path) -> None:
+    """So a part is full by its rows too."""
+    one = Journal(tmp_path, HEAD)
+    one.keep([body(0)] * MOST_BODIES)
+    one.keep([body(1)])
+    assert [path.name for path in parts_of(tmp_path)] == ["journal.000000.bin", NAME]
 
 
 def test_a_full_disk_is_told_once_and_what_comes_when_it_has_room_is_kept(

@@ -58,7 +58,7 @@ def test_an_expired_certificate_is_named_by_the_doctor_who_then_fails(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     make_keys(tmp_path, [], 0)
-    assert code_of(monkeypatch, "doctor", "--keys", tmp_path, "--json") == 1
+    assert code_of(monkeypatch, "doctor", "--keys", tmp_path, "--json") == 2
     found = {one["what"]: one for one in json.loads(capsys.readouterr().out)}
     assert found["keys: viewer1"]["detail"].startswith("expired on")
     assert "tritrack keys FOLDER --force" in found["keys: viewer1"]["cure"]

@@ -2,8 +2,9 @@
 
 import msgspec
 import pytest
+from ablation import departures
 
-from common.method import DEFAULT, METHODS, PAPER, THESIS, Method, departures
+from common.method import DEFAULT, METHODS, PAPER, THESIS, Method
 
 
 def test_the_paper_departs_in_nothing() -> None:

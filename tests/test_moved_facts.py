@@ -4,7 +4,7 @@ import msgspec
 from test_message_codec import BODY
 
 from common.bus.messages import Body, ViewerNumber
-from tritrack.moved_facts import moved_facts
+from tritrack.moved_facts import Moves, facts_of_moves, moved_facts, step
 
 
 def body(at_s: float, *moved: ViewerNumber) -> Body:
@@ -24,3 +24,11 @@ def test_each_move_is_told_with_its_camera_and_when_it_was_confirmed() -> None:
             {"camera": 2, "at_s": 4.0, "confirmed_s": 5.0},
         ]
     }
+
+
+def test_what_is_told_as_bodies_come_is_what_is_told_of_all() -> None:
+    bodies = [body(0.0, 1), body(1.0, 1, 2), body(2.0), body(3.0, 1)]
+    moves: Moves = ()
+    for each in bodies:
+        moves = step(moves, each)
+    assert facts_of_moves(moves) == moved_facts(bodies)

@@ -14,7 +14,7 @@ from rich.console import Console
 from test_page_server import free_port
 
 from common.bus.control_messages import Answer, Command, Wish
-from common.bus.messages import Body, Status
+from common.bus.messages import Body, Posture, Status
 from common.bus.process import ProcessContext
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
@@ -35,7 +35,7 @@ class Sitting:
         self.bus, self.heard, self.stop = LocalBus(), nothing_heard(), threading.Event()
         self.answers = self.bus.subscribe(Answer)
         self.desk = PageDesk(settings, out, "a run", ProcessContext(True))
-        self.desk.facts = lambda: {"clip": "a clip", "warnings": []}
+        self.desk.facts = lambda _: {"clip": "a clip", "warnings": []}
         self.desk.listen(self.bus)
         self.frames = 0
 
@@ -113,6 +113,24 @@ def test_the_last_seconds_become_a_run_folder_that_every_command_reads(
     assert np.ptp(past.poses["time_s"]) == pytest.approx(LAST_S, abs=1e-6)
     assert past.poses["frame"][-1] == 40 * RATE_HZ - 1
     assert past.summary["clip"] == "a clip"
+
+
+def test_a_saved_part_tells_of_its_own_bodies_and_postures_alone(
+    sitting: Sitting, tmp_path: Path
+) -> None:
+    """And the run's, which are many, are not read for it."""
+    sitting.desk.facts = lambda own: {"posture": own.posture, "moves": len(own.moves)}
+    for at_s, name in ((0.0, "squat"), (40.0, "kick_left_side")):
+        said = Posture(frame=0, captured_s=at_s, clock_s=0.0, name=name)
+        moved = Body(
+            frame=0, captured_s=at_s, clock_s=0.0, status="empty", views="none", moved=(1,)
+        )
+        sitting.heard.postures.add([said])
+        sitting.heard.bodies.add([moved])
+    sitting.ask("save")
+    told = open_run(saved(tmp_path)).summary
+    assert (told["posture"], told["moves"]) == ("kick_left_side", 1)
+    assert told["frames"] == 1
 
 
 def test_a_recording_goes_from_its_first_word_to_its_last(sitting: Sitting, tmp_path: Path) -> None:

@@ -20,6 +20,7 @@ from websockets.exceptions import ConnectionClosedError, InvalidStatus
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
+from animator.page import page_server
 from animator.page.door import Entrance, PageError, cookie_of
 from animator.page.page_server import MOST_ASKED, MOST_BROWSERS, WAITING, PageServer
 
@@ -286,3 +287,26 @@ def test_a_browser_that_does_not_listen_costs_the_others_no_message(server: Page
             heard.append(int(deaf.recv(timeout=10).split()[0]))
     assert len(heard) < last
     assert heard == sorted(heard)
+
+
+@pytest.mark.parametrize("error", [UnicodeError("label too long"), OSError(98, "In use")])
+def test_a_server_that_cannot_open_says_why_whatever_it_is(
+    monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    """Whoever opens a page does not wait for its thread for ever."""
+
+    async def refuse(*_: object, **_more: object) -> None:
+        raise error
+
+    monkeypatch.setattr(page_server, "serve", refuse)
+    with pytest.raises(PageError, match=r"label too long|in use"):
+        PageServer(free_port(), list)
+
+
+def test_a_server_that_never_listens_is_not_waited_for_for_ever(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(page_server, "OPENS_S", 0.05)
+    monkeypatch.setattr(PageServer, "_run", lambda *_: None)
+    with pytest.raises(PageError, match="it does not answer"):
+        PageServer(free_port(), list)

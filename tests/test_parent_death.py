@@ -1,9 +1,11 @@
 """Nothing outlives who started it, however that died: real processes, killed."""
 
+import ctypes
 import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -14,6 +16,8 @@ from common.parent_death import end_with_parent
 from tritrack.live.process_table import Part, end, started
 
 SOON_S = 2.0
+PR_GET_PDEATHSIG = 2
+"""prctl(2)."""
 PATIENCE_S = 20.0
 
 PARENT = """
@@ -80,6 +84,10 @@ def test_a_part_whose_supervisor_lives_lives(tmp_path: Path) -> None:
 
 def test_a_process_that_nobody_started_so_is_left_alone() -> None:
     end_with_parent()
+    told = ctypes.c_int(-1)
+    ctypes.CDLL(None).prctl(PR_GET_PDEATHSIG, ctypes.byref(told))
+    assert told.value == 0
+    assert "parent's death" not in [thread.name for thread in threading.enumerate()]
 
 
 def test_a_child_that_works_ends_with_its_pipe() -> None:

@@ -2,6 +2,7 @@
 
 import time
 
+import msgspec
 import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
@@ -54,6 +55,25 @@ def test_a_track_comes_back_from_its_bytes() -> None:
 
 def test_a_job_of_too_little_is_refused_with_the_reason() -> None:
     assert "in 0 moments only" in solved(FEW).refusal
+
+
+@pytest.mark.parametrize(
+    "error", [OSError(24, "Too many open files"), msgspec.DecodeError("no answer of ours")]
+)
+def test_a_search_that_cannot_be_begun_is_answered(
+    monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    """Its asker would wait for ever, and never ask again."""
+
+    def refuse(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(rig_solver, "Child", refuse)
+    solver = RigSolver()
+    solver.ask(FEW)
+    answer = answer_of(solver, 5.0)
+    assert answer is not None
+    assert str(error) in answer.refusal
 
 
 @pytest.mark.slow

@@ -16,7 +16,8 @@ from common.config.settings import Settings
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.joint_arrays import on_disk
 from tritrack.store.pose_arrays import poses
-from tritrack.store.runs import RunError, write_postures, write_run
+from tritrack.store.runs import RunError, unwritable, write_postures, write_run
+from tritrack.terminal import json_text
 
 N = 69
 CONTRACT = {
@@ -195,6 +196,16 @@ def test_postures_name_frame_time_segment_and_scores(tmp_path: Path) -> None:
     }
 
 
+@pytest.mark.parametrize("frames", [0, 1, 3])
+def test_postures_are_laid_out_as_the_rest_of_a_summary_is(tmp_path: Path, frames: int) -> None:
+    """Though they are written one by one."""
+    said = (Posture(frame=n, captured_s=n / 15, clock_s=0.0, name="squat") for n in range(frames))
+    write_postures(tmp_path, list(said), "squat")
+    text = (tmp_path / "posture.json").read_text()
+    assert len(json.loads(text)["frames"]) == frames
+    assert text == json_text(json.loads(text)) + "\n"
+
+
 def test_a_full_disk_keeps_the_run_that_was_there(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -224,3 +235,12 @@ def test_the_names_are_the_bodys_own(arrays: dict[str, np.ndarray]) -> None:
     assert tuple(arrays["joint_names"])[:15] == JOINT_NAMES
     assert tuple(arrays["joint_names"])[15:] == EXTREMITY_NAMES
     assert tuple(arrays["angle_names"]) == ANGLE_NAMES
+
+
+def test_space_is_what_to_free_where_it_lacks_alone(tmp_path: Path) -> None:
+    lacking = OSError(errno.ENOSPC, "No space left on device")
+    refused = OSError(errno.EACCES, "Permission denied")
+    assert [str(unwritable(tmp_path, error)) for error in (lacking, refused)] == [
+        f"cannot write {tmp_path}: No space left on device; free some space or name another --out",
+        f"cannot write {tmp_path}: Permission denied; name another --out",
+    ]

@@ -17,14 +17,12 @@ from spoiling import copied, cut_off, edit_json, uncalibrated
 from waiting import until
 
 from common.bus.control_messages import Pulse
-from common.bus.messages import Posture
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from tritrack.live.free_ports import free_settings, refuse_held_ports
-from tritrack.live.run_facts import performed
 from tritrack.live.screen import warnings_of
 from tritrack.live.session import LiveRefused, live
-from tritrack.store.journal import read_journal
+from tritrack.store.past_journal import read_journal
 from tritrack.store.past_run import open_run
 
 
@@ -34,17 +32,6 @@ def settings_of(clip: Path) -> Settings:
 
 def pulse(process: str, detail: str) -> Pulse:
     return Pulse(process=process, state="running", detail=detail)
-
-
-def posture(name: str) -> Posture:
-    return Posture(frame=0, captured_s=0.0, clock_s=0.0, name=name)
-
-
-def test_a_performance_is_named_by_the_last_window_that_had_a_name() -> None:
-    assert performed([posture(""), posture("squat"), posture("kick_left_side"), posture("")]) == (
-        "kick_left_side"
-    )
-    assert performed([]) == ""
 
 
 def test_warnings_come_from_viewers_and_integrator_a_line_each() -> None:
@@ -193,7 +180,7 @@ def test_what_was_measured_outlives_a_run_that_is_killed(clip: Path, tmp_path: P
 def measured(out: Path) -> int:
     """Bodies of a run that goes on."""
     told = read_journal(out)
-    return 0 if told is None else len(told.bodies)
+    return 0 if told is None else len([*told.bodies])
 
 
 def lives(child: psutil.Process) -> bool:

@@ -69,7 +69,12 @@ def test_no_bytes_do_more_than_to_be_refused(said: bytes) -> None:
 
 
 def test_points_to_the_very_border_are_taken() -> None:
+    """And not a hair farther."""
     refuse_sheet(Sheet((POLE,), {"pole_height_m": None}), POLES)
+    for place in ((-0.01, 480.0), (0.0, 480.01)):
+        beyond = msgspec.structs.replace(POLE, px=(place, None))
+        with pytest.raises(SheetError, match="point 1 is outside"):
+            refuse_sheet(Sheet((beyond,), {"pole_height_m": None}), POLES)
 
 
 @pytest.mark.parametrize(

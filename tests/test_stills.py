@@ -16,6 +16,7 @@ from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
 from common.video.clip_sources import ClipError
 from common.video.decoding import Decoded, DecoderDied, Image, Size, Source
+from tritrack.marking import stills
 from tritrack.marking.stills import MOST_STILLS, Album, Running, common_size, open_album
 
 QUIET = Console(quiet=True)
@@ -128,5 +129,40 @@ def test_a_camera_that_is_pulled_out_is_told(camera: Camera) -> None:
     while running.fault is None and time.monotonic() < until_s:
         time.sleep(0.01)
     with pytest.raises(DecoderDied, match="camera 0 broke the decoder"):
+        Album((64, 48), {1: running}).refuse_fault()
+    running.close()
+
+
+class Faulty:
+    """A reader that breaks in a way that nobody thought of."""
+
+    def frames(self, source: Source, size: Size) -> Generator[Decoded, None, None]:
+        raise ZeroDivisionError(f"{source} {size}")
+        yield
+
+    def stop(self) -> None:
+        """Nothing goes on."""
+
+
+def test_any_error_of_a_cameras_thread_is_kept_for_who_waits_for_its_picture() -> None:
+    """Who opens the camera does not wait for ever."""
+    opened: list[Running] = []
+    waiting = threading.Thread(
+        target=lambda: opened.append(Running(Faulty(), 0, (64, 48))), daemon=True
+    )
+    waiting.start()
+    waiting.join(10.0)
+    assert not waiting.is_alive()
+    with pytest.raises(ZeroDivisionError):
+        Album((64, 48), {1: opened[0]}).refuse_fault()
+
+
+def test_a_camera_that_gives_no_picture_is_not_waited_for_for_ever(
+    camera: Camera, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(stills, "FIRST_S", 0.05)
+    monkeypatch.setattr(camera, "frames", lambda *_: camera.stopped.wait(10.0) and ())
+    running = Running(camera, 0, (64, 48))
+    with pytest.raises(DecoderDied, match="it gave no picture for"):
         Album((64, 48), {1: running}).refuse_fault()
     running.close()

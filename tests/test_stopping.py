@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -50,3 +51,52 @@ def test_a_program_that_imports_the_command_keeps_its_own_signals() -> None:
     before = signal.getsignal(signal.SIGTERM)
     importlib.import_module("tritrack.__main__")
     assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_signals_are_heeded_before_anything_that_takes_a_while_is_imported() -> None:
+    """What Python brings itself aside: a tenth of a second after its start Ctrl-C is told well."""
+    code = (
+        "import sys; sys.argv = ['tritrack']; there = set(sys.modules)\n"
+        "import tritrack.stopping as it; it.heed_at_once(); print(*{*sys.modules} - there)\n"
+    )
+    run = subprocess.run(
+        [sys.executable, "-S", "-c", code], capture_output=True, text=True, check=False
+    )
+    slow = {"multiprocessing", "pathlib", "logging", "importlib.metadata", "socket"}
+    assert not slow & set(run.stdout.split()), run.stderr
+    assert "tritrack.stopping" in run.stdout, run.stderr
+
+
+def test_a_process_of_a_run_that_still_imports_the_command_leaves_signals_to_its_supervisor() -> (
+    None
+):
+    """As `multiprocessing.spawn` has it: no parent is known before the command is imported."""
+    code = (
+        "import sys, signal, multiprocessing\n"
+        "before = signal.getsignal(signal.SIGTERM)\n"
+        "sys.argv = ['bin/tritrack']; multiprocessing.current_process()._inheriting = True\n"
+        "from tritrack.stopping import heed_at_once; heed_at_once()\n"
+        "print(signal.getsignal(signal.SIGTERM) is before)\n"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert run.stdout == "True\n", run.stderr
+
+
+@pytest.mark.slow
+def test_a_live_run_that_is_refused_says_so_in_one_line(tmp_path: Path) -> None:
+    """Its page's process, which is ended as it imports, has no word of its own."""
+    settings = tmp_path / "settings.toml"
+    settings.write_text("")
+    command = tmp_path / "tritrack"
+    command.write_text(
+        "from tritrack.__main__ import main\nif __name__ == '__main__':\n    main()\n"
+    )
+    for _ in range(3):
+        run = subprocess.run(
+            [sys.executable, command, "live", settings, "--out", tmp_path / "run"],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert run.returncode == 2
+        assert len(run.stderr.splitlines()) == 1, run.stderr

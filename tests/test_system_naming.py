@@ -9,7 +9,7 @@ import pytest
 from common.config.settings import Settings
 from recognizer.__main__ import SHIPPED, init, step
 from recognizer.model_file import load
-from tritrack.live.run_facts import performed
+from tritrack.live.recorded import SoFar
 from tritrack.offline.lockstep import Decoders, track_clip
 
 
@@ -21,7 +21,7 @@ def named(clip: Path) -> str:
     for body in bodies:
         state, posture = step(state, body)
         postures.append(posture)
-    return performed(postures)
+    return SoFar(postures=postures).posture
 
 
 @pytest.fixture(scope="module")

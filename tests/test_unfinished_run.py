@@ -7,7 +7,8 @@ import pytest
 
 from common.bus.messages import Body
 from common.config.settings import Settings
-from tritrack.store.journal import Head, read_journal
+from tritrack.store.journal import Head
+from tritrack.store.past_journal import read_journal
 from tritrack.unfinished.unfinished_run import BODIES, CannotResume, UnfinishedRun, saved_in
 
 HEAD = Head(settings=Settings(), facts={"clip": "walk"})

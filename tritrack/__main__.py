@@ -1,19 +1,20 @@
 """The front door: every command of tritrack."""
 
-import logging
 import os
-import sys
-from importlib.metadata import version
-from pathlib import Path
-from typing import Annotated, Final, Literal
+
+from tritrack.stopping import STOPS, WORD, Terminated, code_of_stop, heed_at_once, heed_in_order
+
+heed_at_once()
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
-from tritrack.stopping import STOPS, WORD, Terminated, code_of_stop, heed_at_once, heed_in_order
-
-heed_at_once()
+import logging
+import sys
+from importlib.metadata import version
+from pathlib import Path
+from typing import Annotated, Final, Literal
 
 import typer
 
@@ -113,7 +114,7 @@ def doctor(
     else:
         results.print(table_of(findings))
     if any(not finding.ok and finding.needed for finding in findings):
-        raise typer.Exit(1)
+        raise typer.Exit(2)
 
 
 def bench(

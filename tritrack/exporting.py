@@ -9,7 +9,7 @@ from typing import Any, Final, Literal, NamedTuple
 import numpy as np
 
 from animator.exchange import LibraryMissing
-from common.atomic_file import replacing
+from common.atomic_file import replacing, unwritten
 from common.body.body import ANGLE_NAMES, JOINT_NAMES
 from common.body.extremities import EXTREMITY_NAMES
 from tritrack.store.joint_arrays import all_joints_m
@@ -78,10 +78,7 @@ def export_run(folder: Path, to: Format, out: Path | None, scale: Scale = "m") -
             with replacing(place) as new:
                 new.write_bytes(content)
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise ExportError(
-            f"cannot write {path}: {reason}; free some space or name another --out"
-        ) from error
+        raise ExportError(unwritten(path, error, "name another --out")) from error
     return {"file": str(path), "files": [str(place) for place in files], **written.facts}
 
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+from common.atomic_file import unwritten
 from common.config.picture_size import size_of
 from common.config.settings_error import SettingsError
 from synth.motion.motions import POSTURES
@@ -38,10 +39,7 @@ def make_clips(
                 lambda done, due: progress.update(task, completed=done, total=due),
             )
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise SynthError(
-            f"cannot write {out}: {reason}; free some space or name another --out"
-        ) from error
+        raise SynthError(unwritten(out, error, "name another --out")) from error
 
 
 def _refuse_postures(motion: str, postures: tuple[str, ...]) -> None:

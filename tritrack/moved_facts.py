@@ -1,23 +1,48 @@
 """What the summary of a run tells of cameras that were moved in it."""
 
 from collections.abc import Iterable
-from typing import Any
+from functools import reduce
+from typing import Any, NamedTuple
 
 from common.bus.messages import Body
 
 
-def moved_facts(bodies: Iterable[Body]) -> dict[str, Any]:
+class Move(NamedTuple):
+    """A camera was moved."""
+
+    camera: int
+    at_s: float
+    confirmed_s: float | None = None
+    """When the person had confirmed its new place; None where nobody did."""
+
+
+Moves = tuple[Move, ...]
+
+
+def step(moves: Moves, body: Body) -> Moves:
+    """What is told after one body more."""
+    waiting = {move.camera for move in moves if move.confirmed_s is None}
+    if not (waiting or body.moved):
+        return moves
+    confirmed = waiting - {*body.moved}
+    told = (
+        move._replace(confirmed_s=body.captured_s)
+        if move.camera in confirmed and move.confirmed_s is None
+        else move
+        for move in moves
+    )
+    return (*told, *(Move(n, body.captured_s) for n in body.moved if n not in waiting))
+
+
+def facts_of_moves(moves: Moves) -> dict[str, Any]:
     """Which cameras were moved and when, and when the person had confirmed their new place.
 
-    `moved_cameras` is missing where none was; `confirmed_s` is None where nobody confirmed it.
+    `moved_cameras` is missing where none was.
     """
-    told: list[dict[str, Any]] = []
-    for body in bodies:
-        waiting = {each["camera"]: each for each in told if each["confirmed_s"] is None}
-        for number in body.moved:
-            if number not in waiting:
-                told.append({"camera": number, "at_s": body.captured_s, "confirmed_s": None})
-        for number, each in waiting.items():
-            if number not in body.moved:
-                each["confirmed_s"] = body.captured_s
-    return {"moved_cameras": told} if told else {}
+    return {"moved_cameras": [move._asdict() for move in moves]} if moves else {}
+
+
+def moved_facts(bodies: Iterable[Body]) -> dict[str, Any]:
+    """The same of all bodies of a run."""
+    start: Moves = ()
+    return facts_of_moves(reduce(step, bodies, start))

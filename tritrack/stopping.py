@@ -1,10 +1,8 @@
 """What Ctrl-C and SIGTERM do to a command that is not ready for them: a word, a code, an end."""
 
-import multiprocessing
 import os
 import signal
 import sys
-from pathlib import Path
 from types import FrameType
 from typing import Final, NoReturn
 
@@ -24,11 +22,13 @@ def heed_at_once() -> None:
     """While a command's own modules are imported, a signal ends it with its word and code.
 
     A process of a run imports the command too: its supervisor tells it how to end. So may another
-    program: its signals are its own.
+    program: its signals are its own. Called before anything that takes a while is imported.
     """
-    called = Path(sys.argv[0])
-    is_command = called.name == "tritrack" or called.parts[-2:] == ("tritrack", "__main__.py")
-    if is_command and multiprocessing.parent_process() is None:
+    folder, name = os.path.split(sys.argv[0])
+    is_command = name == "tritrack" or (
+        name == "__main__.py" and os.path.basename(folder) == "tritrack"
+    )
+    if is_command and not _is_started_by_us():
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, _leave)
 
@@ -43,6 +43,16 @@ def code_of_stop(error: BaseException) -> int:
     """The exit code of a command that a signal ended, as shells count it."""
     number = signal.SIGTERM if isinstance(error, Terminated) else signal.SIGINT
     return BY_SIGNAL + number
+
+
+def _is_started_by_us() -> bool:
+    """Whether multiprocessing started this process: it is imported then, and while that process
+    still imports the command it says so in `_inheriting` alone."""
+    started = sys.modules.get("multiprocessing.process")
+    return started is not None and (
+        started.parent_process() is not None
+        or getattr(started.current_process(), "_inheriting", False)
+    )
 
 
 def _leave(number: int, _frame: FrameType | None) -> NoReturn:

@@ -6,6 +6,7 @@ import mimetypes
 import queue
 import threading
 from collections.abc import Callable
+from concurrent.futures import Future
 from contextlib import suppress
 from functools import cache
 from http import HTTPStatus
@@ -37,6 +38,8 @@ MOST_SAID_BYTES: Final = 1000
 """A browser says short things alone, where a page does not take more."""
 MOST_ASKED: Final = 16
 """Of these, so many wait to be heard."""
+OPENS_S: Final = 20.0
+"""A server that does not listen by then never will, as where a name is looked up in vain."""
 MOST_BROWSERS: Final = 50
 POLICY: Final = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
@@ -81,7 +84,8 @@ class PageServer:
         most_said_bytes: A browser that says more at once is left.
 
     Raises:
-        PageError: When the port is 0, taken or not allowed.
+        PageError: When the port is 0, taken or not allowed, the host's name is none, or the server
+            does not listen within OPENS_S.
     """
 
     def __init__(
@@ -102,18 +106,17 @@ class PageServer:
         self._entrance, self._port = entrance, port
         self._file_of, self._most_said_bytes = file_of, most_said_bytes
         self._browsers: dict[ServerConnection, asyncio.Queue[bytes]] = {}
-        opened: queue.Queue[_Door | OSError] = queue.Queue(1)
+        opened: Future[_Door] = Future()
         self._log = logging.getLogger(f"{__name__}.socket")
         self._log.addFilter(is_of_ours)
         self._log.setLevel(logging.WARNING)  # it would tell of every file that it serves
-        self._thread = threading.Thread(
-            target=lambda: asyncio.run(self._serve(opened)), daemon=True
-        )
+        self._thread = threading.Thread(target=lambda: self._run(opened), name="page", daemon=True)
         self._thread.start()
-        got = opened.get()
-        if isinstance(got, OSError):
-            raise PageError(unusable(port, str(got.strerror).lower(), entrance.host))
-        self._door = got
+        try:
+            self._door = opened.result(OPENS_S)
+        except (OSError, UnicodeError) as error:
+            reason = getattr(error, "strerror", None) or str(error) or "it does not answer"
+            raise PageError(unusable(port, reason.lower(), entrance.host)) from error
 
     @property
     def watched(self) -> bool:
@@ -131,23 +134,28 @@ class PageServer:
             self._door.loop.call_soon_threadsafe(self._door.over.set)
         self._thread.join()
 
-    async def _serve(self, opened: "queue.Queue[_Door | OSError]") -> None:
-        over = asyncio.Event()
+    def _run(self, opened: "Future[_Door]") -> None:
+        """The server's thread; whatever keeps it from opening is for who waits."""
         try:
-            server = await serve(
-                self._attend,
-                self._entrance.host,
-                self._port,
-                process_request=self._request,
-                max_size=self._most_said_bytes,
-                compression=None,
-                server_header=None,
-                logger=self._log,
-            )
-        except OSError as error:
-            opened.put(error)
-            return
-        opened.put(_Door(asyncio.get_running_loop(), server, over))
+            asyncio.run(self._serve(opened))
+        except Exception as error:
+            if opened.done():
+                raise
+            opened.set_exception(error)
+
+    async def _serve(self, opened: "Future[_Door]") -> None:
+        over = asyncio.Event()
+        server = await serve(
+            self._attend,
+            self._entrance.host,
+            self._port,
+            process_request=self._request,
+            max_size=self._most_said_bytes,
+            compression=None,
+            server_header=None,
+            logger=self._log,
+        )
+        opened.set_result(_Door(asyncio.get_running_loop(), server, over))
         async with server:
             await over.wait()
 

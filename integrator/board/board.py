@@ -71,11 +71,6 @@ def corner_places(board: Board) -> Vector:
     return np.asarray(places * board.square_m, np.float64)
 
 
-def middle_of(board: Board) -> Vector:
-    """(3,) metres, in the board's axes."""
-    return np.array([board.columns, board.rows, 0.0]) * board.square_m / 2
-
-
 @lru_cache(maxsize=4)
 def charuco(board: Board) -> cv2.aruco.CharucoBoard:
     """OpenCV's board, with squares of one unit."""

@@ -26,7 +26,7 @@ class RigSolver:
         self._child: Child | None = None
 
     def ask(self, job: Job) -> None:
-        """Begin a job; not before the one before it is answered."""
+        """Begin a job; not before the one before it is answered. It is, whatever happens."""
         threading.Thread(target=self._do, args=(job,), name="rig", daemon=True).start()
 
     def answer(self) -> Solved | None:
@@ -41,15 +41,19 @@ class RigSolver:
             self._child.kill()
 
     def _do(self, job: Job) -> None:
-        with contextlib.closing(Child(MODULE, STALL_S)) as child:
-            self._child = child
-            try:
+        answer = Solved(refusal="the search for it ended without an answer")
+        try:
+            with contextlib.closing(Child(MODULE, STALL_S)) as child:
+                self._child = child
                 child.ask(base64.b64encode(msgspec.msgpack.encode(job)))
                 answer = _answer(child)
-            except Broken as error:
-                answer = Solved(refusal=f"the process that looks for it is gone: {error}")
+        except Broken as error:
+            answer = Solved(refusal=f"the process that looks for it is gone: {error}")
+        except (OSError, msgspec.DecodeError) as error:
+            answer = Solved(refusal=f"the process that looks for it cannot be asked: {error}")
+        finally:
             self._child = None
-        self._solved.put(answer)
+            self._solved.put(answer)
 
 
 def _answer(child: Child) -> Solved:

@@ -206,16 +206,16 @@ def _look(sex: Literal["m", "f"], rng: np.random.Generator) -> Look:
     sleeves: tuple[Sleeve, ...] = ("short", "short", "long", "none" if sex == "f" else "long")
     cuts: tuple[Hair, ...] = ("bob", "tail", "short") if sex == "f" else ("short", "short", "bald")
     return Look(
-        sleeve=_one_of(rng, sleeves),
+        sleeve=one_of(rng, sleeves),
         shorts=bool(rng.random() < 0.25),
-        hair=_one_of(rng, cuts),
-        pattern=_one_of(rng, PATTERNS),
+        hair=one_of(rng, cuts),
+        pattern=one_of(rng, PATTERNS),
         pitch_m=float(rng.uniform(0.02, 0.05)),
         loose_top_m=float(rng.uniform(0.008, 0.024)),
         loose_legs_m=float(rng.uniform(0.006, 0.026)),
         hem_m=float(rng.uniform(-0.03, 0.1)),
-        skin=_one_of(rng, _SKINS),
-        hair_colour=_one_of(rng, _HAIRS),
+        skin=one_of(rng, _SKINS),
+        hair_colour=one_of(rng, _HAIRS),
         shirt=shirt,
         shirt_second=_dye(rng),
         trousers=_dye(rng, dark=0.6),
@@ -223,7 +223,8 @@ def _look(sex: Literal["m", "f"], rng: np.random.Generator) -> Look:
     )
 
 
-def _one_of(rng: np.random.Generator, choices: tuple[Choice, ...]) -> Choice:
+def one_of(rng: np.random.Generator, choices: tuple[Choice, ...]) -> Choice:
+    """Any of some, all alike."""
     return choices[int(rng.integers(len(choices)))]
 
 

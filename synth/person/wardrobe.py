@@ -1,12 +1,10 @@
 """Clothes of all cuts and colours: what people wear whom a network has to know by their picture."""
 
-from typing import Final, TypeVar
+from typing import Final
 
 import numpy as np
 
-from synth.person.people import PATTERNS, Colour, Hair, Look, Person, Sleeve
-
-Choice = TypeVar("Choice")
+from synth.person.people import PATTERNS, Colour, Hair, Look, Person, Sleeve, one_of
 
 LONG_SHARE: Final = 0.16
 """Of the people: how many wear something that hangs over the thighs, a skirt or a coat."""
@@ -36,10 +34,10 @@ def dressed(someone: Person, rng: np.random.Generator) -> Person:
     shirt = _dye(rng)
     skin = _between(*SKINS, rng)
     look = Look(
-        sleeve=_one_of(rng, SLEEVES),
+        sleeve=one_of(rng, SLEEVES),
         shorts=bool(rng.random() < 0.3),
-        hair=_one_of(rng, HAIRS),
-        pattern=_one_of(rng, PATTERNS),
+        hair=one_of(rng, HAIRS),
+        pattern=one_of(rng, PATTERNS),
         pitch_m=float(rng.uniform(0.015, 0.09)),
         loose_top_m=float(rng.uniform(*LOOSE_M)),
         loose_legs_m=float(rng.uniform(*LOOSE_M)),
@@ -69,7 +67,3 @@ def _between(light: Colour, dark: Colour, rng: np.random.Generator) -> Colour:
 def _colour(channels: np.ndarray) -> Colour:
     blue, green, red = (int(value) for value in np.clip(channels, 0, 255))
     return (blue, green, red)
-
-
-def _one_of(rng: np.random.Generator, choices: tuple[Choice, ...]) -> Choice:
-    return choices[int(rng.integers(len(choices)))]

@@ -116,7 +116,7 @@ def _runs_of(
         stand = {name: runs / name for name in clips if _is_run(runs / name)} | stand
     missing = [path for name, path in clips.items() if name not in stand]
     if missing:
-        track_all(missing, into, mode, (1, 2), size, console)
+        track_all(missing, into, mode, (1, 2), size, console, force=True)
     return {
         name: (stand.get(name, into / name), clips.get(name)) for name in sorted({*stand, *clips})
     }

@@ -13,6 +13,7 @@ from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import (
     MODES,
     WORKED_ON,
+    Force,
     Out,
     Record,
     Resume,
@@ -46,6 +47,7 @@ def track(
     ] = False,
     record: Record = False,
     resume: Resume = False,
+    force: Force = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Track recorded clips, as live but as fast as it goes.
@@ -71,6 +73,7 @@ def track(
         trusted=trust_calibration,
         record=record,
         resume=resume,
+        force=force,
     )
     tell(facts, json_wanted, line_of_runs(facts["clips"], out))
     refuse_unfollowed(facts["clips"])
@@ -137,6 +140,7 @@ def single(
         Path | None, typer.Option(help="A picture of the scene without anybody, if there is one.")
     ] = None,
     resume: Resume = False,
+    force: Force = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Animate a body from any video of one camera.
@@ -152,7 +156,7 @@ def single(
     from tritrack.overrides import overridden
     from tritrack.single.single import Given, single_all
 
-    given = Given(notes, background, resume)
+    given = Given(notes, background, resume, force)
     facts = single_all(videos, out, given, overridden(Settings(), mode, size), console)
     if json_wanted:
         print(json_text(facts))

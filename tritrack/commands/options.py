@@ -109,6 +109,9 @@ Record = Annotated[
 Resume = Annotated[
     bool, typer.Option("--resume", help="Go on with what was cut short; leave out what is done.")
 ]
+Force = Annotated[
+    bool, typer.Option("--force", help="Write over a run of another clip or command.")
+]
 Size = Annotated[
     str | None,
     typer.Option(help=f"{WORKED_ON} Else the settings' size.", callback=size_given),

@@ -15,7 +15,7 @@ from common.bus.process import READY_S
 from common.config.settings import Settings
 from tritrack.live.page_desk import PageDesk
 from tritrack.live.process_table import Part
-from tritrack.live.recorded import MessageLog
+from tritrack.live.recorded import MessageLog, SoFar
 from tritrack.live.supervise import Watched, watched
 from tritrack.store.journal import Journal
 from tritrack.store.recording import Keep
@@ -38,6 +38,7 @@ class Heard(NamedTuple):
     cameras: list[Cameras]
     notes: list[str]
     """What the supervisor says itself: which part died, and what becomes of it."""
+    so_far: SoFar
     keep: Keep | None = None
     """Takes every report, body, posture and rig, where the run is recorded."""
     journal: Journal | None = None
@@ -46,7 +47,7 @@ class Heard(NamedTuple):
 
 def nothing_heard() -> Heard:
     """Of a run that begins."""
-    return Heard(MessageLog(Body), MessageLog(Posture), {}, [], [])
+    return Heard(MessageLog(Body), MessageLog(Posture), {}, [], [], SoFar())
 
 
 def run(
@@ -165,6 +166,7 @@ class Subscriber:
         self._heard.bodies.add(bodies)
         self._heard.postures.add(postures)
         self._heard.cameras.extend(cameras)
+        self._heard.so_far.take(bodies, postures)
         if self._heard.journal is not None:
             self._heard.journal.keep([*cameras, *bodies, *postures])
             self._note(self._heard.journal.odd)

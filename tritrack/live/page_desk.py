@@ -15,7 +15,7 @@ from common.bus.inbox import Inbox
 from common.bus.process import ProcessContext
 from common.config.settings import Settings
 from tritrack.live.process_table import Part, page_part
-from tritrack.live.recorded import MessageLog
+from tritrack.live.recorded import MessageLog, SoFar
 from tritrack.live.supervise import Watched
 from tritrack.live.zygote import SPAWN, Zygote
 from tritrack.store.runs import RunError, write_postures, write_run
@@ -29,7 +29,7 @@ FOLLOWED: Final = ("tracking", "predicted")
 GONE_S: Final = 2.0
 """A page at which nobody looks has closed by then."""
 
-Facts = Callable[[], dict[str, Any]]
+Facts = Callable[[SoFar], dict[str, Any]]
 
 
 class PageDesk:
@@ -49,7 +49,7 @@ class PageDesk:
         """
         self.stopped = False
         """The run was ended at the page."""
-        self.facts: Facts = dict
+        self.facts: Facts = lambda _: {}
         """Gives what the summary of a saved part tells."""
         self.watched: Watched | None = None
         self._settings, self._out = settings, out
@@ -164,8 +164,9 @@ class PageDesk:
         last_s = bodies[-1].captured_s
         folder = self._out / SAVED / f"{name}_to_{last_s:.1f}_s"
         try:
-            write_run(folder, bodies, self._settings, self.facts())
-            write_postures(folder, postures, postures[-1].name if postures else "")
+            own = SoFar(bodies, postures)
+            write_run(folder, bodies, self._settings, self.facts(own))
+            write_postures(folder, postures, own.posture)
         except RunError as error:
             self._say(what, False, str(error)[:400])
             return

@@ -1,11 +1,16 @@
-"""What a live run said, kept for what is written at its end: the newest, as bytes."""
+"""What a live run said, kept for what is written at its end: the newest as bytes, and the rest as
+its journal has it."""
 
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from itertools import islice, takewhile
-from typing import Final, Generic
+from typing import Final, Generic, TypeVar
 
 from common.bus.message_codec import Said, decode, encode
+from common.bus.messages import Body, Posture
+from tritrack.moved_facts import Moves, step
+
+Told = TypeVar("Told", bound=Body | Posture)
 
 MOST_KEPT: Final = 54_000
 """An hour at 15 frames a second. A body takes 1.7 kB so, and five times as much as an object."""
@@ -27,11 +32,46 @@ class MessageLog(Generic[Said]):
             self.let_go += len(self._packed) == self._packed.maxlen
             self._packed.append(encode(message))
 
-    def all(self) -> list[Said]:
+    def __iter__(self) -> Iterator[Said]:
         """What is kept, oldest first."""
-        return [decode(packed, self._kind) for packed in self._packed]
+        return (decode(packed, self._kind) for packed in self._packed)
 
     def newest(self, wanted: Callable[[Said], bool], most: int = MOST_KEPT) -> list[Said]:
         """The newest ones that are wanted, oldest first, up to the first that is not."""
         messages = (decode(packed, self._kind) for packed in islice(reversed(self._packed), most))
         return list(takewhile(wanted, messages))[::-1]
+
+
+class WholeRun(Generic[Told]):
+    """All that was said of one kind: what gave way in memory is read from the journal, each time
+    that it is gone through."""
+
+    def __init__(self, newest: MessageLog[Told], written: Iterable[Told]) -> None:
+        """Of what memory holds and of what the journal does."""
+        self._newest, self._written = newest, written
+
+    def __iter__(self) -> Iterator[Told]:
+        """Oldest first."""
+        first = next(iter(self._newest), None)
+        if first is not None and self._newest.let_go:
+            yield from takewhile(lambda one: one.captured_s < first.captured_s, self._written)
+        yield from self._newest
+
+
+class SoFar:
+    """What a summary tells of bodies and postures, kept as they come."""
+
+    def __init__(self, bodies: Iterable[Body] = (), postures: Iterable[Posture] = ()) -> None:
+        """Of these, and of what comes."""
+        self.moves: Moves = ()
+        """Of cameras."""
+        self.posture = ""
+        """Of a whole clip: the last name given, by a window that saw most of it."""
+        self.take(bodies, postures)
+
+    def take(self, bodies: Iterable[Body], postures: Iterable[Posture]) -> None:
+        """These too."""
+        for body in bodies:
+            self.moves = step(self.moves, body)
+        for posture in postures:
+            self.posture = posture.name or self.posture

@@ -4,40 +4,31 @@ from typing import Any
 
 import msgspec
 
-from common.bus.messages import Posture
 from common.video.clip_facts import Clip
 from tritrack.live.launch import Heard
+from tritrack.live.recorded import SoFar
 from tritrack.live.screen import warnings_of
-from tritrack.moved_facts import moved_facts
+from tritrack.moved_facts import facts_of_moves
 
 
-def performed(postures: list[Posture]) -> str:
-    """The posture of a whole clip: the last name given, by a window that saw most of it."""
-    return next((posture.name for posture in reversed(postures) if posture.name), "")
-
-
-def facts_of(heard: Heard, clip: Clip, seconds: float) -> dict[str, Any]:
+def facts_of(heard: Heard, clip: Clip, seconds: float, so_far: SoFar) -> dict[str, Any]:
     """What the summary tells of a run, so far.
 
     Args:
         heard: What its parts said.
         clip: What they looked at.
         seconds: For how long.
+        so_far: Of the bodies and postures that the summary is of: all, or those of a part.
     """
     source = heard.cameras[-1].scale_source if heard.cameras else None
     warnings = [*clip.warnings, *warnings_of(heard.pulses), *heard.notes]
-    if heard.bodies.let_go:
-        warnings.append(
-            f"the first {heard.bodies.let_go} frames of a long run are not in poses.npz: write "
-            "shorter runs, or follow recordings with: tritrack track"
-        )
     return {
         **facts_of_clip(clip),
         "seconds": {"all": round(seconds, 3)},
         "scale_source": source,
         **_calibration(heard),
-        **moved_facts(heard.bodies.all()),
-        "posture": performed(heard.postures.all()),
+        **facts_of_moves(so_far.moves),
+        "posture": so_far.posture,
         "warnings": list(dict.fromkeys(warnings)),
         "processes": {
             name: {
@@ -48,6 +39,17 @@ def facts_of(heard: Heard, clip: Clip, seconds: float) -> dict[str, Any]:
             for name, pulse in sorted(heard.pulses.items())
         },
     }
+
+
+def note_lost(heard: Heard) -> None:
+    """Say how many of the first frames of a very long run are in no file."""
+    given_up = 0 if heard.journal is None else heard.journal.let_go
+    lost = min(given_up, heard.bodies.let_go)
+    if lost:
+        heard.notes.append(
+            f"the first {lost} frames of a long run are not in poses.npz: write shorter runs, "
+            "or follow recordings with: tritrack track"
+        )
 
 
 def facts_of_clip(clip: Clip) -> dict[str, Any]:

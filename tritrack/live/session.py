@@ -15,6 +15,7 @@ from typing import Any, Final, NamedTuple
 import msgspec
 from rich.console import Console
 
+from common.bus.messages import Body, Posture
 from common.bus.process import ProcessContext, logged
 from common.config.settings import Settings
 from common.method import METHODS
@@ -24,11 +25,13 @@ from tritrack.live.free_ports import own_session, refuse_held_ports, with_free_e
 from tritrack.live.launch import Heard, nothing_heard, run
 from tritrack.live.page_desk import SAVED, PageDesk
 from tritrack.live.process_table import inherited, live_parts
-from tritrack.live.run_facts import facts_of, facts_of_clip
+from tritrack.live.recorded import SoFar, WholeRun
+from tritrack.live.run_facts import facts_of, facts_of_clip, note_lost
 from tritrack.live.screen import Screen
 from tritrack.live.zygote import Zygote
 from tritrack.store.journal import Head as JournalHead
-from tritrack.store.journal import Journal, put_aside
+from tritrack.store.journal import Journal
+from tritrack.store.past_journal import Journalled, put_aside
 from tritrack.store.recording import Keep, refuse_without_library
 from tritrack.store.runs import write_postures, write_run
 
@@ -84,8 +87,8 @@ def live(
         clip = _opened_or_nothing(settings, name, out, new=new)
         screen = Screen(clip, settings, console, lambda: desk.address)
 
-        def facts() -> dict[str, Any]:
-            return facts_of(heard, clip, time.monotonic() - began)
+        def facts(so_far: SoFar) -> dict[str, Any]:
+            return facts_of(heard, clip, time.monotonic() - began, so_far)
 
         desk.facts = facts
         journal = _journal(out, clip, settings, heard.notes)
@@ -98,9 +101,12 @@ def live(
                 tell,
             )
         finally:
-            told = facts()
-            write_run(out, heard.bodies.all(), settings, told)
-            write_postures(out, heard.postures.all(), told["posture"])
+            note_lost(heard)
+            told = facts(heard.so_far)
+            bodies = WholeRun(heard.bodies, Journalled(out, Body))
+            write_run(out, bodies, settings, told)
+            postures = WholeRun(heard.postures, Journalled(out, Posture))
+            write_postures(out, postures, told["posture"])
             journal.remove()
         _show_end(desk, {**told, **_counts(out)}, stop, console)
     return told

@@ -24,7 +24,6 @@ from common.video.decoding import (
     Image,
     Size,
     Source,
-    Undecodable,
     Wanted,
 )
 from tritrack.terminal import bar
@@ -34,6 +33,8 @@ MOST_STILLS: Final = 100
 BOUND: Final = (1920, 1080)
 """Pictures are shown, and their points told, no larger."""
 JPEG_QUALITY: Final = 92
+FIRST_S: Final = 60.0
+"""A camera's first picture is waited for no longer; a decoder that is stuck is told before."""
 
 
 class Reader(Protocol):
@@ -69,7 +70,8 @@ class Running:
         """Why it gives no more pictures."""
         self._thread = threading.Thread(target=self._read, args=(source, size), daemon=True)
         self._thread.start()
-        self._came.wait()
+        if not self._came.wait(FIRST_S):
+            self.fault = DecoderDied(source, 0, f"it gave no picture for {FIRST_S:g} s")
 
     def jpeg(self, place: int) -> bytes | None:
         """The newest picture, which is all that there is."""
@@ -87,9 +89,10 @@ class Running:
             for decoded in self._reader.frames(source, size):
                 self._newest = decoded.picture
                 self._came.set()
-        except (Undecodable, DecoderDied) as error:
+        except Exception as error:
             self.fault = None if self._closed.is_set() else error
-        self._came.set()
+        finally:
+            self._came.set()
 
 
 class Album(NamedTuple):
@@ -112,7 +115,7 @@ class Album(NamedTuple):
         """See that every camera still runs.
 
         Raises:
-            Undecodable, DecoderDied: When one does not.
+            Undecodable, DecoderDied: When one does not; whatever else ended its thread.
         """
         for view in self.views.values():
             if isinstance(view, Running) and view.fault is not None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import msgspec
 from rich.console import Console
@@ -13,19 +13,23 @@ from common.config.settings import Settings
 from common.config.settings_error import SettingsError
 from common.method import Mode
 from common.video.clip_facts import Clip, both_cameras
-from common.video.clip_sources import ClipError
+from common.video.clip_sources import ClipError, footage_of
 from common.video.decoding import DecoderDied, Undecodable
 from integrator.frame_numbers import frame_times
 from tritrack.offline.lockstep import Decoders, Tracked, measured_before, track_clip
 from tritrack.offline.performance import Watch
 from tritrack.overrides import overridden
 from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_files
+from tritrack.store.other_run import OtherRun, RunOf, refuse_other, run_of
 from tritrack.store.recording import Head, recording_to, refuse_without_library
 from tritrack.store.runs import believed, write_run
 from tritrack.terminal import Tell, bar, by_share, complain, warn
 from tritrack.unfinished.resuming import Wanted, done_before, resumable
 from tritrack.unfinished.unfinished_run import CannotResume
 from tritrack.unfinished.work import Course, Kept
+
+KEPT_AS_IT_IS: Final = (CannotResume, OtherRun)
+"""What keeps one clip's run folder from being written."""
 
 
 def track_all(
@@ -39,6 +43,7 @@ def track_all(
     trusted: bool = False,
     record: bool = False,
     resume: bool = False,
+    force: bool = False,
 ) -> dict[str, Any]:
     """Track clip after clip and write a run folder for each.
 
@@ -54,6 +59,7 @@ def track_all(
         trusted: A calibration is trusted even where it seems wrong.
         record: Keep what the viewers report, so that it can be replayed.
         resume: Go on with what was cut short, and leave out what is done.
+        force: Write over the runs of other clips.
 
     Raises:
         SettingsError, ClipError, DecoderDied, Undecodable, CannotResume: When the only clip cannot
@@ -75,8 +81,10 @@ def track_all(
                 told = {"the views": views, "what is recorded": record}
                 wanted = Wanted(out / name, settings, told, resume)
                 given = _Given(views, record, tell, console)
+                if not force:
+                    refuse_other(wanted.folder, _run_of(settings))
                 done[name] = done_before(wanted, console) or _tracked(wanted, given, decoders)
-            except (SettingsError, ClipError, DecoderDied, Undecodable, CannotResume) as error:
+            except (SettingsError, ClipError, DecoderDied, Undecodable, *KEPT_AS_IT_IS) as error:
                 if len(runs) == 1:
                     raise
                 complain(console, str(error))
@@ -102,11 +110,15 @@ def _tracked(wanted: Wanted, given: _Given, decoders: Decoders) -> dict[str, Any
         for warning in tracked.facts["warnings"]:
             warn(console, f"{folder.name}: {warning}")
         named = {"clip": folder.name, "believed": believed(tracked.bodies)}
-        facts = {**tracked.facts, **named, **made_of}
+        facts = {**tracked.facts, **named, **_run_of(settings).facts, **made_of}
         write_run(folder, tracked.bodies, settings, facts)
         if heard is not None:
             _write_recording(folder, tracked, settings, heard, console)
     return facts
+
+
+def _run_of(settings: Settings) -> RunOf:
+    return run_of("track", [view.source for view in footage_of(settings)])
 
 
 def head_of(

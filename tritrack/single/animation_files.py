@@ -16,7 +16,7 @@ from common.atomic_file import replacing
 from common.body.body import JOINT_NAMES
 from tritrack.single.angle_plot import angle_plot
 from tritrack.store.joint_arrays import all_joints_m
-from tritrack.store.runs import RunError
+from tritrack.store.runs import unwritable
 from tritrack.terminal import json_text
 from viewer.background.background import Background
 
@@ -45,7 +45,7 @@ def write_files(folder: Path, arrays: dict[str, Any], background: Background | N
             _write(folder / "background.png", cv2.imencode(".png", marked(background))[1].tobytes())
         return _animate(folder, arrays)
     except OSError as error:
-        raise RunError(f"cannot write {folder}: {error.strerror}; free some space") from error
+        raise unwritable(folder, error) from error
 
 
 def marked(background: Background) -> NDArray[np.uint8]:

@@ -16,7 +16,7 @@ from common.config.settings_error import SettingsError
 from common.method import METHODS
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path
-from common.video.clip_sources import ClipError
+from common.video.clip_sources import ClipError, footage_of
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied, Undecodable
 from common.video.frame_cache import Reel, Told
@@ -26,6 +26,7 @@ from tritrack.single.ledger import facts_of, ledger
 from tritrack.single.mask_file import MaskFileError, MaskSequence, is_mask_file, read_masks
 from tritrack.single.overlay_film import write_overlay
 from tritrack.store.clip_paths import ClipsFailed
+from tritrack.store.other_run import OtherRun, RunOf, refuse_other, run_of
 from tritrack.store.pose_arrays import mapped_poses
 from tritrack.store.runs import believed, write_run
 from tritrack.terminal import Tell, bar, by_pass, complain, counted, say, warn
@@ -38,7 +39,7 @@ PASSES: Final = ("learning the room", "cutting out", "posing", "drawing")
 """What is done with all frames of a film, one after the other."""
 UNUSABLE: Final = (
     *(SettingsError, ClipError, DecoderDied, Undecodable),
-    *(MaskFileError, NotesError, CannotResume),
+    *(MaskFileError, NotesError, CannotResume, OtherRun),
 )
 """What is wrong with one video, and lets the others be followed."""
 
@@ -52,6 +53,8 @@ class Given(NamedTuple):
     """A picture of the scene without anybody."""
     resume: bool = False
     """Go on with what was cut short, and leave out what is done."""
+    force: bool = False
+    """Write over the runs of other videos."""
 
 
 class Job(NamedTuple):
@@ -95,6 +98,8 @@ def single_all(
             try:
                 _refuse_the_same(path, out / name, name in done)
                 job = job_of(path, given, settings)
+                if not given.force:
+                    refuse_other(out / name, _run_of(job))
                 wanted = Wanted(out / name, job.settings, {"the notes": job.notes}, given.resume)
                 before = None if job.masks else done_before(wanted, console)
                 done[name] = before or _kept(job, wanted, decoder, console, begun)
@@ -159,6 +164,12 @@ def job_of(path: Path, given: Given, settings: Settings) -> Job:
     return Job(path, settings, None, load_notes(file) if given.notes or file.exists() else Notes())
 
 
+def _run_of(job: Job) -> RunOf:
+    """Its films; a clip folder's second one is none of its."""
+    films = [view.source for view in footage_of(job.settings)][:1]
+    return run_of("single", [str(job.path)] if job.masks is not None else films)
+
+
 def _kept(
     job: Job, wanted: Wanted, decoder: Decoder, console: Console, begun: Callable[[str], Tell]
 ) -> dict[str, Any]:
@@ -193,6 +204,7 @@ def follow(
             "believed": believed(found.bodies),
             "effort": facts_of(ledger(take_of(arrays), job.notes)),
             "notes": msgspec.to_builtins(job.notes),
+            **_run_of(job).facts,
             **run.facts,
         }
         write_run(folder, found.bodies, job.settings, facts)

@@ -7,25 +7,34 @@ is whole when the run is over.
 """
 
 import os
+import shutil
 import struct
 import time
 import zlib
-from collections.abc import Iterable, Iterator
+from collections import deque
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 import msgspec
 
 from common.bus.control_messages import Cameras
-from common.bus.message_codec import MAX_BYTES, MalformedMessage, decode, encode
+from common.bus.message_codec import encode
 from common.bus.messages import PROTOCOL, Body, Message, Posture
 from common.config.settings import Settings
 
 NAME: Final = "journal.bin"
-BEFORE: Final = "journal.before.bin"
-"""The part before the newest; the one before that is given up."""
+BEFORE: Final = "journal.{:06d}.bin"
+"""The parts before the newest."""
 MOST_BYTES: Final = 1 << 27
-"""Of each part: an hour and more at 15 frames a second, so as much as the results hold."""
+"""Of each part."""
+MOST_BODIES: Final = 54_000
+"""Of each part: an hour at 15 frames a second."""
+MOST_PARTS: Final = 12
+"""Before the newest: half a day at 15 frames a second; the oldest is given up then."""
+ROW_BYTES: Final = 2_000
+"""Of a body in `poses.npz`: 1,812, as of this version. While that is written it stands there twice,
+beside the journal."""
 SYNC_S: Final = 5.0
 """So often what was written is made to outlive a power cut; the process's own death it outlives
 at once."""
@@ -47,37 +56,43 @@ class Head(msgspec.Struct, frozen=True, kw_only=True):
     protocol: int = PROTOCOL
 
 
-class Told(NamedTuple):
-    """What a journal holds, each in the order in which it was said."""
-
-    head: Head
-    bodies: list[Body]
-    postures: list[Posture]
-    cameras: list[Cameras]
+class _Part(NamedTuple):
+    path: Path
+    bodies: int
 
 
 class Journal:
     """A journal that is being written; what the disk does not take is told, and the run goes on."""
 
-    def __init__(self, folder: Path, head: Head, most_bytes: int = MOST_BYTES) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        head: Head,
+        most_bytes: int = MOST_BYTES,
+        most_parts: int = MOST_PARTS,
+    ) -> None:
         """Begin one in a folder that is there; what is left there of an older run goes."""
         self.odd: list[str] = []
-        """What could not be written, a line each time that it begins."""
+        """What could not be written or was given up, a line each time that it begins."""
+        self.let_go = 0
+        """How many bodies were given up, the oldest."""
         self._folder = folder
         self._head = framed(HEAD, msgspec.msgpack.encode(head))
         self._most_bytes = most_bytes
         self._file: int | None = None
-        self._bytes = 0
+        self._bytes = self._bodies = self._turned = 0
+        self._most_parts = most_parts
+        self._older: deque[_Part] = deque()
         self._failing = False
         self._sync_s = time.monotonic() + SYNC_S
         remove(folder)
         self.keep(())
 
-    def keep(self, messages: Iterable[Message]) -> None:
+    def keep(self, messages: Sequence[Message]) -> None:
         """Write these too, whole or not at all; they are the system's when this returns."""
         new = b"".join(framed(_MARKS[type(one)], encode(one)) for one in messages)
         try:
-            self._write(new)
+            self._write(new, sum(isinstance(one, Body) for one in messages))
             self._failing = False
         except OSError as error:
             if not self._failing:
@@ -98,19 +113,39 @@ class Journal:
         self.close()
         remove(self._folder)
 
-    def _write(self, new: bytes) -> None:
-        if self._file is not None and self._bytes + len(new) > self._most_bytes:
-            self.close()
-            (self._folder / NAME).replace(self._folder / BEFORE)
+    def _write(self, new: bytes, bodies: int) -> None:
+        full = self._bytes + len(new) > self._most_bytes or self._bodies + bodies > MOST_BODIES
+        if self._file is not None and full:
+            self._turn()
         if self._file is None:
             self._file = os.open(self._folder / NAME, os.O_RDWR | os.O_CREAT | os.O_TRUNC, 0o644)
-            self._bytes = 0
+            self._bytes = self._bodies = 0
         if self._bytes == 0:
             new = self._head + new
         self._append(new)
+        self._bodies += bodies
         if time.monotonic() > self._sync_s:
             os.fsync(self._file)
             self._sync_s = time.monotonic() + SYNC_S
+
+    def _turn(self) -> None:
+        """Begin a new part; the oldest are given up where they are too many, or where the results,
+        written of all of them, would not find room."""
+        path = self._folder / BEFORE.format(self._turned)
+        (self._folder / NAME).replace(path)
+        self.close()
+        self._turned += 1
+        self._older.append(_Part(path, self._bodies))
+        while len(self._older) > 1 and (len(self._older) > self._most_parts or self._is_scarce()):
+            oldest = self._older.popleft()
+            oldest.path.unlink(missing_ok=True)
+            if not self.let_go:
+                self.odd.append("a long run: of its beginning, what no longer finds room is let go")
+            self.let_go += oldest.bodies
+
+    def _is_scarce(self) -> bool:
+        rows = sum(part.bodies for part in self._older) + MOST_BODIES
+        return shutil.disk_usage(self._folder).free < 2 * ROW_BYTES * rows
 
     def _append(self, new: bytes) -> None:
         """All of it; of a part that a full disk took nothing is left."""
@@ -125,67 +160,24 @@ class Journal:
         self._bytes += done
 
 
-def read_journal(folder: Path) -> Told | None:
-    """What a run folder's journal holds; None where there is none, or no body in it.
-
-    A record that was torn, and what stands behind it, is not there.
-    """
-    head: Head | None = None
-    found: dict[type[Message], list[Any]] = {kind: [] for kind in KINDS.values()}
-    for name in (BEFORE, NAME):
-        path = folder / name
-        for mark, payload in _records(path.read_bytes()) if path.is_file() else ():
-            try:
-                if mark == HEAD:
-                    head = msgspec.msgpack.decode(payload, type=Head)
-                else:
-                    found[KINDS[mark]].append(decode(payload, KINDS[mark]))
-            except (msgspec.DecodeError, MalformedMessage):  # of another version
-                return None
-    if head is None or not found[Body]:
-        return None
-    return Told(head, found[Body], found[Posture], found[Cameras])
-
-
 def has_journal(folder: Path) -> bool:
     """Whether a folder is that of a run that was cut short, or goes on."""
     return (folder / NAME).is_file()
 
 
+def parts_of(folder: Path) -> list[Path]:
+    """The files of a folder's journal, oldest first."""
+    newest = folder / NAME
+    before = sorted(folder.glob(BEFORE.replace("{:06d}", "[0-9]" * 6)))
+    return [*before, *([newest] if newest.is_file() else [])]
+
+
 def remove(folder: Path) -> None:
     """Take a folder's journal away, if there is one."""
-    for name in (BEFORE, NAME):
-        (folder / name).unlink(missing_ok=True)
-
-
-def put_aside(folder: Path, aside: Path) -> bool:
-    """Move a folder's journal, if it holds a body, into a folder of its own, which is made.
-
-    Raises:
-        OSError: When it cannot be moved.
-    """
-    if not has_journal(folder) or read_journal(folder) is None:
-        return False
-    aside.mkdir(parents=True, exist_ok=True)
-    for name in (BEFORE, NAME):
-        if (folder / name).is_file():
-            (folder / name).replace(aside / name)
-    return True
+    for path in parts_of(folder):
+        path.unlink(missing_ok=True)
 
 
 def framed(mark: bytes, payload: bytes) -> bytes:
     """A record: what goes before it, then what it holds."""
     return FRAME.pack(MAGIC, mark, len(payload), zlib.crc32(payload)) + payload
-
-
-def _records(data: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """Kind and payload of each record, up to the first that is not whole."""
-    at = 0
-    while at + FRAME.size <= len(data):
-        magic, mark, length, total = FRAME.unpack_from(data, at)
-        payload = data[at + FRAME.size : at + FRAME.size + length]
-        known = magic == MAGIC and (mark == HEAD or mark in KINDS) and length <= MAX_BYTES
-        if not known or len(payload) < length or zlib.crc32(payload) != total:
-            return
-        yield mark, payload
-        at += FRAME.size + length

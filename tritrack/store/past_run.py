@@ -12,10 +12,10 @@ from common.npz_file import Arrays, read_arrays
 from tritrack.store.joint_arrays import parted
 
 if TYPE_CHECKING:
-    from tritrack.store.journal import Told
+    from tritrack.store.past_journal import Told
 
-MAX_BYTES: Final = 1 << 28
-"""No poses of a run are larger: an hour at 30 frames a second."""
+MAX_BYTES: Final = 1 << 31
+"""No poses of a run are larger: twenty hours at 15 frames a second."""
 
 ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
     "frame": ("iu", ()),
@@ -72,7 +72,7 @@ def open_run(folder: Path) -> PastRun:
     """
     if not folder.is_dir():
         raise PastRunError(f"there is no run folder {folder}: name one that `tritrack track` wrote")
-    from tritrack.store.journal import read_journal
+    from tritrack.store.past_journal import read_journal
 
     told = read_journal(folder)
     if told is not None:

@@ -21,7 +21,7 @@ from common.config.settings import Settings
 from common.rig.camera import Rig
 from integrator.frame_numbers import FrameTimes
 from tritrack.store import foxglove_scene
-from tritrack.store.runs import RunError, versions
+from tritrack.store.runs import unwritable, versions
 
 NAME: Final = "recording.mcap"
 KINDS: Final[dict[str, type[Message]]] = {
@@ -88,9 +88,7 @@ def recording_to(folder: Path, head: Head) -> Iterator[Keep]:
             path = doors.enter_context(replacing(folder / NAME))
             file = doors.enter_context(path.open("wb"))
         except OSError as error:
-            raise RunError(
-                f"cannot write {folder}: {error.strerror}; name another --out"
-            ) from error
+            raise unwritable(folder, error) from error
         writer = library.Writer(file)
         writer.start(profile="", library="tritrack")
         told = msgspec.structs.replace(head, versions=versions())

@@ -6,12 +6,13 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from textwrap import indent
 from typing import Any, Final, get_args
 
 import msgspec
 import numpy as np
 
-from common.atomic_file import replacing
+from common.atomic_file import replacing, unwritten
 from common.bus.messages import Body, Posture, Status
 from common.config.settings import Settings
 from tritrack.store.joint_arrays import on_disk
@@ -72,30 +73,44 @@ class Rows:
 
 
 def write_postures(folder: Path, postures: Iterable[Posture], performed: str) -> None:
-    """Write `posture.json`: performances, each frame's name and scores, the clip's name."""
-    postures = list(postures)
+    """Write `posture.json`: performances, each frame's name and scores, the clip's name.
+
+    Args:
+        folder: Made where it is not there.
+        postures: In the order of time; are gone through twice, and need not fit into memory.
+        performed: The clip's posture.
+
+    Raises:
+        RunError: When it cannot be written.
+    """
     events = [msgspec.to_builtins(posture.event) for posture in postures if posture.event]
-    rows = [
-        {
-            "frame": posture.frame,
-            "time_s": round(posture.captured_s, 4),
-            "name": posture.name,
-            "segment": posture.segment,
-            "doing": posture.doing,
-            "log_likelihoods": {
-                name: round(value, 3) for name, value in posture.log_likelihoods.items()
-            },
-        }
-        for posture in postures
-        if posture.frame >= 0
-    ]
+    told = json_text({"posture": performed, "events": events, "frames": []})
+    begin, _, end = told.rpartition("]")
+    rows = (_row_of(posture) for posture in postures if posture.frame >= 0)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        _write_json(
-            folder / "posture.json", {"posture": performed, "events": events, "frames": rows}
-        )
+        with replacing(folder / "posture.json") as new, new.open("w") as file:
+            file.write(begin)
+            between = ""
+            for row in rows:
+                file.write(f"{between}\n{indent(json_text(row), '  ')}")
+                between = ","
+            file.write(f"{chr(10) + ' ' if between else ''}]{end}\n")
     except OSError as error:
         raise unwritable(folder, error) from error
+
+
+def _row_of(posture: Posture) -> dict[str, Any]:
+    return {
+        "frame": posture.frame,
+        "time_s": round(posture.captured_s, 4),
+        "name": posture.name,
+        "segment": posture.segment,
+        "doing": posture.doing,
+        "log_likelihoods": {
+            name: round(value, 3) for name, value in posture.log_likelihoods.items()
+        },
+    }
 
 
 def believed(bodies: Iterable[Body]) -> float | None:
@@ -139,8 +154,7 @@ def versions() -> dict[str, str]:
 
 def unwritable(folder: Path, error: OSError) -> RunError:
     """What is said of a run folder that takes no more."""
-    reason = error.strerror or str(error)
-    return RunError(f"cannot write {folder}: {reason}; free some space or name another --out")
+    return RunError(unwritten(folder, error, "name another --out"))
 
 
 def _write_json(path: Path, value: Any) -> None:
