@@ -94,7 +94,7 @@ class Steps:
         """Before the first frame."""
         method = METHODS[settings.mode]
         self.films: dict[ViewerNumber, list[Image]] = {}
-        self._viewers: dict[ViewerNumber, track.State] = {}
+        self.viewers: dict[ViewerNumber, track.State] = {}
         for view in clip.views:
             with Decoder() as decoder:
                 background = opening_of_view(view, settings.silhouette, decoder).background
@@ -102,25 +102,25 @@ class Steps:
                 self.films[view.number] = [got.picture for got in pictures]
             camera = clip.rig.cameras[view.number - 1] if clip.rig else None
             setup = track.Setup(view.number, camera, settings, method, False)
-            self._viewers[view.number] = track.init(setup, background)
-        self._integrator = merge_state.init(clip.rig, 1.0 / HZ, settings, method, Start(False))
+            self.viewers[view.number] = track.init(setup, background)
+        self.integrator = merge_state.init(clip.rig, 1.0 / HZ, settings, method, Start(False))
         model = recognizer_process.model_of(settings)
-        self._recogniser = recognizer_process.init(model, settings.recognizer.window_frames)
-        self._guide: Guide | None = None
+        self.recogniser = recognizer_process.init(model, settings.recognizer.window_frames)
+        self.guide: Guide | None = None
 
     def see(self, index: int, pictures: dict[ViewerNumber, Image]) -> Body:
         """One instant, each message encoded and decoded as on the bus."""
         at_s, reports = index / HZ, {}
         for number in CAMERAS:
             frame = CapturedFrame(index, at_s, at_s, pictures[number])
-            viewer, report = track.step(self._viewers[number], frame, self._guide)
-            self._viewers[number] = viewer
+            viewer, report = track.step(self.viewers[number], frame, self.guide)
+            self.viewers[number] = viewer
             reports[number] = decode(encode(report), Report)
         pair = Pair(reports[1], reports[2])
-        self._integrator, body, guide = merge.step(self._integrator, pair)
-        self._guide = decode(encode(guide), Guide)
+        self.integrator, body, guide = merge.step(self.integrator, pair)
+        self.guide = decode(encode(guide), Guide)
         heard = decode(encode(body), Body)
-        self._recogniser, _ = recognizer_process.step(self._recogniser, heard)
+        self.recogniser, _ = recognizer_process.step(self.recogniser, heard)
         return heard
 
     def instants(self) -> Iterator[dict[ViewerNumber, Image]]:
