@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from common.bus.bus import Bus, BusError, open_client
@@ -44,9 +45,10 @@ class Heard(NamedTuple):
     """Takes every body, posture and rig at once."""
 
 
-def nothing_heard() -> Heard:
-    """Of a run that begins."""
-    return Heard(MessageLog(Body), MessageLog(Posture), {}, [], [])
+def nothing_heard(folder: Path | None = None) -> Heard:
+    """Of a run that begins; what it will say is kept on the disk of that folder."""
+    bodies = MessageLog(Body, folder=folder)
+    return Heard(bodies, MessageLog(Posture, folder=folder), {}, [], [])
 
 
 def run(

@@ -73,7 +73,7 @@ def live(
     """
     settings = _admitted(settings, record, console)
     new = not out.exists()
-    began, heard = time.monotonic(), nothing_heard()
+    began, heard = time.monotonic(), nothing_heard(out)
     title = name or Path(settings.clip).name or "tritrack"
     with _stopped_by_signals(console) as stop, ExitStack() as doors:
         log = _new_log(out)
