@@ -1,9 +1,9 @@
 """Whether anything grows or slows down in hours: memory, open files, log, milliseconds a frame.
 
 Run from the checkout: .venv/bin/python benchmarks/soak.py [--frames 1000000 | --live MINUTES]
-[--seconds N] [--json]. A made-up take of two cameras is played again and again: through the steps
-of both viewers, the integrator and the recogniser in one process, or as a live run at 15 frames a
-second.
+[--seconds N] [--json] [--plot FILE]. A made-up take of two cameras is played again and again:
+through the steps of both viewers, the integrator and the recogniser in one process, or as a live
+run at 15 frames a second.
 """
 
 import argparse
@@ -27,6 +27,7 @@ from common.bus.messages import Body, Guide, Report, ViewerNumber
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from common.method import METHODS
+from common.settled import settle
 from common.video.clip_facts import Clip
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, Image
@@ -45,6 +46,8 @@ from viewer.room.background_source import opening_of_view
 HZ: Final = 15.0
 SIZE: Final = (160, 120)
 SAMPLES: Final = 200
+SAMPLE_FRAMES: Final = 1000
+"""At most so many are between two samples of steps: who stops early has enough of them."""
 LIVE_SAMPLE_S: Final = 5.0
 SETTLED: Final = 0.33
 """What comes before this share of the samples counts as warming up."""
@@ -60,7 +63,8 @@ class Sample(NamedTuple):
     handles: int
     threads: int
     ms: float
-    """Of steps: of a frame since the last sample. Live: the integrator's p99 from capture on."""
+    """Of steps: processor time of a frame since the last sample, which other work on the machine
+    does not lengthen by its own. Live: the integrator's p99 from capture on."""
     log_bytes: int = 0
 
 
@@ -90,7 +94,7 @@ class Steps:
         """Before the first frame."""
         method = METHODS[settings.mode]
         self.films: dict[ViewerNumber, list[Image]] = {}
-        self._viewers: dict[ViewerNumber, track.State] = {}
+        self.viewers: dict[ViewerNumber, track.State] = {}
         for view in clip.views:
             with Decoder() as decoder:
                 background = opening_of_view(view, settings.silhouette, decoder).background
@@ -98,25 +102,25 @@ class Steps:
                 self.films[view.number] = [got.picture for got in pictures]
             camera = clip.rig.cameras[view.number - 1] if clip.rig else None
             setup = track.Setup(view.number, camera, settings, method, False)
-            self._viewers[view.number] = track.init(setup, background)
-        self._integrator = merge_state.init(clip.rig, 1.0 / HZ, settings, method, Start(False))
+            self.viewers[view.number] = track.init(setup, background)
+        self.integrator = merge_state.init(clip.rig, 1.0 / HZ, settings, method, Start(False))
         model = recognizer_process.model_of(settings)
-        self._recogniser = recognizer_process.init(model, settings.recognizer.window_frames)
-        self._guide: Guide | None = None
+        self.recogniser = recognizer_process.init(model, settings.recognizer.window_frames)
+        self.guide: Guide | None = None
 
     def see(self, index: int, pictures: dict[ViewerNumber, Image]) -> Body:
         """One instant, each message encoded and decoded as on the bus."""
         at_s, reports = index / HZ, {}
         for number in CAMERAS:
             frame = CapturedFrame(index, at_s, at_s, pictures[number])
-            viewer, report = track.step(self._viewers[number], frame, self._guide)
-            self._viewers[number] = viewer
+            viewer, report = track.step(self.viewers[number], frame, self.guide)
+            self.viewers[number] = viewer
             reports[number] = decode(encode(report), Report)
         pair = Pair(reports[1], reports[2])
-        self._integrator, body, guide = merge.step(self._integrator, pair)
-        self._guide = decode(encode(guide), Guide)
+        self.integrator, body, guide = merge.step(self.integrator, pair)
+        self.guide = decode(encode(guide), Guide)
         heard = decode(encode(body), Body)
-        self._recogniser, _ = recognizer_process.step(self._recogniser, heard)
+        self.recogniser, _ = recognizer_process.step(self.recogniser, heard)
         return heard
 
     def instants(self) -> Iterator[dict[ViewerNumber, Image]]:
@@ -130,18 +134,19 @@ def soaked(frames: int, seconds: float, folder: Path) -> list[Sample]:
     """So many frames through the steps, or as many as fit into so many seconds."""
     settings = Settings(clip=str(made_clip(folder)))
     steps, own = Steps(open_clip(settings), settings), psutil.Process()
-    every = max(1, frames // SAMPLES)
+    every = max(1, min(frames // SAMPLES, SAMPLE_FRAMES))
+    settle()
     found: list[Sample] = []
-    began_s = since_s = time.perf_counter()
+    began_s, since_s = time.perf_counter(), time.process_time()
     for index, pictures in zip(count(), steps.instants(), strict=False):
-        if index == frames or since_s - began_s > seconds:
+        if index == frames or time.perf_counter() - began_s > seconds:
             break
         steps.see(index, pictures)
         if (index + 1) % every == 0:
             gc.collect()
-            now_s = time.perf_counter()
-            found.append(sample_of([own], index / HZ, 1e3 * (now_s - since_s) / every))
-            since_s = now_s
+            took_s = time.process_time() - since_s
+            found.append(sample_of([own], index / HZ, 1e3 * took_s / every))
+            since_s = time.process_time()
     return found
 
 
@@ -200,6 +205,26 @@ def verdict(found: Sequence[Sample]) -> dict[str, Any]:
     }
 
 
+def plot(found: Sequence[Sample], path: Path) -> None:
+    """Draw memory, open files and milliseconds over the hours of the stream."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.0, 5.6), layout="constrained")
+    hours = [one.at_s / 3600.0 for one in found]
+    drawn: dict[str, list[float]] = {
+        "memory, MB": [one.memory_mb for one in found],
+        "open files": [float(one.handles) for one in found],
+        "ms a frame": [one.ms for one in found],
+    }
+    for axes, (name, values) in zip(figure.subplots(3, 1, sharex=True), drawn.items(), strict=True):
+        axes.plot(hours, values, ".-", markersize=3, linewidth=0.8)
+        axes.set_ylabel(name)
+        axes.set_ylim(0.0, 1.15 * max(values))
+        axes.grid(alpha=0.3)
+    axes.set_xlabel("hours of the stream")
+    figure.savefig(path, dpi=110)
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     """Soak, print what grew."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -207,6 +232,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--seconds", type=float, default=float("inf"))
     parser.add_argument("--live", type=float, default=0.0, metavar="MINUTES")
     parser.add_argument("--json", action="store_true", help="Every sample too.")
+    parser.add_argument("--plot", type=Path, metavar="FILE")
     given = parser.parse_args(arguments)
     told: dict[str, Any] = {}
     with tempfile.TemporaryDirectory(prefix="tritrack-soak-") as folder:
@@ -216,6 +242,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         else:
             found = soaked(given.frames, given.seconds, Path(folder))
     told = {**verdict(found), **told}
+    if given.plot:
+        plot(found, given.plot)
     if given.json:
         told["samples"] = [one._asdict() for one in found]
     print(json.dumps(told, indent=1))

@@ -41,7 +41,7 @@ def run(
     """Pair and merge what the viewers report, until each has ended; wait so long for the page."""
     pace = Pace(period_s)
     heart = Heart(bus, "integrator", pace)
-    subscriber = Subscriber(bus, viewers, period_s, wait_s, estate.over)
+    subscriber = Subscriber(bus, viewers, period_s, wait_s, estate.over, estate.start_s)
     noticed, said, told = diagnostics.State(), Annotations(), Told(bus)
     heart.beat("ready", "\n".join(diagnostics.assumed(state)))
     looks = state.scale_source == "assumed" and state.proposes and len(viewers) == 2
@@ -62,7 +62,13 @@ def run(
             news = (*calibration.news, *subscriber.news)
             if told.is_new(news):
                 heart.hurry()
-            estate.leave(state, calibration.late_s, time.monotonic(), subscriber.over)
+            estate.leave(
+                state,
+                calibration.late_s,
+                time.monotonic(),
+                subscriber.over,
+                subscriber.starter.start_s,
+            )
             odd = [*diagnostics.assumed(state), *told.doubts(state), *news]
             heart.beat("running", "\n".join(odd), **subscriber.counts())
     news = (*told.doubts(state), *calibration.news, *subscriber.news)

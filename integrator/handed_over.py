@@ -1,4 +1,4 @@
-"""What an integrator leaves to the next in its place: body, rig, count, and who has ended."""
+"""What an integrator leaves to the next in its place: body, rig, count, start, who has ended."""
 
 import logging
 from pathlib import Path
@@ -40,10 +40,19 @@ class HandedOver(msgspec.Struct, frozen=True):
     """How the cameras stood when the rig was told."""
     over: tuple[Ended, ...] = ()
     """What viewers said that ended: they do not say it twice."""
+    start_s: float | None = None
+    """When the run began, by this host's monotonic clock, which is the room's: where the viewers
+    died too nobody else knows it, and a recorded clip would be played from its beginning."""
 
 
-def handed_over(state: State, late_s: float = 0.0, over: tuple[Ended, ...] = ()) -> HandedOver:
-    """What of a state is handed over, by how much view 2 is late, and which views are over."""
+def handed_over(
+    state: State,
+    late_s: float = 0.0,
+    over: tuple[Ended, ...] = (),
+    start_s: float | None = None,
+) -> HandedOver:
+    """What of a state is handed over, by how much view 2 is late, which views are over, and when
+    the run began."""
     known = state.opening
     return HandedOver(
         known.bdp,
@@ -56,6 +65,7 @@ def handed_over(state: State, late_s: float = 0.0, over: tuple[Ended, ...] = ())
         state.numbered,
         state.stands.of_rig,
         over,
+        start_s,
     )
 
 
@@ -83,6 +93,8 @@ class Estate:
         """By how much the times of view 2 were set back."""
         self.over: tuple[Ended, ...] = ()
         """What viewers had said that ended."""
+        self.start_s: float | None = None
+        """When the run had begun."""
         self._next_s = 0.0
 
     def taken_up(self, state: State) -> State:
@@ -94,19 +106,25 @@ class Estate:
         except (OSError, msgspec.DecodeError) as error:
             log.warning("what was handed over cannot be read (%s): the body is found anew", error)
             return state
-        self.late_s, self.over = given.late_s, given.over
+        self.late_s, self.over, self.start_s = given.late_s, given.over, given.start_s
         return resumed(state, given)
 
     def leave(
-        self, state: State, late_s: float, now_s: float, over: tuple[Ended, ...] = ()
+        self,
+        state: State,
+        late_s: float,
+        now_s: float,
+        over: tuple[Ended, ...] = (),
+        start_s: float | None = None,
     ) -> None:
         """Leave what has changed, but for the count: time tells that too.
 
-        At once where a body was measured, the rig changed or a view ended; else once a second.
+        At once where the run began, a body was measured, the rig changed or a view ended; else
+        once a second.
         """
         if self._path is None:
             return
-        own = handed_over(state, late_s, over)
+        own = handed_over(state, late_s, over, start_s)
         if self._is_known(own) or (now_s < self._next_s and not self._is_news(own)):
             return
         self._next_s = now_s + LEAVE_S
@@ -119,12 +137,14 @@ class Estate:
 
     def _is_known(self, own: HandedOver) -> bool:
         if self._left is None:
-            return own.bdp is None and own.rig is None
+            return own.bdp is None and own.rig is None and own.start_s is None
         same = msgspec.structs.replace(own, numbered=self._left.numbered)
         return bool(same == self._left)
 
     def _is_news(self, own: HandedOver) -> bool:
         """Whether it is worse to lose than what is refined from frame to frame."""
-        left = self._left
-        known = (False, 0, ()) if left is None else (left.measured, left.calibration, left.over)
-        return (own.measured, own.calibration, own.over) != known
+        return self._left is None or _news(own) != _news(self._left)
+
+
+def _news(given: HandedOver) -> tuple[object, ...]:
+    return given.measured, given.calibration, given.over, given.start_s

@@ -38,6 +38,16 @@ def test_a_successor_knows_who_has_ended(tmp_path: Path) -> None:
     assert estate.over == over
 
 
+def test_a_successor_knows_when_the_run_began_at_once(tmp_path: Path) -> None:
+    """Its viewers may have died with the one before: nobody else could tell it."""
+    estate = Estate(tmp_path)
+    estate.leave(KNOWN, 0.0, 9.0)
+    estate.leave(KNOWN, 0.0, 9.1, start_s=8.5)
+    successor = Estate(tmp_path)
+    successor.taken_up(FRESH)
+    assert successor.start_s == 8.5
+
+
 def test_nothing_is_left_before_anything_is_known_and_nothing_twice(tmp_path: Path) -> None:
     estate = Estate(tmp_path)
     estate.leave(FRESH, 0.0, 9.0)

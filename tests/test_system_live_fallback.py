@@ -6,10 +6,12 @@ import os
 import shutil
 import signal
 import socket
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
+from multiprocessing import forkserver
 from pathlib import Path
 from typing import Any
 
@@ -283,6 +285,39 @@ def test_a_killed_integrator_is_started_again_and_poses_go_on(
     assert "measuring" not in found["status"][again], "measured again"
     missing = np.diff(found["frame"][again]) - 1
     assert missing.sum() <= MOST_MISSING
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="parts are forked on Linux alone")
+def test_a_clip_goes_on_where_it_would_be_when_all_parts_died_with_their_zygote(
+    long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nobody lives who remembers when the run began; no frame may come twice."""
+
+    def harm(witness: Witness) -> None:
+        witness.until_tracked()
+        server: Any = forkserver._forkserver
+        os.kill(server._forkserver_pid, signal.SIGKILL)
+        before = len(witness.bodies)
+        witness.until(
+            "poses of both views from the new parts",
+            lambda: (
+                len(witness.bodies) >= before + 10
+                and all(body.joints_m and body.views == "both" for body in witness.bodies[-5:])
+            ),
+        )
+
+    settings = settings_of(long_clip)
+    with Witness(settings.bus, harm) as witness:
+        monkeypatch.setattr(session, "_stopped_by_signals", lambda _: nullcontext(witness.over))
+        facts = live(settings, tmp_path, Console(quiet=True))
+    for part in ("integrator", "recognizer", "viewer 1", "viewer 2"):
+        again = f"{part}: it ended with its zygote; it is started again"
+        assert any(again in told for told in facts["warnings"])
+    starts_s = [body.clock_s - body.captured_s for body in witness.bodies]
+    assert starts_s == pytest.approx([starts_s[0]] * len(starts_s), abs=0.01)
+    found = rows(tmp_path)
+    assert (np.diff(found["frame"]) > 0).all(), "a frame came twice"
+    assert "measuring" not in found["status"][found["frame"] >= witness.lost_at], "measured again"
 
 
 class Cable:

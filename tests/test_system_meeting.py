@@ -146,6 +146,14 @@ def test_a_clip_waits_for_who_looks_at_its_page_but_not_for_ever(
     assert starters[1].answer(question(1)).start_s == 1030.0 + run_start.LEAD_S
 
 
+def test_a_run_that_began_before_keeps_its_start_and_waits_for_nobody() -> None:
+    """All of its processes were started again: a recorded clip goes on where it would be."""
+    starter = run_start.Starter(frozenset((1, 2)), wait_s=30.0, start_s=990.0)
+    assert starter.answer(question(1)).start_s == 990.0
+    starter.begun(report(2, captured_s=3.0, clock_s=1003.0))
+    assert starter.start_s == 990.0
+
+
 def test_a_run_with_one_viewer_waits_for_no_other() -> None:
     assert run_start.Starter(frozenset((2,))).answer(question(2)).start_s is not None
 

@@ -14,10 +14,16 @@ class Starter:
     """Answers what the room's clock says, and fixes the start once every viewer is ready, and
     somebody looks, where that is waited for."""
 
-    def __init__(self, expected: frozenset[ViewerNumber], wait_s: float = 0.0) -> None:
-        """Viewers that belong to the run, and how long they wait for somebody to look."""
+    def __init__(
+        self,
+        expected: frozenset[ViewerNumber],
+        wait_s: float = 0.0,
+        start_s: float | None = None,
+    ) -> None:
+        """Viewers that belong to the run, and how long they wait for somebody to look; when it
+        began, where another integrator has fixed that."""
         self._missing = set(expected)
-        self._start_s: float | None = None
+        self._start_s = start_s
         self._wait_s = wait_s
         self._ready_s: float | None = None
 
@@ -38,9 +44,9 @@ class Starter:
         self._wait_s = 0.0
 
     @property
-    def fixed(self) -> bool:
-        """Whether the start is known."""
-        return self._start_s is not None
+    def start_s(self) -> float | None:
+        """When the run begins; None while that is not fixed."""
+        return self._start_s
 
     def begun(self, report: Report) -> None:
         """The run has begun: this process was started again, and its viewers were not."""

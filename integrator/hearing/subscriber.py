@@ -40,9 +40,12 @@ class Subscriber:
         period_s: float,
         wait_s: float,
         over: tuple[Ended, ...] = (),
+        start_s: float | None = None,
     ) -> None:
-        """Listen from now on; some viewers have ended before."""
-        self.starter = Starter(frozenset(viewers), wait_s)
+        """Listen from now on; the run may have begun, and some viewers have ended, before."""
+        self.starter = Starter(frozenset(viewers), wait_s, start_s)
+        self._gathers = start_s is not None
+        """It was started again, and has yet to wait for what is said once more."""
         self._commands = bus.subscribe(Command)
         self._numbers = {f"viewer {number}": number for number in viewers}
         self._reports, self._ended = bus.subscribe(Report), bus.subscribe(Ended)
@@ -81,8 +84,9 @@ class Subscriber:
         """What is complete now, or overdue; waits a moment for a report."""
         complete: list[Pair] = []
         first = self._reports.take(HEAR_S)
-        if first is not None and not self.starter.fixed:
+        if first is not None and (self._gathers or self.starter.start_s is None):
             time.sleep(GATHER_S)
+            self._gathers = False
         said = [] if first is None else [first, *self._reports.drain()]
         for report in said:
             self.starter.begun(report)

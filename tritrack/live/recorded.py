@@ -12,8 +12,9 @@ from tritrack.moved_facts import Moves, step
 
 Told = TypeVar("Told", bound=Body | Posture)
 
-MOST_KEPT: Final = 54_000
-"""An hour at 15 frames a second. A body takes 1.7 kB so, and five times as much as an object."""
+MOST_KEPT: Final = 9_000
+"""Ten minutes at 15 frames a second. A body takes 3 kB so, and five times as much as an object;
+what is older is in the journal."""
 
 
 class MessageLog(Generic[Said]):

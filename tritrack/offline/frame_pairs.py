@@ -1,12 +1,14 @@
 """The pictures of a clip's views: their backgrounds, then those of one instant together."""
 
+import threading
 from collections.abc import Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from typing import Final
 
 from common.bus.messages import ViewerNumber
 from common.config.part_settings import SilhouetteSettings
 from common.video.clip_facts import Clip, View
+from common.video.decoding import ALL, Decoded, Size, Source, Wanted
 from common.video.frame_cache import Reader
 from viewer.capture import CapturedFrame, recorded
 from viewer.landmarks.landmark_sources import Sources
@@ -17,17 +19,46 @@ Readers = Mapping[ViewerNumber, Reader]
 NONE: Final[Mapping[ViewerNumber, int]] = {}
 
 
+class _UntilLeft:
+    """A reader that gives nothing more once nobody waits for what is learnt."""
+
+    def __init__(self, reader: Reader, left: threading.Event) -> None:
+        self._reader, self._left = reader, left
+
+    @property
+    def came(self) -> int:
+        """As the reader's."""
+        return self._reader.came
+
+    def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:
+        """As the reader's.
+
+        Raises:
+            CancelledError: When nobody waits any more.
+        """
+        for decoded in self._reader.frames(source, size, wanted):
+            if self._left.is_set():
+                raise CancelledError
+            yield decoded
+
+
 def openings(clip: Clip, settings: SilhouetteSettings, readers: Readers) -> list[Opening]:
     """What is known of every view before its first frame, learnt side by side.
 
-    Mostly it is waiting for the decoders.
+    Mostly it is waiting for the decoders. What ends it, as Ctrl-C does, or a view that cannot be
+    read, does not wait for the other views.
     """
+    left = threading.Event()
 
     def learnt(view: View) -> Opening:
-        return opening_of_view(view, settings, readers[view.number])
+        return opening_of_view(view, settings, _UntilLeft(readers[view.number], left))
 
     with ThreadPoolExecutor(len(clip.views)) as pool:
-        return [*pool.map(learnt, clip.views)]
+        try:
+            return [*pool.map(learnt, clip.views)]
+        except BaseException:
+            left.set()
+            raise
 
 
 def share_of(clip: Clip, frames: Mapping[ViewerNumber, CapturedFrame]) -> float:

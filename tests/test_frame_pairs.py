@@ -1,0 +1,42 @@
+"""The views of a clip, learnt side by side."""
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from common.config.settings import Settings
+from common.video.clips import open_clip
+from common.video.decoding import ALL, Decoded, Size, Source, Wanted
+from tritrack.offline.frame_pairs import openings
+
+SLOW_S = 0.3
+
+
+class Slow:
+    """A film that comes picture by picture, for minutes."""
+
+    came = 0
+
+    def frames(self, _source: Source, size: Size, _wanted: Wanted = ALL) -> Iterator[Decoded]:
+        for index in range(1000):
+            time.sleep(SLOW_S)
+            yield Decoded(index, 0.0, np.zeros((size[1], size[0], 3), np.uint8))
+
+
+class Stopped(Slow):
+    """Ctrl-C comes while it is read."""
+
+    def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:
+        yield next(super().frames(source, size, wanted))
+        raise KeyboardInterrupt
+
+
+def test_who_stops_it_does_not_wait_for_the_other_view(clip: Path) -> None:
+    settings = Settings(clip=str(clip))
+    began_s = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        openings(open_clip(settings), settings.silhouette, {1: Stopped(), 2: Slow()})
+    assert time.monotonic() - began_s < 8 * SLOW_S
