@@ -123,6 +123,7 @@ def test_a_second_process_compiles_nothing(house: Path) -> None:
     assert kept(house) == before
 
 
+@pytest.mark.slow
 def test_no_order_of_programs_keeps_a_function_of_the_program(house: Path) -> None:
     """A module that runs by itself, children of the front door, and plain imports after them."""
     for words in (("-m", "viewer.caller"), ("-m", "tritrack"), ("-c", ASK), ("-m", "tritrack")):
@@ -137,6 +138,7 @@ def test_no_function_of_ours_that_is_kept_names_the_program() -> None:
     assert not [path for path in kept(compiled_folder()) if names_the_program(path)]
 
 
+@pytest.mark.slow
 def test_processes_that_compile_at_once_do_no_harm(house: Path) -> None:
     """The same signatures in two orders, so that they meet; each answer is its own kind's."""
     orders = [KINDS, KINDS[::-1], KINDS]
@@ -155,6 +157,7 @@ def test_a_checkout_that_cannot_be_written_uses_the_users_folder(house: Path) ->
     assert kept(house.parent / "user" / "tritrack")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("left", [0, 100])
 def test_half_a_file_is_compiled_anew(house: Path, left: int) -> None:
     answer(house, "-c", ASK)

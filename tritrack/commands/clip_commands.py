@@ -208,7 +208,7 @@ def replay(
     port: Annotated[int, typer.Option(min=1, max=65535, help="Port of the page.")] = 8080,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Integrate a recorded run again, play it, or say it on a bus.
+    """Integrate, play or say a recorded run again.
 
     Example: tritrack replay runs/walk
     """
