@@ -6,7 +6,11 @@ from typing import Any, Final
 
 from mkdocs.structure.files import File, Files
 
-ABOVE: Final = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md"}
+ABOVE: Final = {
+    "README.md": "index.md",
+    "CONTRIBUTING.md": "contributing.md",
+    "CHANGELOG.md": "changelog.md",
+}
 NAMED: Final = re.compile(r"`docs/([a-z_]+)\.md`")
 
 
@@ -22,5 +26,7 @@ def on_files(files: Files, config: Any) -> Files:
 def on_page_markdown(markdown: str, **_: Any) -> str:
     """Called by mkdocs with the text of each page."""
     for name, page in ABOVE.items():
-        markdown = markdown.replace(f"](../{name})", f"]({page})")
+        markdown = markdown.replace(f"](../{name})", f"]({page})").replace(
+            f"]({name})", f"]({page})"
+        )
     return NAMED.sub(r"[\1](\1.md)", markdown)
