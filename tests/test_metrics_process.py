@@ -132,5 +132,5 @@ def tells_the_run(seen: Samples) -> None:
 
 def test_settings_without_an_address_have_no_metrics_to_serve(tmp_path: Path) -> None:
     (tmp_path / "room.toml").write_text("clip = 'walk'")
-    with pytest.raises(SettingsError, match=r"room\.toml: set metrics = "):
+    with pytest.raises(SettingsError, match=r"room\.toml has no metrics: add metrics = "):
         metrics(tmp_path / "room.toml")
