@@ -76,7 +76,7 @@ def test_frames_are_gone_through_and_what_is_uncertain_is_settled(
 
 
 def test_nobody_who_is_not_seen_is_moved(page: RetouchPage) -> None:
-    page._take.joints_m[2] = page._take.joints_m[2] * float("nan")
+    page.take.joints_m[2] = page.take.joints_m[2] * float("nan")
     pressed(page, "ffl")
     assert page.notes == Notes()
     assert "nobody is seen here" in page._controls.kept.content

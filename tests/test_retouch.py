@@ -2,7 +2,7 @@
 
 import shutil
 import socket
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -47,6 +47,13 @@ def filmed() -> Take:
     return seen
 
 
+def fitted() -> Take:
+    """The same fitted again: the arm is in doubt no longer."""
+    seen = filmed()
+    seen.depth_confidence[:] = 0.9
+    return seen
+
+
 @pytest.fixture
 def page(tmp_path: Path) -> Iterator[RetouchPage]:
     def keep(notes: Notes) -> tuple[str, bool]:
@@ -56,7 +63,11 @@ def page(tmp_path: Path) -> Iterator[RetouchPage]:
     def picture(row: int) -> np.ndarray:
         return np.full((240, 320, 3), 40 + 10 * row, np.uint8)
 
-    made = RetouchPage(filmed(), SIZE, picture, Notes(), keep, free_port())
+    def fit(_: Notes, tell: Callable[[str], object]) -> Take:
+        tell("half of it")
+        return fitted()
+
+    made = RetouchPage(filmed(), SIZE, picture, Notes(), keep, fit, free_port())
     yield made
     made.close()
 
@@ -120,6 +131,19 @@ def test_the_next_uncertain_frame_is_shown_and_a_settled_one_is_not_asked(
     assert "no other uncertain frame" in page._controls.kept.content
 
 
+def test_the_video_fitted_again_is_what_the_page_shows_then(page: RetouchPage) -> None:
+    """T22: what was said is asked no more, and what is uncertain is that of the new run."""
+    page.go_to(3)
+    assert "does the left upper arm lean" in page._controls.open.content
+    page.face("left")
+    page.fit_again()
+    page._fitting.wait()
+    assert page.fitted == page.notes != Notes()
+    assert page._row == 3
+    assert "nothing is uncertain" in page._controls.open.content
+    assert "fitted again" in page._controls.kept.content
+
+
 def test_notes_that_cannot_be_kept_are_told(page: RetouchPage) -> None:
     page._save = lambda _: ("no space <left>", False)
     page.flip(ARM)
@@ -128,7 +152,7 @@ def test_notes_that_cannot_be_kept_are_told(page: RetouchPage) -> None:
 
 
 def test_a_frame_without_a_pose_shows_its_picture_alone(page: RetouchPage) -> None:
-    page._take.joints_m[2] = np.nan
+    page.take.joints_m[2] = np.nan
     page.go_to(2)
     scene = page._server.scene
     assert not scene.get_handle_by_name("/body").visible

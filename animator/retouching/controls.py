@@ -41,7 +41,7 @@ class Controls:
     """
 
     def __init__(self, gui: viser.GuiApi, take: Take, page: Words) -> None:
-        self._take, self._page = take, page
+        self.take, self._page = take, page
         gui.configure_theme(show_logo=False, show_share_button=False, brand_color=ACCENT)
         gui.main_panel.dock_right()
         gui.main_panel.set_width(PANEL_PX)
@@ -49,6 +49,7 @@ class Controls:
         self._slider = gui.add_slider(
             "frame", min=first, max=max(first + 1, last), step=1, initial_value=first
         )
+        gui.add_button("Fit again").on_click(lambda _: page.fit_again())
         gui.add_button("Next uncertain frame").on_click(lambda _: page.look(1))
         gui.add_button("Previous uncertain frame").on_click(lambda _: page.look(-1))
         pressed = {"Play": page.play, "Undo": page.undo, "Save": page.keep}
@@ -70,14 +71,14 @@ class Controls:
 
     def show(self, row: int, joint: int, notes: Notes) -> None:
         """Bring the panel up to date."""
-        frame = int(self._take.frame[row])
+        frame = int(self.take.frame[row])
         annotations = held(notes, frame)
         self._slider.value = frame
         self._joint.value = spoken(JOINT_NAMES[joint])
         self.orientation.value = annotations.orientation or AUTO
         for limb, chosen in self._depth.items():
             chosen.value = annotations.depth.get(limb, AUTO)
-        self.open.content = questions(self._take, row, notes)
+        self.open.content = questions(self.take, row, notes)
 
     def tell(self, text: str, well: bool) -> None:
         """What became of the last input."""

@@ -8,7 +8,7 @@ import viser
 FAR_PX: Final = 10.0
 """With shift a joint goes so many of the video's pixels instead of one."""
 
-Letter = Literal["N", "I", "J", "K", "L", "F", "B", "O", "X", "U", "G", "V"]
+Letter = Literal["N", "I", "J", "K", "L", "F", "B", "O", "X", "U", "G", "V", "R"]
 """W, A, S, D, Q, E and the arrow keys lead the spectator about, in viser's own client."""
 
 
@@ -41,6 +41,9 @@ class Deeds(Protocol):
 
     def keep(self) -> None:
         """Write what was said."""
+
+    def fit_again(self) -> None:
+        """Fit the video anew with what was said."""
 
 
 class Key(NamedTuple):
@@ -77,6 +80,7 @@ KEYS: Final = (
     Key("G", False, "play, or stop", lambda page: page.play()),
     Key("U", False, "undo", lambda page: page.undo()),
     Key("V", False, "save", lambda page: page.keep()),
+    Key("R", False, "fit the video again with what was said", lambda page: page.fit_again()),
 )
 
 

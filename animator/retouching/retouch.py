@@ -8,6 +8,7 @@ import numpy as np
 from animator.page.door import HOST
 from animator.retouching.controls import AUTO, Controls
 from animator.retouching.easel import Easel, Picture
+from animator.retouching.fitting import Fit, Fitting
 from animator.retouching.keyboard import bind
 from animator.retouching.player import Player
 from animator.retouching.viser_door import close_server, open_server
@@ -25,6 +26,7 @@ class RetouchPage:
         picture_of: The video's picture of a row of the run.
         notes: What was said before.
         save: Keeps the notes; answers what to tell the user, and whether it went well.
+        fit: Fits the run's video again.
         port: Of this machine, free.
 
     Raises:
@@ -38,10 +40,12 @@ class RetouchPage:
         picture_of: Callable[[int], Picture],
         notes: Notes,
         save: Callable[[Notes], tuple[str, bool]],
+        fit: Fit,
         port: int,
     ) -> None:
-        self._take, self._picture_of, self._save = take, picture_of, save
+        self.take, self._picture_of, self._save = take, picture_of, save
         self.notes = notes
+        self.fitted: Notes | None = None
         self._row = int(np.argmax(take.posed))
         self._joint = JOINT_NAMES.index("l_wrist")
         self._before: list[tuple[Notes, int]] = []  # what was said, and the row, before each input
@@ -52,6 +56,7 @@ class RetouchPage:
         first = picture_of(self._row)
         self._easel = Easel(self._server, size, first, self.place, self.flip)
         self._controls = Controls(self._server.gui, take, self)
+        self._fitting = Fitting(fit, self._fitted, self._controls.tell)
         bind(self._server.gui, self)
         self._show()
 
@@ -63,6 +68,7 @@ class RetouchPage:
     def close(self) -> None:
         """Take the page down and free the port."""
         self._player.stop()
+        self._fitting.wait()
         close_server(self._server)
 
     def say(self, notes: Notes, moved: tuple[int, int] | None = None) -> None:
@@ -97,6 +103,10 @@ class RetouchPage:
         with self._lock:
             self._controls.tell(*self._save(self.notes))
 
+    def fit_again(self) -> None:
+        """Fit the video anew with all that was said; what is said meanwhile waits for the next."""
+        self._fitting.begin(self.notes)
+
     def go_to(self, row: int | None) -> None:
         """Show another row of the run; None: nothing is left to look at there."""
         with self._lock:
@@ -109,20 +119,20 @@ class RetouchPage:
 
     def go_to_frame(self, frame: int) -> None:
         """Show the first row that is not before a frame of the video."""
-        self.go_to(min(int(np.searchsorted(self._take.frame, frame)), len(self._take.frame) - 1))
+        self.go_to(min(int(np.searchsorted(self.take.frame, frame)), len(self.take.frame) - 1))
 
     def go(self, frames: int) -> None:
         """Show a row so much later; at the ends of the run it stays there."""
-        self.go_to(min(max(self._row + frames, 0), len(self._take.frame) - 1))
+        self.go_to(min(max(self._row + frames, 0), len(self.take.frame) - 1))
 
     def look(self, step: int) -> None:
         """Show the next row that leaves something open, or that before."""
-        self.go_to(next_doubtful(self._take, self._row, self.notes, step))
+        self.go_to(next_doubtful(self.take, self._row, self.notes, step))
 
     def play(self) -> None:
         """Show one row after the other, or stop it; at the end of the run from its begin."""
         with self._lock:
-            if not self._player.playing and self._row == len(self._take.frame) - 1:
+            if not self._player.playing and self._row == len(self.take.frame) - 1:
                 self.go_to(0)
         self._player.toggle()
 
@@ -150,10 +160,10 @@ class RetouchPage:
     def nudge(self, across_px: float, down_px: float) -> None:
         """Move the chosen joint in the picture."""
         with self._lock:
-            if not self._take.posed[self._row]:
+            if not self.take.posed[self._row]:
                 self._controls.tell("nobody is seen here: no joint to move", True)
                 return
-            joints_px, _ = with_notes(self._take, self._row, held(self.notes, self._frame))
+            joints_px, _ = with_notes(self.take, self._row, held(self.notes, self._frame))
             column, row = joints_px[self._joint] + (across_px, down_px)
             at_px = (round(float(column), 1), round(float(row), 1))
             self.place(self._joint, at_px, (self._frame, self._joint))
@@ -161,7 +171,7 @@ class RetouchPage:
     def flip_chosen(self) -> None:
         """Let the segment that ends at the chosen joint lean the other way."""
         ends = LIMB_ENDS[:, 1].tolist()
-        if self._joint not in ends or not self._take.posed[self._row]:
+        if self._joint not in ends or not self.take.posed[self._row]:
             self._controls.tell("no segment ends there", True)
             return
         self.flip(ends.index(self._joint))
@@ -169,7 +179,7 @@ class RetouchPage:
     def flip(self, limb: int) -> None:
         """Let a segment lean the other way than it is shown, from this frame on."""
         with self._lock:
-            _, joints_m = with_notes(self._take, self._row, held(self.notes, self._frame))
+            _, joints_m = with_notes(self.take, self._row, held(self.notes, self._frame))
             near, far = LIMB_ENDS[limb]
             other: Depth = "away" if joints_m[far, 2] > joints_m[near, 2] else "toward"
             self.say(noted(self.notes, Note(self._frame, depth={LIMBS[limb]: other})))
@@ -190,14 +200,23 @@ class RetouchPage:
             placed = held(self.notes, self._frame).joints_px
             self.say(noted(self.notes, Note(self._frame, joints_px=dict.fromkeys(placed, AUTO))))
 
+    def _fitted(self, take: Take, notes: Notes) -> None:
+        with self._lock:
+            self._player.stop()
+            self.take, self.fitted = take, notes
+            self._row = min(self._row, len(take.frame) - 1)
+            self._controls.take = take
+            self._show()
+            self._controls.tell("fitted again with what you said; the run is the new one", True)
+
     @property
     def _frame(self) -> int:
-        return int(self._take.frame[self._row])
+        return int(self.take.frame[self._row])
 
     def _advance(self) -> bool:
         """The player's next row."""
         with self._lock:
-            if not self._player.playing or self._row + 1 >= len(self._take.frame):
+            if not self._player.playing or self._row + 1 >= len(self.take.frame):
                 return False
             self._row += 1
             self._show()
@@ -207,11 +226,11 @@ class RetouchPage:
         annotations = held(self.notes, self._frame)
         with self._server.atomic():
             self._controls.show(self._row, self._joint, self.notes)
-            posed = bool(self._take.posed[self._row])
+            posed = bool(self.take.posed[self._row])
             self._easel.show(self._picture_of(self._row), posed)
             if posed:
-                joints_px, joints_m = with_notes(self._take, self._row, annotations)
-                doubts = doubts_at(self._take, self._row, self.notes)
+                joints_px, joints_m = with_notes(self.take, self._row, annotations)
+                doubts = doubts_at(self.take, self._row, self.notes)
                 doubtful = {doubt.name for doubt in doubts if doubt.kind == "depth"}
                 self._easel.show_stick(joints_px, set(annotations.joints_px), self._joint)
                 self._easel.show_body(joints_m, doubtful)

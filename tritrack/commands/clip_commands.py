@@ -241,7 +241,7 @@ def retouch(
 ) -> None:
     """Correct a run frame by frame, on a page. Ctrl-C ends it.
 
-    Say there what the video does not show; then `tritrack single` fits it again.
+    Say there what the video does not show; "Fit again" fits the video with that.
 
     Example: tritrack retouch runs/dance
     """

@@ -1,7 +1,7 @@
 """The retouching of a run: its video, its poses and its notes on a page, until Ctrl-C."""
 
 import shlex
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
+from animator.retouching.fitting import FitError
 from animator.take import Take, take_of
 from common.bus.process import ProcessContext, process
 from common.config.explained import explained
@@ -24,6 +25,9 @@ from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from tritrack.single.ledger import facts_of, ledger
+from tritrack.single.mask_file import is_mask_file
+from tritrack.single.refitting import refit
+from tritrack.store.other_run import run_told
 from tritrack.store.past_run import PastRun, open_run
 from tritrack.terminal import bar, say
 
@@ -65,7 +69,8 @@ def retouch(
         ) from error
 
     run = open_run(folder)
-    clip = _clip_of(run, video)
+    settings = _settings_of(run, video)
+    clip = _clip_of(run, settings)
     source = Path(str(clip.views[0].source))
     path = notes_file or notes_path(source)
     notes = load_notes(path) if path.exists() else Notes(source.name)
@@ -80,18 +85,34 @@ def retouch(
             save_notes(path, new)
         except NotesError as error:
             return str(error), False
-        count = ledger(take, new).given.total
+        count = ledger(page.take, new).given.total
         return f"{count} input{'' if count == 1 else 's'}, kept in {path.name}", True
 
     with process("retouch", ProcessContext()) as stop:
-        page = RetouchPage(take, clip.views[0].source_size, picture_of, notes, keep, port)
+
+        def fit(said: Notes, tell: Callable[[str], object]) -> Take:
+            if not fitted_by_single(run):
+                raise FitError(how_to_go_on(source, run))
+            refit(folder, settings, said, tell, stop)
+            return _take_of(open_run(folder), clip)
+
+        page = RetouchPage(take, clip.views[0].source_size, picture_of, notes, keep, fit, port)
         console.print(f"the page is at {page.address}; Ctrl-C ends it", highlight=False)
         try:
             stop.wait()
         finally:
             page.close()
-    say(console, how_to_go_on(source, run))
-    return {"notes": str(path), **facts_of(ledger(take, page.notes))}
+    if page.notes != page.fitted:
+        say(console, how_to_go_on(source, run))
+    return {"notes": str(path), **facts_of(ledger(page.take, page.notes))}
+
+
+def fitted_by_single(run: PastRun) -> bool:
+    """Whether a run is one that notes can be fitted into: `tritrack single` wrote it of a video."""
+    told = run_told(run.folder)
+    if told is None or told.command != "single":
+        return False
+    return not any(is_mask_file(Path(film)) for film in told.footage)
 
 
 def how_to_go_on(video: Path, run: PastRun) -> str:
@@ -102,17 +123,24 @@ def how_to_go_on(video: Path, run: PastRun) -> str:
     return f"then fit the video again with these notes: {command}"
 
 
-def _clip_of(run: PastRun, video: Path | None) -> Clip:
-    """The run's video, through camera 1."""
+def _settings_of(run: PastRun, video: Path | None) -> Settings:
+    """The run's own; its video is where it is now."""
     try:
         settings = msgspec.convert(run.summary.get("settings", {}), Settings)
     except msgspec.ValidationError as error:
         raise RetouchError(
             f"{run.folder}/summary.json: {explained(error, Settings)}; track the clip again"
         ) from error
-    if video is not None:
-        camera = CameraSettings(source=str(video))
-        settings = msgspec.structs.replace(settings, clip="", camera_1=camera)
+    if video is None:
+        return settings
+    camera = CameraSettings(source=str(video))
+    if settings.camera_1 is not None:
+        camera = msgspec.structs.replace(settings.camera_1, source=str(video), device=-1)
+    return msgspec.structs.replace(settings, clip="", camera_1=camera)
+
+
+def _clip_of(run: PastRun, settings: Settings) -> Clip:
+    """The run's video, through camera 1."""
     try:
         clip = open_clip(settings, None, (1,))
     except ClipError as error:

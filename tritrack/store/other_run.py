@@ -46,7 +46,7 @@ def refuse_other(folder: Path, now: RunOf) -> None:
     Raises:
         OtherRun: When it may not.
     """
-    before = _told(folder)
+    before = run_told(folder)
     if before is None or before == now:
         return
     films = ", ".join(before.footage)
@@ -56,7 +56,8 @@ def refuse_other(folder: Path, now: RunOf) -> None:
     )
 
 
-def _told(folder: Path) -> RunOf | None:
+def run_told(folder: Path) -> RunOf | None:
+    """Of what the run in a folder is; None where there is none, or it does not tell."""
     try:
         summary = json.loads((folder / "summary.json").read_text())
     except (OSError, ValueError):

@@ -1,0 +1,140 @@
+"""A run of one camera fitted again with what was said of it, in a process of its own (T22, T26)."""
+
+import multiprocessing
+import os
+import signal
+import tempfile
+import threading
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from pathlib import Path
+from typing import Final, Literal, NamedTuple
+
+from rich.console import Console
+
+from animator.film import FilmError
+from animator.retouching.fitting import FitError
+from common.config.settings import Settings
+from common.notes.notes import Notes
+from tritrack.single.single import PASSES, UNUSABLE, Job, follow
+from tritrack.store.runs import RunError
+from tritrack.terminal import Tell
+from tritrack.unfinished.resuming import Begun
+from tritrack.unfinished.work import InMemory
+
+HEARD_S: Final = 0.2
+END_S: Final = 5.0
+"""For a process that was told to end; then it is killed."""
+STEP: Final = 0.05
+"""Of a pass: told so often how far it is."""
+SPAWN: Final = multiprocessing.get_context("spawn")
+
+
+class Said(NamedTuple):
+    """What the process that fits says."""
+
+    kind: Literal["far", "done", "failed"]
+    text: str = ""
+
+
+def refit(
+    folder: Path,
+    settings: Settings,
+    notes: Notes,
+    tell: Callable[[str], object],
+    stop: threading.Event,
+) -> None:
+    """Fit a run's video with these notes; its files give way when all the new ones are written.
+
+    Args:
+        folder: Of the run that `tritrack single` wrote.
+        settings: Its own; camera 1 is its video.
+        notes: All that was said of the video.
+        tell: Hears how far it is.
+        stop: Set when it shall leave off.
+
+    Raises:
+        FitError: When the video cannot be fitted, or it was stopped: the run is as it was.
+    """
+    try:
+        with tempfile.TemporaryDirectory(prefix=".again-", dir=folder) as scratch:
+            new = Path(scratch) / folder.name
+            _fitted_apart(new, settings, notes, tell, stop)
+            for file in sorted(new.iterdir()):
+                os.replace(file, folder / file.name)
+    except OSError as error:
+        raise FitError(
+            f"cannot write {error.filename or folder}: {error.strerror}; see that you may write "
+            "there and that its disk has room, then fit again"
+        ) from error
+
+
+def _fitted_apart(
+    new: Path,
+    settings: Settings,
+    notes: Notes,
+    tell: Callable[[str], object],
+    stop: threading.Event,
+) -> None:
+    ours, theirs = SPAWN.Pipe(duplex=False)
+    child = SPAWN.Process(target=_fit, args=(new, settings, notes, theirs))
+    child.start()
+    theirs.close()
+    try:
+        last = Said("far")
+        while last.kind == "far":
+            last = _next(ours, stop)
+            tell(last.text)
+    finally:
+        _end(child)
+        ours.close()
+    if last.kind == "failed":
+        raise FitError(last.text)
+
+
+def _next(ours: Connection, stop: threading.Event) -> Said:
+    while not ours.poll(HEARD_S):
+        if stop.is_set():
+            return Said("failed", "the page was closed: the run is as it was")
+    try:
+        said: Said = ours.recv()
+    except EOFError:
+        return Said("failed", "what fitted the video was killed, the run is as it was: fit again")
+    return said
+
+
+def _end(child: BaseProcess) -> None:
+    child.terminate()
+    child.join(END_S)
+    if child.exitcode is None:
+        child.kill()
+        child.join()
+
+
+def _fit(folder: Path, settings: Settings, notes: Notes, said: Connection) -> None:
+    """The process: whoever started it ends it, whatever a terminal's Ctrl-C says."""
+    from common.video.decoding import Decoder
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    def begun(name: str) -> Tell:
+        told = -1.0
+
+        def tell(share: float) -> None:
+            nonlocal told
+            if share - told >= STEP:
+                told = share
+                step = f"step {PASSES.index(name) + 1} of {len(PASSES)}"
+                said.send(Said("far", f"fitting again, {step}: {name}, {share:.0%}"))
+
+        return tell
+
+    camera = settings.camera_1
+    job = Job(Path(camera.source if camera else ""), settings, None, notes)
+    try:
+        with Decoder() as decoder:
+            follow(job, folder, decoder, Console(quiet=True), begun, Begun(InMemory(), {}))
+        said.send(Said("done", "fitted"))
+    except (*UNUSABLE, RunError, FilmError) as error:
+        said.send(Said("failed", f"{error}; the run is as it was"))
