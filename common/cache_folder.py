@@ -75,6 +75,11 @@ def compiled_folder() -> Path:
     return folder
 
 
+def mark_of_all() -> Path:
+    """The file that is there once all that commands run by default was compiled."""
+    return compiled_folder() / "all"
+
+
 def parents(root: Path, environ: Mapping[str, str]) -> Iterator[Path]:
     """Where the folder may lie, best first.
 

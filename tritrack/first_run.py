@@ -1,8 +1,12 @@
 """What the commands run by default, compiled once: what `make setup` waits for."""
 
+import sys
 import tempfile
 import time
 from pathlib import Path
+
+from common.cache_folder import mark_of_all
+from common.parent_death import end_with
 
 
 def compile_all() -> None:
@@ -11,9 +15,7 @@ def compile_all() -> None:
     A mark in the folder of what is compiled says that this was done: the next time takes no longer
     than importing numba.
     """
-    from common.cache_folder import compiled_folder
-
-    mark = compiled_folder() / "all"
+    mark = mark_of_all()
     if mark.exists():
         return
     began = time.perf_counter()
@@ -36,4 +38,6 @@ def _run_all() -> None:
 
 
 if __name__ == "__main__":
+    if len(sys.argv) > 1:  # the number of who started it, and without whom nobody needs it
+        end_with(int(sys.argv[1]))
     compile_all()

@@ -6,12 +6,15 @@ gives its server no other moment.
 
 import os
 import signal
+import subprocess
+import sys
 from contextlib import suppress
 from typing import Final
 
 import cv2
 import numpy as np
 
+from common.cache_folder import mark_of_all
 from common.config.settings import Settings
 from common.method import METHODS
 from common.parent_death import end_with
@@ -27,9 +30,20 @@ from viewer.viewer_warmup import warm_up as warm_viewer
 
 PID = os.getpid()
 """Of who forks the parts."""
+FIRST_RUN: Final = f"{__package__.removesuffix('.live')}.first_run"
 PROCESSES: Final = (viewer_process, integrator_process, recognizer_process, decoder)
 SIZE: Final = (160, 120)
 """Of the pictures that are made up; what is compiled does for any."""
+
+
+def compile_first() -> None:
+    """Let all be compiled that is not: a part that met it in the midst of a run would stand still.
+
+    In a process of its own, as it begins threads; it ends with this one, and hears no Ctrl-C.
+    """
+    if not mark_of_all().exists():
+        command = [sys.executable, "-P", "-m", FIRST_RUN, str(os.getpid())]
+        subprocess.run(command, stdout=subprocess.DEVNULL, start_new_session=True, check=False)
 
 
 def warm_up() -> None:
@@ -66,4 +80,5 @@ def begin(starter: int) -> None:
 
 
 begin(os.getppid())
+compile_first()
 warm_up()

@@ -22,12 +22,17 @@ from multiprocessing import forkserver, util
 from multiprocessing.context import ForkServerContext, SpawnContext
 from typing import Any, Final
 
+from common.cache_folder import mark_of_all
+
 SPAWN: Final = multiprocessing.get_context("spawn")
 FORK: Final = multiprocessing.get_context("forkserver")
 """Never the plain fork: Zenoh's threads are not inherited."""
 WARMED: Final = f"{__package__}.warmed"
 WARM_S: Final = 20.0
-"""So long a run waits for its zygote at most: when all is compiled anew, its parts do without."""
+"""So long a run waits for its zygote at most."""
+COMPILED_S: Final = 600.0
+"""So long where all is compiled anew: parts that did so each for itself would take far longer, and
+compile in the midst of the run what they meet there first."""
 LOOK_S: Final = 0.05
 
 log = logging.getLogger(__name__)
@@ -67,7 +72,7 @@ class Zygote:
 
     def wait(self, stop: threading.Event, look: Callable[[], None], most_s: float = WARM_S) -> None:
         """Until it is warm, or that takes too long, or the run shall end; `look` meanwhile."""
-        until_s = time.monotonic() + most_s
+        until_s = time.monotonic() + (most_s if mark_of_all().exists() else COMPILED_S)
         while self._coming and not (self._warm or stop.wait(LOOK_S)):
             if time.monotonic() > until_s:
                 self._coming = False
