@@ -1,9 +1,11 @@
 """What is compiled beforehand: after it no command of every day compiles."""
 
+import json
 import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -23,12 +25,42 @@ def said(cache: Path | None, *words: str) -> str:
     return done.stdout
 
 
+class First(NamedTuple):
+    """A first run: the one place of the slow tests where a checkout compiles anew."""
+
+    cache: Path
+    run: Path
+
+
 @pytest.fixture(scope="module")
-def anew(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of a first run: the one place of the slow tests where a checkout compiles anew."""
-    folder = tmp_path_factory.mktemp("cache")
-    assert "compiled in" in said(folder, "tritrack.first_run")
-    return folder
+def first(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> First:
+    """Of a live run, where nobody let anything be compiled before."""
+    folder = tmp_path_factory.mktemp("first")
+    settings = folder / "live.toml"
+    settings.write_text(
+        f'clip = "{clip}"\nsize = "160x120"\n[bus]\nendpoint = "auto"\n[page]\nport = 0\n'
+    )
+    said(folder / "cache", "tritrack", "live", str(settings), "--out", str(folder / "run"))
+    return First(folder / "cache", folder / "run")
+
+
+@pytest.fixture(scope="module")
+def anew(first: First) -> Path:
+    return first.cache
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="parts of a run are forked on Linux alone")
+def test_a_first_live_run_compiles_before_its_clip_begins_and_not_in_its_midst(
+    first: First,
+) -> None:
+    """Else its integrator stands still for seconds, and is killed as one that hangs."""
+    summary = json.loads((first.run / "summary.json").read_text())
+    assert summary["frames"] > 60
+    began_s = (first.run / "poses.npz").stat().st_mtime - (summary["frames"] - 1) / 15
+    compiled = list(first.cache.rglob("*.nbc"))
+    assert len(compiled) > 100
+    assert max(path.stat().st_mtime for path in compiled) < began_s
+    assert not [told for told in summary["warnings"] if "killed" in told]
 
 
 def test_after_the_first_run_tracking_compiles_nothing(
