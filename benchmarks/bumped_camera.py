@@ -19,6 +19,7 @@ from typing import Final
 
 import cv2
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Body
@@ -118,4 +119,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    with threadpool_limits(1):
+        main()

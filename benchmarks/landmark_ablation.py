@@ -24,6 +24,7 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
 import msgspec
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Body, Report
@@ -133,4 +134,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    with threadpool_limits(1):
+        main()

@@ -15,6 +15,7 @@ from typing import Final
 
 import msgspec
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Body, Guide, Report
@@ -87,7 +88,7 @@ def told(bodies: Sequence[Body], truth: Path) -> str:
 
 
 if __name__ == "__main__":
-    with Decoders() as opened:
+    with threadpool_limits(1), Decoders() as opened:
         for folder in map(Path, sys.argv[1:]):
             stature_m = msgspec.json.decode((folder / "meta.json").read_bytes())["measures"]
             of_run = Settings(clip=str(folder), body=BodySettings(stature_m["stature_m"]))

@@ -22,6 +22,7 @@ import msgspec
 import numpy as np
 from camera_loss import signs_of
 from rich.console import Console
+from threadpoolctl import threadpool_limits
 
 from common.config.config_file import load
 from common.method import METHODS
@@ -87,4 +88,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    with threadpool_limits(1):
+        main()

@@ -18,6 +18,7 @@ from typing import Any, Final, NamedTuple
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from common.body.proportions import body_vector
 from common.bus.messages import Body, Report
@@ -222,4 +223,5 @@ def sheet(rows: list[Row], rig: Rig, path: Path) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    with threadpool_limits(1):
+        main()

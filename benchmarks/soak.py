@@ -9,7 +9,6 @@ run at 15 frames a second.
 import argparse
 import gc
 import json
-import os
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
@@ -21,6 +20,7 @@ import cv2
 import numpy as np
 import psutil
 from rich.console import Console
+from threadpoolctl import threadpool_limits
 
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Body, Guide, Report, ViewerNumber
@@ -250,6 +250,5 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    os.environ.setdefault("OMP_NUM_THREADS", "1")
-    os.environ.setdefault("NUMBA_NUM_THREADS", "1")
-    main()
+    with threadpool_limits(1):
+        main()

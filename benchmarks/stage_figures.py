@@ -14,6 +14,7 @@ import cv2
 import numpy as np
 from house_figure import save
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from animator.skeleton.foot_contact import SIDES, stances
 from animator.skeleton.planted_feet import planted
@@ -181,4 +182,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    with threadpool_limits(1):
+        main()

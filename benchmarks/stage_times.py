@@ -16,6 +16,7 @@ import cv2
 import numpy as np
 from rich.console import Console
 from soak import CAMERAS, HZ, Steps
+from threadpoolctl import threadpool_limits
 
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Body, Guide, Report
@@ -82,4 +83,5 @@ def _at(values: np.ndarray, percent: float) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    with threadpool_limits(1):
+        main()

@@ -5,13 +5,16 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
+from typing import Any
 
 import pytest
 from meeting import EARLY, free_endpoint, saying
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from common.bus.bus import BusError
 from common.bus.messages import Body
 from tritrack import subscribe, track
+from tritrack.offline import lockstep
 
 EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"
 
@@ -68,6 +71,25 @@ def test_track_gives_the_bodies_of_a_clip(clip: Path) -> None:
     bodies = track(clip)
     assert [body.frame for body in bodies] == list(range(len(bodies)))
     assert sum(bool(body.joints_m) for body in bodies) > len(bodies) / 2
+
+
+def test_track_takes_one_thread_of_numpys_and_gives_back_what_the_program_had(
+    clip: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def threads() -> set[int]:
+        return {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
+
+    meanwhile: list[set[int]] = []
+    tracked = lockstep.track_clip
+
+    def watched(*given: Any) -> lockstep.Tracked:
+        meanwhile.append(threads())
+        return tracked(*given)
+
+    monkeypatch.setattr(lockstep, "track_clip", watched)
+    with threadpool_limits(2):
+        track(clip)
+        assert (meanwhile, threads()) == ([{1}], {2})
 
 
 def run_example(name: str, argument: str, began: threading.Event | None = None) -> str:

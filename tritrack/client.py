@@ -45,12 +45,16 @@ def track(source: str | Path, views: tuple[ViewerNumber, ...] = (1, 2)) -> list[
         source: A clip folder (cam1.*, cam2.*), or a settings file (TOML).
         views: The cameras to use.
 
+    Numpy's products take one thread meanwhile: two would wait for each other at every frame.
+
     Raises:
         SettingsError, ClipError, DecoderDied: When the clip cannot be used; the text says why.
     """
+    from threadpoolctl import threadpool_limits
+
     from tritrack.offline.lockstep import Decoders, track_clip
 
-    with Decoders() as decoders:
+    with threadpool_limits(1), Decoders() as decoders:
         return list(track_clip(load(Path(source)), decoders, views).bodies)
 
 
