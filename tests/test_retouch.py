@@ -247,6 +247,8 @@ def test_on_a_phone_all_of_the_picture_is_above_the_panel(
         )
         tab.call("Page.navigate", url=page.address)
         waited(tab, lambda picture, text: "frame 0" in text and picture[250, 60, 0] < 120)
+        # The page turns the spectator once it is told how large the window is.
+        waited(tab, lambda picture, _: bool(picture_corners(picture, 40)[0][0] > 0))
         seen = unmoving(tab)
         where = saved(seen, tmp_path / "retouch.png")
         first, last = picture_corners(seen, 40)
