@@ -84,16 +84,16 @@ class Trial:
         self.seen: dict[int, psutil.Process] = {}
 
     def parts(self) -> dict[str, psutil.Process]:
-        """Its processes by their names, and each decoder by that of its viewer: both are forks of
-        the zygote, and one pipe is theirs alone."""
+        """Its processes by their names, and each decoder by that of its viewer: both were forked
+        by the zygote, and one pipe is theirs alone."""
         children = psutil.Process(self.run.pid).children()
-        (zygote,) = spoken_of(children, "forkserver")
-        begun = [*spoken_of(children, "spawn_main"), *zygote.children()]
-        in_order = sorted(begun, key=lambda one: (one.create_time(), one.pid))
+        zygote, *forked = by_age(spoken_of(children, "forkserver"))
+        in_order = by_age([*spoken_of(children, "spawn_main"), *forked])
         named = {"zygote": zygote, **dict(zip(STARTED, in_order, strict=False))}
-        held = {one: pipes(one) for one in zygote.children()}
+        decoders = by_age(zygote.children())
+        held = {one: pipes(one) for one in [*forked, *decoders]}
         shared = set.intersection(*held.values())
-        for number, one in itertools.product((1, 2), in_order[len(STARTED) :]):
+        for number, one in itertools.product((1, 2), decoders):
             if held.get(one, set()) & held[named[f"viewer {number}"]] - shared:
                 named[f"decoder {number}"] = one
         return named
@@ -159,6 +159,10 @@ def spoken_of(processes: Sequence[psutil.Process], word: str) -> list[psutil.Pro
     return [one for one in processes if word in " ".join(one.cmdline())]
 
 
+def by_age(processes: Sequence[psutil.Process]) -> list[psutil.Process]:
+    return sorted(processes, key=lambda one: (one.create_time(), one.pid))
+
+
 def pipes(process: psutil.Process) -> set[str]:
     """The pipes that a process holds an end of."""
     held = Path(f"/proc/{process.pid}/fd").iterdir()
@@ -196,7 +200,7 @@ CASES: Final = (
     Case("integrator killed", "integrator", kill),
     Case("recogniser killed", "recognizer", kill),
     Case("page killed", "animator", kill),
-    Case("zygote killed, all with it", "zygote", kill),
+    Case("zygote killed", "zygote", kill),
     Case("decoder of viewer 1 killed", "decoder 1", kill),
     Case("viewer 1 frozen 2 s", "viewer 1", freeze),
     Case("viewer 2 frozen 2 s", "viewer 2", freeze),

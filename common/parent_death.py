@@ -16,21 +16,17 @@ ORPHANED: Final = 1
 """Exit code of who ends so; nobody is left to read it."""
 
 
-def end_with_parent(forked_by: int | None = None) -> None:
+def end_with_parent() -> None:
     """End at once when the process that started this one by multiprocessing dies, however it does.
 
     Linux kills it, also while it is stopped or holds the interpreter; elsewhere a thread sees the
     end of a pipe. In a process that nobody started so nothing happens.
-
-    Args:
-        forked_by: Number of the process that forked this one for that parent, and itself ends with
-            it; None: the parent did.
     """
     parent = multiprocessing.parent_process()
     if parent is None:
         return
     if sys.platform == "linux":
-        end_with(forked_by or parent.pid or 0)
+        end_with(parent.pid or 0)
     _end_after(parent.join)
 
 

@@ -1,8 +1,5 @@
 """A live run seen from outside: real processes, asked by HTTP, one of them killed."""
 
-import multiprocessing
-import os
-import signal
 import threading
 import time
 from collections import Counter
@@ -11,6 +8,7 @@ from contextlib import nullcontext
 from pathlib import Path
 
 import msgspec
+import psutil
 import pytest
 
 pytest.importorskip("prometheus_client", reason="pip install 'tritrack[metrics]'")
@@ -47,11 +45,8 @@ class Outsider(threading.Thread):
     def run(self) -> None:
         try:
             self._until("well", lambda: self._health()[0] == 200 and self._bodies() > 20)
-            (pid,) = (
-                one.pid for one in multiprocessing.active_children() if one.name == self._victim
-            )
-            assert pid is not None
-            os.kill(pid, signal.SIGKILL)
+            (part,) = (one for one in psutil.Process().children() if one.name() == self._victim)
+            part.kill()
             self._until("sick", self._is_sick)
             self._until("well again", lambda: self._health()[0] == 200)
             self._until("counted", lambda: self._restarts() >= 1)

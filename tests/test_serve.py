@@ -110,9 +110,9 @@ class Service:
         return found
 
     def supervisor_of(self, own: psutil.Process, name: str) -> psutil.Process:
-        """The process of a site: it is forked of the service's zygote."""
+        """The process of a site, a child of the service."""
         pids = self.all_of(own, name)
-        (found,) = (one for one in zygote_of(own).children() if one.pid in pids)
+        (found,) = (one for one in own.children() if one.pid in pids)
         return found
 
     def frames(self, name: str) -> float:
@@ -127,9 +127,9 @@ class Service:
 
 
 def zygote_of(own: psutil.Process) -> psutil.Process:
-    """The one process of the service that has forked others."""
-    (found,) = (one for one in own.children() if one.children())
-    return found
+    """The zygote of a service or of a site: its first fork, before all that are forked of it."""
+    forked = [one for one in own.children() if "forkserver" in " ".join(one.cmdline())]
+    return min(forked, key=lambda one: (one.create_time(), one.pid))
 
 
 def pids_in(own: psutil.Process) -> list[int]:
@@ -212,40 +212,34 @@ def test_a_site_that_is_killed_is_started_again_and_the_other_goes_on(service: S
     assert list((service.folder / "runs" / "hall" / "saved").glob("cut_short_*"))
 
 
-def test_all_sites_come_back_where_the_zygote_was_killed_that_they_share(
+def test_sites_go_on_where_the_zygotes_are_killed_that_they_and_their_parts_came_of(
     service: Service,
 ) -> None:
     service.write(hall="160x120", lobby="160x120")
     with service.running() as own:
         service.until_well("hall", "lobby")
         before = {name: service.all_of(own, name) for name in ("hall", "lobby")}
-        zygote_of(own).kill()
-        rooms = before["hall"] | before["lobby"]
-        assert alive(rooms) == []
-        service.until_well("hall", "lobby")
-        own.send_signal(signal.SIGTERM)
-        assert own.wait(SOON_S) == 0
-
-
-def test_a_site_whose_own_zygote_is_killed_goes_on_and_the_others_do_not_notice(
-    service: Service,
-) -> None:
-    service.write(hall="160x120", lobby="160x120")
-    with service.running() as own:
-        service.until_well("hall", "lobby")
-        lobby = service.all_of(own, "lobby")
         hall = service.supervisor_of(own, "hall")
-        (zygote,) = hall.children()
-        service.until("four parts and two decoders", lambda: len(zygote.children()) == 6)
-        parts = [one.pid for one in zygote.children()]
-        zygote.kill()
-        assert alive(parts) == []
-        service.until("new parts", lambda: len(service.pids_of(own, "hall") - set(parts)) == 5)
+        zygotes = [zygote_of(own), zygote_of(hall)]
+        service.until("two decoders", lambda: len(zygotes[1].children()) == 2)
+        decoders = [one.pid for one in zygotes[1].children()]
+        for zygote in zygotes:
+            zygote.kill()
+        assert alive([zygote.pid for zygote in zygotes]) == []
+        bodies = service.frames("hall")
+        service.until("the hall to go on", lambda: service.frames("hall") > bodies + 10)
+        service.until_well("hall", "lobby")
+        assert {name: service.all_of(own, name) for name in ("hall", "lobby")} == before
+        assert alive(decoders, LOOK_S) == decoders
+
+        part = next(one for one in hall.children() if one.pid in before["hall"])
+        part.kill()
+        service.until("a new part", lambda: part.pid not in service.all_of(own, "hall"))
         service.until_well("hall", "lobby")
         assert hall.is_running(), "its run was cut in two"
-        assert service.pids_of(own, "lobby") == lobby
         own.send_signal(signal.SIGTERM)
         assert own.wait(SOON_S) == 0
+    assert alive(before["hall"] | before["lobby"] | set(decoders)) == []
 
 
 def test_sigterm_to_all_processes_ends_each_run_in_order(service: Service) -> None:

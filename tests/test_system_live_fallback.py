@@ -1,7 +1,6 @@
 """A view that is lost in a live run: real processes that are killed, frozen, covered or cut off."""
 
 import json
-import multiprocessing
 import os
 import shutil
 import signal
@@ -17,6 +16,7 @@ from typing import Any
 
 import msgspec
 import numpy as np
+import psutil
 import pytest
 from rich.console import Console
 from spoiling import Film, copied, edit_json, refilmed
@@ -161,9 +161,8 @@ class Witness:
 
 def pid_of(name: str) -> int:
     """Of this test's own part."""
-    (pid,) = (one.pid for one in multiprocessing.active_children() if one.name == name)
-    assert pid is not None
-    return pid
+    (pid,) = (one.pid for one in psutil.Process().children() if one.name() == name)
+    return int(pid)
 
 
 def rows(out: Path) -> dict[str, Any]:
@@ -287,23 +286,54 @@ def test_a_killed_integrator_is_started_again_and_poses_go_on(
     assert missing.sum() <= MOST_MISSING
 
 
+def number_of_the_zygote() -> int:
+    server: Any = forkserver._forkserver
+    return int(server._forkserver_pid)
+
+
+def with_both(bodies: list[Body]) -> bool:
+    """Whether the last of them are made of both views."""
+    return all(body.joints_m and body.views == "both" for body in bodies[-5:])
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="parts are forked on Linux alone")
-def test_a_clip_goes_on_where_it_would_be_when_all_parts_died_with_their_zygote(
+def test_a_run_does_not_notice_that_its_zygote_is_killed(
+    long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def harm(witness: Witness) -> None:
+        witness.until_tracked()
+        os.kill(number_of_the_zygote(), signal.SIGKILL)
+        before = len(witness.bodies)
+        witness.until("bodies after it", lambda: len(witness.bodies) >= before + 20)
+
+    settings = settings_of(long_clip)
+    with Witness(settings.bus, harm) as witness:
+        monkeypatch.setattr(session, "_stopped_by_signals", lambda _: nullcontext(witness.over))
+        facts = live(settings, tmp_path, Console(quiet=True))
+    assert not [told for told in facts["warnings"] if "started again" in told]
+    found = rows(tmp_path)
+    again = found["frame"] >= witness.lost_at
+    assert np.isfinite(found["joints_m"][again]).all()
+    assert (np.diff(found["frame"][again]) - 1).sum() <= MOST_MISSING
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="parts are forked on Linux alone")
+def test_a_clip_goes_on_where_it_would_be_when_all_processes_of_its_run_died(
     long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Nobody lives who remembers when the run began; no frame may come twice."""
 
     def harm(witness: Witness) -> None:
         witness.until_tracked()
-        server: Any = forkserver._forkserver
-        os.kill(server._forkserver_pid, signal.SIGKILL)
+        zygote = psutil.Process(number_of_the_zygote())
+        parts = [one for one in psutil.Process().children() if one.cmdline() == zygote.cmdline()]
+        assert len(parts) == 5
+        for one in [*parts, *zygote.children()]:
+            one.kill()
         before = len(witness.bodies)
         witness.until(
             "poses of both views from the new parts",
-            lambda: (
-                len(witness.bodies) >= before + 10
-                and all(body.joints_m and body.views == "both" for body in witness.bodies[-5:])
-            ),
+            lambda: len(witness.bodies) >= before + 10 and with_both(witness.bodies),
         )
 
     settings = settings_of(long_clip)
@@ -311,7 +341,7 @@ def test_a_clip_goes_on_where_it_would_be_when_all_parts_died_with_their_zygote(
         monkeypatch.setattr(session, "_stopped_by_signals", lambda _: nullcontext(witness.over))
         facts = live(settings, tmp_path, Console(quiet=True))
     for part in ("integrator", "recognizer", "viewer 1", "viewer 2"):
-        again = f"{part}: it ended with its zygote; it is started again"
+        again = f"{part}: killed by signal 9; it is started again"
         assert any(again in told for told in facts["warnings"])
     starts_s = [body.clock_s - body.captured_s for body in witness.bodies]
     assert starts_s == pytest.approx([starts_s[0]] * len(starts_s), abs=0.01)

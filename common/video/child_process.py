@@ -48,11 +48,7 @@ class Child:
         read_end, write_end = os.pipe()
         heard, asked = os.pipe()
         self._requests = io.FileIO(asked, "w")
-        self._process = (
-            ForkedChild(module, heard, write_end, told)
-            if can_fork() and not files
-            else _executed(module, heard, write_end, told, files)
-        )
+        self._process = _begun(module, heard, write_end, told, files)
         os.close(heard)
         os.close(write_end)
         os.set_blocking(read_end, False)
@@ -118,6 +114,16 @@ class Child:
             self.kill()
             return "it closed its pipe"
         return f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
+
+
+def _begun(
+    module: str, requests: int, answers: int, told: Sequence[str], files: Sequence[int]
+) -> ForkedChild | subprocess.Popen[bytes]:
+    """The module, forked where there is who forks it and still lives."""
+    if can_fork() and not files:
+        with contextlib.suppress(OSError, EOFError):
+            return ForkedChild(module, requests, answers, told)
+    return _executed(module, requests, answers, told, files)
 
 
 def _executed(

@@ -10,9 +10,11 @@ import signal
 import subprocess
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
 from multiprocessing import forkserver
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any, Final
 
 FORK: Final = multiprocessing.get_context("forkserver")
@@ -69,6 +71,8 @@ def can_fork() -> bool:
 
 def _run(module: str, requests: Connection, answers: Connection, told: tuple[str, ...]) -> None:
     os.setpgrp()  # what is said to all of a run's group is not for it
+    with suppress(OSError):  # what `top` and `ps` show, on Linux
+        Path("/proc/self/comm").write_text(module.rpartition(".")[2])
     signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))  # the zygote is deaf to it
     silence = os.open(os.devnull, os.O_WRONLY)
     for said in (1, 2):

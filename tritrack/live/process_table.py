@@ -4,10 +4,12 @@ import logging
 import os
 import signal
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext, suppress
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
+from multiprocessing.context import ForkServerContext, SpawnContext
 from multiprocessing.process import BaseProcess
+from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from animator.page.door import Entrance
@@ -16,12 +18,11 @@ from common.config.settings import Settings
 from common.parent_death import end_with_parent
 from common.video.clip_facts import Clip
 from tritrack.faults import code_of, told
-from tritrack.live.zygote import SPAWN, Zygote, forked_by
+from tritrack.live.adoption import Adopted, adopted, adopting, be_adopted
+from tritrack.live.zygote import FORK, SPAWN, Zygote
 
 END_S: Final = 5.0
 """What most processes may take to close their doors."""
-WITH_ZYGOTE: Final = 255
-"""What multiprocessing gives as the exit code of a fork whose zygote is dead; none of ours."""
 OF_TERMINALS: Final = (signal.SIGINT, signal.SIGHUP)
 FRUGAL: Final = {
     "OMP_NUM_THREADS": "1",
@@ -56,7 +57,7 @@ class Running(NamedTuple):
     """A part that was started."""
 
     part: Part
-    process: BaseProcess
+    process: BaseProcess | Adopted
     words: Connection
     """On which it says why it fails."""
 
@@ -134,19 +135,26 @@ def viewer_main(*arguments: Any) -> None:
 
 
 def started(part: Part) -> Running:
-    """A part's process, begun."""
-    context = part.zygote.context if part.zygote else SPAWN
+    """A part's process, begun: forked where there is a warm zygote, else a new Python."""
+    if part.zygote is not None and part.zygote.context is FORK:
+        with suppress(EOFError, OSError):  # the zygote dies at this moment
+            return _begun(part, FORK)
+    return _begun(part, SPAWN)
+
+
+def _begun(part: Part, context: ForkServerContext | SpawnContext) -> Running:
+    forked = context is FORK
     ours, theirs = context.Pipe(duplex=False)
     process = context.Process(
         name=part.name,
         target=_guarded,
-        args=(part.name, part.main, part.arguments, theirs),
+        args=(part.name, part.main, part.arguments, theirs, forked),
         daemon=not part.nests,
     )
-    with inherited():
+    with inherited(), adopting() if forked else nullcontext():
         process.start()
-    theirs.close()
-    return Running(part, process, ours)
+        theirs.close()
+        return Running(part, adopted(process, ours) if forked else process, ours)
 
 
 def end(one: Running) -> bool:
@@ -169,8 +177,6 @@ def last_words(one: Running) -> str:
     except EOFError:
         pass
     code = one.process.exitcode or 0
-    if code == WITH_ZYGOTE:
-        return "it ended with its zygote"
     return f"killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
 
 
@@ -195,10 +201,18 @@ def inherited() -> Iterator[None]:
 
 
 def _guarded(
-    name: str, main: Callable[..., None], arguments: tuple[Any, ...], words: Connection
+    name: str,
+    main: Callable[..., None],
+    arguments: tuple[Any, ...],
+    words: Connection,
+    forked: bool,
 ) -> None:
     """Run a part; what it cannot do is said in one line, not in a traceback."""
-    end_with_parent(forked_by())
+    if forked:
+        be_adopted(words)
+    with suppress(OSError):  # what `top` and `ps` show, on Linux
+        Path("/proc/self/comm").write_text(name)
+    end_with_parent()
     signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))  # the zygote is deaf to it
     try:
         main(*arguments)

@@ -12,7 +12,7 @@ from common.bus.control_messages import Pulse
 from common.bus.message_codec import TOPICS
 from common.bus.rate import silent
 from tritrack.faults import FAULTY, Fault
-from tritrack.live.process_table import WITH_ZYGOTE, Part, end, last_words, started
+from tritrack.live.process_table import Part, end, last_words, started
 
 TRIES: Final = 5
 """How often a part is started again before it is given up."""
@@ -128,7 +128,7 @@ class Watched:
 
     def _died(self, now_s: float, pulses: dict[str, Pulse]) -> str:
         why = last_words(self.running)
-        of_itself = 0 < (self.running.process.exitcode or 0) != WITH_ZYGOTE
+        of_itself = (self.running.process.exitcode or 0) > 0
         if of_itself and not self._came_up:
             raise self._failure(why)
         if self._tries == TRIES:
