@@ -200,9 +200,12 @@ def test_pictures_and_body_move_an_event_appears_and_the_end_is_played(
         time.sleep(1 / 30)
     assert looking.until("document.body.dataset.frame === '29'")
     assert looking.until("document.querySelector('#events').innerText.includes('squat × 2')")
-    page.end({"clip": "walk", "warnings": ["it was dark <b>"], "out": "runs/1"})
+    counts = {"frames": 414, "frames_with_pose": 402}
+    page.end({"clip": "walk", "warnings": ["it was dark <b>"], "out": "runs/1", **counts})
     assert looking.until("!document.querySelector('#ending').hidden")
-    assert "it was dark <b>" in looking.ask("document.querySelector('#ending').innerText")
+    ending = looking.ask("document.querySelector('#ending').innerText")
+    assert "it was dark <b>" in ending
+    assert "414, 402 with a pose" in ending, "of the run, not what this page drew of it"
     assert looking.until("document.querySelector('#words').innerText.includes('over')")
     looking.key("s", 83)  # nobody is there any more who could save
     begun_s = time.monotonic()
