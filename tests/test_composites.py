@@ -88,6 +88,7 @@ def test_a_larger_picture_has_a_larger_stature(plain: pytest.MonkeyPatch) -> Non
         assert one.stature_px / example().stature_px == pytest.approx(spans[0] / spans[1], rel=1e-3)
 
 
+@pytest.mark.slow
 def test_every_backdrop_is_another() -> None:
     seen = [backdrop(seed) for seed in range(12)]
     assert all(one.shape == (BACKDROP_PX, BACKDROP_PX, 3) for one in seen)

@@ -11,6 +11,7 @@ def clips_of(rng: np.random.Generator, count: int) -> list[np.ndarray]:
     return [rng.normal(20 + rng.normal(0, 5), 3, size=rng.integers(200, 400)) for _ in range(count)]
 
 
+@pytest.mark.slow
 def test_the_true_mean_lies_within_about_as_often_as_they_say() -> None:
     rng = np.random.default_rng(1)
     inside = 0

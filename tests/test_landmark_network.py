@@ -96,12 +96,14 @@ def test_the_facing_is_the_direction_of_the_likeliest_bin(bin_: int) -> None:
     assert sure > 0.99
 
 
+@pytest.mark.slow
 def test_most_joints_of_people_it_never_saw_are_within_a_tenth_of_the_stature() -> None:
     known = off()[np.isfinite(off())]
     assert (known < 0.1).mean() > 0.7
     assert np.median(known) < 0.05
 
 
+@pytest.mark.slow
 def test_its_confidence_is_how_often_it_is_right() -> None:
     """Left and right aside: those are told by the facing."""
     plain, other = off(), off(exchanged=True)
@@ -114,6 +116,7 @@ def test_its_confidence_is_how_often_it_is_right() -> None:
             assert right[held].mean() == pytest.approx(sure[held].mean(), abs=0.1)
 
 
+@pytest.mark.slow
 def test_where_else_a_joint_may_be_is_as_sure_as_it_is_there() -> None:
     """Of those that are not where they are shown first; left and right aside."""
     plain, other = off(), off(exchanged=True)
@@ -137,6 +140,7 @@ def test_where_else_a_joint_may_be_is_as_sure_as_it_is_there() -> None:
         assert (there & ~first)[held].mean() == pytest.approx(sure[held].mean(), abs=0.1)
 
 
+@pytest.mark.slow
 def test_it_tells_front_from_back() -> None:
     turned = [
         (np.degrees(np.arctan2(*one.facing)), f)

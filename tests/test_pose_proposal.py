@@ -249,6 +249,7 @@ def proposed_of(matched: Vector) -> Vector:
     return found
 
 
+@pytest.mark.slow
 def test_joints_that_were_matched_are_surer_than_what_was_proposed() -> None:
     """Of those that the proposal doubts more are near, on people on whom it was not settled."""
     rows = []

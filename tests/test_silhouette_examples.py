@@ -1,6 +1,7 @@
 """Outlines that a network is taught on, held against the bodies that cast them."""
 
 import numpy as np
+import pytest
 
 from common.rig.camera import project
 from synth.person.skeleton import JOINTS
@@ -62,6 +63,7 @@ def test_nobody_who_is_taught_on_has_a_small_number() -> None:
     assert PEOPLE[0] >= 100_000
 
 
+@pytest.mark.slow
 def test_people_at_large_lean_farther_and_lift_their_legs_higher() -> None:
     """Measured on the joints: the trunk from the vertical, an ankle above the other."""
 
