@@ -47,6 +47,19 @@ if __name__ == "__main__":
 """
 
 
+LOADING = """
+import sys, time
+from multiprocessing import forkserver
+from pathlib import Path
+from tritrack.live.process_table import inherited
+from tritrack.live.zygote import Zygote
+if __name__ == "__main__":
+    zygote = Zygote(inherited)
+    Path(sys.argv[1]).write_text(str(forkserver._forkserver._forkserver_pid))
+    time.sleep(600)
+"""
+
+
 @pytest.fixture(scope="module")
 def zygote() -> Zygote:
     one = Zygote(inherited)
@@ -183,6 +196,21 @@ def test_zygote_and_forks_end_when_their_supervisor_is_killed(
     assert ended_within(pid, SOON_S)
     for own in others:
         assert ended_within(own, SOON_S)
+
+
+def test_a_zygote_that_still_loads_ends_with_its_supervisor_too(tmp_path: Path) -> None:
+    """It is stopped meanwhile, so that it cannot see that by itself."""
+    script = tmp_path / "parent.py"
+    script.write_text(LOADING)
+    parent = subprocess.Popen([sys.executable, str(script), str(tmp_path / "pid")])
+    pid = written(tmp_path / "pid")
+    until_s = time.monotonic() + PATIENCE_S
+    while "numpy" not in Path(f"/proc/{pid}/maps").read_text():
+        assert time.monotonic() < until_s
+    os.kill(pid, signal.SIGSTOP)
+    parent.kill()
+    parent.wait()
+    assert ended_within(pid, SOON_S)
 
 
 def test_who_starts_a_part_again_is_not_held_up_while_the_next_zygote_loads(

@@ -22,12 +22,15 @@ from multiprocessing import forkserver, util
 from multiprocessing.context import ForkServerContext, SpawnContext
 from typing import Any, Final
 
+from common import parent_death
 from common.cache_folder import mark_of_all
 
 SPAWN: Final = multiprocessing.get_context("spawn")
 FORK: Final = multiprocessing.get_context("forkserver")
 """Never the plain fork: Zenoh's threads are not inherited."""
 WARMED: Final = f"{__package__}.warmed"
+BOUND: Final = f"{parent_death.__package__}.parent_bound"
+"""Imported first: what is loaded takes seconds, in which this process may die."""
 WARM_S: Final = 20.0
 """So long a run waits for its zygote at most."""
 COMPILED_S: Final = 600.0
@@ -54,7 +57,7 @@ class Zygote:
         self._inherited = inherited
         if sys.platform != "linux":  # elsewhere libraries do not bear a fork
             return
-        FORK.set_forkserver_preload([loaded])
+        FORK.set_forkserver_preload([BOUND, loaded])
         self._warm = forked_by() is not None
         try:
             with _forked() if self._warm else nullcontext():
