@@ -1,5 +1,7 @@
 """Our 15 joints out of MediaPipe's 33 points, and how far they can be relied on."""
 
+from typing import Final
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -7,6 +9,10 @@ from common.bus.messages import Landmarks
 from common.video.decoding import Size
 from viewer.landmarks.fifteen_joints import Floats, facing_deg, fifteen, fifteen_shares
 from viewer.landmarks.keypoint_layouts import body_points, extremity_points
+
+FACES_SO: Final = 0.9
+"""How probably somebody of whom shoulders, hips and nose say front or back faces so: all of 900
+frames of r01 and r04, who face the cameras, and 91 % of 936 of made-up people who turn about."""
 
 
 def landmarks_of(points: NDArray[np.float32], shown: Size, working: Size) -> Landmarks:
@@ -25,7 +31,7 @@ def landmarks_of(points: NDArray[np.float32], shown: Size, working: Size) -> Lan
         joints_px=tuple((float(u), float(v)) for u, v in joints),
         confidence=tuple(fifteen_shares(body[:, 2]).tolist()),
         facing_deg=facing_deg(places),
-        facing_confidence=0.5,
+        facing_confidence=FACES_SO,
         extremities_px=tuple((float(u), float(v)) for u, v in scale * ends[:, :2]),
         extremities_confidence=tuple(ends[:, 2].tolist()),
     )
