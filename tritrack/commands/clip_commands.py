@@ -14,6 +14,7 @@ from tritrack.commands.options import (
     MODES,
     WORKED_ON,
     Force,
+    LandmarkSource,
     Out,
     Record,
     Resume,
@@ -42,6 +43,7 @@ def track(
         Literal["12", "1", "2"], typer.Option(help="Cameras to use: both, or only one.")
     ] = "12",
     size: Size = None,
+    landmarks: LandmarkSource = None,
     trust_calibration: Annotated[
         bool, typer.Option("--trust-calibration", help="Go on with a calibration that seems wrong.")
     ] = False,
@@ -70,6 +72,7 @@ def track(
         VIEWERS[views],
         size,
         console,
+        landmarks=landmarks,
         trusted=trust_calibration,
         record=record,
         resume=resume,
@@ -136,6 +139,7 @@ def single(
         typer.Option(help="default: most accurate; thesis: as published 2006."),
     ] = "default",
     size: Annotated[str, typer.Option(help=WORKED_ON, callback=size_given)] = "320x240",
+    landmarks: LandmarkSource = None,
     background: Annotated[
         Path | None, typer.Option(help="A picture of the scene without anybody, if there is one.")
     ] = None,
@@ -156,7 +160,7 @@ def single(
     from tritrack.overrides import overridden
     from tritrack.single.single import Given, single_all
 
-    given = Given(notes, background, resume, force)
+    given = Given(notes, background, resume, force, landmarks)
     facts = single_all(videos, out, given, overridden(Settings(), mode, size), console)
     if json_wanted:
         print(json_text(facts))

@@ -12,7 +12,7 @@ from common.config.part_settings import BusSettings
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
 from tritrack.commands.command_output import JsonWanted, console, tell
-from tritrack.commands.options import ModeName, Out, Record, Size
+from tritrack.commands.options import LandmarkSource, ModeName, Out, Record, Size
 from tritrack.extras import refuse_without
 from tritrack.overrides import overridden
 from tritrack.terminal import counted
@@ -48,6 +48,7 @@ def live(
     out: Out = Path("runs/live"),
     mode: ModeName = None,
     size: Size = None,
+    landmarks: LandmarkSource = None,
     record: Record = False,
     wait: Wait = True,
     json_wanted: JsonWanted = False,
@@ -60,7 +61,8 @@ def live(
     """
     from tritrack.live.session import live as run_live
 
-    settings = waiting(overridden(config_file.load(settings_file), mode, size), wait)
+    given = overridden(config_file.load(settings_file), mode, size, landmarks)
+    settings = waiting(given, wait)
     name = settings_file.stem if settings_file.is_file() else ""
     facts = run_live(settings, out, console, name, record)
     tell(facts, json_wanted, f"posture: {facts['posture'] or 'none'}; written to {out}")

@@ -112,6 +112,13 @@ Resume = Annotated[
 Force = Annotated[
     bool, typer.Option("--force", help="Write over a run of another clip or command.")
 ]
+LandmarkSource = Annotated[
+    str | None,
+    typer.Option(
+        help="What finds joints in the pictures: own, none, mediapipe, FILE.onnx, or a folder of "
+        "keypoints. Else the settings' landmarks."
+    ),
+]
 Size = Annotated[
     str | None,
     typer.Option(help=f"{WORKED_ON} Else the settings' size.", callback=size_given),

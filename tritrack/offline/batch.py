@@ -40,6 +40,7 @@ def track_all(
     size: str | None,
     console: Console,
     *,
+    landmarks: str | None = None,
     trusted: bool = False,
     record: bool = False,
     resume: bool = False,
@@ -56,6 +57,7 @@ def track_all(
         views: The cameras to use.
         size: As `mode`.
         console: For progress, warnings and errors.
+        landmarks: As `mode`.
         trusted: A calibration is trusted even where it seems wrong.
         record: Keep what the viewers report, so that it can be replayed.
         resume: Go on with what was cut short, and leave out what is done.
@@ -75,7 +77,7 @@ def track_all(
     with Decoders() as decoders, bar(console) as progress:
         for (name, path), tell in by_share(progress, [*runs.items()], "tracking"):
             try:
-                settings = overridden(config_file.load(path), mode, size)
+                settings = overridden(config_file.load(path), mode, size, landmarks)
                 if trusted:
                     settings = msgspec.structs.replace(settings, trust_calibration=True)
                 told = {"the views": views, "what is recorded": record}

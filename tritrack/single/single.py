@@ -21,6 +21,7 @@ from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied, Undecodable
 from common.video.frame_cache import Reel, Told
 from tritrack.offline.film_tracking import Film, Followed, Heard, follow_clip, follow_masks
+from tritrack.overrides import overridden
 from tritrack.single.animation_files import write_files
 from tritrack.single.ledger import facts_of, ledger
 from tritrack.single.mask_file import MaskFileError, MaskSequence, is_mask_file, read_masks
@@ -55,6 +56,8 @@ class Given(NamedTuple):
     """Go on with what was cut short, and leave out what is done."""
     force: bool = False
     """Write over the runs of other videos."""
+    landmarks: str | None = None
+    """Where joints of the pictures come from, instead of what settings say."""
 
 
 class Job(NamedTuple):
@@ -151,11 +154,12 @@ def job_of(path: Path, given: Given, settings: Settings) -> Job:
         return Job(path, settings, masks, load_notes(given.notes) if given.notes else Notes())
     if path.is_dir() or path.suffix == ".toml":
         own = load(path)
-        settings = msgspec.structs.replace(own, mode=settings.mode, size=settings.size)
+        settings = overridden(own, settings.mode, settings.size)
         beside = path / "cam1" if path.is_dir() else path
     else:
         settings = msgspec.structs.replace(settings, camera_1=CameraSettings(source=str(path)))
         beside = path
+    settings = overridden(settings, None, None, given.landmarks)
     if given.background is not None:
         camera = settings.camera_1 or CameraSettings()
         camera = msgspec.structs.replace(camera, background=str(given.background))

@@ -1,0 +1,47 @@
+"""What a command line says stands above what settings say."""
+
+from pathlib import Path
+
+import pytest
+
+from common.config.settings import Settings
+from common.config.settings_error import SettingsError
+from tritrack.commands.clip_commands import single, track
+from tritrack.overrides import overridden
+
+
+def test_what_is_not_named_stays_as_the_settings_say() -> None:
+    own = Settings(mode="paper", size="128x96", landmarks="none")
+    assert overridden(own, None, None) == own
+    named = overridden(own, "default", "320x240", "mediapipe")
+    assert (named.mode, named.size, named.landmarks) == ("default", "320x240", "mediapipe")
+
+
+def test_what_no_run_could_mean_is_refused() -> None:
+    with pytest.raises(SettingsError, match="landmarks must be own, none, mediapipe or a folder"):
+        overridden(Settings(), None, None, "")
+
+
+def test_track_looks_by_the_landmarks_that_are_named(clip: Path, tmp_path: Path) -> None:
+    """Of both, that of the command counts."""
+    file = tmp_path / "said.toml"
+    file.write_text(f'clip = "{clip}"\nlandmarks = "none"\n')
+    track([file, clip], tmp_path / "runs")
+    track([clip], tmp_path / "without", landmarks="none")
+    said, plain = (poses(tmp_path / "runs" / name) for name in ("said", clip.name))
+    assert poses(tmp_path / "without" / clip.name) == said != plain
+    track([file], tmp_path / "with", landmarks="own")
+    assert poses(tmp_path / "with" / "said") == plain
+
+
+def test_single_looks_by_the_landmarks_that_are_named(clip: Path, tmp_path: Path) -> None:
+    video = next(clip.glob("cam1.*"))
+    file = tmp_path / "said.toml"
+    file.write_text(f'landmarks = "none"\n[camera_1]\nsource = "{video}"\n')
+    single([file], tmp_path / "runs", size="160x120")
+    single([video], tmp_path / "runs", size="160x120", landmarks="none")
+    assert poses(tmp_path / "runs" / "cam1") == poses(tmp_path / "runs" / "said")
+
+
+def poses(run: Path) -> bytes:
+    return (run / "poses.npz").read_bytes()
