@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from common.bus.messages import Box
@@ -35,6 +35,7 @@ def test_an_outline_that_is_not_known_is_neither_inside_nor_outside() -> None:
 
 
 @given(left=st.integers(-400, 400), top=st.integers(-400, 400), side=st.integers(8, 500))
+@example(left=0, top=-120, side=8)
 def test_beyond_the_picture_all_is_black_and_outside(left: int, top: int, side: int) -> None:
     picture = np.full((120, 160, 3), 200, np.uint8)
     planes = planes_of(picture, np.ones((120, 160), np.bool_), Window(left, top, side))

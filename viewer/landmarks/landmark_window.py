@@ -83,7 +83,7 @@ def _cut(picture: NDArray[np.uint8], window: Window) -> NDArray[np.uint8]:
 def _held(picture: NDArray[np.uint8], left: int, top: int, side: int) -> NDArray[np.uint8]:
     """(side, side, ...) of the picture; black beyond it."""
     high, wide = picture.shape[:2]
-    rows, columns = (max(top, 0), min(top + side, high)), (max(left, 0), min(left + side, wide))
+    rows, columns = _within(top, side, high), _within(left, side, wide)
     inside = picture[slice(*rows), slice(*columns)]
     if inside.shape[:2] == (side, side):
         return inside
@@ -91,3 +91,8 @@ def _held(picture: NDArray[np.uint8], left: int, top: int, side: int) -> NDArray
     if rows[0] < rows[1] and columns[0] < columns[1]:
         held[slice(*np.subtract(rows, top)), slice(*np.subtract(columns, left))] = inside
     return held
+
+
+def _within(start: int, count: int, size: int) -> tuple[int, int]:
+    """First and last of so many that are from 0 to size; none below 0, which would count back."""
+    return max(start, 0), min(max(start + count, 0), size)
