@@ -12,6 +12,7 @@ import json
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from itertools import count, cycle
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -138,15 +139,16 @@ def soaked(frames: int, seconds: float, folder: Path) -> list[Sample]:
     settle()
     found: list[Sample] = []
     began_s, since_s = time.perf_counter(), time.process_time()
-    for index, pictures in zip(count(), steps.instants(), strict=False):
-        if index == frames or time.perf_counter() - began_s > seconds:
-            break
-        steps.see(index, pictures)
-        if (index + 1) % every == 0:
-            gc.collect()
-            took_s = time.process_time() - since_s
-            found.append(sample_of([own], index / HZ, 1e3 * took_s / every))
-            since_s = time.process_time()
+    with suppress(KeyboardInterrupt):  # what there is until then is told
+        for index, pictures in zip(count(), steps.instants(), strict=False):
+            if index == frames or time.perf_counter() - began_s > seconds:
+                break
+            steps.see(index, pictures)
+            if (index + 1) % every == 0:
+                gc.collect()
+                took_s = time.process_time() - since_s
+                found.append(sample_of([own], index / HZ, 1e3 * took_s / every))
+                since_s = time.process_time()
     return found
 
 
