@@ -10,7 +10,6 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
-from multiprocessing import forkserver
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +19,7 @@ import psutil
 import pytest
 from rich.console import Console
 from spoiling import Film, copied, edit_json, refilmed
+from test_zygote import number_of_the_zygote
 
 from common.bus.bus import BusError, open_client
 from common.bus.control_messages import Pulse
@@ -159,6 +159,9 @@ class Witness:
         self.until(words, lambda: any(words in line for line in self.said))
 
 
+Run = Callable[[Callable[[Witness], None]], tuple[dict[str, Any], Witness]]
+
+
 def pid_of(name: str) -> int:
     """Of this test's own part."""
     (pid,) = (one.pid for one in psutil.Process().children() if one.name() == name)
@@ -171,20 +174,33 @@ def rows(out: Path) -> dict[str, Any]:
 
 
 @pytest.fixture
-def watched_run(
-    long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> Callable[[Callable[[Witness], None]], tuple[dict[str, Any], Witness]]:
+def harmed_run(long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
     """A live run that somebody harms; what its summary tells, and what was heard of it."""
 
     def run(harm: Callable[[Witness], None]) -> tuple[dict[str, Any], Witness]:
         settings = settings_of(long_clip)
         with Witness(settings.bus, harm) as witness:
             monkeypatch.setattr(session, "_stopped_by_signals", lambda _: nullcontext(witness.over))
-            facts = live(settings, tmp_path, Console(quiet=True))
+            return live(settings, tmp_path, Console(quiet=True)), witness
+
+    return run
+
+
+@pytest.fixture
+def watched_run(harmed_run: Run, tmp_path: Path) -> Run:
+    """The same, in which one view is lost and comes back."""
+
+    def run(harm: Callable[[Witness], None]) -> tuple[dict[str, Any], Witness]:
+        facts, witness = harmed_run(harm)
         goes_on_and_comes_back(tmp_path, witness)
         return facts, witness
 
     return run
+
+
+def with_both(bodies: list[Body]) -> bool:
+    """Whether the last of them are made of both views."""
+    return all(body.joints_m and body.views == "both" for body in bodies[-5:])
 
 
 def goes_on_and_comes_back(out: Path, witness: Witness) -> None:
@@ -197,9 +213,6 @@ def goes_on_and_comes_back(out: Path, witness: Witness) -> None:
     assert np.isfinite(joints_m).all(), "a pose is missing"
     assert np.diff(found["frame"][since]).max() <= 3, "a gap in the stream"
     assert "measuring" not in status, "measured again"
-
-
-Run = Callable[[Callable[[Witness], None]], tuple[dict[str, Any], Witness]]
 
 
 @pytest.mark.parametrize(("lost", "left"), [(1, "2"), (2, "1")])
@@ -255,7 +268,7 @@ def test_a_viewer_that_stays_frozen_is_killed_and_started_again(watched_run: Run
 
 
 def test_a_killed_integrator_is_started_again_and_poses_go_on(
-    long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    harmed_run: Run, tmp_path: Path
 ) -> None:
     """It is the hub that all others meet at: they find the new one, which knows the body, and say
     again what the old one did not hear."""
@@ -266,16 +279,10 @@ def test_a_killed_integrator_is_started_again_and_poses_go_on(
         before = len(witness.bodies)
         witness.until(
             "poses of both views from the new integrator",
-            lambda: (
-                len(witness.bodies) >= before + 10
-                and all(body.joints_m and body.views == "both" for body in witness.bodies[-5:])
-            ),
+            lambda: len(witness.bodies) >= before + 10 and with_both(witness.bodies),
         )
 
-    settings = settings_of(long_clip)
-    with Witness(settings.bus, harm) as witness:
-        monkeypatch.setattr(session, "_stopped_by_signals", lambda _: nullcontext(witness.over))
-        facts = live(settings, tmp_path, Console(quiet=True))
+    facts, witness = harmed_run(harm)
     killed = "integrator: killed by signal 9; it is started again"
     assert any(killed in told for told in facts["warnings"])
     found = rows(tmp_path)
@@ -286,30 +293,15 @@ def test_a_killed_integrator_is_started_again_and_poses_go_on(
     assert missing.sum() <= MOST_MISSING
 
 
-def number_of_the_zygote() -> int:
-    server: Any = forkserver._forkserver
-    return int(server._forkserver_pid)
-
-
-def with_both(bodies: list[Body]) -> bool:
-    """Whether the last of them are made of both views."""
-    return all(body.joints_m and body.views == "both" for body in bodies[-5:])
-
-
 @pytest.mark.skipif(sys.platform != "linux", reason="parts are forked on Linux alone")
-def test_a_run_does_not_notice_that_its_zygote_is_killed(
-    long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_does_not_notice_that_its_zygote_is_killed(harmed_run: Run, tmp_path: Path) -> None:
     def harm(witness: Witness) -> None:
         witness.until_tracked()
         os.kill(number_of_the_zygote(), signal.SIGKILL)
         before = len(witness.bodies)
         witness.until("bodies after it", lambda: len(witness.bodies) >= before + 20)
 
-    settings = settings_of(long_clip)
-    with Witness(settings.bus, harm) as witness:
-        monkeypatch.setattr(session, "_stopped_by_signals", lambda _: nullcontext(witness.over))
-        facts = live(settings, tmp_path, Console(quiet=True))
+    facts, witness = harmed_run(harm)
     assert not [told for told in facts["warnings"] if "started again" in told]
     found = rows(tmp_path)
     again = found["frame"] >= witness.lost_at
@@ -319,7 +311,7 @@ def test_a_run_does_not_notice_that_its_zygote_is_killed(
 
 @pytest.mark.skipif(sys.platform != "linux", reason="parts are forked on Linux alone")
 def test_a_clip_goes_on_where_it_would_be_when_all_processes_of_its_run_died(
-    long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    harmed_run: Run, tmp_path: Path
 ) -> None:
     """Nobody lives who remembers when the run began; no frame may come twice."""
 
@@ -336,10 +328,7 @@ def test_a_clip_goes_on_where_it_would_be_when_all_processes_of_its_run_died(
             lambda: len(witness.bodies) >= before + 10 and with_both(witness.bodies),
         )
 
-    settings = settings_of(long_clip)
-    with Witness(settings.bus, harm) as witness:
-        monkeypatch.setattr(session, "_stopped_by_signals", lambda _: nullcontext(witness.over))
-        facts = live(settings, tmp_path, Console(quiet=True))
+    facts, witness = harmed_run(harm)
     for part in ("integrator", "recognizer", "viewer 1", "viewer 2"):
         again = f"{part}: killed by signal 9; it is started again"
         assert any(again in told for told in facts["warnings"])

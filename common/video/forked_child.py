@@ -10,12 +10,12 @@ import signal
 import subprocess
 import sys
 from collections.abc import Sequence
-from contextlib import suppress
 from importlib import import_module
 from multiprocessing import forkserver
 from multiprocessing.connection import Connection
-from pathlib import Path
 from typing import Any, Final
+
+from common.process_name import be_shown_as
 
 FORK: Final = multiprocessing.get_context("forkserver")
 
@@ -71,8 +71,7 @@ def can_fork() -> bool:
 
 def _run(module: str, requests: Connection, answers: Connection, told: tuple[str, ...]) -> None:
     os.setpgrp()  # what is said to all of a run's group is not for it
-    with suppress(OSError):  # what `top` and `ps` show, on Linux
-        Path("/proc/self/comm").write_text(module.rpartition(".")[2])
+    be_shown_as(module.rpartition(".")[2])
     signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))  # the zygote is deaf to it
     silence = os.open(os.devnull, os.O_WRONLY)
     for said in (1, 2):

@@ -9,13 +9,13 @@ from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from multiprocessing.context import ForkServerContext, SpawnContext
 from multiprocessing.process import BaseProcess
-from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from animator.page.door import Entrance
 from common.bus.process import ProcessContext
 from common.config.settings import Settings
 from common.parent_death import end_with_parent
+from common.process_name import be_shown_as
 from common.video.clip_facts import Clip
 from tritrack.faults import code_of, told
 from tritrack.live.adoption import Adopted, adopted, adopting, be_adopted
@@ -210,8 +210,7 @@ def _guarded(
     """Run a part; what it cannot do is said in one line, not in a traceback."""
     if forked:
         be_adopted(words)
-    with suppress(OSError):  # what `top` and `ps` show, on Linux
-        Path("/proc/self/comm").write_text(name)
+    be_shown_as(name)
     end_with_parent()
     signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))  # the zygote is deaf to it
     try:

@@ -154,12 +154,11 @@ def job_of(path: Path, given: Given, settings: Settings) -> Job:
         return Job(path, settings, masks, load_notes(given.notes) if given.notes else Notes())
     if path.is_dir() or path.suffix == ".toml":
         own = load(path)
-        settings = overridden(own, settings.mode, settings.size)
         beside = path / "cam1" if path.is_dir() else path
     else:
-        settings = msgspec.structs.replace(settings, camera_1=CameraSettings(source=str(path)))
+        own = msgspec.structs.replace(settings, camera_1=CameraSettings(source=str(path)))
         beside = path
-    settings = overridden(settings, None, None, given.landmarks)
+    settings = overridden(own, settings.mode, settings.size, given.landmarks)
     if given.background is not None:
         camera = settings.camera_1 or CameraSettings()
         camera = msgspec.structs.replace(camera, background=str(given.background))
