@@ -1,7 +1,7 @@
 """How many rooms of two cameras one machine serves: missed deadlines, processor, memory, latency.
 
 Run from the checkout: .venv/bin/python benchmarks/rooms.py [--rooms 1 2 5 10] [--size 160x120 ...]
-[--seconds 20] [--json]. Each room plays a made-up take of 15 frames a second of its own.
+[--seconds 20] [--together] [--json]. Each room plays a made-up take of its own, 15 frames a second.
 """
 
 import argparse
@@ -35,12 +35,24 @@ END_S: Final = 60.0
 SITE: Final = """
 [[site]]
 name = "room_{number}"
+together = {together}
 [site.settings]
 clip = "{clip}"
 size = "{size}"
 page = {{ port = 0 }}
 bus = {{ endpoint = "auto" }}
 """
+
+
+class Wanted(NamedTuple):
+    """What is to be served."""
+
+    clip: Path
+    size: str
+    rooms: int
+    seconds: float
+    together: bool
+    """The parts of a room are one process."""
 
 
 class Served(NamedTuple):
@@ -76,10 +88,10 @@ class Reading(NamedTuple):
     missed: float
 
 
-def served(clip: Path, size: str, rooms: int, seconds: float) -> Served:
+def served(wanted: Wanted) -> Served:
     """Serve so many rooms for a while."""
-    with tempfile.TemporaryDirectory() as folder, _service(Path(folder), clip, size, rooms) as one:
-        own, address = one
+    _, size, rooms, seconds, _ = wanted
+    with tempfile.TemporaryDirectory() as folder, _service(Path(folder), wanted) as (own, address):
         running = _until_running(own, address, rooms)
         time.sleep(SETTLE_S)
         before = _read(own, address)
@@ -111,14 +123,20 @@ def served(clip: Path, size: str, rooms: int, seconds: float) -> Served:
 
 
 @contextmanager
-def _service(
-    folder: Path, clip: Path, size: str, rooms: int
-) -> Iterator[tuple[psutil.Process, str]]:
+def _service(folder: Path, wanted: Wanted) -> Iterator[tuple[psutil.Process, str]]:
     """`tritrack serve` and its address."""
     with socket.socket() as door:
         door.bind(("127.0.0.1", 0))
         address = f"127.0.0.1:{door.getsockname()[1]}"
-    sites = (SITE.format(number=n, clip=clip, size=size) for n in range(1, rooms + 1))
+    sites = (
+        SITE.format(
+            number=n,
+            clip=wanted.clip,
+            size=wanted.size,
+            together=str(wanted.together).lower(),
+        )
+        for n in range(1, wanted.rooms + 1)
+    )
     (folder / "sites.toml").write_text(f'metrics = "{address}"\n{"".join(sites)}')
     command = [sys.executable, "-m", "tritrack", "serve", str(folder / "sites.toml")]
     own = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -190,6 +208,7 @@ def main() -> None:
     parser.add_argument("--rooms", type=int, nargs="+", default=[1, 2, 5, 10])
     parser.add_argument("--size", nargs="+", default=["160x120", "320x240"])
     parser.add_argument("--seconds", type=float, default=20.0)
+    parser.add_argument("--together", action="store_true", help="one process a room")
     parser.add_argument("--json", action="store_true")
     given = parser.parse_args()
     found: list[Served] = []
@@ -197,7 +216,8 @@ def main() -> None:
         for size in given.size:
             (clip,) = write_set(Path(folder, size), ClipSet("stream", seed=90_010), size_of(size))
             for rooms in given.rooms:
-                found.append(served(clip, size, rooms, given.seconds))
+                wanted = Wanted(clip, size, rooms, given.seconds, given.together)
+                found.append(served(wanted))
                 print(found[-1], file=sys.stderr, flush=True)
     rows = [one._asdict() for one in found]
     if given.json:

@@ -8,8 +8,8 @@ from multiprocessing import get_context
 
 import pytest
 
-from tritrack.live import adoption
-from tritrack.live.adoption import Adopted, adopted
+from tritrack.forking import adoption
+from tritrack.forking.adoption import Adopted, adopted
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="parts are adopted on Linux alone")
 SPAWN = get_context("spawn")

@@ -53,6 +53,15 @@ def slow_clip(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+def assert_equals_offline(run: Path, clip: Path) -> None:
+    """One code path, two shells."""
+    with Decoders() as decoders:
+        offline = on_disk(poses(track_clip(Settings(clip=str(clip)), decoders).bodies))
+    with np.load(run / "poses.npz") as found:
+        for name, values in offline.items():
+            np.testing.assert_array_equal(found[name], values, err_msg=name)
+
+
 Lived = tuple[Path, dict[str, Any]]
 
 
@@ -84,11 +93,7 @@ def test_a_live_run_equals_an_offline_one(slow_clip: Path, lived: Lived) -> None
     """One code path, two shells; P2: report t used the guide of t - 1."""
     out, facts = lived
     assert [facts["processes"][f"viewer {n}"]["guide_misses"] for n in (1, 2)] == [0, 0]
-    with Decoders() as decoders:
-        offline = on_disk(poses(track_clip(Settings(clip=str(slow_clip)), decoders).bodies))
-    with np.load(out / "poses.npz") as found:
-        for name, values in offline.items():
-            np.testing.assert_array_equal(found[name], values, err_msg=name)
+    assert_equals_offline(out, slow_clip)
 
 
 @pytest.mark.slow
@@ -103,11 +108,19 @@ def test_a_live_run_with_keys_gives_the_same_bodies(slow_clip: Path, tmp_path: P
     facts = live(settings_of(slow_clip, bus=bus), tmp_path / "out", QUIET)
     for name, told in facts["processes"].items():
         assert (name, told["frames"], told["dropped"]) == (name, 69, 0)
-    with Decoders() as decoders:
-        offline = on_disk(poses(track_clip(Settings(clip=str(slow_clip)), decoders).bodies))
-    with np.load(tmp_path / "out" / "poses.npz") as found:
-        for name, values in offline.items():
-            np.testing.assert_array_equal(found[name], values, err_msg=name)
+    assert_equals_offline(tmp_path / "out", slow_clip)
+
+
+@pytest.mark.slow
+@pytest.mark.live
+def test_a_live_run_whose_parts_are_threads_gives_the_same_bodies(
+    slow_clip: Path, tmp_path: Path
+) -> None:
+    facts = live(settings_of(slow_clip), tmp_path / "out", QUIET, together=True)
+    for name, told in facts["processes"].items():
+        assert (name, told["frames"], told["dropped"]) == (name, 69, 0)
+        assert told["memory_mb"] == 0.0, "it is the supervisor's, which tells it once"
+    assert_equals_offline(tmp_path / "out", slow_clip)
 
 
 @pytest.mark.slow

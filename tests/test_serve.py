@@ -32,6 +32,7 @@ LOOK_S = 0.05
 SITE = """
 [[site]]
 name = "{name}"
+together = {together}
 [site.settings]
 clip = "clip"
 size = "{size}"
@@ -50,9 +51,12 @@ class Service:
     def __init__(self, folder: Path) -> None:
         self.folder, self.address = folder, free_address()
 
-    def write(self, **sizes: str) -> None:
+    def write(self, *, together: bool = False, **sizes: str) -> None:
         """Sites by their names, with the sizes of their pictures; at once, as editors do."""
-        text = "".join(SITE.format(name=name, size=size) for name, size in sizes.items())
+        word = str(together).lower()
+        text = "".join(
+            SITE.format(name=name, size=size, together=word) for name, size in sizes.items()
+        )
         new = self.folder / "new.toml"
         new.write_text(f'metrics = "{self.address}"\n{text}')
         new.rename(self.folder / "sites.toml")
@@ -240,6 +244,28 @@ def test_sites_go_on_where_the_zygotes_are_killed_that_they_and_their_parts_came
         own.send_signal(signal.SIGTERM)
         assert own.wait(SOON_S) == 0
     assert alive(before["hall"] | before["lobby"] | set(decoders)) == []
+
+
+def test_a_room_in_one_process_comes_back_when_that_is_killed(
+    service: Service,
+) -> None:
+    service.write(together=True, hall="160x120")
+    with service.running() as own:
+        service.until_well("hall")
+        (before,) = service.pids_of(own, "hall")
+        service.until("hall to have measured something", lambda: service.frames("hall") > 40)
+        psutil.Process(before).kill()
+        service.until("another process", lambda: bool(service.pids_of(own, "hall") - {before}))
+        service.until_well("hall")
+        service.until("hall to measure on", lambda: service.frames("hall") > 80)
+        everybody = pids_in(own)
+        own.send_signal(signal.SIGTERM)
+        assert own.wait(SOON_S) == 0
+        assert alive(everybody) == [], "somebody was left behind"
+    again = service.folder / "runs" / "hall"
+    assert list((again / "saved").glob("cut_short_*")), "what it had measured is kept"
+    assert " viewer 1 " in (again / "log.txt").read_text(), "parts have their names in the log"
+    assert (again / "summary.json").is_file()
 
 
 def test_sigterm_to_all_processes_ends_each_run_in_order(service: Service) -> None:

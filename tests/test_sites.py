@@ -51,6 +51,12 @@ def test_a_site_is_a_settings_file_or_the_settings_themselves(tmp_path: Path) ->
     assert found.files == (tmp_path / "sites.toml", tmp_path / "rooms/hall.toml")
 
 
+def test_a_site_says_whether_its_parts_are_one_process(tmp_path: Path) -> None:
+    together = site("hall").replace("[site.settings]", "together = true\n[site.settings]")
+    found = load_sites(written(tmp_path, site("lobby") + together))
+    assert [each.together for each in found.sites.values()] == [False, True]
+
+
 @pytest.mark.parametrize(
     ("text", "word"),
     [

@@ -14,9 +14,9 @@ import psutil
 import pytest
 from test_parent_death import PATIENCE_S, SOON_S, ended_within, sleeps, written
 
+from tritrack.forking.zygote import SPAWN, Zygote
 from tritrack.live.process_table import Part, end, inherited, started
 from tritrack.live.supervise import PartFailed, watched
-from tritrack.live.zygote import SPAWN, Zygote
 
 pytestmark = [
     pytest.mark.slow,
@@ -27,7 +27,7 @@ PARENT = """
 import sys, threading, time
 from test_parent_death import sleeps
 from tritrack.live.process_table import Part, inherited, started
-from tritrack.live.zygote import Zygote
+from tritrack.forking.zygote import Zygote
 if __name__ == "__main__":
     zygote = Zygote(inherited)
     zygote.wait(threading.Event(), lambda: None)
@@ -39,7 +39,7 @@ if __name__ == "__main__":
 WITHOUT = """
 import threading
 from tritrack.live.process_table import inherited
-from tritrack.live.zygote import SPAWN, Zygote
+from tritrack.forking.zygote import SPAWN, Zygote
 if __name__ == "__main__":
     zygote = Zygote(inherited)
     zygote.wait(threading.Event(), lambda: None)
@@ -52,7 +52,7 @@ import sys, time
 from multiprocessing import forkserver
 from pathlib import Path
 from tritrack.live.process_table import inherited
-from tritrack.live.zygote import Zygote
+from tritrack.forking.zygote import Zygote
 if __name__ == "__main__":
     zygote = Zygote(inherited)
     Path(sys.argv[1]).write_text(str(forkserver._forkserver._forkserver_pid))
@@ -270,7 +270,7 @@ def test_a_zygote_that_is_asked_to_end_with_all_of_a_service_stays_for_its_forks
 def test_a_run_that_is_stopped_does_not_wait_for_it() -> None:
     code = (
         "import threading, time; from tritrack.live.process_table import inherited; "
-        "from tritrack.live.zygote import Zygote; stop = threading.Event(); stop.set(); "
+        "from tritrack.forking.zygote import Zygote; stop = threading.Event(); stop.set(); "
         "began = time.monotonic(); Zygote(inherited).wait(stop, print); "
         "assert time.monotonic() - began < 0.5"
     )
@@ -282,7 +282,7 @@ def test_a_file_of_the_working_directory_is_not_taken_for_a_library(tmp_path: Pa
     code = (
         "import sys; sys.path = [path for path in sys.path if path]\n"
         "import threading; from tritrack.live.process_table import inherited\n"
-        "from tritrack.live.zygote import SPAWN, Zygote\n"
+        "from tritrack.forking.zygote import SPAWN, Zygote\n"
         "if __name__ == '__main__':\n"
         "    one = Zygote(inherited); one.wait(threading.Event(), lambda: None)\n"
         "    assert one.context is not SPAWN\n"

@@ -37,11 +37,16 @@ class ProcessContext(NamedTuple):
     kept: Path | None = None
     """Folder of this run alone, for what a process leaves to the one that is started in its place;
     None: nobody would be."""
+    stop: threading.Event | None = None
+    """Ends it where it is a thread of its supervisor's process; None: it has one of its own."""
 
 
 @contextmanager
 def process(name: str, context: ProcessContext) -> Iterator[threading.Event]:
     """An event that is set when the process shall end; one thread for every library meanwhile."""
+    if context.stop is not None:  # signals and log are the whole process's
+        yield context.stop
+        return
     stop = threading.Event()
 
     def end(_number: int, _frame: FrameType | None) -> None:
@@ -123,7 +128,13 @@ class Heart:
                 deadline_misses=self._pace.misses,
                 latency_p50_ms=self._pace.latency_ms(0.5),
                 latency_p99_ms=self._pace.latency_ms(0.99),
-                memory_mb=self._self.memory_info().rss / 1e6,
+                memory_mb=self._memory_mb(),
                 **counts,
             )
         )
+
+    def _memory_mb(self) -> float:
+        """Of this process; a thread of its supervisor's has none of its own."""
+        if threading.current_thread() is not threading.main_thread():
+            return 0.0
+        return float(self._self.memory_info().rss / 1e6)

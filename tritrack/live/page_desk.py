@@ -14,10 +14,10 @@ from common.bus.control_messages import Answer, Command, Wish
 from common.bus.inbox import Inbox
 from common.bus.process import ProcessContext
 from common.config.settings import Settings
+from tritrack.forking.zygote import SPAWN, Zygote
 from tritrack.live.process_table import Part, page_part
 from tritrack.live.recorded import MessageLog, SoFar
 from tritrack.live.supervise import Watched
-from tritrack.live.zygote import SPAWN, Zygote
 from tritrack.store.runs import RunError, write_postures, write_run
 
 SAVED: Final = "saved"

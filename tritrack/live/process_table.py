@@ -18,8 +18,9 @@ from common.parent_death import end_with_parent
 from common.process_name import be_shown_as
 from common.video.clip_facts import Clip
 from tritrack.faults import code_of, told
-from tritrack.live.adoption import Adopted, adopted, adopting, be_adopted
-from tritrack.live.zygote import FORK, SPAWN, Zygote
+from tritrack.forking.adoption import Adopted, adopted, adopting, be_adopted
+from tritrack.forking.zygote import FORK, SPAWN, Zygote
+from tritrack.live.beside import Beside
 
 END_S: Final = 5.0
 """What most processes may take to close their doors."""
@@ -51,21 +52,31 @@ class Part(NamedTuple):
     """How long it may take to close its doors before it is killed."""
     zygote: Zygote | None = None
     """Of which it is forked, where that is warm."""
+    beside: bool = False
+    """It is a thread of the supervisor's process."""
 
 
 class Running(NamedTuple):
     """A part that was started."""
 
     part: Part
-    process: BaseProcess | Adopted
+    process: BaseProcess | Adopted | Beside
     words: Connection
     """On which it says why it fails."""
 
 
 def live_parts(
-    settings: Settings, clip: Clip, context: ProcessContext, zygote: Zygote
+    settings: Settings, clip: Clip, context: ProcessContext, zygote: Zygote, beside: bool = False
 ) -> list[Part]:
-    """The table of a live run: who listens comes before who speaks (P2)."""
+    """The table of a live run: who listens comes before who speaks (P2).
+
+    Args:
+        settings: Of the run.
+        clip: What is looked at.
+        context: How its parts run.
+        zygote: Of which they are forked.
+        beside: They are threads of this process instead.
+    """
     period_s = clip.every / clip.views[0].fps
     parts = [
         Part("integrator", integrator_main, (settings, clip, context), beats=True, nests=True),
@@ -78,7 +89,7 @@ def live_parts(
         seen_by = (settings, view.number, context)
         name = f"viewer {view.number}"
         parts.append(Part(name, viewer_main, seen_by, leads=True, beats=True, nests=True))
-    return [part._replace(zygote=zygote) for part in parts]
+    return [part._replace(zygote=zygote, beside=beside) for part in parts]
 
 
 def names_of(clip: Clip) -> tuple[str, ...]:
@@ -135,7 +146,11 @@ def viewer_main(*arguments: Any) -> None:
 
 
 def started(part: Part) -> Running:
-    """A part's process, begun: forked where there is a warm zygote, else a new Python."""
+    """A part, begun: beside its supervisor, forked where there is a warm zygote, else a new
+    Python."""
+    if part.beside:
+        ours, theirs = SPAWN.Pipe(duplex=False)
+        return Running(part, Beside(part.name, part.main, part.arguments, theirs), ours)
     if part.zygote is not None and part.zygote.context is FORK:
         with suppress(EOFError, OSError):  # the zygote dies at this moment
             return _begun(part, FORK)

@@ -16,11 +16,12 @@ import msgspec
 from rich.console import Console
 
 from common.bus.messages import Body, Posture
-from common.bus.process import ProcessContext, logged
+from common.bus.process import ProcessContext, logged, start_log
 from common.config.settings import Settings
 from common.method import METHODS
 from common.settled import settle
 from common.video.clip_facts import Clip, both_cameras
+from tritrack.forking.zygote import Zygote
 from tritrack.live.free_ports import own_session, refuse_held_ports, with_free_endpoint
 from tritrack.live.launch import Heard, nothing_heard, run
 from tritrack.live.page_desk import SAVED, PageDesk
@@ -28,7 +29,6 @@ from tritrack.live.process_table import inherited, live_parts
 from tritrack.live.recorded import SoFar, WholeRun
 from tritrack.live.run_facts import facts_of, facts_of_clip, note_lost
 from tritrack.live.screen import Screen
-from tritrack.live.zygote import Zygote
 from tritrack.store.journal import Head as JournalHead
 from tritrack.store.journal import Journal
 from tritrack.store.past_journal import Journalled, put_aside
@@ -38,6 +38,8 @@ from tritrack.store.runs import write_postures, write_run
 PLAYS: Final = "the run is over; the page plays it as long as it is open (Ctrl-C ends)"
 KEPT: Final = ".kept-"
 """Begins the name of the folder in which processes leave what their next start takes up."""
+THREAD: Final = "%(threadName)s"
+"""What the log calls a part that is a thread."""
 NO_POSTURE: Final = -1
 """posture_id of a clip that shows none of the postures: free motion, a test of the tracker."""
 
@@ -53,6 +55,7 @@ def live(
     name: str = "",
     record: bool = False,
     tell: Callable[[Heard], bool | None] = lambda _: None,
+    together: bool = False,
 ) -> dict[str, Any]:
     """Run the processes on a clip or on cameras until it ends or Ctrl-C; write the run folder.
 
@@ -65,6 +68,7 @@ def live(
         name: Of the run; the clip's when empty.
         record: Keep what the viewers report, so that it can be replayed.
         tell: Called ten times a second too, with what was heard so far; True ends the run.
+        together: All parts but the page are threads of this process, which logs as one.
 
     Returns:
         What the run's summary tells.
@@ -95,7 +99,7 @@ def live(
         heard = heard._replace(journal=journal)
         try:
             _follow(
-                _Prepared(settings, clip, out, log, zygote, desk, screen, record),
+                _Prepared(settings, clip, out, log, zygote, desk, screen, record, together),
                 stop,
                 heard,
                 tell,
@@ -123,19 +127,22 @@ class _Prepared(NamedTuple):
     desk: PageDesk
     screen: Screen
     record: bool
+    together: bool
 
 
 def _follow(
     run_of: _Prepared, stop: threading.Event, heard: Heard, tell: Callable[[Heard], bool | None]
 ) -> None:
     """Run the processes until the clip ends or `stop` is set."""
-    settings, clip, out, log, zygote, desk, screen, record = run_of
+    settings, clip, out, log, zygote, desk, screen, record, together = run_of
     with ExitStack() as doors:
         kept = doors.enter_context(TemporaryDirectory(prefix=KEPT, dir=out))
         context = ProcessContext(True, log, Path(kept))
-        parts = live_parts(settings, clip, context, zygote)
+        parts = live_parts(settings, clip, context, zygote, together)
         show = doors.enter_context(screen.shown([part.name for part in (*parts, *desk.parts)]))
         doors.enter_context(logged("supervisor", log))
+        if together:
+            start_log(THREAD, log)
         keep = doors.enter_context(_kept(out, clip, settings, record))
 
         def look(heard: Heard) -> None:

@@ -8,10 +8,10 @@ import msgspec
 from common.bus.control_messages import Pulse
 from common.bus.inbox import Alive
 from common.bus.message_codec import decode
+from tritrack.forking.zygote import SPAWN, Zygote
 from tritrack.live.free_ports import with_free_endpoint
 from tritrack.live.process_table import Part
 from tritrack.live.supervise import PartFailed, Watched
-from tritrack.live.zygote import SPAWN, Zygote
 from tritrack.outside.run_figures import RunFigures, step
 from tritrack.serving.site_status import Status, status_of
 from tritrack.serving.sites import Site

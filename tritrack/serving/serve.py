@@ -13,10 +13,10 @@ from rich.console import Console
 from rich.live import Live as LiveDisplay
 
 from common.config.settings_error import SettingsError
+from tritrack.forking.zygote import Zygote
 from tritrack.live.free_ports import refuse_held_metrics, refuse_held_ports, with_free_endpoint
 from tritrack.live.process_table import inherited
 from tritrack.live.table import table_of
-from tritrack.live.zygote import Zygote
 from tritrack.serving.served_rooms import House
 from tritrack.serving.sites import Sites, load_sites
 from tritrack.terminal import say, warn

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Self
 
 from common.bus.control_messages import Pulse
-from tritrack.live.zygote import Zygote
+from tritrack.forking.zygote import Zygote
 from tritrack.serving.room import Room
 from tritrack.serving.site_changes import changes
 from tritrack.serving.sites import Site

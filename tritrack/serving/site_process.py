@@ -46,4 +46,11 @@ def main(site: Site, words: Connection) -> None:
     Raises:
         ClipError, LiveRefused, PartFailed and others: As `live` does.
     """
-    live(site.settings, site.out, Console(quiet=True), site.name, tell=Teller(site.name, words))
+    live(
+        site.settings,
+        site.out,
+        Console(quiet=True),
+        site.name,
+        tell=Teller(site.name, words),
+        together=site.together,
+    )

@@ -32,6 +32,8 @@ class SiteEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A settings file or a clip folder, or the settings themselves."""
     out: str = ""
     """Folder of its run; runs/NAME beside the file when empty."""
+    together: bool = False
+    """All its parts in one process: half the memory, but what breaks one ends all for a while."""
 
     def __post_init__(self) -> None:
         """Refuse what is no name of a folder and of a room."""
@@ -58,6 +60,7 @@ class Site(NamedTuple):
     name: str
     settings: Settings
     out: Path
+    together: bool = False
 
 
 class Sites(NamedTuple):
@@ -106,7 +109,8 @@ def _site(entry: SiteEntry, path: Path) -> Site:
         raise SettingsError(f"{path}: site {entry.name}: {error}") from error
     if settings.room == Settings().room:
         settings = msgspec.structs.replace(settings, room=entry.name)
-    return Site(entry.name, settings, path.parent / (entry.out or f"{RUNS}/{entry.name}"))
+    out = path.parent / (entry.out or f"{RUNS}/{entry.name}")
+    return Site(entry.name, settings, out, entry.together)
 
 
 def _refuse_shared_ports(path: Path, sites: Mapping[str, Site], metrics: str) -> None:

@@ -1,13 +1,13 @@
 """What sites are forked from: what a run's parts have, and what its supervisor and metrics have.
 
-Imported by the zygote of a service alone (`tritrack/live/zygote.py`).
+Imported by the zygote of a service alone (`tritrack/forking/zygote.py`).
 """
 
 from contextlib import suppress
 from typing import Final
 
 from common.settled import settle
-from tritrack.live import warmed
+from tritrack.forking import warmed
 from tritrack.offline import lockstep
 from tritrack.serving import site_process
 

@@ -30,7 +30,7 @@ from viewer.viewer_warmup import warm_up as warm_viewer
 
 PID = os.getpid()
 """Of who forks the parts."""
-FIRST_RUN: Final = f"{__package__.removesuffix('.live')}.first_run"
+FIRST_RUN: Final = f"{__package__.removesuffix('.forking')}.first_run"
 PROCESSES: Final = (viewer_process, integrator_process, recognizer_process, decoder)
 SIZE: Final = (160, 120)
 """Of the pictures that are made up; what is compiled does for any."""
