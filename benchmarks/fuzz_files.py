@@ -45,7 +45,7 @@ from recognizer import model_file
 from tritrack.exporting import export_run
 from tritrack.faults import MENDABLE, code_of
 from tritrack.live.table import table_of_rows
-from tritrack.offline.batch import track_all
+from tritrack.offline.batch import Asked, track_all
 from tritrack.single.mask_file import read_masks
 from tritrack.store.journal import Head, Journal
 from tritrack.store.past_run import open_run
@@ -72,7 +72,7 @@ def write_whole(clip: Path, folder: Path) -> None:
     shutil.copytree(clip, copy)
     own = clip / "calibration.json"
     shutil.copyfile(own if own.is_file() else clip.parent / own.name, copy / own.name)
-    track_all([copy], run, None, (1, 2), None, Console(quiet=True), record=True)
+    track_all([copy], run, Asked(record=True), Console(quiet=True))
     rig, recording = load_rig(copy / own.name), read_recording(run / "clip")
     cut_short.mkdir()
     kept = Journal(cut_short, Head(settings=Settings(), facts={"clip": "clip"}))

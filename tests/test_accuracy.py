@@ -22,7 +22,7 @@ from tritrack.accuracy.accuracy import (
     rooted,
     summary,
 )
-from tritrack.offline.batch import track_all
+from tritrack.offline.batch import Asked, track_all
 
 PLACES = {"shoulder": (0.2, 1.4), "elbow": (0.5, 1.4), "wrist": (0.5, 1.1)}
 PLACES |= {"hip": (0.1, 0.9), "knee": (0.1, 0.5), "ankle": (0.1, 0.1)}
@@ -159,7 +159,7 @@ def real_runs(
     out = tmp_path_factory.mktemp("runs")
     clips = [data_dir / "dev" / "r07_t1_14_kick_right_forward"]
     clips += sorted((data_dir / "dev_stress" / "frame_drops").glob("*/"))[:1]
-    track_all(clips, out, None, (1, 2), None, Console(quiet=True))
+    track_all(clips, out, Asked(), Console(quiet=True))
     pairs = []
     for clip in clips:
         with np.load(out / clip.name / "poses.npz") as poses, np.load(clip / "truth.npz") as truth:

@@ -11,7 +11,7 @@ from spoiling import copied, refilmed
 from common.bus.messages import ViewerNumber
 from common.config.settings import Settings
 from tritrack.commands.clip_commands import line_of_runs
-from tritrack.offline.batch import track_all
+from tritrack.offline.batch import Asked, track_all
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.unfinished.work import Course
 
@@ -25,7 +25,7 @@ def test_a_clip_that_shows_nobody_is_tracked_and_that_is_said(
     folder = copied(clip, tmp_path / "clip")
     refilmed(folder, lambda film: 4 * film[:8])
     said = Console(file=StringIO(), width=500)
-    track_all([folder], tmp_path / "runs", None, views, None, said)
+    track_all([folder], tmp_path / "runs", Asked(views=views), said)
     assert isinstance(said.file, StringIO)
     assert "warning: clip: nobody was seen" in said.file.getvalue()
 

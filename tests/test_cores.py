@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from tritrack.offline.batch import track_all
+from tritrack.offline.batch import Asked, track_all
 from tritrack.store.cores import ClusterError, made, spread
 from tritrack.training.recordings import recordings
 
@@ -43,7 +43,7 @@ def test_a_dask_cluster_of_two_tracks_clips_to_the_same_bits(clip: Path, tmp_pat
     run = (
         tmp_path
         / "runs"
-        / next(iter(track_all([clip], tmp_path / "runs", None, (1, 2), None, QUIET)["clips"]))
+        / next(iter(track_all([clip], tmp_path / "runs", Asked(), QUIET)["clips"]))
     )
     with (
         LocalCluster(

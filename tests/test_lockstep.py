@@ -13,7 +13,7 @@ from spoiling import Film, copied, cut_off, edit_json, refilmed
 
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
-from tritrack.offline.batch import track_all
+from tritrack.offline.batch import Asked, track_all
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.overrides import overridden
 from tritrack.store.pose_arrays import poses
@@ -29,14 +29,14 @@ def tracked(clip: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
 
 def test_the_same_clip_gives_the_same_bytes(clip: Path, tmp_path: Path) -> None:
     for out in ("first", "second"):
-        track_all([clip], tmp_path / out, None, (1, 2), None, QUIET)
+        track_all([clip], tmp_path / out, Asked(), QUIET)
     first, second = ((tmp_path / out / clip.name / "poses.npz") for out in ("first", "second"))
     assert first.read_bytes() == second.read_bytes()
 
 
 def test_nothing_is_written_but_the_run_folder(clip: Path, tmp_path: Path) -> None:
     before = {path: path.stat().st_mtime_ns for path in clip.parent.rglob("*")}
-    track_all([clip], tmp_path, None, (1, 2), None, QUIET)
+    track_all([clip], tmp_path, Asked(), QUIET)
     assert {path: path.stat().st_mtime_ns for path in clip.parent.rglob("*")} == before
     files = {str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*") if path.is_file()}
     assert files == {f"{clip.name}/poses.npz", f"{clip.name}/summary.json"}
@@ -118,7 +118,7 @@ def test_a_pair_filmed_without_calibration_is_tracked(data_dir: Path, tmp_path: 
     config = Path(__file__).parents[1] / "configs" / "frontside_walk.toml"
     if "TRITRACK_DATA" not in os.environ:
         pytest.skip("the settings name the clips by TRITRACK_DATA")
-    done = track_all([config], tmp_path, None, (1, 2), None, QUIET)
+    done = track_all([config], tmp_path, Asked(), QUIET)
     assert list(done["clips"]) == ["frontside_walk"]
     assert done["clips"]["frontside_walk"]["scale_source"] == "person"
     with np.load(tmp_path / "frontside_walk" / "poses.npz", allow_pickle=False) as found:

@@ -8,7 +8,7 @@ from rich.console import Console
 from spoiling import copied, refilmed
 
 from common.config.settings import Settings
-from tritrack.offline.batch import track_all
+from tritrack.offline.batch import Asked, track_all
 from tritrack.single.single import Given, single_all
 from tritrack.store.other_run import OtherRun, refuse_other, run_of
 from tritrack.store.runs import write_run
@@ -50,7 +50,7 @@ def test_both_commands_leave_the_other_run_as_it_is(clip: Path, tmp_path: Path) 
     before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     said = Console(file=StringIO(), width=500)
     with pytest.raises(OtherRun, match=r"holds another run \(tritrack track of"):
-        track_all([clip], tmp_path, None, (1, 2), None, said)
+        track_all([clip], tmp_path, Asked(), said)
     (video,) = clip.glob("cam1.*")
     with pytest.raises(OtherRun):
         single_all([video], tmp_path, Given(), Settings(), said)
@@ -65,4 +65,4 @@ def test_a_run_that_is_made_again_or_by_force_takes_the_others_place(
     refilmed(short, lambda film: film[:8])
     said = Console(file=StringIO(), width=500)
     for force in (True, False):
-        track_all([short], tmp_path, None, (1, 2), "160x120", said, force=force)
+        track_all([short], tmp_path, Asked(size="160x120", force=force), said)

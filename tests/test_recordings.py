@@ -12,7 +12,7 @@ from spoiling import copied, edit_json
 from recognizer.evaluation import Recording
 from synth.write import ClipSet
 from tritrack.making import make_clips
-from tritrack.offline.batch import track_all
+from tritrack.offline.batch import Asked, track_all
 from tritrack.store.clip_paths import ClipsFailed
 from tritrack.store.runs import RunError
 from tritrack.training import recordings as stage
@@ -31,7 +31,7 @@ def clips(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
 @pytest.fixture(scope="module")
 def runs(clips: list[Path], tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     out = tmp_path_factory.mktemp("runs")
-    return [out / name for name in track_all(clips, out, None, (1, 2), None, QUIET)["clips"]]
+    return [out / name for name in track_all(clips, out, Asked(), QUIET)["clips"]]
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from tritrack.live.free_ports import free_settings
 from tritrack.live.session import live
-from tritrack.offline.batch import track_all
+from tritrack.offline.batch import Asked, track_all
 from tritrack.replaying import pairs, replay_run, say
 from tritrack.store.past_run import open_run
 from tritrack.store.recording import read_recording
@@ -28,7 +28,7 @@ QUIET = Console(quiet=True)
 @pytest.fixture(scope="module")
 def run(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("recorded")
-    track_all([clip], out, None, (1, 2), None, QUIET, record=True)
+    track_all([clip], out, Asked(record=True), QUIET)
     return out / clip.name
 
 
@@ -43,7 +43,7 @@ def test_recorded_reports_give_the_same_bodies_byte_for_byte(run: Path, tmp_path
 def test_a_run_of_one_view_comes_back_too(
     clip: Path, tmp_path: Path, views: tuple[ViewerNumber, ...]
 ) -> None:
-    track_all([clip], tmp_path, None, views, None, QUIET, record=True)
+    track_all([clip], tmp_path, Asked(views=views, record=True), QUIET)
     facts = replay_run(tmp_path / clip.name, None)
     assert facts["same"] == facts["bodies"] > 0
 

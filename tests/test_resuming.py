@@ -14,7 +14,7 @@ import pytest
 from rich.console import Console
 from spoiling import changed, copied, film_of, refilmed
 
-from tritrack.offline.batch import track_all
+from tritrack.offline.batch import Asked, track_all
 from tritrack.store.past_run import CUT_SHORT, open_run
 from tritrack.unfinished import unfinished_run
 from tritrack.unfinished.resuming import MADE_OF
@@ -159,7 +159,7 @@ def test_a_run_of_something_else_is_refused_in_a_line_and_left_as_it_is(
     said = Console(file=StringIO(), width=500)
     views, size = given.get("views", (1, 2)), given.get("size")
     with pytest.raises(CannotResume) as refused:
-        track_all([clip], out, None, views, size, said, resume=True)  # type: ignore[arg-type]
+        track_all([clip], out, Asked(size=size, views=views, resume=True), said)  # type: ignore[arg-type]
     (line,) = str(refused.value).splitlines()
     assert word in line
     assert "--resume" in line
@@ -173,7 +173,7 @@ def test_a_run_that_is_over_is_not_done_again_unless_something_changed(
     refilmed(folder, lambda film: film[:40])
 
     def tracked() -> dict[str, object]:
-        (facts,) = track_all([folder], tmp_path / "runs", None, (1, 2), None, said, resume=True)[
+        (facts,) = track_all([folder], tmp_path / "runs", Asked(resume=True), said)[
             "clips"
         ].values()
         return facts  # type: ignore[no-any-return]

@@ -13,7 +13,7 @@ from spoiling import film_of, write_film, write_uneven
 from common.config.settings import Settings
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import save_notes
-from tritrack.offline.batch import track_all
+from tritrack.offline.batch import Asked, track_all
 from tritrack.single.single import UNUSABLE, Given, line_of, name_of, single_all
 from tritrack.store.clip_paths import ClipsFailed
 
@@ -69,7 +69,7 @@ def test_one_view_of_a_clip_is_tracked_by_the_same_code(
 ) -> None:
     (tmp_path / "clip").mkdir()
     (tmp_path / "clip" / "cam1.avi").write_bytes(video.read_bytes())
-    track_all([tmp_path / "clip"], tmp_path / "runs", None, (1,), "160x120", QUIET)
+    track_all([tmp_path / "clip"], tmp_path / "runs", Asked(size="160x120", views=(1,)), QUIET)
     with np.load(run / "poses.npz") as one, np.load(tmp_path / "runs/clip/poses.npz") as other:
         assert one.files == other.files
         assert all(np.array_equal(one[n], other[n], equal_nan=n[0] in "jac") for n in one.files[:1])

@@ -18,7 +18,7 @@ import tritrack.__main__ as door
 from tritrack.accuracy.accuracy import compare, summary
 from tritrack.accuracy.tracking_evaluation import EvaluationError, evaluate_tracking
 from tritrack.accuracy.worst_frames import TRACKED, TRUE
-from tritrack.offline.batch import track_all
+from tritrack.offline.batch import Asked, track_all
 from tritrack.store.clip_paths import ClipsFailed
 
 QUIET = Console(quiet=True)
@@ -29,7 +29,7 @@ TERMINAL = Console(file=StringIO(), force_terminal=True)
 @pytest.fixture(scope="module")
 def runs(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("stand")
-    track_all([clip], out, None, (1, 2), None, QUIET)
+    track_all([clip], out, Asked(), QUIET)
     return out
 
 

@@ -19,7 +19,7 @@ from tritrack.accuracy.accuracy import Compared, Mismatch, compare, per_joint, s
 from tritrack.accuracy.limb_lengths import length_errors
 from tritrack.accuracy.reliability import trust
 from tritrack.accuracy.silhouette_iou import Overlap, overlaps
-from tritrack.offline.batch import track_all
+from tritrack.offline.batch import Asked, track_all
 from tritrack.offline.lockstep import Decoders
 from tritrack.store.clip_paths import run_names, without_plain_files
 from tritrack.terminal import bar, json_text, warn
@@ -116,7 +116,7 @@ def _runs_of(
         stand = {name: runs / name for name in clips if _is_run(runs / name)} | stand
     missing = [path for name, path in clips.items() if name not in stand]
     if missing:
-        track_all(missing, into, mode, (1, 2), size, console, force=True)
+        track_all(missing, into, Asked(mode, size, force=True), console)
     return {
         name: (stand.get(name, into / name), clips.get(name)) for name in sorted({*stand, *clips})
     }

@@ -63,21 +63,10 @@ def track(
 
     Example: tritrack track clips/*/ --mode paper --out runs
     """
-    from tritrack.offline.batch import track_all
+    from tritrack.offline.batch import Asked, track_all
 
-    facts = track_all(
-        clips,
-        out,
-        mode,
-        VIEWERS[views],
-        size,
-        console,
-        landmarks=landmarks,
-        trusted=trust_calibration,
-        record=record,
-        resume=resume,
-        force=force,
-    )
+    asked = Asked(mode, size, landmarks, VIEWERS[views], trust_calibration, record, resume, force)
+    facts = track_all(clips, out, asked, console)
     tell(facts, json_wanted, line_of_runs(facts["clips"], out))
     refuse_unfollowed(facts["clips"])
 

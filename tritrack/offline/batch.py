@@ -32,20 +32,26 @@ KEPT_AS_IT_IS: Final = (CannotResume, OtherRun)
 """What keeps one clip's run folder from being written."""
 
 
-def track_all(
-    paths: Sequence[Path],
-    out: Path,
-    mode: Mode | None,
-    views: tuple[ViewerNumber, ...],
-    size: str | None,
-    console: Console,
-    *,
-    landmarks: str | None = None,
-    trusted: bool = False,
-    record: bool = False,
-    resume: bool = False,
-    force: bool = False,
-) -> dict[str, Any]:
+class Asked(NamedTuple):
+    """What the user says of all clips; None leaves what their settings say."""
+
+    mode: Mode | None = None
+    size: str | None = None
+    landmarks: str | None = None
+    """Where joints of the pictures come from."""
+    views: tuple[ViewerNumber, ...] = (1, 2)
+    """The cameras to use."""
+    trusted: bool = False
+    """A calibration is trusted even where it seems wrong."""
+    record: bool = False
+    """Keep what the viewers report, so that it can be replayed."""
+    resume: bool = False
+    """Go on with what was cut short, and leave out what is done."""
+    force: bool = False
+    """Write over the runs of other clips."""
+
+
+def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) -> dict[str, Any]:
     """Track clip after clip and write a run folder for each.
 
     Of several, one that cannot be used is said and left out; the others are tracked.
@@ -53,15 +59,8 @@ def track_all(
     Args:
         paths: Clip folders and settings files; other plain files are said and left out.
         out: Gets a folder for each, named after the clip or the settings file.
-        mode: Instead of what the settings say; None leaves them.
-        views: The cameras to use.
-        size: As `mode`.
+        given: What the user says of all of them.
         console: For progress, warnings and errors.
-        landmarks: As `mode`.
-        trusted: A calibration is trusted even where it seems wrong.
-        record: Keep what the viewers report, so that it can be replayed.
-        resume: Go on with what was cut short, and leave out what is done.
-        force: Write over the runs of other clips.
 
     Raises:
         SettingsError, ClipError, DecoderDied, Undecodable, CannotResume: When the only clip cannot
@@ -71,21 +70,23 @@ def track_all(
         RunError: When a run folder cannot be written.
     """
     runs = run_names(without_plain_files(paths, console))
-    if record:
+    if given.record:
         refuse_without_library()
     done: dict[str, Any] = {}
     with Decoders() as decoders, bar(console) as progress:
         for (name, path), tell in by_share(progress, [*runs.items()], "tracking"):
             try:
-                settings = overridden(config_file.load(path), mode, size, landmarks)
-                if trusted:
+                own = config_file.load(path)
+                settings = overridden(own, given.mode, given.size, given.landmarks)
+                if given.trusted:
                     settings = msgspec.structs.replace(settings, trust_calibration=True)
-                told = {"the views": views, "what is recorded": record}
-                wanted = Wanted(out / name, settings, told, resume)
-                given = _Given(views, record, tell, console)
-                if not force:
+                told = {"the views": given.views, "what is recorded": given.record}
+                wanted = Wanted(out / name, settings, told, given.resume)
+                if not given.force:
                     refuse_other(wanted.folder, _run_of(settings))
-                done[name] = done_before(wanted, console) or _tracked(wanted, given, decoders)
+                done[name] = done_before(wanted, console) or _tracked(
+                    wanted, given, decoders, tell, console
+                )
             except (SettingsError, ClipError, DecoderDied, Undecodable, *KEPT_AS_IT_IS) as error:
                 if len(runs) == 1:
                     raise
@@ -95,19 +96,14 @@ def track_all(
     return {"clips": done}
 
 
-class _Given(NamedTuple):
-    views: tuple[ViewerNumber, ...]
-    record: bool
-    tell: Tell
-    console: Console
-
-
-def _tracked(wanted: Wanted, given: _Given, decoders: Decoders) -> dict[str, Any]:
+def _tracked(
+    wanted: Wanted, given: Asked, decoders: Decoders, tell: Tell, console: Console
+) -> dict[str, Any]:
     """Track a clip and write its run; what the summary tells of it."""
-    folder, settings, console = wanted.folder, wanted.settings, given.console
+    folder, settings = wanted.folder, wanted.settings
     with resumable(wanted, console) as (work, made_of):
         heard = work.messages("heard") if given.record else None
-        course, watch = Course(given.tell, work), None if heard is None else _recorder(heard)
+        course, watch = Course(tell, work), None if heard is None else _recorder(heard)
         tracked = track_clip(settings, decoders, given.views, watch=watch, course=course)
         for warning in tracked.facts["warnings"]:
             warn(console, f"{folder.name}: {warning}")
