@@ -8,7 +8,7 @@ from rich.console import Console
 from truth_teacher import keypoints_of
 
 from tritrack.training.training import TrainingError
-from viewer.landmarks.landmark_network import refuse_no_network
+from viewer.landmarks.landmark_looks import refuse_no_network
 
 for extra in ("torch", "onnx", "onnxscript"):
     pytest.importorskip(extra, reason="the extra `train` is not installed")

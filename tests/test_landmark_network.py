@@ -14,7 +14,8 @@ from synth.picture.backdrops import backdrop
 from synth.picture.composites import Composite, composite
 from synth.picture.picture_examples import PictureExample, picture_examples
 from viewer.landmarks import landmark_network
-from viewer.landmarks.landmark_network import BINS, CELLS, Found, find
+from viewer.landmarks.landmark_looks import BINS, CELLS
+from viewer.landmarks.landmark_network import Found, find
 from viewer.landmarks.landmark_window import SIDE
 
 OTHERS = 50_000
@@ -96,6 +97,36 @@ def test_the_facing_is_the_direction_of_the_likeliest_bin(bin_: int) -> None:
     assert sure > 0.99
 
 
+def test_a_second_look_in_the_mirror_has_left_where_left_is() -> None:
+    """What is seen of a picture and of its mirror image, joined, is one thing: mirrored itself."""
+    planes = np.ascontiguousarray(
+        np.random.default_rng(2).integers(0, 255, (1, 4, SIDE, SIDE), dtype=np.uint8)
+    )
+    plain = find(planes, twice=True)
+    other = find(np.ascontiguousarray(planes[..., ::-1]), twice=True)
+    across = other.joints[OTHER_SIDE] * [-1.0, 1.0] + [SIDE, 0.0]
+    assert plain.joints == pytest.approx(across, abs=1e-3)
+    assert plain.confidence == pytest.approx(other.confidence[OTHER_SIDE], abs=1e-5)
+    assert plain.facing_deg == pytest.approx(-other.facing_deg, abs=0.01)
+    assert plain.nobody == pytest.approx(other.nobody, abs=1e-6)
+
+
+@pytest.mark.slow
+def test_two_looks_are_nearer_than_one() -> None:
+    planes = [np.dstack([one.picture, one.outline]).transpose(2, 0, 1)[None] for one in shown()]
+    twice = [find(np.ascontiguousarray(one), twice=True).joints for one in planes]
+    once = [one.joints for one in found()]
+
+    def mean_off(joints: list[np.ndarray]) -> float:
+        apart = [
+            np.linalg.norm(got - one.joints_px, axis=1)[one.inside] / one.stature_px
+            for got, one in zip(joints, shown(), strict=True)
+        ]
+        return float(np.minimum(np.concatenate(apart), 0.5).mean())
+
+    assert mean_off(twice) < 0.99 * mean_off(once)
+
+
 @pytest.mark.slow
 def test_most_joints_of_people_it_never_saw_are_within_a_tenth_of_the_stature() -> None:
     known = off()[np.isfinite(off())]
@@ -154,7 +185,7 @@ def test_it_tells_front_from_back() -> None:
 
 def test_the_runtime_reports_nothing_to_anybody(tmp_path: Path) -> None:
     """It keeps a file in the folder for what is temporary where it does."""
-    code = "from viewer.landmarks.landmark_network import opened; opened()"
+    code = "from viewer.landmarks.landmark_looks import opened; opened()"
     subprocess.run(
         [sys.executable, "-c", code],
         check=True,

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from synth.picture.picture_examples import picture_examples
-from viewer.landmarks.landmark_network import SHIPPED, find, opened
+from viewer.landmarks.landmark_looks import SHIPPED, opened
+from viewer.landmarks.landmark_network import find
 from viewer.landmarks.landmark_window import GREY, PLANES, SIDE, Planes
 
 pytest.importorskip("torch", reason="the extra `train` is not installed")

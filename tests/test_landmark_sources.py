@@ -24,7 +24,7 @@ from viewer import track
 from viewer.background.background import learn
 from viewer.capture import Live, RoomClock, recorded
 from viewer.landmarks.keypoint_files import KeypointFiles
-from viewer.landmarks.landmark_network import SHIPPED
+from viewer.landmarks.landmark_looks import SHIPPED
 from viewer.landmarks.landmark_sources import oddities, outside_sources, refuse_landmarks
 from viewer.landmarks.mediapipe_source import MediaPipe
 

@@ -20,9 +20,9 @@ from viewer.background.moved_objects import Patch
 from viewer.background.turned_picture import lens_of, turned_background
 from viewer.capture import CapturedFrame
 from viewer.expected_body import expected_body
-from viewer.landmarks.landmark_network import network_of
+from viewer.landmarks.landmark_looks import network_of
 from viewer.landmarks.nearest_landmarks import nearest_landmarks
-from viewer.landmarks.own_landmarks import own_landmarks
+from viewer.landmarks.own_landmarks import Eye, own_landmarks
 from viewer.paper import pose_search
 from viewer.paper.measure import measure_front, measure_side, refusal_of
 from viewer.room.outline_correction import corrected, is_trusted
@@ -217,8 +217,8 @@ def _landmarks(state: State, frame: CapturedFrame, seen: Seen) -> Landmarks | No
         return None
     settings = state.setup.settings
     if settings.looks_itself:
-        network = network_of(settings.landmarks)
-        return own_landmarks(frame.picture, seen, state.landmarks, network)
+        eye = Eye(network_of(settings.landmarks), state.setup.alone)
+        return own_landmarks(frame.picture, seen, state.landmarks, eye)
     return nearest_landmarks(frame.landmarks, seen.box)
 
 

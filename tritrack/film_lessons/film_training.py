@@ -20,7 +20,7 @@ from tritrack.training.landmark_rounding import weights_of
 from tritrack.training.landmark_training import write_network
 from tritrack.training.picture_store import Backdrops, Part, PictureStore, draw
 from tritrack.training.training import TrainingError
-from viewer.landmarks.landmark_network import SHIPPED
+from viewer.landmarks.landmark_looks import SHIPPED
 
 FIRST: Final = 30_000_000
 """Seed of the first of them: the shipped network saw none."""

@@ -11,7 +11,8 @@ from torch import nn
 from torch.nn import functional
 
 from synth.picture.composites import Composite
-from viewer.landmarks.landmark_network import BINS, CELLS, FARTHEST
+from viewer.landmarks.landmark_looks import BINS, CELLS
+from viewer.landmarks.landmark_network import FARTHEST
 from viewer.landmarks.landmark_window import GREY, PLANES, SIDE
 
 WIDTHS: Final = (16, 32, 64, 96)

@@ -1,7 +1,5 @@
-"""The network that finds landmarks in a window of the picture, and what its outputs mean."""
+"""What the outputs of the network of landmarks mean: joints in a window, and how sure they are."""
 
-import os
-from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -10,20 +8,13 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.compiled import compiled
-from common.config.settings_error import SettingsError
+from viewer.landmarks.landmark_looks import BINS, CELLS, SHIPPED, seen, seen_twice
 from viewer.landmarks.landmark_window import PLANES, SIDE, Planes
 
-CELLS: Final = 24
-"""Cells of a joint's map, each way."""
-BINS: Final = 16
-"""Directions that the facing is told apart in."""
 FARTHEST: Final = 0.8
 """No peak is farther from the middle of its highest cell, in cells."""
 DEEP: Final = 25.0
 """A cell whose logit lies so far below the highest adds nothing that a float32 could tell."""
-OWN: Final = "own"
-"""What settings call the network in the package."""
-SHIPPED: Final = Path(__file__).with_name("landmarks.onnx")
 APART: Final = 2
 """The next peak of a map is more cells than this from the highest, down or across."""
 PLATT: Final = (1.07, 0.67, 0.41)
@@ -50,52 +41,18 @@ class Found(NamedTuple):
     """(15,) how probably it is there instead, likewise."""
 
 
-@lru_cache(maxsize=4)
-def opened(network: Path = SHIPPED) -> Any:
-    """A network, on one core.
-
-    onnxruntime would report its use to its maker, and keep a file for it, unless it is told not to
-    before it is imported: nothing leaves this machine.
+def find(planes: Planes, network: Path = SHIPPED, twice: bool = False) -> Found:
+    """The joints in a window.
 
     Args:
-        network: A file that `tritrack train --what landmarks` wrote.
+        planes: (1, PLANES, SIDE, SIDE)
+        network: A file of ours.
+        twice: As they are, and in the mirror: what the two looks do not agree on is less sure.
     """
-    os.environ["ORT_DISABLE_TELEMETRY"] = "1"
-    import onnxruntime
-
-    options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = options.inter_op_num_threads = 1
-    return onnxruntime.InferenceSession(network, options, providers=["CPUExecutionProvider"])
-
-
-def network_of(landmarks: str) -> Path:
-    """The file of the network that a run's settings name."""
-    return SHIPPED if landmarks == OWN else Path(landmarks)
-
-
-def refuse_no_network(landmarks: str) -> None:
-    """Say that a file is no network of ours.
-
-    Raises:
-        SettingsError: With its name.
-    """
-    try:
-        (taken,) = opened(network_of(landmarks)).get_inputs()
-        known = (taken.name, taken.shape) == ("planes", [1, PLANES, SIDE, SIDE])
-    except Exception as error:  # whatever keeps a foreign file from its work is for the user
-        raise SettingsError(f"{landmarks} is no network: {error}") from error
-    if not known or taken.type != "tensor(uint8)":
-        raise SettingsError(
-            f"{landmarks} is no network of landmarks: tritrack train --what landmarks writes one"
-        )
-
-
-def find(planes: Planes, network: Path = SHIPPED) -> Found:
-    """The joints in a window, (1, PLANES, SIDE, SIDE)."""
     assert planes.shape == (1, PLANES, SIDE, SIDE)
-    maps, told = opened(network).run(None, {"planes": planes})
-    joints, about = _peaks(maps[0])
-    bins, nobody, sure = told[0, :BINS], told[0, BINS], told[0, BINS + 1 :]
+    maps, told = seen_twice(planes, network) if twice else seen(planes, network)
+    joints, about = _peaks(maps)
+    bins, nobody, sure = told[:BINS], told[BINS], told[BINS + 1 :]
     first, second = (
         _probable(np.ascontiguousarray(near), sure, *platt)
         for near, platt in zip(about.T, (PLATT, PLATT_OF_SECOND), strict=True)

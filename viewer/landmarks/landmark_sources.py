@@ -9,7 +9,7 @@ from common.config.settings import Settings
 from common.video.clip_facts import View
 from common.video.clip_sources import footage_of
 from viewer.landmarks.keypoint_files import KeypointFiles
-from viewer.landmarks.landmark_network import refuse_no_network
+from viewer.landmarks.landmark_looks import refuse_no_network
 from viewer.landmarks.mediapipe_source import MediaPipe, refuse_where_missing
 from viewer.landmarks.outside_source import OutsideSource
 

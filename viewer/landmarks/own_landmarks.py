@@ -10,7 +10,8 @@ from common.body.body import Vector
 from common.bus.messages import Landmarks
 from common.raster.similarity import Mask
 from common.video.decoding import Image
-from viewer.landmarks.landmark_network import SHIPPED, find
+from viewer.landmarks.landmark_looks import SHIPPED
+from viewer.landmarks.landmark_network import find
 from viewer.landmarks.landmark_window import SIDE, Window, planes_of, whole, window_about, window_of
 from viewer.silhouette.silhouette import Seen
 
@@ -41,8 +42,16 @@ class _Look(NamedTuple):
         return float(self.confidence.mean())
 
 
+class Eye(NamedTuple):
+    """How a picture is looked at."""
+
+    network: Path = SHIPPED
+    twice: bool = False
+    """In the mirror too."""
+
+
 def own_landmarks(
-    picture: Image, seen: Seen, before: Landmarks | None, network: Path = SHIPPED
+    picture: Image, seen: Seen, before: Landmarks | None, eye: Eye = Eye()
 ) -> Landmarks | None:
     """What the network makes of a picture; None where it sees nobody.
 
@@ -54,17 +63,17 @@ def own_landmarks(
         picture: (H, W, 3) the working picture.
         seen: The outline in it.
         before: Of the frame before.
-        network: Which one looks.
+        eye: Which network looks, and how often.
     """
     looks = []
     if seen.box is not None:
-        looks.append(_look(picture, seen.mask, window_of(seen.box), network))
+        looks.append(_look(picture, seen.mask, window_of(seen.box), eye))
     if not looks or looks[0].surety < SURE:
         known = None if before is None else _about(np.array(before.joints_px), before.confidence)
         if known is None:
-            looks.append(_search(picture, network))
+            looks.append(_search(picture, eye))
         else:
-            looks.append(_look(picture, None, known, network))
+            looks.append(_look(picture, None, known, eye))
     best = max(looks, key=lambda look: look.surety)
     if seen.box is None and (best.nobody > 0.5 or best.surety < LEAST):
         return None
@@ -104,8 +113,8 @@ def _told(best: _Look) -> Landmarks:
     )
 
 
-def _look(picture: Image, mask: Mask | None, window: Window, network: Path = SHIPPED) -> _Look:
-    found = find(planes_of(picture, mask, window), network)
+def _look(picture: Image, mask: Mask | None, window: Window, eye: Eye = Eye()) -> _Look:
+    found = find(planes_of(picture, mask, window), *eye)
     joints_px, second_px = (
         places * (window.side / SIDE) + (window.left, window.top)
         for places in (found.joints, found.second)
@@ -115,11 +124,11 @@ def _look(picture: Image, mask: Mask | None, window: Window, network: Path = SHI
     return _Look(joints_px, found.confidence, facing, found.nobody, second_px, second)
 
 
-def _search(picture: Image, network: Path = SHIPPED) -> _Look:
+def _search(picture: Image, eye: Eye = Eye()) -> _Look:
     """Somebody anywhere: first in all of the picture, then closer."""
-    far = _look(picture, None, whole(picture.shape), network)
+    far = _look(picture, None, whole(picture.shape), eye)
     window = _about(far.joints_px, tuple(far.confidence))
-    return far if window is None else _look(picture, None, window, network)
+    return far if window is None else _look(picture, None, window, eye)
 
 
 def _about(joints_px: NDArray[np.float64], confidence: tuple[float, ...]) -> Window | None:

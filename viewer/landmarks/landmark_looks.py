@@ -1,0 +1,97 @@
+"""Looks of the network of landmarks: its file, its logits of a window, two looks as one."""
+
+import os
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import OTHER_SIDE
+from common.config.settings_error import SettingsError
+from viewer.landmarks.landmark_window import PLANES, SIDE, Planes
+
+CELLS: Final = 24
+"""Cells of a joint's map, each way."""
+BINS: Final = 16
+"""Directions that the facing is told apart in."""
+OWN: Final = "own"
+"""What settings call the network in the package."""
+SHIPPED: Final = Path(__file__).with_name("landmarks.onnx")
+LEAST: Final = 1e-12
+"""Of a share of a map, where two looks are joined."""
+Seen = tuple[NDArray[np.float32], NDArray[np.float32]]
+"""Logits of a look: maps (15, CELLS, CELLS), and what is told beside them (BINS + 1 + 15,)."""
+
+
+@lru_cache(maxsize=4)
+def opened(network: Path = SHIPPED) -> Any:
+    """A network, on one core.
+
+    onnxruntime would report its use to its maker, and keep a file for it, unless it is told not to
+    before it is imported: nothing leaves this machine.
+
+    Args:
+        network: A file that `tritrack train --what landmarks` wrote.
+    """
+    os.environ["ORT_DISABLE_TELEMETRY"] = "1"
+    import onnxruntime
+
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    return onnxruntime.InferenceSession(network, options, providers=["CPUExecutionProvider"])
+
+
+def network_of(landmarks: str) -> Path:
+    """The file of the network that a run's settings name."""
+    return SHIPPED if landmarks == OWN else Path(landmarks)
+
+
+def refuse_no_network(landmarks: str) -> None:
+    """Say that a file is no network of ours.
+
+    Raises:
+        SettingsError: With its name.
+    """
+    try:
+        (taken,) = opened(network_of(landmarks)).get_inputs()
+        known = (taken.name, taken.shape) == ("planes", [1, PLANES, SIDE, SIDE])
+    except Exception as error:  # whatever keeps a foreign file from its work is for the user
+        raise SettingsError(f"{landmarks} is no network: {error}") from error
+    if not known or taken.type != "tensor(uint8)":
+        raise SettingsError(
+            f"{landmarks} is no network of landmarks: tritrack train --what landmarks writes one"
+        )
+
+
+def seen(planes: Planes, network: Path) -> Seen:
+    """What a network says of a window, (1, PLANES, SIDE, SIDE)."""
+    maps, told = opened(network).run(None, {"planes": planes})
+    return maps[0], told[0]
+
+
+def seen_twice(planes: Planes, network: Path) -> Seen:
+    """The same of a window and of its mirror image, as one."""
+    mirrored = np.ascontiguousarray(planes[..., ::-1])
+    return _joined(seen(planes, network), _turned(*seen(mirrored, network)))
+
+
+def _turned(maps: NDArray[np.float32], told: NDArray[np.float32]) -> Seen:
+    """What was seen in the mirror, as it is before it: left is right there."""
+    bins, nobody, sure = np.split(told, (BINS, BINS + 1))
+    own = bins[-np.arange(BINS) % BINS], nobody, sure[OTHER_SIDE]
+    return maps[OTHER_SIDE][..., ::-1], np.concatenate(own)
+
+
+def _joined(first: Seen, second: Seen) -> Seen:
+    """Two looks as one: the mean of the shares of maps, and of the logits of all else."""
+    shares = [np.exp(maps - _total(maps)) for maps, _ in (first, second)]
+    maps = np.log(np.maximum(0.5 * (shares[0] + shares[1]), np.float32(LEAST)))
+    return maps, 0.5 * (first[1] + second[1])
+
+
+def _total(maps: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(15, 1, 1) by how much the logits of each map are too large to be those of shares."""
+    best = maps.max(axis=(1, 2), keepdims=True)
+    return best + np.log(np.exp(maps - best).sum(axis=(1, 2), keepdims=True))
