@@ -28,6 +28,18 @@ MARGIN: Final = 0.06
 """How far a body reaches beyond its joints, in sides of what holds them."""
 
 
+class Eye(NamedTuple):
+    """How a picture is looked at."""
+
+    network: Path = SHIPPED
+    twice: bool = False
+    """In the mirror too."""
+
+
+TWICE: Final = Eye(twice=True)
+"""How single pictures are looked at, of which nothing is known."""
+
+
 class _Look(NamedTuple):
     joints_px: NDArray[np.float64]
     confidence: Vector
@@ -40,14 +52,6 @@ class _Look(NamedTuple):
     @property
     def surety(self) -> float:
         return float(self.confidence.mean())
-
-
-class Eye(NamedTuple):
-    """How a picture is looked at."""
-
-    network: Path = SHIPPED
-    twice: bool = False
-    """In the mirror too."""
 
 
 def own_landmarks(
@@ -84,7 +88,7 @@ def own_landmarks(
 
 def found_anywhere(picture: Image) -> tuple[Landmarks, float]:
     """Somebody in a picture (H, W, 3) of which nothing is known, and how probably nobody is."""
-    best = _search(picture)
+    best = _search(picture, TWICE)
     return _told(best), best.nobody
 
 
@@ -98,7 +102,7 @@ def found_between(
         low_px: (2,) likewise `high_px`.
         margin: How far the body reaches beyond them, in their longer distance.
     """
-    look = _look(picture, None, _between(low_px, high_px, margin))
+    look = _look(picture, None, _between(low_px, high_px, margin), TWICE)
     return _told(look), look.nobody
 
 
@@ -113,7 +117,7 @@ def _told(best: _Look) -> Landmarks:
     )
 
 
-def _look(picture: Image, mask: Mask | None, window: Window, eye: Eye = Eye()) -> _Look:
+def _look(picture: Image, mask: Mask | None, window: Window, eye: Eye) -> _Look:
     found = find(planes_of(picture, mask, window), *eye)
     joints_px, second_px = (
         places * (window.side / SIDE) + (window.left, window.top)
@@ -124,7 +128,7 @@ def _look(picture: Image, mask: Mask | None, window: Window, eye: Eye = Eye()) -
     return _Look(joints_px, found.confidence, facing, found.nobody, second_px, second)
 
 
-def _search(picture: Image, eye: Eye = Eye()) -> _Look:
+def _search(picture: Image, eye: Eye) -> _Look:
     """Somebody anywhere: first in all of the picture, then closer."""
     far = _look(picture, None, whole(picture.shape), eye)
     window = _about(far.joints_px, tuple(far.confidence))
