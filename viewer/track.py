@@ -21,7 +21,7 @@ from viewer.background.turned_picture import lens_of, turned_background
 from viewer.capture import CapturedFrame
 from viewer.expected_body import expected_body
 from viewer.landmarks.landmark_looks import network_of
-from viewer.landmarks.nearest_landmarks import nearest_landmarks
+from viewer.landmarks.outside_source import nearest_landmarks
 from viewer.landmarks.own_landmarks import Eye, own_landmarks
 from viewer.paper import pose_search
 from viewer.paper.measure import measure_front, measure_side, refusal_of

@@ -5,7 +5,7 @@ import pytest
 
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Box, Landmarks
-from viewer.landmarks.nearest_landmarks import nearest_landmarks
+from viewer.landmarks.outside_source import nearest_landmarks
 
 
 def person(left: float, top: float, right: float, bottom: float, seen: int = 15) -> Landmarks:
