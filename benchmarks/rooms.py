@@ -1,7 +1,8 @@
 """How many rooms of two cameras one machine serves: missed deadlines, processor, memory, latency.
 
 Run from the checkout: .venv/bin/python benchmarks/rooms.py [--rooms 1 2 5 10] [--size 160x120 ...]
-[--seconds 20] [--together] [--json]. Each room plays a made-up take of its own, 15 frames a second.
+[--seconds 20] [--together] [--json] [--plot FILE]. Each room plays a made-up take of its own, 15
+frames a second.
 """
 
 import argparse
@@ -15,7 +16,7 @@ import tempfile
 import time
 import urllib.error
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -202,6 +203,28 @@ def _pss(one: psutil.Process) -> float:
         return 0.0
 
 
+def plot(found: Sequence[Served], path: Path) -> None:
+    """Draw misses, latency, processor and memory over the number of rooms, a line for each size."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.0, 5.6), layout="constrained")
+    shown = {
+        "missed_percent": "missed deadlines, %",
+        "p99_ms": "p99, ms",
+        "cores": "cores",
+        "pss_mb": "MB a room",
+    }
+    drawn = zip(figure.subplots(2, 2).flat, shown.items(), strict=True)
+    for axes, (name, said) in drawn:
+        for size in dict.fromkeys(one.size for one in found):
+            own = [one for one in found if one.size == size]
+            axes.plot([o.rooms for o in own], [getattr(o, name) for o in own], ".-", label=size)
+        axes.set(xlabel="rooms", ylabel=said, ylim=(0.0, None))
+        axes.grid(alpha=0.3)
+    axes.legend()
+    figure.savefig(path, dpi=110)
+
+
 def main() -> None:
     """Serve more and more rooms, and show what it took."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -210,6 +233,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--together", action="store_true", help="one process a room")
     parser.add_argument("--json", action="store_true")
+    parser.add_argument("--plot", type=Path, help="a picture of it (needs matplotlib)")
     given = parser.parse_args()
     found: list[Served] = []
     with tempfile.TemporaryDirectory() as folder:
@@ -219,6 +243,8 @@ def main() -> None:
                 wanted = Wanted(clip, size, rooms, given.seconds, given.together)
                 found.append(served(wanted))
                 print(found[-1], file=sys.stderr, flush=True)
+    if given.plot:
+        plot(found, given.plot)
     rows = [one._asdict() for one in found]
     if given.json:
         print(json.dumps(rows, indent=1))
