@@ -91,12 +91,12 @@ class Reading(NamedTuple):
 
 def served(wanted: Wanted) -> Served:
     """Serve so many rooms for a while."""
-    _, size, rooms, seconds, _ = wanted
+    rooms = wanted.rooms
     with tempfile.TemporaryDirectory() as folder, _service(Path(folder), wanted) as (own, address):
         running = _until_running(own, address, rooms)
         time.sleep(SETTLE_S)
         before = _read(own, address)
-        time.sleep(seconds)
+        time.sleep(wanted.seconds)
         after, samples = _read(own, address), _samples(address)
         took_s = after.at_s - before.at_s
         bodies = after.bodies - before.bodies
@@ -110,7 +110,7 @@ def served(wanted: Wanted) -> Served:
         )
         pss = sum(_pss(each) for each in own.children(recursive=True))
         return Served(
-            size=size,
+            size=wanted.size,
             rooms=rooms,
             running=running,
             fps=bodies / took_s / rooms,

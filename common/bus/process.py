@@ -44,6 +44,7 @@ class ProcessContext(NamedTuple):
 @contextmanager
 def process(name: str, context: ProcessContext) -> Iterator[threading.Event]:
     """An event that is set when the process shall end; one thread for every library meanwhile."""
+    cv2.setNumThreads(1)
     if context.stop is not None:  # signals and log are the whole process's
         yield context.stop
         return
@@ -54,7 +55,6 @@ def process(name: str, context: ProcessContext) -> Iterator[threading.Event]:
 
     before = signal.signal(signal.SIGTERM, end)
     before_int = signal.signal(signal.SIGINT, signal.SIG_IGN if context.supervised else end)
-    cv2.setNumThreads(1)
     start_log(name, context.log)
     try:
         yield stop

@@ -45,9 +45,7 @@ class Beside:
                 main(*own)
                 self.exitcode = 0
             except Exception as error:
-                logging.getLogger(name).debug("failed", exc_info=error)
-                words.send(told(error))
-                self.exitcode = code_of(error)
+                self.exitcode = confessed(name, error, words)
 
         self._thread = threading.Thread(target=work, name=name, daemon=True)
         self._thread.start()
@@ -68,3 +66,10 @@ class Beside:
         """End it, and all of its process: what was measured is in the run's journal."""
         if self.is_alive():
             os._exit(KILLED)
+
+
+def confessed(name: str, error: Exception, words: Connection) -> int:
+    """Say in one line, not in a traceback, what a part cannot do; the exit code of that."""
+    logging.getLogger(name).debug("failed", exc_info=error)
+    words.send(told(error))
+    return code_of(error)

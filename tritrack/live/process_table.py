@@ -1,6 +1,5 @@
 """The processes of a live run: the table of them, how one is started, and how it is ended."""
 
-import logging
 import os
 import signal
 from collections.abc import Callable, Iterator
@@ -17,10 +16,9 @@ from common.config.settings import Settings
 from common.parent_death import end_with_parent
 from common.process_name import be_shown_as
 from common.video.clip_facts import Clip
-from tritrack.faults import code_of, told
 from tritrack.forking.adoption import Adopted, adopted, adopting, be_adopted
 from tritrack.forking.zygote import FORK, SPAWN, Zygote
-from tritrack.live.beside import Beside
+from tritrack.live.beside import Beside, confessed
 
 END_S: Final = 5.0
 """What most processes may take to close their doors."""
@@ -231,6 +229,4 @@ def _guarded(
     try:
         main(*arguments)
     except Exception as error:
-        logging.getLogger(name).debug("failed", exc_info=error)
-        words.send(told(error))
-        raise SystemExit(code_of(error)) from None
+        raise SystemExit(confessed(name, error, words)) from None
