@@ -9,7 +9,7 @@ from truth_teacher import keypoints_of
 from common.bus.messages import Landmarks
 from synth.picture.picture_examples import SIDE_PX, PictureExample
 from tritrack.film_lessons.film_examples import ELSEWHERE, HELD_SHARE, example_of, looked_through
-from tritrack.training.picture_store import PictureStore
+from tritrack.landmark_lessons.picture_store import PictureStore
 from tritrack.training.training import TrainingError
 
 

@@ -29,7 +29,7 @@ class Pool:
 
 
 def test_batches_come_in_their_order_and_a_few_are_asked_for_ahead() -> None:
-    from tritrack.training.landmark_learning import AHEAD, ahead
+    from tritrack.landmark_lessons.landmark_learning import AHEAD, ahead
 
     pool: Any = Pool()
     coming: Any = ahead(pool, list, iter(range(10)))
@@ -38,12 +38,20 @@ def test_batches_come_in_their_order_and_a_few_are_asked_for_ahead() -> None:
     assert [batch for (batch,) in coming] == list(range(1, 10))
 
 
-def test_what_was_never_kept_begins_and_what_was_kept_goes_on(tmp_path: Path) -> None:
-    from tritrack.training.landmark_learning import begun, keep, resumed
+def _begun() -> Any:
+    from tritrack.landmark_lessons.landmark_layers import Paced
+    from tritrack.landmark_lessons.landmark_learning import begun
 
-    work = begun(torch.nn.Linear(2, 1), 0.1)
+    network = torch.nn.Linear(2, 1)
+    return begun(network, [Paced([network.weight], 0.5)])
+
+
+def test_what_was_never_kept_begins_and_what_was_kept_goes_on(tmp_path: Path) -> None:
+    from tritrack.landmark_lessons.landmark_learning import keep, resumed
+
+    work = _begun()
     assert resumed(work, tmp_path / "kept.pt").batch == 0
     keep(work._replace(batch=7), tmp_path / "kept.pt")
-    again = resumed(begun(torch.nn.Linear(2, 1), 0.1), tmp_path / "kept.pt")
+    again = resumed(_begun(), tmp_path / "kept.pt")
     assert again.batch == 7
     assert torch.equal(again.network.weight, work.network.weight)

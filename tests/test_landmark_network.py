@@ -12,12 +12,14 @@ import pytest
 from common.body.body import OTHER_SIDE
 from synth.picture.backdrops import backdrop
 from synth.picture.composites import Composite, composite
-from synth.picture.picture_examples import PictureExample, picture_examples
+from synth.picture.picture_examples import SIDE_PX, PictureExample, picture_examples
 from viewer.landmarks import landmark_network
 from viewer.landmarks.landmark_looks import BINS, CELLS
 from viewer.landmarks.landmark_network import Found, find
-from viewer.landmarks.landmark_window import SIDE
+from viewer.landmarks.landmark_window import GREY, SIDE, Planes, planes_of, whole
 
+DRAWN = SIDE_PX / SIDE
+"""Pixels as people were drawn, of those that the network sees."""
 OTHERS = 50_000
 """Seeds from here on are nobody's who was learnt from."""
 
@@ -42,8 +44,13 @@ def shown() -> list[Composite]:
 
 @lru_cache(maxsize=1)
 def found() -> list[Found]:
-    planes = [np.dstack([one.picture, one.outline]).transpose(2, 0, 1)[None] for one in shown()]
-    return [find(np.ascontiguousarray(one)) for one in planes]
+    return [find(seen(one)) for one in shown()]
+
+
+def seen(one: Composite) -> Planes:
+    """As the viewer cuts it out."""
+    outline = None if (one.outline == GREY).all() else one.outline > GREY
+    return planes_of(one.picture, outline, whole(one.picture.shape))
 
 
 def off(exchanged: bool = False) -> np.ndarray:
@@ -52,7 +59,7 @@ def off(exchanged: bool = False) -> np.ndarray:
     for one, f in zip(shown(), found(), strict=True):
         inside = one.inside
         due = one.joints_px[OTHER_SIDE] if exchanged else one.joints_px
-        apart = np.linalg.norm(f.joints - due, axis=1) / one.stature_px
+        apart = np.linalg.norm(DRAWN * f.joints - due, axis=1) / one.stature_px
         far.append(np.where(inside[OTHER_SIDE] if exchanged else inside, apart, np.nan))
     return np.stack(far)
 
@@ -113,13 +120,12 @@ def test_a_second_look_in_the_mirror_has_left_where_left_is() -> None:
 
 @pytest.mark.slow
 def test_two_looks_are_nearer_than_one() -> None:
-    planes = [np.dstack([one.picture, one.outline]).transpose(2, 0, 1)[None] for one in shown()]
-    twice = [find(np.ascontiguousarray(one), twice=True).joints for one in planes]
+    twice = [find(seen(one), twice=True).joints for one in shown()]
     once = [one.joints for one in found()]
 
     def mean_off(joints: list[np.ndarray]) -> float:
         apart = [
-            np.linalg.norm(got - one.joints_px, axis=1)[one.inside] / one.stature_px
+            np.linalg.norm(DRAWN * got - one.joints_px, axis=1)[one.inside] / one.stature_px
             for got, one in zip(joints, shown(), strict=True)
         ]
         return float(np.minimum(np.concatenate(apart), 0.5).mean())
@@ -156,7 +162,8 @@ def test_where_else_a_joint_may_be_is_as_sure_as_it_is_there() -> None:
     there = np.stack(
         [
             np.linalg.norm(
-                f.second - (one.joints_px[OTHER_SIDE] if swapped else one.joints_px), axis=1
+                DRAWN * f.second - (one.joints_px[OTHER_SIDE] if swapped else one.joints_px),
+                axis=1,
             )
             / one.stature_px
             < 0.03

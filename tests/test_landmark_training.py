@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from synth.picture.picture_examples import PictureExample, picture_examples
-from tritrack.training.picture_store import Part, PictureStore, draw
+from tritrack.landmark_lessons.picture_store import Part, PictureStore, draw
 
 torch = pytest.importorskip("torch", reason="the extra `train` is not installed")
-onnxruntime = pytest.importorskip("onnxruntime")
 
 
 @pytest.fixture(scope="module")
@@ -20,10 +19,11 @@ def people(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def training(monkeypatch: pytest.MonkeyPatch) -> Any:
-    from tritrack.training import landmark_training
+    from tritrack.landmark_lessons import landmark_training
 
     monkeypatch.setattr(landmark_training, "BATCH", 4)
     monkeypatch.setattr(landmark_training, "BACKDROPS", 5)
+    monkeypatch.setattr(landmark_training, "WARM", 1)
     return landmark_training
 
 
@@ -48,15 +48,15 @@ def test_the_same_batch_is_made_up_of_the_same_pictures(training: Any, people: P
 def test_work_that_was_stopped_goes_on_where_it_was(
     training: Any, people: Path, tmp_path: Path
 ) -> None:
-    from tritrack.training import landmark_learning
+    from tritrack.landmark_lessons import landmark_learning
 
-    straight = training._begun(tmp_path / "none", 0)
-    stopped = training._begun(tmp_path / "none", 0)
+    straight = training._begun(tmp_path / "none", [people], 0)
+    stopped = training._begun(tmp_path / "none", [people], 0)
     for batch in range(2):
         shown = wanted(training, people, batch)
         straight, stopped = training._step(straight, shown), training._step(stopped, shown)
     landmark_learning.keep(stopped, tmp_path / "kept.pt")
-    resumed = training._begun(tmp_path / "kept.pt", 0)
+    resumed = training._begun(tmp_path / "kept.pt", [people], 0)
     assert resumed.batch == 2
     shown = wanted(training, people, 2)
     straight, resumed = training._step(straight, shown), training._step(resumed, shown)
@@ -65,32 +65,18 @@ def test_work_that_was_stopped_goes_on_where_it_was(
 
 
 def test_learning_makes_it_miss_less(training: Any, people: Path, tmp_path: Path) -> None:
-    from tritrack.training import torch_landmarks
+    from tritrack.landmark_lessons import landmark_loss
 
-    work, shown = training._begun(tmp_path / "none", 0), wanted(training, people, 0)
-    before = torch_landmarks.loss(work.network, shown).item()
+    work, shown = training._begun(tmp_path / "none", [people], 0), wanted(training, people, 0)
+    before = landmark_loss.loss(work.network, shown).item()
     for _ in range(12):
         work = training._step(work, shown)
-    assert torch_landmarks.loss(work.network, shown).item() < before - 0.5
-
-
-def test_the_file_says_what_the_network_says(training: Any, people: Path, tmp_path: Path) -> None:
-    from tritrack.training import torch_landmarks
-
-    network = torch_landmarks.LandmarkNetwork()
-    torch_landmarks.export(network, tmp_path / "landmarks.onnx")
-    planes = torch_landmarks.planes_of(wanted(training, people, 0)[:1])
-    with torch.no_grad():
-        due = network.eval()(planes)
-    session = onnxruntime.InferenceSession(tmp_path / "landmarks.onnx")
-    found = session.run(None, {"planes": planes.numpy()})
-    for own, other in zip(due, found, strict=True):
-        assert np.allclose(own.numpy(), other, rtol=1e-3, atol=1e-3)
+    assert landmark_loss.loss(work.network, shown).item() < before - 0.5
 
 
 def test_a_map_that_peaks_at_a_joint_finds_it() -> None:
-    from tritrack.training import torch_landmarks
+    from tritrack.landmark_lessons import landmark_loss
 
     joints = torch.tensor([[[20.0, 50.0]] * 15])
-    due = torch_landmarks._maps_due(joints)
-    assert torch.allclose(torch_landmarks.peaks(torch.log(due)), joints, atol=0.1)
+    due = landmark_loss._maps_due(joints)
+    assert torch.allclose(landmark_loss.peaks(torch.log(due)), joints, atol=0.1)

@@ -21,8 +21,8 @@ def test_the_whole_picture_lies_in_the_middle_of_its_window() -> None:
 
 def test_a_window_of_the_networks_own_size_is_seen_pixel_by_pixel() -> None:
     rng = np.random.default_rng(0)
-    picture = rng.integers(0, 256, (200, 300, 3), np.uint8)
-    mask = rng.random((200, 300)) < 0.5
+    picture = rng.integers(0, 256, (240, 300, 3), np.uint8)
+    mask = rng.random((240, 300)) < 0.5
     planes = planes_of(picture, mask, Window(20, 30, SIDE))
     there = slice(30, 30 + SIDE), slice(20, 20 + SIDE)
     assert np.array_equal(planes[0, :3].transpose(1, 2, 0), picture[there])

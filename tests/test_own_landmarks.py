@@ -26,7 +26,7 @@ PICK = [JOINTS.index(name) for name in JOINT_NAMES]
 @lru_cache(maxsize=1)
 def acted() -> tuple[Shot, np.ndarray, float, Image]:
     """A moment of a performance, its joints in camera 1, the stature there, the empty room."""
-    someone = person(4321)
+    someone = person(4322)
     motion = performance(someone, "raise_both_lateral", 3)
     at = int(np.flatnonzero(motion.phase == MOTION)[15])
     shots = render(someone, motion, RIG, 77, 3)

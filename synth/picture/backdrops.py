@@ -11,7 +11,7 @@ from synth.picture.synth_room import furnished
 
 Backdrop = NDArray[np.uint8]
 
-SIDE_PX: Final = 128
+SIDE_PX: Final = 170
 """Of a backdrop: pictures are cut out of it."""
 ROOM_SHARE: Final = 0.25
 SHAPES: Final = (4, 70)

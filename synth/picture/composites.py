@@ -23,10 +23,12 @@ BEHIND_SHARE, BEFORE_SHARE = 0.15, 0.04
 """How many pictures show somebody else behind, or before the person."""
 SHADOW_SHARE, HIDDEN_SHARE, BORDER_SHARE = 0.35, 0.12, 0.12
 """How many show the person's shadow, something before the person, the picture's border."""
+COARSEST: Final = 1.3
+"""Logarithm of how many times coarser than the window a picture may be."""
 COARSE_SHARE, SMEARED_SHARE, GREY_SHARE, JPEG_SHARE = 0.6, 0.15, 0.25, 0.3
 UNTOLD_SHARE, RAGGED_SHARE = 0.3, 0.15
 """How many outlines are not told, or are ragged, holed, and hold what is no person."""
-TURN_DEG, LARGER, BESIDE_PX = 6.0, 0.12, 2.0
+TURN_DEG, LARGER, BESIDE_PX = 6.0, 0.12, 0.021 * SIDE_PX
 FINE_TINT, EXPOSURE = 0.07, 0.25
 """Standard deviations of the logarithms of colours' gains, and of all other ones."""
 
@@ -139,13 +141,13 @@ def _shadowed(behind: Floats, coverage: Floats, rng: np.random.Generator) -> Flo
         return behind
     warp = np.array(
         [
-            [1.0, rng.normal(0.0, 0.4), rng.normal(0.0, 6.0)],
-            [0.0, rng.uniform(0.3, 1.0), rng.uniform(0.0, 50.0)],
+            [1.0, rng.normal(0.0, 0.4), rng.normal(0.0, 0.0625 * SIDE_PX)],
+            [0.0, rng.uniform(0.3, 1.0), rng.uniform(0.0, 0.52 * SIDE_PX)],
         ],
         np.float32,
     )
     cast = cv2.warpAffine(coverage[..., 0], warp, (SIDE_PX, SIDE_PX))
-    soft = cv2.GaussianBlur(cast, (0, 0), float(rng.uniform(0.7, 4.0)))[..., None]
+    soft = cv2.GaussianBlur(cast, (0, 0), SIDE_PX * float(rng.uniform(0.007, 0.042)))[..., None]
     return np.asarray(behind * (1.0 - rng.uniform(0.1, 0.6) * soft), np.float32)
 
 
@@ -157,7 +159,10 @@ def _hidden(layers: _Layers, backdrop: Callable[[], Backdrop], rng: np.random.Ge
     if rng.random() < 0.5:
         over[int(rng.uniform(0.5, 0.95) * SIDE_PX) :] = True
     else:
-        (left, top), (wide, high) = rng.integers(0, SIDE_PX, 2), rng.integers(6, 40, 2)
+        (left, top), (wide, high) = (
+            rng.integers(0, SIDE_PX, 2),
+            rng.integers(SIDE_PX // 16, SIDE_PX * 2 // 5, 2),
+        )
         over[top : top + high, left : left + wide] = True
     picture = np.where(over[..., None], _cut(backdrop(), rng), layers.picture)
     outline = layers.outline * ~over if rng.random() < 0.6 else layers.outline
@@ -207,13 +212,13 @@ def _filmed(picture: Floats, rng: np.random.Generator) -> NDArray[np.uint8]:
     """What a camera makes of it: coarse, smeared, grey, too dark, noisy, compressed."""
     size = (SIDE_PX, SIDE_PX)
     if rng.random() < COARSE_SHARE:
-        few = max(20, int(SIDE_PX / np.exp(rng.uniform(0.0, 1.0))))
+        few = max(20, int(SIDE_PX / np.exp(rng.uniform(0.0, COARSEST))))
         small = cv2.resize(picture, (few, few), interpolation=cv2.INTER_AREA)
         picture = np.asarray(cv2.resize(small, size), np.float32)
     if rng.random() < SMEARED_SHARE:
-        kernel = np.zeros((7, 7), np.float32)
-        start = (int(rng.integers(7)), int(rng.integers(7)))
-        cv2.line(kernel, start, (3, 3), 1.0, 1)
+        kernel = np.zeros((9, 9), np.float32)
+        start = (int(rng.integers(9)), int(rng.integers(9)))
+        cv2.line(kernel, start, (4, 4), 1.0, 1)
         picture = np.asarray(cv2.filter2D(picture, -1, kernel / kernel.sum()), np.float32)
     if rng.random() < GREY_SHARE:
         grey = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
@@ -246,7 +251,10 @@ def _told(outline: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[np.ui
         if rng.random() < 0.5:
             told[_blots(10, rng) > 1.6] = 255
         if rng.random() < 0.3:
-            (left, top), (wide, high) = rng.integers(0, SIDE_PX, 2), rng.integers(8, 50, 2)
+            (left, top), (wide, high) = (
+                rng.integers(0, SIDE_PX, 2),
+                rng.integers(SIDE_PX // 12, SIDE_PX // 2, 2),
+            )
             told[top : top + high, left : left + wide] = 255
     return told
 

@@ -19,7 +19,7 @@ from synth.picture.raster import draw, gather, shade, skin
 from synth.picture.render import palette
 from synth.picture.silhouette_examples import PEOPLE, differing
 
-SIDE_PX: Final = 96
+SIDE_PX: Final = 128
 """Of a picture: as large as the network sees it."""
 FINER: Final = 2
 """Samples across a pixel."""

@@ -101,7 +101,7 @@ def _train_network(
         return
     if what == "landmarks":
         refuse_without("train", "torch", "onnx", "onnxscript", "anny")
-        from tritrack.training.landmark_training import train_landmarks
+        from tritrack.landmark_lessons.landmark_training import train_landmarks
 
         facts = train_landmarks(out, 0, console)
         tell(facts, json_wanted, f"{facts['pictures']} pictures learnt, written to {out}")

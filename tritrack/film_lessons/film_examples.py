@@ -16,8 +16,8 @@ from common.raster.similarity import Mask
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, Image
 from synth.picture.picture_examples import FRAME, FRAMED, SIDE_PX, PictureExample
+from tritrack.landmark_lessons.picture_store import is_drawn, store
 from tritrack.terminal import Tell
-from tritrack.training.picture_store import is_drawn, store
 from tritrack.training.training import TrainingError
 from viewer import track
 from viewer.capture import recorded
@@ -112,7 +112,7 @@ def example_of(
     joints_px = np.array(shown.joints_px)
     outline = mask if mask.any() else body_region(shown, picture.shape, 0.0).view(np.bool_)
     window = _framed(joints_px[sure], rng)
-    planes = planes_of(picture, outline, window)[0]
+    planes = planes_of(picture, outline, window, SIDE_PX)[0]
     scale = SIDE_PX / window.side
     places = np.where(sure[:, None], scale * (joints_px - (window.left, window.top)), ELSEWHERE)
     body = np.full((SIDE_PX, SIDE_PX, 4), 255, np.uint8)

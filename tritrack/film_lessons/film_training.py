@@ -13,12 +13,19 @@ from rich.console import Console
 
 from synth.picture.composites import Composite, composite
 from tritrack.film_lessons.film_examples import Looked, looked_through
+from tritrack.landmark_lessons import landmark_loss
+from tritrack.landmark_lessons.landmark_file import fill, weights_of, write_network
+from tritrack.landmark_lessons.landmark_layers import LandmarkNetwork
+from tritrack.landmark_lessons.landmark_learning import (
+    Work,
+    ahead,
+    begun,
+    keep,
+    learnt_from,
+    resumed,
+)
+from tritrack.landmark_lessons.picture_store import Backdrops, Part, PictureStore, draw
 from tritrack.terminal import bar
-from tritrack.training import torch_landmarks
-from tritrack.training.landmark_learning import Work, ahead, begun, keep, learnt_from, resumed
-from tritrack.training.landmark_rounding import weights_of
-from tritrack.training.landmark_training import write_network
-from tritrack.training.picture_store import Backdrops, Part, PictureStore, draw
 from tritrack.training.training import TrainingError
 from viewer.landmarks.landmark_looks import SHIPPED
 
@@ -26,7 +33,7 @@ FIRST: Final = 30_000_000
 """Seed of the first of them: the shipped network saw none."""
 FILM_SHARE: Final = 0.5
 """Of each batch."""
-RATE, WARM, MEAN_OVER, KEEP_EVERY = 3e-4, 20, 50, 50
+RATE, WARM, MEAN_OVER, KEEP_EVERY = 1e-3, 20, 50, 50
 """As in `landmark_training`: the network is taught already."""
 FAR: Final = 0.3
 """A joint that is farther off counts no more than this, statures."""
@@ -110,7 +117,7 @@ def teach_on_films(
     verdict = Verdict(*zip(*(_off(each, held) for each in (before, work.mean)), strict=True))
     if not verdict.better:
         raise TrainingError(f"no better, so nothing is written: {verdict.line()}")
-    write_network(work.mean, composed(wanted._replace(at=plan.batches)), out)
+    write_network(work.mean, out)
     return {"model": str(out), "verdict": verdict.line(), **verdict._asdict()}
 
 
@@ -173,14 +180,15 @@ def _backdrops(plan: Plan) -> Backdrops:
 
 def _shipped() -> Any:
     """The shipped network; its normalisations are folded, and stay as they are."""
-    network = torch_landmarks.LandmarkNetwork().to(memory_format=torch.channels_last)
-    torch_landmarks.fill(network, weights_of(SHIPPED))
+    network = LandmarkNetwork().to(memory_format=torch.channels_last)
+    fill(network, weights_of(SHIPPED))
     return network.eval()
 
 
 def _learnt(wanted: Wanted, kept: Path, console: Console) -> Work:
     """The network after all batches; what was kept before is not done again."""
-    work, batches = resumed(begun(_shipped(), RATE), kept), wanted.plan.batches
+    network, batches = _shipped(), wanted.plan.batches
+    work = resumed(begun(network, network.paces()), kept)
     wishes = (wanted._replace(at=at) for at in range(work.batch, batches))
     with multiprocessing.get_context("spawn").Pool(1) as pool, bar(console) as progress:
         task = progress.add_task("learning", total=batches, completed=work.batch)
@@ -222,5 +230,5 @@ def _plain(example: Any) -> Composite:
 
 def _mean_off(network: Any, shown: list[Composite]) -> float:
     groups = [shown[at : at + GROUP] for at in range(0, len(shown), GROUP)]
-    off = np.concatenate([torch_landmarks.joints_off(network, group) for group in groups])
+    off = np.concatenate([landmark_loss.joints_off(network, group) for group in groups])
     return float(np.minimum(off[np.isfinite(off)], FAR).mean())

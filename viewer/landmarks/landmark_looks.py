@@ -12,7 +12,7 @@ from common.body.body import OTHER_SIDE
 from common.config.settings_error import SettingsError
 from viewer.landmarks.landmark_window import PLANES, SIDE, Planes
 
-CELLS: Final = 24
+CELLS: Final = 48
 """Cells of a joint's map, each way."""
 BINS: Final = 16
 """Directions that the facing is told apart in."""

@@ -13,14 +13,15 @@ from viewer.landmarks.landmark_window import PLANES, SIDE, Planes
 
 FARTHEST: Final = 0.8
 """No peak is farther from the middle of its highest cell, in cells."""
-DEEP: Final = 25.0
-"""A cell whose logit lies so far below the highest adds nothing that a float32 could tell."""
-APART: Final = 2
+DEEP: Final = 16.0
+"""A cell whose logit lies so far below the highest is left out: all cells of a map together would
+add a thousandth."""
+APART: Final = 4
 """The next peak of a map is more cells than this from the highest, down or across."""
-PLATT: Final = (1.07, 0.67, 0.41)
+PLATT: Final = (0.73, 1.32, 0.87)
 """Of the network's own confidence, of how much of a joint's map lies about its peak, and 1: the
 logit of how often a joint was less than 0.03 statures off."""
-PLATT_OF_SECOND: Final = (-0.24, 2.82, 0.33)
+PLATT_OF_SECOND: Final = (-0.29, 1.69, 0.89)
 """Likewise of where else a joint may be: how often it was there, and not at the highest."""
 
 

@@ -10,7 +10,7 @@ from common.bus.messages import Box
 from common.raster.similarity import Mask
 from common.video.decoding import Image
 
-SIDE: Final = 96
+SIDE: Final = 192
 """Pixels across what the network sees."""
 FRAMED: Final = 1.25
 """Side of the window over the longer side of what it is to hold."""
@@ -47,37 +47,38 @@ def whole(shape: tuple[int, ...]) -> Window:
     return Window((shape[1] - side) // 2, (shape[0] - side) // 2, side)
 
 
-def planes_of(picture: Image, mask: Mask | None, window: Window) -> Planes:
-    """What the network sees, (1, PLANES, SIDE, SIDE); black beyond the picture.
+def planes_of(picture: Image, mask: Mask | None, window: Window, side: int = SIDE) -> Planes:
+    """What the network sees, (1, PLANES, side, side); black beyond the picture.
 
     Args:
         picture: (H, W, 3)
         mask: (H, W) the outline; None: not known.
         window: Of the picture.
+        side: Pixels across.
     """
-    planes = np.full((1, PLANES, SIDE, SIDE), GREY, np.uint8)
-    for plane, colour in zip(planes[0], cv2.split(_cut(picture, window)), strict=False):
+    planes = np.full((1, PLANES, side, side), GREY, np.uint8)
+    for plane, colour in zip(planes[0], cv2.split(_cut(picture, window, side)), strict=False):
         plane[:] = colour
     if mask is not None:
-        outline = _cut(mask.view(np.uint8) * np.uint8(255), window)
+        outline = _cut(mask.view(np.uint8) * np.uint8(255), window, side)
         cv2.threshold(outline, 127, 255, cv2.THRESH_BINARY, planes[0, 3])
     return planes
 
 
-def _cut(picture: NDArray[np.uint8], window: Window) -> NDArray[np.uint8]:
-    """(SIDE, SIDE, ...) of the picture.
+def _cut(picture: NDArray[np.uint8], window: Window, across: int) -> NDArray[np.uint8]:
+    """(across, across, ...) of the picture.
 
     Means of whole pixels first, then what lies between them: means over any part of pixels would
     take five times as long.
     """
     left, top, side = window
-    times = max(1, round(side / SIDE))
+    times = max(1, round(side / across))
     few = -(-side // times)
     held = _held(picture, left, top, few * times)
     if times > 1:
         held = np.asarray(cv2.resize(held, (few, few), interpolation=cv2.INTER_AREA), np.uint8)
-    scale = SIDE * times / side
-    return np.asarray(cv2.resize(held, None, fx=scale, fy=scale)[:SIDE, :SIDE], np.uint8)
+    scale = across * times / side
+    return np.asarray(cv2.resize(held, None, fx=scale, fy=scale)[:across, :across], np.uint8)
 
 
 def _held(picture: NDArray[np.uint8], left: int, top: int, side: int) -> NDArray[np.uint8]:

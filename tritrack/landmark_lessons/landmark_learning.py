@@ -8,7 +8,8 @@ from typing import Any, Final, NamedTuple
 import torch
 
 from synth.picture.composites import Composite
-from tritrack.training import torch_landmarks
+from tritrack.landmark_lessons import landmark_loss
+from tritrack.landmark_lessons.landmark_layers import Paced
 
 DECAY: Final = 1e-4
 STEEPEST: Final = 5.0
@@ -28,9 +29,19 @@ class Work(NamedTuple):
     """The next one."""
 
 
-def begun(network: Any, rate: float) -> Work:
-    """The start of teaching a network, at a rate at most."""
-    adam = torch.optim.AdamW(network.parameters(), lr=rate, weight_decay=DECAY)
+def begun(network: Any, parts: list[Paced]) -> Work:
+    """The start of teaching a network.
+
+    Args:
+        network: Is changed by what follows.
+        parts: Of its weights, and how fast they learn; all others stay as they are.
+    """
+    network.requires_grad_(False)
+    for part in parts:
+        for weights in part.weights:
+            weights.requires_grad_(True)
+    groups = [{"params": part.weights, "pace": part.pace} for part in parts]
+    adam = torch.optim.AdamW(groups, weight_decay=DECAY)
     return Work(network, copy.deepcopy(network), adam, 0)
 
 
@@ -64,9 +75,9 @@ def learnt_from(work: Work, shown: list[Composite], rate: float, share: float) -
     """
     network, mean, adam, at = work
     for group in adam.param_groups:
-        group["lr"] = rate
+        group["lr"] = rate * group["pace"]
     adam.zero_grad()
-    torch_landmarks.loss(network, shown).backward()
+    landmark_loss.loss(network, shown).backward()
     torch.nn.utils.clip_grad_norm_(network.parameters(), STEEPEST)
     adam.step()
     with torch.no_grad():

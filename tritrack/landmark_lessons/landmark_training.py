@@ -1,4 +1,4 @@
-"""The network of landmarks, trained on pictures of synthetic people: resumable, hours."""
+"""The network of landmarks, trained on pictures of synthetic people: resumable."""
 
 import multiprocessing
 from functools import lru_cache
@@ -11,34 +11,43 @@ import torch
 from rich.console import Console
 
 from synth.picture.composites import Composite, composite
+from tritrack.landmark_lessons import landmark_loss
+from tritrack.landmark_lessons.landmark_file import write_network
+from tritrack.landmark_lessons.landmark_learning import (
+    Work,
+    ahead,
+    begun,
+    keep,
+    learnt_from,
+    resumed,
+)
+from tritrack.landmark_lessons.photographed_start import photographed_start
+from tritrack.landmark_lessons.picture_store import Backdrops, Part, PictureStore, draw
 from tritrack.terminal import bar
-from tritrack.training import torch_landmarks
-from tritrack.training.landmark_learning import Work, ahead, begun, keep, learnt_from, resumed
-from tritrack.training.landmark_rounding import write_rounded
-from tritrack.training.picture_store import Backdrops, Part, PictureStore, draw
 from tritrack.training.training import TrainingError
 
-PEOPLE, ANNY_PEOPLE, PART = 12_000, 4_000, 500
+PEOPLE, ANNY_PEOPLE, PART = 7_200, 5_100, 300
 """Who is learnt from, sixteen pictures each: our own people, and bodies of the Anny model; how many
 of them a file holds: 300 MB."""
 ANNY_TIMES: Final = 2
 """How much more often than one of our own a person of that model is shown."""
-BACKDROPS: Final = 8_000
+BACKDROPS: Final = 2_400
 HELD_BACK: Final = 100
 """People who are drawn to tell how good the network is, and not learnt from."""
-BATCHES, BATCH = 12_000, 128
-RATE, WARM, STEADY_SHARE = 2e-3, 200, 0.55
-"""Highest rate; batches until it is reached; share of them until it falls to nothing."""
-MEAN_OVER: Final = 1000
+BATCHES, BATCH = 1_500, 64
+RATE, WARM, STEADY_SHARE = 2e-3, 100, 0.4
+"""Highest rate, of what is new; batches until it is reached; share of them until it falls to
+nothing."""
+MEAN_OVER: Final = 200
 """Batches over which the weights' running mean goes: that mean is what is written."""
-KEEP_EVERY: Final = 200
+KEEP_EVERY: Final = 100
 """Batches after which the work so far is kept."""
 NEAR: Final = 0.1
 """What is told of how good it is: how many joints are within this share of the stature."""
 
 
 def train_landmarks(out: Path, seed: int, console: Console) -> dict[str, Any]:
-    """Learn the network and write it, hours on two cores; what is drawn and learnt is kept beside
+    """Learn the network and write it, an hour on two cores; what is drawn and learnt is kept beside
     it in a folder, `<out>.work`, and the next call with the same file goes on from there.
 
     Args:
@@ -55,26 +64,11 @@ def train_landmarks(out: Path, seed: int, console: Console) -> dict[str, Any]:
     try:
         folders = _drawn(folder, seed, console)
         work = _learnt(folders[:-1], folder / "learnt.pt", seed, console)
-        write_network(work.mean, composed(Wanted(tuple(folders[:-1]), seed, BATCHES)), out)
+        write_network(work.mean, out)
     except OSError as error:
         raise TrainingError(f"cannot write {folder}: {error.strerror}") from error
     right = _right(work.mean, folders[-1:], seed)
     return {"model": str(out), "pictures": work.batch * BATCH, "within_a_tenth": right}
-
-
-def write_network(network: Any, shown: list[Composite], out: Path) -> None:
-    """Write a trained network as the viewer runs it.
-
-    Args:
-        network: Whose weights are written.
-        shown: Made-up people, by whom the ranges of its layers are found.
-        out: The file, ONNX.
-    """
-    whole = out.with_name(out.name + ".whole")
-    torch_landmarks.export(network, whole)
-    planes = [np.dstack([one.picture, one.outline]).transpose(2, 0, 1) for one in shown]
-    write_rounded(whole, np.ascontiguousarray(planes), out)
-    whole.unlink()
 
 
 def _drawn(folder: Path, seed: int, console: Console) -> list[Path]:
@@ -125,7 +119,7 @@ def _backdrops(seed: int) -> Backdrops:
 
 def _learnt(folders: list[Path], kept: Path, seed: int, console: Console) -> Work:
     """The network after all batches; what was kept before is not done again."""
-    work = _begun(kept, seed)
+    work = _begun(kept, folders, seed)
     wishes = (Wanted(tuple(folders), seed, at) for at in range(work.batch, BATCHES))
     with multiprocessing.get_context("spawn").Pool(1) as pool, bar(console) as progress:
         task = progress.add_task("learning", total=BATCHES, completed=work.batch)
@@ -137,11 +131,12 @@ def _learnt(folders: list[Path], kept: Path, seed: int, console: Console) -> Wor
     return work
 
 
-def _begun(kept: Path, seed: int) -> Work:
+def _begun(kept: Path, folders: list[Path], seed: int) -> Work:
     """What was kept, or a fresh start."""
     torch.manual_seed(seed)
-    network = torch_landmarks.LandmarkNetwork().to(memory_format=torch.channels_last)
-    return resumed(begun(network, RATE), kept)
+    first = composed(Wanted(tuple(folders), seed, BATCHES))
+    network = photographed_start(first).to(memory_format=torch.channels_last)
+    return resumed(begun(network, network.paces()), kept)
 
 
 def _step(work: Work, shown: list[Composite]) -> Work:
@@ -160,5 +155,5 @@ def _rate(at: int) -> float:
 def _right(network: Any, folders: list[Path], seed: int) -> float:
     """Share of the joints of people who were held back that are nearly right."""
     shown = composed(Wanted(tuple(folders), seed, BATCHES))
-    off = torch_landmarks.joints_off(network, shown)
+    off = landmark_loss.joints_off(network, shown)
     return float((off[np.isfinite(off)] < NEAR).mean())
