@@ -10,7 +10,7 @@ from viewer.landmarks.landmark_window import PLANES
 JOINTS: Final = 15
 COLOURS: Final = PLANES - 1
 OUTLINED: Final = 16
-"""What the finest stage gives on, and of how many kinds an outline is told beside it."""
+"""Channels of the finest stage, to which as many of the outline are added."""
 MIXED, DEEP, SUMMED, TOLD = 32, 576, 192, 96
 """Units: of the maps' way up, of the coarsest stage, of what is summed of it, of what is told."""
 
@@ -78,7 +78,7 @@ class LandmarkNetwork(nn.Module):
     """Five halvings, and back up to a quarter of the size.
 
     All but `outline`, `maps` and `told` are the layers of MediaPipe Pose's lite network of
-    landmarks (Bazarevsky et al. 2020), at half of its size: `photographed_start` fills them.
+    landmarks (Bazarevsky et al. 2020): `photographed_start` fills them.
     The outline joins at a quarter of the size, so that colours are seen as they were then.
     """
 
