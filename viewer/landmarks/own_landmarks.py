@@ -1,18 +1,26 @@
 """Our own source of landmarks: a small network that looks at the working picture."""
 
+import math
 from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from common.body.body import Vector
+from common.body.body import JOINT_NAMES, Vector
 from common.bus.messages import Landmarks
 from common.raster.similarity import Mask
 from common.video.decoding import Image
 from viewer.landmarks.landmark_looks import SHIPPED
 from viewer.landmarks.landmark_network import find
-from viewer.landmarks.landmark_window import SIDE, Window, planes_of, whole, window_about, window_of
+from viewer.landmarks.landmark_window import (
+    Places,
+    Window,
+    planes_of,
+    turned_window_of,
+    whole,
+    window_about,
+    window_of,
+)
 from viewer.silhouette.silhouette import Seen
 
 SURE: Final = 0.5
@@ -28,6 +36,20 @@ MARGIN: Final = 0.06
 """How far a body reaches beyond its joints, in sides of what holds them."""
 
 
+TILTED_DEG: Final = 30.0
+"""Who leans farther than this is looked at in a turned window: photographs taught people upright.
+Of made-up people who lean by 60 to 180 degrees it has 76 % of the joints within a tenth of the
+stature, for 60 %; of those who lean by less than 30 as many, turned or not."""
+SHORT: Final = 0.1
+"""A trunk shorter than this, in the longer side of what holds the joints, points to or from the
+camera."""
+FACES_DEG: Final = 75.0
+"""In a window that is turned by more, the facing is none about the picture's upright: of made-up
+people it is less than 45 degrees off in 84 to 88 % up to 45 degrees, in 79 % to 75, then in less
+than 60."""
+_TRUNK: Final = [JOINT_NAMES.index(name) for name in ("pelvis", "neck")]
+
+
 class Eye(NamedTuple):
     """How a picture is looked at."""
 
@@ -41,12 +63,14 @@ TWICE: Final = Eye(twice=True)
 
 
 class _Look(NamedTuple):
-    joints_px: NDArray[np.float64]
+    mask: Mask | None
+    window: Window
+    joints_px: Places
     confidence: Vector
     facing: tuple[float, float]
     """Degrees, and how sure."""
     nobody: float
-    second_px: NDArray[np.float64]
+    second_px: Places
     second_confidence: Vector
 
     @property
@@ -59,9 +83,11 @@ def own_landmarks(
 ) -> Landmarks | None:
     """What the network makes of a picture; None where it sees nobody.
 
-    It looks where the outline is. Where it is not sure there it also looks, without the outline,
-    where it saw somebody the frame before, or in all of the picture, and believes the surest look.
-    Where that shows nobody, but an outline, of a door or of light, confidences are 0.
+    It looks where the outline is, in a window as upright as the trunk was in the frame before.
+    Where it is not sure there it also looks, without the outline, where it saw somebody the frame
+    before, or in all of the picture. A trunk that leans in its window is looked at again, upright.
+    The surest look is believed; where that shows nobody, but an outline, of a door or of light,
+    confidences are 0.
 
     Args:
         picture: (H, W, 3) the working picture.
@@ -69,16 +95,8 @@ def own_landmarks(
         before: Of the frame before.
         eye: Which network looks, and how often.
     """
-    looks = []
-    if seen.box is not None:
-        looks.append(_look(picture, seen.mask, window_of(seen.box), eye))
-    if not looks or looks[0].surety < SURE:
-        known = None if before is None else _about(np.array(before.joints_px), before.confidence)
-        if known is None:
-            looks.append(_search(picture, eye))
-        else:
-            looks.append(_look(picture, None, known, eye))
-    best = max(looks, key=lambda look: look.surety)
+    known = None if before is None else _about(np.array(before.joints_px), before.confidence)
+    best = _set_upright(picture, _surest(picture, seen, known, eye), eye)
     if seen.box is None and (best.nobody > 0.5 or best.surety < LEAST):
         return None
     if best.surety < SURE and best.nobody > EMPTY:
@@ -88,22 +106,21 @@ def own_landmarks(
 
 def found_anywhere(picture: Image) -> tuple[Landmarks, float]:
     """Somebody in a picture (H, W, 3) of which nothing is known, and how probably nobody is."""
-    best = _search(picture, TWICE)
+    best = _set_upright(picture, _search(picture, TWICE), TWICE)
     return _told(best), best.nobody
 
 
-def found_between(
-    picture: Image, low_px: Vector, high_px: Vector, margin: float
-) -> tuple[Landmarks, float]:
+def found_between(picture: Image, corners_px: Places, margin: float) -> tuple[Landmarks, float]:
     """Somebody in a picture whose joints lie about between two corners, and how probably nobody is.
 
     Args:
         picture: (H, W, 3)
-        low_px: (2,) likewise `high_px`.
+        corners_px: (2, 2)
         margin: How far the body reaches beyond them, in their longer distance.
     """
-    look = _look(picture, None, _between(low_px, high_px, margin), TWICE)
-    return _told(look), look.nobody
+    look = _look(picture, None, window_about(corners_px, margin=margin), TWICE)
+    best = _set_upright(picture, look, TWICE)
+    return _told(best), best.nobody
 
 
 def _told(best: _Look) -> Landmarks:
@@ -117,15 +134,49 @@ def _told(best: _Look) -> Landmarks:
     )
 
 
+def _surest(picture: Image, seen: Seen, known: Window | None, eye: Eye) -> _Look:
+    """The surest look, the first of them where that is sure.
+
+    Args:
+        picture: (H, W, 3)
+        seen: The outline in it.
+        known: About where somebody was the frame before.
+        eye: How it is looked at.
+    """
+    looks = []
+    turn_deg = 0.0 if known is None else known.turn_deg
+    if seen.box is not None:
+        window = turned_window_of(seen.mask, turn_deg) if turn_deg else window_of(seen.box)
+        looks.append(_look(picture, seen.mask, window, eye))
+    if not looks or looks[0].surety < SURE:
+        away = _search(picture, eye) if known is None else _look(picture, None, known, eye)
+        looks.append(away)
+    best = max(looks, key=_surety)
+    if seen.box is None or not turn_deg or best.surety >= SURE:
+        return best
+    return max(best, _look(picture, seen.mask, window_of(seen.box), eye), key=_surety)
+
+
+def _set_upright(picture: Image, look: _Look, eye: Eye) -> _Look:
+    """A look, or a surer one in a window that is turned as the trunk leans there."""
+    window = _about(look.joints_px, tuple(look.confidence))
+    if window is None or not _is_turned(window.turn_deg - look.window.turn_deg, TILTED_DEG):
+        return look
+    if look.mask is not None:
+        window = turned_window_of(look.mask, window.turn_deg)
+    return max(look, _look(picture, look.mask, window, eye), key=_surety)
+
+
 def _look(picture: Image, mask: Mask | None, window: Window, eye: Eye) -> _Look:
     found = find(planes_of(picture, mask, window), *eye)
-    joints_px, second_px = (
-        places * (window.side / SIDE) + (window.left, window.top)
-        for places in (found.joints, found.second)
-    )
-    facing = (found.facing_deg, found.facing_confidence)
-    second = found.second_confidence
-    return _Look(joints_px, found.confidence, facing, found.nobody, second_px, second)
+    joints_px, second_px = map(window.in_picture, (found.joints, found.second))
+    told = 0.0 if _is_turned(window.turn_deg, FACES_DEG) else found.facing_confidence
+    facing, second = (found.facing_deg, told), found.second_confidence
+    return _Look(mask, window, joints_px, found.confidence, facing, found.nobody, second_px, second)
+
+
+def _surety(look: _Look) -> float:
+    return look.surety
 
 
 def _search(picture: Image, eye: Eye) -> _Look:
@@ -135,16 +186,31 @@ def _search(picture: Image, eye: Eye) -> _Look:
     return far if window is None else _look(picture, None, window, eye)
 
 
-def _about(joints_px: NDArray[np.float64], confidence: tuple[float, ...]) -> Window | None:
-    """The window about the joints that count; None where they are few."""
-    sure = joints_px[np.array(confidence) > COUNTS]
-    if len(sure) < len(joints_px) // 2:
+def _about(joints_px: Places, confidence: tuple[float, ...]) -> Window | None:
+    """The window about the joints that count, as upright as the trunk; None where they are few."""
+    counts = np.array(confidence) > COUNTS
+    if counts.sum() < len(joints_px) // 2:
         return None
-    return _between(sure.min(axis=0), sure.max(axis=0), MARGIN)
+    sure = joints_px[counts]
+    lean_deg = _lean_deg(joints_px, sure) if counts[_TRUNK].all() else 0.0
+    return window_about(sure, lean_deg, MARGIN)
 
 
-def _between(low: Vector, high: Vector, margin: float) -> Window:
-    """The window about joints between two corners."""
-    beyond = margin * float((high - low).max())
-    (left, top), (right, bottom) = low - beyond, high + beyond
-    return window_about(left, right, top, bottom)
+def _lean_deg(joints_px: Places, sure: Places) -> float:
+    """How far a trunk leans, clockwise; 0 where it is little, or cannot be told.
+
+    Args:
+        joints_px: (15, 2)
+        sure: (n, 2) those that count.
+    """
+    pelvis, neck = joints_px[_TRUNK]
+    across, down = (neck - pelvis).tolist()
+    if math.hypot(across, down) < SHORT * float(np.ptp(sure, axis=0).max()):
+        return 0.0
+    lean_deg = math.degrees(math.atan2(across, -down))
+    return lean_deg if _is_turned(lean_deg, TILTED_DEG) else 0.0
+
+
+def _is_turned(turn_deg: float, least_deg: float) -> bool:
+    """Whether a turn, of whatever full circles, is by more than so much."""
+    return math.cos(math.radians(turn_deg)) < math.cos(math.radians(least_deg))

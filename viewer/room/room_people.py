@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from common.body.body import Vector
 from common.bus.messages import Landmarks
 from common.video.decoding import Image
 from viewer.landmarks.body_region import Bytes, body_region
@@ -59,8 +59,8 @@ def looked_at(pictures: Sequence[Image]) -> list[Look]:
     if sum(look.is_somebody for look in looks) < SEVERAL:
         return looks
     for margin in MARGINS:
-        low_px, high_px = _place([look.landmarks for look in looks if look.is_somebody])
-        found = (found_between(picture, low_px, high_px, margin) for picture in pictures)
+        corners_px = _place([look.landmarks for look in looks if look.is_somebody])
+        found = (found_between(picture, corners_px, margin) for picture in pictures)
         looks = [
             Look(landmarks, is_somebody=True) if look.is_somebody or nobody < NOBODY else look
             for look, (landmarks, nobody) in zip(looks, found, strict=True)
@@ -74,9 +74,10 @@ def are_sure(looks: Sequence[Look]) -> bool:
     return bool(sure) and float(np.median(sure)) >= SURE
 
 
-def _place(shown: Sequence[Landmarks]) -> tuple[Vector, Vector]:
-    """The corners, (2,) each, between which most of the surer half have all joints."""
+def _place(shown: Sequence[Landmarks]) -> NDArray[np.float64]:
+    """The corners, (2, 2), between which most of the surer half have all joints."""
     sure = np.array([np.mean(each.confidence) for each in shown])
     joints_px = np.array([each.joints_px for each in shown])[sure >= np.median(sure)]
     low, high = joints_px.min(axis=1), joints_px.max(axis=1)
-    return np.percentile(low, FEW, axis=0), np.percentile(high, 100 - FEW, axis=0)
+    corners = np.percentile(low, FEW, axis=0), np.percentile(high, 100 - FEW, axis=0)
+    return np.stack(corners)
