@@ -11,7 +11,7 @@ from common.bus.messages import Pixel, Report
 from common.raster.silhouette_report import unpack
 from common.rig.camera import Camera, Rig, project, px_per_m
 from integrator.pairing import Seen
-from integrator.proposal.silhouette_window import UPWARDS_M
+from integrator.proposal.silhouette_window import UPWARDS_M, standing_m
 from integrator.rig.body_position import place_of, roots_of, triangulate
 
 STATURES_M: Final = (0.8, 2.3)
@@ -25,9 +25,10 @@ def prior(rig: Rig, seen: Seen) -> Bdp:
     """The thesis's proportions at the height that the silhouettes show (T4).
 
     The smallest: what is no part of the person makes an outline larger. The crown of somebody who
-    stands is as high above the floor, wherever their outline ends below or beside them.
+    stands is as high above the floor, wherever their outline ends below or beside them. One
+    outline alone stands on the floor.
     """
-    place = place_of(rig, roots_of(seen), np.zeros(3), 0)
+    place = _place(rig, seen)
     heights = [
         height
         for report, camera in zip(seen, rig.cameras, strict=True)
@@ -39,6 +40,14 @@ def prior(rig: Rig, seen: Seen) -> Bdp:
     if None not in seen and low <= (crown := _crown_m(rig, seen, place)) <= high:
         heights.append(crown)
     return thesis_bdp(min(high, max(low, min(heights))) if heights else USUAL_M)
+
+
+def _place(rig: Rig, seen: Seen) -> Vector:
+    """Where the body is, (3,) world."""
+    for report, camera in zip(seen, rig.cameras, strict=True):
+        if None in seen and report is not None:
+            return standing_m(unpack(report), camera)
+    return place_of(rig, roots_of(seen), np.zeros(3), 0)
 
 
 def _height_m(report: Report, camera: Camera, place: Vector) -> float:

@@ -70,44 +70,49 @@ def test_the_six_ways_are_named_by_the_yaw() -> None:
     assert not agrees(60.0, "left")
 
 
+def after(front: Front, yaw: float, shown: tuple[float, float] | None, times: int) -> Front:
+    for _ in range(times):
+        front, _ = front_of(front, yaw, shown, None, 0.1)
+    return front
+
+
 def test_front_turns_to_back_through_the_side_alone() -> None:
     """A proposal that jumps from front to back is seen from behind; through the side it is not."""
-    front, behind = front_of(Front(), 150.0, None, None, 0.1)
-    assert (front.away, behind) == (False, True)
-    front, behind = front_of(front, 100.0, None, None, 0.1)
-    assert (front.away, behind) == (False, False)
-    assert front_of(front, 150.0, None, None, 0.1) == (Front(away=True, first=False), False)
+    facing = after(Front(), 5.0, None, 10)
+    assert front_of(facing, 150.0, None, None, 0.1)[1]
+    aside = after(facing, 100.0, None, 10)
+    assert not front_of(aside, 100.0, None, None, 0.1)[1]
+    assert not front_of(aside, 150.0, None, None, 0.1)[1]
 
 
 def test_who_insists_is_believed_and_the_user_at_once() -> None:
-    front = Front()
-    for _ in range(40):
-        front, behind = front_of(front, 150.0, None, None, 0.1)
-    assert (front.away, behind) == (True, False)
-    assert front_of(Front(), 150.0, None, "backward_right", 0.1) == (
-        Front(away=True, first=False),
-        False,
-    )
-    assert front_of(Front(), 150.0, None, "forward_right", 0.1)[1]
+    facing = after(Front(), 5.0, None, 40)
+    assert front_of(after(facing, 150.0, None, 10), 150.0, None, None, 0.1)[1]
+    assert not front_of(after(facing, 150.0, None, 40), 150.0, None, None, 0.1)[1]
+    for named, behind in (("backward_right", False), ("forward_right", True), ("left", False)):
+        assert front_of(facing, 150.0, None, named, 0.1)[1] == behind
+    assert not front_of(facing, 150.0, None, "backward_right", 0.1)[1]
 
 
 def test_a_first_picture_that_surely_shows_a_back_is_believed_and_no_proposal_insists() -> None:
     front = Front()
     for _ in range(40):  # 4 s
-        front, behind = front_of(front, -5.0, -150.0, None, 0.1)
-        assert (front.away, behind) == (True, True)
-    assert front_of(front, -5.0, None, None, 0.1) == (Front(True, False, 0.1, first=False), True)
+        front, behind = front_of(front, -5.0, (-150.0, 0.9), None, 0.1)
+        assert behind
+    assert after(front, -5.0, None, 5).away > 0.5
 
 
-def test_a_picture_that_shows_nearly_a_profile_tells_nothing() -> None:
-    for shown_deg in (-60.0, 60.0, 125.0):
-        assert front_of(Front(), 5.0, shown_deg, None, 0.1)[0] == Front(first=False)
-        assert front_of(Front(aside=True), 150.0, shown_deg, None, 0.1)[0].away
+def test_a_picture_that_shows_a_profile_or_is_not_sure_tells_nothing() -> None:
+    for shown in ((90.0, 0.9), (-90.0, 0.9), (180.0, 0.5), (180.0, 0.1)):
+        assert after(Front(), 5.0, shown, 5).away == pytest.approx(
+            after(Front(), 5.0, None, 5).away
+        )
 
 
-def test_a_picture_turns_nobody_about_who_was_not_seen_from_the_side() -> None:
-    """Landmarks take front for back for long at a time, and nobody turns at once."""
-    front = Front(first=False)
-    assert front_of(front, 5.0, 170.0, None, 0.1) == (front, False)
-    aside = front_of(front, 95.0, 170.0, None, 0.1)[0]
-    assert front_of(aside, 5.0, 170.0, None, 0.1) == (Front(True, False, 0.0, first=False), True)
+def test_a_picture_turns_somebody_about_only_after_a_while_who_was_not_seen_from_the_side() -> None:
+    """Landmarks take front for back for some frames at a time, and nobody turns at once."""
+    facing = after(Front(), 5.0, (10.0, 0.9), 40)
+    assert after(facing, 5.0, (170.0, 0.9), 3).away < 0.5
+    assert after(facing, 5.0, (170.0, 0.9), 12).away > 0.5
+    aside = after(facing, 95.0, None, 10)
+    assert after(aside, 5.0, (170.0, 0.9), 3).away > 0.5

@@ -120,11 +120,11 @@ def _middle_m(masks: tuple[Mask | None, Mask | None], rig: Rig) -> Vector | None
         n = 0 if first is not None else 1
         mask = first if first is not None else second
         assert mask is not None
-        found = _standing_m(mask, rig.cameras[n])
+        found = standing_m(mask, rig.cameras[n])
     return found if np.isfinite(found).all() else None
 
 
-def _standing_m(mask: Mask, camera: Camera) -> Vector:
+def standing_m(mask: Mask, camera: Camera) -> Vector:
     """The middle of a silhouette whose lowest row is on the floor."""
     column, row = centroid_px(mask)
     lowest = float(np.flatnonzero(mask.any(axis=1))[-1] + 1)

@@ -27,11 +27,6 @@ BESIDE: Final = 1 / 3
 """Exponent by which the confidence in a joint that one outline proposes becomes that in its place
 in the picture: chosen on r01 and r04."""
 
-FACES: Final = 0.8
-"""Landmarks that are surer of which way somebody faces tell front from back: wrongly in 0.2 % of
-the frames of r01 and r04, in 1.2 % of those of made-up people in free motion, who also turn away,
-but for those within 20 degrees of a profile."""
-
 
 class Proposed(NamedTuple):
     """What a silhouette proposes, and what is remembered of it."""
@@ -63,16 +58,13 @@ def step(before: Before, sight: Sight) -> Proposed:
     """
     front = before.front
     camera, annotations = sight.camera, sight.annotations
-    seen = (sight.report, None) if sight.number == 1 else (None, sight.report)
-    known = pose_proposal.step(
-        before.memory, sight.bdp, undistorted_rig(sight.rig), seen, sight.dt_s
-    )
+    rig = undistorted_rig(sight.rig)
+    known = pose_proposal.step(before.memory, sight.bdp, rig, sight.seen, sight.dt_s)
     joints_m = _with_trunk(sight, known.joints_m)
     if sight.method.reflection and front is not None:
         yaw = reflection.yaw_deg(camera, joints_m)
-        shown_deg = _shown_deg(sight.report)
         front, behind = reflection.front_of(
-            front, yaw, shown_deg, annotations.orientation, sight.dt_s
+            front, yaw, _shown(sight.report), annotations.orientation, sight.dt_s
         )
         joints_m = reflection.seen_from_behind(camera, joints_m) if behind else joints_m
     joints_m, confidence, landmarks = _with_landmarks(before, sight, joints_m, known.confidence)
@@ -95,12 +87,10 @@ def step(before: Before, sight: Sight) -> Proposed:
     return Proposed(found, agrees, known.memory, front, landmarks)
 
 
-def _shown_deg(report: Report) -> float | None:
-    """Where landmarks surely have a whole person face; None where they do not."""
+def _shown(report: Report) -> tuple[float, float] | None:
+    """Which way landmarks have a whole person face, and how surely; None where they do not."""
     shown = report.landmarks
-    if shown is None or report.cut or shown.facing_confidence <= FACES:
-        return None
-    return shown.facing_deg
+    return None if shown is None or report.cut else (shown.facing_deg, shown.facing_confidence)
 
 
 def _with_landmarks(
@@ -110,8 +100,7 @@ def _with_landmarks(
 
     It says nothing of their depth, which is what one outline mostly gets wrong.
     """
-    seen = (sight.report, None) if sight.number == 1 else (None, sight.report)
-    rays = rays_of(undistorted_rig(sight.rig), seen)
+    rays = rays_of(undistorted_rig(sight.rig), sight.seen)
     if rays is None:
         return joints_m, confidence, before.landmarks
     at = pose_proposal.AT

@@ -52,6 +52,13 @@ class Sight(NamedTuple):
         return self.rig.cameras[self.number - 1]
 
     @property
+    def seen(self) -> tuple[Report | None, Report | None]:
+        """The report in the place of its camera; the only camera of a rig is its first, which
+        proposals look at from the front."""
+        first, second = self.rig.cameras
+        return (self.report, None) if self.number == 1 or first == second else (None, self.report)
+
+    @property
     def stature_m(self) -> float:
         """Of the person."""
         return stature(self.bdp)
