@@ -19,9 +19,9 @@ RARELY: Final = 0.01
 """How often proposals are turned about ..."""
 ANEW: Final = 0.1
 """... and how often it is decided anew whether they are."""
-TRUST: Final = 0.3
+TRUST: Final = 0.6
 """How much of what an instant says is believed: the next says nearly the same."""
-INSISTS: Final = 0.9
+INSISTS: Final = 0.7
 """A proposal is turned where that is so probable, and turned no more where it is as improbable."""
 
 
