@@ -27,9 +27,9 @@ class Spread(NamedTuple):
     """So many standard deviations off, what is roughly right is no likelier than anything else."""
 
 
-PROPOSED: Final = Spread(right=0.014, unsure=0.061, roughly=0.072, often=0.95, far=8)
+PROPOSED: Final = Spread(right=0.014, unsure=0.061, roughly=0.09, often=0.95, far=8)
 """Of joints that outlines propose, metres."""
-SHOWN: Final = Spread(right=0.016, unsure=0.014, roughly=0.051, often=0.55, far=2)
+SHOWN: Final = Spread(right=0.012, unsure=0.035, roughly=0.051, often=0.55, far=2)
 """Of landmarks, statures beside their ray. All were chosen on r01, r04 and made-up people."""
 LEAST, MOST = 0.01, 0.98
 """Nobody is believed more or less surely."""

@@ -9,7 +9,7 @@ from common.body.body import Vector
 from common.compiled import compiled
 from integrator.proposal.network_weights import JOINTS
 
-SPRING_M: Final = 0.028
+SPRING_M: Final = 0.02
 """Standard deviation of a limb's length about what it was before."""
 LEARNT: Final = 0.05
 """Share of what is remembered of lengths that one instant replaces."""
