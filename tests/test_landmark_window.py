@@ -6,7 +6,16 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from common.bus.messages import Box
-from viewer.landmarks.landmark_window import GREY, SIDE, Window, planes_of, whole, window_of
+from viewer.landmarks.landmark_window import (
+    GREY,
+    SIDE,
+    Window,
+    planes_of,
+    turned_window_of,
+    whole,
+    window_about,
+    window_of,
+)
 
 
 def test_the_window_of_an_outline_is_a_square_about_its_middle_and_a_quarter_larger() -> None:
@@ -43,6 +52,50 @@ def test_beyond_the_picture_all_is_black_and_outside(left: int, top: int, side: 
         assert plane.max() <= inside
     share = overlap(left, side, 160) * overlap(top, side, 120) / side**2
     assert (planes[0, 0] / 200).mean() == pytest.approx(share, abs=0.04)
+
+
+@pytest.mark.parametrize("turn_deg", [0.0, 37.0, 90.0, -120.0, 180.0])
+def test_a_spot_is_in_the_picture_where_its_window_has_it(turn_deg: float) -> None:
+    picture = np.zeros((240, 320, 3), np.uint8)
+    picture[99:104, 199:204] = 255
+    window = Window(110, 30, 150, turn_deg)
+    rows, columns = np.nonzero(planes_of(picture, None, window)[0, 0] > 127)
+    middle = np.array([[columns.mean() + 0.5, rows.mean() + 0.5]])
+    assert window.in_picture(middle)[0] == pytest.approx([201.5, 101.5], abs=0.6)
+
+
+def test_what_points_to_the_right_points_up_in_a_window_that_is_turned_so() -> None:
+    picture = np.zeros((240, 320, 3), np.uint8)
+    picture[118:122, 160:220] = 255  # from the middle to the right
+    plane = planes_of(picture, None, Window(80, 40, 160, 90.0))[0, 0]
+    rows, columns = np.nonzero(plane > 127)
+    assert rows.mean() < 0.35 * SIDE
+    assert columns.mean() == pytest.approx(SIDE / 2, abs=2.0)
+
+
+@given(
+    turn_deg=st.floats(-180, 180),
+    places=st.lists(
+        st.tuples(st.floats(0, 320), st.floats(0, 240)), min_size=2, max_size=15, unique=True
+    ),
+)
+def test_a_window_holds_all_that_it_is_about(
+    turn_deg: float, places: list[tuple[float, float]]
+) -> None:
+    window = window_about(np.array(places), turn_deg)
+    corners = window.in_picture(np.array([(0.0, 0.0), (SIDE, 0.0), (SIDE, SIDE), (0.0, SIDE)]))
+    for corner, after in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        side, beside = after - corner, np.array(places) - corner
+        assert (side[0] * beside[:, 1] - side[1] * beside[:, 0] > -1e-6).all()
+
+
+def test_the_window_of_who_lies_is_as_large_as_that_of_who_stands() -> None:
+    mask = np.zeros((240, 320), np.bool_)
+    mask[100:120, 60:160] = True
+    lying, standing = turned_window_of(mask, 90.0), turned_window_of(mask.T, 0.0)
+    assert lying.side == standing.side
+    slanting = turned_window_of(mask, 45.0)
+    assert slanting.side < lying.side
 
 
 def overlap(start: int, side: int, size: int) -> int:

@@ -1,6 +1,7 @@
 """The viewer's own landmarks: found where the outline is, and where there is none."""
 
 from functools import lru_cache
+from unittest.mock import Mock
 
 import cv2
 import numpy as np
@@ -16,6 +17,7 @@ from synth.person.people import person
 from synth.person.skeleton import JOINTS
 from synth.picture.exposure import default_rig
 from synth.picture.render import Shot, render
+from viewer.landmarks.landmark_network import find
 from viewer.landmarks.own_landmarks import own_landmarks
 from viewer.silhouette.silhouette import Seen
 
@@ -105,3 +107,35 @@ def test_a_grey_and_tiny_picture_is_looked_at_too() -> None:
     assert found is not None
     apart = np.linalg.norm(2 * np.array(found.joints_px) - joints_px, axis=1) / stature_px
     assert np.median(apart) == pytest.approx(0.0, abs=0.04)
+
+
+@pytest.mark.parametrize("times", [1, 2, 3])
+def test_whoever_lies_or_stands_on_their_hands_is_found_as_well(
+    times: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All of the picture is turned by a quarter, so often; after the first one look is enough."""
+    shot, joints_px, stature_px, _ = acted()
+    size = np.array([320.0, 240.0])
+    for _ in range(times):  # to the left
+        joints_px, size = np.stack([joints_px[:, 1], size[0] - joints_px[:, 0]], 1), size[::-1]
+    picture = np.array(np.rot90(shot.frame1, times), np.uint8)
+    outline = seen(np.array(np.rot90(shot.mask1, times), np.bool_))
+    looks = Mock(wraps=find)
+    monkeypatch.setattr("viewer.landmarks.own_landmarks.find", looks)
+    found = None
+    for more in (3, 1):
+        looks.reset_mock()
+        found = own_landmarks(picture, outline, found)
+        assert found is not None
+        off_px = np.linalg.norm(np.array(found.joints_px) - joints_px, axis=1)
+        assert np.median(off_px) < 0.03 * stature_px
+        assert found.facing_confidence == 0.0
+        assert looks.call_count <= more
+
+
+def test_who_seemed_to_lie_and_stands_is_looked_at_upright_again() -> None:
+    shot, joints_px, _, _ = acted()
+    wrong = np.stack([joints_px[:, 1] + 40.0, joints_px[:, 0]], axis=1)
+    before = Landmarks(tuple((x, y) for x, y in wrong.tolist()), (0.9,) * 15)
+    found = own_landmarks(shot.frame1, seen(shot.mask1), before)
+    assert off(found) < 0.03

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from posing import posed
 from rolling import BODY, ROLLED, outlines, told
-from staging import RIG, report, silhouettes, standing
+from staging import PERSON, RIG, report, silhouettes, standing
 
 from common.body.body import Vector
 from common.body.proportions import stature, thesis_bdp
@@ -25,11 +25,23 @@ def test_the_prior_is_as_high_as_the_silhouettes(views: tuple[int, ...], stature
     assert body.torso.height / stature(body) == pytest.approx(52 / 175)
 
 
-@pytest.mark.parametrize(("rows", "stature_m"), [(20, 0.8), (118, 2.3)])
+@pytest.mark.parametrize("place_m", [(0.8, 0.5), (-0.5, -1.0), (0.0, -1.2)])
+@pytest.mark.parametrize("view", [0, 1])
+def test_one_view_alone_measures_whoever_stands_nearer_or_farther_alike(
+    view: int, place_m: tuple[float, float]
+) -> None:
+    """T4: the floor, which the camera knows, tells how far away they are."""
+    mask = silhouettes(standing(place_m))[view]
+    told_of = report(1 if view == 0 else 2, mask, root_px=(80.0, 60.0))
+    found = prior(RIG, (told_of, None) if view == 0 else (None, told_of))
+    assert stature(found) == pytest.approx(stature(PERSON), abs=0.06)
+
+
+@pytest.mark.parametrize(("rows", "stature_m"), [(20, 0.8), (100, 2.3)])
 def test_a_prior_is_somebody(rows: int, stature_m: float) -> None:
     """0.8 to 2.3 m: what is beyond is not the whole person."""
     mask = np.zeros((120, 160), np.bool_)
-    mask[1 : 1 + rows, 70:90] = True
+    mask[100 - rows : 100, 70:90] = True
     body = prior(RIG, (report(1, mask, root_px=(80.0, 60.0)), None))
     assert stature(body) == pytest.approx(stature_m)
 

@@ -173,3 +173,15 @@ def test_a_stick_body_is_asked_for_where_what_is_proposed_fits_badly() -> None:
     found = single_view.step(None, single_view.begun(sight, None), sight)
     assert found.body.score < single_view.GOOD
     assert found.alone.stick
+
+
+def test_the_only_camera_of_a_rig_is_its_first_whatever_its_number() -> None:
+    """Proposals are looked for in the axes of camera 1: one that stands nowhere gives none."""
+    report, alone = report_of(ADULT), msgspec.structs.replace(RIG, cameras=(CAMERA, CAMERA))
+    for number, rig, seen in (
+        (1, RIG, (report, None)),
+        (2, RIG, (None, report)),
+        (1, alone, (report, None)),
+        (2, alone, (report, None)),
+    ):
+        assert sight_of(report, n=number)._replace(rig=rig).seen == seen

@@ -19,9 +19,9 @@ ANEW_HZ, ANEW_ASIDE_HZ = 0.05, 5.0
 """How often a second it is decided anew which way somebody faces who is seen from the front or the
 back, and who is seen from the side: people turn through their side."""
 SHOWN_HZ: Final = 9.0
-"""How many looks that know nothing of each other a second of pictures is worth. Of made-up people in
-free motion proposals have 4.9 % the wrong way about, this makes it 3.0 %, a sixth of it 2.8, half
-as much 3.1: filmed people wear what no network has seen."""
+"""How many looks that know nothing of each other a second of pictures is worth. Of made-up people
+in free motion proposals have 4.9 % the wrong way about, this makes it 3.0, a sixth of it 2.8 and
+half of it 3.1: filmed people wear what no network has seen."""
 PROPOSED_HZ: Final = 1.0
 """Log odds a second that proposals tell."""
 SUREST: Final = 0.97

@@ -27,7 +27,7 @@ Places = NDArray[np.float64]
 
 
 class Window(NamedTuple):
-    """A square, whole pixels of the picture, and turned about its middle; it may reach beyond it."""
+    """A square, whole pixels of the picture, turned about its middle; it may reach beyond it."""
 
     left: int
     top: int
