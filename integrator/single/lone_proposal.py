@@ -103,6 +103,8 @@ def _with_landmarks(
     rays = rays_of(undistorted_rig(sight.rig), sight.seen)
     if rays is None:
         return joints_m, confidence, before.landmarks
+    if before.front is not None:  # which has heard already which way the person faces
+        rays = rays._replace(facing_confidence=(0.0, 0.0))
     at = pose_proposal.AT
     beside = confidence[at] ** BESIDE
     fused = landmark_fusion.step(before.landmarks, joints_m[at], beside, rays, sight.stature_m)
