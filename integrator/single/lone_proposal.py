@@ -63,10 +63,10 @@ def step(before: Before, sight: Sight) -> Proposed:
     joints_m = _with_trunk(sight, known.joints_m)
     if sight.method.reflection and front is not None:
         yaw = reflection.yaw_deg(camera, joints_m)
-        front, behind = reflection.front_of(
-            front, yaw, _shown(sight.report), annotations.orientation, sight.dt_s
-        )
+        shown, named = _shown(sight.report), annotations.orientation
+        front, behind = reflection.front_of(front, yaw, shown, named, sight.dt_s)
         joints_m = reflection.seen_from_behind(camera, joints_m) if behind else joints_m
+        joints_m = joints_m if named else reflection.as_shown(camera, joints_m, shown)
     joints_m, confidence, landmarks = _with_landmarks(before, sight, joints_m, known.confidence)
     joints_m = bent_limbs.bent(sight, joints_m)
     joints_m = reflection.leaning(camera, joints_m, annotations.depth)

@@ -26,6 +26,9 @@ PROPOSED_HZ: Final = 1.0
 """Log odds a second that proposals tell."""
 SUREST: Final = 0.97
 """No picture is believed more."""
+FACES: Final = 0.8
+"""Pictures that are surer which way somebody faces tell left from right: by more than 90 degrees
+0.05 % of made-up people's in free motion are wrong, none of r01's and r04's."""
 NEARLY_DEG: Final = 40.0
 """How far a proposal may face beside the sector that the user named."""
 PELVIS: Final = JOINT_NAMES.index("pelvis")
@@ -90,6 +93,24 @@ def front_of(
         said -= SHOWN_HZ * math.log(sure / (1.0 - sure)) * math.cos(math.radians(shown[0]))
     away /= away + (1.0 - away) * math.exp(-said * dt_s)
     return Front(away), not aside and (away > 0.5) != (abs(yaw) > 90.0)
+
+
+def as_shown(camera: Camera, joints_m: Joints, shown: tuple[float, float] | None) -> Joints:
+    """The body, as far before the pelvis as it was behind it where it faces the left of the picture
+    for the right, or the right for the left: a profile has nearly the outline of the other.
+
+    Args:
+        camera: The view's.
+        joints_m: (15, 3) world.
+        shown: As for `front_of`.
+    """
+    if shown is None or shown[1] < FACES:
+        return joints_m
+    yaw, said = math.radians(yaw_deg(camera, joints_m)), math.radians(shown[0])
+    if math.cos(said - yaw) > 0.0 or math.cos(said + yaw) <= 0.0:
+        return joints_m
+    depth = _depths(camera, joints_m)
+    return _at_depths(camera, joints_m, 2 * depth[PELVIS] - depth)
 
 
 def _is_aside(yaw: float) -> bool:
