@@ -73,7 +73,7 @@ def test_a_body_that_is_turned_about_is_not_believed() -> None:
 
 
 def test_where_landmarks_are_unsure_both_views_must_fit() -> None:
-    unsure = pair(moved(0.6, 0.0), 0.2)
+    unsure = pair(moved(0.6, 0.0), 0.35)
     assert is_believed(BODY, RIG, unsure, FITS)
     assert not is_believed(BODY, RIG, unsure, (0.7, 0.4))
 
@@ -85,9 +85,9 @@ def test_without_landmarks_the_better_view_speaks() -> None:
 
 
 def test_a_body_that_no_view_shows_anybody_of_is_not_believed_however_it_fits() -> None:
-    assert not is_believed(BODY, RIG, pair(BODY, confidence=0.15), FITS)
+    assert not is_believed(BODY, RIG, pair(BODY, confidence=0.25), FITS)
 
 
 def test_a_body_of_whom_one_view_shows_a_little_is_believed_where_it_fits() -> None:
-    seen = Pair(report(0, BODY, 0.15), report(1, BODY, 0.3))
+    seen = Pair(report(0, BODY, 0.15), report(1, BODY, 0.35))
     assert is_believed(BODY, RIG, seen, FITS)

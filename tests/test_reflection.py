@@ -11,6 +11,7 @@ from integrator.single.reflection import (
     Front,
     agrees,
     as_deep,
+    as_shown,
     faces,
     front_of,
     leaning,
@@ -116,3 +117,16 @@ def test_a_picture_turns_somebody_about_only_after_a_while_who_was_not_seen_from
     assert after(facing, 5.0, (170.0, 0.9), 12).away > 0.5
     aside = after(facing, 95.0, None, 10)
     assert after(aside, 5.0, (170.0, 0.9), 3).away > 0.5
+
+
+@pytest.mark.parametrize("yaw", [-90.0, -60.0, 75.0])
+def test_a_profile_that_the_picture_surely_has_the_other_way_is_mirrored_in_depth(
+    yaw: float,
+) -> None:
+    """Left and right stay where they are seen."""
+    seen = body(yaw)
+    other = as_shown(CAMERA, seen, (-yaw, 0.9))
+    assert project(CAMERA, other) == pytest.approx(project(CAMERA, seen))
+    assert yaw_deg(CAMERA, other) == pytest.approx(-yaw_deg(CAMERA, seen), abs=6.0)
+    for shown in (None, (-yaw, 0.7), (yaw, 0.9), (yaw / 2, 0.9)):
+        assert as_shown(CAMERA, seen, shown) is seen
