@@ -10,7 +10,8 @@ from common.parent_death import end_with
 
 
 def compile_all() -> None:
-    """Track a made-up clip by both cameras and by one, so that no later run need compile.
+    """Track a made-up clip by both cameras and by one, and pass through what live parts and a film
+    meet besides, so that no later run need compile.
 
     A mark in the folder of what is compiled says that this was done: the next time takes no longer
     than importing numba.
@@ -26,15 +27,15 @@ def compile_all() -> None:
 
 def _run_all() -> None:
     from common.config.settings import Settings
-    from recognizer.__main__ import model_of, warm_up
     from tritrack.demo import made_clip
+    from tritrack.forking.parts_warmup import warm_up
     from tritrack.offline.lockstep import Decoders, track_clip
 
     with tempfile.TemporaryDirectory(prefix="tritrack-first-") as folder, Decoders() as decoders:
         settings = Settings(clip=str(made_clip(Path(folder))))
         track_clip(settings, decoders)
         track_clip(settings, decoders, (1,))
-    warm_up(model_of(settings), settings.recognizer.window_frames)
+    warm_up()
 
 
 if __name__ == "__main__":

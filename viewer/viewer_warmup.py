@@ -8,19 +8,22 @@ from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Guide
 from common.raster.kernel import draw_body
 from viewer import track
+from viewer.background.image_stack import median, squares
 from viewer.capture import CapturedFrame
 from viewer.paper.posed_model import view_at
 from viewer.silhouette import silhouette
 
 
 def warm_up(state: track.State, size: tuple[int, int]) -> None:
-    """Step through three frames of somebody who takes the opening posture.
+    """Step through four frames of somebody who takes the opening posture: nobody guides, an
+    integrator does, it knows the body, it asks for the stick figure.
 
     Args:
         state: As it begins; not changed.
         size: (width, height) of the working picture.
     """
     silhouette.warm()
+    squares(median(state.silhouette.model.centre[None])[None])  # of an opening that is occupied
     width, height = size
     view = view_at(state.search.rotation, 0.7 * height, (width / 2, 0.55 * height))
     pose = rest_pose()
@@ -39,5 +42,8 @@ def warm_up(state: track.State, size: tuple[int, int]) -> None:
         root_px=((width / 2, 0.55 * height),) * 2,
         pose=tuple(pose.tolist()),
     )
-    for index, given in enumerate((None, guide, msgspec.structs.replace(guide, measured=True))):
-        state, _ = track.step(state, CapturedFrame(index, 0.0, 0.0, picture), given)
+    measured = msgspec.structs.replace(guide, measured=True)
+    asked = msgspec.structs.replace(measured, stick=True)
+    for index, given in enumerate((None, guide, measured, asked)):
+        unlike = picture ^ np.uint8(index % 2)  # else the camera would seem frozen
+        state, _ = track.step(state, CapturedFrame(index, 0.0, 0.0, unlike), given)
