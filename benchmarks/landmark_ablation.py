@@ -3,18 +3,20 @@
 Run from the checkout, on calibrated clips with a truth:
 
     .venv/bin/python benchmarks/landmark_ablation.py clips/*/ [--sources own mediapipe]
-        [--size 320x240]
+        [--size 320x240] [--hurried N]
 
 "Alone" are landmarks whose rays of both views are brought together joint by joint (the point
 nearest to both), sides as each view tells them, nothing remembered. Prints a table in Markdown:
 mean error of 12 joints, of the inner angles, share of frames lost, and CPU milliseconds a view
-that the source takes in the tracking process (MediaPipe works in processes of its own).
+that the source takes in the tracking process (MediaPipe works in processes of its own). With
+`--hurried 6` also where only every sixth picture is looked into, as by a live viewer that is late.
 """
 
 import argparse
 import os
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +29,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Body, Report
+from common.bus.messages import Body, Guide, Report
 from common.config import config_file
 from common.config.settings import Settings
 from common.rig.camera import Rig
@@ -39,6 +41,8 @@ from tritrack.accuracy.accuracy import Compared, compare, summary
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.overrides import overridden
 from tritrack.store.pose_arrays import poses
+from viewer import track
+from viewer.capture import CapturedFrame
 from viewer.landmarks import own_landmarks
 
 
@@ -96,6 +100,22 @@ def followed(clips: Sequence[Path], source: str, size: str | None) -> dict[str, 
     return found
 
 
+@contextmanager
+def hurried(every: int) -> Iterator[None]:
+    """All frames but every n-th are in a hurry."""
+    look = track.look
+
+    def in_a_hurry(state: track.State, frame: CapturedFrame, guide: Guide | None) -> Any:
+        is_hurried = frame.index % every != 0
+        return look(state, msgspec.structs.replace(frame, hurried=is_hurried), guide)
+
+    track.look = in_a_hurry
+    try:
+        yield
+    finally:
+        track.look = look
+
+
 def rig_of(clip: Path, decoders: Decoders, settings: Settings) -> Rig:
     """Both cameras of a calibrated clip."""
     rig = both_cameras(open_clip(settings, decoders.of[1]))
@@ -115,6 +135,7 @@ def main() -> None:
     parser.add_argument("clips", type=Path, nargs="+", help="clip folders with a truth.npz")
     parser.add_argument("--sources", nargs="+", default=["own"])
     parser.add_argument("--size", help="bound of the working picture")
+    parser.add_argument("--hurried", type=int, help="where only every n-th picture is looked into")
     given = parser.parse_args()
     bare = [clip for clip in given.clips if not (clip / "truth.npz").is_file()]
     if bare:
@@ -131,6 +152,10 @@ def main() -> None:
         cost = f"{1e3 * clock.spent_s / clock.looks:.2f}" if clock.looks else "its own process"
         print(line(f"landmarks alone, {source}", found["alone"], cost))
         print(line(f"both, {source}", found["both"]), flush=True)
+    if given.hurried:
+        with hurried(given.hurried):
+            found = followed(given.clips, "own", given.size)
+        print(line(f"both, own, a look every {given.hurried} frames", found["both"]), flush=True)
 
 
 if __name__ == "__main__":

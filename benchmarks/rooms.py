@@ -67,6 +67,8 @@ class Served(NamedTuple):
     """Bodies a second and room, of 15."""
     missed_percent: float
     """Of the frames of all processes, those whose work ended more than a frame late."""
+    hurried_percent: float
+    """Of the viewers' frames, those that came too late for a look at more than their outline."""
     p50_ms: float
     """From capture to the body, the median of the rooms' own over their last half minute."""
     p99_ms: float
@@ -87,6 +89,7 @@ class Reading(NamedTuple):
     """By process."""
     bodies: float
     missed: float
+    hurried: float
 
 
 def served(wanted: Wanted) -> Served:
@@ -115,6 +118,7 @@ def served(wanted: Wanted) -> Served:
             running=running,
             fps=bodies / took_s / rooms,
             missed_percent=100.0 * (after.missed - before.missed) / max(4 * bodies, 1.0),
+            hurried_percent=100.0 * (after.hurried - before.hurried) / max(2 * bodies, 1.0),
             p50_ms=1000.0 * p50[len(p50) // 2] if p50 else 0.0,
             p99_ms=1000.0 * p99[-1] if p99 else 0.0,
             cores=sum(s - before.cpu_s.get(pid, 0.0) for pid, s in after.cpu_s.items()) / took_s,
@@ -184,8 +188,10 @@ def _read(own: psutil.Process, address: str) -> Reading:
         return sum(value for name, _, value in found if name == wanted)
 
     cpu_s = {each.pid: _cpu_s(each) for each in [own, *own.children(recursive=True)]}
-    missed = total("tritrack_missed_deadlines_total")
-    return Reading(time.monotonic(), cpu_s, total("tritrack_frames_total"), missed)
+    missed, hurried = (
+        total(f"tritrack_{name}_total") for name in ("missed_deadlines", "hurried_frames")
+    )
+    return Reading(time.monotonic(), cpu_s, total("tritrack_frames_total"), missed, hurried)
 
 
 def _cpu_s(one: psutil.Process) -> float:

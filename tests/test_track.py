@@ -1,6 +1,7 @@
 """One viewer's thinking, held against persons drawn in the paper's rig."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -299,6 +300,53 @@ def test_landmarks_change_nothing_else_of_a_report() -> None:
     _, with_them = track.step(state, shown, guide(standing()))
     _, without = track.step(state, picture, guide(standing()))
     assert msgspec.structs.replace(with_them, landmarks=None) == without
+
+
+def looks_of(monkeypatch: pytest.MonkeyPatch, alone: bool) -> tuple[track.State, list[bool]]:
+    """A viewer with a network of its own, which sees somebody, and at each of its looks whether
+    that was in the mirror too."""
+    looks: list[bool] = []
+
+    def look(*given: Any) -> Landmarks:
+        looks.append(given[3].twice)
+        return landmarks_of(standing())
+
+    monkeypatch.setattr(track, "own_landmarks", look)
+    setup = told_from_outside().setup
+    settings = msgspec.structs.replace(setup.settings, landmarks="own")
+    return viewer(1)._replace(setup=setup._replace(settings=settings, alone=alone)), looks
+
+
+def test_in_a_hurry_one_of_two_views_tells_its_outline_alone_and_remembers_who_is_there(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    state, looks = looks_of(monkeypatch, alone=False)
+    picture = frame(silhouettes(standing())[0])
+    state, first = track.step(state, picture, None)
+    hurried = msgspec.structs.replace(frame(silhouettes(standing())[0], 1), hurried=True)
+    state, second = track.step(state, hurried, None)
+    assert looks == [False]
+    assert (first.landmarks, second.landmarks) == (landmarks_of(standing()), None)
+    assert second.silhouette == first.silhouette
+    assert state.landmarks == first.landmarks
+
+
+def test_in_a_hurry_an_only_view_is_looked_at_but_not_in_the_mirror(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    state, looks = looks_of(monkeypatch, alone=True)
+    picture = frame(silhouettes(standing())[0])
+    state, _ = track.step(state, picture, None)
+    hurried = msgspec.structs.replace(picture, index=1, hurried=True)
+    assert track.step(state, hurried, None)[1].landmarks == landmarks_of(standing())
+    assert looks == [True, False]
+
+
+def test_what_a_source_outside_saw_is_told_in_a_hurry_too() -> None:
+    person = landmarks_of(standing())
+    picture = frame(silhouettes(standing())[0])
+    shown = msgspec.structs.replace(picture, landmarks=(person,), hurried=True)
+    assert track.step(told_from_outside(), shown, None)[1].landmarks == person
 
 
 def test_a_viewer_is_a_value() -> None:

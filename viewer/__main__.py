@@ -23,6 +23,7 @@ from common.video.decoding import Decoder, DecoderDied
 from viewer import track
 from viewer.background.new_background import Learning
 from viewer.capture import CapturedFrame, Live, RoomClock
+from viewer.haste import Haste
 from viewer.jpeg import jpeg_of
 from viewer.landmarks.landmark_sources import outside_sources
 from viewer.room.background_source import opening_of_run
@@ -104,14 +105,15 @@ def run(
     guides = Guides(bus.subscribe(Guide), view.number)
     unheard, alive = Unheard(), bus.watch_alive()
     learning = Learning(bus.subscribe(Command), view.number, state.setup.settings)
-    before, why = -1, ""
+    haste, before, why = Haste(period_s), -1, ""
     try:
         while not stop.is_set() and not live.over:
             frame = live.take(period_s)
             if frame is None:
-                heart.beat("running", **_news(live, guides, warnings))
+                heart.beat("running", **_news(live, guides, haste, warnings))
                 continue
             guide = guides.of_frame(before, WAIT_SHARE * period_s)
+            frame = haste.of_frame(frame, time.monotonic() + live.offset_s - frame.clock_s)
             state, report = track.step(state, frame, guide)
             for missed in unheard.again(guides.heard, alive.drain()):
                 bus.publish(missed)
@@ -120,7 +122,7 @@ def run(
             pace.done(frame.clock_s - live.offset_s, time.monotonic())
             if state.setup.settings.pictures:
                 bus.publish(_picture(view.number, frame))
-            heart.beat("running", **_news(live, guides, warnings))
+            heart.beat("running", **_news(live, guides, haste, warnings))
             state = _obeyed(learning, state, frame, bus)
             before = frame.index
     except DecoderDied as error:
@@ -128,11 +130,11 @@ def run(
         raise
     finally:  # Also when the decoder broke: nobody shall wait for this view again.
         bus.publish(Ended(viewer=view.number, frames=pace.frames, why=why))
-    cut_off = shortfall(view, live.came) if live.over else ""
-    if cut_off:
-        log.warning(cut_off)
-        warnings = (*warnings, cut_off)
-    heart.beat("ended", **_news(live, guides, warnings))
+    for odd in (shortfall(view, live.came) if live.over else "", haste.odd(pace.frames)):
+        if odd:
+            log.warning(odd)
+            warnings = (*warnings, odd)
+    heart.beat("ended", **_news(live, guides, haste, warnings))
 
 
 def _obeyed(learning: Learning, state: track.State, frame: CapturedFrame, bus: Bus) -> track.State:
@@ -223,12 +225,13 @@ def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | No
     return RoomClock(start_s, offset.offset_s)
 
 
-def _news(live: Live, guides: Guides, warnings: tuple[str, ...]) -> dict[str, Any]:
+def _news(live: Live, guides: Guides, haste: Haste, warnings: tuple[str, ...]) -> dict[str, Any]:
     """What is odd and what was lost so far, as a Pulse tells it."""
     return {
         "detail": "\n".join((*warnings, *live.odd)),
         "dropped": live.dropped,
         "guide_misses": guides.misses,
+        "hurried": haste.frames,
         "malformed": guides.malformed,
         "foreign": guides.foreign,
     }

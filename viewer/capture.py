@@ -37,6 +37,8 @@ class CapturedFrame(msgspec.Struct, frozen=True):
     """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
     landmarks: tuple[Landmarks, ...] = ()
     """Of every person that a source outside sees in it, in pixels of `picture`."""
+    hurried: bool = False
+    """It comes late: there is no time to look at more than the outline."""
 
 
 def recorded(

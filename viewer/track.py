@@ -66,7 +66,7 @@ class State(NamedTuple):
     standing: Standing | None
     """How tall the person stands; None: not known before."""
     landmarks: Landmarks | None = None
-    """Of the last frame."""
+    """Of the last frame that was looked at."""
     near_px: Pixel | None = None
     """The middle of the last silhouette, where no guide tells where the body is expected."""
     moved: moved_camera.State | None = None
@@ -161,10 +161,12 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
             remembered, state.silhouette, frame.picture, held.things
         )
     seen = held.seen
-    state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box), landmarks=landmarks)
     report = _report_of(state.setup.viewer, frame, seen)
     shift = None if state.moved is None else state.moved.shift
-    report = msgspec.structs.replace(report, landmarks=state.landmarks, shift=shift)
+    report = msgspec.structs.replace(report, landmarks=landmarks, shift=shift)
+    if _is_left_out(state.setup, frame):
+        landmarks = state.landmarks
+    state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box), landmarks=landmarks)
     return state, report, seen.mask
 
 
@@ -212,14 +214,22 @@ def _report_of(viewer: ViewerNumber, frame: CapturedFrame, seen: Seen) -> Report
 
 
 def _landmarks(state: State, frame: CapturedFrame, seen: Seen) -> Landmarks | None:
-    """The joints that the picture itself shows, where the method asks for them."""
-    if not state.setup.method.landmarks:
+    """The joints that the picture itself shows, where the method asks for them and there is time.
+
+    An only view has no other to go by: it is always looked at, in a hurry not in the mirror too.
+    """
+    if not state.setup.method.landmarks or _is_left_out(state.setup, frame):
         return None
     settings = state.setup.settings
     if settings.looks_itself:
-        eye = Eye(network_of(settings.landmarks), state.setup.alone)
+        eye = Eye(network_of(settings.landmarks), state.setup.alone and not frame.hurried)
         return own_landmarks(frame.picture, seen, state.landmarks, eye)
     return nearest_landmarks(frame.landmarks, seen.box)
+
+
+def _is_left_out(setup: Setup, frame: CapturedFrame) -> bool:
+    """Whether the look at what the outline holds is left out."""
+    return frame.hurried and not setup.alone and setup.settings.looks_itself
 
 
 def _followed(state: State, frame: CapturedFrame) -> State:

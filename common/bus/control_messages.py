@@ -19,6 +19,8 @@ class Pulse(Message, frozen=True, kw_only=True):
     deadline_misses: int = 0
     dropped: int = 0
     guide_misses: int = 0
+    hurried: int = 0
+    """Frames that came so late that a viewer told their outline alone."""
     malformed: int = 0
     foreign: int = 0
     """Messages that were dropped since they were not of this run."""

@@ -1,7 +1,7 @@
 """Messages on their way: the table of topics, bytes, and the refusal of what no process says."""
 
 from collections.abc import Iterator
-from typing import Final, NamedTuple, TypeVar
+from typing import Any, Final, NamedTuple, TypeVar
 
 import msgspec
 
@@ -145,9 +145,8 @@ def _refuse_what_no_process_would_say(message: Message) -> None:
         allowed = _LENGTHS.get((type(message), name))
         if allowed is not None and len(value) not in allowed:
             raise MalformedMessage(f"{name} has {len(value)} entries, not {allowed[-1]}")
-        for number in _numbers(value):
-            if not abs(number) <= MOST:
-                raise MalformedMessage(f"{name} holds {number}, at most {MOST:g} is taken")
+        if not _sum_of(value) <= MOST:  # quick; what is not finite makes it so too
+            _refuse_a_large_number(name, value)
     if isinstance(message, Report):
         _refuse_a_false_report(message)
     if isinstance(message, Body):
@@ -236,6 +235,38 @@ def _refuse_a_false_fit(fit: Fit) -> None:
     shares = (*fit.ratios, fit.breadth, fit.score)
     if not all(0.0 <= share <= 1.0 for share in shares) or fit.stature_px <= 0.0:
         raise MalformedMessage("a stick body of shares beyond 0 to 1, or of no stature")
+
+
+def _sum_of(value: object) -> float:
+    """Of all numbers in a value, without their signs."""
+    if isinstance(value, tuple):
+        return _sum_of_tuple(value)
+    if isinstance(value, (float, int)):
+        return abs(value)
+    if value is None or isinstance(value, (str, bytes)):
+        return 0.0
+    if isinstance(value, dict):
+        return sum(map(_sum_of, value.values()))
+    if isinstance(value, _CARRIERS):
+        return sum(map(_sum_of, msgspec.structs.astuple(value)))
+    return 0.0
+
+
+def _sum_of_tuple(values: tuple[Any, ...]) -> float:
+    if not values:
+        return 0.0
+    if isinstance(values[0], tuple):
+        return sum(map(_sum_of, values))
+    try:
+        return float(sum(map(abs, values)))
+    except TypeError:  # not all are numbers
+        return sum(map(_sum_of, values))
+
+
+def _refuse_a_large_number(name: str, value: object) -> None:
+    for number in _numbers(value):
+        if not abs(number) <= MOST:
+            raise MalformedMessage(f"{name} holds {number}, at most {MOST:g} is taken")
 
 
 def _numbers(value: object) -> Iterator[float]:

@@ -19,6 +19,7 @@ COUNTS: Final = (
     ("dropped_messages", "dropped", "Frames and messages that gave way to newer ones."),
     ("late_messages", "late", "Reports that came after their instant was merged."),
     ("missed_guides", "guide_misses", "Frames that were looked at without a guide of the last."),
+    ("hurried_frames", "hurried", "Frames so late that a viewer told their outline alone."),
 )
 """Name of a count, its field in a Pulse, what it counts."""
 CAUSES: Final = ("malformed", "foreign")

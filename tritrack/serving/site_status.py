@@ -69,5 +69,6 @@ def _state(hub: Pulse | None) -> Literal["starting", "ready", "running", "ended"
 def _sums(pulses: Iterable[Pulse]) -> dict[str, int]:
     """Counts over all processes."""
     all_of = list(pulses)
-    fields = ("deadline_misses", "dropped", "guide_misses", "malformed", "foreign", "late")
+    losses = ("deadline_misses", "dropped", "guide_misses", "hurried", "late")
+    fields = (*losses, "malformed", "foreign")
     return {field: sum(getattr(each, field) for each in all_of) for field in fields}

@@ -1,0 +1,62 @@
+"""Which frames of a late viewer are in a hurry."""
+
+from itertools import groupby
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from viewer.capture import CapturedFrame
+from viewer.haste import LASTS, LATE, Haste
+
+PERIOD_S = 1 / 15
+FRAME = CapturedFrame(0, 0.0, 0.0, np.zeros((2, 2, 3), np.uint8))
+
+
+def hurried(late_s: list[float]) -> list[bool]:
+    """Of frames that are so late."""
+    haste = Haste(PERIOD_S)
+    return [haste.of_frame(FRAME, late).hurried for late in late_s]
+
+
+def test_who_is_in_time_looks_at_every_frame() -> None:
+    assert not any(hurried([0.0, 0.002, 0.9 * LATE * PERIOD_S] * 20))
+
+
+def test_a_late_frame_and_those_of_the_third_of_a_second_from_it_on_are_in_a_hurry() -> None:
+    told = hurried([0.0, 0.03, *[0.0] * 8])
+    assert told == [False, *[True] * 5, *[False] * 4]
+    assert pytest.approx(1 / 3) == LASTS * PERIOD_S
+
+
+def test_who_is_always_late_looks_at_every_sixth() -> None:
+    told = hurried([0.2] * 60)
+    assert [at for at, is_hurried in enumerate(told) if not is_hurried] == list(range(5, 60, 6))
+
+
+@given(st.lists(st.floats(0.0, 0.2), max_size=100))
+def test_never_more_than_five_looks_in_a_row_are_left_out_nor_one_without_a_late_frame(
+    late_s: list[float],
+) -> None:
+    told = hurried(late_s)
+    assert all(len([*own]) <= 5 for is_hurried, own in groupby(told) if is_hurried)
+    is_late = [late > LATE * PERIOD_S for late in late_s]
+    near = [any(is_late[max(0, at - 4) : at + 1]) for at in range(len(told))]
+    assert all(due for is_hurried, due in zip(told, near, strict=True) if is_hurried)
+
+
+def test_a_frame_in_a_hurry_is_the_same_picture_of_the_same_moment() -> None:
+    kept = Haste(PERIOD_S).of_frame(FRAME, 1.0)
+    assert (kept.index, kept.captured_s, kept.clock_s) == (0, 0.0, 0.0)
+    assert kept.picture is FRAME.picture
+
+
+def test_at_the_end_it_is_told_how_many_were_and_what_to_do_but_not_of_a_few() -> None:
+    haste = Haste(PERIOD_S)
+    for late_s in (0.1, *[0.0] * 4):
+        haste.of_frame(FRAME, late_s)
+    assert haste.frames == 5
+    assert haste.odd(250) == ""
+    assert haste.odd(100).startswith("5 of 100 frames came too late")
+    assert "fewer rooms" in haste.odd(100)
