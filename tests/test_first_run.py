@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -63,17 +64,44 @@ def test_a_first_live_run_compiles_before_its_clip_begins_and_not_in_its_midst(
     assert not [told for told in summary["warnings"] if "killed" in told]
 
 
-def test_after_the_first_run_tracking_compiles_nothing(
+def compiled_of(cache: Path) -> dict[Path, int]:
+    return {path: path.stat().st_mtime_ns for path in cache.rglob("*.nbc")}
+
+
+def test_after_the_first_run_no_command_of_every_day_compiles(
     anew: Path, clip: Path, tmp_path: Path
 ) -> None:
-    before = {path: path.stat().st_mtime_ns for path in anew.rglob("*.nbc")}
+    before = compiled_of(anew)
     assert len(before) > 100
     assert said(anew, "tritrack.first_run") == ""
-    said(anew, "tritrack", "track", str(clip), "--out", str(tmp_path))
-    said(anew, "tritrack", "track", str(clip), "--out", str(tmp_path), "--views", "1")
-    assert {path: path.stat().st_mtime_ns for path in anew.rglob("*.nbc")} == before
+    for words in (
+        ("track", str(clip)),
+        ("track", str(clip), "--views", "1"),
+        ("single", str(clip / "cam1.avi")),
+    ):
+        said(anew, "tritrack", *words, "--out", str(tmp_path / "out"))
+        assert compiled_of(anew) == before, words
     assert not [path for path in before if b"__mp_main__" in path.read_bytes()]
     assert not [path for path in before if b"__main__" in path.read_bytes()]
+
+
+def test_nor_does_a_live_run_whose_cameras_nobody_calibrated(
+    anew: Path, clip: Path, tmp_path: Path
+) -> None:
+    """Its viewers fit a stick figure until the rig is known: compiled in their midst, that would
+    make them hang for the first ten seconds of the first run."""
+    before = compiled_of(anew)
+    shutil.copytree(clip, tmp_path / "bare" / clip.name)
+    settings = tmp_path / "live.toml"
+    settings.write_text(
+        f'clip = "{tmp_path / "bare" / clip.name}"\nsize = "160x120"\n'
+        '[bus]\nendpoint = "auto"\n[page]\nport = 0\n'
+    )
+    said(anew, "tritrack", "live", str(settings), "--out", str(tmp_path / "run"))
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    assert [told for told in summary["warnings"] if told.startswith("no calibration")]
+    assert not [told for told in summary["warnings"] if "killed" in told]
+    assert compiled_of(anew) == before
 
 
 def test_what_is_compiled_anew_gives_the_same_bytes(anew: Path, clip: Path, tmp_path: Path) -> None:
