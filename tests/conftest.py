@@ -2,6 +2,7 @@
 
 import os
 from pathlib import Path
+from typing import Final
 
 import pytest
 from hypothesis import settings
@@ -12,6 +13,15 @@ for library in ("OMP", "OPENBLAS", "NUMBA"):
 
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
+
+LONGEST: Final = ("readme", "system_wheel", "first_run", "resuming", "board_rig")
+"""Files that take minutes: begun first, so that none is left alone at the end."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Where files are handed out in their order (`--no-loadscope-reorder`): the longest first."""
+    place = {f"test_{name}": at for at, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: place.get(item.path.stem, len(LONGEST)))
 
 
 @pytest.fixture(scope="session")
