@@ -102,7 +102,9 @@ def step(
     lengths_m = None if before is None else before.lengths_m
     if lengths_m is not None:
         joints_m = limb_springs.sprung(joints_m, tight, lengths_m)
-    memory = Memory(turned, exchanges, limb_springs.lengths_m(lengths_m, joints_m), misfit)
+    memory = Memory(
+        turned, exchanges, limb_springs.lengths_m(lengths_m, joints_m, stature_m), misfit
+    )
     return Fused(joints_m, _confidence(tight), decided, memory)
 
 

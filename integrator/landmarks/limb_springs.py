@@ -25,18 +25,26 @@ ENDS: Final = np.array(
 )
 """(10, 2) the joints at both ends of springs: limbs, left and right in turn, and two girdles."""
 _LIMBS: Final = 2 * len(_PAIRS)
+USUAL: Final = np.array([0.16, 0.16, 0.145, 0.145, 0.25, 0.25, 0.245, 0.245, 0.205, 0.12])
+"""(10,) lengths in statures, of adults."""
+UNLIKE: Final = 1.3
+"""Times longer or shorter is nobody's. Lengths are learnt from joints that were drawn to what was
+learnt: where one camera tells no depth, what was too long became ever longer, in minutes."""
 
 
-def lengths_m(before: Vector | None, joints_m: Vector) -> Vector:
+def lengths_m(before: Vector | None, joints_m: Vector, stature_m: float) -> Vector:
     """What is remembered of the lengths of the springs, (10,): both sides have the same.
 
     Args:
         before: At the instant before; None at the first.
         joints_m: (12, 3)
+        stature_m: Of the person.
     """
     found = np.linalg.norm(joints_m[ENDS[:, 0]] - joints_m[ENDS[:, 1]], axis=1)
     found[:_LIMBS] = np.repeat(found[:_LIMBS].reshape(-1, 2).mean(axis=1), 2)
-    return found if before is None else before + LEARNT * (found - before)
+    learnt = found if before is None else before + LEARNT * (found - before)
+    usual_m = stature_m * USUAL
+    return np.clip(learnt, usual_m / UNLIKE, usual_m * UNLIKE)
 
 
 @compiled
