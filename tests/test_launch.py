@@ -62,14 +62,29 @@ def assert_equals_offline(run: Path, clip: Path) -> None:
             np.testing.assert_array_equal(found[name], values, err_msg=name)
 
 
+def live_in_time(settings: Settings, out: Path, **how: Any) -> dict[str, Any]:
+    """A live run whose viewers were never in a hurry, what its summary tells.
+
+    A viewer that is late leaves looks out (`viewer/haste.py`), so only such a run equals an offline
+    one; a machine that stands still for 30 ms gets two more trials.
+    """
+    for _ in range(3):
+        facts = live(settings, out, QUIET, **how)
+        told = [each for name, each in facts["processes"].items() if "viewer" in name]
+        if not any(each["hurried"] for each in told):
+            return facts
+        shutil.rmtree(out)
+    raise AssertionError("a viewer was late in each of three runs: use a quieter machine")
+
+
 Lived = tuple[Path, dict[str, Any]]
 
 
 @pytest.fixture(scope="module")
 def lived(slow_clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Lived:
     """One live run of it, and what its summary tells."""
-    out = tmp_path_factory.mktemp("lived")
-    return out, live(settings_of(slow_clip), out, QUIET)
+    out = tmp_path_factory.mktemp("lived") / "out"
+    return out, live_in_time(settings_of(slow_clip), out)
 
 
 @pytest.mark.slow
@@ -105,7 +120,7 @@ def test_a_live_run_with_keys_gives_the_same_bodies(slow_clip: Path, tmp_path: P
 
     make_keys(tmp_path / "keys", [], 2)
     bus = BusSettings(endpoint="tls/127.0.0.1:7447", keys=str(tmp_path / "keys"))
-    facts = live(settings_of(slow_clip, bus=bus), tmp_path / "out", QUIET)
+    facts = live_in_time(settings_of(slow_clip, bus=bus), tmp_path / "out")
     for name, told in facts["processes"].items():
         assert (name, told["frames"], told["dropped"]) == (name, 69, 0)
     assert_equals_offline(tmp_path / "out", slow_clip)
@@ -116,7 +131,7 @@ def test_a_live_run_with_keys_gives_the_same_bodies(slow_clip: Path, tmp_path: P
 def test_a_live_run_whose_parts_are_threads_gives_the_same_bodies(
     slow_clip: Path, tmp_path: Path
 ) -> None:
-    facts = live(settings_of(slow_clip), tmp_path / "out", QUIET, together=True)
+    facts = live_in_time(settings_of(slow_clip), tmp_path / "out", together=True)
     for name, told in facts["processes"].items():
         assert (name, told["frames"], told["dropped"]) == (name, 69, 0)
         assert told["memory_mb"] == 0.0, "it is the supervisor's, which tells it once"
@@ -133,7 +148,7 @@ def test_a_live_run_with_one_viewer_equals_tracking_one_view(
     folder = tmp_path / "alone"
     shutil.copytree(slow_clip, folder)
     (folder / f"cam{3 - view}.avi").unlink()
-    facts = live(settings_of(folder), tmp_path / "out", QUIET)
+    facts = live_in_time(settings_of(folder), tmp_path / "out")
     assert facts["processes"][f"viewer {view}"]["guide_misses"] == 0
     with Decoders() as decoders:
         done = track_clip(Settings(clip=str(slow_clip)), decoders, (view,))

@@ -434,7 +434,8 @@ def test_a_covered_camera_is_told_and_left_out(short_clip: Path, tmp_path: Path)
     assert "both" in found["views"][found["frame"] >= LOST.stop]
     told = [facts["processes"][f"viewer {n}"] for n in (1, 2)]
     assert len(found["frame"]) >= FRAMES - sum(each["dropped"] for each in told)
-    if not any(each["guide_misses"] or each["dropped"] for each in told):
+    causes = ("guide_misses", "dropped", "hurried")  # why a busy machine's bodies are others
+    if not any(each[cause] for each in told for cause in causes):
         with Decoders() as decoders:
             offline = on_disk(poses(track_clip(settings, decoders).bodies))
         for name, values in offline.items():
