@@ -11,7 +11,7 @@ from common.bus.messages import Pixel, Report
 from common.raster.silhouette_report import unpack
 from common.rig.camera import Camera, Rig, project, px_per_m
 from integrator.pairing import Seen
-from integrator.proposal.silhouette_window import UPWARDS_M, standing_m
+from integrator.proposal.silhouette_window import ABOVE_M, UP_AXIS, standing_m
 from integrator.rig.body_position import place_of, roots_of, triangulate
 
 STATURES_M: Final = (0.8, 2.3)
@@ -75,7 +75,7 @@ def _crown_m(rig: Rig, seen: Seen, place: Vector) -> float:
 
 def _upwards(report: Report, camera: Camera, place: Vector) -> tuple[Vector, NDArray[np.intp]]:
     """How far up each pixel of an outline is in its picture, (n,), and the pixels, (n, 2)."""
-    at, above = project(camera, np.stack([place, place + UPWARDS_M]))
+    at, above = project(camera, np.stack([place, place + ABOVE_M * UP_AXIS]))
     rows, columns = np.nonzero(unpack(report))
     pixels = np.stack([columns, rows], axis=1)
     return pixels @ (above - at) / np.linalg.norm(above - at), pixels

@@ -26,6 +26,8 @@ Packed = NDArray[np.uint8]
 """A mask as `np.packbits(mask, axis=1)` leaves it."""
 
 PHASES: Final = ("empty", "tpose", "transition", "motion")
+ALONE: Final = ("free", "fall", "stream")
+"""Motions that are one take each, not one of each posture."""
 ROOM_SEED: Final = 7919
 """Keeps the rooms of one set apart from those of the next: a prime larger than any set."""
 
@@ -37,8 +39,9 @@ class SynthError(ValueError):
 class ClipSet(NamedTuple):
     """What a set of clips shows."""
 
-    motion: Literal["postures", "free", "stream"]
-    """The named postures; people who turn and move at random; all postures in one take."""
+    motion: Literal["postures", "free", "fall", "stream"]
+    """The named postures; people who turn and move at random; who do, fall, lie and get up; all
+    postures in one take."""
     performers: int = 1
     """How many people; the first of seed s is person(s * performers)."""
     takes: int = 1
@@ -46,7 +49,7 @@ class ClipSet(NamedTuple):
     seed: int = 0
     """The same one gives the same clips, byte for byte."""
     postures: tuple[str, ...] = POSTURES
-    """Which ones; not asked for when the motion is free."""
+    """Which ones; not asked for when the motion is free or a fall."""
 
 
 class Filming(NamedTuple):
@@ -81,7 +84,7 @@ def write_set(
             calibration of other cameras would be lost.
     """
     motion, performers, takes, seed, postures = wanted
-    names = (motion,) if motion in ("free", "stream") else postures
+    names = (motion,) if motion in ALONE else postures
     _refuse_what_cannot_be(wanted, size, names)
     rig = default_rig(*size)
     out.mkdir(parents=True, exist_ok=True)
@@ -234,14 +237,14 @@ def _projected(rig: Rig, n: int, motion: Motion) -> np.ndarray:
 
 
 def _number(posture: str) -> int:
-    """Its place among the postures, -1 for free motion."""
+    """Its place among the postures, -1 for another motion."""
     return POSTURES.index(posture) if posture in POSTURES else -1
 
 
 def _refuse_what_cannot_be(wanted: ClipSet, size: tuple[int, int], names: tuple[str, ...]) -> None:
     motion, performers, takes, seed, _ = wanted
-    if motion not in ("postures", "free", "stream"):
-        raise SynthError(f"motion must be postures, free or stream, got {motion!r}")
+    if motion not in ("postures", *ALONE):
+        raise SynthError(f"motion must be postures, {', '.join(ALONE)}, got {motion!r}")
     for what, number in (("performers", performers), ("takes", takes)):
         if number < 1:
             raise SynthError(f"{what} must be at least 1, got {number}")
@@ -249,6 +252,6 @@ def _refuse_what_cannot_be(wanted: ClipSet, size: tuple[int, int], names: tuple[
         raise SynthError(f"seed must not be negative, got {seed}")
     if min(size) < 32 or max(size) > 4096:
         raise SynthError(f"a picture has 32 to 4096 pixels each way, got {size[0]}x{size[1]}")
-    unknown = [name for name in names if name not in (*POSTURES, "free", "stream")]
+    unknown = [name for name in names if name not in (*POSTURES, *ALONE)]
     if unknown or not names:
         raise SynthError(f"unknown posture {unknown or names}; known are {', '.join(POSTURES)}")

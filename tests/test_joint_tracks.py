@@ -1,8 +1,13 @@
 """Tracks of landmarks: what lies between frames, and which moments count."""
 
+import math
+
 import numpy as np
 import pytest
+from staging import report, silhouettes, standing
 
+from common.body.body import JOINT_NAMES
+from common.bus.messages import Landmarks
 from integrator.selfcalibration.joint_tracks import (
     JOINTS,
     MOST_FRAMES,
@@ -10,6 +15,7 @@ from integrator.selfcalibration.joint_tracks import (
     Sighting,
     at_times,
     height_px,
+    row_of,
     smoothed,
     useful_times,
 )
@@ -55,3 +61,18 @@ def test_moments_count_where_both_views_are_sure_and_are_thinned() -> None:
 
 def test_nobody_has_no_height() -> None:
     assert height_px(moving(5, sure=0.0)) == 0.0
+
+
+@pytest.mark.parametrize(("lean_deg", "tells"), [(0, True), (55, True), (65, False), (175, False)])
+def test_who_lies_tells_nothing_of_a_rig(lean_deg: float, tells: bool) -> None:
+    """Their soles are not on the floor."""
+    a = math.radians(lean_deg)
+    places = [(80.0 + up * math.sin(a), 60.0 - up * math.cos(a)) for up in np.linspace(0, 30, 15)]
+    order = np.argsort([name != "pelvis" for name in JOINT_NAMES], kind="stable")
+    joints_px = [(0.0, 0.0)] * JOINTS
+    for place, at in zip(places, order, strict=True):
+        joints_px[at] = place
+    shown = Landmarks(tuple(joints_px), (0.9,) * JOINTS, 0.0, 0.9)
+    row = row_of(report(1, silhouettes(standing())[0], landmarks=shown))
+    assert bool(row[2].any()) == tells
+    assert bool(row[4]) == tells

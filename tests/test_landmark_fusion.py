@@ -3,6 +3,8 @@
 import msgspec
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from staging import PERSON, RIG, report, silhouettes, standing
 
 from common.body.body import JOINT_NAMES, OTHER_SIDE, POSE_INDEX, rest_pose
@@ -185,3 +187,18 @@ def test_landmarks_of_a_lens_that_bends_are_straightened_with_the_outline() -> N
     assert np.array(straight.joints_px) == pytest.approx(project(ideal, true_m), abs=0.05)
     assert np.array(straight.second_px) == pytest.approx(project(ideal, second_m), abs=0.05)
     assert straight.extremities_px == ()
+
+
+@given(st.floats(-180.0, 180.0), st.floats(31.0, 180.0), st.sampled_from([-1.0, 1.0]))
+def test_a_picture_turned_upright_says_which_way_somebody_faces(
+    yaw_deg: float, roll_deg: float, way: float
+) -> None:
+    """Of who leans by more than 30 degrees in it (`Landmarks.facing_deg`)."""
+    pose = standing()
+    pose[POSE_INDEX["torso_y"]] = yaw_deg
+    joints_m = np.asarray(joints(BODY, pose))[AT]
+    level = np.array(RIG.cameras[0].R)
+    a = way * np.radians(roll_deg)
+    rolled = np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]]) @ level
+    off_deg = turned_about.yaw_deg(rolled, joints_m) - turned_about.yaw_deg(level, joints_m)
+    assert np.cos(np.radians(off_deg)) == pytest.approx(1.0, abs=1e-3)

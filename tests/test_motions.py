@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from synth.motion.falling import FALLS_S, RISES_S
 from synth.motion.footing import posed
 from synth.motion.motions import (
     EMPTY,
@@ -89,7 +90,7 @@ def test_phases_last_as_long_at_every_frame_rate() -> None:
     assert counts.tolist() == [18, 28, 12, 80]
 
 
-@pytest.mark.parametrize("posture", [*POSTURES, "free"])
+@pytest.mark.parametrize("posture", [*POSTURES, "free", "fall"])
 def test_segments_keep_their_lengths(posture: str) -> None:
     for seed in PEOPLE[:2]:
         motion = performance(person(seed), posture, 1)
@@ -97,6 +98,21 @@ def test_segments_keep_their_lengths(posture: str) -> None:
         for first, second in BONES_HELD:
             lengths = np.linalg.norm(joints[:, AT[first]] - joints[:, AT[second]], axis=1)
             assert np.ptp(lengths) < 1e-9, (first, second)
+
+
+@pytest.mark.parametrize("seed", PEOPLE)
+def test_who_falls_lies_on_the_floor_for_seven_seconds_and_stands_up_again(seed: int) -> None:
+    motion, joints = moving(seed, "fall")
+    trunk = joints[:, AT["neck"]] - joints[:, AT["pelvis"]]
+    lean_deg = np.degrees(np.arccos(trunk[:, 1] / np.linalg.norm(trunk, axis=1)))
+    at_s = np.arange(len(joints)) / motion.fps
+    lies = (at_s > FALLS_S[1]) & (at_s < RISES_S[0])
+    assert np.count_nonzero(lies) == pytest.approx(7.2 * motion.fps, abs=2)
+    assert lean_deg[lies].min() > 45.0
+    assert joints[lies][:, AT["pelvis"], 1].max() < 0.6
+    assert lean_deg[(at_s < FALLS_S[0]) | (at_s > RISES_S[1])].max() < 60.0
+    carried = [i for i, name in enumerate(JOINTS) if name[2:] not in ("elbow", "wrist", "knuckle")]
+    assert joints[:, carried, 1].min() > -0.01
 
 
 @pytest.mark.parametrize("posture", [*POSTURES, "free"])

@@ -129,7 +129,8 @@ def test_whoever_lies_or_stands_on_their_hands_is_found_as_well(
         assert found is not None
         off_px = np.linalg.norm(np.array(found.joints_px) - joints_px, axis=1)
         assert np.median(off_px) < 0.03 * stature_px
-        assert found.facing_confidence == 0.0
+        assert abs(found.facing_deg) < 45.0, "about the trunk, the person faces the camera"
+        assert found.facing_confidence > 0.5
         assert looks.call_count <= more
 
 

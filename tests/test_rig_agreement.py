@@ -16,6 +16,7 @@ from integrator.rig_gate import rig_agreement
 from integrator.rig_gate.rig_agreement import FEWEST, SAMPLES, State
 from integrator.rig_gate.rig_fault import exchanged_rig
 
+VIEWERS: tuple[ViewerNumber, ...] = (1, 2)
 BODY = body_vector(thesis_bdp(1.75))
 
 
@@ -94,3 +95,24 @@ def test_a_rig_that_becomes_wrong_is_contradicted_within_two_seconds() -> None:
     assert state.told is not None
     assert state.told.believed < 0.2
     assert len(state.samples) < 40
+
+
+def test_who_lies_does_not_make_a_right_rig_doubted() -> None:
+    """Their feet are off the floor, and they may lie for long."""
+    state, lying = after(RIG), np.asarray(joints(BODY, standing((0.1, -0.1))))
+    lying = lying[:, [1, 0, 2]] * [1.0, -1.0, 1.0] + [-0.9, 0.6, 0.0]
+    before = state.told
+    for n in range(20, 20 + 2 * SAMPLES):
+        pair = []
+        for viewer in VIEWERS:
+            told = seen(viewer, n)
+            assert told.landmarks is not None
+            places = project(RIG.cameras[viewer - 1], lying)
+            shown = msgspec.structs.replace(
+                told.landmarks, joints_px=tuple((x, y) for x, y in places.tolist())
+            )
+            pair.append(msgspec.structs.replace(told, landmarks=shown))
+        state = rig_agreement.step(state, RIG, (pair[0], pair[1]))
+    assert state.told == before
+    assert before is not None
+    assert before.believed == 1.0

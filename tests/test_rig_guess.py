@@ -7,7 +7,7 @@ import pytest
 
 from common.rig.camera import PAPER_ROTATIONS, paper_rig
 from integrator.selfcalibration.person_prior import SHARES
-from integrator.selfcalibration.rig_guess import pinholes, rig_of, rotation
+from integrator.selfcalibration.rig_guess import FOCALS, RIG, pinholes, rig_of, rotation
 
 
 def test_the_papers_rig_is_a_vector_whose_second_camera_is_turned_to_the_right() -> None:
@@ -37,3 +37,13 @@ def test_a_camera_that_is_rolled_clockwise_shows_the_right_hand_higher() -> None
     aside = rotation(0.0, 0.0, 0.1) @ [1.0, 0.0, 0.0]
     assert (level @ [1.0, 0.0, 0.0])[1] == 0.0
     assert aside[1] < 0.0
+
+
+def test_a_step_of_the_fit_that_flies_off_gives_cameras_that_can_be_reckoned_with() -> None:
+    """It is taken back then; e^800 would be no number."""
+    guess = np.zeros(RIG + len(SHARES) + 1)
+    guess[FOCALS] = (800.0, -800.0)
+    focals = [camera.focal_px for camera in pinholes(guess)]
+    assert np.isfinite(focals).all()
+    assert focals[0] > 1e6
+    assert 0.0 < focals[1] < 1e-6

@@ -21,8 +21,9 @@ GOOD = Solved(rig=RIG, gap_mm=15.0, turn_error_deg=6.0, trust=Trusted(11.0, ()))
 def seen(
     viewer: ViewerNumber, n: int, swing: float, sure: float = 0.9, late_s: float = 0.0
 ) -> Report:
-    """Landmarks whose arms swing by so many pixels."""
+    """Landmarks of somebody upright whose arms swing by so many pixels."""
     joints_px = np.random.default_rng(1).uniform(30, 90, (15, 2))
+    joints_px[:2] = (60.0, 75.0), (62.0, 40.0)
     joints_px[3:9, 1] += swing * np.sin(n)
     places = tuple((x, y) for x, y in joints_px.tolist())
     moment = {"frame": n, "captured_s": n / HZ + late_s, "clock_s": n / HZ}

@@ -96,6 +96,43 @@ def test_silhouettes_that_meet_behind_the_cameras_are_nobodys(
     assert (found is not None) == meet
 
 
+@given(st.floats(-np.pi, np.pi), st.floats(0.0, np.pi))
+@settings(max_examples=15, deadline=None)
+def test_who_lies_is_looked_at_as_if_they_stood(heading: float, over: float) -> None:
+    """A room that is turned over with its cameras shows the same, given where the head is."""
+    x, z = np.cos(heading), np.sin(heading)
+    cross = np.array([[0.0, -z, 0.0], [z, 0.0, -x], [0.0, x, 0.0]])
+    turn = np.eye(3) + np.sin(over) * cross + (1.0 - np.cos(over)) * cross @ cross
+    masks = tuple(drawn(camera, (640, 480)) for camera in RIG.cameras)
+    cameras = tuple(
+        msgspec.structs.replace(camera, R=as_matrix(np.array(camera.R) @ turn.T))
+        for camera in RIG.cameras
+    )
+    lies = msgspec.structs.replace(RIG, cameras=cameras)
+    stood = look((masks[0], masks[1]), RIG, STATURE_M, 1 / 15)
+    found = look((masks[0], masks[1]), lies, STATURE_M, 1 / 15, turn[:, 1])
+    assert stood is not None
+    assert found is not None
+    assert found.middle_m == pytest.approx(turn @ stood.middle_m, abs=1e-6)
+    assert np.abs(found.windows - stood.windows).mean() < 1e-3
+    assert found.beside == pytest.approx(stood.beside, abs=0.08)
+    assert found.turn == pytest.approx(stood.turn @ turn.T, abs=0.08)
+
+
+@pytest.mark.parametrize(("worse", "better"), [(0, 1), (1, 0)])
+def test_a_camera_that_sees_somebody_along_the_body_is_left_out(worse: int, better: int) -> None:
+    """The other alone says it, from where the paper's camera of its number stands."""
+    masks = tuple(drawn(camera, (640, 480)) for camera in RIG.cameras)
+    along = centre(RIG.cameras[worse]) - np.array([0.2, 0.9, -0.1])
+    found = look((masks[0], masks[1]), RIG, STATURE_M, 1 / 15, along / np.linalg.norm(along))
+    assert found is not None
+    assert found.windows[worse].sum() == 0.0
+    assert found.windows[better].sum() > 50.0
+    told = found.beside[5 * better + 1 : 5 * better + 4]
+    assert told == pytest.approx([(0.0, 0.0, 1.0), (-1.0, 0.0, 0.0)][better], abs=0.1)
+    assert np.linalg.det(found.turn) == pytest.approx(1.0)
+
+
 @pytest.mark.parametrize("alone", [0, 1])
 def test_one_view_alone_takes_the_feet_to_the_floor(alone: int) -> None:
     """The lowest row's ray meets y = 0 where the figure stands; the other window stays empty."""

@@ -7,7 +7,7 @@ from rich.console import Console
 from common.atomic_file import unwritten
 from common.config.picture_size import size_of
 from common.config.settings_error import SettingsError
-from synth.motion.motions import POSTURES
+from synth.motion.motions import LASTS_S, POSTURES
 from synth.write import ClipSet, SynthError, write_set
 from tritrack.terminal import bar
 
@@ -46,5 +46,7 @@ def _refuse_postures(motion: str, postures: tuple[str, ...]) -> None:
     unknown = [name for name in postures if name not in POSTURES]
     if unknown:
         raise SettingsError(f"unknown posture {unknown[0]!r}; known are {', '.join(POSTURES)}")
-    if motion == "free" and postures:
-        raise SettingsError("free motion is no posture: leave --posture or --motion free out")
+    if motion in LASTS_S and postures:
+        raise SettingsError(
+            f"no posture belongs to this motion: leave --posture or --motion {motion} out"
+        )

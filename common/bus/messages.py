@@ -88,8 +88,9 @@ class Landmarks(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """JOINT_NAMES order, in [0, 1]: how probably each is less than 0.03 statures off (50 mm), where
     left and right are not exchanged: that is another question, and the facing tells more of it."""
     facing_deg: float = 0.0
-    """Which way the person faces, about the vertical: 0 towards this camera, 90 to the right of its
-    picture, in (-180, 180]."""
+    """Which way the person faces: 0 towards this camera, 90 to the right of its picture, in
+    (-180, 180]. About the vertical; about the trunk where that leans by more than 30 degrees in the
+    picture: as if the picture were turned until it is upright."""
     facing_confidence: float = 0.0
     """How probably that is less than 45 degrees off, in [0, 1]; 0: the source does not tell."""
     extremities_px: tuple[Pixel, ...] = ()

@@ -1,6 +1,7 @@
 """The pose that both silhouettes propose, cleared of clutter and refined where it fits badly."""
 
-from typing import NamedTuple
+import math
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +15,14 @@ from integrator.fit import pose_refinement, visual_hull
 from integrator.landmarks import landmark_fusion
 from integrator.landmarks.landmark_rays import Rays, rays_of
 from integrator.pairing import Pair, Seen
+from integrator.pose.inverse_kinematics import trunk_of
 from integrator.prior_body import prior
 from integrator.proposal import pose_proposal
 from integrator.proposal.pose_proposal import Memory, PoseProposal
+
+LEANS: Final = math.cos(math.radians(60.0))
+"""Cosine of the lean of a trunk from which on outlines are looked at as if it stood: the network
+that proposes joints has seen nobody who leans farther."""
 
 
 class Before(NamedTuple):
@@ -78,8 +84,7 @@ def step(before: Before, now: Instant) -> ProposedPose:
     body = body_vector(now.bdp)
     pose, beside_m = pose_proposal.pose_and_rest(body, was, known.joints_m)
     better, confidence = None, known.confidence
-    is_held = known.is_confident or (rays is not None and rays.are_trusted)
-    if now.method.refinement and not is_held:
+    if now.method.refinement and not _is_held(known, rays):
         previous = pose_refinement.Previous(before.pose, before.matched)
         better = pose_refinement.refined(pose, confidence, previous, body, now.rig, now.seen)
     if better is not None:
@@ -100,8 +105,24 @@ def step(before: Before, now: Instant) -> ProposedPose:
     )
 
 
+def _is_held(known: PoseProposal, rays: Rays | None) -> bool:
+    """Whether a pose is left as it is: it is sure, landmarks are trusted, or somebody lies, whom
+    the silhouettes match upside down as well."""
+    lies = trunk_of(known.joints_m)[1, 1] < LEANS
+    return known.is_confident or lies or (rays is not None and rays.are_trusted)
+
+
 def _proposed(before: Before, now: Instant) -> PoseProposal:
-    return pose_proposal.step(before.memory, now.bdp, now.rig, now.seen, now.dt_s)
+    up = _up(before, body_vector(now.bdp))
+    return pose_proposal.step(before.memory, now.bdp, now.rig, now.seen, now.dt_s, up)
+
+
+def _up(before: Before, body: Vector) -> Vector | None:
+    """Where the head was of somebody who leant far or lay, (3,); None of who did not."""
+    if before.pose is None:
+        return None
+    up: Vector = pose_proposal.trunk_axes(body, before.pose)[:, 1]
+    return up if up[1] < LEANS else None
 
 
 def _with_landmarks(

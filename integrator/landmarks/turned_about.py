@@ -6,6 +6,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from common.body.body import Vector
+from common.body.trunk_lean import lean_deg
 from integrator.landmarks.landmark_rays import Rays
 from integrator.proposal import pose_network
 
@@ -54,17 +56,23 @@ def yaw_deg(rotation: NDArray[np.float64], joints_m: NDArray[np.float64]) -> flo
         rotation: (3, 3) from the world to the camera.
         joints_m: (12, 3)
     """
-    across = np.zeros(3)
-    for girdle in (pose_network.SHOULDERS, pose_network.HIPS):
-        left, right = joints_m[girdle]
-        across += left - right
-    return facing_deg(rotation, across)
+    shoulders, hips = joints_m[pose_network.SHOULDERS], joints_m[pose_network.HIPS]
+    across = shoulders[0] - shoulders[1] + hips[0] - hips[1]
+    return facing_deg(rotation, across, shoulders.sum(axis=0) - hips.sum(axis=0))
 
 
-def facing_deg(rotation: NDArray[np.float64], across: NDArray[np.float64]) -> float:
-    """Likewise of somebody whose left is there of the right, (3,) world; (-180, 180]."""
-    to_right, _, away = rotation @ across
-    return math.degrees(math.atan2(away, to_right))
+def facing_deg(rotation: NDArray[np.float64], across: Vector, up: Vector) -> float:
+    """Which way somebody faces, as `Landmarks.facing_deg`, (-180, 180].
+
+    Args:
+        rotation: (3, 3) from the world to the camera.
+        across: (3,) where the left is of the right, world.
+        up: (3,) where the neck is of the pelvis.
+    """
+    to_right, down, away = (rotation @ across).tolist()
+    leans_right, leans_down, _ = (rotation @ up).tolist()
+    lean = math.radians(lean_deg(leans_right, leans_down))
+    return math.degrees(math.atan2(away, to_right * math.cos(lean) + down * math.sin(lean)))
 
 
 def _told(said_deg: float, facing_deg: float) -> float:

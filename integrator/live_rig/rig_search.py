@@ -10,7 +10,13 @@ from common.bus.messages import Report, ViewerNumber
 from common.rig.camera import Rig
 from integrator.live_rig.rig_job import Job, Solved, Stand, Trusted, packed
 from integrator.pairing import Pair
-from integrator.selfcalibration.joint_tracks import JOINTS, LEAST_SURE, Row, row_of
+from integrator.selfcalibration.joint_tracks import (
+    JOINTS,
+    LEAST_SURE,
+    Row,
+    is_upright,
+    row_of,
+)
 from integrator.selfcalibration.lateness import LEAST_LATE
 
 ASKS_S: Final = (4.0, 8.0, 16.0, 32.0)
@@ -210,7 +216,7 @@ def _gathered(state: State, pair: Pair) -> State:
 
 def _is_sure(report: Report) -> bool:
     seen = report.landmarks
-    if report.box is None or seen is None:
+    if report.box is None or seen is None or not is_upright(seen):
         return False
     return float(np.mean(seen.confidence)) >= LEAST_SURE
 

@@ -78,6 +78,7 @@ def step(
     rig: Rig,
     seen: tuple[Report | None, Report | None],
     since_s: float,
+    up: Vector | None = None,
 ) -> PoseProposal:
     """The joints that silhouettes propose, whole ones where there are any.
 
@@ -89,17 +90,18 @@ def step(
         rig: The cameras, without distortion.
         seen: What each view reports; None where it has nobody.
         since_s: Time since the instant before.
+        up: (3,) where the head is of somebody who leans far or lies, world; None: above.
     """
     any_whole = any(report is not None and not report.cut for report in seen)
     first, second = (
         None if report is None or (any_whole and report.cut) else unpack(report) for report in seen
     )
     height_m = stature(bdp)
-    shown = look((first, second), rig, height_m, since_s)
+    shown = look((first, second), rig, height_m, since_s, up)
     if shown is None:
         areas_px = [0 if report is None else report.area_px for report in seen]
         larger = (first, None) if areas_px[0] >= areas_px[1] else (None, second)
-        shown = look(larger, rig, height_m, since_s)
+        shown = look(larger, rig, height_m, since_s, up)
     assert shown is not None  # one alone stands somewhere
     memory, found = pose_network.step(network_weights.shipped(), memory, shown, height_m)
     joints_m = found.joints_m - height_m * JOINTS_OFF @ trunk_of(found.joints_m).T

@@ -33,8 +33,13 @@ BESIDE: Final = 11
 scale; how long it has been since the look before."""
 LONGEST_S, USUAL_S = 0.4, 1 / 15
 """A longer gap says no more; how time is measured."""
-UPWARDS_M: Final = np.array([0.0, 0.1, 0.0])
+UP_AXIS: Final = np.array([0.0, 1.0, 0.0])
+ABOVE_M: Final = 0.1
 """Which way is up in a picture is seen over this length."""
+STEEPEST: Final = 0.75
+"""Sine of the angle over the horizon of the body beyond which a camera sees along it."""
+ALONG: Final = 1e-3
+"""Sine of the angle to an axis of what is along it."""
 NEARNESS: Final = 4.0
 """Brings stature over distance to about one."""
 NEAR_M, FAR_M = 1.0, 12.0
@@ -71,7 +76,11 @@ def axes_of(one: Camera, other: Camera) -> Vector:
 
 
 def look(
-    masks: tuple[Mask | None, Mask | None], rig: Rig, stature_m: float, since_s: float
+    masks: tuple[Mask | None, Mask | None],
+    rig: Rig,
+    stature_m: float,
+    since_s: float,
+    up: Vector | None = None,
 ) -> Look | None:
     """The silhouettes as the network wants them; None where their rays do not meet before both.
 
@@ -80,12 +89,17 @@ def look(
         rig: The cameras; their world has y up and its floor at 0.
         stature_m: Of the person.
         since_s: Time since the look before.
+        up: (3,) where the head is of somebody who leans far or lies, world; None: above.
     """
-    turn = axes_of(rig.cameras[0], rig.cameras[1])
-    mirrored = bool(np.linalg.det(turn) < 0.0)
     middle_m = _middle_m(masks, rig)
     if middle_m is None:
         return None
+    if up is not None:
+        masks = _from_a_side(masks, rig, middle_m, up)
+    turn = (
+        axes_of(rig.cameras[0], rig.cameras[1]) if up is None else _about(masks, rig, middle_m, up)
+    )
+    mirrored = bool(np.linalg.det(turn) < 0.0)
     windows, beside = np.zeros((2, CELLS), np.float32), np.zeros(BESIDE, np.float32)
     beside[-1] = min(since_s, LONGEST_S) / USUAL_S - 1.0
     for n, mask in enumerate(masks):
@@ -93,9 +107,50 @@ def look(
             continue
         camera = rig.cameras[n]
         _tell(turn, centre(camera) - middle_m, stature_m, beside[5 * n : 5 * n + 5])
-        cells = _cells(mask, camera, middle_m, stature_m)
+        cells = _cells(mask, camera, middle_m, stature_m, turn[1])
         windows[n] = (cells[:, ::-1] if mirrored else cells).ravel()
     return Look(windows, beside, middle_m, turn, mirrored)
+
+
+def _from_a_side(
+    masks: tuple[Mask | None, Mask | None], rig: Rig, middle_m: Vector, up: Vector
+) -> tuple[Mask | None, Mask | None]:
+    """Without the view that sees somebody along the body, where the other sees them from a side:
+    nothing like it was learnt from."""
+    first, second = masks
+    rises = [abs(float(_away(camera, middle_m) @ up)) for camera in rig.cameras]
+    if first is None or second is None or max(rises) <= STEEPEST:
+        return masks
+    return (first, None) if rises[1] > rises[0] else (None, second)
+
+
+def _about(
+    masks: tuple[Mask | None, Mask | None], rig: Rig, middle_m: Vector, up: Vector
+) -> Vector:
+    """Axes as those of `axes_of` about who leans far, by the views that see: y to the head, z
+    towards camera 1; camera 2 alone is where the paper's is, to the left."""
+    first, second = (_across(_away(camera, middle_m), up) for camera in rig.cameras)
+    if masks[0] is None:
+        return np.stack([-second, up, np.cross(-second, up)])
+    right = np.cross(up, first)
+    side = -1.0 if masks[1] is not None and second @ right > 0.0 else 1.0
+    return np.stack([side * right, up, first])
+
+
+def _away(camera: Camera, middle_m: Vector) -> Vector:
+    """Towards a camera, unit length."""
+    away: Vector = centre(camera) - middle_m
+    return away / np.linalg.norm(away)
+
+
+def _across(away: Vector, up: Vector) -> Vector:
+    """What of a direction is across an axis, unit length; anything that is, of one along it."""
+    for tried in (away, *np.eye(3)):
+        across = tried - (tried @ up) * up
+        length = float(np.linalg.norm(across))
+        if length > ALONG:
+            return across / length
+    raise AssertionError("no axis is along all axes")
 
 
 @compiled
@@ -144,9 +199,9 @@ def _depth_m(camera: Camera, place_m: Vector) -> float:
     return float(arrays_of(camera).R[2] @ place_m + camera.t[2])
 
 
-def _cells(mask: Mask, camera: Camera, middle_m: Vector, stature_m: float) -> Floats:
+def _cells(mask: Mask, camera: Camera, middle_m: Vector, stature_m: float, up: Vector) -> Floats:
     """How much of each cell is covered, (ROWS, COLUMNS): upright, as large as the person."""
-    at_and_above = project(camera, np.stack([middle_m, middle_m + UPWARDS_M]))
+    at_and_above = project(camera, np.stack([middle_m, middle_m + ABOVE_M * up]))
     size_px = camera.K[0][0] * stature_m / _depth_m(camera, middle_m)
     fine = cv2.warpAffine(
         mask.view(np.uint8) * np.uint8(255),

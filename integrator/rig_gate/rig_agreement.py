@@ -10,6 +10,7 @@ from common.body.body import JOINT_NAMES, Vector
 from common.bus.messages import Agreement, Landmarks, Report
 from common.rig.camera import Camera, Rig, arrays_of
 from integrator.pairing import Seen
+from integrator.selfcalibration.joint_tracks import is_upright
 from integrator.selfcalibration.person_prior import ANKLE_SHARE
 
 SAMPLES, APART_S = 40, 0.15
@@ -106,7 +107,9 @@ def _left(value: float, usual: float, never: float) -> float:
 
 def _is_sure(report: Report) -> bool:
     seen = report.landmarks
-    return seen is not None and not report.cut and float(np.mean(seen.confidence)) >= SURE
+    if seen is None or report.cut or not is_upright(seen):
+        return False
+    return float(np.mean(seen.confidence)) >= SURE
 
 
 def _sample(rig: Rig, first: Landmarks, second: Landmarks) -> tuple[Vector, tuple[float, ...]]:

@@ -1,5 +1,6 @@
 """What both views saw of one person over time, as arrays."""
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import Final, NamedTuple
 
@@ -7,13 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, Vector
-from common.bus.messages import Report
+from common.bus.messages import Landmarks, Report
 
 JOINTS: Final = len(JOINT_NAMES)
+_PELVIS, _NECK = (JOINT_NAMES.index(name) for name in ("pelvis", "neck"))
 LEAST_SURE: Final = 0.4
 """A view whose landmarks are less sure on average tells nothing of a frame."""
 MOST_FRAMES, LONGEST = 80, 360
 """As many of a clip are enough, for neighbours err alike; and of one that lasts long."""
+UPRIGHT: Final = math.cos(math.radians(60.0))
+"""Cosine of the lean of a trunk in the picture from which on nothing is told of a rig: who lies has
+no soles on the floor, and is seen less well."""
 ENOUGH_HZ: Final = 2.5
 """As many a second are looked at in a long clip."""
 
@@ -47,7 +52,8 @@ Row = tuple[float, Vector, Vector, float, float]
 
 
 def track_of(reports: Iterable[Report]) -> JointTrack:
-    """The landmarks of one view's reports; what is cut off or not seen has confidence 0."""
+    """The landmarks of one view's reports; what is cut off, not seen or of somebody who lies has
+    confidence 0."""
     return track_of_rows([row_of(report) for report in reports])
 
 
@@ -66,7 +72,7 @@ def track_of_rows(rows: Sequence[Row]) -> JointTrack:
 def row_of(report: Report) -> Row:
     """What is kept of a report."""
     seen = report.landmarks
-    if seen is None or report.box is None:
+    if seen is None or report.box is None or not is_upright(seen):
         return report.captured_s, np.zeros((JOINTS, 2)), np.zeros(JOINTS), 0.0, 0.0
     joints, confidence = np.array(seen.joints_px), np.array(seen.confidence)
     outside = (joints < 1).any(axis=1) | (joints > (report.width - 1, report.height - 1)).any(
@@ -74,6 +80,12 @@ def row_of(report: Report) -> Row:
     )
     confidence[outside] = 0.0
     return report.captured_s, joints, confidence, seen.facing_deg, seen.facing_confidence
+
+
+def is_upright(seen: Landmarks) -> bool:
+    """Whether a view sees the trunk of somebody who does not lie."""
+    across, down = np.subtract(seen.joints_px[_PELVIS], seen.joints_px[_NECK]).tolist()
+    return bool(down >= UPRIGHT * math.hypot(across, down))
 
 
 def useful_times(sighting: Sighting) -> Vector:

@@ -20,6 +20,9 @@ towards -z; angles are radians, lengths metres. What is fitted besides follows i
 lengths of the person, then the lateness of view 2 in each clip, seconds."""
 PLACE: Final = {name: n for n, name in enumerate(NAMES)}
 FOCALS: Final = slice(0, 2)
+FARTHEST: Final = 20.0
+"""Logarithms of focal lengths in pixels go no farther where a step of the fit flies off, which is
+then taken back: e^20 is more than any camera has, and still a number that can be reckoned with."""
 RIG: Final = len(NAMES)
 BODY: Final = slice(RIG, RIG + len(LENGTHS))
 """Logarithms of the person's lengths, metres."""
@@ -38,7 +41,7 @@ class Pinhole(NamedTuple):
 
 def pinholes(guess: Vector) -> tuple[Pinhole, Pinhole]:
     """Both cameras of a vector."""
-    focal_1, focal_2 = math.exp(guess[0]), math.exp(guess[1])
+    focal_1, focal_2 = np.exp(guess[FOCALS].clip(-FARTHEST, FARTHEST)).tolist()
     pitch_1, roll_1, height_1, yaw_2, pitch_2, roll_2, x_2, height_2, z_2 = guess[2:RIG].tolist()
     return (
         Pinhole(focal_1, rotation(0.0, pitch_1, roll_1), np.array([0.0, height_1, 0.0])),

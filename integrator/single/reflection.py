@@ -50,7 +50,7 @@ def yaw_deg(camera: Camera, joints_m: Joints) -> float:
     """Which way the lines across shoulders and hips face: 0 the camera, 90 the picture's right."""
     at = {name: joints_m[i] for i, name in enumerate(JOINT_NAMES)}
     across = at["l_shoulder"] - at["r_shoulder"] + at["l_hip"] - at["r_hip"]
-    return facing_deg(arrays_of(camera).R, across)
+    return facing_deg(arrays_of(camera).R, across, at["neck"] - at["pelvis"])
 
 
 def faces(yaw: float) -> Orientation:

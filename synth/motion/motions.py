@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
+from synth.motion.falling import FALL_S, Fall, fall, fallen, lain
 from synth.motion.footing import posed
 from synth.motion.moves import MOTION_S, MOVES, Move, Track, smooth
 from synth.motion.roaming import FREE_S, roaming
@@ -22,6 +23,8 @@ OPENING_S: Final = (9 / 15, 14 / 15, 6 / 15)
 """How long the room is empty, the T-pose is held, the arms come down."""
 RAMP_S: Final = 0.25
 """How fast a repeated movement begins and ends."""
+LASTS_S: Final = {"free": FREE_S, "fall": FALL_S}
+"""Motions that are no posture, and how long they take."""
 SWAY_HZ: Final = (0.35, 0.6, 1.1)
 """Frequencies of the sway that nobody can hold back."""
 SWAY_SHARE: Final = {
@@ -76,7 +79,8 @@ def performance(
 
     Args:
         someone: Who performs.
-        posture: One of POSTURES, or "free": turning and moving at random.
+        posture: One of POSTURES; "free": turning and moving at random; "fall": the same, but tipped
+            over, lying and getting up again.
         seed: Of the take.
         fps: Frames a second.
         motion_s: For how long the posture is performed, again and again; 0: once, as in a set.
@@ -84,23 +88,28 @@ def performance(
     Raises:
         ValueError: When the posture is not known.
     """
-    if posture != "free" and posture not in MOVES:
-        raise ValueError(f"unknown posture {posture!r}; known are free, {', '.join(POSTURES)}")
+    if posture not in (*LASTS_S, *MOVES):
+        raise ValueError(
+            f"unknown posture {posture!r}; known are {', '.join((*LASTS_S, *POSTURES))}"
+        )
     rng = np.random.default_rng([someone.seed, seed, *posture.encode()])
     style = take_style(someone.style, rng)
-    lasts = (*OPENING_S, motion_s or (FREE_S if posture == "free" else MOTION_S))
+    lasts = (*OPENING_S, motion_s or LASTS_S.get(posture, MOTION_S))
     phase = np.repeat(np.arange(4, dtype=np.uint8), [round(s * fps) for s in lasts])
     time_s = (np.arange(len(phase)) - int((phase < MOTION).sum())) / fps
-    if posture != "free":
+    if posture in MOVES:
         time_s = np.where(time_s > 0.0, time_s % MOTION_S, time_s)
     still = stance(style, time_s)
     leash = None
-    if posture == "free":
-        moved, leash = roaming(still, time_s, rng)
-    else:
+    if posture in MOVES:
         moved = performed(MOVES[posture], still, time_s, style)
+    else:
+        moved, leash = roaming(still, time_s, rng)
+    if posture == "fall":
+        moved = lain(moved, np.stack([still[name] for name in ANGLES], axis=1), time_s)
     angles_deg = opened(moved, phase, fps) + sway(style, time_s, rng)
-    return staged(someone, Course(posture, fps, angles_deg, phase, style, leash))
+    falls = fall(time_s, rng) if posture == "fall" else None
+    return staged(someone, Course(posture, fps, angles_deg, phase, style, leash, falls))
 
 
 class Course(NamedTuple):
@@ -115,17 +124,21 @@ class Course(NamedTuple):
     style: Style
     leash: Vector | None
     """(n, 2) where the pelvis is drawn to; None: nowhere, and the way is centred."""
+    falls: Fall | None = None
+    """How they fall; None: they stay upright."""
 
 
 def staged(someone: Person, course: Course) -> Motion:
     """A take from the joint angles of all its frames: feet on the floor, in the room's middle."""
-    posture, fps, angles_deg, phase, style, leash = course
+    posture, fps, angles_deg, phase, style, leash, falls = course
     start = np.array([style.x0, style.z0])
     body = posed(someone.measures, angles_deg, start, leash)
     if leash is None:
         path = body.joints_m[:, 0, [0, 2]] - start
         centred = start - (path.max(axis=0) + path.min(axis=0)) / 2
         body = posed(someone.measures, angles_deg, centred)
+    if falls is not None:
+        body = fallen(body, falls)
     empty = phase == EMPTY
     joints, root, angles = body.joints_m, body.joints_m[:, 0].copy(), angles_deg.copy()
     for array in (joints, root, angles):
@@ -203,10 +216,11 @@ _FIVE: Final[dict[str, Movement]] = {
     "squat": "squatting",
     "kick": "kicking",
     "free": "free",
+    "fall": "free",
     "stream": "free",
 }
 
 
 def movement(posture: str) -> Movement:
-    """Which of the paper's five movements a posture belongs to; free motion and streams to none."""
+    """Which of the paper's five movements a posture belongs to; "free": to none."""
     return _FIVE[posture.split("_", maxsplit=1)[0]]

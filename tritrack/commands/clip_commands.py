@@ -85,8 +85,8 @@ def line_of_runs(clips: Mapping[str, Mapping[str, Any]], out: Path) -> str:
 def synth(
     out: Out,
     motion: Annotated[
-        Literal["postures", "free", "stream"],
-        typer.Option(help="The 15 postures, free motion, or all of them in one take."),
+        Literal["postures", "free", "fall", "stream"],
+        typer.Option(help="The 15 postures, free motion, falls, or all postures in one take."),
     ] = "postures",
     performers: Annotated[int, typer.Option(min=1, max=1000, help="How many people.")] = 1,
     takes: Annotated[

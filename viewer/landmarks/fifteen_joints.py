@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES
+from common.body.trunk_lean import lean_deg
 from viewer.landmarks.keypoint_layouts import POINT
 
 Floats = NDArray[np.float64]
@@ -55,11 +56,13 @@ def facing_deg(points: Floats) -> float:
     Who faces the camera has the left shoulder and hip on the right of the picture; whose nose is on
     the right of the ears faces the right of the picture.
     """
+    hips, shoulders = (_middle(points, *_PAIRS[name]) for name in ("pelvis", "neck"))
+    lean = math.radians(lean_deg(*(shoulders - hips).tolist()))
+    upright = points @ np.array([math.cos(lean), math.sin(lean)])
     across = sum(
-        points[POINT[f"l_{name}"], 0] - points[POINT[f"r_{name}"], 0]
-        for name in ("shoulder", "hip")
+        upright[POINT[f"l_{name}"]] - upright[POINT[f"r_{name}"]] for name in ("shoulder", "hip")
     )
-    ahead = points[POINT["nose"], 0] - _middle(points, "l_ear", "r_ear")[0]
+    ahead = upright[POINT["nose"]] - (upright[POINT["l_ear"]] + upright[POINT["r_ear"]]) / 2
     return math.degrees(math.atan2(NOSE_WEIGHT * ahead, across))
 
 

@@ -1,0 +1,105 @@
+"""Falls: somebody stands and moves, tips over some way, lies and moves on, and gets up again."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Vector
+from synth.motion.footing import Posed
+from synth.person.skeleton import ANGLES, JOINTS
+
+FALL_S: Final = 17.0
+"""Length of the motion."""
+FALLS_S: Final = (5.0, 5.8)
+"""When the fall begins, and the body lies."""
+RISES_S: Final = (13.0, 15.0)
+"""When it begins to get up, and stands."""
+LYING_DEG: Final = (78.0, 95.0)
+"""How far over the body is then."""
+STILLER: Final = 0.3
+"""What is left of free motion in the limbs of who lies, the trunk's turning apart."""
+FLESH_M: Final = 0.09
+"""So far over the floor the lowest joint of a lying body is."""
+CARRIES: Final = [
+    i for i, name in enumerate(JOINTS) if name[2:] not in ("elbow", "wrist", "knuckle")
+]
+"""Joints that a body lies on; arms give way."""
+_TURN: Final = ANGLES.index("root_yaw")
+"""Who lies rolls over by it."""
+
+
+def lain(
+    angles_deg: NDArray[np.float64], stance: NDArray[np.float64], t: Vector
+) -> NDArray[np.float64]:
+    """Joint angles (n, 27) of free motion, smaller where the body lies.
+
+    Args:
+        angles_deg: (n, 27) of free motion.
+        stance: (n, 27) of who only stands.
+        t: (n,) seconds since the motion began.
+    """
+    share = 1.0 - (1.0 - STILLER) * tipped(t)[:, None]
+    found: NDArray[np.float64] = stance + share * (angles_deg - stance)
+    found[:, _TURN] = angles_deg[:, _TURN]
+    return found
+
+
+def tipped(t: Vector) -> Vector:
+    """How far over the body is, (n,): 0 upright, 1 lying."""
+    found: Vector = _eased(t, FALLS_S) * (1.0 - _eased(t, RISES_S))
+    return found
+
+
+def _eased(t: Vector, between_s: tuple[float, float]) -> Vector:
+    first, last = between_s
+    x = np.clip((t - first) / (last - first), 0.0, 1.0)
+    found: Vector = x * x * (3.0 - 2.0 * x)
+    return found
+
+
+class Fall(NamedTuple):
+    """How somebody falls."""
+
+    time_s: Vector
+    """(n,) seconds of the frames since the motion began."""
+    heading: float
+    """About which level axis, radians: any way."""
+    far_deg: float
+    """How far over the body is when it lies."""
+
+
+def fall(time_s: Vector, rng: np.random.Generator) -> Fall:
+    """Any fall."""
+    return Fall(time_s, rng.uniform(0.0, 2.0 * np.pi), rng.uniform(*LYING_DEG))
+
+
+def fallen(body: Posed, how: Fall) -> Posed:
+    """A moving body, tipped over about the place where it stands, on the floor.
+
+    Who lies goes on where they stood: the middle of the body is where the feet were.
+    """
+    over = tipped(how.time_s)
+    axis = np.array([np.cos(how.heading), 0.0, np.sin(how.heading)])
+    turns = _turns(axis, np.radians(how.far_deg) * over)
+    foot = body.joints_m[:, 0] * [1.0, 0.0, 1.0]
+    joints_m = np.einsum("nij,nkj->nki", turns, body.joints_m - foot[:, None]) + foot[:, None]
+    bones = body.bones.copy()
+    bones[..., :3] = np.einsum("nij,nbjk->nbik", turns, body.bones[..., :3])
+    bones[..., 3] = (
+        np.einsum("nij,nbj->nbi", turns, body.bones[..., 3] - foot[:, None]) + foot[:, None]
+    )
+    lowest_m, stood_m = (whole[:, CARRIES, 1].min(axis=1) for whole in (joints_m, body.joints_m))
+    moved = over[:, None] * (foot - joints_m.mean(axis=1))
+    moved[:, 1] = stood_m + over * (FLESH_M - stood_m) - lowest_m
+    joints_m += moved[:, None]
+    bones[..., 3] += moved[:, None]
+    return Posed(joints_m, bones)
+
+
+def _turns(axis: Vector, radians: Vector) -> NDArray[np.float64]:
+    """Rotations about an axis, (n, 3, 3), by Rodrigues' formula."""
+    x, y, z = axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    sines, cosines = np.sin(radians), np.cos(radians)
+    return np.eye(3) + sines[:, None, None] * cross + (1 - cosines)[:, None, None] * cross @ cross
