@@ -40,6 +40,7 @@ SYSTEM = {
     "layout": "the rules of the house, this file",
     "readme": "the README, typed as it stands in a fresh copy",
     "system_commands": "every command as a user calls it",
+    "system_fall": "somebody who falls, from a clip to the joints, and what it leaves of the rig",
     "system_hosts": "containers and units of a rig over hosts: what they start is there",
     "system_live_fallback": "live runs that lose a view: real processes that are killed or frozen",
     "system_lost_view": "both viewers and the integrator in lock-step, then one of them alone",

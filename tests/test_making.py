@@ -48,7 +48,7 @@ def test_free_motion_is_of_no_posture(tmp_path: Path) -> None:
         ({"size": "64"}, "size must look like 160x120, got '64'"),
         ({"size": "9999x9999"}, "from 32x32 to 4096x4096 pixels, got 9999x9999"),
         ({"postures": ("squat", "dance")}, "unknown posture 'dance'; known are walk_in_place"),
-        ({"motion": "free"}, "free motion is no posture"),
+        ({"motion": "free"}, "no posture belongs to this motion: leave --posture or --motion free"),
     ],
     ids=["half a size", "huge", "unknown posture", "a free posture"],
 )

@@ -8,6 +8,7 @@ from wild_rigs import Trial, filmed, missed, trial
 
 from common.rig.camera import paper_rig
 from common.rig.rig_file import CalibrationError, check_rig
+from integrator.selfcalibration.joint_tracks import JOINTS, JointTrack, Sighting
 from integrator.selfcalibration.person_calibration import calibrated_by_person
 from synth.motion.motions import performance
 from synth.person.people import person
@@ -49,6 +50,24 @@ def test_a_posture_on_a_spot_says_that_it_does_not_tell_focal_lengths() -> None:
     shown = filmed_by_the_papers_rig(4, "swing_both_backforth")
     unsure = calibrated_by_person((shown.sighting,), shown.stature_m).quality.unsure
     assert any(word.startswith("focal lengths") for word in unsure)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("error")
+def test_what_belongs_to_nobody_is_refused() -> None:
+    """Joints that wander each for itself, before both cameras."""
+    rng = np.random.default_rng(1)
+
+    def wandering() -> JointTrack:
+        steps_px = rng.normal(0.0, 3.0, (40, JOINTS, 2))
+        joints_px = rng.uniform(50.0, 200.0, (1, JOINTS, 2)) + np.cumsum(steps_px, axis=0)
+        sure = np.full((40, JOINTS), 0.9)
+        return JointTrack(
+            np.arange(40) / 15, joints_px, sure, rng.uniform(-180, 180, 40), sure[:, 0]
+        )
+
+    with pytest.raises(CalibrationError, match="fits no rig: film somebody who stands and walks"):
+        calibrated_by_person((Sighting(wandering(), wandering(), (320, 240)),), 1.75)
 
 
 @pytest.mark.slow

@@ -121,7 +121,7 @@ def test_every_command_has_help_with_an_example(tritrack: Commands, words: list[
         (["synth", "--out", "o", "--posture", "dance"], "unknown posture 'dance'; known are walk"),
         (
             ["synth", "--out", "o", "--motion", "free", "--posture", "squat"],
-            "free motion is no posture",
+            "no posture belongs to this motion",
         ),
         (["synth", "--out", "/dev/null/o"], "cannot write /dev/null/o: Not a directory"),
         (["track", "x", "--out", "/dev/null/o"], "cannot write /dev/null/o: Not a directory"),

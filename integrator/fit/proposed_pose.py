@@ -1,7 +1,6 @@
 """The pose that both silhouettes propose, cleared of clutter and refined where it fits badly."""
 
-import math
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +18,6 @@ from integrator.pose.inverse_kinematics import trunk_of
 from integrator.prior_body import prior
 from integrator.proposal import pose_proposal
 from integrator.proposal.pose_proposal import Memory, PoseProposal
-
-LEANS: Final = math.cos(math.radians(60.0))
-"""Cosine of the lean of a trunk from which on outlines are looked at as if it stood: the network
-that proposes joints has seen nobody who leans farther."""
 
 
 class Before(NamedTuple):
@@ -108,21 +103,13 @@ def step(before: Before, now: Instant) -> ProposedPose:
 def _is_held(known: PoseProposal, rays: Rays | None) -> bool:
     """Whether a pose is left as it is: it is sure, landmarks are trusted, or somebody lies, whom
     the silhouettes match upside down as well."""
-    lies = trunk_of(known.joints_m)[1, 1] < LEANS
+    lies = trunk_of(known.joints_m)[1, 1] < pose_proposal.LEANS
     return known.is_confident or lies or (rays is not None and rays.are_trusted)
 
 
 def _proposed(before: Before, now: Instant) -> PoseProposal:
-    up = _up(before, body_vector(now.bdp))
+    up = pose_proposal.up_of(now.bdp, before.pose)
     return pose_proposal.step(before.memory, now.bdp, now.rig, now.seen, now.dt_s, up)
-
-
-def _up(before: Before, body: Vector) -> Vector | None:
-    """Where the head was of somebody who leant far or lay, (3,); None of who did not."""
-    if before.pose is None:
-        return None
-    up: Vector = pose_proposal.trunk_axes(body, before.pose)[:, 1]
-    return up if up[1] < LEANS else None
 
 
 def _with_landmarks(

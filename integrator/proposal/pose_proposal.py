@@ -1,5 +1,6 @@
 """The pose that the silhouettes propose, and where joints lie beside the cylinders."""
 
+import math
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -7,7 +8,7 @@ from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, Bdp, Vector
 from common.body.kinematics import TORSO, joints, limb_frames
-from common.body.proportions import stature
+from common.body.proportions import body_vector, stature
 from common.bus.messages import Report
 from common.raster.silhouette_report import unpack
 from common.rig.camera import Rig
@@ -52,6 +53,10 @@ twelve other synthetic people in free motion, six rendered at both sizes, six ex
 CONFIDENT: Final = 0.75
 """A proposal whose landmarks are surer than this on average is left as it is: cylinders that match
 better than it stand farther from the true joints of r01 and r04."""
+
+LEANS: Final = math.cos(math.radians(60.0))
+"""Cosine of the lean of a trunk from which on outlines are looked at as if it stood: the network
+has seen nobody who leans farther."""
 
 Memory = Floats
 """What the network remembers of the instants before."""
@@ -106,6 +111,14 @@ def step(
     memory, found = pose_network.step(network_weights.shipped(), memory, shown, height_m)
     joints_m = found.joints_m - height_m * JOINTS_OFF @ trunk_of(found.joints_m).T
     return PoseProposal(joints_m, of_landmarks(probability(found.confidence)), memory)
+
+
+def up_of(bdp: Bdp, pose: Vector | None) -> Vector | None:
+    """Where the head is of somebody in a pose who leans far or lies, (3,); None of who does not."""
+    if pose is None:
+        return None
+    up: Vector = trunk_axes(body_vector(bdp), pose)[:, 1]
+    return up if up[1] < LEANS else None
 
 
 def of_landmarks(own: Vector) -> Vector:

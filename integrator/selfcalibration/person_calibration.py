@@ -51,7 +51,7 @@ def calibrated_by_person(
         fov_deg: How wide the cameras see, where it is known.
 
     Raises:
-        CalibrationError: When both views see too little of anybody.
+        CalibrationError: When both views see too little of anybody, or what fits no rig.
     """
     known = known_of(sightings[0].size_px[0], stature_m, len(sightings), fov_deg)
     evidence = gathered(sightings, known)
@@ -63,6 +63,11 @@ def calibrated_by_person(
         )
     found = best_fit(evidence, sightings)
     seen = _explained(found, evidence)
+    if not any(one.used.any() for one in seen):
+        raise CalibrationError(
+            "what both cameras show of the person fits no rig: film somebody who stands and walks, "
+            "whole in both pictures"
+        )
     places = seen[0].met.points_m[:AT_FIRST, prior.PELVIS]
     person_m = np.median(places, axis=0)
     rig = published_rig(found.guess, evidence.size_px, person_m)

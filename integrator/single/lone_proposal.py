@@ -59,7 +59,8 @@ def step(before: Before, sight: Sight) -> Proposed:
     front = before.front
     camera, annotations = sight.camera, sight.annotations
     rig = undistorted_rig(sight.rig)
-    known = pose_proposal.step(before.memory, sight.bdp, rig, sight.seen, sight.dt_s)
+    up = pose_proposal.up_of(sight.bdp, sight.before)
+    known = pose_proposal.step(before.memory, sight.bdp, rig, sight.seen, sight.dt_s, up)
     joints_m = _with_trunk(sight, known.joints_m)
     if sight.method.reflection and front is not None:
         yaw = reflection.yaw_deg(camera, joints_m)
