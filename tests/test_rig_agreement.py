@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from staging import RIG, report, standing
 
-from common.body.body import OTHER_SIDE
+from common.body.body import JOINT_NAMES, OTHER_SIDE, POSE_INDEX
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Landmarks, Report, ViewerNumber
@@ -116,3 +116,29 @@ def test_who_lies_does_not_make_a_right_rig_doubted() -> None:
     assert state.told == before
     assert before is not None
     assert before.believed == 1.0
+
+
+def test_who_stands_on_one_leg_for_long_does_not_make_a_right_rig_doubted() -> None:
+    """The middle of the ankles is 14 cm higher then, the lower one is where it was; and views take
+    left for right now and then."""
+    state = State()
+    legs = standing((0.1, -0.1))
+    legs[POSE_INDEX["l_hip_x"]], legs[POSE_INDEX["l_knee_x"]] = 60.0, -90.0
+    joints_m = np.asarray(joints(BODY, legs))
+    ankles_m = joints_m[[n for n, name in enumerate(JOINT_NAMES) if name.endswith("ankle")], 1]
+    assert np.ptp(ankles_m) > 0.25
+    for n in range(2 * SAMPLES):
+        pair = []
+        for viewer in VIEWERS:
+            told = seen(viewer, n)
+            assert told.landmarks is not None
+            places = project(RIG.cameras[viewer - 1], joints_m)
+            places = places[OTHER_SIDE] if viewer == 2 and n % 3 == 0 else places
+            shown = msgspec.structs.replace(
+                told.landmarks, joints_px=tuple((x, y) for x, y in places.tolist())
+            )
+            pair.append(msgspec.structs.replace(told, landmarks=shown))
+        state = rig_agreement.step(state, RIG, (pair[0], pair[1]))
+    assert state.told is not None
+    assert abs(state.told.soles_mm) < 30.0
+    assert state.told.believed == 1.0
