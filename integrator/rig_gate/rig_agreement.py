@@ -28,12 +28,13 @@ NARROW: Final = 0.05
 STANDS: Final = 0.4
 """Share of the time in which the lower ankle is lower: that foot is on the floor."""
 APART_MM: Final = (60.0, 80.0)
-SOLES_MM: Final = ((-45.0, -75.0), (30.0, 60.0))
+SOLES_MM: Final = ((-45.0, -75.0), (60.0, 95.0))
 FACING_DEG: Final = (90.0, 120.0)
 """What is as usual for a good rig, and what no good one has: between them belief falls. The right
 rig has views of r01 and r04 31 mm apart at most, facings 5 degrees apart; the views of other
 people, whom the network sees less well, are up to 56 mm apart. Soles of r01, r04 and 16 made-up
-people in free motion are -29 to 4 mm high, in the last second alone -42 to 47."""
+people in free motion are -29 to 4 mm high, in the last second alone -42 to 47; high heels lift
+ankles by 5 cm more."""
 SUDDEN: Final = 0.2
 """What is left of the belief in a rig that is contradicted in the last second alone."""
 LEAST: Final = 0.05
