@@ -34,7 +34,7 @@ ANNY_TIMES: Final = 2
 BACKDROPS: Final = 2_400
 HELD_BACK: Final = 100
 """People who are drawn to tell how good the network is, and not learnt from."""
-BATCHES, BATCH = 1_500, 64
+BATCHES, BATCH = 4_000, 64
 RATE, WARM, STEADY_SHARE = 2e-3, 100, 0.4
 """Highest rate, of what is new; batches until it is reached; share of them until it falls to
 nothing."""
@@ -47,7 +47,7 @@ NEAR: Final = 0.1
 
 
 def train_landmarks(out: Path, seed: int, console: Console) -> dict[str, Any]:
-    """Learn the network and write it, an hour on two cores; what is drawn and learnt is kept beside
+    """Learn the network and write it, two hours on two cores; what is drawn and learnt is kept beside
     it in a folder, `<out>.work`, and the next call with the same file goes on from there.
 
     Args:

@@ -18,10 +18,10 @@ DEEP: Final = 16.0
 add a thousandth."""
 APART: Final = 4
 """The next peak of a map is more cells than this from the highest, down or across."""
-PLATT: Final = (0.73, 1.32, 0.87)
+PLATT: Final = (0.75, 0.94, 0.57)
 """Of the network's own confidence, of how much of a joint's map lies about its peak, and 1: the
 logit of how often a joint was less than 0.03 statures off."""
-PLATT_OF_SECOND: Final = (-0.29, 1.69, 0.89)
+PLATT_OF_SECOND: Final = (-0.08, 1.52, 0.54)
 """Likewise of where else a joint may be: how often it was there, and not at the highest."""
 
 
