@@ -47,8 +47,10 @@ NEAR: Final = 0.1
 
 
 def train_landmarks(out: Path, seed: int, console: Console) -> dict[str, Any]:
-    """Learn the network and write it, two hours on two cores; what is drawn and learnt is kept beside
-    it in a folder, `<out>.work`, and the next call with the same file goes on from there.
+    """Learn the network and write it, two hours on two cores.
+
+    What is drawn and learnt is kept beside it in a folder, `<out>.work`, and the next call with the
+    same file goes on from there.
 
     Args:
         out: The file to write, ONNX.
