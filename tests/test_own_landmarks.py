@@ -113,8 +113,8 @@ def test_a_grey_and_tiny_picture_is_looked_at_too() -> None:
 def test_whoever_lies_or_stands_on_their_hands_is_found_as_well(
     times: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """All of the picture is turned by a quarter, so often. At first it is looked at where the outline
-    is, as a whole, closer, and upright; after that one look is enough."""
+    """All of the picture is turned by a quarter, so often. At first it is looked at where the
+    outline is, as a whole, closer, and upright; after that one look is enough."""
     shot, joints_px, stature_px, _ = acted()
     size = np.array([320.0, 240.0])
     for _ in range(times):  # to the left
