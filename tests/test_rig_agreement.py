@@ -16,7 +16,6 @@ from integrator.rig_gate import rig_agreement
 from integrator.rig_gate.rig_agreement import FEWEST, SAMPLES, State
 from integrator.rig_gate.rig_fault import exchanged_rig
 
-VIEWERS: tuple[ViewerNumber, ...] = (1, 2)
 BODY = body_vector(thesis_bdp(1.75))
 
 
@@ -31,8 +30,17 @@ def turned(rig: Rig, yaw_deg: float, raised_m: float = 0.0) -> Rig:
     return msgspec.structs.replace(rig, cameras=(first, second))
 
 
-def seen(viewer: ViewerNumber, n: int, *, swaps: bool = False, sure: float = 0.9) -> Report:
-    joints_m = np.asarray(joints(BODY, standing((0.3 * math.sin(n), 0.2 * math.cos(n)))))
+def seen(
+    viewer: ViewerNumber,
+    n: int,
+    *,
+    swaps: bool = False,
+    sure: float = 0.9,
+    joints_m: np.ndarray | None = None,
+) -> Report:
+    """Somebody who stands and goes about, or whose joints (15, 3) are given."""
+    if joints_m is None:
+        joints_m = np.asarray(joints(BODY, standing((0.3 * math.sin(n), 0.2 * math.cos(n)))))
     places = project(RIG.cameras[viewer - 1], joints_m)
     places = places[OTHER_SIDE] if swaps else places
     facing = (0.0, 90.0)[viewer - 1]
@@ -40,10 +48,10 @@ def seen(viewer: ViewerNumber, n: int, *, swaps: bool = False, sure: float = 0.9
     return report(viewer, frame=n, captured_s=0.2 * n, landmarks=told)
 
 
-def after(rig: Rig, instants: int = 20, **how: bool) -> State:
+def after(rig: Rig, instants: int = 20, *, swaps: bool = False) -> State:
     state = State()
     for n in range(instants):
-        state = rig_agreement.step(state, rig, (seen(1, n), seen(2, n, **how)))
+        state = rig_agreement.step(state, rig, (seen(1, n), seen(2, n, swaps=swaps)))
     return state
 
 
@@ -103,16 +111,8 @@ def test_who_lies_does_not_make_a_right_rig_doubted() -> None:
     lying = lying[:, [1, 0, 2]] * [1.0, -1.0, 1.0] + [-0.9, 0.6, 0.0]
     before = state.told
     for n in range(20, 20 + 2 * SAMPLES):
-        pair = []
-        for viewer in VIEWERS:
-            told = seen(viewer, n)
-            assert told.landmarks is not None
-            places = project(RIG.cameras[viewer - 1], lying)
-            shown = msgspec.structs.replace(
-                told.landmarks, joints_px=tuple((x, y) for x, y in places.tolist())
-            )
-            pair.append(msgspec.structs.replace(told, landmarks=shown))
-        state = rig_agreement.step(state, RIG, (pair[0], pair[1]))
+        pair = (seen(1, n, joints_m=lying), seen(2, n, joints_m=lying))
+        state = rig_agreement.step(state, RIG, pair)
     assert state.told == before
     assert before is not None
     assert before.believed == 1.0
@@ -128,17 +128,8 @@ def test_who_stands_on_one_leg_for_long_does_not_make_a_right_rig_doubted() -> N
     ankles_m = joints_m[[n for n, name in enumerate(JOINT_NAMES) if name.endswith("ankle")], 1]
     assert np.ptp(ankles_m) > 0.25
     for n in range(2 * SAMPLES):
-        pair = []
-        for viewer in VIEWERS:
-            told = seen(viewer, n)
-            assert told.landmarks is not None
-            places = project(RIG.cameras[viewer - 1], joints_m)
-            places = places[OTHER_SIDE] if viewer == 2 and n % 3 == 0 else places
-            shown = msgspec.structs.replace(
-                told.landmarks, joints_px=tuple((x, y) for x, y in places.tolist())
-            )
-            pair.append(msgspec.structs.replace(told, landmarks=shown))
-        state = rig_agreement.step(state, RIG, (pair[0], pair[1]))
+        pair = (seen(1, n, joints_m=joints_m), seen(2, n, joints_m=joints_m, swaps=n % 3 == 0))
+        state = rig_agreement.step(state, RIG, pair)
     assert state.told is not None
     assert abs(state.told.soles_mm) < 30.0
     assert state.told.believed == 1.0

@@ -6,7 +6,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import Vector
 from common.body.trunk_lean import lean_deg
 from integrator.landmarks.landmark_rays import Rays
 from integrator.proposal import pose_network
@@ -50,7 +49,7 @@ def step(
 
 
 def yaw_deg(rotation: NDArray[np.float64], joints_m: NDArray[np.float64]) -> float:
-    """Which way shoulders and hips face: 0 the camera, 90 the right of its picture.
+    """Which way shoulders and hips face, as `Landmarks.facing_deg`, (-180, 180].
 
     Args:
         rotation: (3, 3) from the world to the camera.
@@ -58,19 +57,8 @@ def yaw_deg(rotation: NDArray[np.float64], joints_m: NDArray[np.float64]) -> flo
     """
     shoulders, hips = joints_m[pose_network.SHOULDERS], joints_m[pose_network.HIPS]
     across = shoulders[0] - shoulders[1] + hips[0] - hips[1]
-    return facing_deg(rotation, across, shoulders.sum(axis=0) - hips.sum(axis=0))
-
-
-def facing_deg(rotation: NDArray[np.float64], across: Vector, up: Vector) -> float:
-    """Which way somebody faces, as `Landmarks.facing_deg`, (-180, 180].
-
-    Args:
-        rotation: (3, 3) from the world to the camera.
-        across: (3,) where the left is of the right, world.
-        up: (3,) where the neck is of the pelvis.
-    """
     to_right, down, away = (rotation @ across).tolist()
-    leans_right, leans_down, _ = (rotation @ up).tolist()
+    leans_right, leans_down, _ = (rotation @ (shoulders.sum(axis=0) - hips.sum(axis=0))).tolist()
     lean = math.radians(lean_deg(leans_right, leans_down))
     return math.degrees(math.atan2(away, to_right * math.cos(lean) + down * math.sin(lean)))
 

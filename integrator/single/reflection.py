@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, OTHER_SIDE
 from common.notes.notes import ORIENTATIONS, Orientation
 from common.rig.camera import Camera, arrays_of, centre
-from integrator.landmarks.turned_about import facing_deg
+from integrator.landmarks import turned_about
+from integrator.landmarks.landmark_rays import AT
 
 Joints = NDArray[np.float64]
 SIDEWAYS_DEG: Final = 20.0
@@ -48,9 +49,7 @@ class Front(NamedTuple):
 
 def yaw_deg(camera: Camera, joints_m: Joints) -> float:
     """Which way the lines across shoulders and hips face: 0 the camera, 90 the picture's right."""
-    at = {name: joints_m[i] for i, name in enumerate(JOINT_NAMES)}
-    across = at["l_shoulder"] - at["r_shoulder"] + at["l_hip"] - at["r_hip"]
-    return facing_deg(arrays_of(camera).R, across, at["neck"] - at["pelvis"])
+    return turned_about.yaw_deg(arrays_of(camera).R, joints_m[AT])
 
 
 def faces(yaw: float) -> Orientation:
