@@ -4,9 +4,11 @@ from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from common.body.body import Vector
 from synth.motion.footing import Posed
+from synth.motion.moves import smooth
 from synth.person.skeleton import ANGLES, JOINTS
 
 FALL_S: Final = 17.0
@@ -53,9 +55,7 @@ def tipped(t: Vector) -> Vector:
 
 def _eased(t: Vector, between_s: tuple[float, float]) -> Vector:
     first, last = between_s
-    x = np.clip((t - first) / (last - first), 0.0, 1.0)
-    found: Vector = x * x * (3.0 - 2.0 * x)
-    return found
+    return smooth((t - first) / (last - first))
 
 
 class Fall(NamedTuple):
@@ -81,7 +81,7 @@ def fallen(body: Posed, how: Fall) -> Posed:
     """
     over = tipped(how.time_s)
     axis = np.array([np.cos(how.heading), 0.0, np.sin(how.heading)])
-    turns = _turns(axis, np.radians(how.far_deg) * over)
+    turns = Rotation.from_rotvec(np.outer(over, how.far_deg * axis), degrees=True).as_matrix()
     foot = body.joints_m[:, 0] * [1.0, 0.0, 1.0]
     joints_m = np.einsum("nij,nkj->nki", turns, body.joints_m - foot[:, None]) + foot[:, None]
     bones = body.bones.copy()
@@ -95,11 +95,3 @@ def fallen(body: Posed, how: Fall) -> Posed:
     joints_m += moved[:, None]
     bones[..., 3] += moved[:, None]
     return Posed(joints_m, bones)
-
-
-def _turns(axis: Vector, radians: Vector) -> NDArray[np.float64]:
-    """Rotations about an axis, (n, 3, 3), by Rodrigues' formula."""
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    sines, cosines = np.sin(radians), np.cos(radians)
-    return np.eye(3) + sines[:, None, None] * cross + (1 - cosines)[:, None, None] * cross @ cross
