@@ -1,12 +1,12 @@
-"""The JSON Schema of every message on the bus, written from the types: docs/messages.schema.json.
+"""Write docs/messages.schema.json, the JSON Schema of every message on the bus, from the types.
 
-.venv/bin/python benchmarks/message_schema.py docs/messages.schema.json
+Run from the checkout: .venv/bin/python benchmarks/message_schema.py
 """
 
+import argparse
 import json
-import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import msgspec
 
@@ -16,6 +16,8 @@ from common.bus.message_codec import TOPICS
 from common.bus.messages import PROTOCOL
 from common.config.part_settings import BusSettings
 from common.config.settings import Settings
+
+FILE: Final = Path(__file__).parents[1] / "docs" / "messages.schema.json"
 
 
 def schema() -> dict[str, Any]:
@@ -57,4 +59,5 @@ def text() -> str:
 
 
 if __name__ == "__main__":
-    Path(sys.argv[1]).write_text(text())
+    argparse.ArgumentParser(description=__doc__).parse_args()
+    FILE.write_text(text())

@@ -40,7 +40,7 @@ def check(payload: bytes, kind: type[Message]) -> None:
 
 
 def test_what_is_published_is_written_from_the_types() -> None:
-    """Else: .venv/bin/python benchmarks/message_schema.py docs/messages.schema.json."""
+    """Else: .venv/bin/python benchmarks/message_schema.py."""
     assert DOCS.read_text() == text()
     jsonschema.Draft202012Validator.check_schema(json.loads(text()))
 
