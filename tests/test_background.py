@@ -6,7 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from common.video.decoding import Image
-from viewer.background.background import learn, light_gain
+from viewer.background.background import even_light, learn, light_gain
 from viewer.background.occluded_background import learn_uncovered
 
 HEIGHT, WIDTH = 120, 160
@@ -86,3 +86,12 @@ def test_white_room_keeps_its_gain() -> None:
     frame = shot(white, 0.0, 0)
     frame[30:100, 60:100] = 30
     assert light_gain(frame, white.astype(np.float32)) == pytest.approx([1, 1, 1])
+
+
+@pytest.mark.parametrize("dark", [1, 3])
+def test_a_black_frame_among_the_first_is_no_fault_and_no_room(dark: int) -> None:
+    """As when a camera starts, or somebody passes a light switch."""
+    film = [shot(room(), 2.0, seed) for seed in range(8)]
+    film[:dark] = [np.zeros_like(film[0])] * dark
+    assert np.abs(learn(film).centre - room()).mean() < 2.0
+    assert np.isfinite(even_light(film)).all()

@@ -17,6 +17,7 @@ from common.video.clips import open_clip
 from common.video.decoding import ALL, Decoded, Decoder
 from viewer.background.background import Background
 from viewer.room.background_source import (
+    keep,
     opening_of_run,
     opening_of_view,
 )
@@ -135,3 +136,7 @@ def test_a_viewer_that_is_started_again_knows_its_cameras_room(clip: Path, tmp_p
     assert (odd, again.given) == ("", 0)
     room, _, _ = opening_of_run(view, SilhouetteSettings(), again, other)
     assert share_off(room, room_of(clip)) > 0.02
+    anew = learnt._replace(centre=learnt.centre + 1.0)
+    keep(first, view, anew)
+    room, _, _ = opening_of_run(view, SilhouetteSettings(), again, first)
+    assert np.array_equal(room.centre, anew.centre), "as it was learnt last"

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from test_own_landmarks import acted
 
+from common.body.body import JOINT_NAMES
 from common.bus.messages import Landmarks
 from viewer.landmarks.body_region import BONES, body_region, bone_region, stature_px
 
@@ -29,3 +30,24 @@ def test_all_bones_together_are_no_more_than_the_region() -> None:
     bones = [bone_region(true_landmarks(), mask.shape, n) for n in range(len(BONES))]
     whole = body_region(true_landmarks(), mask.shape, 0.01) > 0
     assert not (np.any(bones, axis=0) & ~whole).any()
+
+
+def without(*names: str) -> Landmarks:
+    """These joints unseen, as keypoint files write them: anywhere, with confidence 0."""
+    known, gone = true_landmarks(), [JOINT_NAMES.index(name) for name in names]
+    places = [(0.0, 0.0) if n in gone else place for n, place in enumerate(known.joints_px)]
+    sure = [0.0 if n in gone else 1.0 for n in range(len(places))]
+    return Landmarks(tuple(places), tuple(sure))
+
+
+def test_what_is_not_seen_makes_nobody_taller_and_is_not_drawn() -> None:
+    mask = acted()[0].mask1
+    unseen = without("l_ankle", "r_ankle", "l_wrist")
+    assert stature_px(unseen) == pytest.approx(stature_px(true_landmarks()), rel=0.15)
+    own, whole = (body_region(each, mask.shape, 0.0) > 0 for each in (unseen, true_landmarks()))
+    assert own.sum() < whole.sum()
+    assert (own & ~whole).mean() < 0.002
+
+
+def test_of_whom_nothing_long_is_seen_nothing_is_told() -> None:
+    assert stature_px(without("pelvis", "l_knee", "r_knee")) == 0.0

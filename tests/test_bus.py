@@ -420,6 +420,8 @@ def test_what_another_run_says_is_dropped_counted_and_named(
     with ExitStack() as doors:
         hub = doors.enter_context(open_hub(ours, ROOM))
         hub.answer(ClockQuestion, lambda _: ClockAnswer(now_s=1.0))
+        hub.keep(Guide)
+        hub.publish(a_guide(5))
         inbox = hub.subscribe(Report)
         own = doors.enter_context(open_client(ours, ROOM, SOON_S))
         own.publish(a_report(1, 0))
@@ -428,12 +430,14 @@ def test_what_another_run_says_is_dropped_counted_and_named(
             other.publish(a_report(1, 7))
             question = ClockQuestion(viewer=1, ready=True)
             assert other.ask(question, ClockAnswer, 0.5) is None
+            assert other.latest(Guide, 0.5) is None
         until_s = time.monotonic() + SOON_S
         while inbox.foreign < len(strangers) and time.monotonic() < until_s:
             time.sleep(0.01)
         assert (inbox.foreign, inbox.malformed) == (len(strangers), 0)
         assert [report.frame for report in inbox.drain()] == [0]
         assert own.ask(ClockQuestion(viewer=1, ready=True), ClockAnswer, SOON_S) is not None
+        assert own.latest(Guide, SOON_S) == a_guide(5)
     assert "another session" in caplog.text
     assert "sunday" in caplog.text
 

@@ -178,3 +178,8 @@ def test_feet_and_nose_are_told_where_a_layout_has_them(tmp_path: Path) -> None:
         assert by_name[name] == ((point + 0.5) / 2, (2 * point + 0.5) / 2)
     sure = dict(zip(EXTREMITY_NAMES, shown.extremities_confidence, strict=True))
     assert {name for name, share in sure.items() if share} == set(points)
+
+
+def test_a_folder_without_keypoint_files_is_said_to_be_one(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match="no keypoint files"):
+        numbered(tmp_path)

@@ -119,7 +119,7 @@ def test_a_live_viewer_reports_the_landmarks_that_a_recorded_one_does(
             for frame in recorded(view, 1, decoder, sources[1])
         }
         with Live(view, 1, RoomClock(time.monotonic() + 0.3), sources[1]) as live:
-            viewer.run(view, state, live, bus, threading.Event())
+            viewer.run(viewer.Prepared(view, state), live, bus, threading.Event())
     came = {report.frame: report.landmarks for report in reports.drain()}
     assert came
     assert None not in came.values()

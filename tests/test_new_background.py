@@ -19,15 +19,15 @@ def room(level: int) -> np.ndarray:
 
 def test_nothing_is_learnt_before_it_is_asked_for() -> None:
     learning = Learning(LocalBus().subscribe(Command), 1, SETTINGS)
-    assert [learning.step(room(90)) for _ in range(2 * DUE)] == [(None, None)] * 2 * DUE
+    assert [learning.step(room(90), "") for _ in range(2 * DUE)] == [(None, None)] * 2 * DUE
 
 
 def test_frames_after_the_word_become_the_background_once() -> None:
     bus = LocalBus()
     learning = Learning(bus.subscribe(Command), 2, SETTINGS)
-    learning.step(room(40))
+    learning.step(room(40), "")
     bus.publish(Command(what="background"))
-    told = [learning.step(room(140)) for _ in range(2 * DUE)]
+    told = [learning.step(room(140), "") for _ in range(2 * DUE)]
     learnt = [(background, answer) for background, answer in told if background is not None]
     assert len(learnt) == 1
     background, answer = learnt[0]
@@ -45,8 +45,20 @@ def test_where_somebody_moves_the_old_one_stays() -> None:
     for n in range(DUE):
         picture = room(140)
         picture[10:50, 6 * n : 6 * n + 20] = 20
-        background, answer = learning.step(picture)
+        background, answer = learning.step(picture, "")
         assert background is None
         answers.append(answer)
     assert answers[-1] is not None
     assert not answers[-1].well
+
+
+def test_a_camera_that_is_covered_learns_no_cover() -> None:
+    bus = LocalBus()
+    learning = Learning(bus.subscribe(Command), 1, SETTINGS)
+    bus.publish(Command(what="background"))
+    background, answer = learning.step(room(2), "black")
+    assert background is None
+    assert answer is not None
+    assert not answer.well
+    assert "black" in answer.text
+    assert [learning.step(room(2), "") for _ in range(DUE)] == [(None, None)] * DUE

@@ -2,7 +2,7 @@
 
 import msgspec
 import numpy as np
-from test_body_region import true_landmarks
+from test_body_region import true_landmarks, without
 from test_own_landmarks import acted, nobody, seen
 
 from common.bus.messages import Landmarks
@@ -69,3 +69,14 @@ def test_unsure_landmarks_change_nothing() -> None:
     for mask, _ in (with_door(), without_legs()):
         assert not corrected(seen(mask), unsure(), 0.15).is_changed
     assert not corrected(seen(mask), None, 0.15).is_changed
+
+
+def test_a_door_goes_though_no_ankle_is_seen() -> None:
+    cluttered, mask = with_door()
+    held = corrected(seen(cluttered), without("l_ankle", "r_ankle"), 0.15)
+    assert iou(held.seen.mask, mask) > 0.85 > iou(cluttered, mask)
+
+
+def test_landmarks_that_tell_no_size_overrule_nothing() -> None:
+    own = seen(with_door()[0])
+    assert corrected(own, without("pelvis", "l_knee", "r_knee"), 0.15).seen is own

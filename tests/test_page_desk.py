@@ -21,7 +21,9 @@ from common.config.settings import Settings
 from tritrack.live.free_ports import free_settings
 from tritrack.live.launch import nothing_heard
 from tritrack.live.page_desk import LAST_S, SAVED, PageDesk
+from tritrack.live.recorded import MessageLog
 from tritrack.live.session import live
+from tritrack.store.journal import Head, Journal
 from tritrack.store.past_run import open_run
 
 RATE_HZ = 15
@@ -142,6 +144,28 @@ def test_a_recording_goes_from_its_first_word_to_its_last(sitting: Sitting, tmp_
     assert answer.well
     assert np.ptp(open_run(saved(tmp_path)).poses["time_s"]) == pytest.approx(3.0)
     assert sitting.ask("end_record") is None, "nothing is recorded any more"
+
+
+def test_a_recording_that_memory_did_not_hold_is_read_from_the_journal(
+    sitting: Sitting, tmp_path: Path
+) -> None:
+    sitting.heard = sitting.heard._replace(bodies=MessageLog(Body, most=30))
+    written = Journal(tmp_path, Head(settings=NO_PAGE, facts={}))
+    sitting.run(1.0)
+    sitting.ask("record")
+    sitting.run(10.0)
+    for frame in range(sitting.frames):
+        at_s = frame / RATE_HZ
+        written.keep(
+            [Body(frame=frame, captured_s=at_s, clock_s=at_s, status="empty", views="none")]
+        )
+    answer = sitting.ask("end_record")
+    assert answer is not None
+    assert answer.well
+    assert "10.0 s written" in answer.text
+    frames = open_run(saved(tmp_path)).poses["frame"].tolist()
+    assert frames == [*range(RATE_HZ - 1, 11 * RATE_HZ)]
+    written.remove()
 
 
 def test_a_recording_that_nobody_ended_is_written_when_the_run_is_over(

@@ -130,3 +130,13 @@ def test_a_profile_that_the_picture_surely_has_the_other_way_is_mirrored_in_dept
     assert yaw_deg(CAMERA, other) == pytest.approx(-yaw_deg(CAMERA, seen), abs=6.0)
     for shown in (None, (-yaw, 0.7), (yaw, 0.9), (yaw / 2, 0.9)):
         assert as_shown(CAMERA, seen, shown) is seen
+
+
+@pytest.mark.parametrize("facing", [0.0, 180.0])
+def test_a_picture_after_a_minute_without_one_is_believed(facing: float) -> None:
+    """A viewer that was started again, a camera that stood still."""
+    front, _ = front_of(Front(0.9), 5.0, (facing, 0.97), None, 60.0)
+    assert (front.away > 0.5) == (facing == 180.0)
+    assert after(front, 5.0, (180.0 - facing, 0.97), 40).away == pytest.approx(
+        float(facing == 0.0), abs=0.1
+    )

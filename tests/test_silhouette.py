@@ -256,3 +256,17 @@ def test_things_that_come_and_go_do_not_settle() -> None:
         after = step(state, frame, None)[0]
         state = without_things(after, state, frame, thing if n % SETTLES else None)
     assert np.abs(state.model.centre - room()).mean() < 1
+
+
+@pytest.mark.parametrize("level", [0, 2, 10])
+def test_whoever_was_there_before_the_lights_went_out_is_there_after(level: int) -> None:
+    """P4: half a second, two seconds in the dark, a lit screen in the room all the while."""
+    state = begin()
+    for frame in range(60):
+        dark = np.clip(room() * (level / 255), 0, 255)
+        dark[:40, :50] = 220
+        state, _ = step(state, shot(dark, 1.0, frame), None)
+    assert np.isfinite(state.model.centre).all()
+    for frame in range(20):
+        state, seen = step(state, shot(dressed(room(), body()), 2.0, frame), None)
+    assert iou(seen.mask, body()) > 0.9

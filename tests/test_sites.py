@@ -1,11 +1,13 @@
 """The file of sites, held against what a person may write in it."""
 
+import threading
 from pathlib import Path
 
 import pytest
 
 from common.config.settings_error import SettingsError
-from tritrack.serving.sites import load_sites
+from tritrack.serving.serve import SitesWatch
+from tritrack.serving.sites import files_of, load_sites
 
 INLINE = """
 [[site]]
@@ -48,7 +50,10 @@ def test_a_site_is_a_settings_file_or_the_settings_themselves(tmp_path: Path) ->
     assert (hall.settings.room, hall.out) == ("big", tmp_path / "elsewhere")
     assert lobby.settings.clip == str(tmp_path / "clips/walk"), "relative to the file of sites"
     assert (lobby.settings.room, lobby.out) == ("lobby", tmp_path / "runs/lobby")
-    assert found.files == (tmp_path / "sites.toml", tmp_path / "rooms/hall.toml")
+    assert files_of(tmp_path / "sites.toml") == (
+        tmp_path / "sites.toml",
+        tmp_path / "rooms/hall.toml",
+    )
 
 
 def test_a_site_says_whether_its_parts_are_one_process(tmp_path: Path) -> None:
@@ -124,3 +129,18 @@ def test_what_is_no_text_or_is_not_there_is_refused(tmp_path: Path) -> None:
     path.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(SettingsError, match=r"sites\.toml"):
         load_sites(path)
+
+
+def test_a_settings_file_that_was_refused_is_read_again_when_it_is_mended(tmp_path: Path) -> None:
+    path = written(tmp_path, site("lobby"))
+    watch = SitesWatch(path)
+    (tmp_path / "hall.toml").write_text("clip = 'walk'\nsise = '160x120'\n")
+    written(tmp_path, site("lobby") + "[[site]]\nname = 'hall'\nsettings = 'hall.toml'\n")
+    asked = threading.Event()
+    assert watch.changed(10.0, asked)
+    assert "sise" in watch.read()
+    assert not watch.changed(20.0, asked)
+    (tmp_path / "hall.toml").write_text("clip = 'walk'\n[page]\nport = 0\n")
+    assert watch.changed(30.0, asked)
+    assert watch.read() == ""
+    assert [*watch.sites.sites] == ["lobby", "hall"]

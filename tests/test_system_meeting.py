@@ -195,8 +195,9 @@ def test_nobody_waits_for_a_viewer_whose_video_broke() -> None:
     view = View(1, "cam1.avi", (160, 120), (160, 120), fps=15.0, frames=10)
     setup = track.Setup(1, None, Settings(), DEFAULT)
     state = track.init(setup, learn([np.zeros((120, 160, 3), np.uint8)]))
+    prepared = viewer.Prepared(view, state)
     with pytest.raises(DecoderDied):
-        viewer.run(view, state, BrokenFilm(), bus, threading.Event())  # type: ignore[arg-type]
+        viewer.run(prepared, BrokenFilm(), bus, threading.Event())  # type: ignore[arg-type]
     (said,) = ended.drain()
     assert (said.viewer, said.frames) == (1, 0)
     assert "cam1.avi broke the decoder" in said.why

@@ -3,7 +3,8 @@
 import logging
 import threading
 import time
-from typing import Any, Final
+from pathlib import Path
+from typing import Any, Final, NamedTuple
 
 from common.bus import clock
 from common.bus.bus import Bus, open_client
@@ -21,12 +22,13 @@ from common.video.clip_sources import footage_of
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied
 from viewer import track
+from viewer.background.background import Background
 from viewer.background.new_background import Learning
 from viewer.capture import CapturedFrame, Live, RoomClock
 from viewer.haste import Haste
 from viewer.jpeg import jpeg_of
 from viewer.landmarks.landmark_sources import outside_sources
-from viewer.room.background_source import opening_of_run
+from viewer.room.background_source import keep, opening_of_run
 from viewer.unheard import Unheard
 from viewer.viewer_warmup import warm_up
 
@@ -81,24 +83,28 @@ class Guides:
         return -1 if self.newest is None else self.newest.frames[self._viewer - 1]
 
 
-def run(
-    view: View,
-    state: track.State,
-    live: Live,
-    bus: Bus,
-    stop: threading.Event,
-    warnings: tuple[str, ...] = (),
-) -> None:
+class Prepared(NamedTuple):
+    """All that a viewer is of, before its first frame."""
+
+    view: View
+    """Of its camera."""
+    state: track.State
+    warnings: tuple[str, ...] = ()
+    """What is odd about the view, told with every pulse, a line each."""
+    kept: Path | None = None
+    """The run's folder for what was learnt of a camera's background; None: it keeps nothing."""
+
+
+def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None:
     """Look at every frame when it is due and publish what it shows, until the clip's end.
 
     Args:
-        view: Of this viewer's camera.
-        state: The viewer's, before the first frame.
+        prepared: The viewer.
         live: Gives the frames.
         bus: Hears the reports.
         stop: Ends it early.
-        warnings: What is odd about the view, told with every pulse, a line each.
     """
+    view, state, warnings, _ = prepared
     period_s = state.setup.settings.every / view.fps
     pace = Pace(period_s)
     heart = Heart(bus, f"viewer {view.number}", pace)
@@ -123,7 +129,11 @@ def run(
             if state.setup.settings.pictures:
                 bus.publish(_picture(view.number, frame))
             heart.beat("running", **_news(live, guides, haste, warnings))
-            state = _obeyed(learning, state, frame, bus)
+            background, answer = learning.step(frame.picture, report.fault)
+            if background is not None:
+                state = _before(background, state, prepared)
+            if answer is not None:
+                bus.publish(answer)
             before = frame.index
     except DecoderDied as error:
         why = str(error)
@@ -137,14 +147,11 @@ def run(
     heart.beat("ended", **_news(live, guides, haste, warnings))
 
 
-def _obeyed(learning: Learning, state: track.State, frame: CapturedFrame, bus: Bus) -> track.State:
-    """The state after what was commanded, which is answered."""
-    background, answer = learning.step(frame.picture)
-    if background is not None:
-        state = track.with_background(state, background)
-    if answer is not None:
-        bus.publish(answer)
-    return state
+def _before(background: Background, state: track.State, prepared: Prepared) -> track.State:
+    """The state before a background that was learnt now; a camera's is kept."""
+    if prepared.kept is not None and isinstance(prepared.view.source, int):
+        keep(prepared.kept, prepared.view, background)
+    return track.with_background(state, background)
 
 
 def main(
@@ -166,25 +173,25 @@ def main(
     ):
         heart = Heart(bus, name, Pace(1.0))
         heart.beat("starting")
-        view, state, warnings = _prepared(settings, viewer, context)
+        prepared = _prepared(settings, viewer, context)
+        view, state = prepared.view, prepared.state
         with outside_sources(settings, (view,)) as sources:
             warm_up(state, view.size)
             settle()
             bus.announce(name)
-            heart.beat("ready", "\n".join(warnings))
+            heart.beat("ready", "\n".join(prepared.warnings))
             room_clock = met(bus, viewer, stop)
             if room_clock is not None:
                 if time.monotonic() + room_clock.offset_s > room_clock.start_s:
-                    state = state._replace(landmarks=None)  # started again: its clip goes on
+                    # started again: its clip goes on
+                    prepared = prepared._replace(state=state._replace(landmarks=None))
                 with Live(view, settings.every, room_clock, sources.get(viewer)) as live:
-                    run(view, state, live, bus, stop, warnings)
+                    run(prepared, live, bus, stop)
                 stop.wait(0.0 if context.supervised else LAST_WORDS_S)
 
 
-def _prepared(
-    settings: Settings, viewer: ViewerNumber, context: ProcessContext
-) -> tuple[View, track.State, tuple[str, ...]]:
-    """The view, a viewer that knows its background, and what is odd about them."""
+def _prepared(settings: Settings, viewer: ViewerNumber, context: ProcessContext) -> Prepared:
+    """A viewer that knows its background."""
     with Decoder() as decoder:
         clip = open_clip(settings, decoder, (viewer,))
         view = clip.views[0]
@@ -195,7 +202,8 @@ def _prepared(
     camera = clip.rig.cameras[0] if clip.rig else None
     alone = len(footage_of(settings)) == 1
     setup = track.Setup(viewer, camera, settings, METHODS[settings.mode], alone)
-    return view, track.init(setup, opening.background, somebody=opening.somebody), warnings
+    state = track.init(setup, opening.background, somebody=opening.somebody)
+    return Prepared(view, state, warnings, context.kept)
 
 
 def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | None:

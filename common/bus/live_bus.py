@@ -99,7 +99,7 @@ class LiveBus:
             with self._lock:
                 kept = dict(self._newest[kind])
             for key, payload in kept.items():
-                query.reply(key, payload)
+                query.reply(key, payload, attachment=self._run)
 
         self._serve(pattern_of(kind, self._room), reply)
 
@@ -112,14 +112,10 @@ class LiveBus:
         key = QUESTIONS[kind].format(room=self._room)
 
         def reply_to(query: Any) -> None:
-            whose = query.attachment.to_bytes() if query.attachment is not None else b""
-            if not self._is_ours(whose):
-                log.warning("%s: no answer to another session: %r", key, whose[:MOST_SESSION])
-                return
             payload = query.payload.to_bytes() if query.payload else b""
             said = answered(reply, kind, payload, key)
             if said is not None:
-                query.reply(key, encode(said))
+                query.reply(key, encode(said), attachment=self._run)
 
         self._serve(key, reply_to)
 
@@ -185,6 +181,10 @@ class LiveBus:
     def _serve(self, key: str, reply: Callable[[Any], None]) -> None:
         def serve(query: Any) -> None:
             with query:
+                whose = _word_of(query)
+                if not self._is_ours(whose):
+                    log.warning("%s: no answer to another session: %r", key, whose[:MOST_SESSION])
+                    return
                 try:
                     reply(query)
                 except zenoh.ZError as error:
@@ -197,8 +197,13 @@ class LiveBus:
     ) -> Said | None:
         asked = self._session.get(key, payload=payload, timeout=timeout_s, attachment=self._run)
         for reply in asked:
-            if reply.ok is not None:
+            if reply.ok is not None and self._is_ours(_word_of(reply.ok)):
                 said = checked(reply.ok.payload.to_bytes(), kind, key)
                 if said is not None:
                     return said
         return None
+
+
+def _word_of(told: Any) -> bytes:
+    """The run's word that goes with a question or its answer."""
+    return told.attachment.to_bytes() if told.attachment is not None else b""

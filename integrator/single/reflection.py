@@ -23,6 +23,8 @@ SHOWN_HZ: Final = 9.0
 """How many looks that know nothing of each other a second of pictures is worth. Of made-up people
 in free motion proposals have 4.9 % the wrong way about, this makes it 3.0, a sixth of it 2.8 and
 half of it 3.1: filmed people wear what no network has seen."""
+CERTAIN: Final = 20.0
+"""Log odds that no stretch of time tells more than."""
 PROPOSED_HZ: Final = 1.0
 """Log odds a second that proposals tell."""
 SUREST: Final = 0.97
@@ -90,7 +92,8 @@ def front_of(
     if shown is not None and shown[1] > 0.5:
         sure = min(shown[1], SUREST)
         said -= SHOWN_HZ * math.log(sure / (1.0 - sure)) * math.cos(math.radians(shown[0]))
-    away /= away + (1.0 - away) * math.exp(-said * dt_s)
+    odds = min(max(said * dt_s, -CERTAIN), CERTAIN)
+    away /= away + (1.0 - away) * math.exp(-odds)
     return Front(away), not aside and (away > 0.5) != (abs(yaw) > 90.0)
 
 

@@ -107,7 +107,8 @@ def example_of(
         rng: Source of how the person is framed.
     """
     sure = np.array(shown.confidence) > TAUGHT
-    if sure.sum() < FEWEST:
+    tall_px = stature_px(shown)
+    if sure.sum() < FEWEST or not tall_px:
         return ()
     joints_px = np.array(shown.joints_px)
     outline = mask if mask.any() else body_region(shown, picture.shape, 0.0).view(np.bool_)
@@ -123,7 +124,7 @@ def example_of(
             (planes[3] > 127).astype(np.uint8),
             places.astype(np.float32),
             np.zeros(2, np.float32),
-            scale * stature_px(shown),
+            scale * tall_px,
         ),
     )
 

@@ -12,12 +12,14 @@ from animator.page.door import entrance_of, invitation_of
 from common.bus.bus import Bus
 from common.bus.control_messages import Answer, Command, Wish
 from common.bus.inbox import Inbox
+from common.bus.messages import Body, Posture
 from common.bus.process import ProcessContext
 from common.config.settings import Settings
 from tritrack.forking.zygote import SPAWN, Zygote
 from tritrack.live.process_table import Part, page_part
-from tritrack.live.recorded import MessageLog, SoFar
+from tritrack.live.recorded import MessageLog, SoFar, WholeRun
 from tritrack.live.supervise import Watched
+from tritrack.store.past_journal import Journalled
 from tritrack.store.runs import RunError, write_postures, write_run
 
 SAVED: Final = "saved"
@@ -155,13 +157,14 @@ class PageDesk:
             self._followed = body.status in FOLLOWED
 
     def _write(self, what: Wish, first_s: float, name: str, heard: Any) -> None:
-        """A part of the run as a run folder of its own."""
-        bodies = heard.bodies.newest(lambda body: body.captured_s >= first_s)
-        if not bodies:
+        """A part of the run as a run folder of its own, what has left the memory too."""
+        bodies = WholeRun(heard.bodies, Journalled(self._out, Body), first_s)
+        postures = WholeRun(heard.postures, Journalled(self._out, Posture), first_s)
+        began_s = next((body.captured_s for body in bodies), None)
+        if began_s is None:
             self._say(what, False, "nothing was tracked yet")
             return
-        postures = heard.postures.newest(lambda each: each.captured_s >= first_s)
-        last_s = bodies[-1].captured_s
+        last_s = _newest_s(heard.bodies)
         folder = self._out / SAVED / f"{name}_to_{last_s:.1f}_s"
         try:
             own = SoFar(bodies, postures)
@@ -170,8 +173,7 @@ class PageDesk:
         except RunError as error:
             self._say(what, False, str(error)[:400])
             return
-        seconds = last_s - bodies[0].captured_s
-        self._say(what, True, f"{seconds:.1f} s written to {folder}"[:400])
+        self._say(what, True, f"{last_s - began_s:.1f} s written to {folder}"[:400])
 
     def _say(self, what: Wish, well: bool, text: str) -> None:
         if self._bus is not None:

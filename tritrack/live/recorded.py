@@ -1,6 +1,7 @@
 """What a live run said, kept for what is written at its end: the newest as bytes, and the rest as
 its journal has it."""
 
+import math
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from itertools import islice, takewhile
@@ -47,16 +48,22 @@ class WholeRun(Generic[Told]):
     """All that was said of one kind: what gave way in memory is read from the journal, each time
     that it is gone through."""
 
-    def __init__(self, newest: MessageLog[Told], written: Iterable[Told]) -> None:
-        """Of what memory holds and of what the journal does."""
-        self._newest, self._written = newest, written
+    def __init__(
+        self, newest: MessageLog[Told], written: Iterable[Told], since_s: float = -math.inf
+    ) -> None:
+        """Of what memory holds and of what the journal does, captured since then."""
+        self._newest, self._written, self._since_s = newest, written, since_s
 
     def __iter__(self) -> Iterator[Told]:
         """Oldest first."""
         first = next(iter(self._newest), None)
-        if first is not None and self._newest.let_go:
-            yield from takewhile(lambda one: one.captured_s < first.captured_s, self._written)
-        yield from self._newest
+        if first is not None and self._newest.let_go and first.captured_s > self._since_s:
+            gone = takewhile(lambda one: one.captured_s < first.captured_s, self._written)
+            yield from (one for one in gone if one.captured_s >= self._since_s)
+        if math.isfinite(self._since_s):  # mostly a few of many
+            yield from self._newest.newest(lambda one: one.captured_s >= self._since_s)
+        else:
+            yield from self._newest
 
 
 class SoFar:

@@ -18,7 +18,7 @@ from tritrack.live.free_ports import refuse_held_metrics, refuse_held_ports, wit
 from tritrack.live.process_table import inherited
 from tritrack.live.table import table_of
 from tritrack.serving.served_rooms import House
-from tritrack.serving.sites import Sites, load_sites
+from tritrack.serving.sites import Sites, files_of, load_sites
 from tritrack.terminal import say, warn
 
 LOOK_S: Final = 0.1
@@ -40,27 +40,26 @@ class SitesWatch:
         self.sites = load_sites(path)
         """As the file had them when it could be used last."""
         self._path = path
-        self._seen, self._next_s = _stamps(self.sites), 0.0
+        self._seen, self._next_s = _stamps(path), 0.0
 
     def changed(self, now_s: float, asked: threading.Event) -> bool:
         """Whether it is to be read again: once a second by its looks, or since that is asked."""
         if now_s < self._next_s:
             return False
         self._next_s = now_s + CHANGED_S
-        if not asked.is_set() and _stamps(self.sites) == self._seen:
+        if not asked.is_set() and _stamps(self._path) == self._seen:
             return False
         asked.clear()
         return True
 
     def read(self) -> str:
         """Read it again; why it cannot be used, or ""."""
-        trouble = ""
+        self._seen = _stamps(self._path)
         try:
             self.sites = load_sites(self._path)
         except SettingsError as error:
-            trouble = str(error)
-        self._seen = _stamps(self.sites)
-        return trouble
+            return str(error)
+        return ""
 
 
 def serve(path: Path, console: Console) -> None:
@@ -76,6 +75,7 @@ def serve(path: Path, console: Console) -> None:
         SettingsError, PortHeld, PageError: When the file cannot be used; nothing was started.
     """
     file = SitesWatch(path)
+    metrics = file.sites.metrics
     _refuse_what_is_held(file.sites)
     zygote = Zygote(inherited, f"{__package__}.warmed_sites")
     with (
@@ -93,6 +93,8 @@ def serve(path: Path, console: Console) -> None:
                 trouble = file.read()
                 if trouble:
                     warn(console, f"all sites go on as they were: {trouble}")
+                if file.sites.metrics != metrics:
+                    warn(console, "metrics: another address counts from the next start on")
                 house.become(file.sites.sites)
 
 
@@ -102,9 +104,9 @@ def _refuse_what_is_held(sites: Sites) -> None:
         refuse_held_ports(with_free_endpoint(site.settings))
 
 
-def _stamps(sites: Sites) -> list[tuple[int, int] | None]:
-    """By what is seen that a file has changed."""
-    return [_stamp(path) for path in sites.files]
+def _stamps(path: Path) -> dict[Path, tuple[int, int] | None]:
+    """By what is seen that a file of sites, or one that it names, has changed."""
+    return {file: _stamp(file) for file in files_of(path)}
 
 
 def _stamp(path: Path) -> tuple[int, int] | None:

@@ -68,8 +68,6 @@ class Sites(NamedTuple):
 
     sites: Mapping[str, Site]
     metrics: str
-    files: tuple[Path, ...]
-    """What they were read from."""
 
 
 def load_sites(path: Path) -> Sites:
@@ -81,22 +79,35 @@ def load_sites(path: Path) -> Sites:
         SettingsError: When something cannot be read, is unknown or ill-typed; when two sites have
             one name, one folder or one port; when there is none.
     """
-    try:
-        said = msgspec.toml.decode(path.read_bytes(), type=SitesFile)
-    except OSError as error:
-        raise SettingsError(f"cannot read the sites {path}: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise SettingsError(f"{path} is no file of sites: name a TOML file") from error
-    except msgspec.DecodeError as error:
-        raise SettingsError(f"{path}: {explained(error, SitesFile)}") from error
+    said = _read(path)
     if not said.site:
         raise SettingsError(f"{path} names no site: write [[site]], name = ..., settings = ...")
     _refuse_twice(path, "name", [(entry.name, entry.name) for entry in said.site])
     sites = {entry.name: _site(entry, path) for entry in said.site}
     _refuse_twice(path, "folder", [(str(s.out.resolve()), s.name) for s in sites.values()])
     _refuse_shared_ports(path, sites, said.metrics)
+    return Sites(sites, said.metrics)
+
+
+def files_of(path: Path) -> tuple[Path, ...]:
+    """A file of sites and the settings that it names, as far as it can be read."""
+    try:
+        said = _read(path)
+    except SettingsError:
+        return (path,)
     named = (path.parent / entry.settings for entry in said.site if isinstance(entry.settings, str))
-    return Sites(sites, said.metrics, (path, *named))
+    return (path, *named)
+
+
+def _read(path: Path) -> SitesFile:
+    try:
+        return msgspec.toml.decode(path.read_bytes(), type=SitesFile)
+    except OSError as error:
+        raise SettingsError(f"cannot read the sites {path}: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise SettingsError(f"{path} is no file of sites: name a TOML file") from error
+    except msgspec.DecodeError as error:
+        raise SettingsError(f"{path}: {explained(error, SitesFile)}") from error
 
 
 def _site(entry: SiteEntry, path: Path) -> Site:

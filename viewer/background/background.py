@@ -16,6 +16,13 @@ SENSOR_NOISE: Final = 2.0
 FLOOR: Final = (1.0, 2.5)
 """Least spread of brightness and of colour, grey levels: rounding, and the colour that compression
 smears around a person, which no empty frame can show."""
+STRIDE: Final = 8
+"""Every so many rows and columns tell how bright a picture is."""
+LEAST_LIGHT: Final = np.float32(0.01)
+"""No frame is taken to be darker, as a share of the background: a camera that is covered, or whose
+lights are out, tells nothing of what is there."""
+DARK: Final = 0.2
+"""In less than this share of its light a frame tells little of the room, and noise most."""
 GAIN_SAMPLES: Final = 1500.0
 """About how many pixels, on a grid, are asked for the light: a median of so many is steady."""
 
@@ -59,7 +66,16 @@ def learn(frames: Sequence[Image]) -> Background:
     Raises:
         ValueError: When there is no frame.
     """
-    return learnt(overlaid_opening(frames), frames)
+    shown = lit(frames)
+    return learnt(overlaid_opening(shown), shown)
+
+
+def lit(frames: Sequence[Image]) -> list[Image]:
+    """Those of some pictures that are lit: a black one among them shows nothing of a room, as when
+    a camera starts, or is covered for a moment."""
+    bright = [float(frame[::STRIDE, ::STRIDE].mean()) for frame in frames]
+    least = DARK * max(bright, default=0.0)
+    return [frame for frame, own in zip(frames, bright, strict=True) if own >= least]
 
 
 def learnt(empty: Overlaid, frames: Sequence[Image]) -> Background:
@@ -118,7 +134,7 @@ def light_gain(frame: Image, background: Floats) -> Floats:
         background: (H, W, 3) grey levels.
 
     Returns:
-        (3,) factors, 1 where the background is too dark to tell.
+        (3,) factors, 1 where the background is too dark to tell, LEAST_LIGHT at least.
     """
     height, width = frame.shape[:2]
     stride = max(1, int(np.sqrt(height * width / GAIN_SAMPLES)))
@@ -147,7 +163,7 @@ def light_gain(frame: Image, background: Floats) -> Floats:
             low, high = max(0, middle - 18), min(bins, middle + 19)
             gain[c] = seen[c, low:high].sum() / due[c, low:high].sum()
             middle = min(int(gain[c] * unit), bins - 1)
-    return gain
+    return np.maximum(gain, LEAST_LIGHT)
 
 
 def even_light(frames: Sequence[Image]) -> Floats:

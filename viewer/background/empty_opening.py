@@ -12,8 +12,6 @@ from common.video.decoding import Image
 from viewer.background.background import large_regions, light_gain
 from viewer.background.image_stack import CHANGES, LUMA, Bytes, Floats, Overlaid
 
-LEAST_LIGHT: Final = np.float32(0.01)
-"""A frame of less light than this share of the opening's is black: a camera was covered."""
 EDGE_SHARE: Final = 0.45
 """Of an empty opening the contours of what differs later keep less than this share of their
 steepness, otherwise more: 0.05-0.41 and 0.49-2.5 on every third development clip."""
@@ -37,7 +35,7 @@ def is_empty_opening(opening: Overlaid, sample: Iterable[Image]) -> bool:
     background = np.asarray(opening.median @ LUMA, np.float32)
     in_background, in_frames = 0.0, 0.0
     for frame in sample:
-        light = np.maximum(light_gain(frame, opening.median), LEAST_LIGHT)
+        light = light_gain(frame, opening.median)
         luma, differs = _brightness(frame, LUMA / light, background)
         steeper, flatter = _steeper(*_contour(large_regions(differs)), luma, background)
         in_frames += steeper

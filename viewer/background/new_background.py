@@ -2,10 +2,10 @@
 
 from common.bus.control_messages import Answer, Command
 from common.bus.inbox import Inbox
-from common.bus.messages import ViewerNumber
+from common.bus.messages import CameraFault, ViewerNumber
 from common.config.settings import Settings
 from common.video.decoding import Image
-from viewer.background.background import Background, learnt, overlaid_opening
+from viewer.background.background import Background, learnt, lit, overlaid_opening
 from viewer.background.empty_opening import is_still
 
 
@@ -18,19 +18,25 @@ class Learning:
         self._due = settings.silhouette.empty_frames
         self._frames: list[Image] | None = None
 
-    def step(self, picture: Image) -> tuple[Background | None, Answer | None]:
+    def step(self, picture: Image, fault: CameraFault) -> tuple[Background | None, Answer | None]:
         """One frame: the new background, if it is known now, and what to tell of it.
 
-        Frames in which something moves are no background, and the old one stays.
+        Frames in which something moves, or that show no scene, are no background, and the old one
+        stays.
         """
         if any(command.what == "background" for command in self._commands.drain()):
             self._frames = []
         if self._frames is None:
             return None, None
+        if fault:
+            self._frames = None
+            return None, self._answer(
+                False, f"its picture is {fault}: the background stays as it was"
+            )
         self._frames.append(picture.copy())
         if len(self._frames) < self._due:
             return None, None
-        frames, self._frames = self._frames, None
+        frames, self._frames = lit(self._frames), None
         laid_over = overlaid_opening(frames)
         if not is_still(laid_over):
             return None, self._answer(False, "something moves: the background stays as it was")

@@ -1,5 +1,6 @@
 """Where in a picture the body lies whose landmarks are known."""
 
+from collections.abc import Iterable
 from typing import Final
 
 import cv2
@@ -42,15 +43,32 @@ _HANDS: Final = [(_AT[f"{s}_elbow"], _AT[f"{s}_wrist"]) for s in _SIDES]
 _ANKLES: Final = [_AT[f"{s}_ankle"] for s in _SIDES]
 FOOT: Final = 0.045
 """Radius of a foot about its ankle, in statures."""
+HULL: Final = 3
+"""Corners of the trunk that have something between them."""
 FINE: Final = 3
 """Bits of a pixel that lines are drawn with."""
 
 
+def shown(landmarks: Landmarks, joints: Iterable[int]) -> bool:
+    """Whether none of these joints is one that may stand anywhere, unseen among others that are.
+
+    Landmarks none of which is sure at all are a guess at a whole body.
+    """
+    sure = landmarks.confidence
+    return not any(sure) or all(sure[joint] > 0.0 for joint in joints)
+
+
 def stature_px(landmarks: Landmarks) -> float:
-    """How tall the body would be upright in the picture, by its least foreshortened long bone."""
+    """How tall the body would be upright in the picture, by its least foreshortened long bone that
+    is seen; 0 where none is."""
     places = np.array(landmarks.joints_px)
     return max(
-        float(np.hypot(*(places[far] - places[near]))) / length for near, far, length in LONG_BONES
+        (
+            float(np.hypot(*(places[far] - places[near]))) / length
+            for near, far, length in LONG_BONES
+            if shown(landmarks, (near, far))
+        ),
+        default=0.0,
     )
 
 
@@ -58,21 +76,26 @@ def body_region(landmarks: Landmarks, shape: tuple[int, ...], beyond: float) -> 
     """(H, W) 1 on the body and so many statures around it.
 
     Args:
-        landmarks: All of them are believed.
+        landmarks: All that are seen are believed.
         shape: Of the picture, (H, W, ...).
         beyond: Statures.
     """
     tall_px, region = stature_px(landmarks), np.zeros(shape[:2], np.uint8)
     places = np.array(landmarks.joints_px)
     for near, far, radius in BONES:
-        _draw(region, places[near], places[far], (radius + beyond) * tall_px)
+        if shown(landmarks, (near, far)):
+            _draw(region, places[near], places[far], (radius + beyond) * tall_px)
     for elbow, wrist in _HANDS:
-        beyond_wrist = places[wrist] + HAND * (places[wrist] - places[elbow])
-        _draw(region, places[wrist], beyond_wrist, (0.024 + beyond) * tall_px)
+        if shown(landmarks, (elbow, wrist)):
+            beyond_wrist = places[wrist] + HAND * (places[wrist] - places[elbow])
+            _draw(region, places[wrist], beyond_wrist, (0.024 + beyond) * tall_px)
     for ankle in _ANKLES:
-        _draw(region, places[ankle], places[ankle], (FOOT + beyond) * tall_px)
-    hull = cv2.convexHull(np.round(places[_TRUNK] * (1 << FINE)).astype(np.int32))
-    cv2.fillConvexPoly(region, hull, 1, cv2.LINE_8, FINE)
+        if shown(landmarks, (ankle,)):
+            _draw(region, places[ankle], places[ankle], (FOOT + beyond) * tall_px)
+    trunk = [corner for corner in _TRUNK if shown(landmarks, (corner,))]
+    if len(trunk) >= HULL:
+        hull = cv2.convexHull(np.round(places[trunk] * (1 << FINE)).astype(np.int32))
+        cv2.fillConvexPoly(region, hull, 1, cv2.LINE_8, FINE)
     return region
 
 

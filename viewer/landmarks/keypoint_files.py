@@ -99,6 +99,8 @@ def numbered(folder: Path) -> dict[int, Path]:
         found[frame] = path
         if len(found) > MOST_FILES:
             raise SettingsError(f"{folder} has more than {MOST_FILES} files: cut the clip")
+    if not found:
+        raise SettingsError(f"{folder} has no keypoint files: they end in .json")
     first = 1 if min(found) == 1 else 0
     return {frame - first: path for frame, path in found.items()}
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from common.bus.messages import Landmarks
 from common.video.decoding import Size
-from viewer.landmarks.fifteen_joints import Floats, facing_deg, fifteen, fifteen_shares
+from viewer.landmarks.fifteen_joints import facing_deg, fifteen, fifteen_shares
 from viewer.landmarks.keypoint_layouts import body_points, extremity_points
 
 FACES_SO: Final = 0.9
@@ -24,7 +24,7 @@ def landmarks_of(points: NDArray[np.float32], shown: Size, working: Size) -> Lan
         working: Width and height of the working picture.
     """
     body = body_points(points)
-    places = at_the_joints(body[:, :2])
+    places = body[:, :2]
     scale = np.divide(working, shown)
     joints, ends = scale * fifteen(places), extremity_points(points)
     return Landmarks(
@@ -35,12 +35,3 @@ def landmarks_of(points: NDArray[np.float32], shown: Size, working: Size) -> Lan
         extremities_px=tuple((float(u), float(v)) for u, v in scale * ends[:, :2]),
         extremities_confidence=tuple(ends[:, 2].tolist()),
     )
-
-
-def at_the_joints(points: Floats) -> Floats:
-    """The points of BODY_POINTS, (17, 2), moved to where the joints turn.
-
-    MediaPipe's shoulders and ankles lie too high, its hips too far inside.
-    """
-    moved = points.copy()
-    return moved

@@ -14,7 +14,14 @@ from common.config.part_settings import SilhouetteSettings
 from common.video.clip_facts import View
 from common.video.decoding import Decoder, Image
 from common.video.frame_cache import Reader
-from viewer.background.background import Background, even_light, learn, learnt, overlaid_opening
+from viewer.background.background import (
+    Background,
+    even_light,
+    learn,
+    learnt,
+    lit,
+    overlaid_opening,
+)
 from viewer.background.empty_opening import is_empty_opening, is_still
 from viewer.background.hidden_background import learn_behind
 from viewer.background.image_stack import median
@@ -94,6 +101,7 @@ def of_clip(
         settings: How a person is told from the room.
         view: Is named in what is odd.
     """
+    opening = lit(opening)
     laid_over = overlaid_opening(opening)
     still = is_still(laid_over)
     if still and is_empty_opening(laid_over, sample):
@@ -131,16 +139,32 @@ def opening_of_run(
         view: As above; likewise `settings`, `decoder`.
         kept: The run's folder for what was learnt of a camera's background; None: it keeps nothing.
     """
-    if kept is None or not isinstance(view.source, int) or view.background:
+    if kept is None or not isinstance(view.source, int):
         return opening_of_view(view, settings, decoder)
-    path = kept / f"background_{view.number}.npz"
+    path = kept / _name_of(view)
     if path.exists():
         with np.load(path, allow_pickle=False) as found:
             return Opening(Background(**found), "", None)
     opening = opening_of_view(view, settings, decoder)
-    with replacing(path) as new, new.open("wb") as file:
-        np.savez(file, allow_pickle=False, **opening.background._asdict())
+    if not view.background:
+        keep(kept, view, opening.background)
     return opening
+
+
+def keep(kept: Path, view: View, background: Background) -> None:
+    """Write down what was learnt of a camera's background: its viewer may be started again.
+
+    Args:
+        kept: As for `opening_of_run`.
+        view: The camera's.
+        background: Its picture without people.
+    """
+    with replacing(kept / _name_of(view)) as new, new.open("wb") as file:
+        np.savez(file, allow_pickle=False, **background._asdict())
+
+
+def _name_of(view: View) -> str:
+    return f"background_{view.number}.npz"
 
 
 def background_of_film(view: View, settings: SilhouetteSettings, decoder: Reader) -> FilmBackground:

@@ -7,7 +7,14 @@ import numpy as np
 
 from common.bus.messages import Landmarks
 from common.compiled import compiled
-from viewer.landmarks.body_region import BONES, Bytes, body_region, bone_region, stature_px
+from viewer.landmarks.body_region import (
+    BONES,
+    Bytes,
+    body_region,
+    bone_region,
+    shown,
+    stature_px,
+)
 from viewer.silhouette.silhouette import Seen, seen_of
 
 TRUSTED: Final = 0.5
@@ -65,15 +72,16 @@ def corrected(seen: Seen, landmarks: Landmarks | None, least_share: float) -> Co
 
 
 def is_trusted(landmarks: Landmarks | None) -> bool:
-    """Whether they may overrule an outline."""
-    if landmarks is None:
+    """Whether they may overrule an outline: they are sure, and tell how large the body is."""
+    if landmarks is None or sum(landmarks.confidence) <= TRUSTED * len(landmarks.confidence):
         return False
-    return sum(landmarks.confidence) > TRUSTED * len(landmarks.confidence)
+    return stature_px(landmarks) > 0.0
 
 
 def _without_things(seen: Seen, landmarks: Landmarks) -> tuple[Bytes, Bytes | None]:
     """The outline (H, W) without what is far from the body, and that; None if it is hardly any."""
-    mask, ends = seen.mask.view(np.uint8), np.array(landmarks.joints_px)[_ENDS]
+    bones = [ends for ends in _ENDS.tolist() if shown(landmarks, ends)]
+    mask, ends = seen.mask.view(np.uint8), np.array(landmarks.joints_px)[bones]
     share = _far_share(mask, ends, (FAR + REACH) * stature_px(landmarks))
     if share < MUCH:
         return mask, None

@@ -12,7 +12,7 @@ from common.method import DEFAULT, Method
 from common.raster.silhouette_report import box_of, is_cut
 from common.raster.similarity import Mask
 from common.video.decoding import Image
-from viewer.background.background import Background, BackgroundModel, learn, light_gain
+from viewer.background.background import DARK, Background, BackgroundModel, learn, light_gain
 from viewer.background.image_stack import Bytes, Floats
 from viewer.background.moved_objects import Patch
 from viewer.silhouette.boundary_features import counts_3x3, features_of
@@ -231,7 +231,7 @@ def seen_of(mask: Bytes, blobs: int, least_share: float) -> Seen:
 def _adapted(state: State, frame: Image, box: Box | None) -> State:
     """The background takes on the slow light, but nothing near the person."""
     frames = state.frames + 1
-    if frames % ADAPT_EVERY:
+    if frames % ADAPT_EVERY or state.model.gain.min() < DARK:
         return state._replace(frames=frames)
     margin = frame.shape[0] // 12
     corners = (1, 0, 1, 0)
