@@ -7,7 +7,13 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.compiled import compiled
-from integrator.landmarks import exchanged_sides, limb_springs, proposal_misfit, turned_about
+from integrator.landmarks import (
+    displaced_proposal,
+    exchanged_sides,
+    limb_springs,
+    proposal_misfit,
+    turned_about,
+)
 from integrator.landmarks.exchanged_sides import Exchanged, Exchanges
 from integrator.landmarks.joint_mixture import (
     BOTH,
@@ -49,6 +55,8 @@ class Memory(NamedTuple):
     """(10,) of `limb_springs.ENDS`."""
     misfit: Misfit
     """How far proposals were beside the rays."""
+    displaced: Vector
+    """(4,) how far proposals stood beside them as a whole."""
 
 
 class Fused(NamedTuple):
@@ -72,7 +80,8 @@ def step(
     """One instant: each joint where the proposal and both views together most probably have it.
 
     Where faces say that the proposal is turned about, its sides are exchanged. Where proposals have
-    lately been off what is shown, they are believed less closely. Which sides a view exchanged is
+    lately been off what is shown, they are believed less closely; where they have been so as a
+    whole, they are moved. Which sides a view exchanged is
     decided for arms and legs as wholes, by all that is said of their joints; then limbs are given
     their lengths.
 
@@ -90,6 +99,9 @@ def step(
         None if before is None else before.misfit, proposed_m, rays, stature_m
     )
     wider_m = proposal_misfit.wider_m(misfit, rays, stature_m)
+    displaced, proposed_m = displaced_proposal.step(
+        None if before is None else before.displaced, proposed_m, _shown(rays), rays, stature_m
+    )
     values, places_m, precisions = _weighed(proposed_m, confidence, wider_m, rays, stature_m)
     exchanges, decided = exchanged_sides.step(
         _exchanges(before, turned[1]),
@@ -102,9 +114,8 @@ def step(
     lengths_m = None if before is None else before.lengths_m
     if lengths_m is not None:
         joints_m = limb_springs.sprung(joints_m, tight, lengths_m)
-    memory = Memory(
-        turned, exchanges, limb_springs.lengths_m(lengths_m, joints_m, stature_m), misfit
-    )
+    lengths_m = limb_springs.lengths_m(lengths_m, joints_m, stature_m)
+    memory = Memory(turned, exchanges, lengths_m, misfit, displaced)
     return Fused(joints_m, _confidence(tight), decided, memory)
 
 
@@ -123,7 +134,7 @@ def _weighed(
     stature_m: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """`_modes` of what confidences say of how sure and how wide each witness is."""
-    shown = np.where(rays.confidence > 0.0, _share(rays.confidence, SHOWN_RIGHT), 0.0)
+    shown = _shown(rays)
     others = np.where(rays.others_confidence < SECOND, 0.0, rays.others_confidence)
     found: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] = _modes(
         proposed_m,
@@ -137,6 +148,11 @@ def _weighed(
         stature_m,
     )
     return found
+
+
+def _shown(rays: Rays) -> NDArray[np.float64]:
+    """(2, 12) how probably each landmark is right; 0: there is none."""
+    return np.where(rays.confidence > 0.0, _share(rays.confidence, SHOWN_RIGHT), 0.0)
 
 
 def _confidence(precisions: NDArray[np.float64]) -> Vector:

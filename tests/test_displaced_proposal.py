@@ -1,0 +1,76 @@
+"""Proposals that stand beside the rays as a whole, held against bodies moved by so much."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from test_proposal_misfit import BODY_M, STATURE_M, rays_to
+
+from common.body.body import Vector
+from integrator.landmarks import displaced_proposal
+from integrator.landmarks.displaced_proposal import SURELY, USUAL
+from integrator.landmarks.landmark_rays import Rays
+
+Joints = np.ndarray
+FORWARD_M = np.array([0.0, 0.0, 0.2])
+
+
+def after(instants: int, proposed_m: Joints, rays: Rays) -> tuple[Vector, Joints]:
+    """What is known, and the proposal moved, after so many equal instants."""
+    known: Vector | None = None
+    for _ in range(instants):
+        known, moved_m = displaced_proposal.step(
+            known, proposed_m, rays.confidence, rays, STATURE_M
+        )
+    assert known is not None
+    return known, moved_m
+
+
+def turned(joints_m: Joints, by: float) -> Joints:
+    """The body turned about the vertical through its middle."""
+    middle_m = joints_m.mean(axis=0)
+    spin = [[math.cos(by), 0, math.sin(by)], [0, 1, 0], [-math.sin(by), 0, math.cos(by)]]
+    found: Joints = middle_m + (joints_m - middle_m) @ np.array(spin).T
+    return found
+
+
+def test_a_proposal_on_its_rays_stays() -> None:
+    known, moved_m = after(9, BODY_M, rays_to(BODY_M))
+    assert known == pytest.approx(np.zeros(4), abs=1e-9)
+    assert np.array_equal(moved_m, BODY_M)
+
+
+def test_one_that_stands_two_decimetres_behind_comes_back_but_for_what_is_usual() -> None:
+    known, moved_m = after(30, BODY_M - FORWARD_M, rays_to(BODY_M))
+    assert known[:3] == pytest.approx(FORWARD_M, abs=0.005)
+    left_m = np.linalg.norm(moved_m - BODY_M, axis=1)
+    assert left_m == pytest.approx(np.full(12, SURELY * USUAL[2]), abs=0.005)
+
+
+def test_one_that_is_turned_is_turned_back_likewise() -> None:
+    known, moved_m = after(30, turned(BODY_M, math.radians(20.0)), rays_to(BODY_M))
+    assert math.degrees(known[3]) == pytest.approx(-20.0, abs=1.5)
+    off_m = np.linalg.norm(moved_m - BODY_M, axis=1)
+    assert off_m.max() < 0.4 * np.linalg.norm(turned(BODY_M, 0.35) - BODY_M, axis=1).max()
+
+
+@given(st.lists(st.floats(-0.012, 0.012), min_size=3, max_size=3))
+def test_what_landmarks_are_off_together_moves_nothing(by_m: list[float]) -> None:
+    _, moved_m = after(30, BODY_M + by_m, rays_to(BODY_M))
+    assert np.array_equal(moved_m, BODY_M + by_m)
+
+
+def test_one_view_alone_does_not_tell_and_one_instant_proves_little() -> None:
+    alone = rays_to(BODY_M, (0.8, 0.0))
+    assert np.array_equal(after(30, BODY_M - FORWARD_M, alone)[1], BODY_M - FORWARD_M)
+    once = after(1, BODY_M - FORWARD_M, rays_to(BODY_M))[1]
+    assert np.linalg.norm(once - BODY_M, axis=1).min() > 0.14
+
+
+def test_three_joints_that_speak_of_somebody_else_do_not_carry_the_body_away() -> None:
+    wrong_m = BODY_M.copy()
+    wrong_m[:3] += (0.0, 0.6, 0.0)
+    _, moved_m = after(30, BODY_M, rays_to(wrong_m))
+    assert np.linalg.norm(moved_m - BODY_M, axis=1).max() < 0.03
