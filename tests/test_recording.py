@@ -101,6 +101,32 @@ def test_a_recording_that_is_absent_or_damaged_is_named(folder: Path, tmp_path: 
         read_recording(folder)
 
 
+def test_what_is_no_recording_at_all_is_named_with_its_cause(folder: Path) -> None:
+    for junk in (b"junk\n", b"", b"\x89MCAP0\r\n" + bytes(40)):
+        (folder / "recording.mcap").write_bytes(junk)
+        with pytest.raises(RecordingError, match=r"was damaged or is of another version \(\w"):
+            read_recording(folder)
+
+
+def test_of_a_run_that_was_killed_all_is_there_but_its_last_moments(tmp_path: Path) -> None:
+    """What lay on the disk while it ran is read as far as it goes, wherever it was torn."""
+    with recording_to(tmp_path, HEAD) as keep:
+        for _ in range(400):
+            for message in said():
+                keep(message)
+        (torn,) = tmp_path.glob(".recording.*.mcap")
+        so_far = torn.read_bytes()
+    (tmp_path / "recording.mcap").unlink()
+    counts = []
+    for share in (1.0, 0.7, 0.4):
+        torn.write_bytes(so_far[: int(share * len(so_far))])
+        recording = read_recording(tmp_path)
+        assert recording.bodies[:2] == [said()[2], said()[4]]
+        counts.append(len(recording.bodies))
+    assert counts == sorted(counts, reverse=True)
+    assert 400 < counts[0] < 800
+
+
 def test_a_recording_whose_compressed_part_is_damaged_is_named(folder: Path) -> None:
     path = folder / "recording.mcap"
     whole = path.read_bytes()

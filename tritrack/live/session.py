@@ -32,7 +32,7 @@ from tritrack.live.screen import Screen
 from tritrack.store.journal import Head as JournalHead
 from tritrack.store.journal import Journal
 from tritrack.store.past_journal import Journalled, put_aside
-from tritrack.store.recording import Keep, refuse_without_library
+from tritrack.store.recording import Keep, refuse_without_library, torn_recordings
 from tritrack.store.runs import write_postures, write_run
 
 PLAYS: Final = "the run is over; the page plays it as long as it is open (Ctrl-C ends)"
@@ -173,6 +173,8 @@ def _journal(out: Path, clip: Clip, settings: Settings, notes: list[str]) -> Jou
     aside = out / SAVED / f"cut_short_{time.strftime('%Y%m%d_%H%M%S')}"
     try:
         if put_aside(out, aside):
+            for torn in torn_recordings(out):
+                torn.replace(aside / torn.name)
             notes.append(f"the run before this one was cut short: what it measured is in {aside}")
     except OSError as error:
         raise LiveRefused(

@@ -5,10 +5,11 @@ One MCAP file, readable by any MCAP library: our messages as MessagePack, as the
 metadata settings, rig, body and versions. Outlines and joints, no picture.
 """
 
+import struct
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import IO, Any, Final, NamedTuple
 
 import msgspec
 
@@ -24,6 +25,10 @@ from tritrack.store import foxglove_scene
 from tritrack.store.runs import unwritable, versions
 
 NAME: Final = "recording.mcap"
+TORN: Final = ".recording.*.mcap"
+"""What is left of one in the folder of a run that was killed."""
+CHUNK_BYTES: Final = 1 << 17
+"""So much is written at once, half a second to two of a run: more is not lost when it is killed."""
 KINDS: Final[dict[str, type[Message]]] = {
     "/report/1": Report,
     "/report/2": Report,
@@ -75,7 +80,8 @@ class Recording(NamedTuple):
 
 @contextmanager
 def recording_to(folder: Path, head: Head) -> Iterator[Keep]:
-    """A function that keeps a message; the file is there when all is said.
+    """A function that keeps a message; the file has its name when all is said, and is written as
+    it grows.
 
     Raises:
         RecordingError: Without the library mcap.
@@ -89,46 +95,67 @@ def recording_to(folder: Path, head: Head) -> Iterator[Keep]:
             file = doors.enter_context(path.open("wb"))
         except OSError as error:
             raise unwritable(folder, error) from error
-        writer = library.Writer(file)
+        writer = library.Writer(file, chunk_size=CHUNK_BYTES)
         writer.start(profile="", library="tritrack")
         told = msgspec.structs.replace(head, versions=versions())
         writer.add_metadata("tritrack", {"head": msgspec.json.encode(told).decode()})
-        yield _keeper(writer)
+        yield _keeper(writer, file)
         writer.finish()
 
 
 def read_recording(folder: Path) -> Recording:
-    """Read the recording of a run folder.
+    """Read the recording of a run folder; of a run that was killed, as far as it was written.
 
     Raises:
         RecordingError: When there is none, or it was damaged, or another version wrote it.
     """
     library = _library()
-    path = folder / NAME
     if not folder.is_dir():
         raise RecordingError(f"there is no run folder {folder}: name one made with --record")
-    if not path.is_file():
+    whole = folder / NAME
+    path = whole if whole.is_file() else next(iter(torn_recordings(folder)), None)
+    if path is None:
         raise RecordingError(
             f"{folder} has no {NAME}: track or run live again with --record, then replay it"
         )
     found: dict[str, list[Any]] = {topic: [] for topic in KINDS}
+    heads: list[Head] = []
     try:
-        with path.open("rb") as file:
-            reader = library.NonSeekingReader(file)
-            for _schema, channel, message in reader.iter_messages([*KINDS], log_time_order=False):
-                found[channel.topic].append(decode(message.data, KINDS[channel.topic]))
-        with path.open("rb") as file:
-            (told,) = library.make_reader(file).iter_metadata()
-        head = msgspec.json.decode(told.metadata["head"], type=Head)
+        with path.open("rb") as file, suppress(*(() if path is whole else library.errors)):
+            for said in _said(library.StreamReader(file, validate_crcs=True)):
+                if isinstance(said, Head):
+                    heads.append(said)
+                else:
+                    found[topic_of(said)].append(said)
+        (head,) = heads
     except library.errors as error:
         raise RecordingError(
-            f"{path} was damaged or is of another version ({error}): record again"
+            f"{path} was damaged or is of another version ({str(error) or type(error).__name__}): "
+            "record again"
         ) from error
     reports = (found["/report/1"], found["/report/2"])
     return Recording(head, reports, found["/body"], found["/posture"], found["/cameras"])
 
 
-def _keeper(writer: Any) -> Keep:
+def torn_recordings(folder: Path) -> list[Path]:
+    """What runs that were killed left of their recordings in a folder, the newest first."""
+    return sorted(folder.glob(TORN), key=lambda path: path.stat().st_mtime_ns, reverse=True)
+
+
+def _said(reader: Any) -> Iterator[Head | Message]:
+    """What a recording holds of ours, in its order."""
+    topics: dict[int, str] = {}
+    for record in reader.records:
+        match type(record).__name__:
+            case "Channel":
+                topics[record.id] = record.topic
+            case "Metadata":
+                yield msgspec.json.decode(record.metadata["head"], type=Head)
+            case "Message" if topics[record.channel_id] in KINDS:
+                yield decode(record.data, KINDS[topics[record.channel_id]])
+
+
+def _keeper(writer: Any, file: IO[bytes]) -> Keep:
     named = {
         name: writer.register_schema(name, "jsonschema", schema)
         for name, schema in foxglove_scene.schemas().items()
@@ -150,6 +177,7 @@ def _keeper(writer: Any) -> Keep:
         if isinstance(message, Body):
             add(scene, foxglove_scene.scene_of(message))
             add(numbers, foxglove_scene.numbers_of(message))
+        file.flush()  # nothing, but where a chunk is full
 
     return keep
 
@@ -163,8 +191,7 @@ def topic_of(message: Message) -> str:
 
 class _Library(NamedTuple):
     Writer: Any
-    NonSeekingReader: Any
-    make_reader: Any
+    StreamReader: Any
     errors: tuple[type[Exception], ...]
     """What reading raises of a damaged file."""
 
@@ -172,14 +199,14 @@ class _Library(NamedTuple):
 def _library() -> _Library:
     try:
         from mcap.exceptions import McapError
-        from mcap.reader import NonSeekingReader, make_reader
+        from mcap.stream_reader import StreamReader
         from mcap.writer import Writer
         from zstandard import ZstdError
     except ImportError as error:
         raise RecordingError("recordings need mcap: pip install 'tritrack[mcap]'") from error
-    own = (McapError, ZstdError, MalformedMessage)
+    own = (McapError, ZstdError, MalformedMessage, struct.error)
     errors = (*own, OSError, ValueError, KeyError, RuntimeError, OverflowError, MemoryError)
-    return _Library(Writer, NonSeekingReader, make_reader, errors)
+    return _Library(Writer, StreamReader, errors)
 
 
 def refuse_without_library() -> None:
