@@ -127,14 +127,15 @@ def read_recording(folder: Path) -> Recording:
                     heads.append(said)
                 else:
                     found[topic_of(said)].append(said)
-        (head,) = heads
     except library.errors as error:
         raise RecordingError(
             f"{path} was damaged or is of another version ({str(error) or type(error).__name__}): "
             "record again"
         ) from error
+    if not heads:
+        raise RecordingError(f"{path} was damaged, or ended before it began: record again")
     reports = (found["/report/1"], found["/report/2"])
-    return Recording(head, reports, found["/body"], found["/posture"], found["/cameras"])
+    return Recording(heads[0], reports, found["/body"], found["/posture"], found["/cameras"])
 
 
 def torn_recordings(folder: Path) -> list[Path]:
