@@ -24,6 +24,7 @@ from common.rig.camera import (
     project,
     px_per_m,
     ray,
+    rays,
 )
 from common.rig.rig_file import CalibrationError, check_rig, fitted, load_rig
 
@@ -237,3 +238,10 @@ def test_a_metre_is_the_focal_length_over_the_depth() -> None:
     assert px_per_m(rig.cameras[0], np.array([0.3, 1.0, 1.0])) == pytest.approx(150.0 / 3.0)
     assert px_per_m(rig.cameras[1], np.array([1.0, 1.0, 0.3])) == pytest.approx(180.0 / 6.0)
     assert math.isnan(px_per_m(rig.cameras[0], np.array([0.0, 1.0, 4.5])))
+
+
+def test_rays_of_many_pixels_are_those_of_each() -> None:
+    for camera in rig_of_size().cameras:
+        pixels = np.random.default_rng(4).uniform(0.0, 320.0, (9, 2))
+        each = [ray(camera, (float(u), float(v))) for u, v in pixels]
+        assert rays(camera, pixels) == pytest.approx(np.array(each), abs=1e-12)

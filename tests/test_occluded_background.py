@@ -9,7 +9,7 @@ import pytest
 from spoiling import film_of
 from test_background import HEIGHT, WIDTH, passer_by, room, shot, walker
 
-from viewer.background.occluded_background import NoSegments, learn_uncovered
+from viewer.background.occluded_background import NoSegments, learn_around, learn_uncovered
 
 
 def test_room_behind_somebody_who_never_leaves_is_guessed_and_says_so() -> None:
@@ -70,3 +70,14 @@ def test_background_of_clips_whose_empty_frames_are_withheld(data_dir: Path, nam
     off = np.abs(learnt.centre - true).mean(axis=-1)
     assert off[~learnt.uncertain].mean() <= 5
     assert learnt.uncertain.any()
+
+
+def test_a_pixel_that_two_frames_show_is_half_way_between_them() -> None:
+    frames = [np.full((40, 60, 3), 128, np.uint8) for _ in range(3)]
+    for frame, level in zip(frames, (100, 140, 30), strict=True):
+        frame[10:14, 10:14] = level
+    covered = [np.zeros((40, 60), np.uint8) for _ in frames]
+    covered[2][10:14, 10:14] = 1
+    room = learn_around(frames, covered)
+    assert room.centre[12, 12] == pytest.approx([120.0] * 3, abs=0.5)
+    assert not room.uncertain.any()

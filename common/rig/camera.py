@@ -7,6 +7,7 @@ from typing import Any, Final, NamedTuple
 import cv2
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.compiled import compiled
@@ -171,6 +172,14 @@ def ray(camera: Camera, pixel: tuple[float, float]) -> Vector:
         y = (pixel[1] - middle_px[1]) * (1 / focal_px[1])
     direction: Vector = _turned_back(R, float(x), float(y))
     return direction
+
+
+def rays(camera: Camera, pixels: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Directions in the world, (n, 3) of unit length, of what pixels (n, 2) show, undistorted."""
+    known, plane = arrays_of(camera), np.ones((len(pixels), 3))
+    plane[:, :2] = (pixels - known.middle_px) / known.focal_px
+    found: NDArray[np.float64] = plane @ known.R
+    return found / np.linalg.norm(found, axis=1, keepdims=True)
 
 
 @compiled

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from common.body.extremities import EXTREMITY_NAMES
 from common.bus.messages import Landmarks, Report
-from common.rig.camera import Camera, Rig, arrays_of, project
+from common.rig.camera import Rig, arrays_of, project, rays
 
 Floats = NDArray[np.float64]
 
@@ -44,7 +44,7 @@ def seen_extremities(
         shown = None if report is None else report.landmarks
         if shown is not None and shown.extremities_px:
             pixels, sure[view] = _own_sides(shown, project(camera, rule_m))
-            nearest[view] = _lines(camera, pixels)
+            nearest[view] = rays(camera, pixels)
     if not (sure >= LEAST).any():
         return rule_m, np.zeros(len(rule_m))
     sure = np.where(sure >= LEAST, sure, 0.0)
@@ -64,15 +64,6 @@ def _own_sides(shown: Landmarks, rule_px: Floats) -> tuple[Floats, Floats]:
         if other_px < own_px:
             pixels[at], sure[at] = pixels[other], sure[other]
     return pixels, sure
-
-
-def _lines(camera: Camera, pixels: Floats) -> Floats:
-    """Directions (7, 3) of unit length in which a camera sees pixels (7, 2)."""
-    known = arrays_of(camera)
-    plane = np.ones((len(pixels), 3))
-    plane[:, :2] = (pixels - known.middle_px) / known.focal_px
-    found: Floats = plane @ known.R
-    return found / np.linalg.norm(found, axis=1, keepdims=True)
 
 
 def _met(

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Pixel, Report
-from common.rig.camera import Camera, Rig, arrays_of
+from common.bus.messages import Report
+from common.rig.camera import Rig, arrays_of, rays
 from integrator.proposal.network_weights import JOINTS
 
 AT: Final = [JOINT_NAMES.index(name) for name in JOINTS]
@@ -57,10 +57,10 @@ def rays_of(rig: Rig, seen: tuple[Report | None, Report | None]) -> Rays | None:
     directions, confidence = np.zeros((2, 2, len(AT), 3)), np.zeros((2, 2, len(AT)))
     for view, (camera, landmarks) in enumerate(zip(rig.cameras, shown, strict=True)):
         if landmarks is not None:
-            directions[0, view] = _directions(camera, landmarks.joints_px)
+            directions[0, view] = rays(camera, np.array(landmarks.joints_px)[AT])
             confidence[0, view] = np.array(landmarks.confidence)[AT]
         if landmarks is not None and landmarks.second_px:
-            directions[1, view] = _directions(camera, landmarks.second_px)
+            directions[1, view] = rays(camera, np.array(landmarks.second_px)[AT])
             confidence[1, view] = np.array(landmarks.second_confidence)[AT]
     cameras = [arrays_of(camera) for camera in rig.cameras]
     facings = [
@@ -77,11 +77,3 @@ def rays_of(rig: Rig, seen: tuple[Report | None, Report | None]) -> Rays | None:
         (facing_1, facing_2),
         (sure_1, sure_2),
     )
-
-
-def _directions(camera: Camera, joints_px: tuple[Pixel, ...]) -> NDArray[np.float64]:
-    known, places_px = arrays_of(camera), np.array(joints_px)[AT]
-    plane = np.ones((len(AT), 3))
-    plane[:, :2] = (places_px - known.middle_px) / known.focal_px
-    found: NDArray[np.float64] = plane @ known.R
-    return found / np.linalg.norm(found, axis=1, keepdims=True)

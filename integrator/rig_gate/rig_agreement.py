@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, Vector
 from common.bus.messages import Agreement, Landmarks, Report
-from common.rig.camera import Camera, Rig, arrays_of
+from common.rig.camera import Camera, Rig, arrays_of, rays
 from integrator.pairing import Seen
 from integrator.selfcalibration.joint_tracks import is_upright
 from integrator.selfcalibration.person_prior import ANKLE_SHARE
@@ -134,7 +134,7 @@ def _met(
     cameras: tuple[Camera, ...], one_px: NDArray[np.float64], other_px: NDArray[np.float64]
 ) -> tuple[Vector, NDArray[np.float64]]:
     """How far sight lines of points (n, 2) miss each other, (n,), and where they are nearest."""
-    one, other = _rays(cameras[0], one_px), _rays(cameras[1], other_px)
+    one, other = rays(cameras[0], one_px), rays(cameras[1], other_px)
     start = arrays_of(cameras[0]).centre
     base = arrays_of(cameras[1]).centre - start
     normal = np.cross(one, other)
@@ -150,14 +150,6 @@ def _points(seen: Landmarks) -> NDArray[np.float64]:
     """(points, 2) px, of POINTS."""
     joints_px = np.array(seen.joints_px)
     return np.stack([joints_px[point].mean(axis=0) for point in POINTS])
-
-
-def _rays(camera: Camera, places_px: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(n, 3) unit vectors in the world."""
-    known, plane = arrays_of(camera), np.ones((len(places_px), 3))
-    plane[:, :2] = (places_px - known.middle_px) / known.focal_px
-    found: NDArray[np.float64] = plane @ known.R
-    return found / np.linalg.norm(found, axis=1, keepdims=True)
 
 
 def _turned(

@@ -96,8 +96,12 @@ def _shown_median(even: Floats, hidden: Mask, shown: NDArray[np.int64]) -> Float
     centre = median(even)
     some = hidden.any(axis=0) & (shown > 0)
     values = np.where(hidden[:, some][..., None], np.inf, even[:, some])
-    middle = (shown[some] - 1) // 2
-    centre[some] = np.take_along_axis(np.sort(values, axis=0), middle[None, :, None], axis=0)[0]
+    ranked = np.sort(values, axis=0)
+    lower, upper = (
+        np.take_along_axis(ranked, middle[None, :, None], axis=0)[0]
+        for middle in ((shown[some] - 1) // 2, shown[some] // 2)
+    )
+    centre[some] = (lower + upper) / 2
     return centre
 
 
