@@ -89,6 +89,34 @@ def test_every_format_is_written_beside_the_run(run: Path, to: Format) -> None:
     assert (run / "body.osim").is_file() == (to == "mot")
 
 
+@pytest.mark.parametrize(
+    ("to", "name", "endings"),
+    [
+        ("gltf", "dance.gltf", r"\.glb$"),
+        ("usd", "dance.usdz", r"\.usdc or \.usd or \.usda$"),
+        ("csv", "poses.npz", r"\.csv$"),
+        ("bvh", "dance", r"\.bvh$"),
+    ],
+)
+def test_a_name_of_another_format_is_refused_by_the_endings_that_it_may_have(
+    run: Path, tmp_path: Path, to: Format, name: str, endings: str
+) -> None:
+    with pytest.raises(ExportError, match=rf"{name} is no name for {to}: let it end in {endings}"):
+        export_run(run, to, tmp_path / name)
+    assert not (tmp_path / name).exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "begins"), [("a.usda", b"#usda"), ("a.USD", b"PXR-USDC"), ("a.usdc", b"PXR-USDC")]
+)
+def test_the_ending_tells_whether_usd_is_text(
+    run: Path, tmp_path: Path, name: str, begins: bytes
+) -> None:
+    pytest.importorskip("pxr", reason="pip install 'tritrack[usd]'")
+    export_run(run, "usd", tmp_path / name)
+    assert (tmp_path / name).read_bytes().startswith(begins)
+
+
 def test_centimetres_are_for_bvh_alone(run: Path) -> None:
     facts = export_run(run, "bvh", None, "cm")
     first = Path(facts["file"]).read_text().split("Frame Time")[1].splitlines()[1].split()
