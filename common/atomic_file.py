@@ -12,6 +12,20 @@ FULL: Final = (errno.ENOSPC, errno.EDQUOT)
 """Of an error where space is what lacks."""
 
 
+class FileRefused(ValueError):
+    """A file whose place no other may take; the text names it and the cure."""
+
+
+def refuse_to_replace(path: Path, replace: bool) -> None:
+    """Say that a file is there already, unless it may be lost.
+
+    Raises:
+        FileRefused: When it is there and may not.
+    """
+    if path.exists() and not replace:
+        raise FileRefused(f"{path} is there already: name another --out, or add --force")
+
+
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """A file beside `path` to write into; it takes its place when all of it was written.

@@ -19,7 +19,9 @@ import typer
 from spoiling import REFUSED, WORKED_WITH, copied, edit_json
 
 import tritrack.__main__ as door
+from common.config.settings import Settings
 from tritrack.live import session
+from tritrack.store.runs import write_run
 
 
 class Ended(NamedTuple):
@@ -443,6 +445,19 @@ def test_a_calibration_that_is_there_is_replaced_only_when_asked(
     assert out.read_text() == "an afternoon's work"
     assert tritrack(*words, "--force").code == 0
     assert json.loads(out.read_text())["cameras"]
+
+
+def test_an_export_replaces_a_file_only_when_asked(tritrack: Commands, tmp_path: Path) -> None:
+    run, out = tmp_path / "run", tmp_path / "a.csv"
+    write_run(run, [], Settings(), {})
+    out.write_text("an afternoon's work")
+    words = ("export", run, "--to", "csv", "--out", out)
+    said = tritrack(*words)
+    assert (said.code, said.out) == (2, "")
+    assert said.errors == [f"error: {out} is there already: name another --out, or add --force"]
+    assert out.read_text() == "an afternoon's work"
+    assert tritrack(*words, "--force").code == 0
+    assert out.read_text().startswith("frame,")
 
 
 def test_made_up_clips_are_told_as_json(tritrack: Commands, tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from typing import Any, Final, Literal, NamedTuple
 import numpy as np
 
 from animator.exchange import LibraryMissing
-from common.atomic_file import replacing, unwritten
+from common.atomic_file import refuse_to_replace, replacing, unwritten
 from common.body.body import ANGLE_NAMES, JOINT_NAMES
 from common.body.extremities import EXTREMITY_NAMES
 from tritrack.store.joint_arrays import all_joints_m
@@ -48,14 +48,18 @@ class Written(NamedTuple):
     """Ending and content of a second file."""
 
 
-def export_run(folder: Path, to: Format, out: Path | None, scale: Scale = "m") -> dict[str, Any]:
+def export_run(
+    folder: Path, to: Format, out: Path | None, scale: Scale = "m", replace: bool = False
+) -> dict[str, Any]:
     """Write a run in another format.
 
     Args:
         folder: That of the run.
         to: Which format.
-        out: The file to write; None: that of OWN_NAMES in the run folder.
+        out: The file to write; None: that of OWN_NAMES in the run folder, which an export before
+            may have written.
         scale: Unit of a BVH file; of all others the format says it.
+        replace: What stands at `out` may be lost.
 
     Returns:
         The file, its frames, and of a skeleton of fixed bones how far its joints are from the
@@ -65,6 +69,7 @@ def export_run(folder: Path, to: Format, out: Path | None, scale: Scale = "m") -
         PastRunError: When there is no such run.
         ExportError: When it has no poses, the format's library is not installed, or the file cannot
             be written or has the name of another format.
+        FileRefused: When a file would be lost.
     """
     if scale != "m" and to != "bvh":
         raise ExportError(f"--scale is for bvh: {to} has a unit of its own, leave it out")
@@ -78,6 +83,8 @@ def export_run(folder: Path, to: Format, out: Path | None, scale: Scale = "m") -
     files = {path: written.content}
     if written.beside is not None:
         files[path.with_suffix(written.beside[0])] = written.beside[1]
+    for place in files:
+        refuse_to_replace(place, replace or out is None)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         for place, content in files.items():

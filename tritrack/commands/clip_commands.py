@@ -14,6 +14,7 @@ from tritrack.commands.options import (
     MODES,
     WORKED_ON,
     Force,
+    Forced,
     LandmarkSource,
     Out,
     Record,
@@ -169,13 +170,14 @@ def export(
         ),
     ] = None,
     scale: Annotated[Scale, typer.Option(help="Unit of a BVH file.")] = "m",
+    force: Forced = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Write a run as a file for other programs.
 
     Example: tritrack export runs/walk --to bvh
     """
-    facts = export_run(run, to, out, scale)
+    facts = export_run(run, to, out, scale, force)
     off = facts.get("off_mm")
     told = f"; fixed bones: {off['median']} mm off, 95 % within {off['p95']} mm" if off else ""
     line = f"{counted(facts['frames'], 'frame')} written to {facts['file']}{told}"

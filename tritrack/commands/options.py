@@ -112,6 +112,7 @@ Resume = Annotated[
 Force = Annotated[
     bool, typer.Option("--force", help="Write over a run of another clip or command.")
 ]
+Forced = Annotated[bool, typer.Option("--force", help="Replace a file that is there.")]
 LandmarkSource = Annotated[
     str | None,
     typer.Option(
