@@ -21,6 +21,7 @@ from spoiling import REFUSED, WORKED_WITH, copied, edit_json
 import tritrack.__main__ as door
 from common.config.settings import Settings
 from tritrack.live import session
+from tritrack.store.other_run import run_of
 from tritrack.store.runs import write_run
 
 
@@ -415,6 +416,49 @@ def test_live_refuses_a_page_port_in_use(
         said = tritrack("live", toml(tmp_path / "run.toml", text), "--out", tmp_path / "out")
     assert said.code == 2
     assert re.search(r"port \d+: .*in use; .*set page\.port to another one", said.errors[0])
+
+
+def test_a_live_run_takes_the_place_of_no_other_run(
+    tritrack: Commands, no_process: None, clip: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    write_run(out, [], Settings(), run_of("single", ["dance.avi"]).facts)
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    said = tritrack("live", clip, "--out", out)
+    assert said.code == 2
+    assert re.search(r"another run \(tritrack single of .*dance.avi\): .*--force", said.errors[0])
+    assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+
+
+@pytest.mark.parametrize("words", [(), ("--out", "out"), ("--out", "other", "--force")])
+def test_a_live_run_takes_the_place_of_the_last_one_of_the_same_or_by_force(
+    tritrack: Commands,
+    monkeypatch: pytest.MonkeyPatch,
+    clip: Path,
+    tmp_path: Path,
+    words: tuple[str, ...],
+) -> None:
+    """It is let in: what refuses it here, a mode that has no processes, comes behind that."""
+    monkeypatch.chdir(tmp_path)
+    films = [str(clip / "cam1.avi"), str(clip / "cam2.avi")]
+    for place, sources in (("out", films), ("other", ["dance.avi"]), ("runs/live", ["dance.avi"])):
+        write_run(tmp_path / place, [], Settings(), run_of("live", sources).facts)
+    settings = toml(tmp_path / "run.toml", f'clip = "{clip}"\nmode = "thesis"\n')
+    said = tritrack("live", settings, *words)
+    assert "the thesis's mode is not for live runs" in said.errors[0]
+    told = re.search(r"runs/live holds another run \(.*\): this one replaces it", said.err)
+    assert (told is not None) == (words == ())
+
+
+def test_what_is_replayed_says_where_it_is_written(
+    tritrack: Commands, clip: Path, tmp_path: Path
+) -> None:
+    pytest.importorskip("mcap", reason="pip install 'tritrack[mcap]'")
+    assert tritrack("track", clip, "--record", "--out", tmp_path).code == 0
+    out = tmp_path / "again"
+    said = tritrack("replay", tmp_path / clip.name, "--out", out)
+    assert said.err.strip().endswith(f"; written to {out}")
+    assert "written" not in tritrack("replay", tmp_path / clip.name).err
 
 
 def test_calibration_is_a_table_and_json(tritrack: Commands, tmp_path: Path) -> None:

@@ -201,6 +201,7 @@ def replay(
         bool, typer.Option("--page", help="Play it on a page of this machine, until Ctrl-C.")
     ] = False,
     port: Annotated[int, typer.Option(min=1, max=65535, help="Port of the page.")] = 8080,
+    force: Force = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Integrate, play or say a recorded run again.
@@ -219,9 +220,10 @@ def replay(
         facts = replay_on_page(run, port, console)
         tell(facts, json_wanted, f"{facts['shown']} frames shown")
         return
-    facts = replay_run(run, out)
+    facts = replay_run(run, out, force)
     bodies = counted(facts["bodies"], "body", "bodies")
     line = f"{bodies}, {facts['same']} of them the same byte for byte"
+    line += "" if out is None else f"; written to {out}"
     tell(facts, json_wanted, line)
 
 
