@@ -46,9 +46,7 @@ def test_what_is_replayed_takes_the_place_of_another_run_only_by_force(
 ) -> None:
     write_run(tmp_path, [], Settings(), run_of("single", ["dance.avi"]).facts)
     before = (tmp_path / "poses.npz").read_bytes()
-    with pytest.raises(
-        OtherRun, match=r"run \(tritrack single of .*dance.avi\): .*--force"
-    ):
+    with pytest.raises(OtherRun, match=r"run \(tritrack single of .*dance.avi\): .*--force"):
         replay_run(run, tmp_path)
     with pytest.raises(OtherRun, match="another run"):
         replay_run(run, run)

@@ -504,6 +504,32 @@ def test_an_export_replaces_a_file_only_when_asked(tritrack: Commands, tmp_path:
     assert out.read_text().startswith("frame,")
 
 
+@pytest.mark.parametrize("what", ["postures", "proposals", "silhouettes", "landmarks"])
+def test_what_is_learnt_replaces_a_file_only_when_asked(
+    tritrack: Commands, tmp_path: Path, what: str
+) -> None:
+    out = tmp_path / "model.npz"
+    out.write_text("an afternoon's work")
+    said = tritrack("train", "nosuch", "--what", what, "--out", out)
+    assert said.code == 2
+    assert said.errors == [f"error: {out} is there already: name another --out, or add --force"]
+    assert out.read_text() == "an afternoon's work"
+
+
+def test_what_is_learnt_goes_on_from_the_work_beside_it_or_by_force(
+    tritrack: Commands, tmp_path: Path
+) -> None:
+    """It is let in: what refuses it here, a film or clips that are not there, comes behind."""
+    out = tmp_path / "mine.onnx"
+    out.write_text("a network")
+    (tmp_path / "mine.onnx.work").mkdir()
+    film = ("--what", "landmarks", "--film", tmp_path / "nosuch.mp4", "--teacher", tmp_path)
+    assert "is there already" not in tritrack("train", *film, "--out", out).err
+    assert "is there already" in tritrack("train", "--out", out).err
+    assert "name clips or run folders" in tritrack("train", "--out", out, "--force").err
+    assert out.read_text() == "a network"
+
+
 def test_made_up_clips_are_told_as_json(tritrack: Commands, tmp_path: Path) -> None:
     words = ("--size", "64x48", "--posture", "squat", "--json")
     said = tritrack("synth", "--out", tmp_path / "clips", *words)
