@@ -530,6 +530,27 @@ def test_what_is_learnt_goes_on_from_the_work_beside_it_or_by_force(
     assert out.read_text() == "a network"
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("export", "x", "--to", "csv"),
+        ("train", "x", "--force"),
+        ("teach", "bow", "x"),
+        ("calibrate", "poles", "x", "--force"),
+    ],
+    ids=lambda words: words[0],
+)
+def test_what_is_no_ordinary_file_is_refused_before_any_work(
+    tritrack: Commands, tmp_path: Path, words: tuple[str, ...]
+) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    said = tritrack(*words, "--out", pipe)
+    assert (said.code, said.out) == (2, "")
+    assert said.errors == [f"error: {pipe} is no ordinary file: name another --out"]
+    assert pipe.is_fifo()
+
+
 def test_made_up_clips_are_told_as_json(tritrack: Commands, tmp_path: Path) -> None:
     words = ("--size", "64x48", "--posture", "squat", "--json")
     said = tritrack("synth", "--out", tmp_path / "clips", *words)

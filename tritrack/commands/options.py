@@ -7,6 +7,7 @@ from typing import Annotated, Final, Literal
 
 import typer
 
+from common.atomic_file import refuse_special
 from common.config.picture_size import size_of
 
 MODES: Final = "default: most accurate; paper: as published 2004"
@@ -78,11 +79,13 @@ def writable_file(path: Path | None) -> Path | None:
 
     Raises:
         BadParameter: When it is a folder, or its own cannot be written.
+        FileRefused: When it is no ordinary file.
     """
     if path is None:
         return None
     if path.is_dir():
         raise typer.BadParameter(f"{path} is a folder: name a file")
+    refuse_special(path)
     writable(path.parent)
     return path
 
