@@ -108,7 +108,7 @@ def kinds(clip: Path, folder: Path, decoder: Decoder) -> dict[str, Kind]:
         return list(decoder.frames(str(path), (160, 120)))
 
     def exported(path: Path) -> object:
-        return open_run(path.parent) and export_run(path.parent, "csv", folder / "out.csv")
+        return open_run(path.parent) and export_run(path.parent, "csv", None)
 
     found: dict[str, tuple[Path, Callable[[Path], object]]] = {
         "settings": (folder / "settings.toml", load),

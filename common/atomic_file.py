@@ -12,6 +12,30 @@ FULL: Final = (errno.ENOSPC, errno.EDQUOT)
 """Of an error where space is what lacks."""
 
 
+class FileRefused(ValueError):
+    """A file whose place no other may take; the text names it and the cure."""
+
+
+def refuse_to_replace(path: Path, replace: bool) -> None:
+    """Say that a file is there already, unless it may be lost.
+
+    Raises:
+        FileRefused: When it is there and may not.
+    """
+    if path.exists() and not replace:
+        raise FileRefused(f"{path} is there already: name another --out, or add --force")
+
+
+def refuse_special(path: Path) -> None:
+    """Say that a device, a pipe or a socket is there, of which a file would make an end.
+
+    Raises:
+        FileRefused: When it is.
+    """
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise FileRefused(f"{path} is no ordinary file: name another --out")
+
+
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """A file beside `path` to write into; it takes its place when all of it was written.
@@ -20,7 +44,9 @@ def replacing(path: Path) -> Iterator[Path]:
 
     Raises:
         OSError: When the folder cannot be written.
+        FileRefused: When `path` is no ordinary file.
     """
+    refuse_special(path)
     handle, name = tempfile.mkstemp(path.suffix, f".{path.stem}.", path.parent)
     os.close(handle)
     new = Path(name)

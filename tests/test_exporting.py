@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from common.atomic_file import FileRefused
 from common.body.body import JOINT_NAMES, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
@@ -87,6 +88,66 @@ def test_every_format_is_written_beside_the_run(run: Path, to: Format) -> None:
     assert facts["frames"] == (6 if to == "csv" else 5)
     assert Path(facts["file"]).stat().st_size > 1000
     assert (run / "body.osim").is_file() == (to == "mot")
+
+
+@pytest.mark.parametrize(
+    ("to", "name", "endings"),
+    [
+        ("gltf", "dance.gltf", r"\.glb$"),
+        ("usd", "dance.usdz", r"\.usdc or \.usd or \.usda$"),
+        ("csv", "poses.npz", r"\.csv$"),
+        ("bvh", "dance", r"\.bvh$"),
+    ],
+)
+def test_a_name_of_another_format_is_refused_by_the_endings_that_it_may_have(
+    run: Path, tmp_path: Path, to: Format, name: str, endings: str
+) -> None:
+    with pytest.raises(ExportError, match=rf"{name} is no name for {to}: let it end in {endings}"):
+        export_run(run, to, tmp_path / name)
+    assert not (tmp_path / name).exists()
+
+
+@pytest.mark.parametrize(("to", "there"), [("csv", "a.csv"), ("mot", "a.mot"), ("mot", "a.osim")])
+def test_a_file_that_is_there_is_replaced_only_when_asked(
+    run: Path, tmp_path: Path, to: Format, there: str
+) -> None:
+    out = tmp_path / f"a.{to}"
+    (tmp_path / there).write_text("an afternoon's work")
+    before = sorted(tmp_path.iterdir())
+    with pytest.raises(FileRefused, match=rf"{there} is there already: .* or add --force"):
+        export_run(run, to, out)
+    assert (tmp_path / there).read_text() == "an afternoon's work"
+    assert sorted(tmp_path.iterdir()) == before
+    export_run(run, to, out, replace=True)
+    assert (tmp_path / there).read_text() != "an afternoon's work"
+
+
+@pytest.mark.parametrize("to", OWN_NAMES)
+@pytest.mark.parametrize("name", ["run/poses.npz", "run/summary.json", "clip/cam2.avi"])
+def test_no_force_writes_over_a_run_or_its_films(
+    run: Path, tmp_path: Path, to: Format, name: str
+) -> None:
+    (tmp_path / "clip").mkdir()
+    (tmp_path / "clip" / "cam2.avi").write_bytes(b"a film")
+    before = (tmp_path / name).read_bytes()
+    with pytest.raises(ExportError, match=rf"is no name for {to}"):
+        export_run(run, to, tmp_path / name, replace=True)
+    assert (tmp_path / name).read_bytes() == before
+
+
+def test_beside_the_run_an_export_takes_the_place_of_the_one_before(run: Path) -> None:
+    assert export_run(run, "bvh", None, "cm")["file"] == export_run(run, "bvh", None)["file"]
+
+
+@pytest.mark.parametrize(
+    ("name", "begins"), [("a.usda", b"#usda"), ("a.USD", b"PXR-USDC"), ("a.usdc", b"PXR-USDC")]
+)
+def test_the_ending_tells_whether_usd_is_text(
+    run: Path, tmp_path: Path, name: str, begins: bytes
+) -> None:
+    pytest.importorskip("pxr", reason="pip install 'tritrack[usd]'")
+    export_run(run, "usd", tmp_path / name)
+    assert (tmp_path / name).read_bytes().startswith(begins)
 
 
 def test_centimetres_are_for_bvh_alone(run: Path) -> None:

@@ -38,6 +38,11 @@ def test_a_live_run_is_not_written_over_by_that_of_a_film(tmp_path: Path) -> Non
         refuse_other(tmp_path, TRACKED)
 
 
+def test_a_live_run_that_does_not_tell_of_what_gives_way_to_a_live_run(tmp_path: Path) -> None:
+    write_run(tmp_path, [], Settings(), {"processes": {}})
+    refuse_other(tmp_path, run_of("live", [0, 1]))
+
+
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"run_of": 3}'])
 def test_what_tells_nothing_of_itself_is_no_hindrance(tmp_path: Path, text: str) -> None:
     (tmp_path / "summary.json").write_text(text)

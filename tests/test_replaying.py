@@ -17,8 +17,10 @@ from tritrack.live.free_ports import free_settings
 from tritrack.live.session import live
 from tritrack.offline.batch import Asked, track_all
 from tritrack.replaying import pairs, replay_run, say
+from tritrack.store.other_run import OtherRun, run_of
 from tritrack.store.past_run import open_run
 from tritrack.store.recording import read_recording
+from tritrack.store.runs import write_run
 
 pytest.importorskip("mcap", reason="pip install 'tritrack[mcap]'")
 
@@ -37,6 +39,21 @@ def test_recorded_reports_give_the_same_bodies_byte_for_byte(run: Path, tmp_path
     before, again = open_run(run).poses, open_run(tmp_path / "again").poses
     assert facts["same"] == facts["bodies"] == len(before["frame"]) > 0
     assert np.array_equal(before["joints_m"], again["joints_m"], equal_nan=True)
+
+
+def test_what_is_replayed_takes_the_place_of_another_run_only_by_force(
+    run: Path, tmp_path: Path
+) -> None:
+    write_run(tmp_path, [], Settings(), run_of("single", ["dance.avi"]).facts)
+    before = (tmp_path / "poses.npz").read_bytes()
+    with pytest.raises(OtherRun, match=r"run \(tritrack single of .*dance.avi\): .*--force"):
+        replay_run(run, tmp_path)
+    with pytest.raises(OtherRun, match="another run"):
+        replay_run(run, run)
+    assert (tmp_path / "poses.npz").read_bytes() == before
+    for force in (True, False):
+        replay_run(run, tmp_path, force)
+    assert (tmp_path / "poses.npz").read_bytes() != before
 
 
 @pytest.mark.parametrize("views", [(1,), (2,)])

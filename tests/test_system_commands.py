@@ -19,7 +19,10 @@ import typer
 from spoiling import REFUSED, WORKED_WITH, copied, edit_json
 
 import tritrack.__main__ as door
+from common.config.settings import Settings
 from tritrack.live import session
+from tritrack.store.other_run import run_of
+from tritrack.store.runs import write_run
 
 
 class Ended(NamedTuple):
@@ -415,6 +418,49 @@ def test_live_refuses_a_page_port_in_use(
     assert re.search(r"port \d+: .*in use; .*set page\.port to another one", said.errors[0])
 
 
+def test_a_live_run_takes_the_place_of_no_other_run(
+    tritrack: Commands, no_process: None, clip: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    write_run(out, [], Settings(), run_of("single", ["dance.avi"]).facts)
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    said = tritrack("live", clip, "--out", out)
+    assert said.code == 2
+    assert re.search(r"another run \(tritrack single of .*dance.avi\): .*--force", said.errors[0])
+    assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+
+
+@pytest.mark.parametrize("words", [(), ("--out", "out"), ("--out", "other", "--force")])
+def test_a_live_run_takes_the_place_of_the_last_one_of_the_same_or_by_force(
+    tritrack: Commands,
+    monkeypatch: pytest.MonkeyPatch,
+    clip: Path,
+    tmp_path: Path,
+    words: tuple[str, ...],
+) -> None:
+    """It is let in: what refuses it here, a mode that has no processes, comes behind that."""
+    monkeypatch.chdir(tmp_path)
+    films = [str(clip / "cam1.avi"), str(clip / "cam2.avi")]
+    for place, sources in (("out", films), ("other", ["dance.avi"]), ("runs/live", ["dance.avi"])):
+        write_run(tmp_path / place, [], Settings(), run_of("live", sources).facts)
+    settings = toml(tmp_path / "run.toml", f'clip = "{clip}"\nmode = "thesis"\n')
+    said = tritrack("live", settings, *words)
+    assert "the thesis's mode is not for live runs" in said.errors[0]
+    told = re.search(r"runs/live holds another run \(.*\): this one replaces it", said.err)
+    assert (told is not None) == (words == ())
+
+
+def test_what_is_replayed_says_where_it_is_written(
+    tritrack: Commands, clip: Path, tmp_path: Path
+) -> None:
+    pytest.importorskip("mcap", reason="pip install 'tritrack[mcap]'")
+    assert tritrack("track", clip, "--record", "--out", tmp_path).code == 0
+    out = tmp_path / "again"
+    said = tritrack("replay", tmp_path / clip.name, "--out", out)
+    assert said.err.strip().endswith(f"; written to {out}")
+    assert "written" not in tritrack("replay", tmp_path / clip.name).err
+
+
 def test_calibration_is_a_table_and_json(tritrack: Commands, tmp_path: Path) -> None:
     """configs/markers.toml says itself: camera 1 looks 1.5 degrees too far right."""
     configs = Path(__file__).parents[1] / "configs"
@@ -443,6 +489,66 @@ def test_a_calibration_that_is_there_is_replaced_only_when_asked(
     assert out.read_text() == "an afternoon's work"
     assert tritrack(*words, "--force").code == 0
     assert json.loads(out.read_text())["cameras"]
+
+
+def test_an_export_replaces_a_file_only_when_asked(tritrack: Commands, tmp_path: Path) -> None:
+    run, out = tmp_path / "run", tmp_path / "a.csv"
+    write_run(run, [], Settings(), {})
+    out.write_text("an afternoon's work")
+    words = ("export", run, "--to", "csv", "--out", out)
+    said = tritrack(*words)
+    assert (said.code, said.out) == (2, "")
+    assert said.errors == [f"error: {out} is there already: name another --out, or add --force"]
+    assert out.read_text() == "an afternoon's work"
+    assert tritrack(*words, "--force").code == 0
+    assert out.read_text().startswith("frame,")
+
+
+@pytest.mark.parametrize("what", ["postures", "proposals", "silhouettes", "landmarks"])
+def test_what_is_learnt_replaces_a_file_only_when_asked(
+    tritrack: Commands, tmp_path: Path, what: str
+) -> None:
+    out = tmp_path / "model.npz"
+    out.write_text("an afternoon's work")
+    said = tritrack("train", "nosuch", "--what", what, "--out", out)
+    assert said.code == 2
+    assert said.errors == [f"error: {out} is there already: name another --out, or add --force"]
+    assert out.read_text() == "an afternoon's work"
+
+
+def test_what_is_learnt_goes_on_from_the_work_beside_it_or_by_force(
+    tritrack: Commands, tmp_path: Path
+) -> None:
+    """It is let in: what refuses it here, a film or clips that are not there, comes behind."""
+    out = tmp_path / "mine.onnx"
+    out.write_text("a network")
+    (tmp_path / "mine.onnx.work").mkdir()
+    film = ("--what", "landmarks", "--film", tmp_path / "nosuch.mp4", "--teacher", tmp_path)
+    assert "is there already" not in tritrack("train", *film, "--out", out).err
+    assert "is there already" in tritrack("train", "--out", out).err
+    assert "name clips or run folders" in tritrack("train", "--out", out, "--force").err
+    assert out.read_text() == "a network"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("export", "x", "--to", "csv"),
+        ("train", "x", "--force"),
+        ("teach", "bow", "x"),
+        ("calibrate", "poles", "x", "--force"),
+    ],
+    ids=lambda words: words[0],
+)
+def test_what_is_no_ordinary_file_is_refused_before_any_work(
+    tritrack: Commands, tmp_path: Path, words: tuple[str, ...]
+) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    said = tritrack(*words, "--out", pipe)
+    assert (said.code, said.out) == (2, "")
+    assert said.errors == [f"error: {pipe} is no ordinary file: name another --out"]
+    assert pipe.is_fifo()
 
 
 def test_made_up_clips_are_told_as_json(tritrack: Commands, tmp_path: Path) -> None:

@@ -118,6 +118,14 @@ def test_a_file_that_knows_more_is_not_written_over(
     ]
 
 
+def test_a_file_that_is_no_model_is_not_written_over(plan: Plan, tmp_path: Path) -> None:
+    out = tmp_path / "notes.txt"
+    out.write_text("an afternoon's work")
+    with pytest.raises(TrainingError, match=r"notes\.txt is there already, and is no model"):
+        teach(NEW, [], out, plan, QUIET)
+    assert out.read_text() == "an afternoon's work"
+
+
 @pytest.mark.parametrize("posture", ["", "Star Jump", "../up", "9lives", "x" * 60])
 def test_what_is_no_name_is_refused(plan: Plan, tmp_path: Path, posture: str) -> None:
     with pytest.raises(TrainingError, match="is no name of a posture"):

@@ -9,7 +9,7 @@ from typing import Any, Final, Literal, NamedTuple
 import numpy as np
 
 from animator.exchange import LibraryMissing
-from common.atomic_file import replacing, unwritten
+from common.atomic_file import refuse_to_replace, replacing, unwritten
 from common.body.body import ANGLE_NAMES, JOINT_NAMES
 from common.body.extremities import EXTREMITY_NAMES
 from tritrack.store.joint_arrays import all_joints_m
@@ -27,6 +27,11 @@ OWN_NAMES: Final[dict[Format, str]] = {
     "csv": "poses.csv",
 }
 """The file in the run folder where no other is asked for."""
+ENDINGS: Final[dict[Format, tuple[str, ...]]] = {
+    **{to: (Path(name).suffix,) for to, name in OWN_NAMES.items()},
+    "usd": (".usdc", ".usd", ".usda"),
+}
+"""What a file's name may end in: none of them ends what a run or its footage is made of."""
 
 
 class ExportError(RuntimeError):
@@ -43,14 +48,18 @@ class Written(NamedTuple):
     """Ending and content of a second file."""
 
 
-def export_run(folder: Path, to: Format, out: Path | None, scale: Scale = "m") -> dict[str, Any]:
+def export_run(
+    folder: Path, to: Format, out: Path | None, scale: Scale = "m", replace: bool = False
+) -> dict[str, Any]:
     """Write a run in another format.
 
     Args:
         folder: That of the run.
         to: Which format.
-        out: The file to write; None: that of OWN_NAMES in the run folder.
+        out: The file to write; None: that of OWN_NAMES in the run folder, which an export before
+            may have written.
         scale: Unit of a BVH file; of all others the format says it.
+        replace: What stands at `out` may be lost.
 
     Returns:
         The file, its frames, and of a skeleton of fixed bones how far its joints are from the
@@ -59,12 +68,14 @@ def export_run(folder: Path, to: Format, out: Path | None, scale: Scale = "m") -
     Raises:
         PastRunError: When there is no such run.
         ExportError: When it has no poses, the format's library is not installed, or the file cannot
-            be written.
+            be written or has the name of another format.
+        FileRefused: When a file would be lost.
     """
     if scale != "m" and to != "bvh":
         raise ExportError(f"--scale is for bvh: {to} has a unit of its own, leave it out")
-    run = open_run(folder)
     path = out or folder / OWN_NAMES[to]
+    _refuse_ending(path, to)
+    run = open_run(folder)
     try:
         written = _WRITERS[to](run, path.name, scale)
     except LibraryMissing as error:
@@ -72,6 +83,8 @@ def export_run(folder: Path, to: Format, out: Path | None, scale: Scale = "m") -
     files = {path: written.content}
     if written.beside is not None:
         files[path.with_suffix(written.beside[0])] = written.beside[1]
+    for place in files:
+        refuse_to_replace(place, replace or out is None)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         for place, content in files.items():
@@ -80,6 +93,12 @@ def export_run(folder: Path, to: Format, out: Path | None, scale: Scale = "m") -
     except OSError as error:
         raise ExportError(unwritten(path, error, "name another --out")) from error
     return {"file": str(path), "files": [str(place) for place in files], **written.facts}
+
+
+def _refuse_ending(path: Path, to: Format) -> None:
+    """Say that a name would tell programs of another format than the file's."""
+    if path.suffix.lower() not in ENDINGS[to]:
+        raise ExportError(f"{path} is no name for {to}: let it end in {' or '.join(ENDINGS[to])}")
 
 
 class _Animated(NamedTuple):
@@ -130,11 +149,12 @@ def _gltf(run: PastRun, _name: str, _scale: Scale) -> Written:
     return Written(gltf_bytes(made.skeleton, made.motion, made.step_s), made.facts)
 
 
-def _usd(run: PastRun, _name: str, _scale: Scale) -> Written:
+def _usd(run: PastRun, name: str, _scale: Scale) -> Written:
     from animator.exchange.usd import usd_bytes
 
     made = _animated(run)
-    return Written(usd_bytes(made.skeleton, made.motion, made.step_s), made.facts)
+    content = usd_bytes(made.skeleton, made.motion, made.step_s, Path(name).suffix.lower())
+    return Written(content, made.facts)
 
 
 def _mot(run: PastRun, name: str, _scale: Scale) -> Written:

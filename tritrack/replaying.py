@@ -21,6 +21,7 @@ from integrator import merge, merge_state, opening_posture
 from integrator.live_rig.rig_change import set_back, with_rig
 from integrator.merge_state import Start
 from integrator.pairing import Pair
+from tritrack.store.other_run import refuse_other, run_of
 from tritrack.store.recording import Recording, read_recording
 from tritrack.store.runs import write_run
 
@@ -37,22 +38,27 @@ class Replayed(NamedTuple):
     scale_source: str
 
 
-def replay_run(folder: Path, out: Path | None) -> dict[str, Any]:
+def replay_run(folder: Path, out: Path | None, force: bool = False) -> dict[str, Any]:
     """Send a run's recorded reports through the integrator again.
 
     Args:
         folder: That of the run.
         out: A folder that gets what they give as a run of its own; None: nothing is written.
+        force: The run of something else may be written over.
 
     Raises:
         RecordingError: When there is no recording.
         RunError: When `out` cannot be written.
+        OtherRun: When it holds the run of something else.
     """
+    now = run_of("replay", [str(folder)])
+    if out is not None and not force:
+        refuse_other(out, now)
     recording = read_recording(folder)
     done = integrated(recording)
     facts = {"clip": recording.head.name, "bodies": len(done.bodies), "same": done.same}
     if out is not None:
-        told = {**facts, "scale_source": done.scale_source, "warnings": []}
+        told = {**facts, "scale_source": done.scale_source, "warnings": [], **now.facts}
         write_run(out, done.bodies, recording.head.settings, told)
     return facts
 

@@ -17,13 +17,14 @@ from animator.skeleton.bones import Motion, Skeleton, offset_m, rest_origins_m
 from animator.turns import unbroken
 
 
-def usd_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
-    """A USD file, binary.
+def usd_bytes(skeleton: Skeleton, motion: Motion, step_s: float, ending: str = ".usdc") -> bytes:
+    """A USD file.
 
     Args:
         skeleton: A body.
         motion: (n,) of it.
         step_s: Seconds a frame.
+        ending: Of the file's name, which tells the form: `.usda` is text, all others are binary.
 
     Raises:
         LibraryMissing: Without usd-core.
@@ -48,7 +49,7 @@ def usd_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
     )
     figure = _define_figure(stage, sticks_of(skeleton))
     UsdSkel.BindingAPI.Apply(figure.GetPrim()).CreateSkeletonRel().SetTargets([bones.GetPath()])
-    return _binary(stage)
+    return _written(stage, ending)
 
 
 def _define_skeleton(stage: Any, skeleton: Skeleton) -> Any:
@@ -118,8 +119,8 @@ def _shifts(places_m: NDArray[np.float64]) -> NDArray[np.float64]:
     return shifts
 
 
-def _binary(stage: Any) -> bytes:
+def _written(stage: Any, ending: str) -> bytes:
     with tempfile.TemporaryDirectory() as folder:  # the library writes to paths alone
-        path = Path(folder) / "body.usdc"
+        path = Path(folder) / f"body{ending}"
         stage.GetRootLayer().Export(str(path))
         return path.read_bytes()

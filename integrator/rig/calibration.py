@@ -6,7 +6,7 @@ from typing import TypeVar
 
 import msgspec
 
-from common.atomic_file import replacing
+from common.atomic_file import refuse_to_replace, replacing
 from common.config.explained import explained
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError
@@ -35,23 +35,13 @@ def run_poles(path: Path, out: Path, replace: bool = False) -> Quality:
         replace: What stands there may be lost; it took somebody poles and an afternoon.
 
     Raises:
-        CalibrationError: When a file cannot be read or written, or would be lost, or the poles do
-            not suffice.
+        CalibrationError: When a file cannot be read or written, or the poles do not suffice.
+        FileRefused: When a file would be lost.
     """
     refuse_to_replace(out, replace)
     rig, quality = poles(read_points(path, Poles))
     write_rig(out, rig, quality)
     return quality
-
-
-def refuse_to_replace(out: Path, replace: bool) -> None:
-    """Say that a file is there already, unless it may be lost.
-
-    Raises:
-        CalibrationError: When it is there and may not.
-    """
-    if out.exists() and not replace:
-        raise CalibrationError(f"{out} is there already: name another --out, or add --force")
 
 
 def write_rig(path: Path, rig: Rig, quality: msgspec.Struct | None = None) -> None:

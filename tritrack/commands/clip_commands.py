@@ -14,6 +14,7 @@ from tritrack.commands.options import (
     MODES,
     WORKED_ON,
     Force,
+    Forced,
     LandmarkSource,
     Out,
     Record,
@@ -169,13 +170,14 @@ def export(
         ),
     ] = None,
     scale: Annotated[Scale, typer.Option(help="Unit of a BVH file.")] = "m",
+    force: Forced = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Write a run as a file for other programs.
 
     Example: tritrack export runs/walk --to bvh
     """
-    facts = export_run(run, to, out, scale)
+    facts = export_run(run, to, out, scale, force)
     off = facts.get("off_mm")
     told = f"; fixed bones: {off['median']} mm off, 95 % within {off['p95']} mm" if off else ""
     line = f"{counted(facts['frames'], 'frame')} written to {facts['file']}{told}"
@@ -199,6 +201,7 @@ def replay(
         bool, typer.Option("--page", help="Play it on a page of this machine, until Ctrl-C.")
     ] = False,
     port: Annotated[int, typer.Option(min=1, max=65535, help="Port of the page.")] = 8080,
+    force: Force = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Integrate, play or say a recorded run again.
@@ -217,9 +220,10 @@ def replay(
         facts = replay_on_page(run, port, console)
         tell(facts, json_wanted, f"{facts['shown']} frames shown")
         return
-    facts = replay_run(run, out)
+    facts = replay_run(run, out, force)
     bodies = counted(facts["bodies"], "body", "bodies")
     line = f"{bodies}, {facts['same']} of them the same byte for byte"
+    line += "" if out is None else f"; written to {out}"
     tell(facts, json_wanted, line)
 
 

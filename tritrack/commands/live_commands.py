@@ -1,7 +1,7 @@
 """The live commands: a whole run on this machine, or one process of a rig spread over hosts."""
 
 from pathlib import Path
-from typing import Annotated, Literal, cast
+from typing import Annotated, Final, Literal, cast
 
 import msgspec
 import typer
@@ -12,7 +12,7 @@ from common.config.part_settings import BusSettings
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
 from tritrack.commands.command_output import JsonWanted, console, tell
-from tritrack.commands.options import LandmarkSource, ModeName, Out, Record, Size
+from tritrack.commands.options import Force, LandmarkSource, ModeName, Out, Record, Size
 from tritrack.extras import refuse_without
 from tritrack.overrides import overridden
 from tritrack.terminal import counted
@@ -20,6 +20,8 @@ from tritrack.terminal import counted
 Wait = Annotated[
     bool, typer.Option(help="A clip begins when the page is opened, or half a minute later.")
 ]
+LAST: Final = Path("runs/live")
+"""Where the last live run is, of whatever it was, unless it was to be written elsewhere."""
 ConfigPath = Annotated[Path, typer.Argument(help="A settings file (TOML), or a clip folder.")]
 
 
@@ -45,12 +47,13 @@ def demo(
 
 def live(
     settings_file: ConfigPath,
-    out: Out = Path("runs/live"),
+    out: Out = LAST,
     mode: ModeName = None,
     size: Size = None,
     landmarks: LandmarkSource = None,
     record: Record = False,
     wait: Wait = True,
+    force: Force = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Track live, on cameras or recorded clips. Ctrl-C ends it.
@@ -63,9 +66,26 @@ def live(
 
     given = overridden(config_file.load(settings_file), mode, size, landmarks)
     settings = waiting(given, wait)
+    if not force:
+        _refuse_other_than_last(out, settings)
     name = settings_file.stem if settings_file.is_file() else ""
     facts = run_live(settings, out, console, name, record)
     tell(facts, json_wanted, f"posture: {facts['posture'] or 'none'}; written to {out}")
+
+
+def _refuse_other_than_last(out: Path, settings: Settings) -> None:
+    """See that no other run is lost but the last one, and say so of that."""
+    from common.video.clip_sources import footage_of
+    from tritrack.store.other_run import other_than, refuse_other, run_of
+
+    now = run_of("live", [view.source for view in footage_of(settings)])
+    if out != LAST:
+        refuse_other(out, now)
+        return
+    other = other_than(out, now)
+    if other is not None:
+        line = f"{out} holds another run ({other.told}): this one replaces it"
+        console.print(line, markup=False, highlight=False, soft_wrap=True)
 
 
 def serve(

@@ -5,12 +5,14 @@ from typing import Annotated, Final, Literal
 
 import typer
 
+from common.atomic_file import refuse_to_replace
 from common.config import config_file
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import (
     CACHE,
     MODES,
     Cache,
+    Forced,
     ModeName,
     Out,
     OwnMode,
@@ -19,6 +21,7 @@ from tritrack.commands.options import (
     writable_file,
 )
 from tritrack.extras import refuse_without
+from tritrack.landmark_lessons import work_of
 from tritrack.terminal import counted
 
 LEARN: Final = ("learn", "hmmlearn", "sklearn")
@@ -50,6 +53,7 @@ def train(
     recognizer: RecognizerName = "default",
     mode: OwnMode = None,
     cache: Cache = CACHE,
+    force: Forced = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Learn postures from clips or runs.
@@ -61,6 +65,8 @@ def train(
 
     Example: tritrack train clips/*/ --out postures.npz
     """
+    goes_on = what == "landmarks" and work_of(out).is_dir()
+    refuse_to_replace(out, force or goes_on)
     if film:
         if what != "landmarks":
             raise typer.BadParameter("only landmarks are learnt from films: add --what landmarks")

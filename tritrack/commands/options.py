@@ -7,6 +7,7 @@ from typing import Annotated, Final, Literal
 
 import typer
 
+from common.atomic_file import refuse_special
 from common.config.picture_size import size_of
 
 MODES: Final = "default: most accurate; paper: as published 2004"
@@ -78,11 +79,13 @@ def writable_file(path: Path | None) -> Path | None:
 
     Raises:
         BadParameter: When it is a folder, or its own cannot be written.
+        FileRefused: When it is no ordinary file.
     """
     if path is None:
         return None
     if path.is_dir():
         raise typer.BadParameter(f"{path} is a folder: name a file")
+    refuse_special(path)
     writable(path.parent)
     return path
 
@@ -112,6 +115,7 @@ Resume = Annotated[
 Force = Annotated[
     bool, typer.Option("--force", help="Write over a run of another clip or command.")
 ]
+Forced = Annotated[bool, typer.Option("--force", help="Replace a file that is there.")]
 LandmarkSource = Annotated[
     str | None,
     typer.Option(

@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Annotated, Final, Literal
 
 import typer
 
+from common.atomic_file import refuse_to_replace
 from tritrack.commands.command_output import JsonWanted, console, tell_rows
-from tritrack.commands.options import fov_given, square_given, stature_given, writable_file
+from tritrack.commands.options import Forced, fov_given, square_given, stature_given, writable_file
 from tritrack.extras import refuse_without
 from tritrack.terminal import counted
 
@@ -20,7 +21,6 @@ calibrate_app = typer.Typer(
 
 
 Written = Annotated[Path, typer.Option(help="The file to write.", callback=writable_file)]
-Forced = Annotated[bool, typer.Option("--force", help="Replace a file that is there.")]
 OUT: Final = Path("calibration.json")
 Page = Annotated[
     Path | None,
@@ -52,7 +52,7 @@ def person(
 
     Example: tritrack calibrate person clips/*/ --stature 1.82 --out clips/calibration.json
     """
-    from integrator.rig.calibration import refuse_to_replace, write_rig
+    from integrator.rig.calibration import write_rig
     from tritrack.offline.rig_of_clips import Given, calibrated_by_clips
 
     refuse_to_replace(out, force)
@@ -110,7 +110,6 @@ def board(
     Example: tritrack calibrate board cam1.mp4 cam2.mp4 --out clips/calibration.json
     """
     from integrator.board.board_print import print_board
-    from integrator.rig.calibration import refuse_to_replace
     from tritrack.offline.rig_of_boards import Shown
 
     if print_ is None and not videos:
@@ -185,7 +184,7 @@ def poles(
 
     Example: tritrack calibrate poles poles.toml --page clips/poles --out clips/calibration.json
     """
-    from integrator.rig.calibration import refuse_to_replace, run_poles
+    from integrator.rig.calibration import run_poles
 
     if page is None:
         tell_rows(run_poles(measured, out, force).cameras, json_wanted)
@@ -229,7 +228,7 @@ def import_(
     Example: tritrack calibrate import Calib.toml --camera cam01 --camera cam04
     """
     from integrator.foreign_rigs.imported_rig import imported_rig
-    from integrator.rig.calibration import refuse_to_replace, write_rig
+    from integrator.rig.calibration import write_rig
 
     refuse_to_replace(out, force)
     rig = imported_rig(theirs, tuple(camera or ()))
@@ -256,7 +255,7 @@ def export_(
     """
     from common.rig.rig_file import load_rig
     from integrator.foreign_rigs.toml_rig import toml_text
-    from integrator.rig.calibration import refuse_to_replace, write_text
+    from integrator.rig.calibration import write_text
 
     refuse_to_replace(out, force)
     write_text(out, toml_text(load_rig(ours), to))

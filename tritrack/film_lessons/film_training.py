@@ -13,7 +13,7 @@ from rich.console import Console
 
 from synth.picture.composites import Composite, composite
 from tritrack.film_lessons.film_examples import Looked, looked_through
-from tritrack.landmark_lessons import landmark_loss
+from tritrack.landmark_lessons import landmark_loss, work_of
 from tritrack.landmark_lessons.landmark_file import fill, weights_of, write_network
 from tritrack.landmark_lessons.landmark_layers import LandmarkNetwork
 from tritrack.landmark_lessons.landmark_learning import (
@@ -107,7 +107,7 @@ def teach_on_films(
     Raises:
         TrainingError: When too little of anybody is seen, or it became no better.
     """
-    folder = out.with_name(out.name + ".work")
+    folder = work_of(out)
     looked = _looked(films, teacher, folder, console)
     *made_up, held_back = _drawn(folder, plan, console)
     wanted = Wanted(tuple(each.learnt for each in looked), tuple(made_up), 0, plan)

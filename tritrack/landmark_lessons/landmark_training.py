@@ -11,7 +11,7 @@ import torch
 from rich.console import Console
 
 from synth.picture.composites import Composite, composite
-from tritrack.landmark_lessons import landmark_loss
+from tritrack.landmark_lessons import landmark_loss, work_of
 from tritrack.landmark_lessons.landmark_file import write_network
 from tritrack.landmark_lessons.landmark_learning import (
     Work,
@@ -62,7 +62,7 @@ def train_landmarks(out: Path, seed: int, console: Console) -> dict[str, Any]:
     """
     if not out.parent.is_dir():
         raise TrainingError(f"cannot write {out}: there is no folder {out.parent}")
-    folder = out.with_name(out.name + ".work")
+    folder = work_of(out)
     try:
         folders = _drawn(folder, seed, console)
         work = _learnt(folders[:-1], folder / "learnt.pt", seed, console)

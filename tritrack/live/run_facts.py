@@ -9,6 +9,7 @@ from tritrack.live.launch import Heard
 from tritrack.live.recorded import SoFar
 from tritrack.live.screen import warnings_of
 from tritrack.moved_facts import facts_of_moves
+from tritrack.store.other_run import run_of
 
 
 def facts_of(heard: Heard, clip: Clip, seconds: float, so_far: SoFar) -> dict[str, Any]:
@@ -53,11 +54,12 @@ def note_lost(heard: Heard) -> None:
 
 
 def facts_of_clip(clip: Clip) -> dict[str, Any]:
-    """Who performs what, as the clip says itself."""
+    """Of what the run is, and who performs what, as the clip says itself."""
     return {
         "clip": clip.name,
         "performer": clip.meta.performer,
         "posture_meant": clip.meta.posture,
+        **run_of("live", [view.source for view in clip.views]).facts,
     }
 
 

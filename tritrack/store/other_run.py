@@ -21,14 +21,20 @@ class RunOf(NamedTuple):
     """Of what a run is: not how it was made, for the same is done again with other settings."""
 
     command: str
-    """`track` or `single`."""
+    """`track`, `single`, `live` or `replay`."""
     footage: tuple[str, ...]
-    """Its films, whole paths."""
+    """Its films, or the run that is replayed, whole paths; cameras by their numbers."""
 
     @property
     def facts(self) -> dict[str, Any]:
         """For its summary."""
         return {RUN_OF: {"command": self.command, "footage": [*self.footage]}}
+
+    @property
+    def told(self) -> str:
+        """In words."""
+        films = ", ".join(self.footage)
+        return f"tritrack {self.command}{f' of {films}' if films else ''}"
 
 
 def run_of(command: str, sources: Sequence[str | int]) -> RunOf:
@@ -46,14 +52,18 @@ def refuse_other(folder: Path, now: RunOf) -> None:
     Raises:
         OtherRun: When it may not.
     """
+    other = other_than(folder, now)
+    if other is not None:
+        raise OtherRun(
+            f"{folder} holds another run ({other.told}): "
+            "choose another --out, or write over it with --force"
+        )
+
+
+def other_than(folder: Path, now: RunOf) -> RunOf | None:
+    """The run in a folder, where it is known to be of something else."""
     before = run_told(folder)
-    if before is None or before == now:
-        return
-    films = ", ".join(before.footage)
-    raise OtherRun(
-        f"{folder} holds another run (tritrack {before.command}{f' of {films}' if films else ''}): "
-        "choose another --out, or write over it with --force"
-    )
+    return None if before in (None, now, RunOf(now.command, ())) else before
 
 
 def run_told(folder: Path) -> RunOf | None:

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from rich.console import Console
 
-from recognizer.model_file import load, save
+from recognizer.model_file import ModelError, load, save
 from recognizer.postures import PostureModel
 from recognizer.training.lesson import LEAST_TAKES, Lesson, taught
 from tritrack.store.cores import spread
@@ -33,7 +33,7 @@ def teach(
 
     Raises:
         TrainingError: When the name cannot be taught, there are too few takes, one is named
-            twice, or the file knows postures that would be lost.
+            twice, or the file knows postures that would be lost, or is there and no model.
         RecordingError, ClipsFailed: When a take cannot be used.
         LearningError: When the takes do not agree.
         ModelError: When the file cannot be written, or the model to add to cannot be read.
@@ -58,7 +58,7 @@ def model_to_teach(posture: str, plan: Plan, out: Path) -> PostureModel:
 
     Raises:
         TrainingError: When the name is none, is known and shall not be learnt anew, or shall be and
-            is not known; or `out` knows postures that would be lost.
+            is not known; or `out` knows postures that would be lost, or is another file.
         ModelError: When it cannot be read.
     """
     if not NAME.fullmatch(posture):
@@ -77,13 +77,23 @@ def model_to_teach(posture: str, plan: Plan, out: Path) -> PostureModel:
             f" {', '.join(known.names)}"
         )
     kept_names = (*known.names, posture)
-    lost = [name for name in load(out).names if name not in kept_names] if out.exists() else []
+    lost = [name for name in _known_by(out) if name not in kept_names] if out.exists() else []
     if lost:
         raise TrainingError(
             f"{out} knows {', '.join(lost)}, which would be lost: keep it with --add-to {out}, or"
             " name another --out"
         )
     return known
+
+
+def _known_by(out: Path) -> tuple[str, ...]:
+    """The postures of a model that is there already; no other file gives way to one."""
+    try:
+        return load(out).names
+    except ModelError as error:
+        raise TrainingError(
+            f"{out} is there already, and is no model that can be read: name another --out"
+        ) from error
 
 
 def kept(
