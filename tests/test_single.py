@@ -13,6 +13,7 @@ from spoiling import film_of, write_film, write_uneven
 from common.config.settings import Settings
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import save_notes
+from tritrack.faults import Unfollowed, refuse_unfollowed
 from tritrack.offline.batch import Asked, track_all
 from tritrack.single.single import UNUSABLE, Given, line_of, name_of, single_all
 from tritrack.store.clip_paths import ClipsFailed
@@ -189,10 +190,11 @@ def test_a_speck_among_silhouettes_is_nobody(tmp_path: Path) -> None:
 
 @pytest.mark.filterwarnings("error")
 def test_where_nobody_is_seen_that_is_said(tmp_path: Path) -> None:
-    """It is a failure, but what the video shows is written all the same."""
+    """It is not followed, as `faults` tells, but what the video shows is written all the same."""
     np.savez(tmp_path / "empty.npz", masks=np.zeros((3, 120, 160), np.bool_))
-    with pytest.raises(ClipsFailed, match=r"nobody was found in 1 of 1 video: open .*overlay"):
-        single_all([tmp_path / "empty.npz"], tmp_path / "runs", Given(), SMALL, QUIET)
+    done = single_all([tmp_path / "empty.npz"], tmp_path / "runs", Given(), SMALL, QUIET)
+    with pytest.raises(Unfollowed, match=r"empty: nobody was found"):
+        refuse_unfollowed(done["clips"])
     written = tmp_path / "runs" / "empty"
     facts = json.loads((written / "summary.json").read_text())
     assert "nobody was seen" in facts["warnings"][0]

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 import typer
-from spoiling import REFUSED, WORKED_WITH, copied, edit_json
+from spoiling import REFUSED, WORKED_WITH, copied, edit_json, refilmed
 
 import tritrack.__main__ as door
 from tritrack.live import session
@@ -302,6 +302,20 @@ def test_a_clip_that_is_hardly_followed_ends_with_a_code_of_its_own(
     summary = json.loads((tmp_path / clip.name / "summary.json").read_text())
     assert summary["believed"] < 0.2
     assert summary["status"]["lost"] > summary["status"]["predicted"]
+
+
+@pytest.mark.parametrize("command", ["track", "single"])
+def test_a_clip_that_shows_nobody_is_not_followed_and_is_written(
+    tritrack: Commands, clip: Path, tmp_path: Path, command: str
+) -> None:
+    folder = copied(clip, tmp_path / "clip")
+    refilmed(folder, lambda film: 4 * film[:8])
+    said = tritrack(command, folder, "--out", tmp_path / "out", "--json")
+    assert said.code == 3
+    assert said.errors[-1].startswith("error: in 1 of 1 clip the body is believed in less than")
+    assert "(clip: nobody was found)" in said.errors[-1]
+    assert json.loads(said.out)["clips"]["clip"]["believed"] is None
+    assert (tmp_path / "out" / "clip" / "poses.npz").is_file()
 
 
 def test_json_stands_alone_on_stdout(tritrack: Commands, clip: Path, tmp_path: Path) -> None:

@@ -30,7 +30,7 @@ from tritrack.store.clip_paths import ClipsFailed
 from tritrack.store.other_run import OtherRun, RunOf, refuse_other, run_of
 from tritrack.store.pose_arrays import mapped_poses
 from tritrack.store.runs import believed, write_run
-from tritrack.terminal import Tell, bar, by_pass, complain, counted, say, warn
+from tritrack.terminal import Tell, bar, by_pass, complain, say, warn
 from tritrack.unfinished.resuming import Begun, Wanted, done_before, resumable
 from tritrack.unfinished.unfinished_run import CannotResume
 from tritrack.unfinished.work import InMemory, Work
@@ -90,8 +90,7 @@ def single_all(
     Raises:
         SettingsError, ClipError, DecoderDied, Undecodable, MaskFileError, NotesError: When the only
             video cannot be used.
-        ClipsFailed: At the end, when any of several could not be used, or one shows nobody: what it
-            shows is written all the same.
+        ClipsFailed: At the end, when any of several could not be used.
         RunError, FilmError: When the results cannot be written.
     """
     done: dict[str, Any] = {}
@@ -116,23 +115,12 @@ def single_all(
         raise ClipsFailed(
             f"{len(videos) - len(done)} of {len(videos)} videos could not be followed"
         )
-    _refuse_the_empty(done)
     return {"clips": done}
 
 
 def _refuse_the_same(path: Path, folder: Path, there: bool) -> None:
     if there:
         raise ClipError(f"{path} would be written to {folder} too: rename it")
-
-
-def _refuse_the_empty(done: dict[str, Any]) -> None:
-    empty = [name for name, facts in done.items() if not facts["frames_with_pose"]]
-    if empty:
-        raise ClipsFailed(
-            f"nobody was found in {len(empty)} of {counted(len(done), 'video')}: open "
-            f"{done[empty[0]].get('overlay', 'its overlay')}: if nobody is outlined, the person "
-            "did not move or is too small"
-        )
 
 
 def name_of(path: Path) -> str:
