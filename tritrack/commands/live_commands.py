@@ -151,8 +151,11 @@ def animate(settings_file: ConfigPath) -> None:
     Example: tritrack animate configs/live.toml
     """
     from animator.__main__ import main as animator_main
+    from tritrack.live.free_ports import refuse_held_page
 
-    animator_main(live_settings(settings_file))
+    settings = live_settings(settings_file)
+    refuse_held_page(settings)
+    animator_main(settings)
 
 
 def waiting(settings: Settings, wait: bool) -> Settings:
