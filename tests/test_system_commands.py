@@ -426,7 +426,7 @@ def test_live_refuses_a_page_port_in_use(
         text = f'clip = "{clip}"\n[page]\nport = {taken.getsockname()[1]}\n'
         said = tritrack("live", toml(tmp_path / "run.toml", text), "--out", tmp_path / "out")
     assert said.code == 2
-    assert re.search(r"port \d+: .*in use; .*set page\.port to another one", said.errors[0])
+    assert re.search(r"port \d+: .*in use; .*set page\.port to another one$", said.errors[0])
 
 
 def test_calibration_is_a_table_and_json(tritrack: Commands, tmp_path: Path) -> None:
@@ -457,6 +457,41 @@ def test_a_calibration_that_is_there_is_replaced_only_when_asked(
     assert out.read_text() == "an afternoon's work"
     assert tritrack(*words, "--force").code == 0
     assert json.loads(out.read_text())["cameras"]
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["person", "nope"], "there is no clip folder and no settings file nope: check the path"),
+        (["board", "nope.mp4", "none.mp4"], "there is no file nope.mp4: check the path"),
+        (["poles", "nope.toml"], "cannot read the points nope.toml: No such file or directory"),
+        (["import", "nope.toml"], "cannot read the calibration nope.toml: No such file"),
+    ],
+    ids=["person", "board", "poles", "import"],
+)
+def test_what_a_calibration_lacks_is_said_before_that_one_is_there(
+    tritrack: Commands,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    words: list[str],
+    says: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("calibration.json").write_text("an afternoon's work")
+    said = tritrack("calibrate", *words)
+    assert (said.code, len(said.errors)) == (2, 1)
+    assert said.errors[0].startswith(f"error: {says}")
+
+
+def test_a_board_that_is_there_is_kept_and_the_option_that_named_it_is_told(
+    tritrack: Commands, tmp_path: Path
+) -> None:
+    pytest.importorskip("matplotlib", reason="pip install 'tritrack[report]'")
+    there = tmp_path / "board.pdf"
+    there.write_text("printed")
+    said = tritrack("calibrate", "board", "--print", there)
+    told = f"error: {there} is there already: name another --print, or add --force"
+    assert (said.code, said.errors) == (2, [told])
 
 
 def test_made_up_clips_are_told_as_json(tritrack: Commands, tmp_path: Path) -> None:

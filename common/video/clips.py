@@ -137,7 +137,7 @@ def probed(source: Source, decoder: Decoder) -> VideoInfo:
         ClipError: When it is not there, may not be read, is empty, or has no picture.
     """
     if isinstance(source, str):
-        _refuse_unreadable(Path(source))
+        refuse_unreadable(Path(source))
     try:
         info = decoder.probe(source)
     except (Undecodable, DecoderDied) as error:
@@ -158,7 +158,12 @@ def _refuse_another_scene(named: Footage, plate: VideoInfo, info: VideoInfo) -> 
         )
 
 
-def _refuse_unreadable(path: Path) -> None:
+def refuse_unreadable(path: Path) -> None:
+    """See that a file is there, holds anything, and may be read.
+
+    Raises:
+        ClipError: When not.
+    """
     if path.is_dir():
         raise ClipError(f"{path} is a folder: name a file in it")
     if not path.is_file():

@@ -38,22 +38,27 @@ def run_poles(path: Path, out: Path, replace: bool = False) -> Quality:
         CalibrationError: When a file cannot be read or written, or would be lost, a length is in
             another unit, or the poles do not suffice.
     """
-    refuse_to_replace(out, replace)
     measured = read_points(path, Poles)
     refuse_other_units(measured)
     rig, quality = poles(measured)
+    refuse_to_replace(out, replace)
     write_rig(out, rig, quality)
     return quality
 
 
-def refuse_to_replace(out: Path, replace: bool) -> None:
+def refuse_to_replace(out: Path, replace: bool, option: str = "--out") -> None:
     """Say that a file is there already, unless it may be lost.
+
+    Args:
+        out: The file.
+        replace: It may be lost.
+        option: Of the command, which names it.
 
     Raises:
         CalibrationError: When it is there and may not.
     """
     if out.exists() and not replace:
-        raise CalibrationError(f"{out} is there already: name another --out, or add --force")
+        raise CalibrationError(f"{out} is there already: name another {option}, or add --force")
 
 
 def write_rig(path: Path, rig: Rig, quality: msgspec.Struct | None = None) -> None:
