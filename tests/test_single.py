@@ -129,6 +129,14 @@ def test_the_last_line_tells_what_was_followed_how_well_and_what_to_open(
     assert ", believed in 60%, mean" in line_of("waving", {**facts, "believed": 0.6})
 
 
+def test_of_a_clip_of_two_cameras_is_said_which_one_is_followed(
+    clip: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    single_all([clip], tmp_path, Given(), SMALL, Console(stderr=True, width=999))
+    told, *_ = capsys.readouterr().err.splitlines()
+    assert told == f"{clip}: camera 1 alone is followed; both: tritrack track {clip}"
+
+
 def refusal(path: Path, out: Path, capsys: pytest.CaptureFixture[str]) -> str:
     """Of the only video, in one line; nothing is written."""
     with pytest.raises(UNUSABLE) as caught:

@@ -16,7 +16,7 @@ from common.config.settings import Settings
 from common.rig.camera import Camera, Rig
 from common.rig.rig_file import CalibrationError, fitted, load_rig
 from common.video.clip_facts import Clip, Meta, View
-from common.video.clip_sources import ClipError, Footage, companions_folder, footage_of
+from common.video.clip_sources import NOTHING, ClipError, Footage, companions_folder, footage_of
 from common.video.decoding import Decoder, DecoderDied, Source, Undecodable, VideoInfo
 from common.video.frame_times import timed
 
@@ -48,7 +48,7 @@ def open_clip(
     """
     named = [view for view in footage_of(settings) if view.number in set(numbers)]
     if not named:
-        raise ClipError("there is nothing to look at: set clip, or camera_1 with source or device")
+        raise ClipError(NOTHING)
     folder = companions_folder(settings, named)
     meta = _meta(folder)
     with ExitStack() as doors:

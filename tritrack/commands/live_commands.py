@@ -59,9 +59,12 @@ def live(
 
     Example: tritrack live configs/live.toml --out runs/monday
     """
+    from common.video.clip_sources import refuse_no_footage
     from tritrack.live.session import live as run_live
 
-    given = overridden(config_file.load(settings_file), mode, size, landmarks)
+    own = config_file.load(settings_file)
+    refuse_no_footage(own, settings_file)
+    given = overridden(own, mode, size, landmarks)
     settings = waiting(given, wait)
     name = settings_file.stem if settings_file.is_file() else ""
     facts = run_live(settings, out, console, name, record)

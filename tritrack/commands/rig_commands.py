@@ -53,12 +53,12 @@ def person(
     Example: tritrack calibrate person clips/*/ --stature 1.82 --out clips/calibration.json
     """
     from common.config import config_file
-    from common.video.clip_sources import footage_of
+    from common.video.clip_sources import refuse_no_footage
     from integrator.rig.calibration import refuse_to_replace, write_rig
     from tritrack.offline.rig_of_clips import Given, calibrated_by_clips
 
     for path in clips:
-        footage_of(config_file.load(path))
+        refuse_no_footage(config_file.load(path), path)
     refuse_to_replace(out, force)
     rig, quality = calibrated_by_clips(clips, Given(stature, fov))
     write_rig(out, rig, quality)

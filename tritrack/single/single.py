@@ -16,7 +16,7 @@ from common.config.settings_error import SettingsError
 from common.method import METHODS
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path
-from common.video.clip_sources import ClipError, footage_of
+from common.video.clip_sources import ClipError, footage_of, refuse_no_footage
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied, Undecodable
 from common.video.frame_cache import Reel, Told
@@ -100,6 +100,7 @@ def single_all(
             try:
                 _refuse_the_same(path, out / name, name in done)
                 job = job_of(path, given, settings)
+                _tell_of_two(job, console)
                 if not given.force:
                     refuse_other(out / name, _run_of(job))
                 wanted = Wanted(out / name, job.settings, {"the notes": job.notes}, given.resume)
@@ -123,6 +124,12 @@ def _refuse_the_same(path: Path, folder: Path, there: bool) -> None:
         raise ClipError(f"{path} would be written to {folder} too: rename it")
 
 
+def _tell_of_two(job: Job, console: Console) -> None:
+    """Which of two cameras is followed."""
+    if len(footage_of(job.settings)) > 1:
+        say(console, f"{job.path}: camera 1 alone is followed; both: tritrack track {job.path}")
+
+
 def name_of(path: Path) -> str:
     """Name of the run folder: the video's, the folder's, or that of the sequence of masks."""
     if is_mask_file(path):
@@ -135,13 +142,15 @@ def job_of(path: Path, given: Given, settings: Settings) -> Job:
     """What a path of the command line stands for.
 
     Raises:
-        SettingsError, MaskFileError, NotesError: When it cannot be read.
+        SettingsError, ClipError, MaskFileError, NotesError: When it cannot be read, or names
+            nothing to look at.
     """
     if is_mask_file(path):
         masks = read_masks(path)
         return Job(path, settings, masks, load_notes(given.notes) if given.notes else Notes())
     if path.is_dir() or path.suffix == ".toml":
         own = load(path)
+        refuse_no_footage(own, path)
         beside = path / "cam1" if path.is_dir() else path
     else:
         own = msgspec.structs.replace(settings, camera_1=CameraSettings(source=str(path)))
