@@ -16,14 +16,19 @@ class FileRefused(ValueError):
     """A file whose place no other may take; the text names it and the cure."""
 
 
-def refuse_to_replace(path: Path, replace: bool) -> None:
+def refuse_to_replace(path: Path, replace: bool, option: str = "--out") -> None:
     """Say that a file is there already, unless it may be lost.
+
+    Args:
+        path: The file.
+        replace: It may be lost.
+        option: Of the command, which names it.
 
     Raises:
         FileRefused: When it is there and may not.
     """
     if path.exists() and not replace:
-        raise FileRefused(f"{path} is there already: name another --out, or add --force")
+        raise FileRefused(f"{path} is there already: name another {option}, or add --force")
 
 
 def refuse_special(path: Path) -> None:

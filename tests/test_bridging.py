@@ -16,6 +16,7 @@ from meeting import EARLY, saying
 from osc_reader import read_osc
 from rich.console import Console
 
+from common.bus.bus_keys import KeysError
 from common.bus.messages import Body
 from tritrack import subscribe
 from tritrack.bridges import bridging
@@ -82,3 +83,14 @@ def test_who_waits_for_a_run_is_told_so_at_once(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(bridging, "subscribe", subscribed)
     endpoint = "tcp/127.0.0.1:7447"
     assert bridging.bridge("osc", endpoint, "attic", "127.0.0.1:9000", heard) == 0
+
+
+def test_keys_that_are_missing_are_told_before_a_run_is_waited_for(tmp_path: Path) -> None:
+    heard = io.StringIO()
+    with pytest.raises(KeysError, match=r"cannot read .*nope/ca\.pem"):
+        bridging.bridge(
+            *("osc", "tls/127.0.0.1:7447", "attic", "127.0.0.1:9000"),
+            Console(file=heard),
+            str(tmp_path / "nope"),
+        )
+    assert heard.getvalue() == ""

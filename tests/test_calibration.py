@@ -80,6 +80,17 @@ def test_a_json_file_says_the_same_as_a_toml_file(tmp_path: Path) -> None:
         ),
         ("width = 640", "width = -640", "width must be a whole number >= 1"),
         ("pole_height_m = 2.2", "pole_height_m = 0", "pole_height_m must be a number > 0"),
+        (
+            "pole_height_m = 2.2",
+            "pole_height_m = 220",
+            r"pole_height_m must be from 0\.2 to 10 metres, got 220: 2\.2\?",
+        ),
+        (
+            "# distance_1_m = 4.2",
+            "distance_1_m = 420",
+            r"distance_1_m must be from 0\.2 to 50 metres, got 420: 4\.2\?",
+        ),
+        ("x_m = 1.0", "x_m = 100", r"x_m of pole 3 must be from -50 to 50 metres, got 100: 1\?"),
         ("cam1_px = [320.5, 62.5]", "cam1_px = [nan, 62.5]", "not finite"),
         ("width = 640", "width = ", "poles.toml"),
     ],

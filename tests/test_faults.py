@@ -42,9 +42,13 @@ def test_a_fault_that_another_process_met_is_told_once(
 
 
 def test_clips_that_are_mostly_not_believed_end_a_run_with_code_3() -> None:
-    """One in which nobody is seen has nobody to believe in."""
-    refuse_unfollowed({"good": {"believed": 0.5}, "empty": {"believed": None}})
+    refuse_unfollowed({"good": {"believed": 0.5}})
     with pytest.raises(Unfollowed, match=r"in 1 of 2 clips .* \(bad: 49%\)") as raised:
         refuse_unfollowed({"good": {"believed": 1.0}, "bad": {"believed": 0.49}})
     assert code_of(raised.value) == 3
     assert told(raised.value) == str(raised.value)
+
+
+def test_a_clip_that_shows_nobody_is_not_followed_and_that_is_said() -> None:
+    with pytest.raises(Unfollowed, match=r"in 1 of 2 clips .* \(empty: nobody was found\)"):
+        refuse_unfollowed({"good": {"believed": 1.0}, "empty": {"believed": None}})

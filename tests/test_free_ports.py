@@ -30,7 +30,7 @@ def test_what_is_held_is_named_with_the_cure() -> None:
             refuse_held_ports(held)
         free = free_settings(Settings())
         page = Settings(bus=free.bus, page=PageSettings(port=port))
-        with pytest.raises(PageError, match=f"port {port}"):
+        with pytest.raises(PageError, match=rf"port {port}: .*set page\.port to another one$"):
             refuse_held_ports(page)
         pytest.importorskip("prometheus_client", reason="pip install 'tritrack[metrics]'")
         metrics = Settings(bus=free.bus, page=held.page, metrics=f"127.0.0.1:{port}")

@@ -22,6 +22,16 @@ def test_what_no_run_could_mean_is_refused() -> None:
         overridden(Settings(), None, None, "")
 
 
+@pytest.mark.parametrize("named", ["README.md", "nope", "nope.onnx"])
+def test_landmarks_that_are_not_there_are_told_as_that(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, named: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("README.md").touch()
+    with pytest.raises(SettingsError, match=f"there is no folder or network {named} of landmarks"):
+        overridden(Settings(), None, None, named)
+
+
 def test_track_looks_by_the_landmarks_that_are_named(clip: Path, tmp_path: Path) -> None:
     """Of both, that of the command counts."""
     file = tmp_path / "said.toml"

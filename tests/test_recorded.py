@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from common.bus.control_messages import Pulse
@@ -9,12 +10,12 @@ from common.bus.messages import Body, Posture
 from common.config.settings import Settings
 from tritrack.live.launch import nothing_heard
 from tritrack.live.recorded import MessageLog, SoFar, WholeRun
-from tritrack.live.run_facts import note_lost
+from tritrack.live.run_facts import note_lost, note_unseen
 from tritrack.store import journal
 from tritrack.store.journal import Head, Journal
 from tritrack.store.past_journal import Journalled
 from tritrack.store.past_run import open_run
-from tritrack.store.runs import write_run
+from tritrack.store.runs import NOBODY_SEEN, write_run
 
 
 def test_no_more_than_the_bound_is_kept_and_what_gave_way_is_counted() -> None:
@@ -80,6 +81,19 @@ def test_a_short_run_is_read_from_memory_alone(tmp_path: Path) -> None:
     heard = nothing_heard()._replace(bodies=newest)
     note_lost(heard)
     assert ([*WholeRun(newest, Journalled(tmp_path, Body))], heard.notes) == ([*newest], [])
+
+
+def test_a_run_whose_frames_show_nobody_says_so() -> None:
+    """One that ends before its first frame has nothing to say of it."""
+    heard = nothing_heard()
+    note_unseen(heard)
+    assert heard.notes == []
+    heard.so_far.take([body(0), body(1)], [])
+    note_unseen(heard)
+    assert heard.notes == [NOBODY_SEEN]
+    heard.so_far.take([msgspec.structs.replace(body(2), status="lost")], [])
+    note_unseen(heard)
+    assert heard.notes == [NOBODY_SEEN]
 
 
 def test_a_performance_is_named_by_the_last_window_that_had_a_name() -> None:

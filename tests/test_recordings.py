@@ -1,6 +1,7 @@
 """What was performed in clips and runs, tracked once and kept."""
 
 from collections.abc import Callable
+from glob import glob
 from io import StringIO
 from pathlib import Path
 
@@ -11,8 +12,11 @@ from spoiling import copied, edit_json
 
 from recognizer.evaluation import Recording
 from synth.write import ClipSet
+from tritrack.commands.options import CACHE
 from tritrack.making import make_clips
+from tritrack.offline import clip_cache
 from tritrack.offline.batch import Asked, track_all
+from tritrack.postures.posture_evaluation import Plan
 from tritrack.store.clip_paths import ClipsFailed
 from tritrack.store.runs import RunError
 from tritrack.training import recordings as stage
@@ -166,3 +170,13 @@ def test_a_cache_that_cannot_be_written_is_named(clips: list[Path], tmp_path: Pa
     (tmp_path / "file").write_text("")
     with pytest.raises(RunError, match=r"cannot write .*file: .*--cache"):
         recordings(clips[:1], None, tmp_path / "file", QUIET)
+
+
+def test_the_cache_is_not_among_what_a_pattern_takes_for_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`tritrack train runs/*/`, after clips were learnt from."""
+    monkeypatch.chdir(tmp_path)
+    assert Plan().cache == CACHE
+    clip_cache.write(CACHE, "key", b"kept")
+    assert glob("runs/*/") == []

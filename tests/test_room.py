@@ -2,10 +2,15 @@
 
 import time
 from pathlib import Path
+from typing import cast
+
+import pytest
 
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
+from tritrack.forking.zygote import Zygote
 from tritrack.serving.room import AGAIN_S, Room
+from tritrack.serving.served_rooms import House
 from tritrack.serving.sites import Site
 
 PATIENCE_S = 60.0
@@ -36,3 +41,35 @@ def test_a_site_that_cannot_run_says_why_and_is_tried_anew(tmp_path: Path) -> No
         assert until_told(room, 200.0) == told
     finally:
         room.end()
+
+
+class Stopped:
+    """A room without a process."""
+
+    pulse = None
+
+    def __init__(self, site: Site, _zygote: object) -> None:
+        self.site = site
+
+    def ask(self) -> None:
+        """Nothing runs."""
+
+    def end(self) -> None:
+        """Nothing runs."""
+
+
+def test_a_site_that_never_began_is_not_said_to_have_a_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tritrack.serving.served_rooms.Room", Stopped)
+    (tmp_path / "configs").mkdir()
+    said: list[str] = []
+    house = House(cast(Zygote, None), said.append, said.append)
+    site = Site("hall", Settings(), tmp_path / "configs" / ".." / "runs")
+    house.become({"hall": site})
+    house.become({})
+    assert said.pop() == "hall: stopped, before it had begun a run"
+    (tmp_path / "runs").mkdir()
+    house.become({"hall": site})
+    house.become({})
+    assert said.pop() == f"hall: stopped; its run is in {tmp_path / 'runs'}"

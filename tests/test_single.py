@@ -13,6 +13,7 @@ from spoiling import film_of, write_film, write_uneven
 from common.config.settings import Settings
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import save_notes
+from tritrack.faults import Unfollowed, refuse_unfollowed
 from tritrack.offline.batch import Asked, track_all
 from tritrack.single.single import UNUSABLE, Given, line_of, name_of, single_all
 from tritrack.store.clip_paths import ClipsFailed
@@ -128,6 +129,14 @@ def test_the_last_line_tells_what_was_followed_how_well_and_what_to_open(
     assert ", believed in 60%, mean" in line_of("waving", {**facts, "believed": 0.6})
 
 
+def test_of_a_clip_of_two_cameras_is_said_which_one_is_followed(
+    clip: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    single_all([clip], tmp_path, Given(), SMALL, Console(stderr=True, width=999))
+    told, *_ = capsys.readouterr().err.splitlines()
+    assert told == f"{clip}: camera 1 alone is followed; both: tritrack track {clip}"
+
+
 def refusal(path: Path, out: Path, capsys: pytest.CaptureFixture[str]) -> str:
     """Of the only video, in one line; nothing is written."""
     with pytest.raises(UNUSABLE) as caught:
@@ -189,10 +198,11 @@ def test_a_speck_among_silhouettes_is_nobody(tmp_path: Path) -> None:
 
 @pytest.mark.filterwarnings("error")
 def test_where_nobody_is_seen_that_is_said(tmp_path: Path) -> None:
-    """It is a failure, but what the video shows is written all the same."""
+    """It is not followed, as `faults` tells, but what the video shows is written all the same."""
     np.savez(tmp_path / "empty.npz", masks=np.zeros((3, 120, 160), np.bool_))
-    with pytest.raises(ClipsFailed, match=r"nobody was found in 1 of 1 video: open .*overlay"):
-        single_all([tmp_path / "empty.npz"], tmp_path / "runs", Given(), SMALL, QUIET)
+    done = single_all([tmp_path / "empty.npz"], tmp_path / "runs", Given(), SMALL, QUIET)
+    with pytest.raises(Unfollowed, match=r"empty: nobody was found"):
+        refuse_unfollowed(done["clips"])
     written = tmp_path / "runs" / "empty"
     facts = json.loads((written / "summary.json").read_text())
     assert "nobody was seen" in facts["warnings"][0]

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 import typer
-from spoiling import REFUSED, WORKED_WITH, copied, edit_json
+from spoiling import REFUSED, WORKED_WITH, copied, edit_json, refilmed
 
 import tritrack.__main__ as door
 from common.config.settings import Settings
@@ -258,7 +258,7 @@ def test_what_contradicts_itself_or_cannot_be_read_is_refused(
         ('clip = "x"\nevery = "two"', "every must be a whole number, got text"),
         ('clip = "x"\nsize = "huge"', "size must look like 160x120, got 'huge'"),
         ("clip =", "Invalid value"),
-        ("", "there is nothing to look at: set clip, or camera_1"),
+        ("", r"bad\.toml: there is nothing to look at: set clip, or camera_1"),
     ],
     ids=["unknown", "ill-typed", "meaningless", "no TOML", "none"],
 )
@@ -305,6 +305,20 @@ def test_a_clip_that_is_hardly_followed_ends_with_a_code_of_its_own(
     summary = json.loads((tmp_path / clip.name / "summary.json").read_text())
     assert summary["believed"] < 0.2
     assert summary["status"]["lost"] > summary["status"]["predicted"]
+
+
+@pytest.mark.parametrize("command", ["track", "single"])
+def test_a_clip_that_shows_nobody_is_not_followed_and_is_written(
+    tritrack: Commands, clip: Path, tmp_path: Path, command: str
+) -> None:
+    folder = copied(clip, tmp_path / "clip")
+    refilmed(folder, lambda film: 4 * film[:8])
+    said = tritrack(command, folder, "--out", tmp_path / "out", "--json")
+    assert said.code == 3
+    assert said.errors[-1].startswith("error: in 1 of 1 clip the body is believed in less than")
+    assert "(clip: nobody was found)" in said.errors[-1]
+    assert json.loads(said.out)["clips"]["clip"]["believed"] is None
+    assert (tmp_path / "out" / "clip" / "poses.npz").is_file()
 
 
 def test_json_stands_alone_on_stdout(tritrack: Commands, clip: Path, tmp_path: Path) -> None:
@@ -415,7 +429,7 @@ def test_live_refuses_a_page_port_in_use(
         text = f'clip = "{clip}"\n[page]\nport = {taken.getsockname()[1]}\n'
         said = tritrack("live", toml(tmp_path / "run.toml", text), "--out", tmp_path / "out")
     assert said.code == 2
-    assert re.search(r"port \d+: .*in use; .*set page\.port to another one", said.errors[0])
+    assert re.search(r"port \d+: .*in use; .*set page\.port to another one$", said.errors[0])
 
 
 def test_a_live_run_takes_the_place_of_no_other_run(
@@ -549,6 +563,41 @@ def test_what_is_no_ordinary_file_is_refused_before_any_work(
     assert (said.code, said.out) == (2, "")
     assert said.errors == [f"error: {pipe} is no ordinary file: name another --out"]
     assert pipe.is_fifo()
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["person", "nope"], "there is no clip folder and no settings file nope: check the path"),
+        (["board", "nope.mp4", "none.mp4"], "there is no file nope.mp4: check the path"),
+        (["poles", "nope.toml"], "cannot read the points nope.toml: No such file or directory"),
+        (["import", "nope.toml"], "cannot read the calibration nope.toml: No such file"),
+    ],
+    ids=["person", "board", "poles", "import"],
+)
+def test_what_a_calibration_lacks_is_said_before_that_one_is_there(
+    tritrack: Commands,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    words: list[str],
+    says: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("calibration.json").write_text("an afternoon's work")
+    said = tritrack("calibrate", *words)
+    assert (said.code, len(said.errors)) == (2, 1)
+    assert said.errors[0].startswith(f"error: {says}")
+
+
+def test_a_board_that_is_there_is_kept_and_the_option_that_named_it_is_told(
+    tritrack: Commands, tmp_path: Path
+) -> None:
+    pytest.importorskip("matplotlib", reason="pip install 'tritrack[report]'")
+    there = tmp_path / "board.pdf"
+    there.write_text("printed")
+    said = tritrack("calibrate", "board", "--print", there)
+    told = f"error: {there} is there already: name another --print, or add --force"
+    assert (said.code, said.errors) == (2, [told])
 
 
 def test_made_up_clips_are_told_as_json(tritrack: Commands, tmp_path: Path) -> None:

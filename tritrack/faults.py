@@ -23,7 +23,7 @@ HALF: Final = 0.5
 
 
 class Unfollowed(RuntimeError):
-    """Films in less than half of which the person was followed; what was found is written."""
+    """Films in less than half of which somebody was followed; what was found is written."""
 
 
 class Fault(RuntimeError):
@@ -53,17 +53,17 @@ def refuse_unfollowed(clips: Mapping[str, Mapping[str, Any]]) -> None:
     """End a run with a code of its own where a clip's bodies are mostly not believed.
 
     Raises:
-        Unfollowed: When one is believed in less than half of its frames with a person.
+        Unfollowed: When one is believed in less than half of its frames with a person, or shows
+            nobody.
     """
-    poor = {
-        name: facts["believed"] for name, facts in clips.items() if facts["believed"] is not None
-    }
-    poor = {name: share for name, share in poor.items() if share < HALF}
+    shares = {name: facts["believed"] for name, facts in clips.items()}
+    poor = {name: share or 0.0 for name, share in shares.items() if (share or 0.0) < HALF}
     if poor:
         worst = min(poor, key=lambda name: poor[name])
+        found = "nobody was found" if shares[worst] is None else f"{poor[worst]:.0%}"
         raise Unfollowed(
             f"in {len(poor)} of {counted(len(clips), 'clip')} the body is believed in less than "
-            f"half of the frames ({worst}: {poor[worst]:.0%}): name an empty picture of the room, "
+            f"half of the frames ({worst}: {found}): name an empty picture of the room, "
             "or light it better"
         )
 

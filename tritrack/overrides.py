@@ -1,8 +1,10 @@
 """What a command line sets above the settings of a file."""
 
+from pathlib import Path
+
 import msgspec
 
-from common.config.settings import Settings
+from common.config.settings import LANDMARK_SOURCES, NETWORK, Settings
 from common.config.settings_error import SettingsError
 from common.method import Mode
 
@@ -13,10 +15,10 @@ def overridden(
     """The settings with what a command line names instead; None leaves what they say.
 
     Raises:
-        SettingsError: When the size is none, or the source of landmarks.
+        SettingsError: When the size is none, or the source of landmarks is, or is not there.
     """
     try:
-        return msgspec.structs.replace(
+        named = msgspec.structs.replace(
             settings,
             mode=mode or settings.mode,
             size=size or settings.size,
@@ -24,3 +26,15 @@ def overridden(
         )
     except ValueError as error:
         raise SettingsError(str(error)) from error
+    if landmarks is not None:
+        _refuse_absent(landmarks)
+    return named
+
+
+def _refuse_absent(landmarks: str) -> None:
+    there = Path(landmarks).is_file() if landmarks.endswith(NETWORK) else Path(landmarks).is_dir()
+    if landmarks not in LANDMARK_SOURCES and not there:
+        raise SettingsError(
+            f"there is no folder or network {landmarks} of landmarks: name a folder of keypoint "
+            f"files, FILE{NETWORK}, or {', '.join(LANDMARK_SOURCES)}"
+        )

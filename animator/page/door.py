@@ -12,6 +12,10 @@ from common.endpoint import is_loopback
 HOST: Final = "127.0.0.1"
 OWN_NAMES: Final = (HOST, "localhost")
 EVERY_ADDRESS: Final = ("0.0.0.0", "::")
+BY_SETTINGS: Final = "set page.port to another one"
+"""How a live run takes another port."""
+BY_OPTION: Final = f"{BY_SETTINGS} (or --port)"
+"""... and a command that has the option, too."""
 
 
 class PageError(RuntimeError):
@@ -89,8 +93,13 @@ def has_token(entrance: Entrance, query: str, cookies: Sequence[str], port: int)
     )
 
 
-def refuse_port(port: int, host: str = HOST) -> None:
+def refuse_port(port: int, host: str = HOST, cure: str = BY_OPTION) -> None:
     """A server that quietly took the next free port would make the address told to the user wrong.
+
+    Args:
+        port: Of the page.
+        host: Where it listens.
+        cure: How the command in hand takes another port.
 
     Raises:
         PageError: When the port is 0, taken or not allowed, or the host is not this machine's.
@@ -103,13 +112,10 @@ def refuse_port(port: int, host: str = HOST) -> None:
             trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             trial.bind(found[0][4])
     except OSError as error:
-        raise PageError(unusable(port, str(error.strerror).lower(), host)) from error
+        raise PageError(unusable(port, str(error.strerror).lower(), host, cure)) from error
 
 
-def unusable(port: int, why: str, host: str = HOST) -> str:
+def unusable(port: int, why: str, host: str = HOST, cure: str = BY_OPTION) -> str:
     """What to say of a port that cannot be had."""
     where = "" if host == HOST else f" of {host}"
-    return (
-        f"cannot open the page on port {port}{where}: {why}; "
-        "close what uses it, or set page.port to another one (or --port)"
-    )
+    return f"cannot open the page on port {port}{where}: {why}; close what uses it, or {cure}"

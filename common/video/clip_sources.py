@@ -10,6 +10,8 @@ from common.video.decoding import Source
 
 COMPANIONS: Final = {".json", ".npz", ".txt", ".csv", ".toml", ".md", ".png", ".jpg", ".jpeg"}
 """Files that may stand beside `cam1.*` under the same name and are no video of it."""
+NOTHING: Final = "there is nothing to look at: set clip, or camera_1 with source or device"
+"""Said of settings that name no footage."""
 
 
 class ClipError(ValueError):
@@ -49,6 +51,16 @@ def footage_of(settings: Settings) -> list[Footage]:
             "the settings (camera_1.source)"
         )
     return found
+
+
+def refuse_no_footage(settings: Settings, path: Path) -> None:
+    """See that the settings of a file name something to look at.
+
+    Raises:
+        ClipError: When they do not, or as `footage_of`.
+    """
+    if not footage_of(settings):
+        raise ClipError(f"{path}: {NOTHING}")
 
 
 def _in_folder(folder: Path, number: ViewerNumber) -> str | None:

@@ -16,7 +16,7 @@ from common.config.settings import Settings
 from common.rig.camera import Camera, Rig
 from common.rig.rig_file import CalibrationError, fitted, load_rig
 from common.video.clip_facts import Clip, Meta, View
-from common.video.clip_sources import ClipError, Footage, companions_folder, footage_of
+from common.video.clip_sources import NOTHING, ClipError, Footage, companions_folder, footage_of
 from common.video.decoding import Decoder, DecoderDied, Source, Undecodable, VideoInfo
 from common.video.frame_times import timed
 
@@ -48,7 +48,7 @@ def open_clip(
     """
     named = [view for view in footage_of(settings) if view.number in set(numbers)]
     if not named:
-        raise ClipError("there is nothing to look at: set clip, or camera_1 with source or device")
+        raise ClipError(NOTHING)
     folder = companions_folder(settings, named)
     meta = _meta(folder)
     with ExitStack() as doors:
@@ -137,7 +137,7 @@ def probed(source: Source, decoder: Decoder) -> VideoInfo:
         ClipError: When it is not there, may not be read, is empty, or has no picture.
     """
     if isinstance(source, str):
-        _refuse_unreadable(Path(source))
+        refuse_unreadable(Path(source))
     try:
         info = decoder.probe(source)
     except (Undecodable, DecoderDied) as error:
@@ -158,7 +158,12 @@ def _refuse_another_scene(named: Footage, plate: VideoInfo, info: VideoInfo) -> 
         )
 
 
-def _refuse_unreadable(path: Path) -> None:
+def refuse_unreadable(path: Path) -> None:
+    """See that a file is there, holds anything, and may be read.
+
+    Raises:
+        ClipError: When not.
+    """
     if path.is_dir():
         raise ClipError(f"{path} is a folder: name a file in it")
     if not path.is_file():

@@ -12,6 +12,8 @@ from common.rig.rig_file import CalibrationError, check_rig
 
 CENTRE: Final = 0.5
 """OpenCV has the centre of the first pixel at 0, we at this."""
+FORMS: Final = "TOML of Pose2Sim, Caliscope or anipose, Qualisys' .qca.txt, OpenCV's .yml and .xml"
+"""What is read."""
 
 
 class ForeignCamera(NamedTuple):
@@ -31,11 +33,13 @@ def our_rig(cameras: Sequence[ForeignCamera], where: str) -> Rig:
     Raises:
         CalibrationError: When they are none, or of pictures of several sizes, or no rig.
     """
+    if not cameras:
+        raise CalibrationError(f"{where} holds no camera in a form that is known: {FORMS}")
     sizes = {camera.size_px for camera in cameras}
     if len(sizes) != 1:
         told = ", ".join(f"{one.name} {one.size_px[0]}x{one.size_px[1]}" for one in cameras)
         raise CalibrationError(
-            f"{where}: cameras of one size are needed, got {told or 'none'}: choose with --camera"
+            f"{where}: cameras of one size are needed, got {told}: choose with --camera"
         )
     turn = axes_with_y_up(np.mean([-camera.R[1] for camera in cameras], axis=0))
     ours = []

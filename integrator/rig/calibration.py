@@ -11,7 +11,7 @@ from common.config.explained import explained
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError
 from integrator.rig.markers import Aim, Markers, line_markers
-from integrator.rig.poles import Poles, Quality, poles
+from integrator.rig.poles import Poles, Quality, poles, refuse_other_units
 
 Content = TypeVar("Content", Markers, Poles)
 
@@ -35,11 +35,14 @@ def run_poles(path: Path, out: Path, replace: bool = False) -> Quality:
         replace: What stands there may be lost; it took somebody poles and an afternoon.
 
     Raises:
-        CalibrationError: When a file cannot be read or written, or the poles do not suffice.
+        CalibrationError: When a file cannot be read or written, a length is in another unit, or
+            the poles do not suffice.
         FileRefused: When a file would be lost.
     """
+    measured = read_points(path, Poles)
+    refuse_other_units(measured)
+    rig, quality = poles(measured)
     refuse_to_replace(out, replace)
-    rig, quality = poles(read_points(path, Poles))
     write_rig(out, rig, quality)
     return quality
 

@@ -23,6 +23,14 @@ SINGULAR: Final = 1e-9
 """Least over greatest singular value below which the poles leave something open."""
 NEAREST_M: Final = 0.01
 """A pole that is nearer to a lens, or behind it, was not seen."""
+LENGTHS_M: Final = {
+    "pole_height_m": (0.2, 10.0),
+    "distance_1_m": (0.2, 50.0),
+    "distance_2_m": (0.2, 50.0),
+}
+"""What a length by tape can be, least and most: who means centimetres is beyond."""
+FARTHEST_M: Final = 50.0
+"""Of a pole, from the origin along either axis."""
 
 
 class Pole(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -67,6 +75,28 @@ class Quality(msgspec.Struct, frozen=True):
     """How well a rig is known."""
 
     cameras: tuple[CameraQuality, ...]
+
+
+def refuse_other_units(measured: Poles) -> None:
+    """See that lengths can be metres.
+
+    Raises:
+        CalibrationError: When one is out of bounds; it asks whether the hundredth was meant.
+    """
+    for name, (low, high) in LENGTHS_M.items():
+        _refuse_beyond(name, getattr(measured, name), low, high)
+    for n, pole in enumerate(measured.poles):
+        for name in ("x_m", "z_m"):
+            _refuse_beyond(f"{name} of pole {n + 1}", getattr(pole, name), -FARTHEST_M, FARTHEST_M)
+
+
+def _refuse_beyond(name: str, length_m: float | None, low: float, high: float) -> None:
+    if length_m is None or low <= length_m <= high:
+        return
+    meant = f": {length_m / 100:g}?" if low <= length_m / 100 <= high else ""
+    raise CalibrationError(
+        f"{name} must be from {low:g} to {high:g} metres, got {length_m:g}{meant}"
+    )
 
 
 def poles(measured: Poles) -> tuple[Rig, Quality]:

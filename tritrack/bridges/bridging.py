@@ -1,10 +1,12 @@
 """A bridge at work: bodies of a run in, another protocol out, until the run is over."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Literal
 
 from rich.console import Console
 
+from common.bus.bus_keys import refuse_missing
 from common.bus.messages import Body
 from tritrack.bridges import vmc
 from tritrack.bridges.lsl import lsl_outlet
@@ -30,8 +32,11 @@ def bridge(
 
     Raises:
         BridgeError: When the protocol's library is missing, or `to` is no address.
+        KeysError: When a key is missing.
         BusError: When no run answers within a minute.
     """
+    if keys:
+        refuse_missing(Path(keys), "client")
     bodies = subscribe(endpoint, room, keys=keys)
     waits = f"waiting for a run at {endpoint} (room {room}), at most {WAIT_S:.0f} s"
     if protocol == "lsl":

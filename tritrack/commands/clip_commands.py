@@ -60,7 +60,8 @@ def track(
     What is stopped, by Ctrl-C or by a crash, goes on where it was with the same command and
     --resume, and gives the same poses as without a stop.
 
-    Ends with exit code 3 where a clip's body is believed in less than half of its frames.
+    Ends with exit code 3 where a clip's body is believed in less than half of its frames with a
+    person, or nobody is found.
 
     Example: tritrack track clips/*/ --mode paper --out runs
     """
@@ -143,7 +144,8 @@ def single(
 
     What is stopped goes on where it was with the same command and --resume.
 
-    Ends with exit code 3 where a video's body is believed in less than half of its frames.
+    Ends with exit code 3 where a video's body is believed in less than half of its frames with a
+    person, or nobody is found.
 
     Example: tritrack single dance.mp4 --out runs
     """

@@ -62,9 +62,12 @@ def live(
 
     Example: tritrack live configs/live.toml --out runs/monday
     """
+    from common.video.clip_sources import refuse_no_footage
     from tritrack.live.session import live as run_live
 
-    given = overridden(config_file.load(settings_file), mode, size, landmarks)
+    own = config_file.load(settings_file)
+    refuse_no_footage(own, settings_file)
+    given = overridden(own, mode, size, landmarks)
     settings = waiting(given, wait)
     if not force:
         _refuse_other_than_last(out, settings)
@@ -171,8 +174,11 @@ def animate(settings_file: ConfigPath) -> None:
     Example: tritrack animate configs/live.toml
     """
     from animator.__main__ import main as animator_main
+    from tritrack.live.free_ports import refuse_held_page
 
-    animator_main(live_settings(settings_file))
+    settings = live_settings(settings_file)
+    refuse_held_page(settings)
+    animator_main(settings)
 
 
 def waiting(settings: Settings, wait: bool) -> Settings:

@@ -98,7 +98,8 @@ OwnMode = Annotated[
     Literal["default", "paper"] | None,
     typer.Option(help="How clips are tracked, if not in the recogniser's own mode."),
 ]
-CACHE: Final = Path("runs/tracked")
+CACHE: Final = Path("runs/.tracked")
+"""Hidden: `runs/*/` names runs alone."""
 Cache = Annotated[
     Path,
     typer.Option(

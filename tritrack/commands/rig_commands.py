@@ -52,9 +52,13 @@ def person(
 
     Example: tritrack calibrate person clips/*/ --stature 1.82 --out clips/calibration.json
     """
+    from common.config import config_file
+    from common.video.clip_sources import refuse_no_footage
     from integrator.rig.calibration import write_rig
     from tritrack.offline.rig_of_clips import Given, calibrated_by_clips
 
+    for path in clips:
+        refuse_no_footage(config_file.load(path), path)
     refuse_to_replace(out, force)
     rig, quality = calibrated_by_clips(clips, Given(stature, fov))
     write_rig(out, rig, quality)
@@ -109,14 +113,17 @@ def board(
 
     Example: tritrack calibrate board cam1.mp4 cam2.mp4 --out clips/calibration.json
     """
+    from common.video.clips import refuse_unreadable
     from integrator.board.board_print import print_board
     from tritrack.offline.rig_of_boards import Shown
 
     if print_ is None and not videos:
         raise typer.BadParameter("name the video of each camera, or --print board.pdf")
+    for video in videos or []:
+        refuse_unreadable(video)
     if print_ is not None:
         refuse_without("report", "matplotlib")
-        refuse_to_replace(print_, force)
+        refuse_to_replace(print_, force, "--print")
         print_board(print_, paper)
         console.print(f"written to {print_}", highlight=False, soft_wrap=True)
     if videos:
@@ -230,8 +237,8 @@ def import_(
     from integrator.foreign_rigs.imported_rig import imported_rig
     from integrator.rig.calibration import write_rig
 
-    refuse_to_replace(out, force)
     rig = imported_rig(theirs, tuple(camera or ()))
+    refuse_to_replace(out, force)
     write_rig(out, rig)
     console.print(
         f"{counted(len(rig.cameras), 'camera')} written to {out}", highlight=False, soft_wrap=True
@@ -257,6 +264,7 @@ def export_(
     from integrator.foreign_rigs.toml_rig import toml_text
     from integrator.rig.calibration import write_text
 
+    text = toml_text(load_rig(ours), to)
     refuse_to_replace(out, force)
-    write_text(out, toml_text(load_rig(ours), to))
+    write_text(out, text)
     console.print(f"written to {out}", highlight=False, soft_wrap=True)

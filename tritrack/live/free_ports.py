@@ -106,12 +106,12 @@ def refuse_held_page(settings: Settings) -> None:
     try:
         import websockets  # noqa: F401
 
-        from animator.page.door import refuse_port
+        from animator.page.door import BY_SETTINGS, refuse_port
     except ImportError as error:
         raise PortHeld(
             f"the page needs {error.name}: pip install 'tritrack[page]', or set page.port = 0"
         ) from error
-    refuse_port(settings.page.port, settings.page.host)
+    refuse_port(settings.page.port, settings.page.host, BY_SETTINGS)
 
 
 def refuse_held_metrics(address: str) -> None:

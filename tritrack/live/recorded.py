@@ -75,11 +75,17 @@ class SoFar:
         """Of cameras."""
         self.posture = ""
         """Of a whole clip: the last name given, by a window that saw most of it."""
+        self.instants = 0
+        """How many bodies came."""
+        self.with_somebody = 0
+        """... of them those of instants that show somebody."""
         self.take(bodies, postures)
 
     def take(self, bodies: Iterable[Body], postures: Iterable[Posture]) -> None:
         """These too."""
         for body in bodies:
             self.moves = step(self.moves, body)
+            self.instants += 1
+            self.with_somebody += body.status != "empty"
         for posture in postures:
             self.posture = posture.name or self.posture

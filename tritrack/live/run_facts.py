@@ -10,6 +10,7 @@ from tritrack.live.recorded import SoFar
 from tritrack.live.screen import warnings_of
 from tritrack.moved_facts import facts_of_moves
 from tritrack.store.other_run import run_of
+from tritrack.store.runs import NOBODY_SEEN
 
 
 def facts_of(heard: Heard, clip: Clip, seconds: float, so_far: SoFar) -> dict[str, Any]:
@@ -51,6 +52,12 @@ def note_lost(heard: Heard) -> None:
             f"the first {lost} frames of a long run are not in poses.npz: write shorter runs, "
             "or follow recordings with: tritrack track"
         )
+
+
+def note_unseen(heard: Heard) -> None:
+    """Say so where frames came, and none of them shows anybody."""
+    if heard.so_far.instants and not heard.so_far.with_somebody:
+        heard.notes.append(NOBODY_SEEN)
 
 
 def facts_of_clip(clip: Clip) -> dict[str, Any]:

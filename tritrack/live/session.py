@@ -27,7 +27,7 @@ from tritrack.live.launch import Heard, nothing_heard, run
 from tritrack.live.page_desk import SAVED, PageDesk
 from tritrack.live.process_table import inherited, live_parts
 from tritrack.live.recorded import SoFar, WholeRun
-from tritrack.live.run_facts import facts_of, facts_of_clip, note_lost
+from tritrack.live.run_facts import facts_of, facts_of_clip, note_lost, note_unseen
 from tritrack.live.screen import Screen
 from tritrack.store.journal import Head as JournalHead
 from tritrack.store.journal import Journal
@@ -154,6 +154,8 @@ def _follow(
         settle()
         zygote.wait(stop, lambda: look(heard))
         run(parts, settings, stop, look, heard, desk)
+        note_unseen(heard)
+        show(heard)
 
 
 def _admitted(settings: Settings, record: bool, console: Console) -> Settings:

@@ -15,7 +15,14 @@ from common.bus.messages import Pixel
 from common.rig.rig_file import CalibrationError
 from integrator.rig.calibration import write_rig
 from integrator.rig.drawn_poles import drawn_poles
-from integrator.rig.poles import CameraQuality, Pole, Poles, camera_by_poles, poles
+from integrator.rig.poles import (
+    CameraQuality,
+    Pole,
+    Poles,
+    camera_by_poles,
+    poles,
+    refuse_other_units,
+)
 from tritrack.marking.marking_method import MarkingMethod, toml_number, toml_pixels
 from tritrack.marking.suspect_point import suspect_point
 
@@ -54,19 +61,21 @@ def poles_of(sheet: Sheet, size: Size) -> Poles:
     """The poles that a sheet shows.
 
     Raises:
-        CalibrationError: When their height was not said.
+        CalibrationError: When their height was not said, or a length is in another unit.
     """
     height_m = sheet.numbers.get("pole_height_m")
     if height_m is None:
         raise CalibrationError("say how tall the poles are, from the floor to the top")
     shown = [(mark.at_m or (0.0, 0.0), mark.px) for mark in sheet.marks]
-    return Poles(
+    measured = Poles(
         *size,
         height_m,
         tuple(Pole(x_m, z_m, *px) for (x_m, z_m), px in shown),
         sheet.numbers.get("distance_1_m"),
         sheet.numbers.get("distance_2_m"),
     )
+    refuse_other_units(measured)
+    return measured
 
 
 def sheet_of_poles(measured: Poles) -> Sheet:

@@ -15,7 +15,7 @@ from animator.marking.marking_page import LIVE, still_address
 from animator.marking.sheet import Pictures
 from common.config.picture_size import working_size
 from common.config.settings import Settings
-from common.video.clip_sources import ClipError, Footage, footage_of
+from common.video.clip_sources import NOTHING, ClipError, Footage, footage_of
 from common.video.clips import SAME_ASPECT, probed
 from common.video.decoding import (
     Decoded,
@@ -132,7 +132,7 @@ def open_album(settings: Settings, console: Console) -> Iterator[Album]:
     """
     footage = footage_of(settings)
     if not footage:
-        raise ClipError("there is nothing to look at: set clip, or camera_1 with source or device")
+        raise ClipError(NOTHING)
     with ExitStack() as doors:
         decoders = {view.number: doors.enter_context(Decoder()) for view in footage}
         infos = {view.number: probed(view.source, decoders[view.number]) for view in footage}

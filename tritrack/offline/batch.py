@@ -13,7 +13,7 @@ from common.config.settings import Settings
 from common.config.settings_error import SettingsError
 from common.method import Mode
 from common.video.clip_facts import Clip, both_cameras
-from common.video.clip_sources import ClipError, footage_of
+from common.video.clip_sources import ClipError, footage_of, refuse_no_footage
 from common.video.decoding import DecoderDied, Undecodable
 from integrator.frame_numbers import frame_times
 from tritrack.offline.lockstep import Decoders, Tracked, measured_before, track_clip
@@ -77,6 +77,7 @@ def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) 
         for (name, path), tell in by_share(progress, [*runs.items()], "tracking"):
             try:
                 own = config_file.load(path)
+                refuse_no_footage(own, path)
                 settings = overridden(own, given.mode, given.size, given.landmarks)
                 if given.trusted:
                     settings = msgspec.structs.replace(settings, trust_calibration=True)

@@ -26,6 +26,7 @@ from tritrack.offline.film_passes import (
     bodies_of,
     silhouettes_of,
 )
+from tritrack.store.runs import NOBODY_SEEN
 from tritrack.terminal import Tell
 from tritrack.unfinished.work import Course, InMemory, Work
 from viewer.background.background import Background
@@ -170,9 +171,7 @@ def _times(frames: int, **spent_s: float) -> dict[str, Any]:
 
 def unseen(bodies: Sequence[Body]) -> str:
     """What to say where no frame shows anybody; "" otherwise."""
-    if any(body.joints_m for body in bodies):
-        return ""
-    return "nobody was seen: the person must move, and be a sixth of the picture high at least"
+    return "" if any(body.joints_m for body in bodies) else NOBODY_SEEN
 
 
 def doubtful(bodies: Sequence[Body]) -> str:

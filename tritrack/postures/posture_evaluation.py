@@ -51,7 +51,7 @@ class Plan(NamedTuple):
     package."""
     sweep: bool = False
     """The paper's recogniser in other sizes too."""
-    cache: Path = Path("runs/tracked")
+    cache: Path = Path("runs/.tracked")
     dask: str = ""
     """A cluster's address; "" for the cores of this machine."""
 

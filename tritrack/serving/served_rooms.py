@@ -82,4 +82,6 @@ class House:
         for room in rooms:
             room.end()
             self._states.pop(room.site.name, None)
-            self._say(f"{room.site.name}: stopped; its run is in {room.site.out}")
+            out = room.site.out.resolve()
+            where = f"; its run is in {out}" if out.is_dir() else ", before it had begun a run"
+            self._say(f"{room.site.name}: stopped{where}")

@@ -16,7 +16,7 @@ from common.config.settings_error import SettingsError
 from common.method import METHODS
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path
-from common.video.clip_sources import ClipError, footage_of
+from common.video.clip_sources import ClipError, footage_of, refuse_no_footage
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied, Undecodable
 from common.video.frame_cache import Reel, Told
@@ -30,7 +30,7 @@ from tritrack.store.clip_paths import ClipsFailed
 from tritrack.store.other_run import OtherRun, RunOf, refuse_other, run_of
 from tritrack.store.pose_arrays import mapped_poses
 from tritrack.store.runs import believed, write_run
-from tritrack.terminal import Tell, bar, by_pass, complain, counted, say, warn
+from tritrack.terminal import Tell, bar, by_pass, complain, say, warn
 from tritrack.unfinished.resuming import Begun, Wanted, done_before, resumable
 from tritrack.unfinished.unfinished_run import CannotResume
 from tritrack.unfinished.work import InMemory, Work
@@ -90,8 +90,7 @@ def single_all(
     Raises:
         SettingsError, ClipError, DecoderDied, Undecodable, MaskFileError, NotesError: When the only
             video cannot be used.
-        ClipsFailed: At the end, when any of several could not be used, or one shows nobody: what it
-            shows is written all the same.
+        ClipsFailed: At the end, when any of several could not be used.
         RunError, FilmError: When the results cannot be written.
     """
     done: dict[str, Any] = {}
@@ -101,6 +100,7 @@ def single_all(
             try:
                 _refuse_the_same(path, out / name, name in done)
                 job = job_of(path, given, settings)
+                _tell_of_two(job, console)
                 if not given.force:
                     refuse_other(out / name, _run_of(job))
                 wanted = Wanted(out / name, job.settings, {"the notes": job.notes}, given.resume)
@@ -116,7 +116,6 @@ def single_all(
         raise ClipsFailed(
             f"{len(videos) - len(done)} of {len(videos)} videos could not be followed"
         )
-    _refuse_the_empty(done)
     return {"clips": done}
 
 
@@ -125,14 +124,10 @@ def _refuse_the_same(path: Path, folder: Path, there: bool) -> None:
         raise ClipError(f"{path} would be written to {folder} too: rename it")
 
 
-def _refuse_the_empty(done: dict[str, Any]) -> None:
-    empty = [name for name, facts in done.items() if not facts["frames_with_pose"]]
-    if empty:
-        raise ClipsFailed(
-            f"nobody was found in {len(empty)} of {counted(len(done), 'video')}: open "
-            f"{done[empty[0]].get('overlay', 'its overlay')}: if nobody is outlined, the person "
-            "did not move or is too small"
-        )
+def _tell_of_two(job: Job, console: Console) -> None:
+    """Which of two cameras is followed."""
+    if len(footage_of(job.settings)) > 1:
+        say(console, f"{job.path}: camera 1 alone is followed; both: tritrack track {job.path}")
 
 
 def name_of(path: Path) -> str:
@@ -147,13 +142,15 @@ def job_of(path: Path, given: Given, settings: Settings) -> Job:
     """What a path of the command line stands for.
 
     Raises:
-        SettingsError, MaskFileError, NotesError: When it cannot be read.
+        SettingsError, ClipError, MaskFileError, NotesError: When it cannot be read, or names
+            nothing to look at.
     """
     if is_mask_file(path):
         masks = read_masks(path)
         return Job(path, settings, masks, load_notes(given.notes) if given.notes else Notes())
     if path.is_dir() or path.suffix == ".toml":
         own = load(path)
+        refuse_no_footage(own, path)
         beside = path / "cam1" if path.is_dir() else path
     else:
         own = msgspec.structs.replace(settings, camera_1=CameraSettings(source=str(path)))

@@ -24,6 +24,11 @@ VERSIONS_OF: Final = ("tritrack", "numpy", "opencv-python-headless", "numba", "e
 BELIEVED: Final[tuple[Status, ...]] = ("measuring", "tracking", "predicted")
 """Of a body's status: what the views show bears it out, or did a moment ago."""
 
+NOBODY_SEEN: Final = (
+    "nobody was seen: the person must move, and be a sixth of the picture high at least"
+)
+"""Said of a run no frame of which shows anybody."""
+
 
 class RunError(RuntimeError):
     """A run folder that cannot be written; the text names it and the cure."""
