@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from spoiling import film_of
 
 from common.config.part_settings import SilhouetteSettings
 from common.config.settings import Settings
@@ -270,3 +271,15 @@ def test_whoever_was_there_before_the_lights_went_out_is_there_after(level: int)
     for frame in range(20):
         state, seen = step(state, shot(dressed(room(), body()), 2.0, frame), None)
     assert iou(seen.mask, body()) > 0.9
+
+
+def test_the_background_grows_no_brighter_in_hours_of_flicker_and_of_somebodys_shading(
+    clip: Path,
+) -> None:
+    """P3: gain and background are seen as a product alone; neither may wander off."""
+    film = film_of(clip / "cam1.avi")
+    state = init(learn(film[:8]), SETTINGS, DEFAULT)
+    for frame in range(3000):
+        state, _ = step(state, film[frame % len(film)], None)
+    level = state.model.centre.mean(axis=(0, 1)) / state.background.centre.mean(axis=(0, 1))
+    assert level == pytest.approx(np.ones(3), abs=0.002)

@@ -237,5 +237,18 @@ def _adapted(state: State, frame: Image, box: Box | None) -> State:
     corners = (1, 0, 1, 0)
     if box is not None:
         corners = (box.left - margin, box.right + margin, box.top - margin, box.bottom + margin)
-    centre = adapted(frame, state.model, corners)
-    return state._replace(model=state.model._replace(centre=centre), frames=frames)
+    model = state.model._replace(centre=adapted(frame, state.model, corners))
+    if state.method.steady_light:
+        model = _as_bright_as(state.background, model)
+    return state._replace(model=model, frames=frames)
+
+
+def _as_bright_as(background: Background, model: BackgroundModel) -> BackgroundModel:
+    """What frames are held against, as bright as the background was learnt; the gain has the rest.
+
+    Only their product is seen. Somebody's shading, a little each time, would let the one grow and
+    the other shrink for hours, until all is white.
+    """
+    learnt, now = cv2.mean(background.centre)[:3], cv2.mean(model.centre)[:3]
+    more = np.divide(np.maximum(now, 1.0), np.maximum(learnt, 1.0)).astype(np.float32)
+    return model._replace(centre=model.centre / more, gain=model.gain * more)
