@@ -2,6 +2,7 @@
 PYTHON ?= $(firstword $(foreach v,3.11 3.12 3.13,$(shell python$(v) -c "import sys; print(sys.executable)" 2>/dev/null)) python3.11)
 VENV := .venv
 BIN := $(VENV)/bin
+EXTRAS := page,export,usd,mcap,metrics,osc,lsl,keys,learn,report,single,cluster,docs,dev
 
 NEWER := 3.12 3.13
 
@@ -14,7 +15,7 @@ $(VENV)/.installed: pyproject.toml constraints.txt
 	@command -v $(PYTHON) >/dev/null || { echo "tritrack needs Python 3.11 or newer: install it, or name it: make PYTHON=/path/to/python3.11"; exit 1; }
 	@echo "once, some two minutes: libraries into $(VENV)"
 	@$(PYTHON) -m venv $(VENV)
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[page,export,usd,mcap,metrics,osc,lsl,keys,learn,report,single,cluster,docs,dev]'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[$(EXTRAS)]'
 	@touch $@
 
 demo: setup

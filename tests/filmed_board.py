@@ -46,6 +46,7 @@ class Studio:
         self.random = np.random.default_rng(seed)
         coarse = self.random.integers(60, 200, (12, 16), np.uint8)
         self.room = cv2.resize(coarse, size, interpolation=cv2.INTER_CUBIC).astype(np.float32)
+        self.straight = _straight(camera, size)
 
     def picture(
         self, board: Board, pose: Pose | None, blur_px: float = 0.6, noise: float = 2.5
@@ -67,18 +68,14 @@ class Studio:
         if box is None or turn[:, 2] @ middle <= 0:
             return
         left, top, right, bottom = box
-        rows, columns = np.mgrid[top * FINER : bottom * FINER, left * FINER : right * FINER]
-        pixels = (np.stack([columns, rows], axis=-1).reshape(-1, 1, 2) + 0.5) / FINER
-        bent = np.array(self.camera.distortion)
-        rounds = (cv2.TERM_CRITERIA_COUNT, 30, 0.0)
-        K = arrays_of(self.camera).K
-        straight = cv2.undistortPoints(pixels, K, bent, None, None, None, rounds)[:, 0]
+        straight = self.straight[top * FINER : bottom * FINER, left * FINER : right * FINER]
+        shape, straight = straight.shape, straight.reshape(-1, 2)
         to_board = np.linalg.inv(np.column_stack([turn[:, 0], turn[:, 1], middle]))
         on_board = np.column_stack([straight, np.ones(len(straight))]) @ to_board.T
         places = on_board[:, :2] / on_board[:, 2:] / board.square_m
         corner = np.array([board.columns, board.rows]) / 2 + MARGIN
         texels = (places + corner) * TEXELS - 0.5
-        onto = texels.reshape(*rows.shape, 2).astype(np.float32)
+        onto = texels.reshape(shape).astype(np.float32)
         printed, onto = _at_scale(board, onto)
         seen = cv2.remap(printed, onto, None, cv2.INTER_LINEAR, None, cv2.BORDER_CONSTANT, 0)
         seen = seen.astype(np.float32)
@@ -100,6 +97,17 @@ class Studio:
         left, top = np.clip(np.floor(pixels.min(axis=0)) - 2, 0, self.size).astype(int).tolist()
         right, bottom = np.clip(np.ceil(pixels.max(axis=0)) + 2, 0, self.size).astype(int).tolist()
         return (left, top, right, bottom) if right - left > 2 and bottom - top > 2 else None
+
+
+def _straight(camera: Camera, size: tuple[int, int]) -> NDArray[np.float64]:
+    """(FINER h, FINER w, 2) where each part of each pixel looks, 1 m ahead."""
+    width, height = size
+    rows, columns = np.mgrid[: height * FINER, : width * FINER]
+    pixels = (np.stack([columns, rows], axis=-1).reshape(-1, 1, 2) + 0.5) / FINER
+    bent, K = np.array(camera.distortion), arrays_of(camera).K
+    rounds = (cv2.TERM_CRITERIA_COUNT, 30, 0.0)
+    found = cv2.undistortPoints(pixels, K, bent, None, None, None, rounds)
+    return np.asarray(found.reshape(height * FINER, width * FINER, 2), np.float64)
 
 
 def _at_scale(
