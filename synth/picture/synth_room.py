@@ -26,6 +26,8 @@ SELF_SHADE: Final = 0.01
 """Share of the way to the lamp within which a box hides no lamp from a point: it may lie on it."""
 LAMP_SPREAD_M: Final = 0.25
 """Half the size of the lamp: what stands in the room throws soft shadows, too."""
+BEHIND_M: Final = 0.6
+"""Of the room behind each camera."""
 SAMPLES: Final = 2
 """Rays a pixel, each way."""
 
@@ -100,10 +102,13 @@ def _lamp(place: Vector) -> Lamp:
 
 
 def _walls(rng: np.random.Generator, rig: Rig) -> list[Cuboid]:
-    """The room itself: a box that is seen from inside, first of all boxes."""
-    far = max(5.0, *(float(np.abs(centre(camera)).max()) for camera in rig.cameras)) + 0.6
+    """The room itself: a box that is seen from inside, first of all boxes; all cameras are in it."""
+    places = np.stack([centre(camera) for camera in rig.cameras])
+    far = max(5.0, float(np.abs(places).max())) + BEHIND_M
     low = np.array([-far, 0.0, -rng.uniform(1.5, 2.5)])
     high = np.array([rng.uniform(1.5, 2.5), rng.uniform(2.5, 2.9), far])
+    low = np.minimum(low, places.min(axis=0) - [BEHIND_M, 0.0, BEHIND_M])
+    high = np.maximum(high, places.max(axis=0) + BEHIND_M)
     return [Cuboid(low, high, finish("room", rng))]
 
 
