@@ -102,7 +102,7 @@ def _lamp(place: Vector) -> Lamp:
 
 
 def _walls(rng: np.random.Generator, rig: Rig) -> list[Cuboid]:
-    """The room itself: a box that is seen from inside, first of all boxes; all cameras are in it."""
+    """The room itself, first of all boxes: it is seen from inside, all cameras are in it."""
     places = np.stack([centre(camera) for camera in rig.cameras])
     far = max(5.0, float(np.abs(places).max())) + BEHIND_M
     low = np.array([-far, 0.0, -rng.uniform(1.5, 2.5)])
