@@ -61,9 +61,9 @@ def test_what_no_process_says_does_not_fit() -> None:
 def listen(endpoint: str, heard: list[tuple[str, bytes]], over: threading.Event) -> None:
     """All that is said in the room, from when its hub answers until the test is over.
 
-    What was said before is asked for: the hub keeps what a late comer needs.
-    Once a body is heard, the stranger asks the run to save what it saw, with the run's own word,
-    which goes behind the number of all that it says; the run answers.
+    Once a body is heard, the stranger knows the run's own word, which goes behind the number of all
+    that it says. With it the stranger asks for what was said before it came, which the hub keeps
+    for whoever comes late, and asks the run to save what it saw; the run answers.
     """
     words: list[bytes] = []
 
@@ -82,12 +82,13 @@ def listen(endpoint: str, heard: list[tuple[str, bytes]], over: threading.Event)
             continue
         with session:
             session.declare_subscriber("tritrack/room/**", hear)
-            for reply in session.get("tritrack/room/**", timeout=2.0):
-                if reply.ok is not None:
-                    hear(reply.ok)
             while not words and not over.wait(0.1):
                 pass
-            ours = (1).to_bytes(8, "big") + b"".join(words[:1])
+            word = b"".join(words[:1])
+            for reply in session.get("tritrack/room/**", timeout=2.0, attachment=word):
+                if reply.ok is not None:
+                    hear(reply.ok)
+            ours = (1).to_bytes(8, "big") + word
             session.put("tritrack/room/command", msgpack.packb({"what": "save"}), attachment=ours)
             over.wait()
 
