@@ -59,8 +59,8 @@ def warnings(state: State, merged: merge_state.State) -> list[str]:
     lines = assumed(merged)
     if any(state.seen) and not merged.opening.measured:
         lines.append(
-            "nobody took the opening posture, upright with stretched arms: the body has the "
-            "thesis's proportions, unmeasured"
+            "nobody took the opening posture, upright with stretched arms, facing camera 1 and "
+            "seen from the side by camera 2: the body has the thesis's proportions, unmeasured"
         )
     for viewer, (seen, cut) in enumerate(zip(state.seen, state.cut, strict=True), 1):
         if cut:

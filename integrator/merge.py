@@ -152,8 +152,9 @@ def _lone(state: State, now: Instant) -> Posed:
     method, dt_s, annotations = state.method, now.dt_s, now.annotations
     man = THESIS if method.stick_lifting else ADULT
     sight = Sight(method, report.viewer, rig, report, man, bdp, state.pose, dt_s, annotations)
-    known = before.alone if before is not None else None
-    alone = known or single_view.begun(sight, None if before is None else before.joints_m)
+    alone = before.alone if before is not None else None
+    if alone is None or alone.number != report.viewer:
+        alone = single_view.begun(sight, None if before is None else before.joints_m, alone)
     found = single_view.step(before.memory if before is not None else None, alone, sight)
     body = found.body
     return Posed(

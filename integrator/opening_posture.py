@@ -12,7 +12,7 @@ from common.method import Method
 from common.rig.camera import Rig
 from integrator.pairing import Seen
 from integrator.prior_body import prior
-from integrator.rig.body_position import place_of, scales_at
+from integrator.rig.body_position import scales_at, sees_flank, upright_place_of
 
 LEG_KEPT: Final = (0.85, 1.05)
 """Share of the measured leg that the height of the navel above the floor may leave; beyond, the
@@ -79,7 +79,7 @@ def step(
     if opening.measured:
         return opening, None
     front, side = (None if report is None else report.measure for report in seen)
-    if front is None or side is None or front.bdp_px is None:
+    if front is None or side is None or not _shows_both(rig, front, side):
         broken_off = opening.refused + 1 >= due
         return opening._replace(
             refused=opening.refused + 1,
@@ -104,13 +104,22 @@ def elsewhere(opening: Opening, rig: Rig, due: int, method: Method, stature_m: f
         return opening
     told = Opening(bdp=thesis_bdp(stature_m))
     for front, side in opening.measures:
-        told = _measured(told, rig, front, side)
+        if _shows_both(rig, front, side):
+            told = _measured(told, rig, front, side)
     return _settled(told, due, method)[0]
+
+
+def _shows_both(rig: Rig, front: Measure, side: Measure) -> bool:
+    """Whether view 1 sees the facade and view 2 the flank of somebody before both."""
+    if front.bdp_px is None:
+        return False
+    place = upright_place_of(rig, front.centre_px, side.centre_px)
+    return bool(np.isfinite(scales_at(rig, place)).all()) and sees_flank(rig, place)
 
 
 def _measured(opening: Opening, rig: Rig, front: Measure, side: Measure) -> Opening:
     """An accepted frame more."""
-    place = place_of(rig, (front.centre_px, side.centre_px), np.zeros(3), 0)
+    place = upright_place_of(rig, front.centre_px, side.centre_px)
     x, y, z = (float(value) for value in place)
     return opening._replace(
         bodies=(*opening.bodies, universal_bdp(front, side, scales_at(rig, place)[0])),

@@ -1,6 +1,6 @@
 """Two viewers' reports, matched by when they were taken."""
 
-from typing import Final, NamedTuple, TypeVar
+from typing import Final, NamedTuple, Protocol, TypeVar
 
 from common.bus.messages import Report, ViewerNumber
 
@@ -14,6 +14,18 @@ NEVER_S: Final = float("-inf")
 Item = TypeVar("Item")
 Seen = tuple[Report | None, Report | None]
 """Reports of viewer 1 and viewer 2 in which there is somebody."""
+
+
+class Taken(Protocol):
+    """What was made of a frame."""
+
+    @property
+    def captured_s(self) -> float:
+        """When it was taken."""
+
+    @property
+    def next_s(self) -> float | None:
+        """When its camera takes the next, at the earliest; None: that is not known."""
 
 
 class Pair(NamedTuple):
@@ -68,7 +80,7 @@ def init(period_s: float, viewers: tuple[ViewerNumber, ...] = (1, 2)) -> State:
 def step(state: State, report: Report) -> tuple[State, list[Pair]]:
     """Take a report in; give out what is complete now, in the order of time.
 
-    A report goes out with the other viewer's of the same instant (half a period apart at most),
+    A report goes out with the other viewer's of the same instant (`are_together`),
     or alone as soon as the other viewer has said something later, or that it takes no picture
     before. So what goes out follows from what each viewer said, not from how the two were heard
     interleaved, as long as no queue overflows and nothing was called overdue.
@@ -86,6 +98,14 @@ def step(state: State, report: Report) -> tuple[State, list[Pair]]:
     if report.next_s is not None:
         state = state._replace(next_s=with_item(state.next_s, own, report.next_s))
     return _settled(state)
+
+
+def are_together(earlier: Taken, later: Taken, period_s: float) -> bool:
+    """Whether two views' frames are of one instant: half a period apart at most, and the earlier
+    one's camera, which may be the faster, is not known to take another nearer to the later."""
+    apart_s = later.captured_s - earlier.captured_s
+    is_nearest = earlier.next_s is None or abs(earlier.next_s - later.captured_s) >= apart_s
+    return apart_s <= period_s / 2 and is_nearest
 
 
 def begin(state: State, viewer: ViewerNumber) -> State:
@@ -136,11 +156,12 @@ def _settled(state: State) -> tuple[State, list[Pair]]:
         state = _without_late(state)
         first, second = state.waiting
         if first and second:
-            apart_s = second[0].captured_s - first[0].captured_s
-            if abs(apart_s) <= state.period_s / 2:
+            own = 0 if first[0].captured_s < second[0].captured_s else 1
+            earlier, later = (first[0], second[0]) if own == 0 else (second[0], first[0])
+            if are_together(earlier, later, state.period_s):
                 state, pair = _together(state)
             else:
-                state, pair = _alone(state, 0 if apart_s > 0 else 1)
+                state, pair = _alone(state, own)
         elif (first or second) and not _awaited(state, 1 if first else 0):
             state, pair = _alone(state, 0 if first else 1)
         else:
@@ -176,9 +197,11 @@ def _together(state: State) -> tuple[State, Pair]:
 
 
 def _alone(state: State, own: int) -> tuple[State, Pair]:
-    """The oldest report of one viewer; its partner, should it still come, will be late."""
+    """The oldest report of one viewer; its partner, should it still come, will be late. One that
+    waits is no partner of it."""
     report, *others = state.waiting[own]
-    partner_s = report.captured_s + state.period_s / 2
+    waits = bool(state.waiting[1 - own])
+    partner_s = report.captured_s + (0.0 if waits else state.period_s / 2)
     state = state._replace(
         waiting=with_item(state.waiting, own, tuple(others)),
         passed_s=with_item((partner_s, partner_s), own, report.captured_s),

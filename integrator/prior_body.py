@@ -11,8 +11,8 @@ from common.bus.messages import Pixel, Report
 from common.raster.silhouette_report import unpack
 from common.rig.camera import Camera, Rig, project, px_per_m
 from integrator.pairing import Seen
-from integrator.proposal.silhouette_window import ABOVE_M, UP_AXIS, standing_m
-from integrator.rig.body_position import place_of, roots_of, triangulate
+from integrator.proposal.silhouette_window import ABOVE_M, standing_m
+from integrator.rig.body_position import UP_AXIS, place_of, roots_of, triangulate
 
 STATURES_M: Final = (0.8, 2.3)
 """What a silhouette's height may say of a person; beyond, it is not the whole person."""

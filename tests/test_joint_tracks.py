@@ -59,6 +59,15 @@ def test_moments_count_where_both_views_are_sure_and_are_thinned() -> None:
     assert (times[0], times[-1]) == pytest.approx((10.0, 29.9))
 
 
+def test_moments_between_two_views_that_never_saw_somebody_together_do_not_count() -> None:
+    """View 1 loses the person, and view 2, which gave no picture meanwhile, finds them."""
+    first, second = moving(40), moving(40)
+    later = JointTrack(*(part[[0, *range(30, 40)]] for part in second))
+    later.confidence[0] = 0.0
+    first.confidence[30:] = 0.0
+    assert not len(useful_times(Sighting(first, later, (160, 120))))
+
+
 def test_nobody_has_no_height() -> None:
     assert height_px(moving(5, sure=0.0)) == 0.0
 

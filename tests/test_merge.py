@@ -223,6 +223,16 @@ def test_one_viewer_alone_carries_on(silent: int) -> None:
     assert both.body.views == "both"
 
 
+def test_who_leaves_one_view_for_the_other_is_told_by_what_that_one_knows() -> None:
+    """Its front and back, and where its segments lean, are by its own camera."""
+    stage, (first, second) = Stage(), silhouettes(standing())
+    for masks, number in (((first, None), 1), ((None, second), 2), ((first, None), 1)):
+        stage.see(masks)
+        assert stage.state.found is not None
+        assert stage.state.found.alone is not None
+        assert stage.state.found.alone.number == number
+
+
 @MODES
 @pytest.mark.parametrize("alone", [1, 2])
 def test_a_run_with_one_viewer_tells_a_body(mode: Mode, alone: int) -> None:

@@ -1,16 +1,18 @@
 """Universal BDPs, held against a person whose true ones are known (section 4.2)."""
 
+import math
+
 import msgspec
 import numpy as np
 import pytest
 from posing import box_around
-from staging import PERSON, RIG, opening, report, silhouettes
+from staging import NAVEL_M, PERSON, RIG, opening, report, silhouettes
 
 from common.body.body import Bdp, Elliptic
 from common.body.proportions import stature, thesis_bdp
 from common.bus.messages import Measure, Report
 from common.method import DEFAULT, PAPER
-from common.rig.camera import Rig, paper_rig
+from common.rig.camera import Camera, Rig, as_matrix, as_row, paper_rig
 from integrator import opening_posture as stage
 from integrator.opening_posture import Opening, universal_bdp
 from viewer.paper.measure import measure_front, measure_side
@@ -26,6 +28,21 @@ def measured(rig: Rig = RIG, place_m: tuple[float, float] = (0.0, 0.0)) -> Seen:
         report(1, first, root_px=front.centre_px, measure=front),
         report(2, second, root_px=side.centre_px, measure=side),
     )
+
+
+def looking_from(deg: float, rise_m: float = 0.0) -> Rig:
+    """Cameras 4 m from the person, the second so far round them to camera 1's left, looking down
+    from so much above their navel."""
+    cameras = []
+    for n, way in enumerate((0.0, math.radians(deg))):
+        centre = np.array([-4.0 * math.sin(way), 1.0 + rise_m, 4.0 * math.cos(way)])
+        ahead = np.array([0.0, 1.0, 0.0]) - centre
+        ahead /= np.linalg.norm(ahead)
+        right = np.array([math.cos(way), 0.0, math.sin(way)])
+        R = np.stack([right, np.cross(ahead, right), ahead])
+        K = RIG.cameras[n].K
+        cameras.append(Camera(f"cam{n + 1}", K, as_matrix(R), as_row(-R @ centre)))
+    return msgspec.structs.replace(RIG, cameras=tuple(cameras))
 
 
 def settled(seen: Seen, rig: Rig = RIG, due: int = 1) -> Bdp:
@@ -60,6 +77,27 @@ def test_the_same_person_has_the_same_body_wherever_it_stands(
     assert stature(body) == pytest.approx(stature(PERSON), rel=0.05)
     arm = body.r_upper_arm.height + body.r_lower_arm.height
     assert arm == pytest.approx(0.6 + 0.05, abs=0.08)  # 25 + 35 of 175, and the round end
+
+
+@pytest.mark.parametrize("deg", [65.0, 95.0, 115.0])
+@pytest.mark.parametrize("rise_m", [0.0, 1.0])
+def test_a_rig_of_another_kind_tells_the_same_body_and_where_its_navel_is(
+    deg: float, rise_m: float
+) -> None:
+    """Camera 2 tells no row of the navel: the top of its silhouette is none."""
+    rig = looking_from(deg, rise_m)
+    known, place = stage.step(Opening(), rig, measured(rig), 1, DEFAULT)
+    assert known.bdp is not None
+    assert place is not None
+    assert stature(known.bdp) == pytest.approx(stature(PERSON), rel=0.05)
+    assert place.tolist() == pytest.approx([0.0, NAVEL_M, 0.0], abs=0.12)
+
+
+@pytest.mark.parametrize("deg", [0.5, 15.0, 45.0, 165.0, 180.0])
+def test_where_camera_2_sees_no_flank_nothing_is_measured(deg: float) -> None:
+    rig = looking_from(deg)
+    known, place = stage.step(Opening(), rig, measured(rig), 1, DEFAULT)
+    assert (known.measured, known.under_way, place) == (False, False, None)
 
 
 def test_the_median_of_the_due_frames_is_taken() -> None:

@@ -69,6 +69,19 @@ def test_half_a_period_apart_is_together_and_more_is_not() -> None:
     assert times(heard(init(1.0), [report(1, 0.0), report(2, 0.5001)])[1]) == [(0.0, None)]
 
 
+@pytest.mark.parametrize(("fast", "slow"), [(1, 2), (2, 1)])
+def test_a_camera_twice_as_fast_is_paired_at_the_very_moments_of_the_slower(
+    fast: ViewerNumber, slow: ViewerNumber
+) -> None:
+    """Both meet every second: half a second before, it has a frame that is nearly one."""
+    talk = [report(fast, n / 2, next_s=(n + 1) / 2) for n in range(6)]
+    talk += [report(slow, float(n), next_s=n + 1.0) for n in range(3)]
+    state, pairs = heard(init(1.0), sorted(talk, key=lambda one: (one.captured_s, one.viewer)))
+    state, rest = flush(state)
+    whole = [pair for pair in times([*pairs, *rest]) if None not in pair]
+    assert (whole, state.late) == ([(0.0, 0.0), (1.0, 1.0), (2.0, 2.0)], 0)
+
+
 def flush(state: State) -> tuple[State, list[Pair]]:
     """Both viewers have said their last."""
     state, first = end(state, 1)

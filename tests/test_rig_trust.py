@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from test_person_calibration import PAPER, filmed_by_the_papers_rig
 
+from common.body.body import JOINT_NAMES
 from common.rig.camera import Rig, as_matrix, as_row, centre
 from integrator.rig_gate.known_rig import guess_of
 from integrator.rig_gate.rig_fault import advice_on, exchanged_rig
@@ -68,6 +69,19 @@ def test_a_rig_that_is_wrong_is_named_and_says_what_to_do(
 def test_nobody_says_nothing_of_a_rig() -> None:
     blind = SHOWN.second._replace(confidence=np.zeros_like(SHOWN.second.confidence))
     assert trust_of(PAPER, SHOWN._replace(second=blind), PERIOD_S) is None
+
+
+@pytest.mark.parametrize("unseen", ["ankle", "knee"])
+def test_who_is_never_seen_whole_is_judged_by_plain_numbers_as_summaries_take_them(
+    unseen: str,
+) -> None:
+    below = [n for n, name in enumerate(JOINT_NAMES) if name.endswith((unseen, "ankle"))]
+    confidence = SHOWN.second.confidence.copy()
+    confidence[:, below] = 0.0
+    cut = SHOWN._replace(second=SHOWN.second._replace(confidence=confidence))
+    trust = trust_of(PAPER, cut, PERIOD_S)
+    assert trust is not None
+    assert msgspec.to_builtins(trust)["stature_m"] == pytest.approx(1.75, abs=0.25)
 
 
 def test_a_given_rig_is_the_vector_that_makes_it_again() -> None:

@@ -11,7 +11,7 @@ from common.body.stick_body import ADULT, ANGLE, THESIS, Stickman, joints_px, st
 from common.bus.messages import Box, Fit, Report, ViewerNumber
 from common.method import DEFAULT, METHODS
 from common.raster.silhouette_report import pack
-from common.rig.camera import paper_rig, project
+from common.rig.camera import as_matrix, paper_rig, project
 from integrator.single import (
     bent_limbs,
     depth_signs,
@@ -136,6 +136,21 @@ def test_what_a_pixel_does_to_a_limbs_angle_is_told() -> None:
     length_px = THESIS_RATIOS["upper_arm"] / THESIS_RATIOS["stature"] * TALL_PX
     error_deg = np.degrees(np.arccos(1.0 - 1.0 / length_px))
     assert own.depth_error_deg[LIMBS.index("l_upper_arm")] == pytest.approx(error_deg, rel=0.02)
+
+
+@pytest.mark.parametrize("away", [0.02, 0.98])
+def test_whom_one_camera_had_before_it_the_opposite_one_has_from_behind(away: float) -> None:
+    """They leave view 1 and are in view 2: front and back are the other way round there."""
+    opposite = msgspec.structs.replace(CAMERA, R=as_matrix(np.array(CAMERA.R) * [[-1], [1], [-1]]))
+    rig = msgspec.structs.replace(RIG, cameras=(CAMERA, opposite))
+    pose = rest_pose()
+    pose[POSE_INDEX["torso_y"]] = 180.0 if away > 0.5 else 0.0
+    had = joints(body_vector(thesis_bdp(1.75)), pose)
+    report = report_of(ADULT)
+    one = single_view.begun(sight_of(report)._replace(rig=rig), None)._replace(front=Front(away))
+    other = single_view.begun(sight_of(report, n=2)._replace(rig=rig), had, one)
+    assert other.front is not None
+    assert other.front.away == pytest.approx(1.0 - away)
 
 
 def test_a_view_left_alone_knows_which_way_both_had_the_body() -> None:

@@ -33,7 +33,6 @@ BESIDE: Final = 11
 scale; how long it has been since the look before."""
 LONGEST_S, USUAL_S = 0.4, 1 / 15
 """A longer gap says no more; how time is measured."""
-UP_AXIS: Final = np.array([0.0, 1.0, 0.0])
 ABOVE_M: Final = 0.1
 """Which way is up in a picture is seen over this length."""
 STEEPEST: Final = 0.75

@@ -102,7 +102,7 @@ def _stature_m(one: Explained) -> float:
     total = 0.0
     for length in np.flatnonzero(prior.UPRIGHT):
         seen = one.lengths_used & (length == prior.LENGTH_OF)
-        share = prior.SHARES[length] / prior.CROWN_SHARE
+        share = float(prior.SHARES[length]) / prior.CROWN_SHARE
         total += float(np.median(long_m[seen])) if seen.any() else 1.75 * share
     return max(total / prior.CROWN_SHARE, 0.05)
 

@@ -91,11 +91,10 @@ def is_upright(seen: Landmarks) -> bool:
 def useful_times(sighting: Sighting) -> Vector:
     """(n,) Moments of the first view at which both are sure of somebody, evenly thinned."""
     sure = sighting.first.confidence.mean(axis=1) >= LEAST_SURE
-    other = sighting.second
     at = sighting.first.times_s
-    if not len(at) or not len(other.times_s):
+    if not len(at) or len(sighting.second.times_s) < 2:
         return np.empty(0)
-    also = np.interp(at, other.times_s, other.confidence.mean(axis=1)) >= LEAST_SURE
+    also = at_times(sighting.second, at).confidence.mean(axis=1) >= LEAST_SURE
     times = at[sure & also]
     lasts_s = float(np.ptp(times)) if len(times) else 0.0
     most = min(max(MOST_FRAMES, int(ENOUGH_HZ * lasts_s)), LONGEST, len(times))

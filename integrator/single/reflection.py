@@ -97,6 +97,18 @@ def front_of(
     return Front(away), not aside and (away > 0.5) != (abs(yaw) > 90.0)
 
 
+def as_known(before: Front, yaw: float) -> Front:
+    """What is remembered of front and back from where another camera stands: as surely as before,
+    and less where the person is seen from the side.
+
+    Args:
+        before: By the view that was alone until now.
+        yaw: By this camera, of the body that it had, degrees.
+    """
+    sure = abs(before.away - 0.5)
+    return Front(0.5 - sure * math.cos(math.radians(yaw)))
+
+
 def as_shown(camera: Camera, joints_m: Joints, shown: tuple[float, float] | None) -> Joints:
     """The body, as far before the pelvis as it was behind it where it faces the left of the picture
     for the right, or the right for the left: a profile has nearly the outline of the other.

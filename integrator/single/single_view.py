@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.messages import Lifting
+from common.bus.messages import Lifting, ViewerNumber
 from common.rig.camera import arrays_of, project
 from integrator.landmarks import landmark_fusion
 from integrator.proposal.pose_proposal import Memory
@@ -25,6 +25,8 @@ TOWARDS: Final = (1.0, -1.0, -1.0)
 class Alone(NamedTuple):
     """What one view alone decided, and remembers for its next instant."""
 
+    number: ViewerNumber
+    """Which view that is."""
     score: float
     """S of the body in its picture."""
     lifting: Lifting
@@ -45,18 +47,24 @@ class Found(NamedTuple):
     alone: Alone
 
 
-def begun(sight: Sight, joints_m: NDArray[np.float64] | None) -> Alone:
-    """What one view knows that was not alone before: which way both views had the body (T22).
+def begun(sight: Sight, joints_m: NDArray[np.float64] | None, other: Alone | None = None) -> Alone:
+    """What one view knows that was not alone before: which way both views, or the other one, had
+    the body (T22).
 
     Args:
         sight: Of the first instant alone.
         joints_m: (15, 3) of the instant before; None: nothing is known.
+        other: What the other view knew, where that was alone at the instant before.
     """
     nothing, signs = Lifting("", 1.0, ()), depth_signs.init()
     if joints_m is None:
-        return Alone(0.0, nothing, Front(), signs, None, stick=False)
-    signs = _witnessed(sight, signs, joints_m)
-    return Alone(0.0, nothing, None, signs, None, stick=False)
+        return Alone(sight.number, 0.0, nothing, Front(), signs, None, stick=False)
+    signs, front, landmarks = _witnessed(sight, signs, joints_m), None, None
+    if other is not None:
+        landmarks = other.landmarks
+        yaw = reflection.yaw_deg(sight.camera, joints_m)
+        front = None if other.front is None else reflection.as_known(other.front, yaw)
+    return Alone(sight.number, 0.0, nothing, front, signs, landmarks, stick=False)
 
 
 def step(memory: Memory | None, alone: Alone, sight: Sight) -> Found:

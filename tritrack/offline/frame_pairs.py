@@ -10,6 +10,7 @@ from common.config.part_settings import SilhouetteSettings
 from common.video.clip_facts import Clip, View
 from common.video.decoding import ALL, Decoded, Size, Source, Wanted
 from common.video.frame_cache import Reader
+from integrator.pairing import are_together
 from viewer.capture import CapturedFrame, recorded
 from viewer.landmarks.landmark_sources import Sources
 from viewer.room.background_source import Opening, opening_of_view
@@ -84,12 +85,12 @@ def instants(
         for n, view in ((view.number, view) for view in clip.views)
     }
     waiting = {number: next(stream, None) for number, stream in streams.items()}
-    tolerance_s = 0.5 * clip.every / clip.views[0].fps
-    while any(waiting.values()):
-        first_s = min(frame.captured_s for frame in waiting.values() if frame is not None)
+    period_s = clip.every / clip.views[0].fps
+    while due := [frame for frame in waiting.values() if frame is not None]:
+        first = min(due, key=lambda frame: frame.captured_s)
         now: dict[ViewerNumber, CapturedFrame] = {}
         for number, frame in waiting.items():
-            if frame is not None and frame.captured_s - first_s <= tolerance_s:
+            if frame is first or (frame is not None and are_together(first, frame, period_s)):
                 now[number] = frame
                 waiting[number] = next(streams[number], None)
         yield now
