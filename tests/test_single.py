@@ -208,3 +208,19 @@ def test_where_nobody_is_seen_that_is_said(tmp_path: Path) -> None:
     assert "nobody was seen" in facts["warnings"][0]
     assert (facts["frames"], facts["frames_with_pose"]) == (3, 0)
     assert (written / "overlay.mp4").is_file()
+
+
+def test_the_effort_is_told_as_the_camera_sees_it(video: Path, clip: Path, tmp_path: Path) -> None:
+    """What leans towards a camera does so whichever way the world's axes lie."""
+    rig = json.loads((clip.parent / "calibration.json").read_text())
+    efforts = []
+    for way, turn in (("as it was", np.eye(3)), ("turned", [[0, 0, 1], [0, 1, 0], [-1, 0, 0]])):
+        room = tmp_path / way
+        room.mkdir()
+        (room / "cam1.avi").write_bytes(video.read_bytes())
+        camera = rig["cameras"][0] | {"R": (np.array(rig["cameras"][0]["R"]) @ turn).tolist()}
+        (room / "calibration.json").write_text(json.dumps(rig | {"cameras": [camera]}))
+        facts = single_all([room], tmp_path / "runs", Given(), SMALL, QUIET)["clips"][way]
+        assert facts["scale_source"] == "calibrated"
+        efforts.append(facts["effort"])
+    assert efforts[0] == efforts[1]
