@@ -210,6 +210,18 @@ def test_where_nobody_is_seen_that_is_said(tmp_path: Path) -> None:
     assert (written / "overlay.mp4").is_file()
 
 
+def test_no_animation_outlives_the_run_it_is_of(tmp_path: Path) -> None:
+    """A film that was made again shows nobody: there is no body of the one before."""
+    masks = np.zeros((6, 120, 160), np.bool_)
+    masks[:, 20:110, 70:90] = True
+    for shown in (masks, np.zeros_like(masks)):
+        np.savez(tmp_path / "film.npz", masks=shown)
+        single_all([tmp_path / "film.npz"], tmp_path / "runs", Given(), SMALL, QUIET)
+    assert {path.name for path in (tmp_path / "runs" / "film").iterdir()} == {
+        *("poses.npz", "summary.json", "overlay.mp4", "angles.png"),
+    }
+
+
 def test_the_effort_is_told_as_the_camera_sees_it(video: Path, clip: Path, tmp_path: Path) -> None:
     """What leans towards a camera does so whichever way the world's axes lie."""
     rig = json.loads((clip.parent / "calibration.json").read_text())
