@@ -65,8 +65,14 @@ def test_a_room_that_is_plain_itself_is_no_fault(level: int) -> None:
     assert faults(knows(plain), [noisy(plain), noisy(somebody(plain))]) == ["", ""]
 
 
+def test_who_stands_before_a_wall_that_goes_dark_is_not_looked_for() -> None:
+    wall = np.full((120, 160, 3), 128, np.uint8)
+    dark = np.full((120, 160, 3), 3, np.uint8)
+    assert faults(knows(wall), [noisy(wall), noisy(dark)]) == ["", "black"]
+
+
 @pytest.mark.parametrize("gain", [0.5, 0.8, 1.3], ids=["dusk", "cloud", "sun"])
-def test_other_light_is_no_fault(gain: float) -> None:
-    view = room(40, 200)
+@pytest.mark.parametrize("view", [room(40, 200), room(150, 160)], ids=["a room", "a plain wall"])
+def test_other_light_is_no_fault(view: Picture, gain: float) -> None:
     lit = np.clip(gain * view, 0, 255).astype(np.uint8)
     assert faults(knows(view), [noisy(lit), noisy(somebody(lit))]) == ["", ""]
