@@ -29,10 +29,10 @@ def somebody(picture: Picture) -> Picture:
     return shown
 
 
-def faults(state: State, pictures: list[Picture]) -> list[str]:
+def faults(state: State, pictures: list[Picture], rate_hz: float = 15.0) -> list[str]:
     found: list[str] = []
-    for picture in pictures:
-        state, fault = step(state, picture)
+    for n, picture in enumerate(pictures):
+        state, fault = step(state, picture, n / rate_hz)
         found.append(fault)
     return found
 
@@ -46,6 +46,15 @@ def test_a_picture_that_is_repeated_bit_for_bit_is_frozen_until_it_changes() -> 
     still = noisy(view)
     found = faults(knows(view), [noisy(view), *[still] * 6, noisy(view), still])
     assert found == [""] * (2 + FROZEN_AFTER) + ["frozen"] * 3 + ["", ""]
+
+
+@pytest.mark.parametrize(("camera_hz", "file_hz"), [(15, 60), (7.5, 30), (10, 50), (24, 120)])
+def test_a_slow_cameras_pictures_in_a_fast_file_are_not_frozen(
+    camera_hz: float, file_hz: float
+) -> None:
+    view, often = room(40, 200), int(file_hz / camera_hz)
+    held = [picture for _ in range(6) for picture in [noisy(view)] * often]
+    assert faults(knows(view), held, file_hz) == [""] * len(held)
 
 
 def test_a_person_who_stands_still_is_no_frozen_picture() -> None:

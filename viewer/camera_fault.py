@@ -13,6 +13,8 @@ from viewer.background.background import DARK, Background
 FROZEN_AFTER: Final = 2
 """Repeats that may be no fault: files made for a faster rate hold each picture two or three times,
 and no filmed clip that was looked at held one more than twice."""
+FROZEN_S: Final = FROZEN_AFTER / 15
+"""How long that takes at the paper's rate (P1): faster files hold pictures more often."""
 STRIDE: Final = 4
 """Every so many rows and columns are looked at for brightness."""
 PLAIN: Final = 16.0
@@ -25,12 +27,13 @@ WHITE: Final = 195.0
 
 
 class State(NamedTuple):
-    """The picture before, and for how many frames it has been the same."""
+    """The picture before, for how many frames it has been the same, and since when."""
 
     background: NDArray[np.float32]
     """Grey levels of the background, every STRIDE pixels."""
     last: Image | None = None
     repeats: int = 0
+    since_s: float = 0.0
 
 
 def init(background: Background) -> State:
@@ -38,15 +41,17 @@ def init(background: Background) -> State:
     return State(_grey(background.centre))
 
 
-def step(state: State, picture: Image) -> tuple[State, CameraFault]:
-    """One picture (H, W, 3); the fault that makes it useless, or "".
+def step(state: State, picture: Image, captured_s: float) -> tuple[State, CameraFault]:
+    """One picture (H, W, 3), and when it was taken; the fault that makes it useless, or "".
 
     A sensor's noise makes every picture of its own, so one that is the same, bit for bit, for
-    more than FROZEN_AFTER frames is the camera's memory and not the scene.
+    more than FROZEN_AFTER frames and FROZEN_S is the camera's memory and not the scene.
     """
-    same = state.last is not None and _same(picture, state.last)
-    state = State(state.background, picture, state.repeats + 1 if same else 0)
-    if state.repeats > FROZEN_AFTER:
+    if state.last is not None and _same(picture, state.last):
+        state = state._replace(repeats=state.repeats + 1)
+    else:
+        state = State(state.background, picture, 0, captured_s)
+    if state.repeats > FROZEN_AFTER and captured_s - state.since_s > FROZEN_S:
         return state, "frozen"
     return state, _blank(state.background, picture)
 
