@@ -1,9 +1,10 @@
 """A film on disk: pictures written one after the other, whole or not at all."""
 
+import math
 from collections.abc import Iterable
 from itertools import chain
 from pathlib import Path
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
@@ -14,6 +15,9 @@ from common.atomic_file import replacing
 
 Picture = NDArray[np.uint8]
 """(H, W, 3), blue, green, red; H and W are even."""
+
+FINEST_HZ: Final = 65_535
+"""MPEG-4 counts a second in no more ticks; OpenCV takes as many as the rate has digits."""
 
 
 class FilmError(RuntimeError):
@@ -65,7 +69,7 @@ def _write(path: Path, pictures: Iterable[Picture], codec: Codec, fps: float) ->
         own = (picture.shape[1], picture.shape[0])
         if writer is None:
             code, size = cv2.VideoWriter.fourcc(*codec.code), own
-            writer = cv2.VideoWriter(str(path), codec.by, code, fps, size)
+            writer = cv2.VideoWriter(str(path), codec.by, code, writable_hz(fps), size)
         if own != size:
             raise FilmError(f"a picture of {own} does not follow those of {size}")
         writer.write(picture)
@@ -76,6 +80,11 @@ def _write(path: Path, pictures: Iterable[Picture], codec: Codec, fps: float) ->
     kept = pictures_in(path, codec)
     if kept != due:
         raise FilmError(f"only {kept} of {due} pictures could be written")
+
+
+def writable_hz(fps: float) -> float:
+    """A rate with as many digits as every codec takes: off by less than a frame in 10,000."""
+    return round(fps, max(0, int(math.log10(FINEST_HZ / fps))))
 
 
 def _named(path: Path, codec: Codec) -> Path:

@@ -4,11 +4,12 @@ from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
 from common.nearest_rows import nearest
 from common.notes.notes import Depth, Held, Notes, held
+from common.rig.camera import PAPER_ROTATIONS
 
 CONFIDENT: Final = 0.7
 """A decision with less confidence than this is worth a look."""
@@ -17,6 +18,9 @@ SEEN: Final = 0.3
 thesis's "highly occluded"; a direction that is not sure costs it a half at most."""
 FLAT_DEG: Final = 15.0
 """A segment that leans less out of the picture's plane has no direction that anybody would see."""
+
+TOWARDS: Final = (1.0, -1.0, -1.0)
+"""From a camera's axes to those of a Take."""
 
 _AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
 _FAR: Final = {int(far): int(near) for near, far in LIMB_ENDS}
@@ -63,7 +67,9 @@ class Doubt(NamedTuple):
     confidence: float
 
 
-def take_of(poses: Mapping[str, Any], px_scale: float = 1.0) -> Take:
+def take_of(
+    poses: Mapping[str, Any], px_scale: float = 1.0, turn: ArrayLike = PAPER_ROTATIONS[0]
+) -> Take:
     """A run as its `poses.npz` has it.
 
     Args:
@@ -72,13 +78,14 @@ def take_of(poses: Mapping[str, Any], px_scale: float = 1.0) -> Take:
             run without them was sure. A frame in which the body was lost has that of the nearest
             frame with one, without confidence: something to put right.
         px_scale: Pixels of the video in one of the working picture.
+        turn: World to camera, (3, 3).
     """
     n = len(poses["frame"])
     rows = _nearest_posed(poses)
     return Take(
         frame=poses["frame"],
         joints_px=px_scale * poses["joints_px"][rows, 0],
-        joints_m=poses["joints_m"][rows],
+        joints_m=poses["joints_m"][rows] @ np.transpose(turn) * TOWARDS,
         confidence=poses["confidence"],
         orientation=np.array(poses.get("orientation", [""] * n), np.str_),
         orientation_confidence=np.array(poses.get("orientation_confidence", np.ones(n))),

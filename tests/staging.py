@@ -75,7 +75,7 @@ def exact(monkeypatch: pytest.MonkeyPatch) -> None:
         return state, Seen(mask, box, int(mask.sum()), 1, cut)
 
     monkeypatch.setattr("viewer.camera_fault.init", lambda _: None)
-    monkeypatch.setattr("viewer.camera_fault.step", lambda state, _: (state, ""))
+    monkeypatch.setattr("viewer.camera_fault.step", lambda state, *_: (state, ""))
     monkeypatch.setattr("viewer.track._watched", lambda *_: None)
     monkeypatch.setattr("viewer.silhouette.silhouette.init", lambda *_: None)
     monkeypatch.setattr("viewer.silhouette.silhouette.step", step)

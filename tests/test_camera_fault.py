@@ -29,10 +29,10 @@ def somebody(picture: Picture) -> Picture:
     return shown
 
 
-def faults(state: State, pictures: list[Picture]) -> list[str]:
+def faults(state: State, pictures: list[Picture], rate_hz: float = 15.0) -> list[str]:
     found: list[str] = []
-    for picture in pictures:
-        state, fault = step(state, picture)
+    for n, picture in enumerate(pictures):
+        state, fault = step(state, picture, n / rate_hz)
         found.append(fault)
     return found
 
@@ -46,6 +46,15 @@ def test_a_picture_that_is_repeated_bit_for_bit_is_frozen_until_it_changes() -> 
     still = noisy(view)
     found = faults(knows(view), [noisy(view), *[still] * 6, noisy(view), still])
     assert found == [""] * (2 + FROZEN_AFTER) + ["frozen"] * 3 + ["", ""]
+
+
+@pytest.mark.parametrize(("camera_hz", "file_hz"), [(15, 60), (7.5, 30), (10, 50), (24, 120)])
+def test_a_slow_cameras_pictures_in_a_fast_file_are_not_frozen(
+    camera_hz: float, file_hz: float
+) -> None:
+    view, often = room(40, 200), int(file_hz / camera_hz)
+    held = [picture for _ in range(6) for picture in [noisy(view)] * often]
+    assert faults(knows(view), held, file_hz) == [""] * len(held)
 
 
 def test_a_person_who_stands_still_is_no_frozen_picture() -> None:
@@ -65,8 +74,14 @@ def test_a_room_that_is_plain_itself_is_no_fault(level: int) -> None:
     assert faults(knows(plain), [noisy(plain), noisy(somebody(plain))]) == ["", ""]
 
 
+def test_who_stands_before_a_wall_that_goes_dark_is_not_looked_for() -> None:
+    wall = np.full((120, 160, 3), 128, np.uint8)
+    dark = np.full((120, 160, 3), 3, np.uint8)
+    assert faults(knows(wall), [noisy(wall), noisy(dark)]) == ["", "black"]
+
+
 @pytest.mark.parametrize("gain", [0.5, 0.8, 1.3], ids=["dusk", "cloud", "sun"])
-def test_other_light_is_no_fault(gain: float) -> None:
-    view = room(40, 200)
+@pytest.mark.parametrize("view", [room(40, 200), room(150, 160)], ids=["a room", "a plain wall"])
+def test_other_light_is_no_fault(view: Picture, gain: float) -> None:
     lit = np.clip(gain * view, 0, 255).astype(np.uint8)
     assert faults(knows(view), [noisy(lit), noisy(somebody(lit))]) == ["", ""]

@@ -34,6 +34,14 @@ def test_every_picture_can_be_read_again(
     assert [round(float(picture.mean()) / 20) for picture in read(film)] == [0, 1, 2, 3, 4, 5]
 
 
+@pytest.mark.parametrize("gap_s", [0.008, 0.011, 0.013, 0.014, 1001 / 60_000, 0.04, 1.5, 0.0003])
+def test_a_film_of_any_rate_can_be_written(tmp_path: Path, gap_s: float) -> None:
+    """MPEG-4 refuses 71.429 frames a second, which Matroska's 14 ms from frame to frame are."""
+    film = write_film(tmp_path / "overlay", PICTURES, 1 / gap_s)
+    with Decoder() as decoder:
+        assert decoder.probe(str(film.path)).fps == pytest.approx(1 / gap_s, rel=1e-3)
+
+
 def test_a_film_of_another_codec_does_not_outlive_its_successor(tmp_path: Path) -> None:
     """Who opens the run's folder would see the film of an earlier run."""
     for codec in CODECS:

@@ -208,3 +208,31 @@ def test_where_nobody_is_seen_that_is_said(tmp_path: Path) -> None:
     assert "nobody was seen" in facts["warnings"][0]
     assert (facts["frames"], facts["frames_with_pose"]) == (3, 0)
     assert (written / "overlay.mp4").is_file()
+
+
+def test_no_animation_outlives_the_run_it_is_of(tmp_path: Path) -> None:
+    """A film that was made again shows nobody: there is no body of the one before."""
+    masks = np.zeros((6, 120, 160), np.bool_)
+    masks[:, 20:110, 70:90] = True
+    for shown in (masks, np.zeros_like(masks)):
+        np.savez(tmp_path / "film.npz", masks=shown)
+        single_all([tmp_path / "film.npz"], tmp_path / "runs", Given(), SMALL, QUIET)
+    assert {path.name for path in (tmp_path / "runs" / "film").iterdir()} == {
+        *("poses.npz", "summary.json", "overlay.mp4", "angles.png"),
+    }
+
+
+def test_the_effort_is_told_as_the_camera_sees_it(video: Path, clip: Path, tmp_path: Path) -> None:
+    """What leans towards a camera does so whichever way the world's axes lie."""
+    rig = json.loads((clip.parent / "calibration.json").read_text())
+    efforts = []
+    for way, turn in (("as it was", np.eye(3)), ("turned", [[0, 0, 1], [0, 1, 0], [-1, 0, 0]])):
+        room = tmp_path / way
+        room.mkdir()
+        (room / "cam1.avi").write_bytes(video.read_bytes())
+        camera = rig["cameras"][0] | {"R": (np.array(rig["cameras"][0]["R"]) @ turn).tolist()}
+        (room / "calibration.json").write_text(json.dumps(rig | {"cameras": [camera]}))
+        facts = single_all([room], tmp_path / "runs", Given(), SMALL, QUIET)["clips"][way]
+        assert facts["scale_source"] == "calibrated"
+        efforts.append(facts["effort"])
+    assert efforts[0] == efforts[1]

@@ -8,31 +8,32 @@ from numpy.typing import NDArray
 from common.bus.messages import CameraFault
 from common.compiled import compiled
 from common.video.decoding import Image
-from viewer.background.background import Background
+from viewer.background.background import DARK, Background
 
 FROZEN_AFTER: Final = 2
 """Repeats that may be no fault: files made for a faster rate hold each picture two or three times,
 and no filmed clip that was looked at held one more than twice."""
+FROZEN_S: Final = FROZEN_AFTER / 15
+"""How long that takes at the paper's rate (P1): faster files hold pictures more often."""
 STRIDE: Final = 4
 """Every so many rows and columns are looked at for brightness."""
 PLAIN: Final = 16.0
 """Grey levels between the darkest and the brightest tenth of what shows no background at all."""
 VARIED: Final = 2 * PLAIN
 """The same in a background that is not plain itself."""
-UNLIKE: Final = 25.0
-"""Grey levels by which such a picture differs from a background that is plain, too."""
-DARK: Final = 60.0
-BRIGHT: Final = 195.0
+BLACK: Final = 60.0
+WHITE: Final = 195.0
 """Grey levels: below, a plain picture is called black; above, saturated."""
 
 
 class State(NamedTuple):
-    """The picture before, and for how many frames it has been the same."""
+    """The picture before, for how many frames it has been the same, and since when."""
 
     background: NDArray[np.float32]
     """Grey levels of the background, every STRIDE pixels."""
     last: Image | None = None
     repeats: int = 0
+    since_s: float = 0.0
 
 
 def init(background: Background) -> State:
@@ -40,29 +41,33 @@ def init(background: Background) -> State:
     return State(_grey(background.centre))
 
 
-def step(state: State, picture: Image) -> tuple[State, CameraFault]:
-    """One picture (H, W, 3); the fault that makes it useless, or "".
+def step(state: State, picture: Image, captured_s: float) -> tuple[State, CameraFault]:
+    """One picture (H, W, 3), and when it was taken; the fault that makes it useless, or "".
 
     A sensor's noise makes every picture of its own, so one that is the same, bit for bit, for
-    more than FROZEN_AFTER frames is the camera's memory and not the scene.
+    more than FROZEN_AFTER frames and FROZEN_S is the camera's memory and not the scene.
     """
-    same = state.last is not None and _same(picture, state.last)
-    state = State(state.background, picture, state.repeats + 1 if same else 0)
-    if state.repeats > FROZEN_AFTER:
+    if state.last is not None and _same(picture, state.last):
+        state = state._replace(repeats=state.repeats + 1)
+    else:
+        state = State(state.background, picture, 0, captured_s)
+    if state.repeats > FROZEN_AFTER and captured_s - state.since_s > FROZEN_S:
         return state, "frozen"
     return state, _blank(state.background, picture)
 
 
 def _blank(background: NDArray[np.float32], picture: Image) -> CameraFault:
+    """What a plain picture is; before a plain wall it is that wall in another light, while there
+    is light enough to see somebody by."""
     if _contrast_of(picture) > PLAIN:
         return ""
     grey = _grey(picture)
-    if _contrast(background) < VARIED and np.abs(grey - background).mean() < UNLIKE:
-        return ""
     middle = float(np.median(grey))
-    if middle < DARK:
+    if _contrast(background) < VARIED and middle >= DARK * np.median(background):
+        return ""
+    if middle < BLACK:
         return "black"
-    return "saturated" if middle > BRIGHT else "covered"
+    return "saturated" if middle > WHITE else "covered"
 
 
 def _contrast(grey: NDArray[np.float32]) -> float:

@@ -146,7 +146,7 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
         frame: The picture.
         guide: What the integrator made of the frame before; None at the start.
     """
-    watched, fault = camera_fault.step(state.fault, frame.picture)
+    watched, fault = camera_fault.step(state.fault, frame.picture, frame.captured_s)
     state = state._replace(fault=watched)
     if fault:
         nobody = Seen(np.zeros(frame.picture.shape[:2], np.bool_), None, 0, 0, cut=False)

@@ -20,12 +20,19 @@ from tritrack.store.runs import unwritable
 from tritrack.terminal import json_text
 from viewer.background.background import Background
 
+NAMES: Final = (
+    *("angles.png", "background.png"),
+    *("body.bvh", "keyframes.bvh", "keyframes.json"),
+)
+"""What is written where there is something to write."""
 FLAG: Final = (0, 0, 255)
 """Pixels that were never uncovered are hatched in this colour."""
 
 
 def write_files(folder: Path, arrays: dict[str, Any], background: Background | None) -> list[str]:
     """Write the angles' curves where matplotlib is, the background if any, and the animation.
+
+    None of an earlier run stays: who opens the folder would take it for this one's.
 
     Args:
         folder: Of the run.
@@ -39,6 +46,8 @@ def write_files(folder: Path, arrays: dict[str, Any], background: Background | N
         RunError: When a file cannot be written.
     """
     try:
+        for name in NAMES:
+            (folder / name).unlink(missing_ok=True)
         if find_spec("matplotlib") is not None:
             _write(folder / "angles.png", angle_plot(arrays))
         if background is not None:

@@ -20,6 +20,7 @@ from common.config.picture_size import working_size
 from common.config.settings import Settings
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path, save_notes
+from common.rig.camera import PAPER_ROTATIONS
 from common.video.clip_facts import Clip
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
@@ -153,13 +154,11 @@ def _clip_of(run: PastRun, settings: Settings) -> Clip:
 def _take_of(run: PastRun, clip: Clip) -> Take:
     """The run in the video's own pixels, as seen from camera 1."""
     view = clip.views[0]
-    take = take_of(run.poses, view.source_size[0] / view.size[0])
+    turn = PAPER_ROTATIONS[0] if clip.rig is None else clip.rig.cameras[0].R
+    take = take_of(run.poses, view.source_size[0] / view.size[0], turn)
     if not len(take.frame):
         raise RetouchError(f"{run.folder} has no frame: track the clip again")
-    if clip.rig is None:
-        return take
-    turn = np.array(clip.rig.cameras[0].R)
-    return take._replace(joints_m=take.joints_m @ turn.T * (1.0, -1.0, -1.0))
+    return take
 
 
 def _pictures(clip: Clip, take: Take, console: Console) -> Sequence[bytes]:

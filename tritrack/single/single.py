@@ -202,7 +202,7 @@ def follow(
             **found.facts,
             "frames_with_pose": sum(bool(body.joints_m) for body in found.bodies),
             "believed": believed(found.bodies),
-            "effort": facts_of(ledger(take_of(arrays), job.notes)),
+            "effort": facts_of(ledger(take_of(arrays, turn=found.turn), job.notes)),
             "notes": msgspec.to_builtins(job.notes),
             **_run_of(job).facts,
             **run.facts,
