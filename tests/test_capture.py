@@ -6,6 +6,7 @@ import signal
 import struct
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -396,6 +397,17 @@ def test_a_live_film_that_breaks_the_decoder_tells_the_reader(tmp_path: Path) ->
         pytest.raises(Undecodable),
     ):
         nothing.take(5.0)
+
+
+def test_a_film_that_breaks_while_its_reader_works_is_not_over(tmp_path: Path) -> None:
+    """Who looks at a frame when the decoder dies hears of it as who waits for the next does."""
+    view = view_of(uncompressed(tmp_path / "raw.avi"))
+    before = set(threading.enumerate())
+    with Live(view, 1, RoomClock(time.monotonic())) as live:
+        for thread in set(threading.enumerate()) - before:
+            thread.join()
+        with pytest.raises(DecoderDied):
+            all_of(live)
 
 
 def test_a_live_view_can_be_left_at_any_moment(tmp_path: Path) -> None:
