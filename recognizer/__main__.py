@@ -181,7 +181,7 @@ def main(settings: Settings, period_s: float, context: ProcessContext = ProcessC
     warm_up(model, settings.recognizer.window_frames)
     with (
         process("recognizer", context) as stop,
-        open_client(settings.bus, settings.room, READY_S, "recognizer") as bus,
+        open_client(settings.bus, settings.room, READY_S, "recognizer", stop) as bus,
     ):
         bus.announce("recognizer")
         settle()

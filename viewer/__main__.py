@@ -169,7 +169,7 @@ def main(
     name = f"viewer {viewer}"
     with (
         process(name, context) as stop,
-        open_client(settings.bus, settings.room, READY_S, VIEWERS[viewer]) as bus,
+        open_client(settings.bus, settings.room, READY_S, VIEWERS[viewer], stop) as bus,
     ):
         heart = Heart(bus, name, Pace(1.0))
         heart.beat("starting")
