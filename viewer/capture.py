@@ -11,7 +11,7 @@ from common.bus.mailbox import Mailbox
 from common.bus.messages import Landmarks
 from common.bus.rate import Clock, wait_until
 from common.video.clip_facts import View
-from common.video.decoding import Decoded, Decoder, Image, Wanted
+from common.video.decoding import CameraLost, Decoded, Decoder, Image, Wanted
 from common.video.frame_cache import Reader
 from viewer.landmarks.outside_source import OutsideSource
 
@@ -149,6 +149,7 @@ class Live:
         Raises:
             Undecodable: When the source has no picture.
             DecoderDied: When the decoder broke, after the last good frame.
+            CameraLost: When a camera gives no more.
         """
         frame = self._waiting.take(timeout_s)
         if frame is None and self._waiting.over and self._failure is not None:
@@ -170,6 +171,8 @@ class Live:
                     self._missed += 1
                 else:
                     self._waiting.put(self._with_landmarks(frame, decoded))
+            if isinstance(view.source, int):
+                raise CameraLost(view.source, self._decoder.came)
         except Exception as error:  # Whatever ended this thread is the reader's to hear,
             self._failure = None if self._stop.is_set() else error  # unless they have left.
         finally:
