@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from common.bus.messages import CameraFault
 from common.compiled import compiled
 from common.video.decoding import Image
-from viewer.background.background import Background
+from viewer.background.background import DARK, Background
 
 FROZEN_AFTER: Final = 2
 """Repeats that may be no fault: files made for a faster rate hold each picture two or three times,
@@ -19,10 +19,8 @@ PLAIN: Final = 16.0
 """Grey levels between the darkest and the brightest tenth of what shows no background at all."""
 VARIED: Final = 2 * PLAIN
 """The same in a background that is not plain itself."""
-UNLIKE: Final = 25.0
-"""Grey levels by which such a picture differs from a background that is plain, too."""
-DARK: Final = 60.0
-BRIGHT: Final = 195.0
+BLACK: Final = 60.0
+WHITE: Final = 195.0
 """Grey levels: below, a plain picture is called black; above, saturated."""
 
 
@@ -54,15 +52,17 @@ def step(state: State, picture: Image) -> tuple[State, CameraFault]:
 
 
 def _blank(background: NDArray[np.float32], picture: Image) -> CameraFault:
+    """What a plain picture is; before a plain wall it is that wall in another light, while there
+    is light enough to see somebody by."""
     if _contrast_of(picture) > PLAIN:
         return ""
     grey = _grey(picture)
-    if _contrast(background) < VARIED and np.abs(grey - background).mean() < UNLIKE:
-        return ""
     middle = float(np.median(grey))
-    if middle < DARK:
+    if _contrast(background) < VARIED and middle >= DARK * np.median(background):
+        return ""
+    if middle < BLACK:
         return "black"
-    return "saturated" if middle > BRIGHT else "covered"
+    return "saturated" if middle > WHITE else "covered"
 
 
 def _contrast(grey: NDArray[np.float32]) -> float:
