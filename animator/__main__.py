@@ -189,16 +189,16 @@ def main(
 def _shown(
     page: LivePage, settings: Settings, stop: threading.Event, ending: Connection | None
 ) -> dict[str, Any] | None:
-    """Show a run, from the moment when its bus is there."""
-    until_s = time.monotonic() + READY_S
-    while not stop.is_set():
+    """Show a run, from the moment when its bus is there: as long as that takes where there is a
+    supervisor, who ends this process in time. A first run compiles for minutes before it."""
+    most_s = READY_S if ending is None else HEAR_S
+    while True:
         try:
-            with open_client(settings.bus, settings.room, HEAR_S, "animator") as bus:
+            with open_client(settings.bus, settings.room, most_s, "animator", stop) as bus:
                 bus.announce("animator")
                 return run(page, bus, stop, ending)
         except BusError:
-            if ending is not None and ending.poll():
-                return _told(ending)
-            if time.monotonic() > until_s:
+            if ending is None:
                 raise
-    return None
+            if ending.poll():
+                return _told(ending)

@@ -1,8 +1,7 @@
 """Files that take the place of older ones whole, or not at all."""
 
 import errno
-import os
-import tempfile
+import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,6 +9,8 @@ from typing import Final
 
 FULL: Final = (errno.ENOSPC, errno.EDQUOT)
 """Of an error where space is what lacks."""
+NAME_BYTES: Final = 8
+"""Of chance in the name of a file that is not whole yet."""
 
 
 class FileRefused(ValueError):
@@ -45,19 +46,18 @@ def refuse_special(path: Path) -> None:
 def replacing(path: Path) -> Iterator[Path]:
     """A file beside `path` to write into; it takes its place when all of it was written.
 
-    When anything fails, a full disk too, what stood there before is untouched.
+    When anything fails, a full disk too, what stood there before is untouched. Who may read it is
+    the user's to say, as of any file: by their umask.
 
     Raises:
         OSError: When the folder cannot be written.
         FileRefused: When `path` is no ordinary file.
     """
     refuse_special(path)
-    handle, name = tempfile.mkstemp(path.suffix, f".{path.stem}.", path.parent)
-    os.close(handle)
-    new = Path(name)
+    new = path.with_name(f".{path.stem}.{secrets.token_hex(NAME_BYTES)}{path.suffix}")
+    new.open("xb").close()
     try:
         yield new
-        new.chmod(0o644)
         new.replace(path)
     except BaseException:
         new.unlink(missing_ok=True)

@@ -12,8 +12,8 @@ OVER_S: Final = 0.5
 CLOSING_S: Final = 0.25
 """A viewer that ends says so and leaves the bus, and the two may be heard in either order."""
 GONE_S: Final = 60.0
-"""How long a viewer that was killed is waited for when no other is left: it may be started again,
-which takes some seconds, half a minute on a busy machine."""
+"""How long a viewer that was killed, or whose video broke, is waited for when no other is left: it
+may be started again, which takes some seconds, half a minute on a busy machine."""
 MOST_NEWS: Final = 20
 """Lines that are kept for the end of the run; a link that flickers would fill the log."""
 
@@ -87,8 +87,8 @@ def ended(state: State, said: Ended, now_s: float) -> State:
 def going(state: State, now_s: float) -> bool:
     """Whether anything is still to be expected."""
     return any(
-        over_s == NEVER_S and now_s - gone_s <= GONE_S
-        for over_s, gone_s in zip(state.over_s, state.gone_s, strict=True)
+        (over_s == NEVER_S or why_over) and now_s - min(over_s, gone_s) <= GONE_S
+        for over_s, why_over, gone_s in zip(state.over_s, state.why_over, state.gone_s, strict=True)
     )
 
 

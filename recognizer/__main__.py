@@ -29,6 +29,9 @@ SHIPPED_PAPER = SHIPPED.with_name("postures_paper.npz")
 """The same in `paper` mode: the paper's recogniser, learnt from what that mode tracks."""
 REACH_FRAMES: Final = 900
 """A performance that is longer is told from there on: a minute at the paper's rate."""
+GAP_S: Final = 1.0
+"""No body for longer ends what was going on, as so many frames without a pose do: what came before
+a cut and what comes after it are not one motion."""
 HEAR_S = 0.05
 MOVING = ("tracking", "predicted")
 """States in which a body's angles say what it does; the opening posture is no motion."""
@@ -52,6 +55,8 @@ def init(model: PostureModel, window_frames: int) -> State:
 
 def step(state: State, body: Body) -> tuple[State, Posture]:
     """One body more: the judgement of the window that ends with it, and what is under way."""
+    if state.frames and body.captured_s - state.frames[-1][1] > GAP_S:
+        state = _after_a_gap(state)
     row = row_of(body)
     window, judged = spotting.step(state.window, row)
     network, doing = state.events, events.NOTHING
@@ -74,6 +79,16 @@ def step(state: State, body: Body) -> tuple[State, Posture]:
         times=doing.times,
         event=doing.event and performance(doing.event, at(doing.event.first), at(doing.event.last)),
     )
+
+
+def _after_a_gap(state: State) -> State:
+    """What remains when a while was not seen at all."""
+    window, network = state.window, state.events
+    for _ in range(spotting.MISSED_FRAMES):
+        window, _judged = spotting.step(window, None)
+        if network is not None:
+            network, _doing = events.step(network, None)
+    return State(window, network)
 
 
 def performance(
@@ -181,7 +196,7 @@ def main(settings: Settings, period_s: float, context: ProcessContext = ProcessC
     warm_up(model, settings.recognizer.window_frames)
     with (
         process("recognizer", context) as stop,
-        open_client(settings.bus, settings.room, READY_S, "recognizer") as bus,
+        open_client(settings.bus, settings.room, READY_S, "recognizer", stop) as bus,
     ):
         bus.announce("recognizer")
         settle()

@@ -11,6 +11,7 @@ from recognizer.features import ROW_NAMES, TRAVEL_POSES, Bearings, Rows, bearing
 from recognizer.forward import forward
 from recognizer.path_network import COUNT, LAST, ONSET, SCALE, PathNetwork, advance, emissions
 from recognizer.postures import STATES, Array, DensityModel
+from recognizer.spotting import MISSED_FRAMES
 
 OVER_FRAMES: Final = 2
 """So long a performance must be over on the best path before it is an event."""
@@ -81,19 +82,18 @@ class State:
     """Last frame of the last performance that was judged."""
     told: str = ""
     """Posture of the last event; "" where what was judged last was none."""
+    missed: int = 0
+    """How many frames without a pose came last."""
 
 
 def init(model: DensityModel) -> State:
     """Nothing seen yet."""
-    states = len(model.names) * STATES + 2
-    score = np.full(states, -np.inf)
-    score[-1] = 0.0
-    record, over = np.zeros((states, LAST), np.int64), np.full((states, LAST + 1), -1)
-    return State(PathNetwork(model), score, record, over, np.empty((0, len(ROW_NAMES))))
+    return _begun(PathNetwork(model))
 
 
 def step(state: State, row: NDArray[np.float64] | None) -> tuple[State, Doing]:
-    """Take one frame; a frame without a pose adds nothing.
+    """Take one frame; a frame without a pose adds nothing, MISSED_FRAMES of them in a row end what
+    was going on: who comes after them must be seen standing first.
 
     Args:
         row: (20,) ROW_NAMES order; None or NaN where there is no pose.
@@ -103,8 +103,10 @@ def step(state: State, row: NDArray[np.float64] | None) -> tuple[State, Doing]:
     """
     now = state.next_frame
     new = with_pose(state.rows[:0] if row is None else row[np.newaxis])
-    state = replace(state, next_frame=now + 1)
+    state = replace(state, next_frame=now + 1, missed=0 if len(new) else state.missed + 1)
     if not len(new):
+        if state.missed == MISSED_FRAMES:
+            state = replace(_begun(state.network), next_frame=now + 1, missed=state.missed)
         return state, NOTHING
     state = _further(state, new, now)
     best, states = int(state.score.argmax()), len(state.score) - 2
@@ -118,6 +120,15 @@ def step(state: State, row: NDArray[np.float64] | None) -> tuple[State, Doing]:
     again = event and event.name == state.told and event.first - state.judged <= AGAIN_FRAMES
     state = replace(state, judged=int(over[LAST]), told=event.name if event else "")
     return state, Doing("", 0, None if again else event)
+
+
+def _begun(network: PathNetwork) -> State:
+    """Nothing was seen by that network yet."""
+    states = len(network.model.names) * STATES + 2
+    score = np.full(states, -np.inf)
+    score[-1] = 0.0
+    record, over = np.zeros((states, LAST), np.int64), np.full((states, LAST + 1), -1)
+    return State(network, score, record, over, np.empty((0, len(ROW_NAMES))))
 
 
 def _further(state: State, new: Rows, now: int) -> State:

@@ -22,6 +22,18 @@ def test_a_file_takes_the_place_of_one_when_all_is_written(tmp_path: Path) -> No
     assert list(tmp_path.iterdir()) == [path]
 
 
+@pytest.mark.parametrize(("mask", "mode"), [(0o077, 0o600), (0o022, 0o644), (0o002, 0o664)])
+def test_who_may_read_a_file_is_as_the_user_has_it(tmp_path: Path, mask: int, mode: int) -> None:
+    """POSIX: a new file is for everybody to read and write, less the umask."""
+    before = os.umask(mask)
+    try:
+        with replacing(tmp_path / "a.txt") as new:
+            new.write_text("how somebody moves")
+    finally:
+        os.umask(before)
+    assert stat.S_IMODE((tmp_path / "a.txt").stat().st_mode) == mode
+
+
 def test_no_file_takes_the_place_of_what_is_no_ordinary_file(tmp_path: Path) -> None:
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)

@@ -13,6 +13,7 @@ from common.body.body import JOINT_NAMES
 from common.config.part_settings import CameraSettings, SilhouetteSettings
 from common.config.settings import Settings
 from common.video.clip_facts import View
+from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import ALL, Decoded, Decoder
 from viewer.background.background import Background
@@ -140,3 +141,16 @@ def test_a_viewer_that_is_started_again_knows_its_cameras_room(clip: Path, tmp_p
     keep(first, view, anew)
     room, _, _ = opening_of_run(view, SilhouetteSettings(), again, first)
     assert np.array_equal(room.centre, anew.centre), "as it was learnt last"
+
+
+def test_a_camera_that_comes_back_with_another_picture_is_refused(tmp_path: Path) -> None:
+    """Joints would be told by a rig of other pictures, and its room would not fit either."""
+    began = View(1, 0, (320, 240), (160, 120), 15.0, 0)
+    again = msgspec.structs.replace(began, source_size=(320, 180), size=(160, 90))
+    opening_of_run(began, SilhouetteSettings(), FakeCamera(blank(160, 120)), tmp_path)
+    with pytest.raises(ClipError, match=r"camera 0 gives.*160x90.*160x120 then\): start the run"):
+        opening_of_run(again, SilhouetteSettings(), FakeCamera(blank(160, 90)), tmp_path)
+
+
+def blank(width: int, height: int) -> Film:
+    return [np.full((height, width, 3), 90, np.uint8)]

@@ -6,8 +6,10 @@ import signal
 import struct
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import cv2
@@ -18,11 +20,13 @@ import pytest
 from common.bus.messages import Landmarks
 from common.video.clip_facts import View
 from common.video.decoding import (
+    END,
     FRAME,
     HEADER,
     INFO,
     MAGIC,
     STALL_S,
+    CameraLost,
     Decoded,
     Decoder,
     DecoderDied,
@@ -223,6 +227,20 @@ def test_what_opencv_prints_does_not_mix_with_the_pictures(
         assert len(list(own.frames(written(tmp_path / "cam1.avi"), SIZE))) == FRAMES
 
 
+class Babbler:
+    """A child that gives an answer of its own."""
+
+    def __init__(self, answer: bytes, module: str, stall_s: float) -> None:
+        self.said = io.BytesIO(answer)
+
+    def ask(self, request: bytes) -> None: ...
+
+    def read_into(self, room: memoryview) -> None:
+        assert self.said.readinto(room) == len(room)
+
+    def close(self) -> None: ...
+
+
 @pytest.mark.parametrize(
     "answer",
     [
@@ -233,18 +251,7 @@ def test_what_opencv_prints_does_not_mix_with_the_pictures(
     ids=["words", "short picture", "endless"],
 )
 def test_what_is_no_answer_ends_the_child(answer: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
-    class Babbler:
-        def __init__(self, module: str, stall_s: float) -> None:
-            self.said = io.BytesIO(answer)
-
-        def ask(self, request: bytes) -> None: ...
-
-        def read_into(self, room: memoryview) -> None:
-            assert self.said.readinto(room) == len(room)
-
-        def close(self) -> None: ...
-
-    monkeypatch.setattr("common.video.decoding.Child", Babbler)
+    monkeypatch.setattr("common.video.decoding.Child", partial(Babbler, answer))
     own = Decoder()
     with pytest.raises(DecoderDied, match="sent what is no answer"):
         list(own.frames("cam1.avi", SIZE))
@@ -396,6 +403,32 @@ def test_a_live_film_that_breaks_the_decoder_tells_the_reader(tmp_path: Path) ->
         pytest.raises(Undecodable),
     ):
         nothing.take(5.0)
+
+
+def test_a_film_that_breaks_while_its_reader_works_is_not_over(tmp_path: Path) -> None:
+    """Who looks at a frame when the decoder dies hears of it as who waits for the next does."""
+    view = view_of(uncompressed(tmp_path / "raw.avi"))
+    before = set(threading.enumerate())
+    with Live(view, 1, RoomClock(time.monotonic())) as live:
+        for thread in set(threading.enumerate()) - before:
+            thread.join()
+        with pytest.raises(DecoderDied):
+            all_of(live)
+
+
+def test_a_camera_that_is_unplugged_is_not_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Linux says that there is no further frame, as behind a film's last one."""
+    picture = picture_of(0).tobytes()
+    answer = HEADER.pack(MAGIC, INFO, 0, 0.0, 2) + b"{}"
+    answer += HEADER.pack(MAGIC, FRAME, 0, time.monotonic() + 0.2, len(picture)) + picture
+    answer += HEADER.pack(MAGIC, END, 1, 0.0, 0)
+    monkeypatch.setattr("common.video.decoding.Child", partial(Babbler, answer))
+    with Live(view_of(0, frames=0), 1, RoomClock(0.0)) as live:
+        assert live.take(5.0) is not None
+        with pytest.raises(CameraLost, match="camera 0 gives no more pictures after 1: see that"):
+            live.take(5.0)
+    with Live(view_of("cam1.avi"), 1, RoomClock(time.monotonic() + 0.2)) as live:
+        assert len(all_of(live)) == 1
 
 
 def test_a_live_view_can_be_left_at_any_moment(tmp_path: Path) -> None:

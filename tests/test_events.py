@@ -134,6 +134,16 @@ def test_frames_without_a_pose_add_nothing(model: DensityModel) -> None:
     assert gaps[0][0].last == plain[0][0].last + 2
 
 
+@pytest.mark.parametrize("absent", [15, 900], ids=["a second", "a minute"])
+def test_a_performance_ends_with_who_leaves_in_its_midst(model: DensityModel, absent: int) -> None:
+    """What somebody does after a second in which nobody was followed is no part of it."""
+    squat, nowhere = perform("squat", performer=9), np.full((absent, 20), np.nan)
+    cut = len(squat) * 2 // 3
+    events = told(model, still(30), squat[:cut], nowhere, still(30), squat, still(30))
+    assert [event.name for event, _ in events] == ["squat"]
+    assert events[0][0].first > 30 + cut + absent
+
+
 def test_a_step_leaves_the_state_it_was_given_alone(model: DensityModel) -> None:
     state = init(model)
     for row in still(30):

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from common.bus.messages import Body, Posture
 from common.config.settings import Settings
 from tritrack.store.journal import MOST_BODIES, NAME, Head, Journal, parts_of
-from tritrack.store.past_journal import put_aside, read_journal
+from tritrack.store.past_journal import LOG, put_aside, read_journal
 from tritrack.store.past_run import open_run
 from tritrack.store.pose_arrays import poses
 from tritrack.store.runs import write_run
@@ -142,7 +142,10 @@ def test_a_journal_goes_with_its_run_and_one_of_a_run_cut_short_is_put_aside(
 ) -> None:
     one = Journal(tmp_path, HEAD)
     one.keep([body(0)])
+    (tmp_path / LOG).write_text("it ran out of memory\n")
     assert put_aside(tmp_path, tmp_path / "saved")
+    assert (tmp_path / "saved" / LOG).read_text() == "it ran out of memory\n"
+    assert (tmp_path / LOG).read_text() == "", "the next run's own"
     assert open_run(tmp_path / "saved").poses["frame"].tolist() == [0]
     two = Journal(tmp_path, HEAD)
     assert not put_aside(tmp_path, tmp_path / "saved_too")

@@ -126,6 +126,17 @@ def test_a_video_that_broke_is_named() -> None:
     assert "view 2 is lost (cam2.avi broke the decoder)" in hear(state, 10.6).news[0]
 
 
+def test_an_only_video_that_broke_may_go_on() -> None:
+    """Its viewer is started again: a run that ended by its last word would hear none of that."""
+    state = ended(running(viewers=(1,)), Ended(viewer=1, frames=7, why="it broke"), 10.0)
+    state = went(state, 1, 10.1)
+    assert going(state, 10.0 + GONE_S)
+    assert not going(state, 10.1 + GONE_S)
+    again = hear(came(state, 1, 12.0), 12.1)
+    assert going(again, 200.0)
+    assert not going(ended(again, Ended(viewer=1, frames=150), 20.0), 20.0)
+
+
 def test_nobody_waits_for_ever_for_a_viewer_that_was_killed() -> None:
     """The other one has ended; after a minute nobody comes any more."""
     state = ended(running(), Ended(viewer=1, frames=150), 10.0)

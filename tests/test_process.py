@@ -3,15 +3,19 @@
 import logging
 import os
 import signal
+import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from local_bus import LocalBus
 
+from common.bus.bus import open_client
 from common.bus.control_messages import Pulse
 from common.bus.process import BEAT_S, Heart, ProcessContext, process, start_log
 from common.bus.rate import Pace
+from common.config.part_settings import BusSettings
 
 
 @pytest.fixture(autouse=True)
@@ -28,6 +32,17 @@ def test_a_signal_ends_a_process_that_runs_alone(number: signal.Signals) -> None
     with process("viewer 1", ProcessContext()) as stop:
         os.kill(os.getpid(), number)
         assert stop.wait(5.0)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT], ids=["SIGTERM", "Ctrl-C"])
+def test_a_signal_ends_a_process_that_waits_for_the_others(number: signal.Signals) -> None:
+    """Nobody listens at that endpoint: whoever gives up does not sit out the minute."""
+    began_s, nowhere = time.monotonic(), BusSettings(endpoint="tcp/127.0.0.1:1")
+    with process("viewer 1", ProcessContext()) as stop:
+        threading.Timer(0.3, os.kill, (os.getpid(), number)).start()
+        with open_client(nowhere, "room", 60.0, stop=stop):
+            pytest.fail("there is no hub")
+    assert time.monotonic() - began_s < 5.0
 
 
 def test_ctrl_c_is_the_supervisors_to_hear() -> None:

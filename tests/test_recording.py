@@ -1,7 +1,9 @@
 """Recordings: what was said comes back, any MCAP library reads it, Foxglove finds its schemas."""
 
 import json
+import shutil
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +19,7 @@ from common.bus.messages import Body, Posture, Report
 from common.config.settings import Settings
 from tritrack.store.foxglove_scene import SCENE
 from tritrack.store.recording import Head, RecordingError, read_recording, recording_to
+from tritrack.store.runs import RunError
 
 mcap_reader = pytest.importorskip("mcap.reader", reason="pip install 'tritrack[mcap]'")
 
@@ -134,6 +137,15 @@ def test_a_recording_whose_compressed_part_is_damaged_is_named(folder: Path) -> 
     path.write_bytes(whole[:at] + bytes(16) + whole[at + 16 :])
     with pytest.raises(RecordingError, match="was damaged"):
         read_recording(folder)
+
+
+def test_a_recording_whose_folder_is_taken_away_meanwhile_is_no_fault(tmp_path: Path) -> None:
+    folder, doors = tmp_path / "run", ExitStack()
+    keep = doors.enter_context(recording_to(folder, HEAD))
+    keep(said()[0])
+    shutil.rmtree(folder)
+    with pytest.raises(RunError, match=r"cannot write .*recording.mcap: No such file"):
+        doors.close()
 
 
 def test_without_the_library_the_cure_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

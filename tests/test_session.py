@@ -19,9 +19,11 @@ from waiting import until
 from common.bus.control_messages import Pulse
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
+from common.video.clip_sources import ClipError
 from tritrack.live.free_ports import free_settings, refuse_held_ports
 from tritrack.live.screen import warnings_of
 from tritrack.live.session import LiveRefused, live
+from tritrack.store.journal import Head, Journal
 from tritrack.store.past_journal import read_journal
 from tritrack.store.past_run import open_run
 
@@ -48,6 +50,20 @@ def test_the_thesis_mode_of_a_settings_file_is_refused_live(tmp_path: Path) -> N
     with pytest.raises(LiveRefused, match="tritrack single VIDEO --mode thesis"):
         live(Settings(mode="thesis"), tmp_path / "run", Console(quiet=True))
     assert not (tmp_path / "run").exists()
+
+
+def test_a_run_that_cannot_begin_leaves_what_one_that_was_killed_said(tmp_path: Path) -> None:
+    """Its journal stands in the folder yet; of a run that ended the next one has the log."""
+    log, nothing = tmp_path / "log.txt", Settings(clip=str(tmp_path / "none"))
+    log.write_text("it ran out of memory\n")
+    journal = Journal(tmp_path, Head(settings=nothing, facts={}))
+    with pytest.raises(ClipError):
+        live(free_settings(nothing), tmp_path, Console(quiet=True))
+    assert "it ran out of memory\n" in log.read_text()
+    journal.remove()
+    with pytest.raises(ClipError):
+        live(free_settings(nothing), tmp_path, Console(quiet=True))
+    assert "it ran out of memory\n" not in log.read_text()
 
 
 def test_free_settings_open_no_page_where_none_was_wanted() -> None:

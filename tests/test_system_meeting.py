@@ -1,18 +1,23 @@
 """How the processes of a run meet: guides in time, one start for all, news for who comes late."""
 
+import socket
 import threading
 import time
 from collections.abc import Callable
+from multiprocessing import Pipe
 
 import numpy as np
 import pytest
 from local_bus import LocalBus
 from staging import report
+from waiting import until
 
+from animator import __main__ as animator
 from common.bus.bus import open_client, open_hub
 from common.bus.control_messages import Cameras, ClockAnswer, ClockQuestion, Ended, Pulse
 from common.bus.inbox import BOUND
 from common.bus.messages import Body, Guide, Message
+from common.bus.process import ProcessContext
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
 from common.method import DEFAULT
@@ -265,3 +270,32 @@ def test_who_comes_late_gets_the_newest(settings: BusSettings, message: Message)
         hub.publish(message)
         with open_client(settings, "room", 5.0) as late:
             assert soon(lambda: late.latest(type(message), 1.0)) == message
+
+
+def is_open(port: int) -> bool:
+    with socket.socket() as door:
+        return door.connect_ex(("127.0.0.1", port)) == 0
+
+
+def test_a_page_waits_for_its_run_as_long_as_that_compiles(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A first run begins after minutes: its supervisor ends the page, no span of time does."""
+    for name, value in (("READY_S", 0.0), ("warm_up", lambda: None)):
+        monkeypatch.setattr(animator, name, value)
+    settings, stop = free_settings(Settings()), threading.Event()
+    context, (ending, ours) = ProcessContext(supervised=True, stop=stop), Pipe(duplex=False)
+    page = threading.Thread(target=animator.main, args=(settings, context, "a run", ending))
+    page.start()
+    try:
+        assert until(lambda: is_open(settings.page.port))
+        time.sleep(1.0)
+        assert page.is_alive()
+        with open_hub(settings.bus, settings.room) as hub:
+            pulse = hub.subscribe(Pulse).take(10.0)
+            assert pulse is not None
+            assert (pulse.process, pulse.state) == ("animator", "ready")
+            ours.send({})
+            page.join(10.0)
+    finally:
+        stop.set()
+        page.join(10.0)
+    assert not page.is_alive()

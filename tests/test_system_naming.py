@@ -4,8 +4,10 @@ import shutil
 from pathlib import Path
 
 import cv2
+import msgspec
 import pytest
 
+from common.bus.messages import Body, Posture
 from common.config.settings import Settings
 from recognizer.__main__ import SHIPPED, init, step
 from recognizer.model_file import load
@@ -13,15 +15,23 @@ from tritrack.live.recorded import SoFar
 from tritrack.offline.lockstep import Decoders, track_clip
 
 
-def named(clip: Path) -> str:
-    """What a live run of the clip would say at its end."""
+def tracked(clip: Path) -> list[Body]:
     with Decoders() as decoders:
-        bodies = track_clip(Settings(clip=str(clip)), decoders).bodies
+        return list(track_clip(Settings(clip=str(clip)), decoders).bodies)
+
+
+def told(bodies: list[Body]) -> list[Posture]:
+    """What a live run would say of each."""
     state, postures = init(load(SHIPPED), 40), []
     for body in bodies:
         state, posture = step(state, body)
         postures.append(posture)
-    return SoFar(postures=postures).posture
+    return postures
+
+
+def named(clip: Path) -> str:
+    """What a live run of the clip would say at its end."""
+    return SoFar(postures=told(tracked(clip))).posture
 
 
 @pytest.fixture(scope="module")
@@ -51,3 +61,19 @@ def test_the_posture_is_named_of_a_person_that_no_model_was_trained_on(clip: Pat
 def test_a_mirror_changes_the_answer(mirrored: Path) -> None:
     """The name comes from the pictures: it is not known beforehand."""
     assert named(mirrored) == "raise_left_lateral"
+
+
+@pytest.mark.parametrize(("gap_s", "goes_on"), [(0.9, True), (30.0, False)])
+def test_what_comes_after_a_gap_in_time_is_another_motion(
+    clip: Path, gap_s: float, goes_on: bool
+) -> None:
+    """Nothing was seen for half a minute, as while both cameras hung: no body tells of that."""
+    bodies = tracked(clip)
+    cut = next(n for n, posture in enumerate(told(bodies)) if posture.name)
+    later = [
+        msgspec.structs.replace(body, frame=body.frame + 900, captured_s=body.captured_s + gap_s)
+        for body in bodies[cut + 1 :]
+    ]
+    first = told([*bodies[: cut + 1], *later])[cut + 1]
+    assert bool(first.name) == goes_on
+    assert (first.segment[0] < first.frame) == goes_on

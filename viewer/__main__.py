@@ -20,7 +20,7 @@ from common.settled import settle
 from common.video.clip_facts import View, shortfall
 from common.video.clip_sources import footage_of
 from common.video.clips import open_clip
-from common.video.decoding import Decoder, DecoderDied
+from common.video.decoding import Decoder, DecoderDied, Undecodable
 from viewer import track
 from viewer.background.background import Background
 from viewer.background.new_background import Learning
@@ -135,7 +135,7 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
             if answer is not None:
                 bus.publish(answer)
             before = frame.index
-    except DecoderDied as error:
+    except (DecoderDied, Undecodable) as error:
         why = str(error)
         raise
     finally:  # Also when the decoder broke: nobody shall wait for this view again.
@@ -169,7 +169,7 @@ def main(
     name = f"viewer {viewer}"
     with (
         process(name, context) as stop,
-        open_client(settings.bus, settings.room, READY_S, VIEWERS[viewer]) as bus,
+        open_client(settings.bus, settings.room, READY_S, VIEWERS[viewer], stop) as bus,
     ):
         heart = Heart(bus, name, Pace(1.0))
         heart.beat("starting")

@@ -11,7 +11,7 @@ from common.bus.mailbox import Mailbox
 from common.bus.messages import Landmarks
 from common.bus.rate import Clock, wait_until
 from common.video.clip_facts import View
-from common.video.decoding import Decoded, Decoder, Image, Wanted
+from common.video.decoding import CameraLost, Decoded, Decoder, Image, Wanted
 from common.video.frame_cache import Reader
 from viewer.landmarks.outside_source import OutsideSource
 
@@ -140,8 +140,8 @@ class Live:
 
     @property
     def over(self) -> bool:
-        """True when the last frame was taken."""
-        return self._waiting.over
+        """True when the last frame was taken; of a video that broke, `take` tells that."""
+        return self._waiting.over and self._failure is None
 
     def take(self, timeout_s: float) -> CapturedFrame | None:
         """The next frame; None when none came in time or it is over.
@@ -149,9 +149,10 @@ class Live:
         Raises:
             Undecodable: When the source has no picture.
             DecoderDied: When the decoder broke, after the last good frame.
+            CameraLost: When a camera gives no more.
         """
         frame = self._waiting.take(timeout_s)
-        if frame is None and self.over and self._failure is not None:
+        if frame is None and self._waiting.over and self._failure is not None:
             raise self._failure
         return frame
 
@@ -170,8 +171,10 @@ class Live:
                     self._missed += 1
                 else:
                     self._waiting.put(self._with_landmarks(frame, decoded))
-        except Exception as error:  # Whatever ended this thread is the reader's to hear.
-            self._failure = error
+            if isinstance(view.source, int):
+                raise CameraLost(view.source, self._decoder.came)
+        except Exception as error:  # Whatever ended this thread is the reader's to hear,
+            self._failure = None if self._stop.is_set() else error  # unless they have left.
         finally:
             frames.close()
             self._decoder.close()

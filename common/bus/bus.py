@@ -2,6 +2,7 @@
 
 import json
 import logging
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -46,6 +47,10 @@ log = logging.getLogger(__name__)
 
 class BusError(RuntimeError):
     """No bus: the text names the endpoint, the fault and the cure."""
+
+
+class Stopped(Exception):
+    """Whoever waited for the hub was told to end: nothing is wrong."""
 
 
 class Bus(Protocol):
@@ -103,17 +108,23 @@ def open_hub(settings: BusSettings, room: str) -> Iterator[LiveBus]:
 
 @contextmanager
 def open_client(
-    settings: BusSettings, room: str, give_up_s: float, part: Part = "client"
+    settings: BusSettings,
+    room: str,
+    give_up_s: float,
+    part: Part = "client",
+    stop: threading.Event | None = None,
 ) -> Iterator[LiveBus]:
-    """The bus of any other process; waits up to `give_up_s` for the hub.
+    """The bus of any other process; waits up to `give_up_s` for the hub, or until `stop` is set.
 
     Where the settings name keys it speaks as `part`, and no more than that may.
 
     Raises:
         BusError: When nobody answers at the endpoint in time.
         KeysError: When the settings name keys that are not there.
+        Stopped: When it was stopped before the hub was there.
     """
-    session = _reach(settings, part, room, time.monotonic() + give_up_s)
+    until_s = time.monotonic() + give_up_s
+    session = _reach(settings, part, room, until_s, stop or threading.Event())
     if session is None:
         keys = f", or look at the keys: tritrack doctor --keys {settings.keys}"
         raise BusError(
@@ -148,16 +159,19 @@ def _close(session: Any) -> None:
         log.info("the bus was left without a farewell: %s", _first_line(error))
 
 
-def _reach(settings: BusSettings, part: Part, room: str, until_s: float) -> Any | None:
+def _reach(
+    settings: BusSettings, part: Part, room: str, until_s: float, stop: threading.Event
+) -> Any | None:
     config = _config(settings, part, room)
-    while True:
+    while not stop.is_set():
         try:
             return zenoh.open(config)
         except zenoh.ZError as error:
             log.debug("%s: %s", settings.endpoint, _first_line(error))
         if time.monotonic() + RETRY_S >= until_s:
             return None
-        time.sleep(RETRY_S)
+        stop.wait(RETRY_S)
+    raise Stopped
 
 
 def _config(settings: BusSettings, part: Part, room: str) -> zenoh.Config:

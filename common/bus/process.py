@@ -6,7 +6,7 @@ import signal
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
 from typing import Any, Final, Literal, NamedTuple
@@ -14,7 +14,7 @@ from typing import Any, Final, Literal, NamedTuple
 import cv2
 import psutil
 
-from common.bus.bus import Bus
+from common.bus.bus import Bus, Stopped
 from common.bus.control_messages import Pulse
 from common.bus.rate import Pace
 
@@ -43,10 +43,14 @@ class ProcessContext(NamedTuple):
 
 @contextmanager
 def process(name: str, context: ProcessContext) -> Iterator[threading.Event]:
-    """An event that is set when the process shall end; one thread for every library meanwhile."""
+    """An event that is set when the process shall end; one thread for every library meanwhile.
+
+    Who waits for the bus then leaves the `with` at once.
+    """
     cv2.setNumThreads(1)
     if context.stop is not None:  # signals and log are the whole process's
-        yield context.stop
+        with suppress(Stopped):
+            yield context.stop
         return
     stop = threading.Event()
 
@@ -57,7 +61,8 @@ def process(name: str, context: ProcessContext) -> Iterator[threading.Event]:
     before_int = signal.signal(signal.SIGINT, signal.SIG_IGN if context.supervised else end)
     start_log(name, context.log)
     try:
-        yield stop
+        with suppress(Stopped):
+            yield stop
     finally:
         signal.signal(signal.SIGTERM, before)
         signal.signal(signal.SIGINT, before_int)

@@ -66,6 +66,19 @@ class DecoderDied(RuntimeError):
         return f"{named(self.source)} broke the decoder {where}: {cure(self.source)}"
 
 
+class CameraLost(DecoderDied):
+    """A camera that gives no more pictures, as one that was unplugged: it has no end of its own."""
+
+    def __init__(self, source: int, frames: int) -> None:
+        """After `frames` frames of `source`."""
+        super().__init__(source, frames, "no more pictures")
+
+    def __str__(self) -> str:
+        """One line."""
+        gives = f"{named(self.source)} gives no more pictures after {self.frames}"
+        return f"{gives}: {cure(self.source)}"
+
+
 class VideoInfo(msgspec.Struct, frozen=True):
     """What a source says of itself; only the size was seen."""
 

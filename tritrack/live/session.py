@@ -30,8 +30,8 @@ from tritrack.live.recorded import SoFar, WholeRun
 from tritrack.live.run_facts import facts_of, facts_of_clip, note_lost, note_unseen
 from tritrack.live.screen import Screen
 from tritrack.store.journal import Head as JournalHead
-from tritrack.store.journal import Journal
-from tritrack.store.past_journal import Journalled, put_aside
+from tritrack.store.journal import Journal, has_journal
+from tritrack.store.past_journal import LOG, Journalled, put_aside
 from tritrack.store.recording import Keep, refuse_without_library, torn_recordings
 from tritrack.store.runs import write_postures, write_run
 
@@ -268,11 +268,12 @@ def _refuse_what_would_fail(settings: Settings, clip: Clip) -> None:
 
 
 def _new_log(out: Path) -> Path:
-    """The log of this run alone: a run before it in the same folder is overwritten."""
-    path = out / "log.txt"
+    """The log of this run alone: of a run before it in the same folder it is overwritten, unless
+    that was cut short, and is to be put aside."""
+    path = out / LOG
     try:
         out.mkdir(parents=True, exist_ok=True)
-        path.write_text("")
+        path.open("a" if has_journal(out) else "w").close()
         for left in out.glob(f"{KEPT}*"):  # by a run that was cut short
             shutil.rmtree(left, ignore_errors=True)
     except OSError as error:

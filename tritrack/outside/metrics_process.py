@@ -98,7 +98,7 @@ def main(
         os.nice(BEHIND)
         with (
             served(settings.metrics, desk.metrics, desk.health),
-            open_client(settings.bus, settings.room, READY_S, "metrics") as bus,
+            open_client(settings.bus, settings.room, READY_S, "metrics", stop) as bus,
         ):
             bus.announce("metrics")
             run(desk, bus, stop)

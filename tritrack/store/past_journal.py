@@ -1,6 +1,7 @@
 """The journal of a run, read: while the run goes on, at its end, or after it was cut short."""
 
 import mmap
+import shutil
 import zlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -15,6 +16,8 @@ from tritrack.store.journal import FRAME, HEAD, KINDS, MAGIC, Head, has_journal,
 
 Kind = TypeVar("Kind", bound=Message)
 
+LOG: Final = "log.txt"
+"""What the processes of a run say, beside its journal."""
 _MARKS: Final = {kind: mark for mark, kind in KINDS.items()}
 
 
@@ -65,7 +68,8 @@ def read_journal(folder: Path) -> Told | None:
 
 
 def put_aside(folder: Path, aside: Path) -> bool:
-    """Move a folder's journal, if it holds a body, into a folder of its own, which is made.
+    """Move a folder's journal, if it holds a body, into a folder of its own, which is made, and
+    what its log says: of what the run died. The log itself may be open already, and stays.
 
     Raises:
         OSError: When it cannot be moved.
@@ -75,6 +79,10 @@ def put_aside(folder: Path, aside: Path) -> bool:
     aside.mkdir(parents=True, exist_ok=True)
     for path in parts_of(folder):
         path.replace(aside / path.name)
+    log = folder / LOG
+    if log.is_file():
+        shutil.copy(log, aside)
+        log.write_text("")
     return True
 
 

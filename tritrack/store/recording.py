@@ -100,7 +100,11 @@ def recording_to(folder: Path, head: Head) -> Iterator[Keep]:
         told = msgspec.structs.replace(head, versions=versions())
         writer.add_metadata("tritrack", {"head": msgspec.json.encode(told).decode()})
         yield _keeper(writer, file)
-        writer.finish()
+        try:
+            writer.finish()
+            doors.close()
+        except OSError as error:
+            raise unwritable(folder / NAME, error) from error
 
 
 def read_recording(folder: Path) -> Recording:

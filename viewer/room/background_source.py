@@ -12,7 +12,8 @@ from common.atomic_file import replacing
 from common.bus.messages import Landmarks
 from common.config.part_settings import SilhouetteSettings
 from common.video.clip_facts import View
-from common.video.decoding import Decoder, Image
+from common.video.clip_sources import ClipError
+from common.video.decoding import Decoder, Image, named
 from common.video.frame_cache import Reader
 from viewer.background.background import (
     Background,
@@ -138,17 +139,33 @@ def opening_of_run(
     Args:
         view: As above; likewise `settings`, `decoder`.
         kept: The run's folder for what was learnt of a camera's background; None: it keeps nothing.
+
+    Raises:
+        ClipError: When the camera's pictures are not of the size that they were.
     """
     if kept is None or not isinstance(view.source, int):
         return opening_of_view(view, settings, decoder)
     path = kept / _name_of(view)
     if path.exists():
         with np.load(path, allow_pickle=False) as found:
-            return Opening(Background(**found), "", None)
+            known = Background(**found)
+        _refuse_another_size(view, known)
+        return Opening(known, "", None)
     opening = opening_of_view(view, settings, decoder)
     if not view.background:
         keep(kept, view, opening.background)
     return opening
+
+
+def _refuse_another_size(view: View, known: Background) -> None:
+    """The rig is of the pictures that the run began with."""
+    height, width = known.centre.shape[:2]
+    if view.size != (width, height):
+        began, now = f"{width}x{height}", "{}x{}".format(*view.size)
+        raise ClipError(
+            f"{named(view.source)} gives pictures of another shape than the run began with "
+            f"({now} at the working size, {began} then): start the run anew"
+        )
 
 
 def keep(kept: Path, view: View, background: Background) -> None:
