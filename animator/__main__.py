@@ -1,6 +1,7 @@
 """The animator process: everything that is said, shown on the live page."""
 
 import logging
+import math
 import os
 import threading
 import time
@@ -13,7 +14,7 @@ from animator.page.live import LivePage
 from animator.scene import Figure, Snapshot, limb_shapes
 from common.body.body import rest_pose
 from common.body.proportions import thesis_bdp
-from common.bus.bus import Bus, BusError, open_client
+from common.bus.bus import Bus, BusError, open_client, unanswered
 from common.bus.control_messages import Answer, Cameras, Command, Pulse
 from common.bus.message_codec import TOPICS
 from common.bus.messages import Body, Performance, Picture, Posture, Report
@@ -189,16 +190,20 @@ def main(
 def _shown(
     page: LivePage, settings: Settings, stop: threading.Event, ending: Connection | None
 ) -> dict[str, Any] | None:
-    """Show a run, from the moment when its bus is there."""
-    until_s = time.monotonic() + READY_S
+    """Show a run, from the moment when its bus is there.
+
+    A supervisor knows whether it comes, however long a first run compiles; without one it is waited
+    for as long as other processes wait.
+    """
+    until_s = math.inf if ending is not None else time.monotonic() + READY_S
     while not stop.is_set():
         try:
             with open_client(settings.bus, settings.room, HEAR_S, "animator") as bus:
                 bus.announce("animator")
                 return run(page, bus, stop, ending)
-        except BusError:
+        except BusError as error:
             if ending is not None and ending.poll():
                 return _told(ending)
             if time.monotonic() > until_s:
-                raise
+                raise unanswered(settings.bus, READY_S) from error
     return None

@@ -2,9 +2,12 @@
 
 import base64
 import json
+import os
 import shutil
+import threading
 import time
 from collections.abc import Iterator
+from multiprocessing import Pipe
 from pathlib import Path
 from typing import Any
 
@@ -21,11 +24,16 @@ from test_page_server import free_port
 from waiting import until
 from websockets.sync.client import connect
 
+import animator.__main__
 from animator.page.door import Entrance, invitation_of
 from animator.page.live import LivePage
 from animator.scene import LEFT, RIGHT
+from common.bus.bus import BusError
 from common.bus.control_messages import Answer
 from common.bus.messages import Performance
+from common.bus.process import ProcessContext
+from common.config.settings import Settings
+from tritrack.live.free_ports import free_settings
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 SOFT = ("--disable-gpu",)
@@ -66,6 +74,23 @@ def test_what_is_kept_of_a_long_run_is_bounded() -> None:
     heard = told(page, 3)
     page.close()
     assert heard[2]["number"] > 0, "the oldest gave way"
+
+
+def test_the_page_waits_for_its_run_as_long_as_the_supervisor_does(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Whatever a first run compiles meanwhile; without a supervisor it says how long it waited."""
+    monkeypatch.setattr(animator.__main__, "READY_S", 0.3)
+    monkeypatch.setattr(os, "nice", lambda by: by)
+    settings = free_settings(Settings())
+    context = ProcessContext(stop=threading.Event())
+    theirs, ours = Pipe(duplex=False)
+    over = threading.Timer(1.0, lambda: ours.send({"frames": 3}))
+    over.start()
+    animator.__main__.main(settings, context, ending=theirs)
+    assert not over.is_alive()
+    with pytest.raises(BusError, match=r"nobody answers at .* after 0\.3 s"):
+        animator.__main__.main(settings, context)
 
 
 def test_only_what_the_page_can_ask_is_heard(page: LivePage) -> None:
