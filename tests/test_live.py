@@ -76,6 +76,19 @@ def test_what_is_kept_of_a_long_run_is_bounded() -> None:
     assert heard[2]["number"] > 0, "the oldest gave way"
 
 
+def test_who_comes_late_is_told_that_a_recording_goes_on(page: LivePage) -> None:
+    """A browser that is loaded again would else offer to begin it."""
+    page.answer(Answer(what="record", well=True, text="recording"))
+    page.answer(Answer(what="save", well=True, text="15.0 s written"))
+    page.answer(Answer(what="end_record", well=False, text="cannot write"))
+    page.set_rig(RIG)
+    heard = told(page, 3)
+    assert [each["what"] for each in heard if each["kind"] == "told"] == ["record"]
+    page.answer(Answer(what="end_record", well=True, text="3.0 s written"))
+    page.show(snapshot_at(0))
+    assert "told" not in [each["kind"] for each in told(page, 3)]
+
+
 def test_the_page_waits_for_its_run_as_long_as_the_supervisor_does(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
