@@ -28,6 +28,7 @@ import animator.__main__
 from animator.page.door import Entrance, invitation_of
 from animator.page.live import LivePage
 from animator.scene import LEFT, RIGHT
+from common.body.body import POSE_INDEX
 from common.bus.bus import BusError
 from common.bus.control_messages import Answer
 from common.bus.messages import Performance
@@ -310,6 +311,17 @@ def test_buttons_ask_and_answers_are_shown(page: LivePage, looking: Looking) -> 
     page.answer(Answer(what="record", well=True, text="recording <i>"))
     assert looking.until("document.querySelector('#record').ariaPressed === 'true'")
     assert looking.ask("document.querySelector('#told').textContent") == "recording <i>"
+
+
+@pytest.mark.slow
+def test_an_angle_next_to_nothing_has_no_sign(page: LivePage, looking: Looking) -> None:
+    frame = snapshot_at(0)
+    assert frame.body is not None
+    pose = [*frame.body.pose]
+    pose[POSE_INDEX["r_knee_x"]] = -0.3
+    body = msgspec.structs.replace(frame.body, pose=tuple(pose))
+    page.show(msgspec.structs.replace(frame, body=body))
+    assert looking.until("document.querySelector('#keys').textContent.includes('r knee x0°')")
 
 
 @pytest.mark.slow
