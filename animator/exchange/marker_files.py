@@ -13,6 +13,8 @@ from common.body.body import Vector
 from common.body.extremities import ALL_JOINT_NAMES
 
 MM_IN_M: Final = 1000.0
+INVALID: Final = -1.0
+"""Residual of a point that was not seen, by which programs know it."""
 TO_FORWARD_X: Final = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
 """From a run's axes (+x left of who faces camera 1, +y up, +z towards it) to OpenSim's (+x forward,
 +y up, +z right): a quarter turn about the vertical."""
@@ -78,6 +80,11 @@ def c3d_bytes(joints_m: Joints, step_s: float) -> bytes:
     content["parameters"]["POINT"]["LABELS"]["value"] = list(ALL_JOINT_NAMES[: joints_m.shape[1]])
     content["parameters"]["POINT"]["UNITS"]["value"] = ["mm"]
     content["data"]["points"] = points
+    unseen = np.isnan(points[:1])
+    content["data"]["meta_points"] = {
+        "residuals": np.where(unseen, INVALID, 0.0),
+        "camera_masks": np.zeros((7, *points.shape[1:]), np.bool_),
+    }
     with tempfile.TemporaryDirectory() as folder:  # it writes to paths alone
         path = Path(folder) / "points.c3d"
         content.write(str(path))
