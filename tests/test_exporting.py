@@ -170,6 +170,21 @@ def test_a_format_without_its_library_names_the_cure(
         export_run(run, to, None)
 
 
+def test_a_run_that_is_too_long_for_c3d_is_refused_before_its_end_is_lost(run: Path) -> None:
+    """The last frame's number has 16 bits in the header; more are written, and never read."""
+    pytest.importorskip("ezc3d", reason="pip install 'tritrack[export]'")
+    arrays = dict(np.load(run / "poses.npz"))
+    arrays["time_s"] = arrays["time_s"].copy()
+    arrays["time_s"][-1] = 65_534 / 15 + arrays["time_s"][1]
+    write(run, arrays)
+    assert export_run(run, "c3d", None)["frames"] == 65_535
+    arrays["time_s"][-1] += 1 / 15
+    write(run, arrays)
+    with pytest.raises(ExportError, match=r"65536 frames, and c3d has room for 65535: .* to trc"):
+        export_run(run, "c3d", None)
+    assert export_run(run, "trc", None)["frames"] == 65_536
+
+
 def test_a_folder_that_cannot_be_written_is_named(run: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(ExportError, match=r"cannot write .*file/a\.csv.*--out"):

@@ -2,9 +2,12 @@
 
 import base64
 import json
+import os
 import shutil
+import threading
 import time
 from collections.abc import Iterator
+from multiprocessing import Pipe
 from pathlib import Path
 from typing import Any
 
@@ -21,11 +24,17 @@ from test_page_server import free_port
 from waiting import until
 from websockets.sync.client import connect
 
+import animator.__main__
 from animator.page.door import Entrance, invitation_of
 from animator.page.live import LivePage
 from animator.scene import LEFT, RIGHT
+from common.body.body import POSE_INDEX
+from common.bus.bus import BusError
 from common.bus.control_messages import Answer
 from common.bus.messages import Performance
+from common.bus.process import ProcessContext
+from common.config.settings import Settings
+from tritrack.live.free_ports import free_settings
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 SOFT = ("--disable-gpu",)
@@ -66,6 +75,36 @@ def test_what_is_kept_of_a_long_run_is_bounded() -> None:
     heard = told(page, 3)
     page.close()
     assert heard[2]["number"] > 0, "the oldest gave way"
+
+
+def test_who_comes_late_is_told_that_a_recording_goes_on(page: LivePage) -> None:
+    """A browser that is loaded again would else offer to begin it."""
+    page.answer(Answer(what="record", well=True, text="recording"))
+    page.answer(Answer(what="save", well=True, text="15.0 s written"))
+    page.answer(Answer(what="end_record", well=False, text="cannot write"))
+    page.set_rig(RIG)
+    heard = told(page, 3)
+    assert [each["what"] for each in heard if each["kind"] == "told"] == ["record"]
+    page.answer(Answer(what="end_record", well=True, text="3.0 s written"))
+    page.show(snapshot_at(0))
+    assert "told" not in [each["kind"] for each in told(page, 3)]
+
+
+def test_the_page_waits_for_its_run_as_long_as_the_supervisor_does(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Whatever a first run compiles meanwhile; without a supervisor it says how long it waited."""
+    monkeypatch.setattr(animator.__main__, "READY_S", 0.3)
+    monkeypatch.setattr(os, "nice", lambda by: by)
+    settings = free_settings(Settings())
+    context = ProcessContext(stop=threading.Event())
+    theirs, ours = Pipe(duplex=False)
+    over = threading.Timer(1.0, lambda: ours.send({"frames": 3}))
+    over.start()
+    animator.__main__.main(settings, context, ending=theirs)
+    assert not over.is_alive()
+    with pytest.raises(BusError, match=r"nobody answers at .* after 0\.3 s"):
+        animator.__main__.main(settings, context)
 
 
 def test_only_what_the_page_can_ask_is_heard(page: LivePage) -> None:
@@ -272,6 +311,17 @@ def test_buttons_ask_and_answers_are_shown(page: LivePage, looking: Looking) -> 
     page.answer(Answer(what="record", well=True, text="recording <i>"))
     assert looking.until("document.querySelector('#record').ariaPressed === 'true'")
     assert looking.ask("document.querySelector('#told').textContent") == "recording <i>"
+
+
+@pytest.mark.slow
+def test_an_angle_next_to_nothing_has_no_sign(page: LivePage, looking: Looking) -> None:
+    frame = snapshot_at(0)
+    assert frame.body is not None
+    pose = [*frame.body.pose]
+    pose[POSE_INDEX["r_knee_x"]] = -0.3
+    body = msgspec.structs.replace(frame.body, pose=tuple(pose))
+    page.show(msgspec.structs.replace(frame, body=body))
+    assert looking.until("document.querySelector('#keys').textContent.includes('r knee x0°')")
 
 
 @pytest.mark.slow

@@ -1,5 +1,6 @@
 """TRC and C3D, read back: markers are the run's joints in OpenSim's axes, gaps are gaps."""
 
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -52,3 +53,13 @@ def test_a_c3d_file_opens_in_ezc3d(tmp_path: Path) -> None:
     assert np.isnan(places_mm[5]).all()
     off_mm = np.delete(places_mm - 1e3 * forward_x(joints_m), 5, axis=0)
     assert np.abs(off_mm).max() < 1.0
+
+
+def test_what_was_not_seen_is_an_invalid_point_for_every_reader_of_c3d() -> None:
+    """As the format has it, read by hand: place 0 and residual -1, no number that is none."""
+    pytest.importorskip("ezc3d", reason="pip install 'tritrack[export]'")
+    content = c3d_bytes(with_a_gap(), 1 / 15)
+    (block,) = struct.unpack_from("<H", content, 16)
+    points = np.frombuffer(content, "<f4", 12 * 15 * 4, (block - 1) * 512).reshape(12, 15, 4)
+    assert np.array_equal(points[5], np.tile([0.0, 0.0, 0.0, -1.0], (15, 1)))
+    assert (np.delete(points, 5, axis=0)[..., 3] >= 0.0).all()

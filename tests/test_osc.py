@@ -1,5 +1,8 @@
 """OSC, read back by hand: every joint and angle by name, and errors that name the cure."""
 
+import errno
+import os
+import socket
 import sys
 
 import pytest
@@ -33,6 +36,41 @@ def test_nobody_is_told_by_the_frame_alone() -> None:
 def test_what_is_no_address_is_named(to: str) -> None:
     with pytest.raises(BridgeError, match="is no address: write it like"):
         osc_sender(to)
+
+
+def test_a_broadcast_and_an_address_in_brackets_are_sent_to() -> None:
+    """How several computers of a stage hear one sender."""
+    osc_sender("255.255.255.255:9000")(b"to all")
+    with socket.socket(socket.AF_INET6, socket.SOCK_DGRAM) as ear:
+        ear.bind(("::1", 0))
+        ear.settimeout(10.0)
+        osc_sender(f"[::1]:{ear.getsockname()[1]}")(b"to one")
+        assert ear.recv(16) == b"to one"
+
+
+def test_a_network_that_goes_away_is_said_once_and_ends_nothing(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    sent: list[bytes] = []
+    gone = True
+
+    class Door(socket.socket):
+        def sendto(self, packet: bytes, *_: object) -> int:  # type: ignore[override]
+            if gone:
+                raise OSError(errno.ENETUNREACH, os.strerror(errno.ENETUNREACH))
+            sent.append(packet)
+            return len(packet)
+
+    monkeypatch.setattr(socket, "socket", Door)
+    send = osc_sender("127.0.0.1:9000")
+    send(b"lost")
+    send(b"lost too")
+    assert [record.getMessage() for record in caplog.records] == [
+        "nothing reaches 127.0.0.1:9000 (Network is unreachable): look at the network"
+    ]
+    gone = False
+    send(b"again")
+    assert sent == [b"again"]
 
 
 def test_without_the_library_the_cure_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

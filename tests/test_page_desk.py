@@ -180,6 +180,36 @@ def test_a_recording_that_nobody_ended_is_written_when_the_run_is_over(
     assert sitting.ask("save") is None, "its bus is closed"
 
 
+def test_who_asks_for_a_recording_that_goes_on_does_not_begin_it_anew(
+    sitting: Sitting, tmp_path: Path
+) -> None:
+    """A second browser does, or one that was loaded again."""
+    sitting.run(1.0)
+    sitting.ask("record")
+    sitting.run(3.0)
+    again = sitting.ask("record")
+    assert again is not None
+    assert again.well
+    sitting.run(2.0)
+    sitting.ask("end_record")
+    assert np.ptp(open_run(saved(tmp_path)).poses["time_s"]) == pytest.approx(5.0)
+
+
+def test_a_recording_that_cannot_be_written_is_not_lost(sitting: Sitting, tmp_path: Path) -> None:
+    sitting.run(1.0)
+    sitting.ask("record")
+    sitting.run(3.0)
+    (tmp_path / SAVED).write_text("in the way")
+    refused = sitting.ask("end_record")
+    assert refused is not None
+    assert not refused.well
+    (tmp_path / SAVED).unlink()
+    written = sitting.ask("end_record")
+    assert written is not None
+    assert written.well
+    assert np.ptp(open_run(saved(tmp_path)).poses["time_s"]) == pytest.approx(3.0)
+
+
 def test_what_cannot_be_saved_is_said(sitting: Sitting, tmp_path: Path) -> None:
     nothing = sitting.ask("save")
     assert nothing is not None

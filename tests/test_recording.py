@@ -17,7 +17,7 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body, Posture, Report
 from common.config.settings import Settings
-from tritrack.store.foxglove_scene import SCENE
+from tritrack.store.foxglove_scene import SCENE, time_of
 from tritrack.store.recording import Head, RecordingError, read_recording, recording_to
 from tritrack.store.runs import RunError
 
@@ -89,6 +89,12 @@ def test_an_mcap_library_finds_a_scene_that_fits_its_schema(folder: Path) -> Non
     assert numbers[0]["joints_m"]["l_toe"] == dict(zip("xyz", toe_m, strict=True))
     assert numbers[0]["confidence"]["l_toe"] == 0.8
     assert numbers[1]["joints_m"] == {}
+
+
+def test_a_moment_before_a_full_second_is_a_time_that_foxglove_reads() -> None:
+    """The 24,000th picture at 24000/1001 a second: its nanoseconds must be below 1e9."""
+    assert time_of(24000 / (24000 / 1001)) == {"sec": 1001, "nsec": 0}
+    assert time_of(-0.02) == {"sec": -1, "nsec": 980_000_000}
 
 
 def test_a_recording_that_is_absent_or_damaged_is_named(folder: Path, tmp_path: Path) -> None:

@@ -67,6 +67,7 @@ def test_a_browser_plays_it_from_its_begin_to_its_end(run: Path, page: LivePage)
         looking = Looking(tab, page.address, SIZES["desk"])
         assert looking.until(f"document.body.dataset.frame === '{last}'")
         assert looking.ask("document.querySelector('#scrub').max") == str(count - 1)
+        assert looking.ask("document.querySelector('#health').hidden"), "it has no processes"
         looking.key("Home", 36)
         assert looking.until(f"document.body.dataset.frame !== '{last}'")
         looking.key(" ", 32)

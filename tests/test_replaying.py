@@ -10,7 +10,8 @@ import pytest
 from local_bus import LocalBus
 from rich.console import Console
 
-from common.bus.messages import Body, Posture, Report, ViewerNumber
+from common.bus.control_messages import Cameras
+from common.bus.messages import Body, Message, Posture, Report, ViewerNumber
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from tritrack.live.free_ports import free_settings
@@ -90,13 +91,44 @@ def test_all_that_was_said_is_said_again_in_its_order(run: Path) -> None:
     few = recording._replace(reports=tuple(each[:9] for each in recording.reports))  # type: ignore[arg-type]
     few = few._replace(bodies=recording.bodies[:9])
     reports, bodies, postures = (bus.subscribe(kind) for kind in (Report, Body, Posture))
-    assert say(few, bus, speed=50.0) == 27
+    assert say(few, bus, speed=50.0) == 28
     heard = bodies.drain()
     assert [msgspec.structs.replace(b, clock_s=0.0) for b in heard] == [
         msgspec.structs.replace(b, clock_s=0.0) for b in few.bodies
     ]
     assert [getattr(r, "viewer", 0) for r in reports.drain()] == [1, 2] * 9
     assert postures.drain() == []
+
+
+def test_the_rig_of_a_recording_is_said_before_the_bodies_that_it_tells(run: Path) -> None:
+    """One that was known before the run, which the page waits for, and one that is found later."""
+    recording, bus = read_recording(run), InOrder()
+    assert recording.head.rig is not None
+    before, after = recording.bodies[:4], recording.bodies[4:8]
+    after = [msgspec.structs.replace(body, calibration=1) for body in after]
+    later = Cameras(rig=recording.head.rig, scale_source="person", calibration=1)
+    say(
+        recording._replace(reports=([], []), bodies=[*before, *after], cameras=[later]),
+        bus,
+        speed=50.0,
+    )
+    told = [type(said).__name__ for said in bus.said if isinstance(said, Cameras | Body)]
+    assert told == ["Cameras", *["Body"] * 4, "Cameras", *["Body"] * 4]
+    rigs = [said for said in bus.said if isinstance(said, Cameras)]
+    assert [rig.scale_source for rig in rigs] == ["calibrated", "person"]
+
+
+class InOrder(LocalBus):
+    """All that is said on it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.said: list[Message] = []
+
+    def publish(self, message: Message) -> None:
+        """Keep it too."""
+        self.said.append(message)
+        super().publish(message)
 
 
 @pytest.mark.slow

@@ -173,9 +173,14 @@ def _trc(run: PastRun, name: str, _scale: Scale) -> Written:
 
 
 def _c3d(run: PastRun, _name: str, _scale: Scale) -> Written:
-    from animator.exchange.marker_files import c3d_bytes
+    from animator.exchange.marker_files import MOST_C3D_FRAMES, c3d_bytes
 
     joints_m, step_s, facts = _markers(run)
+    if len(joints_m) > MOST_C3D_FRAMES:
+        raise ExportError(
+            f"{run.folder} would be {len(joints_m)} frames, and c3d has room for {MOST_C3D_FRAMES}:"
+            " export it to trc, which has for all"
+        )
     return Written(c3d_bytes(joints_m, step_s), facts)
 
 

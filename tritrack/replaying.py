@@ -2,7 +2,7 @@
 
 import threading
 import time
-from collections import defaultdict
+from collections import defaultdict, deque
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -147,18 +147,32 @@ def replay_on_bus(
 
 
 def say(recording: Recording, bus: Bus, speed: float) -> int:
-    """Publish all messages at their pace; how many."""
-    for told in recording.cameras:
-        bus.publish(told)
+    """Publish all messages at their pace, each rig before the bodies that it tells; how many."""
+    rigs = deque(_rigs(recording))
     moments: list[Moment] = [*recording.reports[0], *recording.reports[1]]
     moments += [*recording.bodies, *recording.postures]
     moments.sort(key=lambda message: message.captured_s)  # stable: reports, body, posture
     begin_s, stop = time.monotonic(), threading.Event()
     first_s = moments[0].captured_s if moments else 0.0
+    said = calibration = 0
     for message in moments:
         wait_until(begin_s + (message.captured_s - first_s) / speed, stop)
+        if isinstance(message, Body):
+            calibration = message.calibration
+        while rigs and rigs[0].calibration <= calibration:
+            bus.publish(rigs.popleft())
+            said += 1
         bus.publish(_now(message))
-    return len(recording.cameras) + len(moments)
+        said += 1
+    return said
+
+
+def _rigs(recording: Recording) -> list[Cameras]:
+    """The rigs of a run in their order; one that was known before it is in the head alone."""
+    head, told = recording.head, recording.cameras
+    if head.rig is None or any(cameras.calibration == 0 for cameras in told):
+        return told
+    return [Cameras(rig=head.rig, scale_source=head.scale_source or "calibrated"), *told]
 
 
 def _now(message: Moment) -> Message:

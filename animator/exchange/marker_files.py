@@ -13,6 +13,10 @@ from common.body.body import Vector
 from common.body.extremities import ALL_JOINT_NAMES
 
 MM_IN_M: Final = 1000.0
+MOST_C3D_FRAMES: Final = 65_535
+"""The format counts them in 16 bits: programs read no more, and say nothing of the others."""
+INVALID: Final = -1.0
+"""Residual of a point that was not seen, by which programs know it."""
 TO_FORWARD_X: Final = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
 """From a run's axes (+x left of who faces camera 1, +y up, +z towards it) to OpenSim's (+x forward,
 +y up, +z right): a quarter turn about the vertical."""
@@ -59,8 +63,8 @@ def c3d_bytes(joints_m: Joints, step_s: float) -> bytes:
     """A C3D file: the joints as points of the same names, mm, OpenSim's axes.
 
     Args:
-        joints_m: (n, 15, 3) or (n, 22, 3) in even steps; NaN, an invalid point in the file, where
-            nothing was seen.
+        joints_m: (n, 15, 3) or (n, 22, 3) in even steps, at most MOST_C3D_FRAMES; NaN, an invalid
+            point in the file, where nothing was seen.
         step_s: Seconds a frame.
 
     Raises:
@@ -78,6 +82,11 @@ def c3d_bytes(joints_m: Joints, step_s: float) -> bytes:
     content["parameters"]["POINT"]["LABELS"]["value"] = list(ALL_JOINT_NAMES[: joints_m.shape[1]])
     content["parameters"]["POINT"]["UNITS"]["value"] = ["mm"]
     content["data"]["points"] = points
+    unseen = np.isnan(points[:1])
+    content["data"]["meta_points"] = {
+        "residuals": np.where(unseen, INVALID, 0.0),
+        "camera_masks": np.zeros((7, *points.shape[1:]), np.bool_),
+    }
     with tempfile.TemporaryDirectory() as folder:  # it writes to paths alone
         path = Path(folder) / "points.c3d"
         content.write(str(path))

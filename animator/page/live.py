@@ -91,8 +91,14 @@ class LivePage:
         self._tell(ShownHealth(sorted(pulses, key=lambda each: each.process)))
 
     def answer(self, answer: Answer) -> None:
-        """Tell what became of a wish."""
-        self._server.tell(msgspec.json.encode(Told(answer.what, answer.well, answer.text)))
+        """Tell what became of a wish; who comes later is told that a recording goes on."""
+        said = msgspec.json.encode(Told(answer.what, answer.well, answer.text))
+        with self._lock:
+            if answer.well and answer.what == "record":
+                self._last[Told] = said
+            elif answer.well and answer.what == "end_record":
+                self._last.pop(Told, None)
+        self._server.tell(said)
 
     def end(self, facts: dict[str, Any]) -> None:
         """The run is over: the page becomes its player."""

@@ -126,13 +126,18 @@ def open_client(
     until_s = time.monotonic() + give_up_s
     session = _reach(settings, part, room, until_s, stop or threading.Event())
     if session is None:
-        keys = f", or look at the keys: tritrack doctor --keys {settings.keys}"
-        raise BusError(
-            f"nobody answers at {settings.endpoint} after {give_up_s:g} s: start the integrator "
-            f"first, or set [bus] endpoint to where it listens{keys if settings.keys else ''}"
-        )
+        raise unanswered(settings, give_up_s)
     with _bus(session, room, settings.session) as bus:
         yield bus
+
+
+def unanswered(settings: BusSettings, waited_s: float) -> BusError:
+    """What is said where the hub did not answer for so long."""
+    keys = f", or look at the keys: tritrack doctor --keys {settings.keys}"
+    return BusError(
+        f"nobody answers at {settings.endpoint} after {waited_s:g} s: start the integrator "
+        f"first, or set [bus] endpoint to where it listens{keys if settings.keys else ''}"
+    )
 
 
 @contextmanager

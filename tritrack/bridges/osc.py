@@ -1,11 +1,14 @@
 """A body as Open Sound Control: joints and angles by name, one bundle a body."""
 
+import logging
 import socket
 from collections.abc import Callable
 from typing import Any
 
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES
 from common.bus.messages import Body
+
+log = logging.getLogger(__name__)
 
 
 class BridgeError(RuntimeError):
@@ -40,6 +43,9 @@ def message(address: str, values: list[Any], types: str) -> Any:
 def osc_sender(to: str) -> Callable[[bytes], None]:
     """What sends packets to `HOST:PORT` by UDP; nobody need listen there.
 
+    The host may be a network's broadcast address. What a network does not take that went away is
+    not sent, and that is said once, until it is back.
+
     Raises:
         BridgeError: When that is no address, or python-osc is not installed.
     """
@@ -51,12 +57,22 @@ def osc_sender(to: str) -> Callable[[bytes], None]:
     try:
         if not 0 < int(port) < 1 << 16:
             raise ValueError(port)
-        family, kind, *_, address = socket.getaddrinfo(host, int(port), type=socket.SOCK_DGRAM)[0]
+        found = socket.getaddrinfo(host.strip("[]"), int(port), type=socket.SOCK_DGRAM)
+        family, kind, *_, address = found[0]
     except (OSError, ValueError) as error:
         raise BridgeError(f"--to {to} is no address: write it like 127.0.0.1:9000") from error
-    door = socket.socket(family, kind)
+    door, failing = socket.socket(family, kind), False
+    door.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
 
     def send(packet: bytes) -> None:
-        door.sendto(packet, address)
+        nonlocal failing
+        try:
+            door.sendto(packet, address)
+        except OSError as error:
+            if not failing:
+                log.warning("nothing reaches %s (%s): look at the network", to, error.strerror)
+            failing = True
+        else:
+            failing = False
 
     return send

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from typing import Any, Final, NamedTuple
 
-from common.bus.bus import Bus, BusError, open_client
+from common.bus.bus import Bus, BusError, open_client, unanswered
 from common.bus.control_messages import Cameras, Pulse
 from common.bus.inbox import Inbox
 from common.bus.messages import Body, Message, Posture, Report
@@ -210,7 +210,7 @@ def _client(
                 bus = door.enter_context(
                     open_client(settings.bus, settings.room, TRY_S, "supervisor")
                 )
-            except BusError:
+            except BusError as error:
                 if time.monotonic() > until_s:
-                    raise
+                    raise unanswered(settings.bus, READY_S) from error
         yield bus

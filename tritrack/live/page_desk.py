@@ -100,7 +100,8 @@ class PageDesk:
                 self.stopped = True
                 stop.set()
             elif command.what == "record":
-                self._began_s = _newest_s(heard.bodies)
+                if self._began_s is None:  # another browser may have begun it
+                    self._began_s = _newest_s(heard.bodies)
                 self._say("record", True, "recording")
             elif command.what == "save":
                 first_s = _newest_s(heard.bodies) - LAST_S
@@ -116,10 +117,11 @@ class PageDesk:
         self._bus = self._commands = None
 
     def _finish(self, heard: Any) -> None:
-        """Write what was recorded, if anything is."""
-        if self._began_s is not None:
-            first_s, self._began_s = self._began_s, None
-            self._write("end_record", first_s, "recording", heard)
+        """Write what is recorded, if anything is; what cannot be written is recorded further."""
+        if self._began_s is not None and self._write(
+            "end_record", self._began_s, "recording", heard
+        ):
+            self._began_s = None
 
     def end(self, facts: dict[str, Any], stop: threading.Event, say: Callable[[], None]) -> None:
         """Tell the page that the run is over, and wait until nobody looks at it any more.
@@ -156,14 +158,15 @@ class PageDesk:
                 self._write("save", self._seen_s - LAST_S, "lost", heard)
             self._followed = body.status in FOLLOWED
 
-    def _write(self, what: Wish, first_s: float, name: str, heard: Any) -> None:
-        """A part of the run as a run folder of its own, what has left the memory too."""
+    def _write(self, what: Wish, first_s: float, name: str, heard: Any) -> bool:
+        """A part of the run as a run folder of its own, what has left the memory too; whether it
+        is there."""
         bodies = WholeRun(heard.bodies, Journalled(self._out, Body), first_s)
         postures = WholeRun(heard.postures, Journalled(self._out, Posture), first_s)
         began_s = next((body.captured_s for body in bodies), None)
         if began_s is None:
             self._say(what, False, "nothing was tracked yet")
-            return
+            return False
         last_s = _newest_s(heard.bodies)
         folder = self._out / SAVED / f"{name}_to_{last_s:.1f}_s"
         try:
@@ -172,8 +175,9 @@ class PageDesk:
             write_postures(folder, postures, own.posture)
         except RunError as error:
             self._say(what, False, str(error)[:400])
-            return
+            return False
         self._say(what, True, f"{last_s - began_s:.1f} s written to {folder}"[:400])
+        return True
 
     def _say(self, what: Wish, well: bool, text: str) -> None:
         if self._bus is not None:

@@ -133,8 +133,8 @@ def schemas() -> dict[str, bytes]:
 
 def time_of(seconds: float) -> dict[str, int]:
     """Seconds as Foxglove writes a time."""
-    whole = int(seconds)
-    return {"sec": whole, "nsec": round((seconds - whole) * 1e9)}
+    whole, nanoseconds = divmod(round(seconds * 1e9), 1_000_000_000)
+    return {"sec": whole, "nsec": nanoseconds}
 
 
 def _object(properties: dict[str, Any]) -> dict[str, Any]:

@@ -55,6 +55,7 @@ const heard = {
     history.follow();
     actions.end();
     at("live").hidden = true;
+    at("health").hidden = !at("processes").children.length; // a recording has no processes
     showEnding(told.facts, history.frames);
     showTold(true, "");
     refresh();
@@ -142,7 +143,7 @@ function chooser(angles) {
 function keys(frame) {
   plot.chosen.forEach((angle, i) => {
     const value = frame?.angles[angle];
-    at("keys").children[i].firstElementChild.textContent = value === undefined ? "–" : `${value.toFixed(0)}°`;
+    at("keys").children[i].firstElementChild.textContent = value === undefined ? "–" : `${Math.round(value) || 0}°`; // no -0
   });
 }
 
