@@ -3,7 +3,7 @@
 from typing import Final
 
 from common.bus.messages import Report
-from common.rig.camera import Camera, Rig, paper_rig
+from common.rig.camera import Rig, paper_rig
 
 FOCAL_SHARE: Final = 1.25
 """Focal length over the picture's width: a lens of 44 degrees, common for room cameras."""
@@ -33,21 +33,6 @@ def assumed_rig(first: Report, second: Report, stature_m: float) -> Rig:
         (distance_1, distance_2),
         (height_1, height_2),
     )
-
-
-def assumed_camera(
-    size: tuple[int, int], sole_row: float, tall_px: float, stature_m: float
-) -> Camera:
-    """The same for one view alone: camera 1 of such a rig.
-
-    Args:
-        size: Width and height of the picture.
-        sole_row: Row where the person stands.
-        tall_px: How tall the person is there, upright.
-        stature_m: What is assumed of the person.
-    """
-    focal, distance, height = _from_a_standing_person(size, sole_row, tall_px, stature_m)
-    return paper_rig(size, (focal, focal), (distance, distance), (height, height)).cameras[0]
 
 
 def _from_a_standing_person(

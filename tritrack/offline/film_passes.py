@@ -26,7 +26,8 @@ from integrator import merge, merge_state
 from integrator.merge_state import Start, State
 from integrator.opening_posture import Opening
 from integrator.pairing import Pair
-from integrator.rig.assumed_rig import assumed_camera
+from integrator.rig.tilted_camera import camera_of_sights
+from integrator.selfcalibration.joint_tracks import is_upright
 from integrator.single.sight import Annotations
 from tritrack.offline.film_smoothing import calmed
 from tritrack.offline.frame_pairs import share_of
@@ -164,20 +165,17 @@ def _begun(reports: Sequence[Report], film: FilmFacts) -> tuple[track.State, Sta
     """A viewer and an integrator that know what the first pass tells of the scale (T20)."""
     settings, camera = film.settings, film.camera
     size = (reports[0].width, reports[0].height)
-    seen = [
-        (standing_rows(unpack(report)), not report.cut)
-        for report in reports
-        if report.box is not None
-    ]
-    standing = standing_of([rows for rows, _ in seen], [whole for _, whole in seen])
+    seen = [report for report in reports if report.box is not None]
+    rows = {report.frame: standing_rows(unpack(report)) for report in seen}
+    standing = standing_of([*rows.values()], [not report.cut for report in seen])
     nothing = np.zeros((size[1], size[0], 3), np.uint8)
     viewer = track.init(_setup(film), learn([nothing]), standing=standing)
     stature_m, opening = settings.body.stature_m, Opening()
     if camera is None:
-        sole_row, tall_px = float(size[1]), float(size[1])
-        if standing is not None:
-            sole_row, tall_px = standing.sole_row, standing.tall_px
-        camera = assumed_camera(size, sole_row, tall_px, stature_m)
+        whole = [report for report in seen if not report.cut] or seen
+        stood = [report for report in whole if report.landmarks and is_upright(report.landmarks)]
+        sights = [rows[report.frame] for report in stood or whole] or [(0.0, float(size[1]))]
+        camera = camera_of_sights(size, np.array(sights), stature_m)
         opening = Opening(bdp=thesis_bdp(stature_m))
     rig = Rig(*size, (camera, camera))
     source: ScaleSource = "assumed" if film.camera is None else "calibrated"

@@ -1,0 +1,93 @@
+"""One camera without a calibration: how far it looks down, and how high it hangs, by whom it saw.
+
+Somebody upright who comes nearer along the floor is taller in the picture, and by how much tells
+where its horizon is. The thesis takes it for the middle of the picture (3.1.5), which is true of a
+level camera alone: of one that hangs under the ceiling it has people lean, and its floor above it.
+"""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import Vector
+from common.rig.camera import Camera, as_matrix, as_row
+from integrator.rig.assumed_rig import FOCAL_SHARE
+
+TILTS_DEG: Final = np.arange(-20.0, 51.0)
+"""Downwards; those that are looked at."""
+HEIGHTS_M: Final = np.geomspace(0.25, 5.0, 76)
+"""Of the camera above the floor; those that are looked at."""
+NEAR: Final = 0.06
+"""Share of the camera's height by which an upright person's own sight is off. Like those that
+follow chosen on made-up people before cameras that hang anywhere: seeds 700 to 735, tilts off by 9
+degrees, 16 where they were taken for level."""
+SIGHTS: Final = (120.0, 30.0)
+"""What a film's sights weigh beside what is known beforehand: by the square of how far along the
+floor the person was seen, rows by their height, and at most. Feet rise with each step, too."""
+FARTHEST: Final = 0.05
+"""Quantile of the rows in which they stood farthest, and nearest."""
+LEVEL_DEG: Final = 15.0
+"""Most cameras are level within that."""
+USUAL_M: Final = (0.8, 2.5)
+"""Most cameras stand or hang so high."""
+UNUSUAL: Final = 0.25
+"""How fast other heights become unlikely, as a share of them."""
+MOST_SIGHTS: Final = 300
+"""So many tell it."""
+FARTHEST_M: Final = 12.0
+"""Nobody stands farther away."""
+LOWEST_M: Final = 1e-3
+"""Instead of a height of a camera under the floor."""
+
+
+def camera_of_sights(
+    size: tuple[int, int], sights: NDArray[np.float64], stature_m: float
+) -> Camera:
+    """The camera that looks along -z at the origin, before which the person stood mostly.
+
+    Args:
+        size: Width and height of the picture.
+        sights: (n, 2) rows of the crown and below the feet of the person, wholly in view; those in
+            which they did not stand upright are left out by themselves as long as they are few.
+        stature_m: What is assumed of the person.
+    """
+    focal = FOCAL_SHARE * size[0]
+    some = sights[:: max(1, len(sights) // MOST_SIGHTS)]
+    down = np.arctan((some - size[1] / 2) / focal)
+    tilt, height_m = _likeliest(down, _weight(some), stature_m)
+    steep = float(np.tan(tilt + np.median(down[:, 1])))
+    far_m = height_m / max(steep, height_m / FARTHEST_M)
+    R = np.array([[1, 0, 0], [0, -np.cos(tilt), np.sin(tilt)], [0, -np.sin(tilt), -np.cos(tilt)]])
+    K = ((focal, 0.0, size[0] / 2), (0.0, focal, size[1] / 2), (0.0, 0.0, 1.0))
+    return Camera("cam1", K, as_matrix(R), as_row(-R @ np.array([0.0, height_m, far_m])))
+
+
+def _weight(sights: NDArray[np.float64]) -> float:
+    """How much sights tell of a tilt: nothing where the person stood at one place."""
+    farthest, nearest = np.quantile(sights[:, 1], (FARTHEST, 1.0 - FARTHEST))
+    share = (nearest - farthest) / np.median(sights[:, 1] - sights[:, 0])
+    return float(min(SIGHTS[0] * share**2, SIGHTS[1]))
+
+
+def _likeliest(down: Vector, weight: float, stature_m: float) -> tuple[float, float]:
+    """Tilt of a camera, radians downwards, and its height, metres.
+
+    Args:
+        down: (n, 2) angles of crowns and soles under the middle of the picture.
+        weight: Of these.
+        stature_m: As above.
+    """
+    steep = np.tan(np.radians(TILTS_DEG)[:, None, None] + down)
+    crowns, soles = steep[..., 0], steep[..., 1]
+    stands = (soles > 0.0) & (soles > crowns)
+    seen_m = np.where(stands, stature_m * soles / np.where(stands, soles - crowns, 1.0), LOWEST_M)
+    off = np.log(seen_m[:, None] / HEIGHTS_M[:, None]) / NEAR
+    unlike = (off**2 / (1.0 + off**2)).mean(axis=2)
+    heights_m = HEIGHTS_M[unlike.argmin(axis=1)]
+    unusual = np.maximum(np.log(USUAL_M[0] / heights_m), np.log(heights_m / USUAL_M[1])) / UNUSUAL
+    doubt = weight * unlike.min(axis=1) + 0.5 * np.maximum(unusual, 0.0) ** 2
+    doubt += 0.5 * (TILTS_DEG / LEVEL_DEG) ** 2
+    doubt[stands.mean(axis=1) < 0.5] = np.inf
+    best = int(doubt.argmin())
+    return float(np.radians(TILTS_DEG[best])), float(heights_m[best])
