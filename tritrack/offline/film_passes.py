@@ -11,6 +11,7 @@ from typing import Final, NamedTuple
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from common.body.proportions import thesis_bdp
 from common.bus.messages import Body, Guide, Report, ScaleSource, ViewerNumber
@@ -166,16 +167,13 @@ def _begun(reports: Sequence[Report], film: FilmFacts) -> tuple[track.State, Sta
     settings, camera = film.settings, film.camera
     size = (reports[0].width, reports[0].height)
     seen = [report for report in reports if report.box is not None]
-    rows = {report.frame: standing_rows(unpack(report)) for report in seen}
-    standing = standing_of([*rows.values()], [not report.cut for report in seen])
+    rows = [standing_rows(unpack(report)) for report in seen]
+    standing = standing_of(rows, [not report.cut for report in seen])
     nothing = np.zeros((size[1], size[0], 3), np.uint8)
     viewer = track.init(_setup(film), learn([nothing]), standing=standing)
     stature_m, opening = settings.body.stature_m, Opening()
     if camera is None:
-        whole = [report for report in seen if not report.cut] or seen
-        stood = [report for report in whole if report.landmarks and is_upright(report.landmarks)]
-        sights = [rows[report.frame] for report in stood or whole] or [(0.0, float(size[1]))]
-        camera = camera_of_sights(size, np.array(sights), stature_m)
+        camera = camera_of_sights(size, _sights(seen, rows, size), stature_m)
         opening = Opening(bdp=thesis_bdp(stature_m))
     rig = Rig(*size, (camera, camera))
     source: ScaleSource = "assumed" if film.camera is None else "calibrated"
@@ -183,6 +181,20 @@ def _begun(reports: Sequence[Report], film: FilmFacts) -> tuple[track.State, Sta
         rig, film.period_s, settings, film.method, Start(True, source, opening)
     )
     return viewer, state
+
+
+def _sights(
+    seen: Sequence[Report], rows: Sequence[tuple[float, float]], size: tuple[int, int]
+) -> NDArray[np.float64]:
+    """Rows of those silhouettes by which a camera is told, (n, 2): the whole ones of somebody
+    upright, or whatever there is."""
+    whole = [n for n, report in enumerate(seen) if not report.cut] or range(len(seen))
+    upright = [n for n in whole if _is_upright(seen[n])]
+    return np.array([rows[n] for n in upright or whole] or [(0.0, float(size[1]))])
+
+
+def _is_upright(report: Report) -> bool:
+    return report.landmarks is not None and is_upright(report.landmarks)
 
 
 def _setup(film: FilmFacts) -> track.Setup:
