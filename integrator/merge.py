@@ -22,6 +22,7 @@ from integrator.paper import fused_pose
 from integrator.pose import joint_limits, smoothing
 from integrator.rig.assumed_rig import assumed_rig
 from integrator.rig.body_position import facing_of
+from integrator.rig.tilted_camera import assumed_rig_of_one
 from integrator.rig.undistortion import undistorted_pair, undistorted_rig
 from integrator.rig_gate import moved_cameras, rig_agreement
 from integrator.single import single_view
@@ -108,7 +109,11 @@ def _with_rig(state: State, seen: Seen) -> State:
     whole = [report for report in seen if report is not None and not report.cut]
     if state.rig is not None or not whole:
         return state
-    rig = assumed_rig(whole[0], whole[-1], state.settings.body.stature_m)
+    stature_m = state.settings.body.stature_m
+    if state.alone:
+        rig = assumed_rig_of_one(whole[0], stature_m)
+    else:
+        rig = assumed_rig(whole[0], whole[-1], stature_m)
     return state._replace(rig=rig, stands=moved_cameras.told_by(state.stands, None, rig))
 
 

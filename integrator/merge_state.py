@@ -50,6 +50,8 @@ class State(NamedTuple):
     scale_source: ScaleSource
     proposes: bool
     """The network proposes poses; otherwise the viewers search for angles."""
+    alone: bool
+    """One viewer is all that the run has."""
     smooth: smoothing.State
     opening: Opening = Opening()
     found: Posed | None = None
@@ -111,4 +113,5 @@ def init(
     source = start.source or ("assumed" if rig is None else "calibrated")
     proposes = method.proposals and (start.alone or start.by_person or source != "assumed")
     smooth = smoothing.init(len(ANGLE_NAMES), period_s)
-    return State(settings, method, rig, source, proposes, smooth, start.opening, times=start.times)
+    known = (rig, source, proposes, start.alone)
+    return State(settings, method, *known, smooth, start.opening, times=start.times)

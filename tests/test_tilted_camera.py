@@ -1,14 +1,18 @@
 """A camera that hangs, told by people who walk before it, held against the camera that saw them."""
 
+import msgspec
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from staging import report
 
+from common.bus.messages import Box
 from common.rig.camera import Camera, arrays_of, as_matrix, as_row, centre, project
+from integrator.proposal.silhouette_window import standing_m
 from integrator.rig.assumed_rig import FOCAL_SHARE
-from integrator.rig.tilted_camera import camera_of_sights
+from integrator.rig.tilted_camera import assumed_rig_of_one, camera_of_sights
 
 SIZE = (320, 240)
 STATURE_M = 1.75
@@ -84,3 +88,14 @@ def test_whatever_was_seen_there_is_a_camera_before_it_above_the_floor(
     assert np.isfinite(centre(found)).all()
     assert centre(found)[1] > 0.0
     assert 0.0 < centre(found)[2] < 12.001
+
+
+def test_a_live_run_of_one_view_begins_with_a_camera_above_the_floor() -> None:
+    """Who comes in far away, below a camera under the ceiling, stood 1 m before it."""
+    seen = msgspec.structs.replace(report(1), box=Box(70, 80, 5, 40))
+    camera = assumed_rig_of_one(seen, STATURE_M).cameras[0]
+    assert centre(camera)[1] > 0.5
+    mask = np.zeros((120, 160), np.bool_)
+    mask[5:41, 70:80] = True
+    assert standing_m(mask, camera)[2] == pytest.approx(0.0, abs=1.0)
+    assert centre(camera)[2] > 4.0
