@@ -18,7 +18,7 @@ from common.bus.rate import Pace
 from common.config.settings import Settings
 from common.method import METHODS
 from common.settled import settle
-from recognizer import events, spotting
+from recognizer import events, model_rate, spotting
 from recognizer.features import ROW_NAMES, rows
 from recognizer.model_file import ModelError, load
 from recognizer.postures import DensityModel, PostureModel
@@ -43,8 +43,11 @@ class State(NamedTuple):
     window: spotting.State
     events: events.State | None
     """None where the model is the paper's: it knows nothing but postures."""
+    judged: spotting.Judgement = spotting.NOTHING
+    doing: events.Doing = events.NOTHING
     frames: tuple[tuple[int, float], ...] = ()
-    """Number and time of each body so far that a performance can reach."""
+    """Number and time of each of the models' frames so far that a performance can reach."""
+    rate: model_rate.State = model_rate.State()
 
 
 def init(model: PostureModel, window_frames: int) -> State:
@@ -54,21 +57,24 @@ def init(model: PostureModel, window_frames: int) -> State:
 
 
 def step(state: State, body: Body) -> tuple[State, Posture]:
-    """One body more: the judgement of the window that ends with it, and what is under way."""
+    """One body more: the judgement of the window that ends with it, and what is under way.
+
+    Models count their own frames, 15 a second: a body of a faster camera may say nothing new.
+    """
     if state.frames and body.captured_s - state.frames[-1][1] > GAP_S:
         state = _after_a_gap(state)
-    row = row_of(body)
-    window, judged = spotting.step(state.window, row)
-    network, doing = state.events, events.NOTHING
-    if network is not None:
-        network, doing = events.step(network, row)
-    frames = (*state.frames, (body.frame, body.captured_s))[-REACH_FRAMES:]
-    oldest = window.next_frame - len(frames)
+    rate, due = model_rate.step(state.rate, body.captured_s)
+    state, row, event = state._replace(rate=rate), row_of(body), None
+    for _ in range(due):
+        state = _with_row(state, body, row)
+        event = event or state.doing.event
+    judged, doing, frames = state.judged, state.doing, state.frames
+    oldest = state.window.next_frame - len(frames)
 
     def at(step_number: int) -> tuple[int, float]:
         return frames[max(step_number - oldest, 0)]
 
-    return State(window, network, frames), Posture(
+    return state, Posture(
         frame=body.frame,
         captured_s=body.captured_s,
         clock_s=body.clock_s,
@@ -77,8 +83,18 @@ def step(state: State, body: Body) -> tuple[State, Posture]:
         segment=(at(judged.first)[0], at(judged.last)[0]),
         doing=doing.name,
         times=doing.times,
-        event=doing.event and performance(doing.event, at(doing.event.first), at(doing.event.last)),
+        event=event and performance(event, at(event.first), at(event.last)),
     )
+
+
+def _with_row(state: State, body: Body, row: NDArray[np.float64] | None) -> State:
+    """What a body shows, as one of the models' frames."""
+    window, judged = spotting.step(state.window, row)
+    network, doing = state.events, events.NOTHING
+    if network is not None:
+        network, doing = events.step(network, row)
+    frames = (*state.frames, (body.frame, body.captured_s))[-REACH_FRAMES:]
+    return State(window, network, judged, doing, frames, state.rate)
 
 
 def _after_a_gap(state: State) -> State:

@@ -57,6 +57,9 @@ class Judgement(NamedTuple):
     the window is empty."""
 
 
+NOTHING: Final = Judgement("", {}, 0, 0)
+
+
 def init(model: PostureModel | None, window_frames: int) -> State:
     """Nothing seen yet."""
     nothing = np.empty((0, len(ROW_NAMES)))

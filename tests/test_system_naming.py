@@ -77,3 +77,16 @@ def test_what_comes_after_a_gap_in_time_is_another_motion(
     first = told([*bodies[: cut + 1], *later])[cut + 1]
     assert bool(first.name) == goes_on
     assert (first.segment[0] < first.frame) == goes_on
+
+
+def test_a_camera_of_60_frames_a_second_shows_no_slow_motion(clip: Path) -> None:
+    """P1: models count their own frames, 15 a second."""
+    bodies = tracked(clip)
+    quick = [
+        msgspec.structs.replace(body, frame=4 * body.frame + n, captured_s=body.captured_s + n / 60)
+        for body in bodies
+        for n in range(4)
+    ]
+    slow, fast = told(bodies), told(quick)
+    assert fast[-1].name == slow[-1].name == "raise_right_lateral"
+    assert (fast[-1].doing, fast[-1].times) == (slow[-1].doing, slow[-1].times)

@@ -19,7 +19,10 @@ from tritrack.store.past_run import MAX_BYTES
 from tritrack.store.pose_arrays import poses
 from tritrack.unfinished.run_identity import files_of
 
-KEPT: Final = ("frame", "angles_deg", "joints_m", "joints_px", "confidence", "status")
+KEPT: Final = (
+    *("frame", "time_s", "angles_deg", "joints_m"),
+    *("joints_px", "confidence", "status"),
+)
 """Arrays of `poses.npz` that recognisers and pictures are made of."""
 
 

@@ -9,6 +9,7 @@ from rich.console import Console
 
 from common.bus.messages import Body
 from common.config.settings import Settings
+from recognizer import model_rate
 from recognizer.__main__ import MOVING
 from recognizer.features import Rows, rows
 from recognizer.learning_error import LearningError
@@ -18,7 +19,7 @@ from tritrack.live.launch import Heard
 from tritrack.live.session import live
 from tritrack.store.pose_arrays import poses
 from tritrack.training import coach
-from tritrack.training.coach import STAND, State, look_at
+from tritrack.training.coach import STAND, Said, State, look_at
 from tritrack.training.teaching import kept, model_to_teach
 from tritrack.training.training import Plan, TrainingError
 
@@ -34,6 +35,7 @@ class Teaching:
         self._posture, self._known, self._console = posture, known, console
         self._state = State(posture, count_s)
         self._last_s = -np.inf
+        self._rate = model_rate.State()
         self._takes: list[Rows] = []
         self._done = 0
         self.lesson: Lesson | None = None
@@ -54,7 +56,12 @@ class Teaching:
     def _look(self, body: Body) -> None:
         arrays = poses([body])
         (row,) = rows(arrays["angles_deg"], arrays["joints_m"])
-        self._state, said = coach.step(self._state, look_at(body, row, MOVING))
+        self._rate, due = model_rate.step(self._rate, body.captured_s)
+        for _ in range(due):
+            self._state, said = coach.step(self._state, look_at(body, row, MOVING))
+            self._heed(said)
+
+    def _heed(self, said: Said) -> None:
         if said.word:
             self._say(said.word)
         if said.take is not None:

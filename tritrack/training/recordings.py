@@ -18,6 +18,7 @@ from common.video.decoding import DecoderDied, Undecodable
 from recognizer.__main__ import MOVING
 from recognizer.evaluation import Recording
 from recognizer.features import ROW_NAMES, rows
+from recognizer.model_rate import at_model_rate
 from recognizer.spotting import motion_of
 from tritrack.offline import clip_cache
 from tritrack.offline.clip_cache import CachedRun
@@ -201,6 +202,6 @@ def _recording(path: Path, kept: CachedRun) -> Recording:
     tracked = rows(arrays["angles_deg"], arrays["joints_m"])
     moving = np.where(np.isin(arrays["status"], MOVING)[:, None], tracked, np.nan)
     window = RecognizerSettings().window_frames
-    motion = motion_of(moving, window)
+    motion = motion_of(at_model_rate(arrays["time_s"], moving), window)
     facts = kept.facts
     return Recording(facts.get("performer", ""), facts["posture_meant"], motion, str(path))
