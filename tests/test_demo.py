@@ -14,6 +14,7 @@ pytest.importorskip("websockets", reason="the page is an extra: install tritrack
 from visiting import visited
 
 from tritrack import demo
+from tritrack.store.other_run import OtherRun
 
 
 def test_a_demo_that_names_another_posture_has_failed(
@@ -26,6 +27,19 @@ def test_a_demo_that_names_another_posture_has_failed(
     monkeypatch.setattr(demo, "live", lambda *_: {"posture": ""})
     with pytest.raises(demo.DemoFailed, match="named nothing"):
         demo.run_demo(tmp_path, False, Console(quiet=True))
+
+
+def test_a_demo_takes_the_place_of_demos_alone(tmp_path: Path) -> None:
+    def holds(film: str) -> None:
+        told = {"run_of": {"command": "live", "footage": [film]}}
+        (tmp_path / "summary.json").write_text(json.dumps(told))
+
+    demo.refuse_other_than_demo(tmp_path)
+    holds(f"/tmp/tritrack-demo-1/s90001_t1_05_{demo.POSTURE}/cam1.avi")
+    demo.refuse_other_than_demo(tmp_path)
+    holds("/films/monday/cam1.avi")
+    with pytest.raises(OtherRun, match=r"monday.*--force"):
+        demo.refuse_other_than_demo(tmp_path)
 
 
 @pytest.mark.slow

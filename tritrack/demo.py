@@ -15,6 +15,7 @@ from synth.picture.exposure import default_rig
 from synth.write import Filming, clip_name, write_clip, write_rig
 from tritrack.live.free_ports import free_settings
 from tritrack.live.session import live
+from tritrack.store.other_run import refuse_other, run_of, run_told
 
 PERFORMER_SEED: Final = 90_001
 """Of a person that no model was trained on: the one in the package knows persons 1200 to 1211."""
@@ -43,6 +44,18 @@ def made_clip(folder: Path) -> Path:
     )
     write_rig(folder / "calibration.json", rig)
     return clip
+
+
+def refuse_other_than_demo(out: Path) -> None:
+    """See that no run but that of a demo, whose clip is made anew each time, is lost.
+
+    Raises:
+        OtherRun: When one would be.
+    """
+    clip = clip_name(person(PERFORMER_SEED), POSTURE, TAKE)
+    before = run_told(out)
+    if before is not None and {Path(film).parent.name for film in before.footage} != {clip}:
+        refuse_other(out, run_of("demo", [clip]))
 
 
 def run_demo(out: Path, page: bool, console: Console, wait: bool = True) -> dict[str, Any]:

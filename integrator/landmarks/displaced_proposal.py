@@ -77,7 +77,7 @@ def _displaced(
     away_m = proposed_m - rays.centres_m[:, None]
     off_m = away_m - along * (along * away_m).sum(axis=2, keepdims=True)
     aside = moves - along[..., None] * (along[..., None, :] @ moves)
-    spreads_m = stature_m * (SHOWN.right + SHOWN.unsure * (1.0 - rays.confidence))
+    spreads_m = stature_m * SHOWN.right_of(rays.confidence)
     found = np.zeros(4)
     for _ in range(ROUNDS):
         squares = ((off_m + aside @ found) ** 2).sum(axis=2)

@@ -4,6 +4,7 @@ import math
 from typing import Any, Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common.compiled import compiled
 
@@ -25,6 +26,10 @@ class Spread(NamedTuple):
     """How often what is not right is roughly right."""
     far: float
     """So many standard deviations off, what is roughly right is no likelier than anything else."""
+
+    def right_of(self, confidence: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Standard deviation of what is right, by how sure its witness is."""
+        return self.right + self.unsure * (1.0 - confidence)
 
 
 PROPOSED: Final = Spread(right=0.014, unsure=0.061, roughly=0.09, often=0.95, far=8)

@@ -139,12 +139,12 @@ def _weighed(
     found: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] = _modes(
         proposed_m,
         _share(confidence, PROPOSED_RIGHT),
-        np.hypot(PROPOSED.right + PROPOSED.unsure * (1.0 - confidence), wider_m),
+        np.hypot(PROPOSED.right_of(confidence), wider_m),
         np.hypot(PROPOSED.roughly, wider_m),
         rays.centres_m,
         np.stack([rays.directions, rays.others], axis=2),
         np.stack([shown, np.minimum(others, MOST - shown)], axis=2),
-        stature_m * (SHOWN.right + SHOWN.unsure * (1.0 - rays.confidence)),
+        stature_m * SHOWN.right_of(rays.confidence),
         stature_m,
     )
     return found

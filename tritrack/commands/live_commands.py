@@ -29,6 +29,7 @@ def demo(
     out: Out = Path("runs/demo"),
     page: Annotated[bool, typer.Option(help="Show it on the live page too.")] = True,
     wait: Wait = True,
+    force: Force = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Run the whole system on a synthetic person.
@@ -39,8 +40,10 @@ def demo(
     """
     if page:
         refuse_without("page", "websockets")
-    from tritrack.demo import run_demo
+    from tritrack.demo import refuse_other_than_demo, run_demo
 
+    if not force:
+        refuse_other_than_demo(out)
     facts = run_demo(out, page, console, wait)
     tell(facts, json_wanted, f"posture: {facts['posture']}; written to {out}")
 
