@@ -1,6 +1,7 @@
 """Recordings: what was said comes back, any MCAP library reads it, Foxglove finds its schemas."""
 
 import json
+import resource
 import shutil
 import sys
 from contextlib import ExitStack
@@ -150,8 +151,24 @@ def test_a_recording_whose_folder_is_taken_away_meanwhile_is_no_fault(tmp_path: 
     keep = doors.enter_context(recording_to(folder, HEAD))
     keep(said()[0])
     shutil.rmtree(folder)
-    with pytest.raises(RunError, match=r"cannot write .*recording.mcap: No such file"):
+    with pytest.raises(RunError, match=r"recording.mcap could not be .* \(No such file"):
         doors.close()
+
+
+def test_a_recording_for_whose_end_there_is_no_room_leaves_it_to_the_results(
+    tmp_path: Path,
+) -> None:
+    folder, doors, before = tmp_path / "run", ExitStack(), resource.getrlimit(resource.RLIMIT_FSIZE)
+    keep = doors.enter_context(recording_to(folder, HEAD))
+    for message in said():
+        keep(message)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1024, before[1]))
+    try:
+        with pytest.raises(RunError, match=r"recording.mcap could not be .* \(File too large\)"):
+            doors.close()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert not list(folder.iterdir())
 
 
 def test_without_the_library_the_cure_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -22,7 +22,7 @@ from common.config.settings import Settings
 from common.rig.camera import Rig
 from integrator.frame_numbers import FrameTimes
 from tritrack.store import foxglove_scene
-from tritrack.store.runs import unwritable, versions
+from tritrack.store.runs import RunError, unwritable, versions
 
 NAME: Final = "recording.mcap"
 TORN: Final = ".recording.*.mcap"
@@ -85,7 +85,7 @@ def recording_to(folder: Path, head: Head) -> Iterator[Keep]:
 
     Raises:
         RecordingError: Without the library mcap.
-        RunError: When the file cannot be written.
+        RunError: When the file cannot be written: it is gone then, what was measured has room.
     """
     library = _library()
     with ExitStack() as doors:
@@ -104,7 +104,12 @@ def recording_to(folder: Path, head: Head) -> Iterator[Keep]:
             writer.finish()
             doors.close()
         except OSError as error:
-            raise unwritable(folder / NAME, error) from error
+            with suppress(OSError):  # it has not taken what was left to be written, nor does it now
+                file.close()
+            raise RunError(
+                f"{folder / NAME} could not be written to its end ({error.strerror}) and is gone, "
+                "so that there is room for what was measured: free some space, and record again"
+            ) from error
 
 
 def read_recording(folder: Path) -> Recording:
