@@ -1,11 +1,17 @@
 """The room's clock from another host: the law of the round trip, held against simulated delays."""
 
+import threading
+import time
+from typing import Any, cast
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.bus.clock import HISTORY, Exchange, Offset, init, step
+from common.bus.bus import Bus
+from common.bus.clock import HISTORY, Exchange, Offset, followed, init, step
+from common.bus.control_messages import ClockAnswer
 
 delays = st.floats(0.0, 5.0)
 
@@ -54,3 +60,39 @@ def test_old_exchanges_are_forgotten_so_that_a_drift_is_followed() -> None:
     later = [exchange(float(n), 2.0, 0.01, 0.01) for n in range(1, HISTORY + 1)]
     assert told([old, *later]).offset_s == pytest.approx(2.0)
     assert told([old, *later[:-1]]).offset_s == pytest.approx(1.0)
+
+
+class Drifting:
+    """A room whose clock gains a tenth of a second in each, and that is away for a while."""
+
+    began_s = time.monotonic()
+    away = threading.Event()
+
+    def ask(self, *_: Any) -> ClockAnswer | None:
+        if self.away.is_set():
+            return None
+        now_s = time.monotonic()
+        return ClockAnswer(now_s=now_s + 5.0 + 0.1 * (now_s - self.began_s), start_s=0.0)
+
+
+def test_a_clock_that_drifts_is_followed_while_a_run_goes_on() -> None:
+    """Where nobody answers, what was known last holds."""
+    room, told = Drifting(), list[float]()
+
+    def true_s() -> float:
+        return 5.0 + 0.1 * (time.monotonic() - room.began_s)
+
+    with followed(cast(Bus, room), told.append, again_s=0.005):
+        while len(told) < 20:
+            time.sleep(0.01)
+        first_s = told[0]
+        time.sleep(0.5)
+        assert abs(told[-1] - true_s()) < abs(first_s - true_s())
+        room.away.set()
+        time.sleep(0.05)
+        known = len(told)
+        time.sleep(0.05)
+        assert len(told) == known
+    room.away.clear()
+    time.sleep(0.02)
+    assert len(told) == known, "the thread is over"

@@ -185,7 +185,10 @@ def main(
                 if time.monotonic() + room_clock.offset_s > room_clock.start_s:
                     # started again: its clip goes on
                     prepared = prepared._replace(state=state._replace(landmarks=None))
-                with Live(view, settings.every, room_clock, sources.get(viewer)) as live:
+                with (
+                    Live(view, settings.every, room_clock, sources.get(viewer)) as live,
+                    clock.followed(bus, live.set_offset),
+                ):
                     run(prepared, live, bus, stop)
                 stop.wait(0.0 if context.supervised else LAST_WORDS_S)
 

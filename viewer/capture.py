@@ -123,6 +123,10 @@ class Live:
         """The room's clock less this host's monotonic one."""
         return self._room.offset_s
 
+    def set_offset(self, offset_s: float) -> None:
+        """The same, as it is known now: clocks of two hosts drift apart."""
+        self._room = self._room._replace(offset_s=offset_s)
+
     @property
     def odd(self) -> tuple[str, ...]:
         """What went wrong with its source of landmarks so far, a line each."""

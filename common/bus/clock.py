@@ -1,6 +1,9 @@
 """The room's clock as another host sees it: questions, answers, the quickest of them believed."""
 
+import threading
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from common.bus.control_messages import ClockAnswer, ClockQuestion
@@ -13,9 +16,11 @@ ASK_S: Final = 0.5
 EXCHANGES: Final = 5
 """As many are enough to begin with."""
 
+AGAIN_S: Final = 2.0
+"""How long it is from one question to the next while a run goes on."""
 HISTORY: Final = 32
 """How many exchanges are remembered: few enough that clocks do not drift apart meanwhile
-(50 ppm make 2 ms in half a minute of a question a second)."""
+(50 ppm make 3 ms in a minute of a question every AGAIN_S; in an hour 180)."""
 
 
 class Exchange(NamedTuple):
@@ -64,6 +69,34 @@ def asked(bus: "Bus") -> Offset:
             break
         state, offset = step(state, told[0])
     return offset
+
+
+@contextmanager
+def followed(bus: "Bus", tell: Callable[[float], None], again_s: float = AGAIN_S) -> Iterator[None]:
+    """Ask on in a thread, and tell each new offset: two hosts' clocks drift apart.
+
+    While nobody answers, as where the integrator is started again, the last one holds.
+    """
+    over = threading.Event()
+
+    def follow() -> None:
+        state, heard = init(), 0
+        while not over.wait(again_s):
+            told = exchanged(bus, ClockQuestion())
+            if told is None:
+                continue
+            state, offset = step(state, told[0])
+            heard += 1
+            if heard >= EXCHANGES:
+                tell(offset.offset_s)
+
+    thread = threading.Thread(target=follow, name="the room's clock", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()
 
 
 def init() -> State:
