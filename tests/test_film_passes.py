@@ -1,6 +1,10 @@
 """One camera's silhouettes made into bodies: the scale of all of a film, then the live steps."""
 
+import sys
+from collections.abc import Iterator, Sequence
+from copy import copy
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -70,3 +74,33 @@ def test_who_left_is_met_afresh(silhouettes: list[Report]) -> None:
     bodies = posed(some)
     assert [bool(body.joints_m) for body in bodies] == [True, True, False, True, True]
     assert bodies[3].joints_m == bodies[0].joints_m
+
+
+class Lent(Sequence[Report]):
+    """Reports that are read one by one, as from a file, and how many were alive at once."""
+
+    def __init__(self, reports: list[Report]) -> None:
+        self.reports = reports
+        self.kept: list[int] = []
+
+    def __len__(self) -> int:
+        return len(self.reports)
+
+    def __getitem__(self, index: Any) -> Any:
+        return copy(self.reports[index])
+
+    def __iter__(self) -> Iterator[Report]:
+        for report in self.reports:
+            lent = copy(report)
+            yield lent
+            self.kept.append(sys.getrefcount(lent))
+
+
+def test_a_film_of_any_length_is_not_held_in_memory(silhouettes: list[Report]) -> None:
+    let_go, passed = Lent(silhouettes[20:24]), Lent(silhouettes[20:24])
+    for _ in let_go:
+        pass
+    film = FilmFacts(Settings(), METHODS["default"], 1, 1 / 15, None, Notes())
+    bodies_of(passed, film)
+    assert len(passed.kept) >= len(let_go.kept)
+    assert max(passed.kept) <= max(let_go.kept)

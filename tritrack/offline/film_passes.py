@@ -80,6 +80,15 @@ class FirstPass(NamedTuple):
     spent_s: float = 0.0
 
 
+class Stand(NamedTuple):
+    """How somebody stood in a frame."""
+
+    rows: tuple[float, float]
+    """As `standing_rows` tells it."""
+    whole: bool
+    upright: bool
+
+
 class Posing(NamedTuple):
     """Where the second pass is."""
 
@@ -166,14 +175,13 @@ def _begun(reports: Sequence[Report], film: FilmFacts) -> tuple[track.State, Sta
     """A viewer and an integrator that know what the first pass tells of the scale (T20)."""
     settings, camera = film.settings, film.camera
     size = (reports[0].width, reports[0].height)
-    seen = [report for report in reports if report.box is not None]
-    rows = [standing_rows(unpack(report)) for report in seen]
-    standing = standing_of(rows, [not report.cut for report in seen])
+    stands = [_stand_of(report) for report in reports if report.box is not None]
+    standing = standing_of([one.rows for one in stands], [one.whole for one in stands])
     nothing = np.zeros((size[1], size[0], 3), np.uint8)
     viewer = track.init(_setup(film), learn([nothing]), standing=standing)
     stature_m, opening = settings.body.stature_m, Opening()
     if camera is None:
-        camera = camera_of_sights(size, _sights(seen, rows, size), stature_m)
+        camera = camera_of_sights(size, _sights(stands, size), stature_m)
         opening = Opening(bdp=thesis_bdp(stature_m))
     rig = Rig(*size, (camera, camera))
     source: ScaleSource = "assumed" if film.camera is None else "calibrated"
@@ -183,18 +191,19 @@ def _begun(reports: Sequence[Report], film: FilmFacts) -> tuple[track.State, Sta
     return viewer, state
 
 
-def _sights(
-    seen: Sequence[Report], rows: Sequence[tuple[float, float]], size: tuple[int, int]
-) -> NDArray[np.float64]:
+def _stand_of(report: Report) -> Stand:
+    """A film's reports are many: each is let go of again."""
+    shown = report.landmarks
+    upright = shown is not None and is_upright(shown)
+    return Stand(standing_rows(unpack(report)), not report.cut, upright)
+
+
+def _sights(stands: Sequence[Stand], size: tuple[int, int]) -> NDArray[np.float64]:
     """Rows of those silhouettes by which a camera is told, (n, 2): the whole ones of somebody
     upright, or whatever there is."""
-    whole = [n for n, report in enumerate(seen) if not report.cut] or range(len(seen))
-    upright = [n for n in whole if _is_upright(seen[n])]
-    return np.array([rows[n] for n in upright or whole] or [(0.0, float(size[1]))])
-
-
-def _is_upright(report: Report) -> bool:
-    return report.landmarks is not None and is_upright(report.landmarks)
+    whole = [one for one in stands if one.whole] or stands
+    upright = [one for one in whole if one.upright] or whole
+    return np.array([one.rows for one in upright] or [(0.0, float(size[1]))])
 
 
 def _setup(film: FilmFacts) -> track.Setup:
