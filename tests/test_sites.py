@@ -56,6 +56,25 @@ def test_a_site_is_a_settings_file_or_the_settings_themselves(tmp_path: Path) ->
     )
 
 
+def test_environment_variables_are_filled_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "rooms").mkdir()
+    (tmp_path / "rooms/walk.toml").write_text('clip = "$ROOMS/walk"')
+    monkeypatch.setenv("ROOMS", str(tmp_path / "rooms"))
+    path = written(
+        tmp_path, '[[site]]\nname = "a"\nsettings = "$ROOMS/walk.toml"\nout = "$ROOMS/out"'
+    )
+    found = load_sites(path).sites["a"]
+    assert found.settings.clip == str(tmp_path / "rooms/walk")
+    assert found.out == tmp_path / "rooms/out"
+    assert files_of(path) == (path, tmp_path / "rooms/walk.toml")
+    monkeypatch.delenv("ROOMS")
+    assert "$ROOMS/walk.toml names a variable that is not set" in refused(
+        tmp_path, path.read_text()
+    )
+
+
 def test_a_site_says_whether_its_parts_are_one_process(tmp_path: Path) -> None:
     together = site("hall").replace("[site.settings]", "together = true\n[site.settings]")
     found = load_sites(written(tmp_path, site("lobby") + together))

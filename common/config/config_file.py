@@ -48,19 +48,24 @@ def with_full_paths(settings: Settings, path: Path) -> Settings:
     return msgspec.structs.replace(
         settings,
         landmarks=_landmarks(settings.landmarks, path),
-        clip=_full(settings.clip, path),
-        calibration=_full(settings.calibration, path),
-        opening=_full(settings.opening, path),
+        clip=full_path(settings.clip, path),
+        calibration=full_path(settings.calibration, path),
+        opening=full_path(settings.opening, path),
         camera_1=_camera(settings.camera_1, path),
         camera_2=_camera(settings.camera_2, path),
         recognizer=msgspec.structs.replace(
-            settings.recognizer, model=_full(settings.recognizer.model, path)
+            settings.recognizer, model=full_path(settings.recognizer.model, path)
         ),
-        bus=msgspec.structs.replace(settings.bus, keys=_full(settings.bus.keys, path)),
+        bus=msgspec.structs.replace(settings.bus, keys=full_path(settings.bus.keys, path)),
     )
 
 
-def _full(name: str, path: Path) -> str:
+def full_path(name: str, path: Path) -> str:
+    """A path that stands in a file, from there, environment variables filled in; "" where none is.
+
+    Raises:
+        SettingsError: When a variable is not set.
+    """
     filled = os.path.expandvars(name)
     if "$" in filled:
         raise SettingsError(f"{path}: {name} names a variable that is not set: export it")
@@ -71,14 +76,14 @@ def _camera(given: CameraSettings | None, path: Path) -> CameraSettings | None:
     if given is None:
         return None
     return msgspec.structs.replace(
-        given, source=_full(given.source, path), background=_full(given.background, path)
+        given, source=full_path(given.source, path), background=full_path(given.background, path)
     )
 
 
 def _landmarks(given: str, path: Path) -> str:
     if given in LANDMARK_SOURCES:
         return given
-    source = _full(given, path)
+    source = full_path(given, path)
     is_network = given.endswith(NETWORK)
     if not (Path(source).is_file() if is_network else Path(source).is_dir()):
         known = ", ".join(LANDMARK_SOURCES)

@@ -1,5 +1,6 @@
 """The sites that a machine serves: a TOML file of names and settings."""
 
+import os
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -8,7 +9,7 @@ from typing import Final, NamedTuple
 
 import msgspec
 
-from common.config.config_file import load, with_full_paths
+from common.config.config_file import full_path, load, with_full_paths
 from common.config.explained import explained
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
@@ -73,7 +74,7 @@ class Sites(NamedTuple):
 def load_sites(path: Path) -> Sites:
     """Read a file of sites, and the settings that it names.
 
-    Relative paths are relative to the file that they stand in.
+    Relative paths are relative to the file that they stand in, environment variables are filled in.
 
     Raises:
         SettingsError: When something cannot be read, is unknown or ill-typed; when two sites have
@@ -95,8 +96,8 @@ def files_of(path: Path) -> tuple[Path, ...]:
         said = _read(path)
     except SettingsError:
         return (path,)
-    named = (path.parent / entry.settings for entry in said.site if isinstance(entry.settings, str))
-    return (path, *named)
+    named = [entry.settings for entry in said.site if isinstance(entry.settings, str)]
+    return (path, *(path.parent / os.path.expandvars(name) for name in named))
 
 
 def _read(path: Path) -> SitesFile:
@@ -114,13 +115,15 @@ def _site(entry: SiteEntry, path: Path) -> Site:
     try:
         given = entry.settings
         settings = (
-            load(path.parent / given) if isinstance(given, str) else with_full_paths(given, path)
+            load(Path(full_path(given, path)))
+            if isinstance(given, str)
+            else with_full_paths(given, path)
         )
+        out = Path(full_path(entry.out or f"{RUNS}/{entry.name}", path))
     except SettingsError as error:
         raise SettingsError(f"{path}: site {entry.name}: {error}") from error
     if settings.room == Settings().room:
         settings = msgspec.structs.replace(settings, room=entry.name)
-    out = path.parent / (entry.out or f"{RUNS}/{entry.name}")
     return Site(entry.name, settings, out, entry.together)
 
 
