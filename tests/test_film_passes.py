@@ -32,7 +32,7 @@ def silhouettes(clip: Path) -> list[Report]:
 
 def posed(reports: list[Report], mode: Mode = "default", notes: Notes = Notes()) -> list[Body]:
     film = FilmFacts(Settings(mode=mode), METHODS[mode], 1, 1 / 15, None, notes)
-    return list(bodies_of(reports, film))
+    return list(bodies_of(reports, film).bodies)
 
 
 def test_who_is_known_by_the_silhouette_is_not_fitted(

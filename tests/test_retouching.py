@@ -94,6 +94,15 @@ def test_settings_that_no_run_has_are_named(tmp_path: Path) -> None:
         retouch(run, None, None, 8080, QUIET)
 
 
+def test_a_camera_that_no_run_assumes_is_named(tmp_path: Path) -> None:
+    film(tmp_path / "dance.avi")
+    run = run_of(tmp_path / "run", tmp_path / "dance.avi")
+    told = json.loads((run / "summary.json").read_text())
+    (run / "summary.json").write_text(json.dumps(told | {"camera": {"name": "cam1", "R": 3}}))
+    with pytest.raises(RetouchError, match=r"has no camera as it was written.*again"):
+        retouch(run, None, None, 8080, QUIET)
+
+
 def test_a_run_without_frames_is_refused(tmp_path: Path) -> None:
     film(tmp_path / "dance.avi")
     run = run_of(tmp_path / "run", tmp_path / "dance.avi", 0)

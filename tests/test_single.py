@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import cv2
+import msgspec
 import numpy as np
 import pytest
 from rich.console import Console
@@ -13,6 +14,7 @@ from spoiling import film_of, write_film, write_uneven
 from common.config.settings import Settings
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import save_notes
+from common.rig.camera import Camera, project
 from tritrack.faults import Unfollowed, refuse_unfollowed
 from tritrack.offline.batch import Asked, track_all
 from tritrack.single.single import UNUSABLE, Given, line_of, name_of, single_all
@@ -63,6 +65,17 @@ def test_poses_follow_the_person_in_the_picture(run: Path, clip: Path) -> None:
         off = np.linalg.norm(seen - true, axis=2) / tall
         assert poses["orientation"].shape == (40,)
     assert np.nanmean(off) < 0.06
+
+
+def test_the_camera_that_was_assumed_is_told_and_shows_the_joints_where_they_are(run: Path) -> None:
+    """T19: what is lifted is shown where it was seen."""
+    summary = json.loads((run / "summary.json").read_text())
+    camera = msgspec.convert(summary["camera"], Camera)
+    with np.load(run / "poses.npz") as poses:
+        joints_m, joints_px = poses["joints_m"], poses["joints_px"][:, 0]
+    seen = np.isfinite(joints_m[:, 0, 0])
+    shown = project(camera, joints_m[seen, :15].reshape(-1, 3)).reshape(-1, 15, 2)
+    assert np.abs(shown - joints_px[seen, :15]).max() < 0.01
 
 
 def test_one_view_of_a_clip_is_tracked_by_the_same_code(

@@ -17,6 +17,7 @@ from integrator.rig.assumed_rig import FOCAL_SHARE
 
 TILTS_DEG: Final = np.arange(-20.0, 51.0)
 """Downwards; those that are looked at."""
+LEVEL: Final = np.zeros(1)
 HEIGHTS_M: Final = np.geomspace(0.25, 5.0, 76)
 """Of the camera above the floor; those that are looked at."""
 NEAR: Final = 0.06
@@ -57,7 +58,10 @@ def assumed_rig_of_one(report: Report, stature_m: float) -> Rig:
 
 
 def camera_of_sights(
-    size: tuple[int, int], sights: NDArray[np.float64], stature_m: float
+    size: tuple[int, int],
+    sights: NDArray[np.float64],
+    stature_m: float,
+    tilts_deg: Vector = TILTS_DEG,
 ) -> Camera:
     """The camera that looks along -z at the origin, before which the person stood mostly.
 
@@ -66,11 +70,12 @@ def camera_of_sights(
         sights: (n, 2) rows of the crown and below the feet of the person, wholly in view; those in
             which they did not stand upright are left out by themselves as long as they are few.
         stature_m: What is assumed of the person.
+        tilts_deg: Those that it may have; of the thesis's camera `LEVEL` alone.
     """
     focal = FOCAL_SHARE * size[0]
     some = sights[:: max(1, len(sights) // MOST_SIGHTS)]
     down = np.arctan((some - size[1] / 2) / focal)
-    tilt, height_m = _likeliest(down, _weight(some), stature_m)
+    tilt, height_m = _likeliest(down, _weight(some), stature_m, tilts_deg)
     steep = float(np.tan(tilt + np.median(down[:, 1])))
     far_m = height_m / max(steep, height_m / FARTHEST_M)
     R = np.array([[1, 0, 0], [0, -np.cos(tilt), np.sin(tilt)], [0, -np.sin(tilt), -np.cos(tilt)]])
@@ -85,15 +90,17 @@ def _weight(sights: NDArray[np.float64]) -> float:
     return float(min(SIGHTS[0] * share**2, SIGHTS[1]))
 
 
-def _likeliest(down: Vector, weight: float, stature_m: float) -> tuple[float, float]:
+def _likeliest(
+    down: Vector, weight: float, stature_m: float, tilts_deg: Vector
+) -> tuple[float, float]:
     """Tilt of a camera, radians downwards, and its height, metres.
 
     Args:
         down: (n, 2) angles of crowns and soles under the middle of the picture.
         weight: Of these.
-        stature_m: As above.
+        stature_m: As above; likewise `tilts_deg`.
     """
-    steep = np.tan(np.radians(TILTS_DEG)[:, None, None] + down)
+    steep = np.tan(np.radians(tilts_deg)[:, None, None] + down)
     crowns, soles = steep[..., 0], steep[..., 1]
     stands = (soles > 0.0) & (soles > crowns)
     seen_m = np.where(stands, stature_m * soles / np.where(stands, soles - crowns, 1.0), LOWEST_M)
@@ -102,7 +109,7 @@ def _likeliest(down: Vector, weight: float, stature_m: float) -> tuple[float, fl
     heights_m = HEIGHTS_M[unlike.argmin(axis=1)]
     unusual = np.maximum(np.log(USUAL_M[0] / heights_m), np.log(heights_m / USUAL_M[1])) / UNUSUAL
     doubt = weight * unlike.min(axis=1) + 0.5 * np.maximum(unusual, 0.0) ** 2
-    doubt += 0.5 * (TILTS_DEG / LEVEL_DEG) ** 2
+    doubt += 0.5 * (tilts_deg / LEVEL_DEG) ** 2
     doubt[stands.mean(axis=1) < 0.5] = np.inf
     best = int(doubt.argmin())
-    return float(np.radians(TILTS_DEG[best])), float(heights_m[best])
+    return float(np.radians(tilts_deg[best])), float(heights_m[best])

@@ -90,7 +90,7 @@ def _followed(settings: Settings, repeats: int, decoder: Decoder) -> Times:
         return len(silhouettes_of(clip, background, film, reel))
 
     def posed() -> int:
-        return len(bodies_of(followed.reports, film))
+        return len(bodies_of(followed.reports, film).bodies)
 
     return Times(
         len(followed.reports),

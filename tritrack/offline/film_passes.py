@@ -27,7 +27,7 @@ from integrator import merge, merge_state
 from integrator.merge_state import Start, State
 from integrator.opening_posture import Opening
 from integrator.pairing import Pair
-from integrator.rig.tilted_camera import camera_of_sights
+from integrator.rig.tilted_camera import LEVEL, TILTS_DEG, camera_of_sights
 from integrator.selfcalibration.joint_tracks import is_upright
 from integrator.single.sight import Annotations
 from tritrack.offline.film_smoothing import calmed
@@ -78,6 +78,14 @@ class FirstPass(NamedTuple):
     odd: tuple[str, ...] = ()
     """What was odd about the film."""
     spent_s: float = 0.0
+
+
+class Lifted(NamedTuple):
+    """What the second pass gives."""
+
+    bodies: Sequence[Body]
+    camera: Camera | None
+    """By which they are lifted; None where there is no frame."""
 
 
 class Stand(NamedTuple):
@@ -134,7 +142,7 @@ def bodies_of(
     film: FilmFacts,
     course: Course = Course(),
     first: FirstPass = FirstPass(),
-) -> Sequence[Body]:
+) -> Lifted:
     """The second pass: the viewer tells more of each silhouette, the integrator lifts it.
 
     Args:
@@ -146,7 +154,7 @@ def bodies_of(
     work, began = course.work, time.perf_counter()
     bodies = work.messages(BODIES)
     if not reports:
-        return bodies
+        return Lifted(bodies, None)
     at = work.resumed(POSING, Posing) or Posing(*_begun(reports, film), first)
     before_s = at.spent_s
     for report in islice(reports, len(bodies), None):
@@ -155,9 +163,11 @@ def bodies_of(
         course.tell(len(bodies) / len(reports))
         if work.due:
             work.save(POSING, at._replace(spent_s=before_s + time.perf_counter() - began))
-    if film.method.film_smoothing and at.integrator.rig is not None:
-        return calmed(bodies, at.integrator.rig, film.notes, work.messages(CALM))
-    return bodies
+    rig = at.integrator.rig
+    assert rig is not None
+    if film.method.film_smoothing:
+        return Lifted(calmed(bodies, rig, film.notes, work.messages(CALM)), rig.cameras[0])
+    return Lifted(bodies, rig.cameras[0])
 
 
 def _posed(at: Posing, report: Report, film: FilmFacts) -> tuple[Posing, Body]:
@@ -181,7 +191,8 @@ def _begun(reports: Sequence[Report], film: FilmFacts) -> tuple[track.State, Sta
     viewer = track.init(_setup(film), learn([nothing]), standing=standing)
     stature_m, opening = settings.body.stature_m, Opening()
     if camera is None:
-        camera = camera_of_sights(size, _sights(stands, size), stature_m)
+        tilts_deg = LEVEL if film.method.stick_lifting else TILTS_DEG
+        camera = camera_of_sights(size, _sights(stands, size), stature_m, tilts_deg)
         opening = Opening(bdp=thesis_bdp(stature_m))
     rig = Rig(*size, (camera, camera))
     source: ScaleSource = "assumed" if film.camera is None else "calibrated"

@@ -4,6 +4,7 @@ import time
 from collections.abc import Sequence
 from typing import Any, Final, NamedTuple
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,7 +13,7 @@ from common.config.settings import Settings
 from common.method import METHODS, Method
 from common.notes.notes import Notes
 from common.raster.silhouette_report import with_silhouette
-from common.rig.camera import PAPER_ROTATIONS
+from common.rig.camera import PAPER_ROTATIONS, Camera
 from common.video.clip_facts import Clip, shortfall
 from common.video.frame_cache import Reader
 from tritrack.offline.film_passes import (
@@ -46,8 +47,8 @@ class Followed(NamedTuple):
     reports: Sequence[Report]
     period_s: float
     """From a frame to the next, where the rate does not vary."""
-    turn: NDArray[np.float64]
-    """World to camera, (3, 3)."""
+    camera: Camera | None
+    """By which they were lifted, calibrated or assumed; None where there is no frame."""
     clip: Clip | None
     """None of a sequence of masks, likewise `background`."""
     background: Background | None
@@ -61,6 +62,11 @@ class Followed(NamedTuple):
     def to_camera(self, joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
         """Joints with x to the right of the picture, y up, z to the camera."""
         return joints_m @ self.turn.T * (1.0, -1.0, -1.0)
+
+    @property
+    def turn(self) -> NDArray[np.float64]:
+        """World to camera, (3, 3)."""
+        return np.array(PAPER_ROTATIONS[0] if self.camera is None else self.camera.R)
 
 
 class Film(NamedTuple):
@@ -102,7 +108,8 @@ def follow_clip(
     else:
         reports, first = heard.work.messages(REPORTS), left.first
     seen = time.perf_counter()
-    bodies = bodies_of(reports, known, Course(heard.poses, heard.work), first)
+    lifted = bodies_of(reports, known, Course(heard.poses, heard.work), first)
+    bodies = lifted.bodies
     posing_s = time.perf_counter() - seen + (left.spent_s if left else 0.0)
     odd = (background.odd, *first.odd, doubtful(bodies))
     facts = {
@@ -111,11 +118,17 @@ def follow_clip(
         "posture_meant": clip.meta.posture,
         **_times(len(bodies), silhouettes=first.spent_s, poses=posing_s),
         "scale_source": "assumed" if camera is None else "calibrated",
+        **_camera_facts(lifted.camera if camera is None else None),
         "never_uncovered": round(float(background.background.uncertain.mean()), 4),
         "warnings": [*clip.warnings, *filter(None, odd)],
     }
-    turn = np.array(PAPER_ROTATIONS[0] if camera is None else camera.R)
-    return Followed(bodies, reports, period_s, turn, clip, background.background, facts)
+    known_room = background.background
+    return Followed(bodies, reports, period_s, lifted.camera, clip, known_room, facts)
+
+
+def _camera_facts(assumed: Camera | None) -> dict[str, Any]:
+    """A camera that was assumed, for the summary."""
+    return {} if assumed is None else {"camera": msgspec.to_builtins(assumed)}
 
 
 def _looked_through(
@@ -140,14 +153,15 @@ def follow_masks(
     reports = [_or_nobody(report, least_share) for report in reports]
     period_s = reports[1].captured_s - reports[0].captured_s if len(reports) > 1 else 0.04
     film = FilmFacts(settings, METHODS[settings.mode], 1, period_s, None)
-    bodies = bodies_of(reports, film, Course(tell))
+    bodies, camera = bodies_of(reports, film, Course(tell))
     facts = {
         "clip": name,
         **_times(len(bodies), poses=time.perf_counter() - began),
         "scale_source": "assumed",
+        **_camera_facts(camera),
         "warnings": list(filter(None, (doubtful(bodies),))),
     }
-    return Followed(bodies, reports, period_s, np.array(PAPER_ROTATIONS[0]), None, None, facts)
+    return Followed(bodies, reports, period_s, camera, None, None, facts)
 
 
 def _or_nobody(report: Report, least_share: float) -> Report:

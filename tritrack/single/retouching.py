@@ -20,7 +20,7 @@ from common.config.picture_size import working_size
 from common.config.settings import Settings
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path, save_notes
-from common.rig.camera import PAPER_ROTATIONS
+from common.rig.camera import PAPER_ROTATIONS, Camera, Matrix
 from common.video.clip_facts import Clip
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
@@ -154,11 +154,24 @@ def _clip_of(run: PastRun, settings: Settings) -> Clip:
 def _take_of(run: PastRun, clip: Clip) -> Take:
     """The run in the video's own pixels, as seen from camera 1."""
     view = clip.views[0]
-    turn = PAPER_ROTATIONS[0] if clip.rig is None else clip.rig.cameras[0].R
-    take = take_of(run.poses, view.source_size[0] / view.size[0], turn)
+    take = take_of(run.poses, view.source_size[0] / view.size[0], _turn_of(run, clip))
     if not len(take.frame):
         raise RetouchError(f"{run.folder} has no frame: track the clip again")
     return take
+
+
+def _turn_of(run: PastRun, clip: Clip) -> Matrix:
+    """World to camera 1: the calibrated one, or as the run assumed it, level before 2026-11-26."""
+    if clip.rig is not None:
+        return clip.rig.cameras[0].R
+    assumed = run.summary.get("camera")
+    try:
+        return msgspec.convert(assumed, Camera).R if assumed else PAPER_ROTATIONS[0]
+    except msgspec.ValidationError as error:
+        raise RetouchError(
+            f"the summary of {run.folder} has no camera as it was written ({error}): "
+            "track the clip again"
+        ) from error
 
 
 def _pictures(clip: Clip, take: Take, console: Console) -> Sequence[bytes]:
