@@ -60,8 +60,11 @@ class Followed(NamedTuple):
         return self.reports[0].width, self.reports[0].height
 
     def to_camera(self, joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Joints with x to the right of the picture, y up, z to the camera."""
-        return joints_m @ self.turn.T * (1.0, -1.0, -1.0)
+        """Joints with x to the right of the picture, y up, z along the floor to the camera."""
+        towards = -self.turn[2] * (1.0, 0.0, 1.0)
+        towards /= max(float(np.linalg.norm(towards)), 1e-9)
+        up = np.array([0.0, 1.0, 0.0])
+        return joints_m @ np.stack([np.cross(up, towards), up, towards]).T
 
     @property
     def turn(self) -> NDArray[np.float64]:
