@@ -1,6 +1,7 @@
 """Clips as users have them: complete, odd, and broken in every way that a folder can be."""
 
 import json
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -182,6 +183,21 @@ def test_clips_of_different_length_and_size_run_on_with_a_word(
     )
     assert clip.rig is not None
     assert clip.rig.cameras[1].K[0][0] == pytest.approx(420 / 2)
+
+
+@pytest.mark.parametrize(("apart_deg", "odd"), [(0, 1), (20, 1), (40, 0), (90, 0), (180, 1)])
+def test_cameras_that_see_nearly_one_outline_are_named(
+    folder: Path, decoder: Decoder, apart_deg: int, odd: int
+) -> None:
+    """Camera 2 turned about the vertical from where it looks as camera 1 does."""
+    path = folder / "calibration.json"
+    calibrate(path)
+    told = json.loads(path.read_text())
+    sine, cosine = math.sin(math.radians(apart_deg)), math.cos(math.radians(apart_deg))
+    told["cameras"][1]["R"] = [[cosine, 0, sine], [0, -1, 0], [sine, 0, -cosine]]
+    path.write_text(json.dumps(told))
+    warnings = opened(folder, decoder).warnings
+    assert [f"look {apart_deg} degrees apart" in one for one in warnings] == [True] * odd
 
 
 def test_rates_that_differ_need_capture_times(folder: Path, decoder: Decoder) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 import msgspec
+import numpy as np
 
 from common.bus.messages import ViewerNumber
 from common.config.explained import explained
@@ -26,6 +27,8 @@ SAME_ASPECT: Final = 0.02
 """Pictures whose sides have ratios that differ by less show the same, at two sizes."""
 AVI_HEAD: Final = b"RIFF"
 
+APART_DEG: Final = (30.0, 150.0)
+"""Two cameras that look less or more apart see nearly one outline, as it is or in a mirror."""
 CAMERA_HZ: Final = 15.0
 """Taken for the rate of a camera that names none: the paper's (P1)."""
 
@@ -55,13 +58,14 @@ def open_clip(
         reader = decoder or doors.enter_context(Decoder())
         views = tuple(_view(each, settings, meta, reader) for each in named)
     _refuse_rates_that_differ(views)
+    rig = _rig(settings, folder, named, views)
     return Clip(
         name=folder.resolve().name if settings.clip else Path(str(named[0].source)).stem,
         views=views,
         every=settings.every,
-        rig=_rig(settings, folder, named, views),
+        rig=rig,
         meta=meta,
-        warnings=tuple(_oddities(views, meta)),
+        warnings=tuple(_oddities(views, meta, rig)),
     )
 
 
@@ -232,7 +236,7 @@ def _calibrated(rig: Rig, named: Footage, view: View, path: Path, alone: bool) -
     return fitted(seen, view.size, str(path)).cameras[place]
 
 
-def _oddities(views: tuple[View, ...], meta: Meta) -> Iterator[str]:
+def _oddities(views: tuple[View, ...], meta: Meta, rig: Rig | None) -> Iterator[str]:
     for view in views:
         told_s = meta.capture_s.get(f"cam{view.number}", ())
         if told_s and view.frames and len(told_s) != view.frames:
@@ -247,3 +251,11 @@ def _oddities(views: tuple[View, ...], meta: Meta) -> Iterator[str]:
         plain = not (first.capture_s or second.capture_s)
         if plain and first.frames and second.frames and first.frames != second.frames:
             yield f"the views differ in length: {first.frames} and {second.frames} frames"
+    if rig is not None and len(rig.cameras) == 2:
+        one, other = (np.array(camera.R)[2] for camera in rig.cameras)
+        apart_deg = math.degrees(math.acos(float(np.clip(one @ other, -1.0, 1.0))))
+        if not APART_DEG[0] <= apart_deg <= APART_DEG[1]:
+            yield (
+                f"the cameras look {apart_deg:.0f} degrees apart: how far from them arms and legs "
+                "are is hard to tell; 60 to 120 are good"
+            )
