@@ -65,3 +65,13 @@ def test_what_is_held_fast_stays() -> None:
     weights[:, ankle] = 1e6
     near = fitted(skeleton_of(noisy), noisy, weights)
     assert near[:, ankle] == pytest.approx(noisy[:, ankle], abs=1e-6)
+
+
+def test_rows_are_fitted_each_by_itself_however_many_at_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    noisy = walking(0.01)
+    skeleton = skeleton_of(noisy)
+    whole = fitted(skeleton, noisy, EVEN)
+    monkeypatch.setattr("animator.skeleton.fitted_bones.AT_ONCE", 7)
+    assert fitted(skeleton, noisy, EVEN) == pytest.approx(whole, abs=1e-12)

@@ -13,6 +13,8 @@ Floats = NDArray[np.float64]
 
 ROUNDS: Final = 5
 """Of the fit: joints that are 1 cm off have bones within a hundredth of a millimetre of theirs."""
+AT_ONCE: Final = 4096
+"""Rows that are fitted together: a long film has more than memory has room for."""
 NO_BONE: Final = 1e-9
 """Is added where both ends of a bone are in one place, which has no direction."""
 _AT: Final = {name: i for i, name in enumerate(ALL_JOINT_NAMES)}
@@ -35,9 +37,16 @@ def fitted(skeleton: Skeleton, joints_m: Joints, weights: Floats) -> Joints:
     Source: Mueller et al. 2007, Position based dynamics, with all constraints solved at once.
     """
     names = ["r_hip", *(bone.ends for bone in skeleton.bones)]
-    free = [_AT[name] for name in names]
-    ends, lengths_m = _bones(skeleton, names)
-    tracked, gives = joints_m[:, free], 1.0 / weights[:, free]
+    free, bones, found = [_AT[name] for name in names], _bones(skeleton, names), joints_m.copy()
+    for first in range(0, len(joints_m), AT_ONCE):
+        rows = slice(first, first + AT_ONCE)
+        found[rows, free] = _places(*bones, joints_m[rows, free], 1.0 / weights[rows, free])
+    found[:, _AT["pelvis"]] = (found[:, _AT["l_hip"]] + found[:, _AT["r_hip"]]) / 2
+    return found
+
+
+def _places(ends: Floats, lengths_m: Vector, tracked: Floats, gives: Floats) -> Floats:
+    """Where joints (n, joints, 3) come to lie that give so much along each axis."""
     shares = [(ends * gives[:, None, :, axis]) @ ends.T for axis in range(3)]
     wanted, places = ends @ tracked, tracked
     for _ in range(ROUNDS):
@@ -51,10 +60,7 @@ def fitted(skeleton: Skeleton, joints_m: Joints, weights: Floats) -> Joints:
         lack_m = (along * wanted).sum(axis=2) - lengths_m
         pull = np.linalg.solve(normal, lack_m[..., None]) * along
         places = tracked - gives * (ends.T @ pull)
-    found = joints_m.copy()
-    found[:, free] = places
-    found[:, _AT["pelvis"]] = (found[:, _AT["l_hip"]] + found[:, _AT["r_hip"]]) / 2
-    return found
+    return places
 
 
 def _bones(skeleton: Skeleton, names: list[str]) -> tuple[Floats, Vector]:
