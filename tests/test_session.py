@@ -54,7 +54,8 @@ def test_the_thesis_mode_of_a_settings_file_is_refused_live(tmp_path: Path) -> N
 
 def test_a_run_that_cannot_begin_leaves_what_one_that_was_killed_said(tmp_path: Path) -> None:
     """Its journal stands in the folder yet; of a run that ended the next one has the log."""
-    log, nothing = tmp_path / "log.txt", Settings(clip=str(tmp_path / "none"))
+    log = tmp_path / "log.txt"
+    nothing = Settings(clip=str(tmp_path / "none"), page=PageSettings(port=0))
     log.write_text("it ran out of memory\n")
     journal = Journal(tmp_path, Head(settings=nothing, facts={}))
     with pytest.raises(ClipError):
