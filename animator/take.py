@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
 from common.nearest_rows import nearest
 from common.notes.notes import Depth, Held, Notes, held
-from common.rig.camera import PAPER_ROTATIONS
+from common.rig.camera import PAPER_ROTATIONS, TOWARDS
 
 CONFIDENT: Final = 0.7
 """A decision with less confidence than this is worth a look."""
@@ -18,9 +18,6 @@ SEEN: Final = 0.3
 thesis's "highly occluded"; a direction that is not sure costs it a half at most."""
 FLAT_DEG: Final = 15.0
 """A segment that leans less out of the picture's plane has no direction that anybody would see."""
-
-TOWARDS: Final = (1.0, -1.0, -1.0)
-"""From a camera's axes to those of a Take."""
 
 _AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
 _FAR: Final = {int(far): int(near) for near, far in LIMB_ENDS}

@@ -43,6 +43,15 @@ def step(state: State, time_s: float) -> tuple[State, int]:
     return State(due_s + due * PERIOD_S), due
 
 
+def counts(times_s: Sequence[float] | NDArray[np.float64]) -> NDArray[np.int64]:
+    """How many of the models' frames each of those stands for that were taken then, (n,)."""
+    state, found = State(), []
+    for time_s in times_s:
+        state, due = step(state, float(time_s))
+        found.append(due)
+    return np.array(found, np.int64)
+
+
 def at_model_rate(times_s: Sequence[float] | NDArray[np.float64], rows: Rows) -> Rows:
     """Rows as the models count them: each so often as `step` says.
 
@@ -50,8 +59,4 @@ def at_model_rate(times_s: Sequence[float] | NDArray[np.float64], rows: Rows) ->
         times_s: (n,) when the frames were taken.
         rows: (n, 20), ROW_NAMES order.
     """
-    state, often = State(), []
-    for time_s in times_s:
-        state, times = step(state, float(time_s))
-        often.append(times)
-    return np.repeat(rows, often, axis=0)
+    return np.repeat(rows, counts(times_s), axis=0)

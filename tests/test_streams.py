@@ -1,14 +1,21 @@
 """Streams of many performances, held against a case worked by hand."""
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 from acting import perform, performances, standing
+from rich.console import Console
+from test_exporting import write
 
+from common.body.body import JOINT_NAMES
 from recognizer.events import Event
 from recognizer.postures import DensityModel
 from recognizer.training import streams
 from recognizer.training.learning import train
 from recognizer.training.streams import Act, Stream, found, joined
+from tritrack.postures.spotting_report import streams as streams_of
 
 ACTS = (Act("squat", 10, 40), Act("walk_toward", 60, 90), Act("kick_left_side", 120, 150))
 
@@ -53,3 +60,28 @@ def test_joined_performances_stand_between() -> None:
 def test_a_stream_is_the_same_again() -> None:
     given = [("squat", perform("squat", performer=3)), ("walk_toward", perform("walk_toward", 3))]
     assert np.array_equal(joined("r", given, 5).rows, joined("r", given, 5).rows)
+
+
+def test_a_stream_of_60_frames_a_second_is_told_in_the_models_own_frames(tmp_path: Path) -> None:
+    """P1: its performance of two thirds of a second lasts ten of them."""
+    n = 80
+    arrays = {
+        "frame": np.arange(n),
+        "time_s": np.arange(n) / 60,
+        "joints_m": np.random.default_rng(0).normal(size=(n, 15, 3)),
+        "joints_px": np.zeros((n, 2, 15, 2)),
+        "angles_deg": np.zeros((n, 17)),
+        "confidence": np.ones((n, 15)),
+        "status": np.full(n, "tracking"),
+        "views": np.full(n, "both"),
+        "score": np.ones((n, 2)),
+        "joint_names": np.array(JOINT_NAMES),
+    }
+    acts = [{"name": "squat", "first": 20, "last": 59}, {"name": "squat", "first": 70, "last": 99}]
+    write(tmp_path / "run", arrays, json.dumps({"acts": acts}))
+    (stream,) = streams_of([tmp_path / "run"], None, Console(quiet=True))
+    assert len(stream.rows) == pytest.approx(20, abs=1)
+    first, cut = stream.acts
+    assert first.last - first.first == pytest.approx(10, abs=1)
+    assert first.first == pytest.approx(5, abs=1)
+    assert cut.last == len(stream.rows) - 1, "the run was cut short"

@@ -80,14 +80,13 @@ def followed(bus: "Bus", tell: Callable[[float], None], again_s: float = AGAIN_S
     over = threading.Event()
 
     def follow() -> None:
-        state, heard = init(), 0
+        state = init()
         while not over.wait(again_s):
             told = exchanged(bus, ClockQuestion())
             if told is None:
                 continue
             state, offset = step(state, told[0])
-            heard += 1
-            if heard >= EXCHANGES:
+            if len(state) >= EXCHANGES:
                 tell(offset.offset_s)
 
     thread = threading.Thread(target=follow, name="the room's clock", daemon=True)

@@ -17,6 +17,8 @@ PAPER_ROTATIONS: Final = (
     ((0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (1.0, 0.0, 0.0)),
 )
 """World to camera for camera 1 (looks along -z) and camera 2 (looks along +x) (C1)."""
+TOWARDS: Final = (1.0, -1.0, -1.0)
+"""From a camera's axes to those in which y is up and z towards it."""
 
 
 Row = tuple[float, float, float]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bus.messages import Lifting, ViewerNumber
-from common.rig.camera import arrays_of, project
+from common.rig.camera import TOWARDS, arrays_of, project
 from integrator.landmarks import landmark_fusion
 from integrator.proposal.pose_proposal import Memory
 from integrator.rig.undistortion import undistorted_camera
@@ -18,8 +18,6 @@ GOOD: Final = 0.7
 """A proposed body whose S is higher needs no stick body beside it."""
 SURELY: Final = 1.15
 """The lifted body goes before the proposed one where its S is higher by this factor."""
-TOWARDS: Final = (1.0, -1.0, -1.0)
-"""From a camera's axes to those of `Lifted`: up, and to the camera."""
 
 
 class Alone(NamedTuple):

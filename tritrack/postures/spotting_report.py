@@ -6,16 +6,19 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console
 
 from common.config import config_file
 from common.config.part_settings import RecognizerSettings
 from common.method import Mode
+from common.npz_file import Arrays
 from common.video.clips import meta_of
 from recognizer.__main__ import MOVING, SHIPPED
 from recognizer.evaluation import wilson
 from recognizer.features import Rows, rows
 from recognizer.model_file import load
+from recognizer.model_rate import PERIOD_S, counts
 from recognizer.postures import DensityModel
 from recognizer.training.streams import Act, Found, Stream, found, joined
 from tritrack.offline.lockstep import Decoders, track_clip
@@ -26,8 +29,6 @@ from tritrack.store.pose_arrays import poses
 from tritrack.terminal import bar, json_text
 from tritrack.training.training import TrainingError
 
-FPS: Final = 15.0
-"""What models count travel by: seconds are told at this rate."""
 SEED: Final = 0
 """Of the order in which single performances are joined."""
 
@@ -77,9 +78,11 @@ def streams(paths: Sequence[Path], mode: Mode | None, console: Console) -> list[
         _refuse_nameless(path)
     with Decoders() as decoders, bar(console) as progress:
         for path in progress.track(folders, description="reading"):
-            facts, seen = _run(path) if is_run(path) else _clip(path, mode, decoders)
+            facts, arrays = _run(path) if is_run(path) else _clip(path, mode, decoders)
+            often = counts(arrays["time_s"])
+            seen = np.repeat(_rows(arrays), often, axis=0)
             if "acts" in facts:
-                acts = tuple(Act(**act) for act in facts["acts"])
+                acts = tuple(_counted(Act(**act), often) for act in facts["acts"])
                 whole.append(Stream(path.name, seen, acts))
             else:
                 cut = seen[-RecognizerSettings().window_frames :]
@@ -99,28 +102,35 @@ def _refuse_nameless(path: Path) -> None:
         raise TrainingError(f"{path} names neither acts nor a posture in its meta.json")
 
 
-def _clip(path: Path, mode: Mode | None, decoders: Decoders) -> tuple[dict[str, Any], Rows]:
+def _clip(path: Path, mode: Mode | None, decoders: Decoders) -> tuple[dict[str, Any], Arrays]:
     tracked = track_clip(overridden(config_file.load(path), mode, None), decoders)
-    return tracked.facts, _rows(poses(tracked.bodies))
+    return tracked.facts, poses(tracked.bodies)
 
 
-def _run(path: Path) -> tuple[dict[str, Any], Rows]:
+def _run(path: Path) -> tuple[dict[str, Any], Arrays]:
     try:
         run = open_run(path)
     except PastRunError as error:
         raise TrainingError(str(error)) from error
-    return run.summary, _rows(run.poses)
+    return run.summary, run.poses
 
 
-def _rows(arrays: dict[str, Any]) -> Rows:
+def _counted(act: Act, often: NDArray[np.int64]) -> Act:
+    """A performance that is told in frames of its clip, in those of the models."""
+    at = np.cumsum(often) - 1
+    first, last = (int(at[min(frame, len(at) - 1)]) for frame in (act.first, act.last))
+    return act._replace(first=first, last=last)
+
+
+def _rows(arrays: Arrays) -> Rows:
     tracked = rows(arrays["angles_deg"], arrays["joints_m"])
     return np.where(np.isin(arrays["status"], MOVING)[:, np.newaxis], tracked, np.nan)
 
 
 def _report(results: Sequence[Found]) -> dict[str, Any]:
     performances = sum(one.performances for one in results)
-    delays_s = np.array([delay for one in results for delay in one.delays]) / FPS
-    minutes = sum(one.frames for one in results) / FPS / 60.0
+    delays_s = PERIOD_S * np.array([delay for one in results for delay in one.delays])
+    minutes = sum(one.frames for one in results) * PERIOD_S / 60.0
     false = sum(len(one.false) for one in results)
     report = {
         "performances": performances,
