@@ -61,14 +61,15 @@ class KeptOverloads(NullCache):
 
 
 def compiling(**flags: Any) -> Callable[[Callable[..., Any]], Any]:
-    """A decorator: numba's njit with these flags, which keeps what it compiled.
+    """A decorator: numba's njit with these flags, which keeps what it compiled and lets other
+    threads run meanwhile.
 
     Functions of a module that runs as the program, or of a test, are compiled anew each time: the
     next process cannot know them by the name `__main__`, and no digest speaks for them.
     """
 
     def decorate(function: Callable[..., Any]) -> Any:
-        dispatcher = numba.njit(**flags)(function)
+        dispatcher = numba.njit(nogil=True, **flags)(function)
         if function.__module__.split(".")[0] in PACKAGES:
             dispatcher._cache = KeptOverloads(function)
         return dispatcher

@@ -1,7 +1,11 @@
 """Every instant of a clip: its viewers and the integrator in lock-step, from first to last."""
 
+import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager
+from itertools import repeat
 from typing import Final, NamedTuple
 
 from common.bus.messages import Body, Guide, Report, ViewerNumber
@@ -20,6 +24,9 @@ from viewer.capture import CapturedFrame
 from viewer.landmarks.landmark_sources import Sources
 
 STAGE: Final = "instants"
+TURNS_S: Final = 0.0002
+"""How long a thread that has computed waits for its turn to be interpreted: by Python's own 5 ms
+two viewers side by side would be no faster than one after the other."""
 
 Watch = Callable[[dict[ViewerNumber, CapturedFrame], dict[int, Report], Body], object]
 """Looks at the frames of an instant, the reports on them and the body they gave."""
@@ -68,7 +75,7 @@ class Performance(NamedTuple):
 def performed(
     ready: Prepared, sources: Sources, witness: Witness, watch: Watch | None, course: Course
 ) -> Performance:
-    """Follow a clip, from where it was left.
+    """Follow a clip, from where it was left; the views of an instant side by side.
 
     Args:
         ready: The clip.
@@ -83,17 +90,30 @@ def performed(
     calibration.looking, witness.seen = going.calibration, going.witness
     bodies = work.messages(BODIES)
     before_s, began = going.spent["following"], time.perf_counter()
-    for frames in instants(clip, ready.reels, sources, going.starts):
-        going, reports, body = _stepped(going, frames, calibration)
-        bodies.append(body)
-        for each in (witness, watch) if watch else (witness,):
-            each(frames, reports, body)
-        course.tell(share_of(clip, frames))
-        if work.due:
-            now_s = before_s + time.perf_counter() - began
-            work.save(STAGE, _saved(going, calibration, witness, now_s))
+    with _side_by_side(len(clip.views)) as pool:
+        for frames in instants(clip, ready.reels, sources, going.starts):
+            going, reports, body = _stepped(going, frames, calibration, pool)
+            bodies.append(body)
+            for each in (witness, watch) if watch else (witness,):
+                each(frames, reports, body)
+            course.tell(share_of(clip, frames))
+            if work.due:
+                now_s = before_s + time.perf_counter() - began
+                work.save(STAGE, _saved(going, calibration, witness, now_s))
     going = _saved(going, calibration, witness, before_s + time.perf_counter() - began)
     return Performance(bodies, going.integrator, going.noticed, calibration.news, going.spent)
+
+
+@contextmanager
+def _side_by_side(count: int) -> Iterator[Executor]:
+    """Threads that take short turns."""
+    turns_s = sys.getswitchinterval()
+    sys.setswitchinterval(TURNS_S)
+    try:
+        with ThreadPoolExecutor(count) as pool:
+            yield pool
+    finally:
+        sys.setswitchinterval(turns_s)
 
 
 def _begun(ready: Prepared, calibration: LiveCalibration, witness: Witness) -> Going:
@@ -110,15 +130,18 @@ def _begun(ready: Prepared, calibration: LiveCalibration, witness: Witness) -> G
 
 
 def _stepped(
-    going: Going, frames: dict[ViewerNumber, CapturedFrame], calibration: LiveCalibration
+    going: Going,
+    frames: dict[ViewerNumber, CapturedFrame],
+    calibration: LiveCalibration,
+    pool: Executor,
 ) -> tuple[Going, dict[int, Report], Body]:
     """One instant more."""
     start = time.perf_counter()
-    viewers, starts = dict(going.viewers), dict(going.starts)
-    reports: dict[int, Report] = {}
-    for number, frame in frames.items():
-        viewers[number], reports[number] = track.step(viewers[number], frame, going.guide)
-        starts[number] = frame.index + 1
+    before, guides = [going.viewers[number] for number in frames], repeat(going.guide)
+    seen = dict(zip(frames, pool.map(track.step, before, frames.values(), guides), strict=True))
+    viewers = going.viewers | {number: state for number, (state, _) in seen.items()}
+    reports: dict[int, Report] = {number: report for number, (_, report) in seen.items()}
+    starts = going.starts | {number: frame.index + 1 for number, frame in frames.items()}
     middle = time.perf_counter()
     pair = Pair(reports.get(1), reports.get(2))
     state, body, guide = merge.step(going.integrator, pair)
