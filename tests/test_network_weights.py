@@ -1,15 +1,23 @@
 """The network's weights, held against numbers and against their file."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from small_network import network
+from small_network import lifting_network, network
 
-from integrator.proposal.network_weights import from_bfloat16, load, save, to_bfloat16
+from integrator.proposal.network_weights import (
+    LiftingNetwork,
+    PoseNetwork,
+    from_bfloat16,
+    load,
+    save,
+    to_bfloat16,
+)
 from integrator.proposal.silhouette_window import CELLS
 
 
@@ -20,10 +28,10 @@ def test_a_half_is_off_by_a_256th_at_most(values: np.ndarray) -> None:
     assert (off <= np.abs(values) / 256 + 1e-38).all()
 
 
-def test_a_network_survives_its_file(tmp_path: Path) -> None:
-    made = network(0.25)
+@pytest.mark.parametrize("made", [network(0.25), lifting_network()])
+def test_a_network_survives_its_file(tmp_path: Path, made: Any) -> None:
     save(made, tmp_path / "n.npz")
-    kept = load(tmp_path / "n.npz")
+    kept = load(tmp_path / "n.npz", type(made))
     assert all(np.array_equal(getattr(kept, n), getattr(made, n)) for n in made._fields)
 
 
@@ -44,4 +52,11 @@ def test_a_damaged_file_is_refused(tmp_path: Path, spoilt: str) -> None:
     if spoilt == "old":
         np.savez(path, version=np.array(1), mean=np.zeros(CELLS))
     with pytest.raises(ValueError, match=r"n\.npz"):
-        load(path)
+        load(path, PoseNetwork)
+
+
+@pytest.mark.parametrize("wanted", [PoseNetwork, LiftingNetwork])
+def test_one_network_is_not_taken_for_the_other(tmp_path: Path, wanted: Any) -> None:
+    save(lifting_network() if wanted is PoseNetwork else network(), tmp_path / "n.npz")
+    with pytest.raises(ValueError, match=r"n\.npz"):
+        load(tmp_path / "n.npz", wanted)

@@ -12,6 +12,7 @@ from integrator.proposal.silhouette_window import Look
 from synth.picture.silhouette_examples import AT_LARGE, ORDINARY, silhouette_examples
 from tritrack.training.proposal_examples import Example, example, example_of
 from tritrack.training.proposal_training import learnt, train_proposals
+from tritrack.training.torch_network import Round
 from tritrack.training.training import TrainingError
 
 QUIET = Console(quiet=True)
@@ -54,7 +55,7 @@ def test_what_is_learnt_beats_the_mean_pose() -> None:
     """Also: PyTorch's unit and ours agree, or the memory would say something else."""
     pytest.importorskip("torch", reason="learning needs the extra `train`")
     taught = [example_of((seed, ORDINARY)) for seed in range(64)]
-    network = learnt(taught, 3, QUIET, rounds=((40, 1.5e-3),), batch=8)
+    network = learnt(taught, 3, QUIET, rounds=[Round(40, 1.5e-3, 8)])
     new = [example_of((seed, ORDINARY)) for seed in range(800_000, 800_006)]
 
     def missed(told: list[np.ndarray]) -> float:

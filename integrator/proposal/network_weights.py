@@ -1,13 +1,14 @@
-"""The weights of the network that proposes joints, and the file that holds them."""
+"""The weights of the two networks that propose joints, and the files that hold them."""
 
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from common.npz_file import read_arrays, write_arrays
+from integrator.proposal.landmark_look import INPUTS
 from integrator.proposal.silhouette_window import BESIDE, CELLS, Floats
 
 JOINTS: Final = tuple(
@@ -23,11 +24,14 @@ LINE_BYTES, PAGE_BYTES = 64, 1 << 21
 """What memory is fetched in, and what a large page of it holds."""
 
 SHIPPED: Final = Path(__file__).with_name("proposals.npz")
+SHIPPED_LIFTING: Final = Path(__file__).with_name("lifting.npz")
 VERSION: Final = 4
 MOST_BYTES: Final = 100_000_000
 """No network is larger unpacked: the one that is installed takes 6 MB."""
 OUTPUTS: Final = 4 * len(JOINTS)
 """Three coordinates of each joint, and the confidence in each, as a logit."""
+LIFTED_OUTPUTS: Final = 3 + OUTPUTS
+"""Where the hips' middle is, and the joints from there, and the confidence in each."""
 
 
 class PoseNetwork(NamedTuple):
@@ -56,16 +60,39 @@ class PoseNetwork(NamedTuple):
     out_bias: Floats
 
 
-LAYERS: Final = ("pca", "fc1", "fc2", "gru_ih", "gru_hh", "fc3", "out")
+class LiftingNetwork(NamedTuple):
+    """The layers of a `PoseNetwork` behind its components, of another size."""
+
+    fc1: Bfloat16
+    fc1_bias: Floats
+    fc2: Bfloat16
+    fc2_bias: Floats
+    gru_ih: Bfloat16
+    gru_ih_bias: Floats
+    gru_hh: Bfloat16
+    gru_hh_bias: Floats
+    fc3: Bfloat16
+    fc3_bias: Floats
+    out: Bfloat16
+    out_bias: Floats
+
+
+Network = TypeVar("Network", PoseNetwork, LiftingNetwork)
 
 
 @lru_cache(maxsize=1)
 def shipped() -> PoseNetwork:
-    """The network that is installed with the program."""
-    return load(SHIPPED)
+    """The network of outlines that is installed with the program."""
+    return load(SHIPPED, PoseNetwork)
 
 
-def load(path: Path) -> PoseNetwork:
+@lru_cache(maxsize=1)
+def shipped_lifting() -> LiftingNetwork:
+    """The network of landmarks that is installed with the program."""
+    return load(SHIPPED_LIFTING, LiftingNetwork)
+
+
+def load(path: Path, kind: type[Network]) -> Network:
     """Read a network that `save` wrote.
 
     Raises:
@@ -75,7 +102,7 @@ def load(path: Path) -> PoseNetwork:
         held = read_arrays(path, MOST_BYTES)
         if int(held["version"]) != VERSION:
             raise ValueError(f"it has version {int(held['version'])}, not {VERSION}")
-        found = PoseNetwork(*(held[name] for name in PoseNetwork._fields))
+        found = kind(*(held[name] for name in kind._fields))
     except (OSError, KeyError, TypeError, ValueError) as error:
         raise ValueError(
             f"no usable proposals in {path}: {error}; install tritrack again"
@@ -84,7 +111,7 @@ def load(path: Path) -> PoseNetwork:
     return _in_one_piece(found)
 
 
-def _in_one_piece(network: PoseNetwork) -> PoseNetwork:
+def _in_one_piece(network: Network) -> Network:
     """The same, side by side in memory: a few large pages are found sooner than many small ones.
 
     NumPy asks the system for large pages for an array of this size.
@@ -98,33 +125,36 @@ def _in_one_piece(network: PoseNetwork) -> PoseNetwork:
         own[...] = part
         parts.append(own)
         at += size
-    return PoseNetwork(*parts)
+    return type(network)(*parts)
 
 
-def _refuse_misfits(network: PoseNetwork, path: Path) -> None:
-    n = network
-    components, hidden, gates, joined = (part.shape[-1] for part in (n.pca, n.fc1, n.gru_hh, n.fc3))
+def _refuse_misfits(n: PoseNetwork | LiftingNetwork, path: Path) -> None:
+    hidden, gates, joined = (part.shape[-1] for part in (n.fc1, n.gru_hh, n.fc3))
     memory = gates // 3
-    due = {
-        "pca": (CELLS, components),
-        "fc1": (2 * components + BESIDE, hidden),
+    due: dict[str, tuple[int, ...]] = {}
+    told, says = INPUTS, LIFTED_OUTPUTS
+    if isinstance(n, PoseNetwork):
+        due["pca"] = CELLS, n.pca.shape[-1]
+        told, says = 2 * n.pca.shape[-1] + BESIDE, OUTPUTS
+    due |= {
+        "fc1": (told, hidden),
         "fc2": (hidden, hidden),
         "gru_ih": (hidden, gates),
         "gru_hh": (memory, gates),
         "fc3": (hidden + memory, joined),
-        "out": (joined, OUTPUTS),
+        "out": (joined, says),
     }
-    for name in LAYERS:
+    for name, shape in due.items():
         weights, bias = getattr(n, name), getattr(n, f"{name}_bias")
-        if weights.shape != due[name] or bias.shape != due[name][1:]:
-            raise ValueError(f"{path}: {name} is {weights.shape}, not {due[name]}")
+        if weights.shape != shape or bias.shape != shape[1:]:
+            raise ValueError(f"{path}: {name} is {weights.shape}, not {shape}")
         if weights.dtype != np.uint16 or bias.dtype != np.float32:
             raise ValueError(f"{path}: {name} is not of bfloat16 and single floats")
         if not (np.isfinite(from_bfloat16(weights)).all() and np.isfinite(bias).all()):
             raise ValueError(f"{path}: {name} holds a number that is not finite")
 
 
-def save(network: PoseNetwork, path: Path) -> None:
+def save(network: PoseNetwork | LiftingNetwork, path: Path) -> None:
     """Write a network."""
     write_arrays(path, {"version": np.array(VERSION), **network._asdict()})
 

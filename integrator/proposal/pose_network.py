@@ -39,19 +39,20 @@ def step(
         stature_m: Of the person.
     """
     memory = np.zeros(len(network.gru_hh), np.float32) if memory is None else memory
-    memory, outputs = _recurrent_step(network, memory, seen.windows, seen.beside)
+    inputs = _inputs(network, seen.windows, seen.beside)
+    memory, outputs = recurrent_step(network, memory, inputs)
     outputs = outputs.astype(np.float64)
     places = outputs[: 3 * len(JOINTS)].reshape(-1, 3)
     own = OTHER_SIDES if seen.mirrored else slice(None)
     joints_m = seen.middle_m + stature_m * places[own] @ seen.turn
-    return memory, Proposal(joints_m, _sigmoid(outputs[3 * len(JOINTS) :][own]))
+    return memory, Proposal(joints_m, sigmoid(outputs[3 * len(JOINTS) :][own]))
 
 
 @compiled
-def _recurrent_step(network: Any, memory: Any, windows: Any, beside: Any) -> tuple[Any, Any]:
-    """The memory after this instant, and the outputs."""
+def recurrent_step(network: Any, memory: Any, inputs: Any) -> tuple[Any, Any]:
+    """The memory after this instant, and the outputs, of either network."""
     n, own, one = network, len(memory), np.float32(1.0)
-    hidden = _relu(_product(_inputs(n, windows, beside), n.fc1, n.fc1_bias))
+    hidden = _relu(_product(inputs, n.fc1, n.fc1_bias))
     hidden = _relu(_product(hidden, n.fc2, n.fc2_bias) + hidden)
     input_gates = _product(hidden, n.gru_ih, n.gru_ih_bias)
     hidden_gates = _product(memory, n.gru_hh, n.gru_hh_bias)
@@ -112,7 +113,8 @@ def _relu(values: Any) -> Any:
     return np.maximum(values, np.float32(0.0))
 
 
-def _sigmoid(values: Any) -> Any:
+def sigmoid(values: Any) -> Any:
+    """Probabilities of logits."""
     return 1.0 / (1.0 + np.exp(-values.clip(-60.0, 60.0)))
 
 

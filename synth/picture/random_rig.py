@@ -3,6 +3,7 @@
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.rig.camera import Camera, Rig, as_matrix, as_row, paper_rig
@@ -13,6 +14,17 @@ HEIGHTS_M, FOCALS = (0.8, 1.4), (1.0, 1.4)
 """Ranges; focal lengths in widths of the picture at 4.5 m."""
 APART_DEG, RISE_M, ROLL_DEG = (50.0, 130.0), (0.5, 2.6), 6.0
 """Of cameras that stand anywhere."""
+FRONT_SHARE, ASIDE_SHARE, ABOUT_DEG = 0.3, 0.25, 15.0
+"""Shares of the first cameras about somebody that stand about before them, and beside them; the
+deviation of these."""
+HEIGHTS_PX: Final = (240, 240, 180, 427)
+"""Of pictures 320 wide."""
+LEVEL_SHARE, LEVEL_M, HUNG_M, ROLLED_SHARE, ROLLED_DEG = 0.6, (0.7, 1.5), (0.3, 3.2), 0.3, 4.0
+DISTANCES_M, WIDTHS, AT_M = (2.2, 5.8), (0.85, 1.4), 4.5
+"""Ranges; focal lengths in widths, as HOW_FAR times those for whoever stands nearer or farther."""
+HOW_FAR: Final = (0.75, 1.3)
+CROSS_DEG, CROSSED_SHARE, RIGHT_SHARE = (45.0, 135.0), 0.5, 0.3
+"""The angle to the second camera, of those where it is not 90; how many stand to the right."""
 
 
 def random_rig(
@@ -42,6 +54,59 @@ def random_rig(
     )
 
 
+def rig_about(rng: np.random.Generator, middle_m: Vector) -> Rig:
+    """Two cameras anywhere about somebody who faces +z at first.
+
+    Args:
+        rng: Source of all choices.
+        middle_m: (3,) of the body.
+    """
+    size = (320, int(rng.choice(HEIGHTS_PX)))
+    chance, about_deg = rng.random(), ABOUT_DEG * rng.normal()
+    if chance < FRONT_SHARE:
+        at_deg = about_deg
+    elif chance < FRONT_SHARE + ASIDE_SHARE:
+        at_deg = about_deg + rng.choice([-90.0, 90.0])
+    else:
+        at_deg = rng.uniform(-180.0, 180.0)
+    apart_deg = rng.uniform(*CROSS_DEG) if rng.random() < CROSSED_SHARE else 90.0
+    other_deg = at_deg - apart_deg * (-1.0 if rng.random() < RIGHT_SHARE else 1.0)
+    level = bool(rng.random() < LEVEL_SHARE)
+    stands_m = middle_m * [1.0, 0.0, 1.0]
+    cameras = (
+        _about(n, size, at, stands_m, level, rng) for n, at in enumerate((at_deg, other_deg))
+    )
+    return Rig(*size, tuple(cameras))
+
+
+def _about(
+    n: int,
+    size: tuple[int, int],
+    at_deg: float,
+    stands_m: Vector,
+    level: bool,
+    rng: np.random.Generator,
+) -> Camera:
+    """A camera that looks at the middle of somebody, or level."""
+    far_m = rng.uniform(*DISTANCES_M)
+    place = _on_circle(at_deg, far_m, rng.uniform(*(LEVEL_M if level else HUNG_M)))
+    focal_px = size[0] * rng.uniform(*WIDTHS) * float(np.clip(far_m / AT_M, *HOW_FAR))
+    aim = place[1] if level else rng.uniform(0.75, 1.1)
+    roll_deg = ROLLED_DEG * rng.normal() if rng.random() < ROLLED_SHARE else 0.0
+    R = turned("z", np.array([roll_deg]))[0] @ _looking(place, aim)
+    K = ((focal_px, 0.0, size[0] / 2), (0.0, focal_px, size[1] / 2), (0.0, 0.0, 1.0))
+    return Camera(f"cam{n + 1}", K, as_matrix(R), as_row(-R @ (place + stands_m)))
+
+
+def _looking(place: Vector, aim_m: float) -> NDArray[np.float64]:
+    """From the world to the axes of who looks at so high above the floor's middle, not rolled."""
+    forward = np.array([0.0, aim_m, 0.0]) - place
+    forward /= np.linalg.norm(forward)
+    right = np.cross(forward, [0.0, 1.0, 0.0])
+    right /= np.linalg.norm(right)
+    return np.stack([right, np.cross(forward, right), forward])
+
+
 def _on_circle(at_deg: float, far_m: float, high_m: float) -> Vector:
     way = np.radians(at_deg)
     return np.array([far_m * np.sin(way), high_m, far_m * np.cos(way)])
@@ -51,11 +116,7 @@ def _slanted(
     n: int, size: tuple[int, int], place: Vector, focal_px: float, rng: np.random.Generator
 ) -> Camera:
     """A camera somewhere on the circle that looks at the middle of a body, rolled a little."""
-    forward = np.array([0.0, rng.uniform(0.8, 1.1), 0.0]) - place
-    forward /= np.linalg.norm(forward)
-    right = np.cross(forward, [0.0, 1.0, 0.0])
-    right /= np.linalg.norm(right)
-    level = np.stack([right, np.cross(forward, right), forward])
+    level = _looking(place, rng.uniform(0.8, 1.1))
     R = turned("z", np.array([rng.normal(0.0, ROLL_DEG)]))[0] @ level
     K = ((focal_px, 0.0, size[0] / 2), (0.0, focal_px, size[1] / 2), (0.0, 0.0, 1.0))
     return Camera(f"cam{n + 1}", K, as_matrix(R), as_row(-R @ place))

@@ -40,7 +40,7 @@ def train(
         typer.Argument(help="Clips that name their posture, or their run folders."),
     ] = None,
     what: Annotated[
-        Literal["postures", "proposals", "silhouettes", "landmarks"],
+        Literal["postures", "proposals", "lifting", "silhouettes", "landmarks"],
         typer.Option(help="What is learnt; only postures need clips."),
     ] = "postures",
     film: Annotated[
@@ -58,8 +58,9 @@ def train(
 ) -> None:
     """Learn postures from clips or runs.
 
-    With --what, a network is learnt from synthetic people instead: poses, silhouettes, landmarks;
-    landmarks of films of your own, too: --film VIDEO, as often as there are films.
+    With --what, a network is learnt from synthetic people instead: poses of silhouettes
+    (proposals) or of landmarks (lifting), silhouettes, landmarks; landmarks of films of your own,
+    too: --film VIDEO, as often as there are films.
 
     One posture more, beside those that a model knows: tritrack teach.
 
@@ -89,13 +90,19 @@ def train(
 
 
 def _train_network(
-    what: Literal["proposals", "silhouettes", "landmarks"], out: Path, json_wanted: bool
+    what: Literal["proposals", "lifting", "silhouettes", "landmarks"], out: Path, json_wanted: bool
 ) -> None:
     """Learn one of the networks in the package from people that are made up for it."""
     if what == "proposals":
         from tritrack.training.proposal_training import train_proposals
 
         facts = train_proposals(out, 0, console)
+        tell(facts, json_wanted, f"{facts['instants']} instants learnt, written to {out}")
+        return
+    if what == "lifting":
+        from tritrack.training.lifting_training import train_lifting
+
+        facts = train_lifting(out, 0, console)
         tell(facts, json_wanted, f"{facts['instants']} instants learnt, written to {out}")
         return
     if what == "silhouettes":

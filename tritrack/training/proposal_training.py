@@ -3,20 +3,20 @@
 import multiprocessing
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 import scipy.linalg
 from rich.console import Console
-from rich.progress import Progress
 
-from integrator.proposal.network_weights import PoseNetwork, save
+from integrator.proposal.network_weights import PoseNetwork, save, to_bfloat16
 from integrator.proposal.pose_network import SEES
-from integrator.proposal.silhouette_window import CELLS, Floats
+from integrator.proposal.silhouette_window import BESIDE, CELLS, Floats
 from synth.picture.silhouette_examples import AT_LARGE, ORDINARY
 from tritrack.terminal import bar
 from tritrack.training import torch_network
 from tritrack.training.proposal_examples import Example, example_of
+from tritrack.training.torch_network import Round, torch_or_refuse
 from tritrack.training.training import TrainingError
 
 PERFORMANCES: Final = {ORDINARY: 12_000, AT_LARGE: 5_000}
@@ -27,23 +27,11 @@ SAMPLED: Final = 12
 """Instants of each performance that the components are computed from, at most."""
 LIFTED: Final = 0.02
 """What is added to a component's spread before dividing by it, in those of the first."""
-ROUNDS, BATCH, WARM_STEPS = ((24, 2e-3), (20, 1e-3)), 64, 150
-"""Epochs and highest rate of each round, in which the rate rises, and falls to nothing."""
-DECAY: Final = 1e-4
-STEEPEST: Final = 1.0
-"""Size that a slope is cut to."""
+UNITS: Final = (512, 512, 384)
+"""Units of fc1 and fc2, of the recurrent unit, and of fc3."""
+ROUNDS: Final = (Round(24, 2e-3, 64), Round(20, 1e-3, 64))
 SHORTEST: Final = 8
 """Instants that a performance must have."""
-
-
-class Round(NamedTuple):
-    """How a round of training goes."""
-
-    epochs: int
-    rate: float
-    """The highest."""
-    batch: int
-    """Performances that are shown at once."""
 
 
 def train_proposals(out: Path, seed: int, console: Console) -> dict[str, Any]:
@@ -57,7 +45,7 @@ def train_proposals(out: Path, seed: int, console: Console) -> dict[str, Any]:
     Raises:
         TrainingError: When PyTorch is not installed, or the file cannot be written.
     """
-    _torch()
+    torch_or_refuse()
     if not out.parent.is_dir():
         raise TrainingError(f"cannot write {out}: there is no folder {out.parent}")
     with multiprocessing.get_context("spawn").Pool() as pool, bar(console) as progress:
@@ -77,72 +65,27 @@ def train_proposals(out: Path, seed: int, console: Console) -> dict[str, Any]:
 
 
 def learnt(
-    shown: list[Example],
-    seed: int,
-    console: Console,
-    rounds: Sequence[tuple[int, float]] = ROUNDS,
-    batch: int = BATCH,
+    shown: list[Example], seed: int, console: Console, rounds: Sequence[Round] = ROUNDS
 ) -> PoseNetwork:
-    """The network that misses least: mean distance of the joints, by Adam.
+    """The network that misses least: mean distance of the joints.
 
     Args:
         shown: Performances.
         seed: Of the network's start and the order of the performances.
         console: For progress.
-        rounds: How often each is shown, and the highest rate, round by round.
-        batch: How many are shown at once.
+        rounds: Of training.
 
     Raises:
         TrainingError: When PyTorch is not installed.
     """
-    torch = _torch()
+    torch = torch_or_refuse()
     torch.manual_seed(seed)
-    rng, (mean, components) = np.random.default_rng(seed), _components(shown)
+    mean, components = _components(shown)
     examples = [_tensors(torch, mean, components, each) for each in shown]
-    parts = torch_network.parts_of(
-        torch, COMPONENTS, np.concatenate([each.due for each in shown]).mean(0)
-    )
-    with bar(console) as progress:
-        ends = []
-        for epochs, rate in rounds:
-            _round(torch, parts, examples, rng, Round(epochs, rate, batch), progress)
-            ends.append([weight.detach().clone() for part in parts for weight in part.parameters()])
-    _settle(torch, parts, ends)
-    return torch_network.network_of(mean, components, parts)
-
-
-def _round(
-    torch: Any,
-    parts: list[Any],
-    examples: list[tuple[Any, ...]],
-    rng: np.random.Generator,
-    how: Round,
-    progress: Progress,
-) -> None:
-    """Show all examples so often, in other orders."""
-    epochs, rate, batch = how
-    weights = [weight for part in parts for weight in part.parameters()]
-    adam = torch.optim.AdamW(weights, lr=rate, weight_decay=DECAY)
-    count = len(examples) // batch
-    warm = min(0.3, WARM_STEPS / epochs / count)
-    pace = torch.optim.lr_scheduler.OneCycleLR(
-        adam, rate, total_steps=epochs * count + 1, pct_start=warm
-    )
-    for _ in progress.track(range(epochs), description="learning"):
-        for rows in np.array_split(rng.permutation(len(examples)), count):
-            adam.zero_grad()
-            torch_network.loss(torch, parts, [examples[row] for row in rows]).backward()
-            torch.nn.utils.clip_grad_norm_(weights, STEEPEST)
-            adam.step()
-            pace.step()
-
-
-def _settle(torch: Any, parts: list[Any], ends: list[list[Any]]) -> None:
-    """The mean of what each round ended with: better than either (Izmailov et al. 2018)."""
-    weights = [weight for part in parts for weight in part.parameters()]
-    with torch.no_grad():
-        for weight, *reached in zip(weights, *ends, strict=True):
-            weight.copy_(torch.stack(reached).mean(0))
+    usual = np.concatenate([each.due for each in shown]).mean(axis=0)
+    parts = torch_network.parts_of(torch, 2 * COMPONENTS + BESIDE, UNITS, usual)
+    torch_network.learn(torch, parts, examples, rounds, seed, console)
+    return PoseNetwork(to_bfloat16(components), -mean @ components, *torch_network.layers_of(parts))
 
 
 def _components(shown: list[Example]) -> tuple[Floats, Floats]:
@@ -170,14 +113,3 @@ def _tensors(torch: Any, mean: Floats, components: Floats, shown: Example) -> tu
     ones = np.ones(len(seen), np.float32)
     parts = (seen, shown.due, ones, ones * np.float32(shown.stature_m))
     return tuple(torch.from_numpy(part) for part in parts)
-
-
-def _torch() -> Any:
-    """PyTorch, which only this needs."""
-    try:
-        import torch
-    except ImportError as error:
-        raise TrainingError(
-            "learning proposals needs PyTorch: pip install 'tritrack[train]'"
-        ) from error
-    return torch

@@ -1,0 +1,176 @@
+"""What the landmarks of each view show of somebody, told as from where they stand."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import JOINT_NAMES, OTHER_SIDE, Vector
+from common.bus.messages import Report
+from common.rig.camera import Camera, Rig, arrays_of, centre, rays
+from integrator.proposal.silhouette_window import (
+    FAR_M,
+    LONGEST_S,
+    NEAR_M,
+    NEARNESS,
+    USUAL_S,
+    Floats,
+    axes_of,
+)
+from integrator.rig.body_position import triangulate
+
+JOINTS: Final = len(JOINT_NAMES)
+FACED, STANDS, KNOWN = 3 * JOINTS, 3 * JOINTS + 3, 3 * JOINTS + 8
+"""Of what is said of a view, behind joints and confidences: where which way the body faces begins,
+where the camera stands, and the end."""
+INPUTS: Final = 2 * KNOWN + 2
+"""Both views, how long it has been since the look before, and whether both see."""
+MIDDLE: Final = [JOINT_NAMES.index(name) for name in ("l_shoulder", "r_shoulder", "l_hip", "r_hip")]
+ANKLES: Final = [JOINT_NAMES.index(name) for name in ("l_ankle", "r_ankle")]
+PELVIS, NECK = JOINT_NAMES.index("pelvis"), JOINT_NAMES.index("neck")
+UP: Final = np.array([0.0, 1.0, 0.0])
+
+ANKLE_UP: Final = 0.045
+"""How high an ankle is over the floor, in statures."""
+SURE: Final = 0.3
+"""Confidence in the lower ankle from which on it tells how far away somebody stands."""
+SPREAD: Final = 0.33
+"""How far joints are from their middle, in statures, of whose distance nothing else tells."""
+LEAST_SPREAD: Final = 1e-3
+STEEPEST: Final = 1e-3
+"""Cosine of the angle between a ray and the floor of what is seen from above or below."""
+ASLANT: Final = 0.05
+"""Cosine of the angle to the sight line of what is beside the body's middle, at least."""
+BEYOND: Final = 1.2
+"""No joint is shown farther from the middle, in statures."""
+LEANS: Final = 3.0**0.5
+"""Which way who leans by more than 30 degrees in a picture faces is said about the trunk, and not
+heard here."""
+
+
+class Shown(NamedTuple):
+    """What one view's landmarks say."""
+
+    joints_px: NDArray[np.float64]
+    """(15, 2) undistorted."""
+    confidence: Vector
+    """(15,)"""
+    facing_deg: float
+    facing_confidence: float
+
+
+class Look(NamedTuple):
+    """What the network that lifts landmarks is told, and where that is."""
+
+    inputs: Floats
+    """(INPUTS,)"""
+    middle_m: Vector
+    """(3,) of the body, world."""
+    turn: Vector
+    """(3, 3) rows: the axes of the network's frame in the world; left-handed in a mirror."""
+    mirrored: bool
+    """It is told what is in a mirror: right limbs are left ones there."""
+
+
+def shown_of(report: Report | None) -> Shown | None:
+    """What the landmarks of a report say; None where there are none."""
+    found = None if report is None else report.landmarks
+    if found is None:
+        return None
+    joints_px, confidence = np.array(found.joints_px), np.array(found.confidence)
+    return Shown(joints_px, confidence, found.facing_deg, found.facing_confidence)
+
+
+def look(
+    shown: tuple[Shown | None, Shown | None], rig: Rig, stature_m: float, since_s: float
+) -> Look | None:
+    """The landmarks as the network wants them; None where they show nobody, or no one body.
+
+    Args:
+        shown: Of the views, one of them at least.
+        rig: The cameras without distortion; their world has y up and its floor at 0.
+        stature_m: Of the person.
+        since_s: Time since the look before.
+    """
+    first, second = shown
+    lone = rig.cameras[0] if second is None else rig.cameras[1]
+    if first is not None and second is not None:
+        middle_m, firm = _where_both_see(first, second, rig), True
+        turn = axes_of(rig.cameras[0], rig.cameras[1])
+    else:
+        middle_m, firm = _where_it_stands(first or second, lone, stature_m)
+        turn = axes_of(lone, lone)
+    if middle_m is None:
+        return None
+    mirrored = bool(np.linalg.det(turn) < 0.0)
+    inputs = np.zeros(INPUTS, np.float32)
+    told = [one for one in zip(shown, rig.cameras, strict=True) if one[0] is not None]
+    for n, (seen, camera) in enumerate(told):
+        assert seen is not None
+        away_m = centre(camera) - middle_m
+        far_m = float(np.linalg.norm(away_m))
+        plane = _on_plane(rays(camera, seen.joints_px), -away_m / far_m)
+        if plane is None:
+            return None
+        own = inputs[n * KNOWN : (n + 1) * KNOWN]
+        _tell_joints(own, plane * far_m / stature_m, seen, mirrored)
+        own[STANDS:KNOWN] = *(turn @ away_m / far_m), NEARNESS * stature_m / far_m - 1.0, firm
+    inputs[-2:] = min(since_s, LONGEST_S) / USUAL_S - 1.0, len(told) - 1.0
+    return Look(inputs, middle_m, turn, mirrored)
+
+
+def _tell_joints(own: Floats, statures: NDArray[np.float64], seen: Shown, mirrored: bool) -> None:
+    """Where joints are, (15, 2) from the middle, how surely, and which way the body faces."""
+    trunk = statures[NECK] - statures[PELVIS]
+    heard = seen.facing_confidence if trunk[1] > LEANS * abs(trunk[0]) else 0.0
+    confidence, facing = seen.confidence, np.radians(seen.facing_deg)
+    if mirrored:
+        statures, confidence = statures[OTHER_SIDE] * [-1.0, 1.0], confidence[OTHER_SIDE]
+        facing = -facing
+    own[: 2 * JOINTS] = 2.0 * statures.clip(-BEYOND, BEYOND).ravel()
+    own[2 * JOINTS : FACED] = 2.0 * confidence - 1.0
+    own[FACED:STANDS] = heard * np.cos(facing), heard * np.sin(facing), 2.0 * heard - 1.0
+
+
+def _on_plane(seen: NDArray[np.float64], forward: Vector) -> NDArray[np.float64] | None:
+    """Where rays (n, 3) cross the plane at depth 1 before who looks along `forward`, upright:
+    (n, 2) to the right and up; None of who looks straight up or down."""
+    back = -forward * [1.0, 0.0, 1.0]
+    flat = float(np.linalg.norm(back))
+    if flat < STEEPEST:
+        return None
+    right = np.cross(UP, back / flat)
+    across = np.stack([seen @ right, seen @ np.cross(right, forward)], axis=1)
+    return np.asarray(across / np.maximum(seen @ forward, ASLANT)[:, None])
+
+
+def _where_both_see(first: Shown, second: Shown, rig: Rig) -> Vector | None:
+    """Where the middles of both views' landmarks meet, before both cameras."""
+    cameras = rig.cameras[0], rig.cameras[1]
+    left, right = (tuple(one.joints_px[MIDDLE].mean(axis=0).tolist()) for one in (first, second))
+    found_m: Vector = triangulate(cameras, (left, right))
+    depths_m = [float(arrays_of(one).R[2] @ found_m + one.t[2]) for one in cameras]
+    return found_m if np.isfinite(depths_m).all() and min(depths_m) >= NEAR_M else None
+
+
+def _where_it_stands(
+    shown: Shown | None, camera: Camera, stature_m: float
+) -> tuple[Vector | None, bool]:
+    """Where the middle of one view's landmarks is, and whether an ankle on the floor tells it:
+    otherwise their size does."""
+    assert shown is not None
+    seen = rays(camera, shown.joints_px)
+    forward = seen[MIDDLE].mean(axis=0)
+    forward /= np.linalg.norm(forward)
+    plane = _on_plane(seen, forward)
+    if plane is None:
+        return None, False
+    low = ANKLES[int(plane[ANKLES[1], 1] < plane[ANKLES[0], 1])]
+    drop_m = centre(camera)[1] - ANKLE_UP * stature_m
+    falls, along = -float(seen[low, 1]), float(seen[low] @ forward)
+    floor_m = drop_m / falls * along if falls > 0.0 and drop_m > 0.0 else np.inf
+    firm = bool(shown.confidence[low] >= SURE and NEAR_M < floor_m < FAR_M)
+    off = ((plane - plane[MIDDLE].mean(axis=0)) ** 2).sum(axis=1)
+    spread = np.sqrt(shown.confidence @ off / max(float(shown.confidence.sum()), LEAST_SPREAD))
+    size_m = min(max(SPREAD * stature_m / max(spread, LEAST_SPREAD), NEAR_M), FAR_M)
+    return centre(camera) + forward * (floor_m if firm else size_m), firm
