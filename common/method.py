@@ -54,6 +54,9 @@ class Method(msgspec.Struct, frozen=True, kw_only=True):
 
     proposals: bool
     """A network with memory proposes the joints from the silhouettes; nothing is searched for."""
+    lifting: bool
+    """A second network lifts the joints from landmarks alone: what one outline tells, and what both
+    tell of who leans far, is joined with them."""
     free_joints: bool
     """Joints may lie beside the cylinders' ends: shoulders rise, and people differ."""
     refinement: bool

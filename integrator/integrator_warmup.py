@@ -6,13 +6,14 @@ import msgspec
 import numpy as np
 
 from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
+from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.messages import Report, ViewerNumber
+from common.bus.messages import Landmarks, Report, ViewerNumber
 from common.config.settings import Settings
 from common.method import METHODS
 from common.raster.kernel import draw_body, view_of
 from common.raster.silhouette_report import pack, silhouette_report, unpack
-from common.rig.camera import Rig, paper_rig
+from common.rig.camera import Rig, paper_rig, project
 from integrator import merge, merge_state
 from integrator.fit import pose_refinement, visual_hull
 from integrator.pairing import Pair
@@ -58,6 +59,10 @@ def _rig(size: tuple[int, int]) -> Rig:
 def _report(viewer: ViewerNumber, index: int, size: tuple[int, int], rig: Rig) -> Report:
     pose = rest_pose()
     pose[POSE_INDEX["y"]] = 1.0
-    view = view_of(rig.cameras[viewer - 1])
-    mask = draw_body(body_vector(thesis_bdp(1.75)), pose, view, size)
-    return silhouette_report(viewer, mask, index, float(index))
+    camera, body = rig.cameras[viewer - 1], body_vector(thesis_bdp(1.75))
+    report = silhouette_report(
+        viewer, draw_body(body, pose, view_of(camera), size), index, float(index)
+    )
+    places_px = project(camera, joints(body, pose)).tolist()
+    shown = Landmarks(tuple((x, y) for x, y in places_px), (0.9,) * len(JOINT_NAMES))
+    return msgspec.structs.replace(report, landmarks=shown)

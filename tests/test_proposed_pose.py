@@ -14,7 +14,7 @@ from common.rig.camera import Camera, project
 from integrator.fit import proposed_pose
 from integrator.fit.proposed_pose import Before, Instant, ProposedPose
 from integrator.proposal import pose_proposal
-from integrator.proposal.pose_proposal import AT, CONFIDENT, PoseProposal
+from integrator.proposal.pose_proposal import AT, CONFIDENT, Memory, PoseProposal
 
 
 def bent_over() -> Vector:
@@ -27,7 +27,8 @@ def bent_over() -> Vector:
 def proposing(monkeypatch: pytest.MonkeyPatch, confidence: float) -> None:
     """A network that proposes somebody who bends over too far, with so much confidence."""
     joints_m = joints(body_vector(BODY), bent_over())[AT]
-    given = PoseProposal(joints_m, np.full(len(JOINT_NAMES), confidence), np.zeros(1, np.float32))
+    memory = Memory(np.zeros(1, np.float32), None)
+    given = PoseProposal(joints_m, np.full(len(JOINT_NAMES), confidence), memory)
     monkeypatch.setattr(pose_proposal, "step", lambda *_: given)
 
 

@@ -109,7 +109,9 @@ def _is_held(known: PoseProposal, rays: Rays | None) -> bool:
 
 def _proposed(before: Before, now: Instant) -> PoseProposal:
     up = pose_proposal.up_of(now.bdp, before.pose)
-    return pose_proposal.step(before.memory, now.bdp, now.rig, now.seen, now.dt_s, up)
+    return pose_proposal.step(
+        before.memory, now.bdp, now.rig, now.seen, now.dt_s, up, now.method.lifting
+    )
 
 
 def _with_landmarks(

@@ -52,6 +52,9 @@ class Before(NamedTuple):
 def step(before: Before, sight: Sight) -> Proposed:
     """One instant of one view: what the outline proposes, and what the picture shows with it.
 
+    Which way somebody faces who leans far or lies is not asked: front and back are not there what
+    they are of who stands.
+
     Args:
         before: What is remembered.
         sight: What is seen.
@@ -60,9 +63,11 @@ def step(before: Before, sight: Sight) -> Proposed:
     camera, annotations = sight.camera, sight.annotations
     rig = undistorted_rig(sight.rig)
     up = pose_proposal.up_of(sight.bdp, sight.before)
-    known = pose_proposal.step(before.memory, sight.bdp, rig, sight.seen, sight.dt_s, up)
+    known = pose_proposal.step(
+        before.memory, sight.bdp, rig, sight.seen, sight.dt_s, up, sight.method.lifting
+    )
     joints_m = _with_trunk(sight, known.joints_m)
-    if sight.method.reflection and front is not None:
+    if sight.method.reflection and front is not None and up is None:
         yaw = reflection.yaw_deg(camera, joints_m)
         shown, named = _shown(sight.report), annotations.orientation
         front, behind = reflection.front_of(front, yaw, shown, named, sight.dt_s)
