@@ -201,11 +201,12 @@ def inherited() -> Iterator[None]:
     A terminal sends Ctrl-C, and word of its own end, to all processes; only the supervisor, who
     ends the others in order, shall hear that, also while they are still importing.
     """
-    resource_tracker.ensure_running()  # its own start would lift the block again
     before = dict(os.environ)
     os.environ.update(FRUGAL)
     heard = signal.pthread_sigmask(signal.SIG_BLOCK, OF_TERMINALS)
     try:
+        resource_tracker.ensure_running()  # deaf as well; its start lifts the block of SIGINT
+        signal.pthread_sigmask(signal.SIG_BLOCK, OF_TERMINALS)
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, heard)  # the run of a site is deaf itself
