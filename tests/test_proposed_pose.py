@@ -1,5 +1,7 @@
 """The pose of two views, held against a proposal that fits badly, with and without confidence."""
 
+import math
+
 import msgspec
 import numpy as np
 import pytest
@@ -13,7 +15,8 @@ from common.method import DEFAULT
 from common.rig.camera import Camera, project
 from integrator.fit import proposed_pose
 from integrator.fit.proposed_pose import Before, Instant, ProposedPose
-from integrator.proposal import pose_proposal
+from integrator.proposal import lifting_network, pose_proposal
+from integrator.proposal.lifting_network import Lifted
 from integrator.proposal.pose_proposal import AT, CONFIDENT, Memory, PoseProposal
 
 
@@ -27,7 +30,7 @@ def bent_over() -> Vector:
 def proposing(monkeypatch: pytest.MonkeyPatch, confidence: float) -> None:
     """A network that proposes somebody who bends over too far, with so much confidence."""
     joints_m = joints(body_vector(BODY), bent_over())[AT]
-    memory = Memory(np.zeros(1, np.float32), None)
+    memory = Memory(np.zeros(1, np.float32), None, 0.0)
     given = PoseProposal(joints_m, np.full(len(JOINT_NAMES), confidence), memory)
     monkeypatch.setattr(pose_proposal, "step", lambda *_: given)
 
@@ -69,3 +72,24 @@ def test_a_pose_that_both_views_landmarks_show_is_not_matched_to_outlines(
     pose = found(sures)
     assert pose.confidence.mean() < CONFIDENT
     assert pose.matched == matched
+
+
+def test_what_both_views_showed_outweighs_what_one_lifts_until_it_is_old(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A recurrent network of outlines remembers the depths that the lost camera showed."""
+    above = joints(body_vector(BODY), on_one_leg())[AT] * [1.0, 2.0, 1.0]
+    lifted = Lifted(above, np.full(len(AT), 0.5))
+    memory_of_lifting = np.zeros(1, np.float32)
+    monkeypatch.setattr(lifting_network, "step", lambda *_: (memory_of_lifting, lifted))
+    outline, other = outlines(on_one_leg())
+    first = shown(told(1, outline), ROLLED.cameras[0], 0.9)
+    second = shown(told(2, other), ROLLED.cameras[1], 0.9)
+    both = pose_proposal.step(None, BODY, ROLLED, (first, second), 1 / 15).memory
+    stretched_m = []
+    for alone_s in (0.0, 1.0, 4.0, 30.0, math.inf):
+        before = both._replace(alone_s=alone_s)
+        joints_m = pose_proposal.step(before, BODY, ROLLED, (first, None), 1 / 15).joints_m
+        stretched_m.append(float(np.ptp(joints_m[:, 1])))
+    assert stretched_m == sorted(stretched_m)
+    assert stretched_m[0] < stretched_m[1] < stretched_m[2] < stretched_m[3] == stretched_m[4]

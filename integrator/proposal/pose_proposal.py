@@ -65,12 +65,19 @@ BELIEVED: Final = 3.0
 """How many times the odds of what is lifted count beside those of outlines: of r01 and r04 alone
 98 % of depths' signs are right at 2, 99 at 3 and 4, and joints are as far off at 2 to 4."""
 
+BELIEVED_AFTER_S: Final = 8.0
+"""What is lifted counts in full after one view was alone so long, where two were before, and from
+0 on ever more until then: the network of outlines remembers what both showed, that of landmarks
+was taught no such change. Of 2, 4 and 8 the best of r01, r04 and made-up people in free motion."""
+
 
 class Memory(NamedTuple):
     """What the networks remember of the instants before; None: nothing was shown to that one."""
 
     outlines: Floats | None
     lifting: Floats | None
+    alone_s: float
+    """How long one view has been alone; infinite where two never were shown."""
 
 
 class PoseProposal(NamedTuple):
@@ -123,16 +130,17 @@ def step(
         larger = (first, None) if areas_px[0] >= areas_px[1] else (None, second)
         shown = look(larger, rig, height_m, since_s, up)
     assert shown is not None  # one alone stands somewhere
-    before = Memory(None, None) if memory is None else memory
+    before = Memory(None, None, math.inf) if memory is None else memory
     outlines, found = pose_network.step(network_weights.shipped(), before.outlines, shown, height_m)
     joints_m = found.joints_m - height_m * JOINTS_OFF @ trunk_of(found.joints_m).T
     confidence = probability(found.confidence)
     lifting, lifted = before.lifting, None
     if lifts:
         lifting, lifted = _lifted(before.lifting, seen, rig, height_m, since_s)
+    alone_s = before.alone_s + since_s if None in seen else 0.0
     if lifted is not None and (None in seen or up is not None):
-        joints_m, confidence = _joined(joints_m, confidence, lifted, alone=None in seen)
-    return PoseProposal(joints_m, of_landmarks(confidence), Memory(outlines, lifting))
+        joints_m, confidence = _joined(joints_m, confidence, lifted, alone_s)
+    return PoseProposal(joints_m, of_landmarks(confidence), Memory(outlines, lifting, alone_s))
 
 
 def _lifted(
@@ -153,19 +161,20 @@ def _lifted(
 
 
 def _joined(
-    proposed_m: NDArray[np.float64], confidence: Vector, lifted: Lifted, *, alone: bool
+    proposed_m: NDArray[np.float64], confidence: Vector, lifted: Lifted, alone_s: float
 ) -> tuple[NDArray[np.float64], Vector]:
     """Joints (12, 3) of outlines and of landmarks by their odds, and the mean confidence.
 
     Where one view is alone the outline's feet say how far away both stand.
     """
-    lifted_m = lifted.joints_m
-    if alone:
+    lifted_m, believed = lifted.joints_m, BELIEVED
+    if alone_s:
+        believed *= min(1.0, alone_s / BELIEVED_AFTER_S)
         lifted_m = lifted_m + _hips_m(proposed_m) - _hips_m(lifted_m)
     odds, others = (
         (sure / (1.0 - sure + HARDLY))[:, None] for sure in (confidence, lifted.confidence)
     )
-    others = BELIEVED * others
+    others = believed * others
     joints_m = (odds * proposed_m + others * lifted_m) / (odds + others)
     return joints_m, (confidence + lifted.confidence) / 2.0
 
