@@ -53,6 +53,12 @@ def found(sures: tuple[float, float] | None = None) -> ProposedPose:
     )
 
 
+def lifting(monkeypatch: pytest.MonkeyPatch, joints_m: Vector) -> None:
+    """Landmarks are lifted to these joints, (12, 3)."""
+    lifted = np.zeros(1, np.float32), Lifted(joints_m, np.full(len(AT), 0.5))
+    monkeypatch.setattr(lifting_network, "step", lambda *_: lifted)
+
+
 @pytest.mark.usefixtures("proposing")
 @pytest.mark.parametrize(("confidence", "matched"), [(CONFIDENT, False), (0.05, True)])
 def test_a_confident_proposal_is_left_as_it_is(matched: bool) -> None:
@@ -78,10 +84,7 @@ def test_what_both_views_showed_outweighs_what_one_lifts_until_it_is_old(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A recurrent network of outlines remembers the depths that the lost camera showed."""
-    above = joints(body_vector(BODY), on_one_leg())[AT] * [1.0, 2.0, 1.0]
-    lifted = Lifted(above, np.full(len(AT), 0.5))
-    memory_of_lifting = np.zeros(1, np.float32)
-    monkeypatch.setattr(lifting_network, "step", lambda *_: (memory_of_lifting, lifted))
+    lifting(monkeypatch, joints(body_vector(BODY), on_one_leg())[AT] * [1.0, 2.0, 1.0])
     outline, other = outlines(on_one_leg())
     first = shown(told(1, outline), ROLLED.cameras[0], 0.9)
     second = shown(told(2, other), ROLLED.cameras[1], 0.9)
@@ -93,3 +96,16 @@ def test_what_both_views_showed_outweighs_what_one_lifts_until_it_is_old(
         stretched_m.append(float(np.ptp(joints_m[:, 1])))
     assert stretched_m == sorted(stretched_m)
     assert stretched_m[0] < stretched_m[1] < stretched_m[2] < stretched_m[3] == stretched_m[4]
+
+
+def test_where_one_view_is_alone_the_person_stands_between_what_outline_and_landmarks_say(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Outlines place people by their feet, landmarks by their size: each errs for its own reason."""
+    outline, _ = outlines(on_one_leg())
+    first = shown(told(1, outline), ROLLED.cameras[0], 0.9)
+    alone = pose_proposal.step(None, BODY, ROLLED, (first, None), 1 / 15, lifts=False).joints_m
+    beyond_m = np.array([0.1, 0.0, -0.6])
+    lifting(monkeypatch, alone + beyond_m)
+    joined = pose_proposal.step(None, BODY, ROLLED, (first, None), 1 / 15).joints_m
+    assert joined - alone == pytest.approx(np.tile(beyond_m / 2, (len(AT), 1)), abs=1e-5)
