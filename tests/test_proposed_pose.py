@@ -101,7 +101,7 @@ def test_what_both_views_showed_outweighs_what_one_lifts_until_it_is_old(
 def test_where_one_view_is_alone_the_person_stands_between_what_outline_and_landmarks_say(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Outlines place people by their feet, landmarks by their size: each errs for its own reason."""
+    """Outlines place people by their feet, landmarks by their size: both err, but not alike."""
     outline, _ = outlines(on_one_leg())
     first = shown(told(1, outline), ROLLED.cameras[0], 0.9)
     alone = pose_proposal.step(None, BODY, ROLLED, (first, None), 1 / 15, lifts=False).joints_m
