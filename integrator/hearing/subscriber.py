@@ -6,6 +6,7 @@ from typing import Final
 
 from common.bus.bus import Bus
 from common.bus.control_messages import ClockQuestion, Command, Ended
+from common.bus.inbox import Alive
 from common.bus.messages import Report, ViewerNumber
 from integrator import pairing, presence
 from integrator.hearing import link_lag
@@ -15,7 +16,7 @@ from integrator.pairing import Pair
 
 HEAR_S: Final = 0.02
 LOOK_S: Final = 0.5
-"""Viewers so fast that a report always waits are asked after so long whether they are there."""
+"""Among reports of which one always waits, who came or went is believed after so long."""
 ASLEEP_S: Final = 0.5
 """A round that took longer was stopped, or starved: what was said meanwhile is on its way still,
 and its speakers are not to blame."""
@@ -50,6 +51,8 @@ class Subscriber:
         self._numbers = {f"viewer {number}": number for number in viewers}
         self._reports, self._ended = bus.subscribe(Report), bus.subscribe(Ended)
         self._alive = bus.watch_alive()
+        self._moves: list[Alive | Ended] = []
+        """Who came, went and ended, until all is in that they reported before."""
         self._paired = pairing.init(period_s, viewers)
         self._present = presence.init(period_s, viewers)
         self._links = link_lag.init(period_s)
@@ -83,6 +86,9 @@ class Subscriber:
     def pairs(self) -> list[Pair]:
         """What is complete now, or overdue; waits a moment for a report."""
         complete: list[Pair] = []
+        if not self._moves:
+            self._looked_s = time.monotonic()
+        self._moves += [*self._alive.drain(), *self._ended.drain()]
         first = self._reports.take(HEAR_S)
         if first is not None and (self._gathers or self.starter.start_s is None):
             time.sleep(GATHER_S)
@@ -102,9 +108,9 @@ class Subscriber:
             self._paired, more = pairing.step(self._paired, report)
             complete += more
         if not reports or now_s - self._looked_s > LOOK_S:
-            # What a viewer said before it went comes first, unless there is always a report.
+            # What a viewer said before it went comes first: whoever moved had done so before a wait
+            # for a report began that came to nothing, unless there is always a report.
             complete += self._who_came_and_went(now_s)
-            self._looked_s = now_s
         if self._is_caught_up(reports, now_s):
             wait_s = self._wait_s + abs(self.late_s)
             self._paired, alone = pairing.overdue(self._paired, now_s, wait_s)
@@ -141,9 +147,12 @@ class Subscriber:
 
     def _who_came_and_went(self, now_s: float) -> list[Pair]:
         released: list[Pair] = []
-        for alive in self._alive.drain():
-            number = self._numbers.get(alive.name)
-            if number is not None and alive.alive:
+        for moved in self._moves:
+            if isinstance(moved, Ended):
+                released += self._end(moved, now_s)
+                continue
+            number = self._numbers.get(moved.name)
+            if number is not None and moved.alive:
                 self._present = presence.came(self._present, number, now_s)
                 self.over = tuple(said for said in self.over if said.viewer != number)
                 self._paired = pairing.begin(self._paired, number)
@@ -151,8 +160,7 @@ class Subscriber:
                 self._present = presence.went(self._present, number, now_s)
                 self._paired, more = pairing.away(self._paired, number)
                 released += more
-        for said in self._ended.drain():
-            released += self._end(said, now_s)
+        self._moves = []
         return released
 
     def _end(self, said: Ended, now_s: float) -> list[Pair]:
