@@ -34,6 +34,7 @@ def test_what_the_design_asks_for_is_measured_against_it(result: dict[str, Any])
         "limb match, 160x120": 0.2,
         "limb match, 640x480": 0.5,
         "search of both views, 160x120": 2500.0,
+        "digest of the sources": 20.0,
         "loading of compiled functions": 1.0,
         "track, video to poses, paper, 160x120": 300.0,
     }

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from common import cache_folder
 from common.cache_folder import KEPT, digest_of, first_writable, parents, prune
-from common.packages import PACKAGES
+from common.packages import PACKAGES, ROOT
 
 
 @pytest.fixture
@@ -56,6 +57,23 @@ def test_what_is_no_source_leaves_the_digest(sources: Path) -> None:
     (sources / "viewer" / "room" / "network.npz").write_bytes(b"1")
     (sources / "README.md").write_text("1")
     assert digest_of(sources) == before
+
+
+def test_the_digest_reads_each_of_our_sources_once_and_nothing_else(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Every process takes it as it starts; how long that takes `tritrack bench` tells."""
+    opened: list[Path] = []
+    content = cache_folder._content
+
+    def counted(path: str) -> bytes:
+        opened.append(Path(path))
+        return content(path)
+
+    monkeypatch.setattr(cache_folder, "_content", counted)
+    digest_of(ROOT)
+    ours = [path for name in PACKAGES for path in (ROOT / name).rglob("*.py")]
+    assert sorted(opened) == sorted(ours)
 
 
 def test_the_folder_lies_in_the_checkout_or_where_numba_is_told(tmp_path: Path) -> None:

@@ -89,7 +89,7 @@ def test_the_process_finds_what_is_found_here_and_asking_waits_for_nothing(
     job = Job(shown.sighting.size_px, shown.stature_m, 1 / 15, tracks, PAPER)
     solver, began_s = RigSolver(), time.monotonic()
     solver.ask(job)
-    assert time.monotonic() - began_s < 0.5
+    assert time.monotonic() - began_s < 0.05
     assert solver.answer() is None
     found = answer_of(solver, 100.0)
     with threadpool_limits(1):

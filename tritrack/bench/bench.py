@@ -18,9 +18,11 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from common.cache_folder import digest_of
 from common.config.part_settings import PageSettings, SearchSettings
 from common.config.settings import Settings
 from common.method import DEFAULT, METHODS, Mode
+from common.packages import ROOT
 from common.video.clips import open_clip
 from integrator import integrator_warmup
 from synth.write import ClipSet, write_set
@@ -77,6 +79,7 @@ def measured(quick: bool) -> Iterator[Measured]:
     yield from matching(SMALL, 0.2, repeats)
     yield from matching(LARGE, 0.5, repeats)
     yield from searching(SMALL, 2500.0, repeats)
+    yield digesting(repeats)
     yield loading()
     with tempfile.TemporaryDirectory(prefix="tritrack-bench-") as folder:
         wanted = ClipSet("postures", seed=PERFORMER_SEED, postures=("walk_in_place",))
@@ -121,6 +124,13 @@ def searching(size: tuple[int, int], target: float, repeats: int) -> Iterator[Me
     yield Measured(f"search of both views, {at}", 1e6 / pair_us, "frames/s", target)
     yield Measured(f"matches of both views, {at}", matches, "a frame")
     yield Measured(f"search for each match, {at}", pair_us / matches, "us")
+
+
+def digesting(repeats: int) -> Measured:
+    """How long a process takes to know whether what was compiled is of its sources."""
+    return Measured(
+        "digest of the sources", 1e3 * least_s(lambda: digest_of(ROOT), repeats), "ms", 20.0
+    )
 
 
 def loading() -> Measured:
