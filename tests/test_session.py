@@ -20,9 +20,10 @@ from common.bus.control_messages import Pulse
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from common.video.clip_sources import ClipError
+from tritrack.live.admission import LiveRefused
 from tritrack.live.free_ports import free_settings, refuse_held_ports
 from tritrack.live.screen import warnings_of
-from tritrack.live.session import LiveRefused, live
+from tritrack.live.session import live
 from tritrack.store.journal import Head, Journal
 from tritrack.store.past_journal import read_journal
 from tritrack.store.past_run import open_run

@@ -215,7 +215,7 @@ def bridge(
 
 def live_settings(path: Path) -> Settings:
     """The settings of a process of a live run."""
-    from tritrack.live.session import refuse_mode
+    from tritrack.live.admission import refuse_mode
 
     settings = config_file.load(path)
     refuse_mode(settings)

@@ -12,40 +12,29 @@ from tempfile import TemporaryDirectory
 from types import FrameType
 from typing import Any, Final, NamedTuple
 
-import msgspec
 from rich.console import Console
 
 from common.bus.messages import Body, Posture
 from common.bus.process import ProcessContext, logged, start_log
 from common.config.settings import Settings
-from common.method import METHODS
 from common.settled import settle
-from common.video.clip_facts import Clip, both_cameras
+from common.video.clip_facts import Clip
 from tritrack.forking.zygote import Zygote
-from tritrack.live.free_ports import own_session, refuse_held_ports, with_free_endpoint
+from tritrack.live.admission import admitted, opened
 from tritrack.live.launch import Heard, nothing_heard, run
-from tritrack.live.page_desk import SAVED, PageDesk
+from tritrack.live.page_desk import PageDesk
 from tritrack.live.process_table import inherited, live_parts
 from tritrack.live.recorded import SoFar, WholeRun
-from tritrack.live.run_facts import facts_of, facts_of_clip, note_lost, note_unseen
+from tritrack.live.run_facts import facts_of, note_lost, note_unseen
+from tritrack.live.run_folder import KEPT, new_journal, new_log
 from tritrack.live.screen import Screen
-from tritrack.store.journal import Head as JournalHead
-from tritrack.store.journal import Journal, has_journal
-from tritrack.store.past_journal import LOG, Journalled, put_aside
-from tritrack.store.recording import Keep, refuse_without_library, torn_recordings
+from tritrack.store.past_journal import Journalled
+from tritrack.store.recording import Keep
 from tritrack.store.runs import write_postures, write_run
 
 PLAYS: Final = "the run is over; the page plays it as long as it is open (Ctrl-C ends)"
-KEPT: Final = ".kept-"
-"""Begins the name of the folder in which processes leave what their next start takes up."""
 THREAD: Final = "%(threadName)s"
 """What the log calls a part that is a thread."""
-NO_POSTURE: Final = -1
-"""posture_id of a clip that shows none of the postures: free motion, a test of the tracker."""
-
-
-class LiveRefused(ValueError):
-    """A live run that cannot begin; the text says why and what to do."""
 
 
 def live(
@@ -79,12 +68,12 @@ def live(
         PartFailed, BusError, RunError: When something failed; what was tracked until then is
             written first.
     """
-    settings = _admitted(settings, record, console)
+    settings = admitted(settings, record, console)
     new = not out.exists()
     began, heard = time.monotonic(), nothing_heard()
     title = name or Path(settings.clip).name or "tritrack"
     with _stopped_by_signals(console) as stop, ExitStack() as doors:
-        log = _new_log(out)
+        log = new_log(out)
         zygote = Zygote(inherited)
         desk = PageDesk(settings, out, title, ProcessContext(True, log), zygote)
         doors.callback(desk.close)
@@ -95,7 +84,7 @@ def live(
             return facts_of(heard, clip, time.monotonic() - began, so_far)
 
         desk.facts = facts
-        journal = _journal(out, clip, settings, heard.notes)
+        journal = new_journal(out, clip, settings, heard.notes)
         heard = heard._replace(journal=journal)
         try:
             _follow(
@@ -158,34 +147,6 @@ def _follow(
         show(heard)
 
 
-def _admitted(settings: Settings, record: bool, console: Console) -> Settings:
-    """Settings that can be worked with, with the endpoint and the session that they leave open."""
-    refuse_mode(settings)
-    if record:
-        refuse_without_library()
-    found = with_free_endpoint(settings)
-    refuse_held_ports(found)
-    if found != settings:
-        console.print(f"the bus: {found.bus.endpoint}", highlight=False)
-    return own_session(found)
-
-
-def _journal(out: Path, clip: Clip, settings: Settings, notes: list[str]) -> Journal:
-    """What takes each body as it comes; the journal of a run that was cut short is put aside."""
-    aside = out / SAVED / f"cut_short_{time.strftime('%Y%m%d_%H%M%S')}"
-    try:
-        if put_aside(out, aside):
-            for torn in torn_recordings(out):
-                torn.replace(aside / torn.name)
-            notes.append(f"the run before this one was cut short: what it measured is in {aside}")
-    except OSError as error:
-        raise LiveRefused(
-            f"{out} holds a run that was cut short, which cannot be put aside "
-            f"({error.strerror}): name another --out"
-        ) from error
-    return Journal(out, JournalHead(settings=settings, facts=facts_of_clip(clip)))
-
-
 def _kept(
     out: Path, clip: Clip, settings: Settings, record: bool
 ) -> AbstractContextManager[Keep | None]:
@@ -218,67 +179,11 @@ def _show_end(
 def _opened_or_nothing(settings: Settings, name: str, out: Path, *, new: bool) -> Clip:
     """The clip of a run; where it is refused, a folder that was made for the run goes again."""
     try:
-        return _opened(settings, name)
+        return opened(settings, name)
     except BaseException:
         if new:
             shutil.rmtree(out, ignore_errors=True)
         raise
-
-
-def _opened(settings: Settings, name: str) -> Clip:
-    """The clip of a run that will not fail for what can be known before.
-
-    Its imports take a second, in which the page is opened.
-    """
-    from common.video.clips import open_clip
-    from tritrack.offline.lockstep import measured_before
-
-    clip = open_clip(settings)
-    clip = msgspec.structs.replace(
-        clip,
-        name=name or clip.name,
-        rig=both_cameras(clip),
-        body=measured_before(settings),
-    )
-    _refuse_what_would_fail(settings, clip)
-    return clip
-
-
-def refuse_mode(settings: Settings) -> None:
-    """Say that the thesis's mode has no processes.
-
-    Raises:
-        LiveRefused: When it is asked for.
-    """
-    if METHODS[settings.mode].stick_lifting:
-        raise LiveRefused(
-            "the thesis's mode is not for live runs: set mode = 'default' or 'paper', or follow "
-            "a recorded video with: tritrack single VIDEO --mode thesis"
-        )
-
-
-def _refuse_what_would_fail(settings: Settings, clip: Clip) -> None:
-    """Say before any process starts what one of them would fail on."""
-    from recognizer.__main__ import model_of
-    from viewer.landmarks.landmark_sources import refuse_landmarks
-
-    meant = "" if clip.meta.posture_id == NO_POSTURE else clip.meta.posture
-    model_of(settings, meant)
-    refuse_landmarks(settings, clip.views)
-
-
-def _new_log(out: Path) -> Path:
-    """The log of this run alone: of a run before it in the same folder it is overwritten, unless
-    that was cut short, and is to be put aside."""
-    path = out / LOG
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        path.open("a" if has_journal(out) else "w").close()
-        for left in out.glob(f"{KEPT}*"):  # by a run that was cut short
-            shutil.rmtree(left, ignore_errors=True)
-    except OSError as error:
-        raise LiveRefused(f"cannot write {out}: {error.strerror}; name another --out") from error
-    return path
 
 
 @contextmanager
