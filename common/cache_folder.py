@@ -21,6 +21,9 @@ from common.packages import PACKAGES, ROOT
 
 KEPT: Final = 3
 """Folders of as many digests stay: of this one and of those that were used last."""
+ADMINISTRATOR: Final = 0
+"""Who owns the system, and may have installed us: what is compiled is theirs, this user's, or of
+whoever owns the sources, for it is loaded without a question."""
 NAME: Final = re.compile(r"tritrack-[0-9a-f]{32}")
 
 log = logging.getLogger(__name__)
@@ -125,16 +128,16 @@ def _made(folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     if not os.access(folder, os.W_OK | os.X_OK):
         raise PermissionError(f"cannot write {folder}")
+    if folder.stat().st_uid not in (os.getuid(), ROOT.stat().st_uid, ADMINISTRATOR):
+        raise PermissionError(f"{folder} is another user's, and so is what was compiled there")
     if new:
         log.warning("compiling for the first time, about a minute; kept in %s", folder)
     return folder
 
 
 def _private() -> Path:
-    """A folder for temporary files that nobody else can have put anything into.
-
-    Compiled code is loaded without a question, so another user's would be a stranger's program.
-    """
+    """A folder for temporary files that nobody else can have put anything into: another user's
+    compiled code would be a stranger's program."""
     folder = Path(tempfile.gettempdir()) / f"tritrack-{os.getuid()}"
     with suppress(FileExistsError):
         folder.mkdir(mode=0o700)

@@ -114,6 +114,17 @@ def test_a_folder_without_the_right_to_write_is_passed_over(
     assert found == tmp_path / "user" / "name"
 
 
+def test_another_users_folder_is_passed_over(tmp_path: Path) -> None:
+    """What was compiled is loaded without a question: theirs would be a stranger's program."""
+    if os.getuid() != 0:
+        pytest.skip("only an administrator can give a folder away")
+    theirs, own = tmp_path / "shared", tmp_path / "user"
+    (theirs / "name").mkdir(parents=True)
+    assert first_writable([theirs, own], "name") == theirs / "name"
+    os.chown(theirs / "name", 12_345, 12_345)
+    assert first_writable([theirs, own], "name") == own / "name"
+
+
 @pytest.mark.parametrize("mode", [0o700, 0o777])
 def test_the_last_resort_is_this_users_alone(
     tmp_path: Path, mode: int, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
