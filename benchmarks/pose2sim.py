@@ -1,12 +1,14 @@
 """Four cameras of a gait laboratory, two at a time: what do they make of whom they film?
 
 Run: python benchmarks/pose2sim.py $TRITRACK_DATA/real/pose2sim_balancing --out DIR
+    [--landmarks $TRITRACK_DATA/real/landmarks_mediapipe.npz]
 
 Writes a calibration and settings for each pair, measures the body in the trial's T-pose, tracks the
 pair, prints in how many of the frames its status is `tracking`, which proves nothing, and writes a
 contact sheet. What no label is needed for tells how right that is: how much of the body that a pair
 has found is on the outline in the cameras that it did not look through, and how far apart the
-joints lie that two pairs have found of the same instants.
+joints lie that two pairs have found of the same instants. With --landmarks knees are held against
+those of another tracker's joints, of all four cameras at once.
 """
 
 import argparse
@@ -20,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from common.body.body import JOINT_NAMES
 from common.body.proportions import body_vector
 from common.bus.messages import Body, Report
 from common.config import config_file
@@ -41,6 +44,7 @@ BOXED: Final = (1080, 1920)
 WHOLE: Final = (1088, 1920)
 BAR_PX: Final = 7
 """... so high each. Of the trial they are cam01's and cam02's, of the T-pose the other two's."""
+KNEES: Final = (("l_hip", "l_knee", "l_ankle"), ("r_hip", "r_knee", "r_ankle"))
 SHOWN: Final = 12
 """Frames on a contact sheet."""
 
@@ -183,12 +187,57 @@ def compare(found: dict[str, Pair]) -> None:
         print(f"{one} and {two} have joints {np.nanmedian(off_mm):.0f} mm apart (median)")
 
 
+def bent_deg(joints_m: NDArray[np.float64], names: list[str]) -> NDArray[np.float64]:
+    """Angles of the left and the right knee, (n, 2), 180 of a straight one, of joints (n, J, 3)."""
+    angles = []
+    for leg in KNEES:
+        hip, knee, ankle = (joints_m[:, names.index(name)] for name in leg)
+        up, down = hip - knee, ankle - knee
+        cosine = (up * down).sum(1) / np.linalg.norm(up, axis=1) / np.linalg.norm(down, axis=1)
+        angles.append(np.degrees(np.arccos(cosine.clip(-1.0, 1.0))))
+    return np.stack(angles, axis=1)
+
+
+def landmarks_m(cameras: list[dict[str, Any]], path: Path) -> NDArray[np.float64]:
+    """Joints that a file of landmarks has of the four videos, (frames, joints, 3), by all cameras:
+    linear least squares, each weighed by how visible it is."""
+    rows = []
+    with np.load(path, allow_pickle=False) as given:
+        for camera in cameras:
+            video = f"pose2sim_balancing/{camera['name']}.mp4"
+            scale = np.array(WHOLE) / given[f"{video}__size"]
+            places_px = (given[video][..., :2] * scale).reshape(-1, 1, 2).astype(np.float64)
+            lens = np.array(camera["K"]), np.array(camera["distortion"])
+            seen = cv2.undistortPoints(places_px, *lens).reshape(*given[video].shape[:2], 2, 1)
+            P = np.column_stack([camera["R"], camera["t"]])
+            rows.append(given[video][..., 2, None, None] * (seen * P[2] - P[:2]))
+    homogeneous = np.linalg.svd(np.concatenate(rows, axis=2))[2][..., -1, :]
+    return np.asarray(homogeneous[..., :3] / homogeneous[..., 3:])
+
+
+def compare_knees(found: dict[str, Pair], rig: Path, path: Path) -> None:
+    """Print by how much each pair has the knees straighter than a file of landmarks has them."""
+    with np.load(path, allow_pickle=False) as given:
+        names = given["joint_names"].tolist()
+    due_deg = bent_deg(landmarks_m(json.loads(rig.read_text())["cameras"], path), names)
+    for name, own in found.items():
+        posed = [body for body in own.bodies if body.joints_m]
+        places_m = np.array([body.joints_m for body in posed])
+        off_deg = bent_deg(places_m, list(JOINT_NAMES)) - due_deg[[body.frame for body in posed]]
+        by, spread = np.median(off_deg, axis=0), np.median(np.abs(off_deg))
+        print(
+            f"{name}: knees straighter by {by[0]:.0f} (left) and {by[1]:.0f} degrees (right), off "
+            f"by {spread:.0f} (medians)"
+        )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("data", type=Path)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--size", default="240x427")
     parser.add_argument("--every", type=int, default=4, help="of 60 frames a second")
+    parser.add_argument("--landmarks", type=Path, help="of the same videos, by another tracker")
     asked = parser.parse_args()
     asked.out.mkdir(parents=True, exist_ok=True)
     found: dict[str, Pair] = {}
@@ -205,6 +254,8 @@ def main() -> None:
             told = [body.status == "tracking" for body in tracked.bodies]
             print(f"{path.stem}: tracking in {np.mean(told):.1%} of {len(told)} frames")
     compare(found)
+    if asked.landmarks is not None:
+        compare_knees(found, asked.out / "trial.json", asked.landmarks)
 
 
 def sheet(rows: list[Row], rig: Rig, path: Path) -> None:
