@@ -59,8 +59,6 @@ class Method(msgspec.Struct, frozen=True, kw_only=True):
     tell of who leans far, is joined with them."""
     free_joints: bool
     """Joints may lie beside the cylinders' ends: shoulders rise, and people differ."""
-    refinement: bool
-    """A proposed pose that is unsure and fits badly is matched to both silhouettes."""
     shape_fit: bool
     """The body's widths and arms are fitted to silhouettes as the person moves."""
     reflection: bool

@@ -3,7 +3,6 @@
 from typing import Final
 
 import msgspec
-import numpy as np
 
 from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
@@ -15,7 +14,7 @@ from common.raster.kernel import draw_body, view_of
 from common.raster.silhouette_report import pack, silhouette_report, unpack
 from common.rig.camera import Rig, paper_rig, project
 from integrator import merge, merge_state
-from integrator.fit import pose_refinement, visual_hull
+from integrator.fit import visual_hull
 from integrator.pairing import Pair
 
 VIEWERS: Final[tuple[ViewerNumber, ...]] = (1, 2)
@@ -35,20 +34,15 @@ def warm_up(settings: Settings, size: tuple[int, int]) -> None:
         for index in range(4):
             first, second = (_report(viewer, index, size, known) for viewer in VIEWERS)
             state, _, _ = merge.step(state, Pair(first, second if index < 3 else None))
-    _match_elsewhere(known, (_report(1, 0, size, known), _report(2, 0, size, known)))
+    _clear(known, (_report(1, 0, size, known), _report(2, 0, size, known)))
 
 
-def _match_elsewhere(rig: Rig, seen: tuple[Report, Report]) -> None:
-    """Match a pose of little confidence, beside the silhouettes, of which one has clutter."""
+def _clear(rig: Rig, seen: tuple[Report, Report]) -> None:
+    """Clear silhouettes, of which one has clutter."""
     clutter = unpack(seen[0])
     clutter[: len(clutter) // 20, : len(clutter) // 20] = True
     visual_hull.cleaned(
         rig, Pair(msgspec.structs.replace(seen[0], silhouette=pack(clutter)), seen[1])
-    )
-    aside, body = rest_pose(), body_vector(thesis_bdp(1.75))
-    aside[:2] = 0.5, 1.0
-    pose_refinement.refined(
-        aside, np.full(len(JOINT_NAMES), 0.1), pose_refinement.Previous(aside), body, rig, seen
     )
 
 

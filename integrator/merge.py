@@ -137,7 +137,6 @@ def _with_pose(state: State, now: Instant, settled_at: Vector | None) -> tuple[S
             both.joints_m,
             both.confidence,
             both.memory,
-            both.matched,
             both.landmarks,
         )
         state = state._replace(opening=state.opening._replace(bdp=both.bdp))
@@ -178,7 +177,7 @@ def _proposed(state: State, now: Instant) -> ProposedPose:
     assert opening.bdp is not None
     before = proposed_pose.Before()
     if known is not None:
-        before = proposed_pose.Before(known.memory, known.pose, known.matched, known.landmarks)
+        before = proposed_pose.Before(known.memory, known.pose, known.landmarks)
     is_first = known is None and not (opening.measured or opening.samples)
     given = proposed_pose.Instant(opening.bdp, now.rig, now.seen, now.dt_s, state.method, is_first)
     return proposed_pose.step(before, given)

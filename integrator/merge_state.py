@@ -32,8 +32,6 @@ class Posed(NamedTuple):
     """(15,) how probably each joint is less than 50 mm off; None: as well as the body fits."""
     memory: Memory | None = None
     """Of the network that proposed it."""
-    matched: bool = False
-    """It was matched to both silhouettes, as the proposed one fitted badly."""
     landmarks: landmark_fusion.Memory | None = None
     """What is remembered of the views' landmarks."""
     alone: Alone | None = None

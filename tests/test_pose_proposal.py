@@ -12,16 +12,13 @@ from numpy.typing import NDArray
 from staging import HEIGHT, RIG, WIDTH, Stage, Told, exact
 
 from common.body.body import JOINT_NAMES, POSE_INDEX, Vector
-from common.body.kinematics import joints as joints_of
-from common.body.proportions import body_vector, stature
+from common.body.proportions import stature
 from common.bus.message_codec import decode, encode
 from common.config.settings import Settings
 from common.raster.similarity import Mask
-from integrator.proposal import pose_proposal
 from integrator.proposal.pose_proposal import (
     AT,
     PLATT,
-    PLATT_OF_MATCHED,
     probability,
 )
 from synth.motion.footing import posed
@@ -223,50 +220,6 @@ def test_what_is_sure_is_near_and_what_is_not_is_less_often() -> None:
     said = np.array([np.array(each.body.confidence)[AT] for each in told]).ravel()
     assert 0.0 <= said.min() <= said.max() <= 1.0
     assert near[said > 0.8].mean() > near[said < 0.5].mean() + 0.2
-
-
-def test_elbows_and_wrists_of_a_matched_pose_lie_on_its_own_arms() -> None:
-    """How far they lay beside the arms of the proposed pose says nothing of others."""
-    did, stage = shown("free"), default()
-    matched = 0
-    for pair in did.masks:
-        stage.see(pair)
-        found, bdp = stage.state.found, stage.state.opening.bdp
-        assert found is not None
-        assert found.joints_m is not None
-        assert bdp is not None
-        beside_m = found.joints_m - joints_of(body_vector(bdp), found.pose)
-        aside_m = np.linalg.norm(beside_m[pose_proposal.ARMS], axis=1)
-        assert (aside_m.max() < 1e-9) == found.matched
-        matched += found.matched
-    assert 0 < matched < len(did.masks)
-
-
-def proposed_of(matched: Vector) -> Vector:
-    """The confidence that a matched joint's was made of: the inverse of `probability`."""
-    grid = np.linspace(1e-6, 1.0 - 1e-6, 10_001)
-    found: Vector = np.interp(matched, probability(grid, PLATT_OF_MATCHED), grid)
-    return found
-
-
-@pytest.mark.slow
-def test_joints_that_were_matched_are_surer_than_what_was_proposed() -> None:
-    """Of those that the proposal doubts more are near, on people on whom it was not settled."""
-    rows = []
-    for somebody in range(SOMEBODY, SOMEBODY + 3):
-        did, stage = shown("free", somebody=somebody), default()
-        for pair, joints_m in zip(did.masks, did.joints_m, strict=True):
-            told = stage.see(pair)
-            found = stage.state.found
-            if found is not None and found.matched:
-                near = (missed_mm([told], joints_m[None]) < 50).ravel()
-                said = np.array(told.body.confidence)[AT]
-                rows.append(np.stack([proposed_of(said), said, near]))
-    proposed, said, near = np.concatenate(rows, axis=1)
-    doubted = proposed < 0.3
-    due = near[doubted].mean()
-    assert abs(said[doubted].mean() - due) < 0.1
-    assert abs(said[doubted].mean() - due) < abs(proposed[doubted].mean() - due)
 
 
 def test_the_memory_goes_with_the_person() -> None:

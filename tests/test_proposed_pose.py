@@ -1,4 +1,4 @@
-"""The pose of two views, held against a proposal that fits badly, with and without confidence."""
+"""The pose of two views, of what outlines propose and what landmarks lift."""
 
 import math
 
@@ -14,70 +14,60 @@ from common.bus.messages import Landmarks, Report
 from common.method import DEFAULT
 from common.rig.camera import Camera, project
 from integrator.fit import proposed_pose
-from integrator.fit.proposed_pose import Before, Instant, ProposedPose
+from integrator.fit.proposed_pose import Before, Instant
+from integrator.pairing import Seen
 from integrator.proposal import lifting_network, pose_proposal
 from integrator.proposal.lifting_network import Lifted
 from integrator.proposal.pose_proposal import AT, CONFIDENT, Memory, PoseProposal
 
 
-def bent_over() -> Vector:
+def glaring() -> tuple[Report, Report]:
+    """Glare on the floor, as large as a trunk, that one view alone shows."""
+    first, second = outlines(on_one_leg())
+    first[200:240, 0:40] = True
+    return told(1, first), told(2, second)
+
+
+def proposing(monkeypatch: pytest.MonkeyPatch, glared: float, clean: float) -> None:
+    """A network that proposes somebody who bends over too far, with so much confidence in
+    outlines with glare and without."""
     pose = on_one_leg()
     pose[POSE_INDEX["torso_z"]] += 12.0
-    return pose
-
-
-@pytest.fixture
-def proposing(monkeypatch: pytest.MonkeyPatch, confidence: float) -> None:
-    """A network that proposes somebody who bends over too far, with so much confidence."""
-    joints_m = joints(body_vector(BODY), bent_over())[AT]
+    joints_m = joints(body_vector(BODY), pose)[AT]
     memory = Memory(np.zeros(1, np.float32), None, 0.0)
-    given = PoseProposal(joints_m, np.full(len(JOINT_NAMES), confidence), memory)
-    monkeypatch.setattr(pose_proposal, "step", lambda *_: given)
+
+    def step(_memory: object, _bdp: object, _rig: object, seen: Seen, *_: object) -> PoseProposal:
+        sure = glared if seen == glaring() else clean
+        return PoseProposal(joints_m, np.full(len(JOINT_NAMES), sure), memory)
+
+    monkeypatch.setattr(pose_proposal, "step", step)
+
+
+@pytest.mark.parametrize(
+    ("glared", "clean", "cleared"),
+    [(0.3, 0.6, True), (0.3, 0.2, False), (CONFIDENT, 0.9, False)],
+    ids=["unsure", "surer with clutter", "sure"],
+)
+def test_what_one_view_alone_shows_goes_where_the_network_is_unsure_with_it_and_surer_without(
+    monkeypatch: pytest.MonkeyPatch, glared: float, clean: float, cleared: bool
+) -> None:
+    proposing(monkeypatch, glared, clean)
+    found = proposed_pose.step(Before(), Instant(BODY, ROLLED, glaring(), 1 / 15, DEFAULT))
+    assert (found.seen != glaring()) == cleared
+    assert found.confidence == pytest.approx(clean if cleared else glared)
 
 
 def shown(report: Report, camera: Camera, sure: float) -> Report:
-    """With landmarks of what is proposed, so sure."""
-    places_px = project(camera, joints(body_vector(BODY), bent_over())).tolist()
+    """With landmarks of that pose, so sure."""
+    places_px = project(camera, joints(body_vector(BODY), on_one_leg())).tolist()
     landmarks = Landmarks(tuple((x, y) for x, y in places_px), (sure,) * len(JOINT_NAMES))
     return msgspec.structs.replace(report, landmarks=landmarks)
-
-
-def found(sures: tuple[float, float] | None = None) -> ProposedPose:
-    first, second = outlines(on_one_leg())
-    seen = (told(1, first), told(2, second))
-    if sures is not None:
-        one, other = ROLLED.cameras
-        seen = (shown(seen[0], one, sures[0]), shown(seen[1], other, sures[1]))
-    return proposed_pose.step(
-        Before(pose=on_one_leg(35.0), matched=True), Instant(BODY, ROLLED, seen, 1 / 15, DEFAULT)
-    )
 
 
 def lifting(monkeypatch: pytest.MonkeyPatch, joints_m: Vector) -> None:
     """Landmarks are lifted to these joints, (12, 3)."""
     lifted = np.zeros(1, np.float32), Lifted(joints_m, np.full(len(AT), 0.5))
     monkeypatch.setattr(lifting_network, "step", lambda *_: lifted)
-
-
-@pytest.mark.usefixtures("proposing")
-@pytest.mark.parametrize(("confidence", "matched"), [(CONFIDENT, False), (0.05, True)])
-def test_a_confident_proposal_is_left_as_it_is(matched: bool) -> None:
-    """However badly it matches: cylinders are no people."""
-    pose = found()
-    assert pose.matched == matched
-    assert (pose.confidence[0] == CONFIDENT) != matched
-
-
-@pytest.mark.usefixtures("proposing")
-@pytest.mark.parametrize("confidence", [0.05])
-@pytest.mark.parametrize(("sures", "matched"), [((0.55, 0.55), False), ((0.55, 0.4), True)])
-def test_a_pose_that_both_views_landmarks_show_is_not_matched_to_outlines(
-    sures: tuple[float, float], matched: bool
-) -> None:
-    """Clothes of the wall's colour leave ragged outlines, to which no pose should be bent."""
-    pose = found(sures)
-    assert pose.confidence.mean() < CONFIDENT
-    assert pose.matched == matched
 
 
 def test_what_both_views_showed_outweighs_what_one_lifts_until_it_is_old(

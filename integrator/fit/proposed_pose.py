@@ -1,6 +1,6 @@
-"""The pose that both silhouettes propose, cleared of clutter and refined where it fits badly."""
+"""The pose that both silhouettes propose, cleared of clutter where it fits badly."""
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,14 +10,17 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
 from common.method import Method
 from common.rig.camera import Rig
-from integrator.fit import pose_refinement, visual_hull
+from integrator.fit import visual_hull
+from integrator.fit.silhouette_pair import poorest
 from integrator.landmarks import landmark_fusion
-from integrator.landmarks.landmark_rays import Rays, rays_of
+from integrator.landmarks.landmark_rays import rays_of
 from integrator.pairing import Pair, Seen
-from integrator.pose.inverse_kinematics import trunk_of
 from integrator.prior_body import prior
 from integrator.proposal import pose_proposal
 from integrator.proposal.pose_proposal import Memory, PoseProposal
+
+POOR: Final = 0.6
+"""Of less S in either view a pose fits badly: of r01's and r04's every twentieth is."""
 
 
 class Before(NamedTuple):
@@ -26,8 +29,6 @@ class Before(NamedTuple):
     memory: Memory | None = None
     pose: Vector | None = None
     """(25,); None at the first."""
-    matched: bool = False
-    """That pose was matched to the silhouettes."""
     landmarks: landmark_fusion.Memory | None = None
 
 
@@ -56,7 +57,6 @@ class ProposedPose(NamedTuple):
     """(15,) how probably each joint is less than 50 mm off."""
     memory: Memory
     landmarks: landmark_fusion.Memory | None
-    matched: bool
     seen: Seen
     """The reports that it is of: without clutter, where that was left out."""
     bdp: Bdp
@@ -68,43 +68,20 @@ def step(before: Before, now: Instant) -> ProposedPose:
 
     A pose in which the network is not confident and that fits badly is looked for in the
     silhouettes without clutter, where the network is more confident in those. What the pictures
-    show of the joints is made one with it; where even that is not confident and fits badly, the
-    pose is matched to the silhouettes, unless landmarks are trusted: then these are ragged.
+    show of the joints is made one with it.
     """
     known, was = _proposed(before, now), rest_pose() if before.pose is None else before.pose
     if now.method.clutter_removal and not known.is_confident:
         now, known = _without_clutter(before, now, known)
-    rays = rays_of(now.rig, now.seen)
-    known, landmarks = _with_landmarks(before, now, known, rays)
+    known, landmarks = _with_landmarks(before, now, known)
     body = body_vector(now.bdp)
     pose, beside_m = pose_proposal.pose_and_rest(body, was, known.joints_m)
-    better, confidence = None, known.confidence
-    if now.method.refinement and not _is_held(known, rays):
-        previous = pose_refinement.Previous(before.pose, before.matched)
-        better = pose_refinement.refined(pose, confidence, previous, body, now.rig, now.seen)
-    if better is not None:
-        pose, beside_m = better, pose_proposal.without_arms(beside_m)
-        confidence = pose_proposal.probability(confidence, pose_proposal.PLATT_OF_MATCHED)
     joints_m = joints(body, pose)
     if now.method.free_joints:
         joints_m = joints_m + beside_m @ pose_proposal.trunk_axes(body, pose).T
     return ProposedPose(
-        pose,
-        joints_m,
-        confidence,
-        known.memory,
-        landmarks,
-        better is not None,
-        now.seen,
-        now.bdp,
+        pose, joints_m, known.confidence, known.memory, landmarks, now.seen, now.bdp
     )
-
-
-def _is_held(known: PoseProposal, rays: Rays | None) -> bool:
-    """Whether a pose is left as it is: it is sure, landmarks are trusted, or somebody lies, whom
-    the silhouettes match upside down as well."""
-    lies = trunk_of(known.joints_m)[1, 1] < pose_proposal.LEANS
-    return known.is_confident or lies or (rays is not None and rays.are_trusted)
 
 
 def _proposed(before: Before, now: Instant) -> PoseProposal:
@@ -115,9 +92,10 @@ def _proposed(before: Before, now: Instant) -> PoseProposal:
 
 
 def _with_landmarks(
-    before: Before, now: Instant, known: PoseProposal, rays: Rays | None
+    before: Before, now: Instant, known: PoseProposal
 ) -> tuple[PoseProposal, landmark_fusion.Memory | None]:
     """The proposal made one with what the pictures show of the joints, where they show any."""
+    rays = rays_of(now.rig, now.seen)
     if rays is None:
         return known, before.landmarks
     sure = known.confidence[pose_proposal.AT]
@@ -132,7 +110,7 @@ def _without_clutter(
     """The instant without what both views do not show as one piece, if that is surer."""
     body, was = body_vector(now.bdp), rest_pose() if before.pose is None else before.pose
     pose, _ = pose_proposal.pose_and_rest(body, was, known.joints_m)
-    if pose_refinement.poorest(pose, body, now.rig, now.seen) >= pose_refinement.POOR:
+    if poorest(pose, body, now.rig, now.seen) >= POOR:
         return now, known
     cleaned = visual_hull.cleaned(now.rig, Pair(*now.seen))
     if not cleaned.clutter:

@@ -10,9 +10,10 @@ from common.body.kinematics import ALL_LIMBS
 from common.bus.messages import Report
 from common.compiled import compiled
 from common.raster.bits import Bits, count
-from common.raster.kernel import draw_limbs, match_over, view_of
+from common.raster.kernel import draw_limbs, match, match_over, view_of
 from common.raster.silhouette_report import words_of
 from common.rig.camera import Rig
+from integrator.pairing import Seen
 
 
 class Silhouettes(NamedTuple):
@@ -43,6 +44,18 @@ def silhouettes_of(rig: Rig, seen: tuple[Report, Report]) -> Silhouettes:
         masks,
         np.array([count(mask) for mask in masks]),
         max(report.width for report in seen),
+    )
+
+
+def poorest(pose: Vector, body: Vector, rig: Rig, seen: Seen) -> float:
+    """S of a pose in that of both views where it is lower; 1 where one of them shows nobody."""
+    first, second = seen
+    if first is None or second is None:
+        return 1.0
+    views, masks, areas, width = silhouettes_of(rig, (first, second))
+    return min(
+        float(match(body, pose, view, ALL_LIMBS, width, mask, int(area)))
+        for view, mask, area in zip(views, masks, areas, strict=True)
     )
 
 

@@ -14,10 +14,6 @@ AT: Final = [JOINT_NAMES.index(name) for name in JOINTS]
 """Where the twelve joints that are proposed stand among the landmarks."""
 
 
-TRUSTED: Final = 0.5
-"""Landmarks of a view that are surer than this on average are believed against its outline."""
-
-
 class Rays(NamedTuple):
     """Where both views see the twelve joints that are proposed too."""
 
@@ -37,11 +33,6 @@ class Rays(NamedTuple):
     """0 towards the camera, 90 to the right of its picture."""
     facing_confidence: tuple[float, float]
     """0: that view does not tell."""
-
-    @property
-    def are_trusted(self) -> bool:
-        """Whether both views' landmarks are: what contradicts them is the outlines' fault."""
-        return bool((self.confidence.mean(axis=1) > TRUSTED).all())
 
 
 def rays_of(rig: Rig, seen: tuple[Report | None, Report | None]) -> Rays | None:

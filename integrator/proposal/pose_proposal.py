@@ -20,7 +20,6 @@ from integrator.proposal.silhouette_window import Floats, look
 
 AT: Final = np.array([JOINT_NAMES.index(name) for name in JOINTS])
 """Where the proposed joints stand among the landmarks."""
-ARMS: Final = [i for i, name in enumerate(JOINT_NAMES) if name.endswith(("elbow", "wrist"))]
 """How far these lie beside their cylinders depends on how the arm is turned, and says nothing of
 another pose."""
 PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
@@ -48,9 +47,6 @@ PLATT: Final = (0.99, -0.64)
 """Platt scaling: slope and offset of the logit by which the network's confidence, learnt with
 made-up people, becomes how often a joint of r01, of r04 and of people made up anew was less than
 50 mm off."""
-PLATT_OF_MATCHED: Final = (0.60, 0.56)
-"""As PLATT, of poses that were matched instead: from the confidence in what was proposed, so of
-twelve other synthetic people in free motion, six rendered at both sizes, six exact."""
 CONFIDENT: Final = 0.75
 """A proposal whose landmarks are surer than this on average is left as it is: cylinders that match
 better than it stand farther from the true joints of r01 and r04."""
@@ -208,9 +204,9 @@ def of_landmarks(own: Vector) -> Vector:
     return confidence
 
 
-def probability(confidence: Vector, platt: tuple[float, float] = PLATT) -> Vector:
+def probability(confidence: Vector) -> Vector:
     """How probably joints are less than 50 mm off, of the network's own confidence in (0, 1)."""
-    slope, offset = platt
+    slope, offset = PLATT
     found: Vector = 1.0 / (1.0 + np.exp(-offset) * ((1.0 - confidence) / confidence) ** slope)
     return found
 
@@ -241,13 +237,6 @@ def _shoulders_rise(found: NDArray[np.float64], landmarks: NDArray[np.float64]) 
     lengths_m = np.maximum(np.linalg.norm(arms, axis=1, keepdims=True), 1e-9)
     up = float((arms / lengths_m).mean(axis=0) @ trunk) / length_m
     return length_m * (RISE[0] + RISE[1] * up)
-
-
-def without_arms(rest: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What landmarks miss, (15, 3), of another pose of the arms."""
-    kept = rest.copy()
-    kept[ARMS] = 0.0
-    return kept
 
 
 def trunk_axes(body: Vector, pose: Vector) -> NDArray[np.float64]:
