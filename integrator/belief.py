@@ -12,7 +12,8 @@ from integrator.pairing import Pair
 from integrator.single.reflection import yaw_deg
 
 LOST_SCORE: Final = 0.35
-"""A body whose S is lower than this in every view is not believed."""
+"""A body whose S is lower than this in every view is not believed, unless landmarks of both views
+are trusted and bear it out: clothes of the wall's colour leave hardly an outline."""
 TRUSTED: Final = 0.5
 """Landmarks that are surer than this on average are held against a body."""
 SURE: Final = 0.5
@@ -45,14 +46,14 @@ def is_believed(
         pair: What was heard of the instant.
         scores: S of the body in each view.
     """
-    if max(scores) < LOST_SCORE:
-        return False
     views = [
         (report, camera, score)
         for report, camera, score in zip(pair, rig.cameras, scores, strict=True)
         if report is not None and report.box is not None
     ]
     told = [(report, camera) for report, camera, _ in views if _is_trusted(report)]
+    if max(scores) < LOST_SCORE and len(told) < len(scores):
+        return False
     if told:
         astray = any(
             _astray(joints_m, camera, report.landmarks) > ASTRAY for report, camera in told

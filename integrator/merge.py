@@ -12,7 +12,6 @@ from common.raster.kernel import match, view_of
 from common.raster.silhouette_report import words_of
 from common.rig.camera import Camera, Rig
 from integrator import opening_posture, outgoing
-from integrator.belief import LOST_SCORE
 from integrator.fit import proposed_pose, shape_fit
 from integrator.fit.proposed_pose import ProposedPose
 from integrator.frame_numbers import NO_FRAME, frame_at
@@ -69,7 +68,7 @@ def step(
     state = _with_shape(state, now)
     scores = _scores(state, now)
     state = outgoing.weighed(state, pair, scores, annotations)
-    state, angles = _smoothed(state, max(scores) >= LOST_SCORE, dt_s)
+    state, angles = _smoothed(state, dt_s)
     body = outgoing.body_of(state, pair, now.seen, angles, scores)
     guide = outgoing.guide_of(state, pair, settled_at is not None)
     return state, body, guide
@@ -214,14 +213,14 @@ def _score(body: Vector, pose: Vector, camera: Camera, report: Report | None) ->
     return float(match(body, pose, view, ALL_LIMBS, report.width, seen, count(seen)))
 
 
-def _smoothed(state: State, fits: bool, dt_s: float) -> tuple[State, Vector]:
-    """The smooth angles; a pose that fits badly is not believed."""
+def _smoothed(state: State, dt_s: float) -> tuple[State, Vector]:
+    """The smooth angles; those of a pose that is not believed do not count."""
     found = state.found
     assert found is not None
     raw: Vector = found.pose[list(ANGLES_IN_POSE)]
     if not state.method.smoothing:
         return state, raw
-    believed = fits or state.smooth.P is None  # there is nothing else to go by yet
+    believed = not state.doubted or state.smooth.P is None  # there is nothing else to go by yet
     smooth, angles, _ = smoothing.step(state.smooth, raw if believed else None, dt_s)
     if found.alone is not None and state.method.joint_limits:
         angles = joint_limits.clipped(angles)

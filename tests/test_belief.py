@@ -84,6 +84,14 @@ def test_without_landmarks_the_better_view_speaks() -> None:
     assert not is_believed(BODY, RIG, Pair(first, second), (0.3, 0.3))
 
 
+def test_a_body_that_both_views_landmarks_bear_out_needs_no_outline() -> None:
+    """Clothes of the wall's colour leave rags of it; one view's word alone is not enough."""
+    rags = (0.25, 0.25)
+    assert is_believed(BODY, RIG, pair(BODY), rags)
+    assert not is_believed(BODY, RIG, Pair(report(0, BODY), report(1, BODY, 0.4)), rags)
+    assert not is_believed(moved(0.6, 0.0), RIG, pair(BODY), rags)
+
+
 def test_a_body_that_no_view_shows_anybody_of_is_not_believed_however_it_fits() -> None:
     assert not is_believed(BODY, RIG, pair(BODY, confidence=0.25), FITS)
 
