@@ -5,6 +5,8 @@ import numpy as np
 from integrator.landmarks.exchanged_sides import Exchanged, step
 
 FACADE_AND_FLANK = (0.0, 1.0)
+SURE = (0.001, 0.001)
+"""Hardly either view took front for back."""
 NOTHING = np.zeros((2, 2))
 
 
@@ -16,25 +18,39 @@ def says(first: int, second: int, by: float) -> np.ndarray:
 
 
 def test_nobody_is_taken_to_exchange_anything_unless_something_says_so() -> None:
-    probable, decided = step(None, NOTHING, NOTHING, FACADE_AND_FLANK)
+    probable, decided = step(None, NOTHING, NOTHING, FACADE_AND_FLANK, SURE)
     assert decided == Exchanged((0, 0), (0, 0))
     assert np.isclose(probable.sum(), 1.0)
 
 
 def test_legs_that_fit_only_exchanged_are_exchanged_and_the_arms_are_not() -> None:
-    _, decided = step(None, says(0, 0, 10.0), says(0, 1, 10.0), FACADE_AND_FLANK)
+    _, decided = step(None, says(0, 0, 10.0), says(0, 1, 10.0), FACADE_AND_FLANK, SURE)
     assert decided == Exchanged((0, 0), (0, 1))
 
 
 def test_an_exchange_lasts_over_an_instant_that_tells_nothing() -> None:
-    before, _ = step(None, NOTHING, says(0, 1, 20.0), FACADE_AND_FLANK)
-    after, decided = step(before, NOTHING, NOTHING, FACADE_AND_FLANK)
+    before, _ = step(None, NOTHING, says(0, 1, 20.0), FACADE_AND_FLANK, SURE)
+    after, decided = step(before, NOTHING, NOTHING, FACADE_AND_FLANK, SURE)
     assert decided.legs == (0, 1)
     for _ in range(30):
-        after, decided = step(after, NOTHING, NOTHING, FACADE_AND_FLANK)
+        after, decided = step(after, NOTHING, NOTHING, FACADE_AND_FLANK, SURE)
     assert decided == Exchanged((0, 0), (0, 0))
 
 
 def test_a_profile_exchanges_arms_or_legs_alone_more_often_than_a_front() -> None:
-    probable, _ = step(None, NOTHING, NOTHING, FACADE_AND_FLANK)
+    probable, _ = step(None, NOTHING, NOTHING, FACADE_AND_FLANK, SURE)
     assert probable[:, 0, :, 1].sum() > probable[0, :, 1, :].sum()
+
+
+def test_a_front_is_exchanged_as_a_whole_as_often_as_it_is_taken_for_a_back() -> None:
+    probable, _ = step(None, NOTHING, NOTHING, FACADE_AND_FLANK, (0.3, 0.001))
+    assert np.isclose(probable[1, :, 1, :].sum(), 0.3)
+
+
+def test_what_a_sure_front_is_told_to_exchange_an_unsure_one_does() -> None:
+    """The same words, of a view that may well have taken front for back and of one that did not."""
+    said = says(1, 0, 3.0)
+    _, unsure = step(None, said, said, FACADE_AND_FLANK, (0.3, 0.001))
+    _, sure = step(None, said, said, FACADE_AND_FLANK, SURE)
+    assert unsure == Exchanged((1, 0), (1, 0))
+    assert sure == Exchanged((0, 0), (0, 0))

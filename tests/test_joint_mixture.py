@@ -23,6 +23,7 @@ def told(
     sureties: tuple[float, float] = (0.8, 0.8),
     wider_m: float = 0.0,
     others: tuple[np.ndarray, float] | None = None,
+    often: float = PROPOSED.often,
 ) -> Witnesses:
     """What is said; `others`: rays to where else the views may see it, and how probably."""
     elsewhere, other = (np.zeros((2, 3)), 0.0) if others is None else others
@@ -34,6 +35,7 @@ def told(
         np.stack([sureties, (other, other)], axis=1),
         np.array([0.02 + wider_m, 0.03, 0.03]),
         PROPOSED.roughly + wider_m,
+        often,
         1.75,
     )
 
@@ -52,6 +54,18 @@ def test_witnesses_who_agree_are_believed(true_m: np.ndarray) -> None:
 def test_two_rays_that_meet_outvote_a_proposal_that_is_far_away() -> None:
     place_m, _, _ = place_of(told(TRUE_M + 0.4, rays_through(TRUE_M, TRUE_M)))
     assert np.linalg.norm(place_m - TRUE_M) < 0.02
+
+
+def test_a_doubted_proposal_with_one_ray_is_outvoted_by_two_rays_that_meet() -> None:
+    """A wrist 0.4 m away, through which the other ray of one view leads too: an exchanged side."""
+    wrong_m = TRUE_M + np.array([0.3, 0.05, 0.25])
+    others = rays_through(wrong_m, wrong_m)
+    along = rays_through(TRUE_M, TRUE_M)
+    exchanged = np.stack([along[0], others[1]])
+    for often, believed in ((PROPOSED.often, False), (0.05, True)):
+        _, own, _ = place_of(told(wrong_m, along, 0.01, often=often))
+        _, other, _ = place_of(told(wrong_m, exchanged, 0.01, often=often))
+        assert (own > other) == believed
 
 
 def test_a_ray_that_leads_elsewhere_does_not_pull() -> None:

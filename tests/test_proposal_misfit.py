@@ -9,7 +9,15 @@ from hypothesis import strategies as st
 
 from integrator.landmarks import proposal_misfit
 from integrator.landmarks.landmark_rays import Rays
-from integrator.landmarks.proposal_misfit import FARTHEST, LATELY, USUAL, WIDER, Misfit
+from integrator.landmarks.proposal_misfit import (
+    FARTHEST,
+    LATELY,
+    STEEPLY,
+    TURNED,
+    USUAL,
+    WIDER,
+    Misfit,
+)
 
 STATURE_M = 2.0
 UP_M = np.array([0.0, 1.0, 0.0])
@@ -46,6 +54,14 @@ def test_one_who_stays_raised_is_off_by_that_in_statures() -> None:
     misfit = Misfit(0.15**2, np.zeros(6))
     found_m = proposal_misfit.wider_m(misfit, rays_to(level_m), STATURE_M)
     assert found_m == pytest.approx(np.full(12, WIDER * (0.15 - USUAL) * STATURE_M))
+
+
+def test_a_proposal_is_doubted_by_how_far_it_was_off_lately_and_once_it_is_turned() -> None:
+    near, off, far = (Misfit(each**2, np.zeros(6)) for each in (0.02, 0.06, 0.12))
+    assert proposal_misfit.doubt(near, turned=False) == 1.0
+    doubts = [proposal_misfit.doubt(misfit, turned=False) for misfit in (off, far)]
+    assert doubts[1] / doubts[0] == pytest.approx(2.0**STEEPLY)
+    assert proposal_misfit.doubt(off, turned=True) == pytest.approx(TURNED * doubts[0])
 
 
 def test_wrists_that_are_off_alone_are_doubted_by_one_view_and_all_alike_by_two() -> None:

@@ -23,9 +23,9 @@ class Spread(NamedTuple):
     roughly: float
     """Of what is roughly right."""
     often: float
-    """How often what is not right is roughly right."""
+    """How often what is not right is roughly right; less often of a proposal that is doubted."""
     far: float
-    """So many standard deviations off, what is roughly right is no likelier than anything else."""
+    """What is neither is anywhere within so many standard deviations of what is roughly right."""
 
     def right_of(self, confidence: NDArray[np.float64]) -> NDArray[np.float64]:
         """Standard deviation of what is right, by how sure its witness is."""
@@ -36,6 +36,8 @@ PROPOSED: Final = Spread(right=0.014, unsure=0.061, roughly=0.09, often=0.95, fa
 """Of joints that outlines propose, metres."""
 SHOWN: Final = Spread(right=0.012, unsure=0.035, roughly=0.051, often=0.55, far=2)
 """Of landmarks, statures beside their ray. All were chosen on r01, r04 and made-up people."""
+HARDLY: Final = 4.5
+"""So far the log probability of what is neither is lowered, while nothing is doubted."""
 LEAST, MOST = 0.01, 0.98
 """Nobody is believed more or less surely."""
 ROUNDS: Final = 4
@@ -64,6 +66,8 @@ class Witnesses(NamedTuple):
     """(3,) of the proposed joint and of both landmarks, where they are right."""
     roughly_m: float
     """Of the proposed joint, where it is roughly right."""
+    often: float
+    """How often it is roughly right, where it is not right."""
     stature_m: float
 
 
@@ -148,8 +152,8 @@ def _weigh(told: Any, here: Any, normal: Any, right: Any) -> float:
     surety, spread_m = told.surety, told.spreads_m[0]
     unlikely = 1.0 - surety
     is_right = _bell(square, spread_m, surety, 3)
-    is_rough = _bell(square, told.roughly_m, unlikely * PROPOSED.often, 3)
-    total = is_right + is_rough + _anywhere(told.roughly_m, unlikely, PROPOSED, 3)
+    is_rough = _bell(square, told.roughly_m, unlikely * told.often, 3)
+    total = is_right + is_rough + _anywhere(told.roughly_m, unlikely, told.often, PROPOSED, 3)
     weight = (is_right / spread_m**2 + is_rough / told.roughly_m**2) / total + HELD
     normal[0] = normal[3] = normal[5] = weight
     normal[1] = normal[2] = normal[4] = 0.0
@@ -180,7 +184,7 @@ def _look(told: Any, view: int, here: Any, normal: Any, right: Any) -> float:
     is_right = _bell(square, spread_m, surety, 2)
     is_rough = _bell(square, roughly_m, unlikely * SHOWN.often, 2)
     is_second = _bell(_beside(centre_m, second, here), spread_m, other, 2) if other > 0.0 else 0.0
-    total = is_right + is_rough + is_second + _anywhere(roughly_m, unlikely, SHOWN, 2)
+    total = is_right + is_rough + is_second + _anywhere(roughly_m, unlikely, SHOWN.often, SHOWN, 2)
     weight = (is_right / spread_m**2 + is_rough / roughly_m**2) / total
     _pull(centre_m, first, weight, normal, right)
     if is_second > 0.0:
@@ -215,10 +219,10 @@ def _bell(square: float, spread_m: float, often: float, axes: int) -> float:
 
 
 @compiled
-def _anywhere(roughly_m: float, unlikely: float, kind: Any, axes: int) -> float:
-    """How probably somebody who is neither right nor roughly right says so."""
-    beyond = unlikely * (1.0 - kind.often) / (kind.far * roughly_m) ** axes
-    return beyond * math.exp(-4.5) + 1e-30
+def _anywhere(roughly_m: float, unlikely: float, often: float, kind: Any, axes: int) -> float:
+    """How probably somebody who is neither right nor, so often, roughly right says so."""
+    beyond = unlikely * (1.0 - often) / (kind.far * roughly_m) ** axes
+    return beyond * math.exp(-HARDLY * often / kind.often) + 1e-30
 
 
 @compiled

@@ -59,6 +59,19 @@ class Memory(NamedTuple):
     """(4,) how far proposals stood beside them as a whole."""
 
 
+class Proposal(NamedTuple):
+    """The joints that outlines propose, and how far to believe them."""
+
+    joints_m: NDArray[np.float64]
+    """(12, 3) world."""
+    confidence: Vector
+    """(12,) how probably each is less than 50 mm off."""
+    wider_m: Vector
+    """(12,) by how much their spreads grow."""
+    often: float
+    """How often they are roughly right, where they are not right."""
+
+
 class Fused(NamedTuple):
     """The joints of an instant."""
 
@@ -80,10 +93,9 @@ def step(
     """One instant: each joint where the proposal and both views together most probably have it.
 
     Where faces say that the proposal is turned about, its sides are exchanged. Where proposals have
-    lately been off what is shown, they are believed less closely; where they have been so as a
-    whole, they are moved. Which sides a view exchanged is
-    decided for arms and legs as wholes, by all that is said of their joints; then limbs are given
-    their lengths.
+    lately been off what is shown, they are believed less closely and less surely; where they have
+    been so as a whole, they are moved. Which sides a view exchanged is decided for arms and legs as
+    wholes, by all that is said of their joints; then limbs are given their lengths.
 
     Args:
         before: Of the instant before; None at the first.
@@ -99,15 +111,21 @@ def step(
         None if before is None else before.misfit, proposed_m, rays, stature_m
     )
     wider_m = proposal_misfit.wider_m(misfit, rays, stature_m)
+    doubt = proposal_misfit.doubt(misfit, turned[1])
     displaced, proposed_m = displaced_proposal.step(
         None if before is None else before.displaced, proposed_m, _shown(rays), rays, stature_m
     )
-    values, places_m, precisions = _weighed(proposed_m, confidence, wider_m, rays, stature_m)
+    values, places_m, precisions = _weighed(
+        Proposal(proposed_m, _doubted(confidence, doubt), wider_m, _doubted(PROPOSED.often, doubt)),
+        rays,
+        stature_m,
+    )
     exchanges, decided = exchanged_sides.step(
         _exchanges(before, turned[1]),
         values[ARMS].sum(axis=0),
         values[LEGS].sum(axis=0),
         _aside(proposed_m, rays.centres_m),
+        _confused(rays),
     )
     joints_m = np.concatenate([places_m[(ARMS, *decided.arms)], places_m[(LEGS, *decided.legs)]])
     tight = np.concatenate([precisions[(ARMS, *decided.arms)], precisions[(LEGS, *decided.legs)]])
@@ -127,20 +145,18 @@ def _exchanges(before: Memory | None, turned: bool) -> Exchanges | None:
 
 
 def _weighed(
-    proposed_m: NDArray[np.float64],
-    confidence: Vector,
-    wider_m: Vector,
-    rays: Rays,
-    stature_m: float,
+    proposal: Proposal, rays: Rays, stature_m: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """`_modes` of what confidences say of how sure and how wide each witness is."""
     shown = _shown(rays)
     others = np.where(rays.others_confidence < SECOND, 0.0, rays.others_confidence)
+    confidence, wider_m = proposal.confidence, proposal.wider_m
     found: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] = _modes(
-        proposed_m,
+        proposal.joints_m,
         _share(confidence, PROPOSED_RIGHT),
         np.hypot(PROPOSED.right_of(confidence), wider_m),
         np.hypot(PROPOSED.roughly, wider_m),
+        proposal.often,
         rays.centres_m,
         np.stack([rays.directions, rays.others], axis=2),
         np.stack([shown, np.minimum(others, MOST - shown)], axis=2),
@@ -163,6 +179,11 @@ def _confidence(precisions: NDArray[np.float64]) -> Vector:
     return found
 
 
+def _doubted(probability: Any, doubt: float) -> Any:
+    """A probability, or some, by odds that are so many times lower."""
+    return probability / (probability + doubt * (1.0 - probability))
+
+
 def _share(confidence: Vector, between: tuple[float, float]) -> Vector:
     never, always = between
     found: Vector = ((confidence - never) / (always - never)).clip(LEAST, MOST)
@@ -181,12 +202,19 @@ def _aside(joints_m: NDArray[np.float64], centres_m: NDArray[np.float64]) -> tup
     return first, second
 
 
+def _confused(rays: Rays) -> tuple[float, float]:
+    """How probably each view took front for back."""
+    first, second = (turned_about.confused(sure) for sure in rays.facing_confidence)
+    return first, second
+
+
 @compiled
 def _modes(
     proposed_m: Any,
     sure: Any,
     spreads_m: Any,
     roughly_m: Any,
+    often: float,
     centres_m: Any,
     directions: Any,
     seen: Any,
@@ -216,6 +244,7 @@ def _modes(
                     sureties,
                     spreads,
                     roughly_m[joint],
+                    often,
                     stature_m,
                 )
                 values[joint, first, second] = most_probable(
