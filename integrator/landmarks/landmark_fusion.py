@@ -38,7 +38,7 @@ PROPOSED_RIGHT: Final = (0.18, 0.9)
 SHOWN_RIGHT: Final = (0.02, 0.91)
 """Likewise of a landmark."""
 FIRM_M: Final = 0.02
-PLATT: Final = (1.87, 5.29)
+PLATT: Final = (2.15, 4.25)
 """The logit of the confidence in a joint whose standard deviation is FIRM_M, and how much it falls
 as that grows by e times: how often joints of r01, r04 and made-up people were less than 50 mm off.
 """
