@@ -121,7 +121,7 @@ def step(
         stature_m,
     )
     exchanges, decided = exchanged_sides.step(
-        _exchanges(before, turned[1]),
+        None if before is None else before.exchanges,
         values[ARMS].sum(axis=0),
         values[LEGS].sum(axis=0),
         _aside(proposed_m, rays.centres_m),
@@ -135,13 +135,6 @@ def step(
     lengths_m = limb_springs.lengths_m(lengths_m, joints_m, stature_m)
     memory = Memory(turned, exchanges, lengths_m, misfit, displaced)
     return Fused(joints_m, _confidence(tight), decided, memory)
-
-
-def _exchanges(before: Memory | None, turned: bool) -> Exchanges | None:
-    """What is remembered of exchanged sides; a proposal that is turned now has all the others."""
-    if before is None or turned == before.turned[1]:
-        return None if before is None else before.exchanges
-    return before.exchanges[::-1, ::-1, ::-1, ::-1]
 
 
 def _weighed(
