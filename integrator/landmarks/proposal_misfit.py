@@ -15,8 +15,8 @@ WIDER: Final = 2.0
 """... and one who is farther is believed by so much less closely for each that he is."""
 FARTHEST: Final = 0.25
 """A landmark that is farther off says no more than one that is so far."""
-DOUBTED_FROM: Final = 0.03
-"""Half of them are farther off, in statures; one who is farther ..."""
+DOUBTED_FROM: Final = 0.035
+"""A third are farther off, in statures; one who is farther ..."""
 STEEPLY: Final = 4.0
 """... is right by odds that fall with this power of how much farther: of made-up people in rooms
 that deceive, joints of .7 to .9 sure proposals that were .03, .045, .06, .08 and .1 off were near
