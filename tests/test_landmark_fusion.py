@@ -13,6 +13,7 @@ from common.body.proportions import body_vector
 from common.bus.messages import Landmarks
 from common.rig.camera import Camera, project
 from integrator.landmarks import landmark_fusion, turned_about
+from integrator.landmarks.exchanged_sides import Exchanged
 from integrator.landmarks.landmark_rays import AT, Rays, rays_of
 from integrator.proposal.pose_network import OTHER_SIDES
 from integrator.rig.undistortion import undistorted_camera, undistorted_report
@@ -105,6 +106,15 @@ def test_a_view_that_exchanges_the_legs_is_found_out() -> None:
     assert np.linalg.norm(found.joints_m - true_m[AT], axis=1).max() < 0.02
 
 
+def test_views_that_do_not_tell_which_way_somebody_faces_exchange_nothing_by_themselves() -> None:
+    """Joints from files may come without a face."""
+    true_m = walking()
+    untold = rays(true_m, true_m)._replace(facing_confidence=(0.0, 0.0))
+    found = fused(true_m[AT], untold, 0.8)
+    assert found.exchanged == Exchanged((0, 0), (0, 0))
+    assert np.linalg.norm(found.joints_m - true_m[AT], axis=1).max() < 0.02
+
+
 def test_a_view_that_shows_both_wrists_in_one_place_tells_the_other_as_its_second() -> None:
     """Not exchanged, but doubled: half of what a map shows is of the other side."""
     true_m = walking()
@@ -154,6 +164,8 @@ def test_a_sure_view_is_hardly_ever_confused_and_an_unsure_one_half_the_time() -
     rates = [turned_about.confused(sure) for sure in (0.54, 0.64, 0.7, 0.92)]
     assert rates == pytest.approx([0.37, 0.15, 0.08, 0.001], abs=0.02)
     assert turned_about.confused(1.0) < 1e-9
+    assert turned_about.confused(0.2) == 0.5
+    assert turned_about.confused(0.0) == turned_about.UNTOLD
 
 
 def raising(side: str) -> np.ndarray:

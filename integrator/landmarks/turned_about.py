@@ -16,6 +16,8 @@ SHARPER: Final = 3.0
 """How many times surer than it says a view is that it did not take front for back (a profile stays
 the same profile then), as logits: of r01, r04 and made-up people whom views are .5 to .6, .6 to .7,
 .7 to .8 and .8 to 1 sure of, 37, 15, 8 and .1 % are taken for the other way about."""
+UNTOLD: Final = 0.15
+"""How often one that does not tell it does."""
 ANYHOW: Final = 0.005
 """How often it tells any other facing."""
 RARELY: Final = 0.01
@@ -68,8 +70,11 @@ def yaw_deg(rotation: NDArray[np.float64], joints_m: NDArray[np.float64]) -> flo
 
 
 def confused(confidence: float) -> float:
-    """How probably a view that is so sure which way somebody faces took front for back."""
-    return 1.0 / (1.0 + (confidence / (1.0 - confidence + 1e-9)) ** SHARPER)
+    """How probably a view that is so sure which way somebody faces took front for back; 0: it does
+    not tell."""
+    if confidence <= 0.0:
+        return UNTOLD
+    return min(0.5, 1.0 / (1.0 + (confidence / (1.0 - confidence + 1e-9)) ** SHARPER))
 
 
 def _told(said_deg: float, facing_deg: float, wrong: float) -> float:
