@@ -25,6 +25,8 @@ ASPECT: Final = 1.25
 STANDS_BACK: Final = 0.25
 """In a window that is higher than wide, a phone's, the panel lies over the lower half: so much of
 the height the middle of all is above the window's."""
+RESIZED: Final = 0.02
+"""A window whose width over height changed by more has been turned or told anew."""
 BALL_M: Final = 0.022
 """Radius of a joint: large enough to be taken hold of."""
 CHOSEN: Final = 1.7
@@ -141,10 +143,21 @@ class Easel:
         return {"position": middle + away, "look_at": middle}  # looks along when it is moved
 
     def _stand_back(self, client: Any) -> None:
-        """Show all of it in a phone's window too, above the panel."""
-        if client.camera.aspect < 1.0:
-            for camera, value in self._camera(client.camera.aspect, STANDS_BACK).items():
-                setattr(client.camera, camera, value)
+        """Show all of it in a phone's window too, above the panel; again when that is turned, and
+        when a browser under load tells its window's size late or by and by."""
+        stands = 1.0
+
+        def look(_: Any = None) -> None:
+            nonlocal stands
+            narrow = min(client.camera.aspect, 1.0)
+            if abs(narrow - stands) > RESIZED:
+                stands = narrow
+                seen = (narrow, STANDS_BACK) if narrow < 1.0 else (ASPECT, 0.0)
+                for camera, value in self._camera(*seen).items():
+                    setattr(client.camera, camera, value)
+
+        look()
+        client.camera.on_update(look)
 
     def _hit(self, event: Any) -> None:
         if event.instance_index is not None and event.instance_index < len(LIMBS):
