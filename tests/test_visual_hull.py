@@ -1,5 +1,9 @@
 """Two outlines of one piece of space: what one view alone shows is no part of the person."""
 
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 from posing import posed
 from rolling import ROLLED, on_one_leg, outlines, told
@@ -9,6 +13,21 @@ from common.raster.similarity import Mask
 from common.rig.camera import project
 from integrator.fit import visual_hull
 from integrator.pairing import Pair
+
+REHEARSED = """
+from common.config.settings import Settings
+from common.raster.kernel import match
+from integrator.fit import visual_hull
+from integrator.integrator_warmup import warm_up
+warm_up(Settings(), (160, 120))
+from rolling import BODY, ROLLED, on_one_leg, outlines, told
+from common.body.proportions import body_vector
+from integrator.fit.silhouette_pair import poorest
+known = len(match.signatures)
+seen = tuple(told(n, mask) for n, mask in zip((1, 2), outlines(on_one_leg())))
+poorest(on_one_leg(), body_vector(BODY), ROLLED, seen)
+print(len(visual_hull._carve.signatures), len(match.signatures) - known)
+"""
 
 
 def share(part: Mask, whole: Mask) -> float:
@@ -86,3 +105,16 @@ def test_outlines_without_a_common_place_are_left_alone() -> None:
     assert visual_hull.cleaned(ROLLED, pair) == (pair, False)
     alone = Pair(told(1, first), None)
     assert visual_hull.cleaned(ROLLED, alone) == (alone, False)
+
+
+def test_a_rehearsal_compiles_what_a_doubtful_pose_needs() -> None:
+    """In a process of its own: nothing is left to compile in the middle of a live run."""
+    rehearsal = subprocess.run(
+        [sys.executable, "-c", REHEARSED],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=300,
+        cwd=Path(__file__).parent,
+    )
+    assert rehearsal.stdout.split() == ["1", "0"]
