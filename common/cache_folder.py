@@ -1,4 +1,4 @@
-"""The folder of what is compiled, named by a digest of the sources that it was compiled from."""
+"""The folder of what is compiled, one for each interpreter and version of the libraries."""
 
 import hashlib
 import logging
@@ -12,15 +12,16 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numba
 import numpy as np
 
-from common.packages import PACKAGES, ROOT
+from common.packages import ROOT
+from common.source_digest import add, digest_of
 
 KEPT: Final = 3
-"""Folders of as many digests stay: of this one and of those that were used last."""
+"""Folders of as many versions stay: of this one and of those that were used last."""
 ADMINISTRATOR: Final = 0
 """Who owns the system, and may have installed us: what is compiled is theirs, this user's, or of
 whoever owns the sources, for it is loaded without a question."""
@@ -29,50 +30,18 @@ NAME: Final = re.compile(r"tritrack-[0-9a-f]{32}")
 log = logging.getLogger(__name__)
 
 
-def digest_of(root: Path) -> str:
-    """A word for all that decides what is compiled, 32 hexadecimal digits.
-
-    Any change in any of our files changes it: what a function compiles to depends on the functions
-    that it calls and the constants that it reads, wherever they stand. Takes 10 ms.
-
-    Args:
-        root: Folder of PACKAGES.
-    """
+def versions_word() -> str:
+    """A word for the interpreter and the libraries that compile, 32 hexadecimal digits."""
     digest = hashlib.sha256()
     for version in (sys.version, np.__version__, numba.__version__):
         add(digest, "version", version.encode())
-    above = len(os.path.join(root, ""))
-    for package in PACKAGES:
-        for folder, folders, files in os.walk(root / package):
-            folders.sort()
-            for name in sorted(files):
-                if name.endswith(".py"):
-                    path = os.path.join(folder, name)
-                    add(digest, path[above:], _content(path))
     return digest.hexdigest()[:32]
-
-
-def add(digest: Any, name: str, content: bytes) -> None:
-    """Name and content, each with its length: two files are never taken for one."""
-    for part in (name.encode(), content):
-        digest.update(len(part).to_bytes(8, "little"))
-        digest.update(part)
-
-
-def _content(path: str) -> bytes:
-    with open(path, "rb", buffering=0) as file:
-        return file.read()
-
-
-DIGEST: Final = digest_of(ROOT)
-"""Of the sources as this process began: taken on import, before an edit can come between what was
-read of them and this."""
 
 
 @cache
 def compiled_folder() -> Path:
-    """The folder of this process's sources, there and writable; old ones beside it are removed."""
-    folder = first_writable(parents(ROOT, os.environ), f"tritrack-{DIGEST}")
+    """The folder of this process's versions, there and writable; old ones beside it are removed."""
+    folder = first_writable(parents(ROOT, os.environ), f"tritrack-{versions_word()}")
     os.utime(folder)
     prune(folder.parent)
     return folder
@@ -80,7 +49,7 @@ def compiled_folder() -> Path:
 
 def mark_of_all() -> Path:
     """The file that is there once all that commands run by default was compiled."""
-    return compiled_folder() / "all"
+    return compiled_folder() / f"all-{digest_of(ROOT)}"
 
 
 def parents(root: Path, environ: Mapping[str, str]) -> Iterator[Path]:
@@ -114,12 +83,12 @@ def first_writable(candidates: Iterable[Path], name: str) -> Path:
 
 
 def prune(parent: Path) -> None:
-    """Remove the folders of old digests, all but KEPT that were used last.
+    """Remove the folders of other versions, all but KEPT that were used last.
 
     A process that runs on an older one yet does without: it compiles, and makes its folder again.
     """
     named = [path for path in parent.iterdir() if NAME.fullmatch(path.name)]
-    for path in sorted(named, key=_used_s, reverse=True)[KEPT:]:
+    for path in sorted(named, key=used_s, reverse=True)[KEPT:]:
         shutil.rmtree(path, ignore_errors=True)
 
 
@@ -146,8 +115,9 @@ def _private() -> Path:
     return folder if stat.S_ISDIR(found.st_mode) and own else Path(tempfile.mkdtemp())
 
 
-def _used_s(folder: Path) -> float:
+def used_s(path: Path) -> float:
+    """When it was written last, by the system's clock; 0 where it is gone."""
     try:
-        return folder.stat().st_mtime
+        return path.stat().st_mtime
     except FileNotFoundError:  # Another process tidies up too.
         return 0.0

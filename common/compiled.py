@@ -1,5 +1,6 @@
 """Compiled functions: numba's decorators, and what they compiled, kept for the next process."""
 
+import glob
 import hashlib
 import logging
 import pickle
@@ -13,14 +14,20 @@ from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
 from common.atomic_file import replacing
-from common.cache_folder import compiled_folder
+from common.cache_folder import compiled_folder, used_s
 from common.packages import PACKAGES
+from common.source_digest import module_digest
+
+KEPT: Final = 8
+"""States of the sources of which compiled code stays, for each function and signature: branches
+and edits that come and go need not compile again."""
 
 log = logging.getLogger(__name__)
 
 
 class KeptOverloads(NullCache):
-    """numba's cache of one function: a file for each signature, in the folder of the sources.
+    """numba's cache of one function: a file for each signature and each state of the sources that
+    the function rests on.
 
     numba's own is not for us: it looks at a function's own file alone, so a callee that changed in
     another one goes unnoticed, and two processes that compile two signatures at once give both the
@@ -28,8 +35,9 @@ class KeptOverloads(NullCache):
     """
 
     def __init__(self, function: Callable[..., Any]) -> None:
-        """Nothing is read or written before the function is called."""
-        self._function = function
+        """Nothing but sources is read, and nothing written, before the function is called."""
+        self._name = f"{function.__module__}.{function.__qualname__}"
+        self._sources = module_digest(function.__module__)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """What was kept for a signature; None where nothing was, or what cannot be read."""
@@ -51,13 +59,21 @@ class KeptOverloads(NullCache):
             path.parent.mkdir(parents=True, exist_ok=True)
             with replacing(path) as new:
                 new.write_bytes(dumps((key, data._reduce())))
+            self._prune(key)
         except OSError as error:
             log.info("not kept: %s", error)
 
     def _path(self, key: Any) -> Path:
-        word = hashlib.sha256(repr(key).encode()).hexdigest()[:16]
-        function = self._function
-        return compiled_folder() / f"{function.__module__}.{function.__qualname__}-{word}.nbc"
+        return compiled_folder() / f"{self._stem(key)}-{self._sources}.nbc"
+
+    def _stem(self, key: Any) -> str:
+        return f"{self._name}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}"
+
+    def _prune(self, key: Any) -> None:
+        """Remove what older sources gave for a signature, all but the newest KEPT."""
+        of_all = compiled_folder().glob(f"{glob.escape(self._stem(key))}-*.nbc")
+        for path in sorted(of_all, key=used_s, reverse=True)[KEPT:]:
+            path.unlink(missing_ok=True)
 
 
 def compiling(**flags: Any) -> Callable[[Callable[..., Any]], Any]:

@@ -2,78 +2,17 @@
 
 import logging
 import os
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from common import cache_folder
-from common.cache_folder import KEPT, digest_of, first_writable, parents, prune
-from common.packages import PACKAGES, ROOT
-
-
-@pytest.fixture
-def sources(tmp_path: Path) -> Path:
-    root = tmp_path / "sources"
-    for package in PACKAGES:
-        (root / package / "room").mkdir(parents=True)
-        (root / package / "room" / "stage.py").write_text("STEP = 1\n")
-    return root
+from common.cache_folder import KEPT, first_writable, parents, prune
 
 
 def no_folder(path: Path) -> Path:
     """A place that nobody can write, root neither."""
     path.write_text("a file")
     return path
-
-
-@pytest.mark.parametrize("package", PACKAGES)
-def test_any_change_in_any_package_gives_another_digest(sources: Path, package: str) -> None:
-    before, stage = digest_of(sources), sources / package / "room" / "stage.py"
-    times = stage.stat().st_atime_ns, stage.stat().st_mtime_ns
-    stage.write_text("STEP = 2\n")
-    os.utime(stage, ns=times)
-    assert digest_of(sources) != before
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        lambda room: (room / "stage.py").rename(room / "stage_two.py"),
-        lambda room: (room / "stage.py").unlink(),
-        lambda room: (room / "more.py").write_text(""),
-    ],
-)
-def test_a_file_that_moves_comes_or_goes_gives_another_digest(
-    sources: Path, change: Callable[[Path], object]
-) -> None:
-    before = digest_of(sources)
-    change(sources / "viewer" / "room")
-    assert digest_of(sources) != before
-
-
-def test_what_is_no_source_leaves_the_digest(sources: Path) -> None:
-    before = digest_of(sources)
-    (sources / "viewer" / "room" / "network.npz").write_bytes(b"1")
-    (sources / "README.md").write_text("1")
-    assert digest_of(sources) == before
-
-
-def test_the_digest_reads_each_of_our_sources_once_and_nothing_else(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Every process takes it as it starts; how long that takes `tritrack bench` tells."""
-    opened: list[Path] = []
-    content = cache_folder._content
-
-    def counted(path: str) -> bytes:
-        opened.append(Path(path))
-        return content(path)
-
-    monkeypatch.setattr(cache_folder, "_content", counted)
-    digest_of(ROOT)
-    ours = [path for name in PACKAGES for path in (ROOT / name).rglob("*.py")]
-    assert sorted(opened) == sorted(ours)
 
 
 def test_the_folder_lies_in_the_checkout_or_where_numba_is_told(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from common.cache_folder import compiled_folder
+from common.compiled import KEPT
 from common.packages import ROOT
 from common.raster.kernel import warm
 
@@ -61,8 +62,8 @@ def house(tmp_path: Path) -> Path:
     for package in ("common", "viewer", "tritrack"):
         (root / package).mkdir(parents=True)
         (root / package / "__init__.py").touch()
-    for name in ("atomic_file.py", "cache_folder.py", "compiled.py", "packages.py"):
-        shutil.copy(ROOT / "common" / name, root / "common")
+    for name in ("atomic_file", "cache_folder", "compiled", "packages", "source_digest"):
+        shutil.copy(ROOT / "common" / f"{name}.py", root / "common")
     (root / "pyproject.toml").touch()
     (root / "viewer" / "callee.py").write_text(CALLEE)
     (root / "viewer" / "caller.py").write_text(CALLER)
@@ -109,13 +110,43 @@ def test_a_callee_that_changed_in_another_file_is_noticed(house: Path) -> None:
     assert answer(house, "-c", ASK) == "5"
     callee.write_text(CALLEE)
     assert answer(house, "-c", ASK) == "3"
-    assert len(list((house / ".cache").iterdir())) == 2
+    assert len(kept(house)) == 4
+
+
+def test_a_constant_that_changed_in_another_file_is_noticed(house: Path) -> None:
+    (house / "viewer" / "constants.py").write_text("STEP = 1\n")
+    callee = CALLEE.replace("x + 1", "x + STEP").replace(
+        "import compiled", "import compiled\nfrom viewer import constants\nSTEP = constants.STEP"
+    )
+    (house / "viewer" / "callee.py").write_text(callee)
+    assert answer(house, "-c", ASK) == "3"
+    (house / "viewer" / "constants.py").write_text("STEP = 2\n")
+    assert answer(house, "-c", ASK) == "5"
+
+
+def test_an_edit_of_what_is_not_imported_compiles_nothing(house: Path) -> None:
+    answer(house, "-c", ASK)
+    before = kept(house)
+    (house / "viewer" / "elsewhere.py").write_text("STEP = 2\n")
+    (house / "tritrack" / "__main__.py").write_text("")
+    answer(house, "-c", ASK)
+    assert kept(house) == before
+
+
+def test_of_older_sources_the_newest_stay(house: Path) -> None:
+    for step in range(KEPT + 2):
+        (house / "viewer" / "callee.py").write_text(CALLEE.replace("+ 1", f"+ {step}"))
+        assert answer(house, "-c", ASK) == str(1 + 2 * step)
+    assert len(kept(house)) == 2 * KEPT
+    before = kept(house)
+    assert answer(house, "-c", ASK) == str(1 + 2 * (KEPT + 1))
+    assert kept(house) == before
 
 
 def test_a_second_process_compiles_nothing(house: Path) -> None:
     answer(house, "-c", ASK)
     before = kept(house)
-    assert {path.name.rsplit("-", 1)[0] for path in before} == {
+    assert {path.name.split("-")[0] for path in before} == {
         "viewer.callee.step",
         "viewer.caller.twice",
     }

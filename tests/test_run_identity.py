@@ -37,7 +37,7 @@ def test_the_tracker_is_named_by_all_our_code_and_by_its_models(
     before = tracker_id()
     assert tracker_id() == before
     with monkeypatch.context() as patched:
-        patched.setattr(run_identity, "DIGEST", "of other sources")
+        patched.setattr(run_identity, "SOURCES", "of other sources")
         assert tracker_id() != before
     shutil.copytree(ROOT / "viewer", tmp_path / "viewer")
     monkeypatch.setattr(run_identity, "ROOT", tmp_path)

@@ -18,11 +18,11 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from common.cache_folder import digest_of
 from common.config.part_settings import PageSettings, SearchSettings
 from common.config.settings import Settings
 from common.method import DEFAULT, METHODS, Mode
 from common.packages import ROOT
+from common.source_digest import digest_of
 from common.video.clips import open_clip
 from integrator import integrator_warmup
 from synth.write import ClipSet, write_set

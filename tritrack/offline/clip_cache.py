@@ -10,9 +10,9 @@ import msgspec
 import numpy as np
 
 from common.atomic_file import replacing
-from common.cache_folder import add
 from common.config.settings import Settings
 from common.npz_file import Arrays, read_arrays
+from common.source_digest import add
 from common.video.clip_sources import ClipError
 from tritrack.offline.lockstep import Tracked
 from tritrack.store.past_run import MAX_BYTES

@@ -1,6 +1,7 @@
 """Of what a run is: its settings, the files that it reads, and the program itself, as digests."""
 
 import hashlib
+import sys
 from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from pathlib import Path
@@ -8,9 +9,9 @@ from typing import Final
 
 import msgspec
 
-from common.cache_folder import DIGEST, add
 from common.config.settings import LANDMARK_SOURCES, NETWORK, Settings
 from common.packages import PACKAGES, ROOT
+from common.source_digest import add, digest_of
 from common.video.clip_sources import ClipError, companions_folder, footage_of
 from common.video.clips import find_calibration
 
@@ -18,8 +19,10 @@ Identity = dict[str, str]
 """A digest of each thing that a run depends on, by what a message calls it."""
 
 MODELS: Final = ("*.npz", "*.onnx")
-LIBRARIES: Final = ("opencv-python-headless", "scipy", "onnxruntime")
-"""What changes what is tracked and names no compiled code."""
+LIBRARIES: Final = ("numpy", "numba", "opencv-python-headless", "scipy", "onnxruntime")
+"""What changes what is tracked."""
+SOURCES: Final = digest_of(ROOT)
+"""Of the sources as this process began: taken on import, before an edit can come between."""
 
 
 def identity_of(settings: Settings, told: Mapping[str, object]) -> Identity:
@@ -57,11 +60,12 @@ def word_of(identity: Identity) -> str:
 
 def tracker_id() -> str:
     """A word for the tracker itself: another after any change of our code, models or libraries."""
-    digest = hashlib.sha256(DIGEST.encode())
+    digest = hashlib.sha256(SOURCES.encode())
     for package in PACKAGES:
         models = (path for kind in MODELS for path in (ROOT / package).rglob(kind))
         for path in sorted(models):
             add(digest, path.relative_to(ROOT).as_posix(), path.read_bytes())
+    add(digest, "python", sys.version.encode())
     for name in LIBRARIES:
         add(digest, name, version(name).encode())
     return digest.hexdigest()
