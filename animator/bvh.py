@@ -9,15 +9,8 @@ from scipy.spatial.transform import Rotation
 
 from animator.even_steps import EvenSteps, even_steps
 from animator.inbetween import at, between
-from animator.skeleton.bones import (
-    BONES,
-    Joints,
-    Motion,
-    Skeleton,
-    motion_of,
-    offset_m,
-    skeleton_of,
-)
+from animator.skeleton.bone_turns import motion_of
+from animator.skeleton.bones import BONES, Joints, Motion, Skeleton, offset_m, skeleton_of
 from animator.skeleton.planted_feet import Planted, on_its_feet, planted
 from common.body.body import Vector
 
@@ -76,7 +69,9 @@ def euler_zxy_deg(turns: Sequence[Rotation]) -> NDArray[np.float64]:
     """Angles (n, bones, 3) about z, x, y with R = R_z R_x R_y, without jumps along the first axis.
 
     Of the two triples of a turn, and all that differ by full circles, the one next to the frame
-    before is taken: programs that draw curves between frames would else spin a limb round.
+    before is taken, of the first frame the one next to rest: programs that draw curves between
+    frames would else spin a limb round, and a knee that is bent by 120 degrees would be 60 about x
+    and half turns about the other axes.
 
     Args:
         turns: (n,) of each bone.
@@ -84,8 +79,10 @@ def euler_zxy_deg(turns: Sequence[Rotation]) -> NDArray[np.float64]:
     angles = np.stack(
         [own.as_euler("ZXY", degrees=True, suppress_warnings=True) for own in turns], axis=1
     )
-    for i in range(1, len(angles)):
-        angles[i] = _nearest(angles[i], angles[i - 1])
+    before = np.zeros(angles.shape[1:])
+    for row in angles:
+        row[:] = _nearest(row, before)
+        before = row
     return angles
 
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from test_foot_contact import walking
 
-from animator.skeleton.bones import joints_of, motion_of, skeleton_of
+from animator.skeleton.bone_turns import motion_of
+from animator.skeleton.bones import joints_of, skeleton_of
 from animator.skeleton.fitted_bones import fitted
 from common.body.body import JOINT_NAMES
 from common.body.extremities import ALL_JOINT_NAMES

@@ -4,13 +4,14 @@ import msgspec
 import numpy as np
 import pytest
 from meeting import a_body
-from moving import random_joints
+from moving import BODY, random_joints
 from osc_reader import read_osc
 from scipy.spatial.transform import Rotation
 
 from animator.skeleton.bones import BONES
-from common.body.body import JOINT_NAMES
+from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
 from common.body.extremities import extremities
+from common.body.kinematics import joints
 from common.bus.messages import Body
 from tritrack.bridges.vmc import MEASURED, Measured, step
 
@@ -92,6 +93,26 @@ def test_who_faces_forward_has_the_right_hand_at_positive_x() -> None:
     assert places["RightLowerArm"][0] == pytest.approx(0.45, abs=1e-3)
     turns = [values[4:] for address, values in read_osc(packet) if "Bone" in address]
     assert all(abs(turn[3]) == pytest.approx(1.0, abs=1e-3) for turn in turns)
+
+
+def test_a_knee_turns_about_left_to_right_alone_and_stays_so_where_the_leg_is_straight() -> None:
+    """A thigh that is turned outwards; Unity mirrors x, so of a turn about x, y and z stay 0."""
+    bent, straight = rest_pose(), rest_pose()
+    for name, angle_deg in (("l_hip_x", 70.0), ("l_hip_y", 30.0), ("l_knee_x", -90.0)):
+        bent[POSE_INDEX[name]] = angle_deg
+    state, thighs = Measured(), []
+    for frame, pose in enumerate((bent, straight)):
+        body = msgspec.structs.replace(
+            a_body(frame, joints(BODY, pose)), extremities_m=(), extremities_confidence=()
+        )
+        state, packet = step(state, body)
+        turns = {
+            each[0]: each[4:] for address, each in read_osc(packet or b"") if "Bone" in address
+        }
+        assert turns["LeftLowerLeg"][1:3] == pytest.approx([0.0, 0.0], abs=1e-5)
+        thighs.append(turns["LeftUpperLeg"])
+    assert abs(thighs[0][1]) > 0.2
+    assert abs(thighs[1][1]) > 0.2
 
 
 def test_nobody_moves_no_bone() -> None:

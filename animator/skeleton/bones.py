@@ -1,4 +1,4 @@
-"""The skeleton of animation files: bones of fixed length that turn, laid through a run's joints."""
+"""The skeleton of animation files: bones of fixed length, and where they have a run's joints."""
 
 from typing import Final, NamedTuple
 
@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from animator.turns import arc_axes, axes_of
+from animator.turns import axes_of
 from common.body.body import JOINT_NAMES, Vector
 from common.body.extremities import AHEAD_SHARE, ALL_JOINT_NAMES, DOWN_SHARE
 
@@ -56,20 +56,8 @@ OF_JOINTS: Final = {
 }
 """How many of BONES lie between so many joints."""
 
-_AT: Final = {name: i for i, name in enumerate(ALL_JOINT_NAMES)}
-_DEPTHS: Final = [0]
-for _bone in BONES[1:]:
-    _DEPTHS.append(_DEPTHS[_bone.parent] + 1)
-_GENERATIONS: Final = {
-    count: tuple(
-        (bones, [BONES[i].parent for i in bones], [_AT[BONES[i].ends] for i in bones])
-        for depth in range(1, 1 + max(_DEPTHS[:count]))
-        if (bones := [i for i in range(2, count) if _DEPTHS[i] == depth])
-    )
-    for count in OF_JOINTS.values()
-}
-"""Of a skeleton of so many bones those that are as far from the hips, which are aimed at once:
-their places in BONES, their parents', and those of the landmarks that they are aimed at."""
+AT: Final = {name: i for i, name in enumerate(ALL_JOINT_NAMES)}
+"""Where each landmark stands."""
 _UP, _LEFT = np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])
 _FOOT: Final = np.array([0.0, -DOWN_SHARE, AHEAD_SHARE]) / np.hypot(DOWN_SHARE, AHEAD_SHARE)
 _REST: Final = {"Spine": _UP, "Head": _UP, "Hips": _LEFT} | {
@@ -78,7 +66,8 @@ _REST: Final = {"Spine": _UP, "Head": _UP, "Hips": _LEFT} | {
     for bone in ("Arm", "ForeArm", "Hand", "UpLeg", "Leg", "Foot")
 }
 """Where a bone points at rest: the opening posture, farthest from every pose in which a limb
-points the other way and its twist would jump. Shoulders rest where they mostly are."""
+points the other way and the shortest turn there would jump. Shoulders rest where they mostly
+are."""
 
 
 class Skeleton(msgspec.Struct, frozen=True):
@@ -111,54 +100,17 @@ def skeleton_of(joints_m: Joints) -> Skeleton:
         joints_m: At least one row without NaN.
     """
     posed = joints_m[np.isfinite(joints_m).all(axis=(1, 2))]
-    spine = axes_of(_between(posed, "pelvis", "neck"), _between(posed, "r_shoulder", "l_shoulder"))
+    spine = spine_axes(posed)
     tips = []
     for bone in BONES[: OF_JOINTS[joints_m.shape[1]]]:
-        along = _between(posed, bone.starts, bone.ends)
+        along = between_m(posed, bone.starts, bone.ends)
         length_m = float(np.median(np.linalg.norm(along, axis=1)))
         rest = _REST.get(bone.name)
         if rest is None:
-            rest = np.median(_turned(spine.transpose(0, 2, 1), along), axis=0)
+            rest = np.median((spine.transpose(0, 2, 1) @ along[..., None])[..., 0], axis=0)
             rest = rest / max(float(np.linalg.norm(rest)), 1e-9)
         tips.append(length_m * rest)
     return Skeleton(np.array(tips))
-
-
-def motion_of(skeleton: Skeleton, joints_m: Joints) -> Motion:
-    """The turns that lead a skeleton through joints, without NaN."""
-    turns = tuple(
-        Rotation.from_matrix(own, assume_valid=True) for own in turned_axes(skeleton, joints_m)
-    )
-    return Motion(joints_m[:, _AT["pelvis"]], turns)
-
-
-def turned_axes(skeleton: Skeleton, joints_m: Joints) -> NDArray[np.float64]:
-    """Likewise as matrices, (bones, n, 3, 3): of each bone, in its parent's axes.
-
-    Every bone is aimed at its landmark from where the bones before it have come to, so that a
-    length that differs shifts one landmark and not the rest of the limb.
-
-    Args:
-        skeleton: A body.
-        joints_m: Without NaN.
-    """
-    count = len(skeleton.bones)
-    world = np.empty((count, len(joints_m), 3, 3))
-    local, origins = np.empty_like(world), np.empty(world.shape[:-1])
-    up = _between(joints_m, "pelvis", "neck")
-    hips = axes_of(up, _between(joints_m, "r_hip", "l_hip"), keep="across")
-    spine = axes_of(up, _between(joints_m, "r_shoulder", "l_shoulder"))
-    world[:2], local[:2] = (hips, spine), (hips, hips.swapaxes(-1, -2) @ spine)
-    origins[:2] = joints_m[:, _AT["pelvis"]]
-    offsets_m = np.array([offset_m(skeleton, i) for i in range(count)])
-    for bones, parents, ends in _GENERATIONS[count]:
-        above = world[parents]
-        origins[bones] = origins[parents] + _turned(above, offsets_m[bones, None])
-        aims = joints_m[:, ends].swapaxes(0, 1) - origins[bones]
-        aims = _turned(above.swapaxes(-1, -2), aims)
-        local[bones] = arc_axes(skeleton.tips_m[bones, None], aims)
-        world[bones] = above @ local[bones]
-    return local
 
 
 def joints_of(skeleton: Skeleton, motion: Motion) -> Joints:
@@ -174,8 +126,8 @@ def joints_of(skeleton: Skeleton, motion: Motion) -> Joints:
             origins[bone.parent] + above.apply(offset_m(skeleton, i)) if i else motion.root_m
         )
         world.append(above * own)
-        found[:, _AT[bone.starts]] = origins[i]
-        found[:, _AT[bone.ends]] = origins[i] + world[i].apply(skeleton.tips_m[i])
+        found[:, AT[bone.starts]] = origins[i]
+        found[:, AT[bone.ends]] = origins[i] + world[i].apply(skeleton.tips_m[i])
     return found
 
 
@@ -198,12 +150,13 @@ def rest_origins_m(skeleton: Skeleton) -> Vector:
     return origins
 
 
-def _turned(axes: NDArray[np.float64], along: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Directions (n, 3) or (3,) turned by matrices (n, 3, 3)."""
-    found: NDArray[np.float64] = (axes @ along[..., None])[..., 0]
-    return found
+def spine_axes(joints_m: Joints) -> NDArray[np.float64]:
+    """Left, up and front of the trunk as columns, (n, 3, 3)."""
+    up = between_m(joints_m, "pelvis", "neck")
+    return axes_of(up, between_m(joints_m, "r_shoulder", "l_shoulder"))
 
 
-def _between(joints_m: Joints, start: str, end: str) -> NDArray[np.float64]:
-    along: NDArray[np.float64] = joints_m[:, _AT[end]] - joints_m[:, _AT[start]]
+def between_m(joints_m: Joints, start: str, end: str) -> NDArray[np.float64]:
+    """From one landmark to another, (n, 3)."""
+    along: NDArray[np.float64] = joints_m[:, AT[end]] - joints_m[:, AT[start]]
     return along

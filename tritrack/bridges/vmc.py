@@ -9,7 +9,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from animator.skeleton.bones import Skeleton, offset_m, skeleton_of, turned_axes
+from animator.skeleton.bone_turns import turned_axes
+from animator.skeleton.bones import Skeleton, offset_m, skeleton_of
 from common.body.body import JOINT_NAMES, Vector
 from common.bus.messages import Body
 from tritrack.bridges.osc import message
@@ -32,11 +33,13 @@ TYPES: Final = "sfffffff"
 
 
 class Measured(NamedTuple):
-    """The skeleton so far."""
+    """The skeleton so far, and how it stood last."""
 
     poses: tuple[Any, ...] = ()
     """(15, 3) or, with hands and feet, (22, 3) each, at most MEASURED."""
     skeleton: Skeleton | None = None
+    twists: Vector | None = None
+    """(4,) of the upper limbs in the body before, by which a straight limb is twisted."""
 
 
 def step(state: Measured, body: Body) -> tuple[Measured, bytes | None]:
@@ -46,16 +49,17 @@ def step(state: Measured, body: Body) -> tuple[Measured, bytes | None]:
     joints_m = np.array((*body.joints_m, *body.extremities_m))
     if state.skeleton is None or len(state.poses) < MEASURED:
         poses = (*state.poses, joints_m)
-        state = Measured(poses, skeleton_of(np.array(poses)))
+        state = state._replace(poses=poses, skeleton=skeleton_of(np.array(poses)))
     assert state.skeleton is not None
-    return state, vmc_packet(body, state.skeleton, joints_m)
+    axes, twists = turned_axes(state.skeleton, joints_m[None], state.twists)
+    packet = _packet(body, state.skeleton, joints_m[PELVIS], axes[:, 0])
+    return state._replace(twists=twists[:, 0]), packet
 
 
-def vmc_packet(body: Body, skeleton: Skeleton, joints_m: Vector) -> bytes:
-    """The bundle of a pose."""
+def _packet(body: Body, skeleton: Skeleton, pelvis_m: Vector, axes: Any) -> bytes:
+    """The bundle of a pose whose bones are turned so, (bones, 3, 3)."""
     from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
 
-    axes = turned_axes(skeleton, joints_m[None])[:, 0]
     turns = Rotation.from_matrix(axes, assume_valid=True).as_quat().tolist()
     bundle: Any = OscBundleBuilder(IMMEDIATELY)
     bundle.add_content(message("/VMC/Ext/OK", [1], "i"))
@@ -63,7 +67,7 @@ def vmc_packet(body: Body, skeleton: Skeleton, joints_m: Vector) -> bytes:
     root = ["root", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
     bundle.add_content(message("/VMC/Ext/Root/Pos", root, TYPES))
     for i, (bone, (x, y, z, w)) in enumerate(zip(skeleton.bones, turns, strict=True)):
-        place_m = joints_m[PELVIS] if i == 0 else offset_m(skeleton, i)
+        place_m = pelvis_m if i == 0 else offset_m(skeleton, i)
         told = [UNITY.get(bone.name, bone.name), *_mirrored(place_m), x, -y, -z, w]
         bundle.add_content(message("/VMC/Ext/Bone/Pos", told, TYPES))
     packet: bytes = bundle.build().dgram

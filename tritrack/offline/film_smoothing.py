@@ -45,7 +45,8 @@ def calmed(
         notes: The user's inputs.
         kept: Takes what is given; None: a list.
     """
-    from animator.skeleton.bones import joints_of, motion_of, skeleton_of
+    from animator.skeleton.bone_turns import motion_of
+    from animator.skeleton.bones import joints_of, skeleton_of
 
     stretches = [_of_stretch(some) for seen, some in groupby(bodies, _is_posed) if seen]
     if not stretches:

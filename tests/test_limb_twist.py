@@ -1,0 +1,143 @@
+"""Elbows and knees in files of motion are hinges: they bend about one axis of the upper limb."""
+
+import re
+from functools import partial
+
+import numpy as np
+import pytest
+from moving import BODY, random_joints
+from scipy.spatial.transform import Rotation
+from test_bvh import read_bvh
+
+from animator.bvh import bvh_text, euler_zxy_deg, steady
+from animator.exchange.opensim_model import mot_text
+from animator.skeleton.bone_turns import motion_of, turned_axes
+from animator.skeleton.bones import BONES, Motion, joints_of, skeleton_of
+from animator.skeleton.limb_twist import HINGES, STRAIGHT_DEG
+from common.body.body import POSE_INDEX, rest_pose
+from common.body.kinematics import joints, limb_frames
+
+NAMES = [bone.name for bone in BONES]
+LIMBS = {
+    "RightUpLeg": ("RightLeg", 2, "r_knee_x"),
+    "LeftUpLeg": ("LeftLeg", 3, "l_knee_x"),
+    "RightArm": ("RightForeArm", 6, "r_elbow_x"),
+    "LeftArm": ("LeftForeArm", 7, "l_elbow_x"),
+}
+"""Of each upper bone the lower one, the cylinder of the body that it is, and the bend."""
+AT_REST = {"RightUpLeg": "x", "LeftUpLeg": "x", "RightArm": "y", "LeftArm": "y"}
+"""Arms stretched out, palms down: knees bend about left to right, elbows about the vertical."""
+
+
+def posed(**angles_deg: float) -> np.ndarray:
+    pose = rest_pose()
+    for name, angle_deg in angles_deg.items():
+        pose[POSE_INDEX[name]] = angle_deg
+    return pose
+
+
+squatting = partial(posed, r_hip_x=80.0, l_hip_x=80.0, r_knee_x=-120.0, l_knee_x=-120.0)
+"""Knees point outwards by what `r_hip_y` and `l_hip_y` say."""
+
+
+def moved(poses: list[np.ndarray]) -> np.ndarray:
+    return np.array([joints(BODY, pose) for pose in poses])
+
+
+def world_turns(motion: Motion) -> dict[str, Rotation]:
+    found: dict[str, Rotation] = {}
+    for bone, own in zip(BONES, motion.turns, strict=False):
+        found[bone.name] = found[NAMES[bone.parent]] * own if bone.parent >= 0 else own
+    return found
+
+
+def channels_of(text: str, bone: str) -> np.ndarray:
+    """(n, 3) about z, x, y, as the file has them of a joint."""
+    at = re.findall(r"(?:ROOT|JOINT) (\w+)", text).index(bone)
+    return read_bvh(text).angles[:, 3 * at : 3 * at + 3]
+
+
+@pytest.mark.parametrize("upper", LIMBS)
+@pytest.mark.parametrize("outwards_deg", [-35.0, 0.0, 35.0])
+def test_the_hinges_axis_is_the_bodys_own(upper: str, outwards_deg: float) -> None:
+    """A body of known frames, whose knees and elbows turn about x of thighs and upper arms."""
+    lower, limb, _ = LIMBS[upper]
+    turned = {f"{side}_hip_y": sign * outwards_deg for side, sign in (("r", 1), ("l", -1))}
+    turned |= {"r_elbow_x": 70.0, "l_elbow_x": 70.0, "l_shoulder_x": outwards_deg}
+    poses = [squatting(**turned), squatting(**turned, torso_y=40.0)]
+    joints_m = moved(poses)
+    skeleton = skeleton_of(joints_m)
+    turns = world_turns(motion_of(skeleton, joints_m))
+    axis = np.eye(3)["xyz".index(AT_REST[upper])]
+    for frame, pose in enumerate(poses):
+        own = limb_frames(BODY, pose)[limb, 3:].reshape(3, 3)[:, 0]
+        for bone in (upper, lower):
+            assert abs(turns[bone].apply(axis)[frame] @ own) == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_limb_that_is_bent_turns_about_one_channel_alone(seed: int) -> None:
+    """And one that is nearly straight is beside its hinge's plane by less than STRAIGHT_DEG."""
+    joints_m = random_joints(seed)
+    skeleton, motion, steps = steady(joints_m, np.arange(40) / 15)
+    text = bvh_text(skeleton, motion, steps.step_s)
+    for upper, (lower, _, _) in LIMBS.items():
+        own = {"x": 1, "y": 2}[AT_REST[upper]]
+        angles = channels_of(text, lower)
+        aside = np.abs(np.delete(angles, own, axis=1)).max(axis=1)
+        bent = np.abs(angles[:, own]) > STRAIGHT_DEG + 1.0
+        assert bent.any()
+        assert aside[bent].max() < 1e-3, (upper, aside[bent].max())
+        assert aside.max() < 0.75 * STRAIGHT_DEG, upper
+
+
+def test_a_deep_squat_is_flexion_alone_from_the_first_frame_on() -> None:
+    """In the model of OpenSim too: of a knee bent by 120 degrees rx is 120, rz and ry are 0."""
+    joints_m = moved([squatting(r_hip_y=30.0, l_hip_y=-30.0)] * 3)
+    _, motion, steps = steady(joints_m, np.arange(3) / 15)
+    lines = mot_text(motion, steps.step_s, "squat.mot").splitlines()
+    names, first = (line.split("\t") for line in lines[lines.index("endheader") + 1 :][:2])
+    read = dict(zip(names, map(float, first), strict=True))
+    for side in ("Left", "Right"):
+        assert read[f"{side}Leg_rx"] == pytest.approx(120.0, abs=0.01)
+        assert abs(read[f"{side}Leg_rz"]) + abs(read[f"{side}Leg_ry"]) < 0.01
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_twist_of_a_limb_that_is_straight_for_a_while_goes_over_slowly(seed: int) -> None:
+    """Joints 4 mm off; the left arm, bent ahead at first, is bent upwards after 1.6 s straight."""
+    bends = [*np.linspace(60.0, 0.0, 8), *[0.0] * 24, *np.linspace(0.0, 60.0, 8)]
+    joints_m = moved(
+        [
+            posed(l_shoulder_z=270.0, l_shoulder_y=0.0 if i < 20 else -90.0, l_elbow_x=bend)
+            for i, bend in enumerate(bends)
+        ]
+    )
+    joints_m += np.random.default_rng(seed).normal(0.0, 0.004, joints_m.shape)
+    twists = turned_axes(skeleton_of(joints_m), joints_m).twists
+    assert np.degrees(np.abs(np.diff(np.unwrap(twists)))).max() < 25.0
+    left_deg = np.degrees(np.unwrap(twists[list(HINGES).index("LeftArm")]))
+    assert left_deg[[0, -1]] == pytest.approx([0.0, -90.0], abs=8.0)
+
+
+def test_the_twist_moves_no_joint() -> None:
+    joints_m = random_joints(7)
+    skeleton = skeleton_of(joints_m)
+    assert joints_of(skeleton, motion_of(skeleton, joints_m)) == pytest.approx(joints_m, abs=1e-6)
+
+
+def test_a_straight_limb_keeps_the_twist_of_the_frame_before_and_at_first_that_of_rest() -> None:
+    bent, straight = moved([squatting(r_hip_y=30.0)])[:1], moved([posed()])
+    skeleton = skeleton_of(np.concatenate([bent, straight]))
+    before = turned_axes(skeleton, bent).twists[:, 0]
+    assert abs(np.degrees(before[list(HINGES).index("RightUpLeg")])) > 25.0
+    after = turned_axes(skeleton, straight, before).twists[:, 0]
+    assert after == pytest.approx(before, abs=1e-6)
+    assert turned_axes(skeleton, straight).twists[2:] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_of_a_first_frame_the_euler_angles_next_to_rest_are_taken() -> None:
+    turns = Rotation.from_euler("x", [[120.0], [100.0], [80.0]], degrees=True)
+    assert euler_zxy_deg([turns])[:, 0] == pytest.approx(
+        np.array([[0.0, 120.0, 0.0], [0.0, 100.0, 0.0], [0.0, 80.0, 0.0]]), abs=1e-6
+    )
