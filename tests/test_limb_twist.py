@@ -13,7 +13,7 @@ from animator.bvh import bvh_text, euler_zxy_deg, steady
 from animator.exchange.opensim_model import mot_text
 from animator.skeleton.bone_turns import motion_of, turned_axes
 from animator.skeleton.bones import BONES, Motion, joints_of, skeleton_of
-from animator.skeleton.limb_twist import HINGES, STRAIGHT_DEG
+from animator.skeleton.limb_twist import HINGES, STRAIGHT_DEG, limb_twists
 from common.body.body import POSE_INDEX, rest_pose
 from common.body.kinematics import joints, limb_frames
 
@@ -118,6 +118,25 @@ def test_the_twist_of_a_limb_that_is_straight_for_a_while_goes_over_slowly(seed:
     assert np.degrees(np.abs(np.diff(np.unwrap(twists)))).max() < 25.0
     left_deg = np.degrees(np.unwrap(twists[list(HINGES).index("LeftArm")]))
     assert left_deg[[0, -1]] == pytest.approx([0.0, -90.0], abs=8.0)
+
+
+def test_elbows_that_bend_ahead_with_arms_stretched_out_twist_nothing() -> None:
+    """As at rest: the left forearm turns about the vertical by -70 degrees, the right one by 70."""
+    aside = {"l_shoulder_z": 270.0, "r_shoulder_z": 90.0, "l_shoulder_y": 0.0, "r_shoulder_y": 0.0}
+    joints_m = moved([posed(**aside, l_elbow_x=70.0, r_elbow_x=70.0)] * 2)
+    skeleton, motion, steps = steady(joints_m, np.arange(2) / 15)
+    text = bvh_text(skeleton, motion, steps.step_s)
+    for lower, turn_deg in (("LeftForeArm", -70.0), ("RightForeArm", 70.0)):
+        assert channels_of(text, lower)[0] == pytest.approx([0.0, 0.0, turn_deg], abs=1e-3)
+        assert channels_of(text, lower.replace("Fore", ""))[0] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_between_twists_the_shorter_way_is_gone() -> None:
+    """By hand: from 170 to -170 degrees over four steps, 5 degrees each, through 180."""
+    bends = np.exp(1j * np.radians([[170.0, 0.0, 0.0, 0.0, -170.0]]))
+    bends[0, 1:4] = 0.0
+    twists_deg = np.degrees(limb_twists(bends)) % 360.0
+    assert twists_deg == pytest.approx(np.array([[170.0, 175.0, 180.0, 185.0, 190.0]]))
 
 
 def test_the_twist_moves_no_joint() -> None:
