@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from animator.even_steps import EvenSteps, even_steps
-from animator.inbetween import at, between
+from animator.inbetween import between
 from animator.skeleton.bone_turns import motion_of
 from animator.skeleton.bones import BONES, Joints, Motion, Skeleton, offset_m, skeleton_of
 from animator.skeleton.planted_feet import Planted, on_its_feet, planted
@@ -23,9 +23,9 @@ METRES_IN: Final = {"m": 1.0, "cm": 0.01}
 def steady(joints_m: Joints, time_s: Vector) -> tuple[Skeleton, Motion, EvenSteps]:
     """A run as a skeleton that moves in even steps, from its first pose to its last.
 
-    Frames that are missing or have no pose lie between their neighbours. Lengths are fixed
-    (`skeleton_of`); where the joints of a run keep theirs, the skeleton's joints are the run's.
-    A foot that stands does not slide (`planted`).
+    Frames that are missing, have no pose or stand between two rows lie between their neighbours.
+    Lengths are fixed (`skeleton_of`); where the joints of a run keep theirs, the skeleton's joints
+    are the run's. A foot that stands does not slide (`planted`).
 
     Args:
         joints_m: (n, 15 or 22, 3), NaN where there is no pose.
@@ -42,8 +42,7 @@ def steady(joints_m: Joints, time_s: Vector) -> tuple[Skeleton, Motion, EvenStep
     skeleton = skeleton_of(joints_m)
     posed = Planted(run.joints_m[steps.posed], run.held[steps.posed])
     motion = motion_of(skeleton, on_its_feet(skeleton, posed))
-    keys, first = np.unique(steps.places, return_index=True)
-    return skeleton, between(keys, at(motion, first), np.arange(steps.frames)), steps
+    return skeleton, between(steps.places, motion, np.arange(steps.frames)), steps
 
 
 def bvh_text(

@@ -4,6 +4,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import median_filter, uniform_filter1d
 
 from animator.skeleton.bones import Joints
 from common.body.body import Vector
@@ -11,7 +12,17 @@ from common.body.body import Vector
 MOST_FRAMES: Final = 1_000_000
 """Longer files are a mistake in the times: a gap that is filled has no end."""
 WHOLE: Final = 0.4
-"""Times of rows are so near to whole frames, in frames; another rate for a while is not."""
+"""Steps of rows that are so near to whole ones, in frames, make the rate."""
+TREMBLES: Final = 0.25
+"""Rows so near to whole frames, in frames, are taken for them: clocks tremble, and of many cameras
+say whole milliseconds."""
+AROUND: Final = 9
+"""So many steps say what rate a stretch has."""
+FASTEST: Final = 10
+"""Where the rate varies, the file's step is this percentile of those of all stretches: of the
+fastest ones no row is passed over."""
+USUAL: Final = 1.5
+"""Rows that are farther apart, in usual steps, have lost one between them."""
 
 
 class NoMotion(ValueError):
@@ -23,14 +34,22 @@ class EvenSteps(NamedTuple):
 
     posed: NDArray[np.intp]
     """(k,) rows of the run that have a pose."""
-    places: NDArray[np.int64]
-    """(k,) the file's frame of each; two rows can share one."""
+    places: Vector
+    """(k,) where each stands among the file's frames, increasing: a whole number at an even rate,
+    between frames where the rate varies."""
+    seen: NDArray[np.bool_]
+    """(frames,) whether a pose stands there, or on both sides without a gap between them."""
     step_s: float
 
     @property
     def frames(self) -> int:
         """Of the file, from the first pose to the last."""
-        return int(self.places[-1]) + 1
+        return len(self.seen)
+
+    def nearest(self) -> NDArray[np.intp]:
+        """(frames,) rows of the run whose pose is the nearest to each frame of the file."""
+        at = np.interp(np.arange(self.frames), self.places, np.arange(len(self.places)))
+        return np.asarray(self.posed[np.rint(at).astype(np.intp)])
 
 
 def even_steps(joints_m: Joints, time_s: Vector) -> EvenSteps:
@@ -41,35 +60,62 @@ def even_steps(joints_m: Joints, time_s: Vector) -> EvenSteps:
         time_s: (n,) of the rows.
 
     Raises:
-        NoMotion: When there are no two poses, or the times make no even steps.
+        NoMotion: When there are no two poses, or the times do not increase.
     """
     posed = np.flatnonzero(np.isfinite(joints_m).all(axis=(1, 2)))
     if len(posed) < 2:
         raise NoMotion(f"{len(posed)} frames have a pose, an animation needs two")
     if not (np.isfinite(time_s).all() and (np.diff(time_s) > 0).all()):
         raise NoMotion("the times of the frames do not increase")
-    step_s = _step_s(time_s)
-    places = np.rint((time_s[posed] - time_s[posed[0]]) / step_s).astype(np.int64)
+    step_s, places = _laid(time_s, posed)
     if places[-1] >= MOST_FRAMES:
-        raise NoMotion(f"it would have {places[-1] + 1} frames, at most {MOST_FRAMES} are written")
-    return EvenSteps(posed, places, step_s)
+        raise NoMotion(
+            f"it would have {places[-1] + 1:.0f} frames, at most {MOST_FRAMES} are written"
+        )
+    return EvenSteps(posed, places, _seen(time_s, posed, places), step_s)
 
 
-def _step_s(time_s: Vector) -> float:
+def _laid(time_s: Vector, posed: NDArray[np.intp]) -> tuple[float, Vector]:
+    """Seconds a frame, and where the poses stand among the file's frames."""
+    steps_s = np.diff(time_s)
+    apart = np.maximum(1.0, np.rint(steps_s / _usual_step_s(steps_s)))
+    frames = np.append(0.0, np.cumsum(apart))
+    step_s, first_s = np.polyfit(frames, time_s, 1)
+    if (np.abs(time_s - first_s - step_s * frames)[posed] <= TREMBLES * step_s).all():
+        return float(step_s), frames[posed] - frames[posed[0]]
+    step_s = np.percentile(uniform_filter1d(steps_s, AROUND, mode="nearest"), FASTEST)
+    return float(step_s), (time_s[posed] - time_s[posed[0]]) / step_s
+
+
+def _usual_step_s(steps_s: Vector) -> float:
     """Of a frame: the mean over all rows that are one or two apart.
 
     Their median alone drifts by frames: of times in whole milliseconds it is one itself.
     """
-    steps_s = np.diff(time_s)
     apart = steps_s / np.percentile(steps_s, 50, method="lower")
     frames = np.rint(apart)
     near = (np.abs(apart - frames) <= WHOLE) & (frames >= 1) & (frames <= 2)
     return float(steps_s[near].sum() / frames[near].sum())
 
 
+def _seen(time_s: Vector, posed: NDArray[np.intp], places: Vector) -> NDArray[np.bool_]:
+    """Of each frame of the file whether it lies on a pose, or between two that are neighbours."""
+    steps_s = np.diff(time_s)
+    usual_s = median_filter(steps_s, AROUND, mode="nearest")
+    together = (steps_s <= USUAL * usual_s)[posed[:-1]] & (np.diff(posed) == 1)
+    frames = np.arange(int(places[-1] + 1e-6) + 1)
+    before = np.searchsorted(places, frames + 1e-6) - 1
+    on_a_pose = np.abs(frames - places[before]) < 1e-6
+    return np.asarray(on_a_pose | np.append(together, False)[before])
+
+
 def with_gaps(joints_m: Joints, steps: EvenSteps) -> Joints:
     """The joints as the file's frames have them; NaN where nothing was seen."""
     rows = np.full((steps.frames, *joints_m.shape[1:]), np.nan)
-    keys, first = np.unique(steps.places, return_index=True)
-    rows[keys] = joints_m[steps.posed[first]]
+    keys = np.flatnonzero(steps.seen)
+    before = np.clip(np.searchsorted(steps.places, keys, "right") - 1, 0, len(steps.places) - 2)
+    ahead = (keys - steps.places[before]) / np.diff(steps.places)[before]
+    start, end = joints_m[steps.posed[before]], joints_m[steps.posed[before + 1]]
+    share = np.clip(ahead, 0.0, 1.0)[:, None, None]
+    rows[keys] = np.where(share == 1.0, end, start + share * (end - start))
     return rows

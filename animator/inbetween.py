@@ -37,11 +37,11 @@ def key_frames(clarity: Vector, apart: int = APART) -> Frames:
     return np.unique([posed[0], *clearest, posed[-1]])
 
 
-def between(keys: Frames, motion: Motion, frames: Frames) -> Motion:
+def between(keys: Frames | Vector, motion: Motion, frames: Frames) -> Motion:
     """The motion at `frames`: that of the key frames, the shorter way round between them.
 
     Args:
-        keys: (k,) increasing frames, at least one.
+        keys: (k,) increasing frames, at least one; a key may lie between two of them.
         motion: At the key frames: k rows.
         frames: Any; before the first key and after the last the pose is held.
     """
@@ -55,7 +55,7 @@ def at(motion: Motion, rows: Frames) -> Motion:
     return Motion(motion.root_m[rows], tuple(turns[rows] for turns in motion.turns))
 
 
-def _turned(keys: Frames, turns: Rotation, frames: Frames) -> Rotation:
+def _turned(keys: Frames | Vector, turns: Rotation, frames: Frames) -> Rotation:
     if len(keys) == 1:
         return turns[np.zeros(len(frames), np.int64)]
     return Slerp(keys, turns)(frames)

@@ -51,7 +51,7 @@ def clip_of(run: Path, clip: Path) -> Clip:
     joints_m, time_s = all_joints_m(poses), poses["time_s"]
     skeleton, motion, steps = steady(joints_m, time_s)
     bones_m = np.full_like(joints_m, np.nan)
-    bones_m[steps.posed] = joints_of(skeleton, motion)[steps.places]
+    bones_m[steps.posed] = joints_of(skeleton, motion)[np.rint(steps.places).astype(int)]
     files = (joints_m, planted(joints_m, time_s).joints_m, bones_m)
     return Clip(true_m, names, time_s, dict(zip(KINDS, files, strict=True)))
 

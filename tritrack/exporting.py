@@ -112,7 +112,7 @@ class _Animated(NamedTuple):
 
 def _animated(run: PastRun) -> _Animated:
     from animator.bvh import steady
-    from animator.even_steps import NoMotion
+    from animator.even_steps import NoMotion, with_gaps
     from animator.skeleton.bones import joints_of
 
     joints_m = run.poses["joints_m"]
@@ -120,12 +120,12 @@ def _animated(run: PastRun) -> _Animated:
         skeleton, motion, steps = steady(all_joints_m(run.poses), run.poses["time_s"])
     except NoMotion as error:
         raise _motionless(run, error) from error
-    made_m = joints_of(skeleton, motion)[steps.places, : len(JOINT_NAMES)]
-    off_mm = 1e3 * np.linalg.norm(made_m - joints_m[steps.posed], axis=2)
+    off_m = joints_of(skeleton, motion)[:, : len(JOINT_NAMES)] - with_gaps(joints_m, steps)
+    off_mm = 1e3 * np.linalg.norm(off_m[steps.seen], axis=2)
     facts = {
         "frames": steps.frames,
         "first_frame": int(run.poses["frame"][steps.posed[0]]),
-        "filled": steps.frames - len(np.unique(steps.places)),
+        "filled": int((~steps.seen).sum()),
         "off_mm": {
             "median": round(float(np.median(off_mm)), 2),
             "p95": round(float(np.percentile(off_mm, 95)), 2),
@@ -197,7 +197,7 @@ def _markers(run: PastRun) -> tuple[Any, float, dict[str, Any]]:
     facts = {
         "frames": steps.frames,
         "first_frame": int(run.poses["frame"][steps.posed[0]]),
-        "empty": steps.frames - len(np.unique(steps.places)),
+        "empty": int((~steps.seen).sum()),
     }
     return with_gaps(planted(joints_m, time_s).joints_m, steps), steps.step_s, facts
 

@@ -71,15 +71,14 @@ def _animate(folder: Path, arrays: dict[str, Any]) -> list[str]:
         skeleton, motion, steps = steady(all_joints_m(arrays), arrays["time_s"])
     except NoMotion as error:
         return [f"there is no animation: {error}"]
-    clarity = np.full(steps.frames, np.nan)
-    clarity[steps.places] = arrays["confidence"][steps.posed].mean(axis=1)
+    rows = steps.nearest()
+    clarity = np.where(steps.seen, arrays["confidence"][rows].mean(axis=1), np.nan)
     keys = key_frames(clarity)
     drawn = between(keys, at(motion, keys), np.arange(steps.frames))
     off_m = np.linalg.norm(joints_of(skeleton, drawn) - joints_of(skeleton, motion), axis=2)
     off_m = off_m[:, : len(JOINT_NAMES)]
-    frame_of = dict(zip(steps.places.tolist(), arrays["frame"][steps.posed].tolist(), strict=True))
     told = {
-        "frames": [frame_of[key] for key in keys.tolist()],
+        "frames": arrays["frame"][rows[keys]].tolist(),
         "of": steps.frames,
         "keyframes.bvh": "interpolated between these frames; body.bvh has every frame",
         "interpolated": steps.frames - len(keys),
