@@ -14,6 +14,7 @@ from common.body.body import JOINT_NAMES, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body
+from tritrack.commands.clip_commands import line_of_gaps
 from tritrack.exporting import OWN_NAMES, ExportError, Format, export_run
 from tritrack.store import past_run
 from tritrack.store.past_run import PastRunError, open_run
@@ -76,6 +77,29 @@ def test_an_animation_is_written_where_it_is_asked_for(run: Path, tmp_path: Path
     assert facts["off_mm"]["p95"] < 1.0
     assert (tmp_path / "new" / "dance.bvh").read_text().startswith("HIERARCHY\nROOT Hips\n")
     assert open_run(run).poses["frame"].tolist() == [0, 1, 2, 3, 4, 5]
+
+
+@pytest.mark.parametrize(
+    ("to", "said"),
+    [
+        ("bvh", "; 2 without a pose lie between their neighbours"),
+        (
+            "trc",
+            "; 2 without a pose are empty, where OpenSim's inverse kinematics stops:"
+            " name times between them, or use mot",
+        ),
+        ("c3d", "; 2 without a pose are empty"),
+        ("csv", ""),
+    ],
+)
+def test_what_became_of_a_gap_is_said(run: Path, to: Format, said: str) -> None:
+    if to in LIBRARIES:
+        pytest.importorskip(LIBRARIES[to][0], reason=f"pip install {LIBRARIES[to][1]}")
+    assert line_of_gaps(export_run(run, to, None), to) == ""
+    arrays = dict(open_run(run).poses)
+    arrays["joints_m"][[3, 4]] = np.nan
+    write(run, arrays)
+    assert line_of_gaps(export_run(run, to, None), to) == said
 
 
 @pytest.mark.parametrize("to", ["bvh", "gltf", "usd", "trc", "mot", "c3d", "csv"])

@@ -1,6 +1,5 @@
 """TRC and C3D: the joints of a run as markers, for movement laboratories."""
 
-import math
 import tempfile
 from pathlib import Path
 from typing import Any, Final
@@ -32,8 +31,8 @@ def trc_text(joints_m: Joints, step_s: float, name: str) -> str:
     """A TRC file: the joints as markers of the same names, mm, OpenSim's axes.
 
     Args:
-        joints_m: (n, 15, 3) or (n, 22, 3) in even steps; NaN, an empty cell in the file, where
-            nothing was seen.
+        joints_m: (n, 15, 3) or (n, 22, 3) in even steps; NaN, "nan" in the file, where
+            nothing was seen: OpenSim writes it so, and refuses rows that end in an empty cell.
         step_s: Seconds a frame.
         name: Of the file, which its first line repeats.
     """
@@ -49,14 +48,10 @@ def trc_text(joints_m: Joints, step_s: float, name: str) -> str:
     ]
     places_mm = (MM_IN_M * forward_x(joints_m)).reshape(frames, -1)
     rows = (
-        "\t".join([str(i + 1), f"{i * step_s:.6f}", *map(_cell, row.tolist())])
+        "\t".join([str(i + 1), f"{i * step_s:.6f}", *(f"{value:.3f}" for value in row.tolist())])
         for i, row in enumerate(places_mm)
     )
     return "\n".join([*head, *rows, ""])
-
-
-def _cell(value: float) -> str:
-    return "" if math.isnan(value) else f"{value:.3f}"
 
 
 def c3d_bytes(joints_m: Joints, step_s: float) -> bytes:

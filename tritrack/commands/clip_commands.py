@@ -183,7 +183,19 @@ def export(
     off = facts.get("off_mm")
     told = f"; fixed bones: {off['median']} mm off, 95 % within {off['p95']} mm" if off else ""
     line = f"{counted(facts['frames'], 'frame')} written to {facts['file']}{told}"
-    tell(facts, json_wanted, line)
+    tell(facts, json_wanted, line + line_of_gaps(facts, to))
+
+
+def line_of_gaps(facts: Mapping[str, Any], to: Format) -> str:
+    """What became of an export's frames that have no pose."""
+    if facts.get("filled"):
+        return f"; {facts['filled']} without a pose lie between their neighbours"
+    if not facts.get("empty"):
+        return ""
+    line = f"; {facts['empty']} without a pose are empty"
+    if to == "trc":
+        line += ", where OpenSim's inverse kinematics stops: name times between them, or use mot"
+    return line
 
 
 def replay(
