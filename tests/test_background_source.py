@@ -18,6 +18,7 @@ from common.video.clips import open_clip
 from common.video.decoding import ALL, Decoded, Decoder
 from viewer.background.background import Background
 from viewer.room.background_source import (
+    background_of_film,
     keep,
     opening_of_run,
     opening_of_view,
@@ -63,6 +64,9 @@ def test_somebody_in_the_opening_frames_is_noticed(
     _, odd, _ = opening_of_view(view_of(folder, decoder), SilhouetteSettings(), decoder)
     assert "cam1.avi does not open with an empty room" in odd
     assert "camera_1.background" in odd
+    view = view_of(folder, decoder)
+    of_a_film = background_of_film(view, SilhouetteSettings(), decoder).odd
+    assert of_a_film == odd.replace("camera_1.background", "--background")
 
 
 def test_who_stays_all_through_is_known_from_the_first_frame(

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from common.config import config_file
 from common.config.config_file import load
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
@@ -173,11 +174,22 @@ def test_a_clip_folder_has_our_own_landmarks(tmp_path: Path) -> None:
 
 
 def test_a_video_is_told_from_a_settings_file(tmp_path: Path) -> None:
-    (tmp_path / "dance.avi").write_bytes(b"RIFF\xfd\xff")
-    with pytest.raises(
-        SettingsError, match=r"dance\.avi is no settings file: name a TOML file, or"
-    ):
-        load(tmp_path / "dance.avi")
+    for content in (b"RIFF\xfd\xff", b"YUV4MPEG2 W2 H2\nFRAME\n\x00\x01"):
+        (tmp_path / "dance.avi").write_bytes(content)
+        with pytest.raises(
+            SettingsError,
+            match=r"dance\.avi is no settings file: name a TOML file, or the folder that holds "
+            r"cam1\.\* and cam2\.\*; of one video: tritrack single .*/dance\.avi$",
+        ):
+            load(tmp_path / "dance.avi")
+
+
+def test_of_a_long_video_only_the_beginning_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(config_file, "MOST_BYTES", 8)
+    (tmp_path / "long.toml").write_text("fps = 15\n" + "?" * 1000)
+    assert load(tmp_path / "long.toml").fps == 15
 
 
 def test_a_variable_that_is_not_set_is_named(

@@ -15,10 +15,11 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body
 from tritrack.commands.clip_commands import line_of_gaps
-from tritrack.exporting import OWN_NAMES, ExportError, Format, export_run
+from tritrack.exporting import ExportError, export_run
 from tritrack.store import past_run
 from tritrack.store.past_run import PastRunError, open_run
 from tritrack.store.pose_arrays import poses
+from tritrack.store.run_exports import OWN_NAMES, Format
 
 LIBRARIES: dict[Format, tuple[str, str, str]] = {
     "usd": ("pxr", "usd-core", "usd"),
@@ -243,6 +244,28 @@ def test_arrays_that_are_no_runs_are_named(run: Path, change: Any, said: str) ->
     write(run, arrays)
     with pytest.raises(PastRunError, match=said):
         open_run(run)
+
+
+@pytest.mark.parametrize("theirs", ["9.9.9", "1.0", "0.3.0rc1"])
+def test_a_run_of_a_newer_version_is_refused_by_both_versions(
+    run: Path, theirs: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(past_run, "version", lambda _: "0.2.4")
+    write(run, dict(open_run(run).poses), json.dumps({"versions": {"tritrack": theirs}}))
+    with pytest.raises(
+        PastRunError, match=rf"run was written by tritrack {theirs}, and this is 0\.2\.4: .*upgrade"
+    ):
+        export_run(run, "bvh", None)
+    assert not (run / "body.bvh").exists()
+
+
+@pytest.mark.parametrize("theirs", ["0.2.9", "0.2.0", "0.1", "unknown", None])
+def test_runs_of_this_minor_version_of_older_ones_and_of_none_are_read(
+    run: Path, theirs: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(past_run, "version", lambda _: "0.2.4")
+    write(run, dict(open_run(run).poses), json.dumps({"versions": {"tritrack": theirs}}))
+    assert export_run(run, "csv", None)["frames"] == 6
 
 
 @pytest.mark.parametrize("kept", [0, 3, 200])

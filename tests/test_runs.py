@@ -16,6 +16,7 @@ from common.config.settings import Settings
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.joint_arrays import on_disk
 from tritrack.store.pose_arrays import poses
+from tritrack.store.run_exports import EXPORTS
 from tritrack.store.runs import RunError, unwritable, write_postures, write_run
 from tritrack.terminal import json_text
 
@@ -52,6 +53,17 @@ def run(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def arrays(run: Path) -> dict[str, np.ndarray]:
     with np.load(run / "poses.npz", allow_pickle=False) as file:
         return {name: file[name] for name in file.files}
+
+
+def test_a_run_that_is_written_anew_removes_what_was_exported_of_the_one_before(
+    tmp_path: Path,
+) -> None:
+    """Of other poses; what the user put beside them stays."""
+    for name in (*EXPORTS, "dance.glb", "notes.toml"):
+        (tmp_path / name).write_bytes(b"of other poses")
+    write_run(tmp_path, [body(0), body(1)], Settings(), {})
+    left = {path.name for path in tmp_path.iterdir()}
+    assert left == {"poses.npz", "summary.json", "dance.glb", "notes.toml"}
 
 
 def body(frame: int, **more: object) -> Body:

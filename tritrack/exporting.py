@@ -14,19 +14,9 @@ from common.body.body import ANGLE_NAMES, JOINT_NAMES
 from common.body.extremities import EXTREMITY_NAMES
 from tritrack.store.joint_arrays import all_joints_m
 from tritrack.store.past_run import PastRun, open_run
+from tritrack.store.run_exports import OWN_NAMES, Format
 
-Format = Literal["bvh", "gltf", "usd", "trc", "mot", "c3d", "csv"]
 Scale = Literal["m", "cm"]
-OWN_NAMES: Final[dict[Format, str]] = {
-    "bvh": "body.bvh",
-    "gltf": "body.glb",
-    "usd": "body.usdc",
-    "trc": "markers.trc",
-    "mot": "body.mot",
-    "c3d": "markers.c3d",
-    "csv": "poses.csv",
-}
-"""The file in the run folder where no other is asked for."""
 ENDINGS: Final[dict[Format, tuple[str, ...]]] = {
     **{to: (Path(name).suffix,) for to, name in OWN_NAMES.items()},
     "usd": (".usdc", ".usd", ".usda"),

@@ -2,6 +2,7 @@
 
 import os
 from pathlib import Path
+from typing import Final
 
 import msgspec
 
@@ -9,6 +10,9 @@ from common.config.explained import explained
 from common.config.part_settings import CameraSettings
 from common.config.settings import LANDMARK_SOURCES, NETWORK, Settings
 from common.config.settings_error import SettingsError
+
+MOST_BYTES: Final = 1 << 20
+"""No settings are longer: what is, is a video, which is not read into memory."""
 
 
 def load(path: Path) -> Settings:
@@ -25,16 +29,18 @@ def load(path: Path) -> Settings:
     if not path.exists():
         raise SettingsError(f"there is no clip folder and no settings file {path}: check the path")
     try:
-        text = path.read_bytes()
+        with path.open("rb") as file:
+            text = file.read(MOST_BYTES)
     except OSError as error:
         raise SettingsError(f"cannot read the settings {path}: {error.strerror}") from error
     try:
         settings = msgspec.toml.decode(text, type=Settings)
-    except UnicodeDecodeError as error:
-        raise SettingsError(
-            f"{path} is no settings file: name a TOML file, or a clip folder"
-        ) from error
-    except msgspec.DecodeError as error:
+    except (UnicodeDecodeError, msgspec.DecodeError) as error:
+        if isinstance(error, UnicodeDecodeError) or b"\0" in text:
+            raise SettingsError(
+                f"{path} is no settings file: name a TOML file, or the folder that holds cam1.* "
+                f"and cam2.*; of one video: tritrack single {path}"
+            ) from error
         raise SettingsError(f"{path}: {explained(error, Settings)}") from error
     return with_full_paths(settings, path)
 

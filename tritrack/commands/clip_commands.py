@@ -24,8 +24,9 @@ from tritrack.commands.options import (
     writable,
     writable_file,
 )
-from tritrack.exporting import OWN_NAMES, Format, Scale, export_run
+from tritrack.exporting import Scale, export_run
 from tritrack.faults import refuse_unfollowed
+from tritrack.store.run_exports import OWN_NAMES, Format
 from tritrack.terminal import counted, json_text
 
 VIEWERS: Final[dict[str, tuple[ViewerNumber, ...]]] = {"12": (1, 2), "1": (1,), "2": (2,)}

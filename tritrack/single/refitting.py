@@ -17,7 +17,9 @@ from animator.film import FilmError
 from animator.retouching.fitting import FitError
 from common.config.settings import Settings
 from common.notes.notes import Notes
+from tritrack.single.animation_files import NAMES
 from tritrack.single.single import PASSES, UNUSABLE, Job, follow
+from tritrack.store.run_exports import EXPORTS
 from tritrack.store.runs import RunError
 from tritrack.terminal import Tell
 from tritrack.unfinished.resuming import Begun
@@ -47,6 +49,8 @@ def refit(
 ) -> None:
     """Fit a run's video with these notes; its files give way when all the new ones are written.
 
+    What was exported of the fit before is removed, and so is what the new one has none of.
+
     Args:
         folder: Of the run that `tritrack single` wrote.
         settings: Its own; camera 1 is its video.
@@ -61,8 +65,11 @@ def refit(
         with tempfile.TemporaryDirectory(prefix=".again-", dir=folder) as scratch:
             new = Path(scratch) / folder.name
             _fitted_apart(new, settings, notes, tell, stop)
-            for file in sorted(new.iterdir()):
-                os.replace(file, folder / file.name)
+            made = [file.name for file in sorted(new.iterdir())]
+            for name in made:
+                os.replace(new / name, folder / name)
+            for name in {*EXPORTS, *NAMES}.difference(made):
+                (folder / name).unlink(missing_ok=True)
     except OSError as error:
         raise FitError(
             f"cannot write {error.filename or folder}: {error.strerror}; see that you may write "

@@ -1,6 +1,8 @@
 """A run that was written before: its poses and its summary, checked while they are read."""
 
 import json
+import re
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -68,7 +70,7 @@ def open_run(folder: Path) -> PastRun:
     """Read a run folder; of a run that was cut short, what it wrote as it went.
 
     Raises:
-        PastRunError: When it is none, or was damaged.
+        PastRunError: When it is none, was damaged, or a newer version wrote it.
     """
     if not folder.is_dir():
         raise PastRunError(f"there is no run folder {folder}: name one that `tritrack track` wrote")
@@ -91,8 +93,28 @@ def open_run(folder: Path) -> PastRun:
         ) from error
     except ValueError as error:
         raise PastRunError(f"{folder} was damaged ({error}): track the clip again") from error
+    summary = summary if isinstance(summary, dict) else {}
+    _refuse_a_newer_version(folder, summary)
     _refuse_other_arrays(path, poses)
-    return PastRun(folder, poses, summary if isinstance(summary, dict) else {})
+    return PastRun(folder, poses, summary)
+
+
+def _refuse_a_newer_version(folder: Path, summary: dict[str, Any]) -> None:
+    """What a later minor version writes may mean something else; a patch changes no meaning."""
+    told = summary.get("versions")
+    theirs = str(told.get("tritrack")) if isinstance(told, dict) else ""
+    ours = version("tritrack")
+    if _minor(theirs) > _minor(ours):
+        raise PastRunError(
+            f"{folder} was written by tritrack {theirs}, and this is {ours}: "
+            "read it with that version (pip install --upgrade tritrack)"
+        )
+
+
+def _minor(told: str) -> tuple[int, ...]:
+    """The first two numbers of a version, which come before all others where it is none."""
+    found = re.match(r"(\d+)\.(\d+)", told)
+    return tuple(map(int, found.groups())) if found else ()
 
 
 def _how_to_track(folder: Path) -> str:

@@ -17,6 +17,7 @@ from common.bus.messages import Body, Posture, Status
 from common.config.settings import Settings
 from tritrack.store.joint_arrays import on_disk
 from tritrack.store.pose_arrays import mapped_poses
+from tritrack.store.run_exports import remove_exports
 from tritrack.terminal import json_text
 
 VERSIONS_OF: Final = ("tritrack", "numpy", "opencv-python-headless", "numba", "eclipse-zenoh")
@@ -42,6 +43,8 @@ def write_run(
 ) -> None:
     """Write `poses.npz` and `summary.json`, each whole or not at all.
 
+    What was exported of a run that stood there before is removed: it is of other poses.
+
     Args:
         folder: Made where it is not there.
         bodies: In the order of time; an instant that camera 1 missed (frame -1) gets no row.
@@ -61,6 +64,7 @@ def write_run(
         ):
             np.savez(file, allow_pickle=False, **arrays)
         _write_json(folder / "summary.json", summary_of(rows, settings, facts))
+        remove_exports(folder)
     except OSError as error:
         raise unwritable(folder, error) from error
 

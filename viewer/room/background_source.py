@@ -40,6 +40,9 @@ LOOKED_AT = 1500
 PEOPLE = 20
 """How many of these frames are searched for people, where the opening is in doubt."""
 
+FILM_OPTION = "--background"
+"""Where the one command that follows films, `tritrack single`, is given an empty picture."""
+
 LEFT_HIDDEN = 0.01
 """Who stays on a spot hides 2 to 20 % of the picture all through a clip, who roams up to 0.4 %."""
 
@@ -123,12 +126,17 @@ def of_clip(
     best = best_of(groups, judges, looks, settings)
     if best is opened:
         return Opening(best, "", None)
-    odd = (
-        f"{view.source} does not open with an empty room: the background is estimated from the "
-        f"clip (name an empty picture with camera_{view.number}.background)"
-    )
+    odd = _estimated(view, f"camera_{view.number}.background")
     first = looks[0].landmarks if looks[0].is_somebody and are_sure(looks) else None
     return Opening(best, odd, first)
+
+
+def _estimated(view: View, setting: str) -> str:
+    """What is odd about a background that no empty picture shows, and where to name one."""
+    return (
+        f"{view.source} does not open with an empty room: the background is estimated from the "
+        f"clip (name an empty picture with {setting})"
+    )
 
 
 def opening_of_run(
@@ -204,7 +212,7 @@ def background_of_film(view: View, settings: SilhouetteSettings, decoder: Reader
         busy = learn_uncovered(sample)
         background = busy if busy.uncertain.mean() < LEFT_HIDDEN else background
     patches = patches_of(background, sample, _stride(view), view.fps)
-    return FilmBackground(background, patches, odd)
+    return FilmBackground(background, patches, odd and _estimated(view, FILM_OPTION))
 
 
 def _now(view: View, due: int, decoder: Reader) -> list[Image]:
