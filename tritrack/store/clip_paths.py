@@ -5,6 +5,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+from common.video.clip_sources import COMPANIONS
 from tritrack.terminal import warn
 
 
@@ -43,5 +44,9 @@ def without_plain_files(paths: Sequence[Path], console: Console) -> list[Path]:
         else:
             kept.append(path)
     if not kept:
-        raise ClipsFailed("no clip is left: name a folder with cam1.*, cam2.* or a settings file")
+        videos = [path for path in paths if path.suffix.lower() not in COMPANIONS]
+        of_one = f"; of one video: tritrack single {videos[0]}" if videos else ""
+        raise ClipsFailed(
+            f"no clip is left: name a folder with cam1.*, cam2.* or a settings file{of_one}"
+        )
     return kept
