@@ -41,7 +41,7 @@ def steady(joints_m: Joints, time_s: Vector) -> tuple[Skeleton, Motion, EvenStep
     run = planted(joints_m, time_s)
     skeleton = skeleton_of(joints_m)
     posed = Planted(run.joints_m[steps.posed], run.held[steps.posed])
-    motion = motion_of(skeleton, on_its_feet(skeleton, posed))
+    motion = motion_of(skeleton, on_its_feet(skeleton, posed), time_s[steps.posed])
     return skeleton, between(steps.places, motion, np.arange(steps.frames)), steps
 
 

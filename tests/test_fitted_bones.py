@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_foot_contact import walking
+from test_foot_contact import TIMES, walking
 
 from animator.skeleton.bone_turns import motion_of
 from animator.skeleton.bones import joints_of, skeleton_of
@@ -22,7 +22,7 @@ def apart_m(joints_m: np.ndarray, start: str, end: str) -> np.ndarray:
 def test_joints_that_fit_stay_where_they_are() -> None:
     steps = walking()
     skeleton = skeleton_of(steps)
-    rigid = joints_of(skeleton, motion_of(skeleton, steps))
+    rigid = joints_of(skeleton, motion_of(skeleton, steps, TIMES))
     rigid[:, BONELESS] = steps[:, BONELESS]
     assert fitted(skeleton, rigid, EVEN) == pytest.approx(rigid, abs=1e-6)
 
@@ -34,9 +34,9 @@ def test_bones_keep_their_lengths_and_lie_nearer_than_aimed_ones() -> None:
     near = fitted(skeleton, noisy, EVEN)
     for bone, tip in zip(skeleton.bones, skeleton.tips_m, strict=True):
         assert apart_m(near, bone.starts, bone.ends) == pytest.approx(np.linalg.norm(tip), abs=1e-4)
-    made = joints_of(skeleton, motion_of(skeleton, near))
+    made = joints_of(skeleton, motion_of(skeleton, near, TIMES))
     assert made[:, :15] == pytest.approx(near[:, :15], abs=2e-4)
-    aimed = joints_of(skeleton, motion_of(skeleton, noisy))
+    aimed = joints_of(skeleton, motion_of(skeleton, noisy, TIMES))
     off, aimed_off = (np.linalg.norm((each - noisy)[:, :15], axis=2) for each in (made, aimed))
     assert np.sqrt((off**2).mean()) < 0.8 * np.sqrt((aimed_off**2).mean())
     assert np.percentile(off, 95) < 0.8 * np.percentile(aimed_off, 95)

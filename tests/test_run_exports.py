@@ -104,22 +104,27 @@ def with_gap(where: str) -> np.ndarray:
     return joints_m
 
 
-def written(folder: Path, where: str, to: Format) -> Path:
-    """The file of a run with such a gap."""
+def write(folder: Path, joints_m: np.ndarray, time_s: np.ndarray) -> None:
+    """A run folder of these rows."""
     bodies = [
         Body(
             frame=frame,
-            captured_s=frame / 15,
+            captured_s=float(time_s[frame]),
             clock_s=0.0,
             status="tracking" if np.isfinite(row).all() else "lost",
             views="both",
             joints_m=tuple(map(tuple, row)) if np.isfinite(row).all() else (),
         )
-        for frame, row in enumerate(with_gap(where))
+        for frame, row in enumerate(joints_m)
     ]
-    (folder / where).mkdir(exist_ok=True)
-    np.savez(folder / where / "poses.npz", **poses(bodies))
-    (folder / where / "summary.json").write_text("{}")
+    folder.mkdir(exist_ok=True)
+    np.savez(folder / "poses.npz", **poses(bodies))
+    (folder / "summary.json").write_text("{}")
+
+
+def written(folder: Path, where: str, to: Format) -> Path:
+    """The file of a run with such a gap."""
+    write(folder / where, with_gap(where), np.arange(40) / 15)
     return Path(export_run(folder / where, to, None)["file"])
 
 
@@ -154,6 +159,22 @@ def test_numpy_reads_markers_row_by_row_though_some_are_lost(tmp_path: Path, whe
     read = np.genfromtxt(path, delimiter="\t", skip_header=6)[:, 2:].reshape(-1, 15, 3)
     assert all(line.split("\t")[-1] for line in path.read_text().splitlines()[6:])
     assert read == pytest.approx(1e3 * forward_x(in_file(where)), abs=1e-3, nan_ok=True)
+
+
+def test_of_a_phones_varying_rate_no_row_is_empty_and_every_one_has_its_time(
+    tmp_path: Path,
+) -> None:
+    """30, then 24 frames a second; the body goes 1 m/s along x, which is -z of OpenSim."""
+    time_s = np.concatenate([np.arange(60) / 30, 2.0 + np.arange(72) / 24])
+    joints_m = np.repeat(random_joints(3, 2)[:1], len(time_s), axis=0)
+    joints_m[..., 0] += time_s[:, None]
+    write(tmp_path / "run", joints_m, time_s)
+    facts = export_run(tmp_path / "run", "trc", None)
+    assert (facts["frames"], facts["empty"]) == (149, 0)
+    read = np.genfromtxt(facts["file"], delimiter="\t", skip_header=6)
+    assert np.diff(read[:, 1]) == pytest.approx(1 / 30, abs=2e-6)
+    assert (read[0, 4] - read[:, 4]) / 1e3 == pytest.approx(read[:, 1], abs=2e-6)
+    assert export_run(tmp_path / "run", "bvh", None)["off_mm"]["p95"] < 0.01
 
 
 @pytest.mark.parametrize("where", GAPS)

@@ -17,7 +17,7 @@ from animator.skeleton.bones import (
     offset_m,
     spine_axes,
 )
-from animator.skeleton.limb_twist import AXES, HINGES, bends_of, limb_twists, twist_axes
+from animator.skeleton.limb_twist import AXES, HINGES, Before, bends_of, limb_twists, twist_axes
 from animator.turns import arc_axes, axes_of
 from common.body.body import Vector
 
@@ -76,14 +76,16 @@ class Turned(NamedTuple):
     """(4, n) of the upper limbs, radians, in the order of HINGES."""
 
 
-def motion_of(skeleton: Skeleton, joints_m: Joints) -> Motion:
-    """The turns that lead a skeleton through joints, without NaN."""
-    axes = turned_axes(skeleton, joints_m).axes
+def motion_of(skeleton: Skeleton, joints_m: Joints, time_s: Vector) -> Motion:
+    """The turns that lead a skeleton through joints, without NaN, at (n,) increasing times."""
+    axes = turned_axes(skeleton, joints_m, time_s).axes
     turns = tuple(Rotation.from_matrix(own, assume_valid=True) for own in axes)
     return Motion(joints_m[:, AT["pelvis"]], turns)
 
 
-def turned_axes(skeleton: Skeleton, joints_m: Joints, before: Vector | None = None) -> Turned:
+def turned_axes(
+    skeleton: Skeleton, joints_m: Joints, time_s: Vector, before: Before | None = None
+) -> Turned:
     """How a skeleton's bones are turned where its joints are these.
 
     Every bone is aimed at its landmark from where the bones before it have come to, so that a
@@ -93,6 +95,7 @@ def turned_axes(skeleton: Skeleton, joints_m: Joints, before: Vector | None = No
     Args:
         skeleton: A body.
         joints_m: Without NaN.
+        time_s: (n,) when they were taken.
         before: (4,) twists of the frame before the first; None: there is none.
     """
     local = np.empty((len(skeleton.bones), len(joints_m), 3, 3))
@@ -111,7 +114,8 @@ def turned_axes(skeleton: Skeleton, joints_m: Joints, before: Vector | None = No
         if uppers:
             middles_m = origins_m[uppers] + _applied(world[uppers], skeleton.tips_m[uppers, None])
             bends = bends_of(AXES[hinges], _aims(joints_m, lower_ends, middles_m, world[uppers]))
-            twists[hinges] = limb_twists(bends, None if before is None else before[hinges])
+            held = None if before is None else before._replace(twists=before.twists[hinges])
+            twists[hinges] = limb_twists(bends, time_s, held)
             twist = twist_axes(AXES[hinges], twists[hinges])
             local[uppers], world[uppers] = local[uppers] @ twist, world[uppers] @ twist
     return Turned(local, twists)

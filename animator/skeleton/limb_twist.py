@@ -5,13 +5,22 @@ from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import solveh_banded
 
 from common.body.body import Vector
 
-STRAIGHT_DEG: Final = 16.0
+STRAIGHT_DEG: Final = 20.0
 """A limb that is bent less does not show by itself how it is twisted: joints that are 1 cm off
 turn its plane by 5 degrees and more."""
 SHOWN: Final = math.sin(math.radians(STRAIGHT_DEG))
+CALM_S: Final = 0.15
+"""About so long before and after counts what a limb shows that is half as bent."""
+REST: Final = 1e-3
+"""What speaks for the twist at rest, beside 1 for that of a limb that is bent by 14 degrees."""
+EXACT: Final = 1e-9
+"""What is left of doubt where a limb is bent by STRAIGHT_DEG or more."""
+SHORTEST_S: Final = 1e-3
+"""From one frame to the next, by the least that clocks of cameras tell."""
 
 
 class Hinge(NamedTuple):
@@ -39,39 +48,54 @@ HINGES: Final = {
 AXES: Final = np.stack([hinge.axes for hinge in HINGES.values()])
 
 
-def limb_twists(bends: NDArray[np.complex128], before: Vector | None = None) -> Vector:
+class Before(NamedTuple):
+    """How limbs were twisted last."""
+
+    twists: Vector
+    """(limbs,) radians."""
+    time_s: float
+
+
+def limb_twists(
+    bends: NDArray[np.complex128], time_s: Vector, before: Before | None = None
+) -> Vector:
     """About its own axis, how far each upper limb is turned, radians, without jumps.
 
-    A limb that is bent shows it: by STRAIGHT_DEG and more its hinge's axis is met exactly. The
-    straighter it is the more the frames around it count that are bent, between which the twist goes
-    the shorter way. Its lower part is then beside the hinge's plane, by less than it is bent.
+    A limb that is bent shows it: by STRAIGHT_DEG and more its hinge's axis is met exactly. Of one
+    that is straighter the twist is that which changes least over time, by least squares, in which
+    every frame weighs what it shows; its lower part is then beside the hinge's plane, by less than
+    it is bent. Twists are added up as directions, so that the shorter way is gone.
 
     Args:
         bends: (limbs, n) of each frame, `bends_of`.
-        before: (limbs,) twists of the frame before the first; None: there is none.
+        time_s: (n,) when they were taken, increasing.
+        before: The frame before the first; None: there is none.
 
     Returns:
-        (limbs, n); 0, as at rest, of a limb that is never bent.
+        (limbs, n)
     """
-    held = np.stack(
-        [_held(own, None if before is None else before[i]) for i, own in enumerate(bends)]
-    )
+    earlier = np.zeros(len(bends)) if before is None else np.exp(1j * before.twists)
+    bends = np.column_stack([earlier, bends])
+    time_s = np.append(-np.inf if before is None else before.time_s, time_s)
     share = np.minimum(1.0, np.abs(bends) / SHOWN) ** 2
-    mixed = share * np.exp(1j * np.angle(bends)) + (1.0 - share) * np.exp(1j * held)
-    twists: Vector = np.angle(mixed)
-    return twists
+    weights = share / (1.0 - share + EXACT)
+    shown = weights * np.exp(1j * np.angle(bends)) + REST
+    stiff = (CALM_S / np.maximum(np.diff(time_s), SHORTEST_S)) ** 2
+    twists = [np.angle(_least_changing(*each, stiff)) for each in zip(weights, shown, strict=True)]
+    return np.stack(twists)[:, 1:]
 
 
-def _held(bends: NDArray[np.complex128], before: float | None) -> Vector:
-    """What the bent frames around each frame tell of it, (n,)."""
-    rows = np.flatnonzero(np.abs(bends) >= SHOWN)
-    shown = np.angle(bends[rows])
-    if before is not None:
-        rows, shown = np.append(-1, rows), np.append(before, shown)
-    if not len(rows):
-        return np.zeros(len(bends))
-    held: Vector = np.interp(np.arange(len(bends)), rows, np.unwrap(shown))
-    return held
+def _least_changing(
+    weights: Vector, shown: NDArray[np.complex128], stiff: Vector
+) -> NDArray[np.complex128]:
+    """(n,) numbers u with the least sum of weights |u - shown / weights|^2 and of stiff |du|^2."""
+    bands = np.zeros((2, len(weights)))
+    bands[1] = weights + REST
+    bands[1, :-1] += stiff
+    bands[1, 1:] += stiff
+    bands[0, 1:] = -stiff
+    found: NDArray[np.complex128] = solveh_banded(bands, shown)
+    return found
 
 
 def bends_of(axes: NDArray[np.float64], lower: NDArray[np.float64]) -> NDArray[np.complex128]:

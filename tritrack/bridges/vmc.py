@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from animator.skeleton.bone_turns import turned_axes
 from animator.skeleton.bones import Skeleton, offset_m, skeleton_of
+from animator.skeleton.limb_twist import Before
 from common.body.body import JOINT_NAMES, Vector
 from common.bus.messages import Body
 from tritrack.bridges.osc import message
@@ -38,8 +39,8 @@ class Measured(NamedTuple):
     poses: tuple[Any, ...] = ()
     """(15, 3) or, with hands and feet, (22, 3) each, at most MEASURED."""
     skeleton: Skeleton | None = None
-    twists: Vector | None = None
-    """(4,) of the upper limbs in the body before, by which a straight limb is twisted."""
+    before: Before | None = None
+    """How the limbs were twisted in the body before, as straight ones are still."""
 
 
 def step(state: Measured, body: Body) -> tuple[Measured, bytes | None]:
@@ -51,9 +52,10 @@ def step(state: Measured, body: Body) -> tuple[Measured, bytes | None]:
         poses = (*state.poses, joints_m)
         state = state._replace(poses=poses, skeleton=skeleton_of(np.array(poses)))
     assert state.skeleton is not None
-    axes, twists = turned_axes(state.skeleton, joints_m[None], state.twists)
+    time_s = np.array([body.captured_s])
+    axes, twists = turned_axes(state.skeleton, joints_m[None], time_s, state.before)
     packet = _packet(body, state.skeleton, joints_m[PELVIS], axes[:, 0])
-    return state._replace(twists=twists[:, 0]), packet
+    return state._replace(before=Before(twists[:, 0], body.captured_s)), packet
 
 
 def _packet(body: Body, skeleton: Skeleton, pelvis_m: Vector, axes: Any) -> bytes:

@@ -53,7 +53,8 @@ def calmed(
         return bodies
     joints_m = np.concatenate(stretches)
     skeleton = skeleton_of(joints_m)
-    rigid_m = joints_of(skeleton, motion_of(skeleton, joints_m))
+    time_s = np.array([body.captured_s for body in bodies if body.joints_m])
+    rigid_m = joints_of(skeleton, motion_of(skeleton, joints_m, time_s))
     rigid = iter(with_lengths(joints_m, rigid_m, centre(rig.cameras[0])))
     calm: Kept = [] if kept is None else kept
     for body in bodies:
