@@ -134,6 +134,32 @@ def test_elbows_that_bend_ahead_with_arms_stretched_out_twist_nothing() -> None:
         assert channels_of(text, lower.replace("Fore", ""))[0] == pytest.approx(0.0, abs=1e-3)
 
 
+def test_how_fast_a_twist_goes_over_is_a_matter_of_seconds_and_not_of_frames() -> None:
+    """A limb bent by 8 degrees whose plane is another by 90 degrees after one second."""
+    found_deg = []
+    for rate_hz in (15, 60):
+        time_s = np.arange(2 * rate_hz + 1) / rate_hz
+        bends = np.sin(np.radians(8.0)) * np.exp(1j * np.radians(np.where(time_s < 1.0, 0.0, 90.0)))
+        found_deg.append(np.degrees(limb_twists(bends[None], time_s)[0, :: rate_hz // 15]))
+    assert found_deg[0] == pytest.approx(found_deg[1], abs=8.0)
+    assert 15.0 < found_deg[0][13] < 40.0, "0.13 s before"
+    assert found_deg[0][[0, -1]] == pytest.approx([0.0, 90.0], abs=5.0)
+
+
+def test_a_file_twists_limbs_by_the_times_of_its_rows() -> None:
+    """Not by their number: the same poses within a quarter of the time go over as slowly."""
+    poses = [
+        posed(l_shoulder_z=270.0, l_shoulder_y=-90.0 * (i > 15), l_elbow_x=8.0) for i in range(31)
+    ]
+    joints_m, at = moved(poses), [bone.name for bone in BONES].index("LeftArm")
+    steps_deg = []
+    for rate_hz in (15, 60):
+        _, motion, _ = steady(joints_m, np.arange(31) / rate_hz)
+        turns = motion.turns[at]
+        steps_deg.append(np.degrees((turns[:-1].inv() * turns[1:]).magnitude().max()))
+    assert steps_deg[1] < 0.6 * steps_deg[0]
+
+
 def test_between_twists_the_shorter_way_is_gone() -> None:
     """By hand: from 170 to -170 degrees over four steps, 5 degrees each, through 180."""
     bends = np.exp(1j * np.radians([[170.0, 0.0, 0.0, 0.0, -170.0]]))
