@@ -257,6 +257,15 @@ def test_a_run_of_a_newer_version_is_refused_by_both_versions(
     ):
         export_run(run, "bvh", None)
     assert not (run / "body.bvh").exists()
+    (run / "poses.npz").write_bytes(b"of a form that this version does not know")
+    with pytest.raises(PastRunError, match="was written by tritrack"):
+        open_run(run)
+
+
+def test_a_journal_that_this_version_cannot_read_is_named(tmp_path: Path) -> None:
+    (tmp_path / "journal.bin").write_bytes(b"of another version")
+    with pytest.raises(PastRunError, match=r"its journal is empty or of another version of tri"):
+        open_run(tmp_path)
 
 
 @pytest.mark.parametrize("theirs", ["0.2.9", "0.2.0", "0.1", "unknown", None])

@@ -83,8 +83,11 @@ def open_run(folder: Path) -> PastRun:
     if not path.exists():
         raise PastRunError(f"{folder} has no poses.npz: {_how_to_track(folder)}")
     try:
-        poses = parted(read_arrays(path, MAX_BYTES))
         summary = json.loads((folder / "summary.json").read_text())
+        _refuse_a_newer_version(folder, summary)
+        poses = parted(read_arrays(path, MAX_BYTES))
+    except PastRunError:
+        raise
     except FileNotFoundError as error:
         raise PastRunError(f"{folder} has no summary.json: track the clip again") from error
     except OSError as error:
@@ -93,15 +96,13 @@ def open_run(folder: Path) -> PastRun:
         ) from error
     except ValueError as error:
         raise PastRunError(f"{folder} was damaged ({error}): track the clip again") from error
-    summary = summary if isinstance(summary, dict) else {}
-    _refuse_a_newer_version(folder, summary)
     _refuse_other_arrays(path, poses)
-    return PastRun(folder, poses, summary)
+    return PastRun(folder, poses, summary if isinstance(summary, dict) else {})
 
 
-def _refuse_a_newer_version(folder: Path, summary: dict[str, Any]) -> None:
+def _refuse_a_newer_version(folder: Path, summary: object) -> None:
     """What a later minor version writes may mean something else; a patch changes no meaning."""
-    told = summary.get("versions")
+    told = summary.get("versions") if isinstance(summary, dict) else None
     theirs = str(told.get("tritrack")) if isinstance(told, dict) else ""
     ours = version("tritrack")
     if _minor(theirs) > _minor(ours):
@@ -118,8 +119,15 @@ def _minor(told: str) -> tuple[int, ...]:
 
 
 def _how_to_track(folder: Path) -> str:
+    from tritrack.store.journal import has_journal
+
     if any(folder.glob("cam[12].*")):
         return f"it is a clip; track it first: tritrack track {folder}"
+    if has_journal(folder):
+        return (
+            "it was cut short, and its journal is empty or of another version of tritrack: "
+            "track the clip again, or read it with the version that wrote it"
+        )
     return "name one that `tritrack track` wrote"
 
 
