@@ -81,12 +81,17 @@ def _at(state: State, pair: Pair) -> tuple[State, float]:
         before if report is None else report.frame
         for before, report in zip(state.frames, pair, strict=True)
     )
+    uprights = tuple(
+        before if report is None else report.upright
+        for before, report in zip(state.uprights, pair, strict=True)
+    )
     dt_s = 0.0
     if state.found is not None and before_s is not None:  # whom nobody saw before owes nothing
         dt_s = max(0.0, now_s - before_s)
     number = _number(state, pair)
     return state._replace(
         frames=(frames[0], frames[1]),
+        uprights=(uprights[0], uprights[1]),
         last_s=now_s,
         number=number,
         numbered=max(number, state.numbered),

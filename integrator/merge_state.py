@@ -10,6 +10,7 @@ from common.bus.messages import Facing, ScaleSource
 from common.config.settings import Settings
 from common.method import Method
 from common.rig.camera import Rig
+from common.rig.upright import Uprights
 from integrator.frame_numbers import FrameTimes
 from integrator.landmarks import landmark_fusion
 from integrator.opening_posture import Opening
@@ -71,6 +72,8 @@ class State(NamedTuple):
     """For how many frames the body has not been believed."""
     met: bool = False
     """Whether it was believed since somebody came."""
+    uprights: Uprights = (None, None)
+    """How each view's picture comes from its file's, as it last told."""
     stands: MovedCameras = MovedCameras()
     """How the cameras stand, against how they stood when the rig was told."""
 

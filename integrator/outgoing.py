@@ -1,6 +1,7 @@
 """What is told of an instant: the body for everyone, the guide for the viewers' next frame."""
 
 import math
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -12,6 +13,7 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
 from common.bus.messages import Agreement, Body, Guide, Pixel, Point, Report, Status, Views
 from common.rig.camera import project
+from common.rig.upright_camera import as_filed
 from integrator.belief import is_believed
 from integrator.landmarks.extremity_sight import seen_extremities
 from integrator.merge_state import State
@@ -52,7 +54,7 @@ def body_of(
     if status != "lost":
         posed = {
             "joints_m": _points(places_m),
-            "joints_px": tuple(_pixels(each) for each in pixels),
+            "joints_px": _filed(state, pixels),
             "pose": tuple(pose.tolist()),
             "angles_raw_deg": tuple(found.pose[list(ANGLES_IN_POSE)].tolist()),
             **_extremities(state, seen, places_m, believed),
@@ -119,7 +121,7 @@ def _extremities(state: State, seen: Seen, places_m: Vector, believed: float) ->
         ends_m, measured = seen_extremities(ends_m, rig, seen, stature_m)
     return {
         "extremities_m": _points(ends_m),
-        "extremities_px": tuple(_pixels(project(camera, ends_m)) for camera in state.rig.cameras),
+        "extremities_px": _filed(state, [project(one, ends_m) for one in state.rig.cameras]),
         "extremities_confidence": tuple((measured * believed).tolist()),
     }
 
@@ -265,6 +267,12 @@ def _or_unseen(scales: tuple[float, float]) -> tuple[float, float]:
 
 def _points(places_m: Vector) -> tuple[Point, ...]:
     return tuple((x, y, z) for x, y, z in places_m.tolist())
+
+
+def _filed(state: State, pixels: Sequence[NDArray[np.float64]]) -> tuple[tuple[Pixel, ...], ...]:
+    """Places of each view, in its file's picture at the working size."""
+    views = zip(pixels, state.uprights, strict=True)
+    return tuple(_pixels(as_filed(own, upright)) for own, upright in views)
 
 
 def _pixels(pixels: NDArray[np.float64]) -> tuple[Pixel, ...]:

@@ -10,6 +10,7 @@ import msgspec
 from common.bus.mailbox import Mailbox
 from common.bus.messages import Landmarks
 from common.bus.rate import Clock, wait_until
+from common.rig.upright import Upright
 from common.video.clip_facts import View
 from common.video.decoding import CameraLost, Decoded, Decoder, Image, Wanted
 from common.video.frame_cache import Reader
@@ -37,6 +38,8 @@ class CapturedFrame(msgspec.Struct, frozen=True):
     """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
     landmarks: tuple[Landmarks, ...] = ()
     """Of every person that a source outside sees in it, in pixels of `picture`."""
+    upright: Upright | None = None
+    """How `picture` comes from the file's; None: it is that, made smaller."""
     hurried: bool = False
     """It comes late: there is no time to look at more than the outline."""
 
@@ -58,11 +61,14 @@ def recorded(
         DecoderDied: When the decoder broke; the frames before that are good.
     """
     large = source.large if source else None
-    for decoded in decoder.frames(view.source, view.size, Wanted(every, start, large)):
+    wanted = Wanted(every, start, large, view.quarters)
+    for decoded in decoder.frames(view.source, view.size, wanted):
         moment_s = view.captured_s(decoded.index)
         next_s = view.captured_s(decoded.index + every)
         people = source.people(decoded, PATIENCE_S) if source else ()
-        yield CapturedFrame(decoded.index, moment_s, moment_s, decoded.picture, next_s, people)
+        yield CapturedFrame(
+            decoded.index, moment_s, moment_s, decoded.picture, next_s, people, view.upright
+        )
 
 
 class RoomClock(NamedTuple):
@@ -163,7 +169,7 @@ class Live:
     def _run(self) -> None:
         """Hand on each frame at its moment; in a thread of its own."""
         view, large = self._view, self._source.large if self._source else None
-        wanted = Wanted(self._every, large=large)
+        wanted = Wanted(self._every, large=large, quarters=view.quarters)
         frames = self._decoder.frames(view.source, view.size, wanted)
         try:
             for decoded in frames:
@@ -194,11 +200,13 @@ class Live:
         if isinstance(self._view.source, int):
             now_s = decoded.grabbed_s + self._room.offset_s
             index = self._counted_from(now_s) + decoded.index
-            return CapturedFrame(index, now_s, now_s, decoded.picture)
+            return CapturedFrame(index, now_s, now_s, decoded.picture, upright=self._view.upright)
         captured_s = self._view.captured_s(decoded.index)
         next_s = self._view.captured_s(decoded.index + self._every)
         clock_s = self._room.start_s + captured_s
-        return CapturedFrame(decoded.index, captured_s, clock_s, decoded.picture, next_s)
+        return CapturedFrame(
+            decoded.index, captured_s, clock_s, decoded.picture, next_s, upright=self._view.upright
+        )
 
     def _counted_from(self, now_s: float) -> int:
         """The number of a camera's first frame: 0 at the run's start, what time tells where a

@@ -210,6 +210,7 @@ def _report_of(viewer: ViewerNumber, frame: CapturedFrame, seen: Seen) -> Report
         blobs=seen.blobs,
         cut=seen.cut,
         next_s=frame.next_s,
+        upright=frame.upright,
     )
 
 

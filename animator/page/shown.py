@@ -41,6 +41,7 @@ from common.bus.messages import (
 )
 from common.raster.silhouette_report import unpack
 from common.rig.camera import Camera, Rig
+from common.rig.upright_camera import as_worked_on
 
 MOST_RIVALS: Final = 6
 """So many postures are told with their probability."""
@@ -156,7 +157,9 @@ def _views(
 def _view(report: Report, body: Body, limbs: list[Any], picture: Picture | None) -> ShownView:
     own = report.viewer - 1
     joints = [
-        place for places in (body.joints_px, body.extremities_px) for place in places[own : own + 1]
+        as_worked_on(np.array(place), report.upright)
+        for places in (body.joints_px, body.extremities_px)
+        for place in places[own : own + 1]
     ]
     return ShownView(
         size=(report.width, report.height),

@@ -27,6 +27,7 @@ from common.bus.messages import (
 from common.notes.notes import ORIENTATIONS
 from common.rig.camera import Camera, Rig
 from common.rig.picture_shift import Shift
+from common.rig.upright import Upright
 
 MAX_BYTES: Final = 1_000_000
 """No message of ours is larger (a 1920x1080 silhouette has 259 kB)."""
@@ -77,6 +78,7 @@ _CARRIERS: Final = (
     Rig,
     Shift,
     Camera,
+    Upright,
 )
 """Structs in messages whose numbers are looked at."""
 _LENGTHS: Final[dict[tuple[type[Message], str], tuple[int, ...]]] = {
@@ -158,6 +160,8 @@ def _refuse_a_false_report(report: Report) -> None:
         raise MalformedMessage(f"a picture of {report.width}x{report.height}")
     if report.box is not None:
         _refuse_a_false_box(report.box, report.width, report.height)
+    if report.upright is not None:
+        _refuse_a_false_upright(report.upright, report.width, report.height)
     due = report.height * ((report.width + 7) // 8)
     if len(report.silhouette) != due:
         raise MalformedMessage(f"silhouette has {len(report.silhouette)} bytes, not {due}")
@@ -170,6 +174,12 @@ def _refuse_a_false_report(report: Report) -> None:
         _refuse_a_false_fit(report.fit)
     if report.landmarks is not None:
         _refuse_false_landmarks(report.landmarks)
+
+
+def _refuse_a_false_upright(upright: Upright, width: int, height: int) -> None:
+    known = upright.quarters in range(4) and min(upright.width, upright.height) > 0
+    if not known or upright.size != (width, height):
+        raise MalformedMessage(f"{upright} of a picture of {width}x{height}")
 
 
 def _refuse_a_false_box(box: Box, width: int, height: int) -> None:

@@ -6,8 +6,9 @@ import msgspec
 
 from common.body.body import Bdp
 from common.rig.picture_shift import Shift
+from common.rig.upright import Upright
 
-PROTOCOL: Final = 10
+PROTOCOL: Final = 11
 
 ViewerNumber = Literal[1, 2]
 Facing = Literal["facade", "flank"]
@@ -147,6 +148,8 @@ class Report(Moment, frozen=True, kw_only=True):
     """What is wrong with the picture; nobody is seen in it then."""
     shift: Shift | None = None
     """How the camera was moved since the start; None: it stands as it stood."""
+    upright: Upright | None = None
+    """How the picture that all pixels here are of comes from the file's; None: it is that."""
 
 
 class Guide(Moment, frozen=True, kw_only=True):

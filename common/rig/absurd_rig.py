@@ -4,8 +4,10 @@ from typing import Final
 
 import numpy as np
 
-from common.rig.camera import Rig, centre
+from common.body.body import Vector
+from common.rig.camera import Camera, Rig, centre
 from common.rig.rig_file import CalibrationError
+from common.rig.upright_camera import quarters_of
 
 FOCALS: Final = (0.2, 20.0)
 """Focal lengths in widths of the picture: a fisheye, a telescope."""
@@ -15,7 +17,10 @@ DEEP_M: Final = 1.0
 NO_UP: Final = 0.2
 """How much of a camera's own up, at least, is up in the world; less where y is not up at all."""
 ALIKE: Final = 0.8
-"""Two cameras whose ups agree by this are level, whatever way the world's y goes."""
+"""Two cameras whose ups agree by this are level, whatever way the world's y goes; unless they are
+rolled, and agree better once their pictures are turned upright."""
+HUNG_M: Final = 0.2
+"""Cameras that hang upside down are over the floor; where y points down they are not."""
 INSIST: Final = "calibrate again, or add --trust-calibration"
 
 
@@ -57,8 +62,22 @@ def _refuse_absurd_pair(rig: Rig, where: str) -> None:
             f"metres; {INSIST}"
         )
     ups = [-np.array(camera.R)[1] for camera in rig.cameras]
-    if max(up[1] for up in ups) < NO_UP and ups[0] @ ups[1] > ALIKE:
+    if max(up[1] for up in ups) < NO_UP and ups[0] @ ups[1] > ALIKE and not _is_rolled(rig, ups):
         raise CalibrationError(
             f"{where}: y does not point up in its world, {'xyz'[int(np.abs(ups[0]).argmax())]} "
             f"seems to: turn it; {INSIST}"
         )
+
+
+def _is_rolled(rig: Rig, ups: list[Vector]) -> bool:
+    """Whether cameras whose ups, (3,) each, are alike and not y are rolled in a world of y up."""
+    turned = [_up_when_turned(camera) for camera in rig.cameras]
+    hangs = max(float(centre(camera)[1]) for camera in rig.cameras) > HUNG_M
+    return bool(turned[0] @ turned[1] >= ups[0] @ ups[1] and hangs)
+
+
+def _up_when_turned(camera: Camera) -> Vector:
+    """The camera's own up, (3,), once its picture is turned upright by quarter turns."""
+    right, down = np.array(camera.R)[:2]
+    up: Vector = (-down, -right, down, right)[quarters_of(camera)]
+    return up

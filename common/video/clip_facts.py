@@ -5,6 +5,7 @@ import msgspec
 from common.body.body import Bdp
 from common.bus.messages import ViewerNumber
 from common.rig.camera import Rig
+from common.rig.upright import Upright, swapped
 from common.video.decoding import Source
 
 
@@ -39,7 +40,7 @@ class View(msgspec.Struct, frozen=True):
     source: Source
     source_size: tuple[int, int]
     size: tuple[int, int]
-    """Width and height to work at."""
+    """Width and height to work at, upright."""
     fps: float
     frames: int
     """How many its file claims; 0 for a camera."""
@@ -47,6 +48,28 @@ class View(msgspec.Struct, frozen=True):
     """When each frame of a file was taken, where its rate varies."""
     background: str = ""
     """A picture or video of the empty room; "" where there is none."""
+    upright: Upright | None = None
+    """How the picture that is worked on comes from the file's; None: it is that, made smaller."""
+
+    @property
+    def quarters(self) -> int:
+        """By how many quarter turns clockwise its pictures are turned."""
+        return 0 if self.upright is None else self.upright.quarters
+
+    @property
+    def filed_size(self) -> tuple[int, int]:
+        """Of the file's picture at the working size, as it lies there."""
+        return self.size if self.upright is None else (self.upright.width, self.upright.height)
+
+    @property
+    def upright_source(self) -> tuple[int, int]:
+        """Size of the whole picture, upright and with square pixels."""
+        if self.upright is None:
+            return self.source_size
+        wide, high = self.upright.square_width, self.upright.square_height
+        width = round(self.source_size[0] * wide / self.upright.width)
+        height = round(self.source_size[1] * high / self.upright.height)
+        return swapped((width, height), self.upright.quarters)
 
     def captured_s(self, index: int) -> float:
         """When a frame of a file was taken, seconds since the clip began.

@@ -20,6 +20,7 @@ from common.video.clip_facts import Clip, Meta, View
 from common.video.clip_sources import NOTHING, ClipError, Footage, companions_folder, footage_of
 from common.video.decoding import Decoder, DecoderDied, Source, Undecodable, VideoInfo
 from common.video.frame_times import timed
+from common.video.upright_views import upright_views
 
 SAME_RATE: Final = 0.01
 """Frame rates that differ by less drift apart by less than a frame in a clip of 100."""
@@ -59,6 +60,8 @@ def open_clip(
         views = tuple(_view(each, settings, meta, reader) for each in named)
     _refuse_rates_that_differ(views)
     rig = _rig(settings, folder, named, views)
+    if rig is not None:
+        rig, views = upright_views(rig, views)
     return Clip(
         name=folder.resolve().name if settings.clip else Path(str(named[0].source)).stem,
         views=views,
@@ -214,8 +217,7 @@ def _rig(
         )
     except CalibrationError as error:
         raise ClipError(str(error)) from error
-    width, height = views[0].size
-    return msgspec.structs.replace(rig, width=width, height=height, cameras=cameras)
+    return msgspec.structs.replace(rig, cameras=cameras)
 
 
 def _calibrated(rig: Rig, named: Footage, view: View, path: Path, alone: bool) -> Camera:

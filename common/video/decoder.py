@@ -5,7 +5,7 @@ import json
 import os
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import IO, Any, Final, NamedTuple
 
@@ -78,7 +78,7 @@ def serve(request: dict[str, Any], answers: IO[bytes]) -> None:
     for grab in itertools.chain([first], film.grabs) if sizes else ():
         came = grab.index + 1
         if grab.picture is not None:
-            pictures = [reduced(grab.picture, (width, height)) for width, height in sizes]
+            pictures = [reduced(grab.picture, size, request["quarters"]) for size in sizes]
             say(answers, FRAME, grab, *(picture.data for picture in pictures))
         elif grab.index % SIGN_OF_LIFE == 0:
             say(answers, SKIPPED, grab)
@@ -125,11 +125,16 @@ def grabs(capture: cv2.VideoCapture, every: int, start: int) -> Iterator[Grabbed
         yield Grabbed(index, now_s, capture.retrieve()[1] if is_wanted else None)
 
 
-def reduced(picture: Image, size: tuple[int, int]) -> Image:
-    """A picture of another size (width, height); each pixel is the mean of what it covers (P1)."""
-    if (picture.shape[1], picture.shape[0]) == size:
-        return picture
-    return cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
+def reduced(picture: Image, size: Sequence[int], quarters: int) -> Image:
+    """A picture turned clockwise by quarter turns, and then of another size (width, height).
+
+    Each pixel is the mean of what it covers (P1).
+    """
+    width, height = size
+    lying = (height, width) if quarters % 2 else (width, height)
+    if (picture.shape[1], picture.shape[0]) != lying:
+        picture = cv2.resize(picture, lying, interpolation=cv2.INTER_AREA)
+    return np.ascontiguousarray(np.rot90(picture, -quarters)) if quarters else picture
 
 
 def say(

@@ -101,6 +101,8 @@ class Wanted(NamedTuple):
     """None before this place in the source."""
     large: Size | None = None
     """A second size of each."""
+    quarters: int = 0
+    """By how many quarter turns clockwise each is turned; sizes are of what that gives."""
 
 
 ALL: Final = Wanted()
@@ -159,7 +161,7 @@ class Decoder:
             Undecodable: When it has none.
             DecoderDied: When the child broke on it.
         """
-        info, *after = self._answers(source, [], 1, 0)
+        info, *after = self._answers(source, [], ALL)
         told = msgspec.json.decode(info.payload.tobytes(), type=VideoInfo)
         shown = [np.frombuffer(one.payload, "<f8") for one in after if one.kind == TIMES]
         shown_s = tuple(np.concatenate(shown).tolist()) if shown else ()
@@ -177,7 +179,7 @@ class Decoder:
             DecoderDied: When the child broke on it; what came before is good.
         """
         sizes = [size] if wanted.large is None else [size, wanted.large]
-        for answer in self._answers(source, sizes, wanted.every, wanted.start):
+        for answer in self._answers(source, sizes, wanted):
             if answer.kind == FRAME and answer.index >= wanted.start:
                 pictures = _pictures(answer.payload, sizes)
                 yield Decoded(answer.index, answer.grabbed_s, *pictures)
@@ -196,15 +198,15 @@ class Decoder:
             self._child = None
 
     def _answers(
-        self, source: Source, sizes: list[Size], every: int, start: int
+        self, source: Source, sizes: list[Size], wanted: Wanted
     ) -> Generator[_Answer, None, None]:
         """INFO, then FRAMEs and SKIPPEDs if any size is asked for, else TIMES; then END."""
         if self._child is None:
             self._child = Child(f"{__package__}.decoder", self._stall_s)
         frames, whole = 0, False
         try:
-            request = {"source": source, "sizes": sizes, "every": every, "start": start}
-            self._child.ask(json.dumps(request).encode())
+            told = {"every": wanted.every, "start": wanted.start, "quarters": wanted.quarters}
+            self._child.ask(json.dumps({"source": source, "sizes": sizes, **told}).encode())
             while not whole:
                 answer = _next_answer(self._child, sizes)
                 whole = answer.kind in (END, REFUSED)

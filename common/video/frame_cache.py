@@ -1,5 +1,6 @@
 """What was decoded of a source, kept for the next reading of it where it is small enough."""
 
+import math
 from collections.abc import Callable, Iterator
 from typing import Final, Protocol
 
@@ -38,7 +39,7 @@ class Reel:
         self._decoder = decoder
         self._due = due
         self._most_bytes = most_bytes
-        self._named: tuple[Source, Size] | None = None
+        self._named: tuple[Source, Size, int] | None = None
         self._kept: list[Decoded] = []
 
     @property
@@ -53,18 +54,20 @@ class Reel:
             Undecodable: When it has none.
             DecoderDied: When the decoder broke on it; what came before is good.
         """
-        if wanted.large is None and (source, size) == self._named:
+        asked = (source, size, wanted.quarters)
+        if wanted.large is None and asked == self._named:
             due = (got for got in self._kept if got.index >= wanted.start)
             return (got for got in due if got.index % wanted.every == 0)
         pictures = self._decoder.frames(source, size, wanted)
-        return self._keeping(pictures, source, size) if wanted == ALL else pictures
+        every_one = wanted == ALL._replace(quarters=wanted.quarters)
+        return self._keeping(pictures, asked) if every_one else pictures
 
     def _keeping(
-        self, pictures: Iterator[Decoded], source: Source, size: Size
+        self, pictures: Iterator[Decoded], asked: tuple[Source, Size, int]
     ) -> Iterator[Decoded]:
         """Hand all pictures on, and keep them once they are known to be all and to fit."""
         kept: list[Decoded] = []
-        fits = self._most_bytes // (3 * size[0] * size[1])
+        fits = self._most_bytes // (3 * math.prod(asked[1]))
         if self._due > fits:
             yield from pictures
             return
@@ -76,7 +79,7 @@ class Reel:
                 kept = []
             yield got
         if came <= fits:
-            self._named, self._kept = (source, size), kept
+            self._named, self._kept = asked, kept
 
 
 class Told:

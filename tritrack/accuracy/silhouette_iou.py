@@ -66,7 +66,8 @@ def _of_view(
         state, seen = silhouette.step(state, frame.picture, None)
         if frame.index >= len(row_of):
             break
-        true = shrunk(np.unpackbits(packed[row_of[frame.index]], axis=1, count=width), view.size)
+        filed = np.unpackbits(packed[row_of[frame.index]], axis=1, count=width)
+        true = shrunk(np.rot90(filed, -view.quarters), view.size)
         if true.any():
             shares.append(iou(true, seen.mask))
         else:

@@ -20,6 +20,7 @@ from common.method import Method
 from common.notes.notes import Notes, held
 from common.raster.silhouette_report import unpack
 from common.rig.camera import Camera, Rig
+from common.rig.upright_camera import as_worked_on
 from common.video.clip_facts import Clip
 from common.video.clip_sources import ClipError
 from common.video.frame_cache import Reader
@@ -166,13 +167,14 @@ def bodies_of(
     rig = at.integrator.rig
     assert rig is not None
     if film.method.film_smoothing:
-        return Lifted(calmed(bodies, rig, film.notes, work.messages(CALM)), rig.cameras[0])
+        kept, uprights = work.messages(CALM), at.integrator.uprights
+        return Lifted(calmed(bodies, rig, film.notes, kept, uprights), rig.cameras[0])
     return Lifted(bodies, rig.cameras[0])
 
 
 def _posed(at: Posing, report: Report, film: FilmFacts) -> tuple[Posing, Body]:
     """One frame of the second pass."""
-    annotations, guide = _annotations(film, report.frame), at.guide
+    annotations, guide = _annotations(film, report), at.guide
     if guide is not None and annotations.orientation is not None:
         guide = msgspec.structs.replace(guide, stick=True)
     viewer, full = track.describe(at.viewer, report, unpack(report), guide)
@@ -221,10 +223,13 @@ def _setup(film: FilmFacts) -> track.Setup:
     return track.Setup(film.number, film.camera, film.settings, film.method, alone=True)
 
 
-def _annotations(film: FilmFacts, frame: int) -> Annotations:
-    note = held(film.notes, frame)
-    places = {name: (u * film.scale, v * film.scale) for name, (u, v) in note.joints_px.items()}
-    return Annotations(note.orientation, note.depth, places)
+def _annotations(film: FilmFacts, report: Report) -> Annotations:
+    """What the user says of a frame, in the pixels of its report."""
+    note = held(film.notes, report.frame)
+    filed = film.scale * np.array([*note.joints_px.values()]).reshape(-1, 2)
+    places = as_worked_on(filed, report.upright).tolist()
+    placed = {name: (u, v) for name, (u, v) in zip(note.joints_px, places, strict=True)}
+    return Annotations(note.orientation, note.depth, placed)
 
 
 def _refuse_a_moving_camera(reports: Sequence[Report], source: str) -> None:

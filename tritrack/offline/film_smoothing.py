@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, Vector
 from common.bus.messages import Body
 from common.notes.notes import Notes, held
-from common.rig.camera import Rig, centre, project
+from common.rig.camera import Camera, Rig, centre, project
+from common.rig.upright import Upright, Uprights
+from common.rig.upright_camera import as_filed
 from integrator.single.rigid_limbs import with_lengths
 from tritrack.unfinished.work import Kept
 
@@ -31,7 +33,11 @@ Covariance = tuple[Vector, Vector, Vector]
 
 
 def calmed(
-    bodies: Sequence[Body], rig: Rig, notes: Notes = Notes(), kept: Kept | None = None
+    bodies: Sequence[Body],
+    rig: Rig,
+    notes: Notes = Notes(),
+    kept: Kept | None = None,
+    uprights: Uprights = (None, None),
 ) -> Sequence[Body]:
     """The bodies of a film with smooth joints, whose limbs keep the lengths that are their medians.
 
@@ -44,6 +50,7 @@ def calmed(
         rig: Of the film's camera, twice.
         notes: The user's inputs.
         kept: Takes what is given; None: a list.
+        uprights: How each view's picture comes from its file's.
     """
     from animator.skeleton.bone_turns import motion_of
     from animator.skeleton.bones import joints_of, skeleton_of
@@ -57,8 +64,9 @@ def calmed(
     rigid_m = joints_of(skeleton, motion_of(skeleton, joints_m, time_s))
     rigid = iter(with_lengths(joints_m, rigid_m, centre(rig.cameras[0])))
     calm: Kept = [] if kept is None else kept
+    views = [*zip(rig.cameras, uprights, strict=True)]
     for body in bodies:
-        calm.append(_with(body, next(rigid), rig, notes) if body.joints_m else body)
+        calm.append(_with(body, next(rigid), views, notes) if body.joints_m else body)
     return calm
 
 
@@ -140,11 +148,19 @@ def _of_stretch(bodies: Iterable[Body]) -> NDArray[np.float64]:
     return steadied(np.stack(joints_m), np.array(time_s))
 
 
-def _with(body: Body, joints_m: NDArray[np.float64], rig: Rig, notes: Notes) -> Body:
+def _with(
+    body: Body,
+    joints_m: NDArray[np.float64],
+    views: Sequence[tuple[Camera, Upright | None]],
+    notes: Notes,
+) -> Body:
     for name in held(notes, body.frame).joints_px:
         at = JOINT_NAMES.index(name)
         joints_m[at] = body.joints_m[at]
-    pixels = (np.nan_to_num(project(camera, joints_m), nan=-1.0) for camera in rig.cameras)
+    pixels = (
+        np.nan_to_num(as_filed(project(camera, joints_m), upright), nan=-1.0)
+        for camera, upright in views
+    )
     return msgspec.structs.replace(
         body,
         joints_m=tuple((x, y, z) for x, y, z in joints_m.tolist()),

@@ -102,7 +102,7 @@ def follow_clip(
     clip, background, notes = film
     view = clip.views[0]
     camera = clip.rig.cameras[0] if clip.rig is not None else None
-    scale = view.size[0] / view.source_size[0]
+    scale = view.filed_size[0] / view.source_size[0]
     period_s = clip.every / view.fps
     known = FilmFacts(settings, method, view.number, period_s, camera, notes, scale)
     left = heard.work.resumed(POSING, Posing)

@@ -9,6 +9,7 @@ from common.rig.absurd_rig import refuse_absurd
 from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip
 from common.video.clip_sources import ClipError
+from common.video.upright_views import filed_rig
 from integrator.selfcalibration.joint_tracks import Row, Sighting, row_of, track_of_rows
 from viewer.capture import CapturedFrame
 
@@ -92,7 +93,8 @@ def refuse_absurd_rig(clip: Clip) -> None:
         ClipError: With what is absurd and what to do.
     """
     try:
-        if clip.rig is not None:
-            refuse_absurd(clip.rig, clip.name)
+        rig = filed_rig(clip)
+        if rig is not None:
+            refuse_absurd(rig, clip.name)
     except CalibrationError as error:
         raise ClipError(str(error)) from error

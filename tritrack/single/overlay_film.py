@@ -13,6 +13,7 @@ from common.body.body import Vector
 from common.bus.messages import Body, Report
 from common.config.picture_size import working_size
 from common.raster.silhouette_report import unpack
+from common.rig.upright_camera import as_worked_on
 from common.video.decoding import Decoder, Wanted
 from tritrack.offline.film_tracking import Followed
 from tritrack.terminal import Tell
@@ -72,7 +73,8 @@ def overlaid(found: Followed, decoder: Decoder) -> Iterator[Picture]:
 def _drawn(found: Followed, report: Report, body: Body, picture: Picture) -> Picture:
     joints_px, joints_m, confidence = np.full((15, 2), np.nan), np.full((15, 3), np.nan), [0.0] * 15
     if body.joints_m:
-        joints_px = np.array(body.joints_px[0]) * (picture.shape[1] / report.width)
+        joints_px = as_worked_on(np.array(body.joints_px[0]), report.upright)
+        joints_px = joints_px * (picture.shape[1] / report.width)
         joints_m, confidence = found.to_camera(np.array(body.joints_m)), list(body.confidence)
     told = f"{body.frame}  {body.captured_s:.2f} s  {body.status}"
     if body.joints_m:
@@ -87,6 +89,7 @@ def _pictures(found: Followed, decoder: Decoder) -> Iterator[Picture]:
         yield from [paper] * len(found.reports)
         return
     view = found.clip.views[0]
-    size = working_size(view.source_size, SHOWN)
-    for decoded in decoder.frames(view.source, size, Wanted(found.clip.every)):
+    size = working_size(view.upright_source, SHOWN)
+    wanted = Wanted(found.clip.every, quarters=view.quarters)
+    for decoded in decoder.frames(view.source, size, wanted):
         yield decoded.picture

@@ -154,7 +154,7 @@ def _clip_of(run: PastRun, settings: Settings) -> Clip:
 def _take_of(run: PastRun, clip: Clip) -> Take:
     """The run in the video's own pixels, as seen from camera 1."""
     view = clip.views[0]
-    take = take_of(run.poses, view.source_size[0] / view.size[0], _turn_of(run, clip))
+    take = take_of(run.poses, view.source_size[0] / view.filed_size[0], _turn_of(run, clip))
     if not len(take.frame):
         raise RetouchError(f"{run.folder} has no frame: track the clip again")
     return take

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from common.bus.messages import Landmarks
 from common.config.settings_error import SettingsError
+from common.rig.upright_camera import as_worked_on
 from common.video.clip_facts import View
 from common.video.decoding import Decoded, Size
 from viewer.landmarks.fifteen_joints import facing_deg, fifteen, fifteen_shares
@@ -67,7 +68,8 @@ class KeypointFiles:
                 f"landmarks from files are for recorded clips: camera {view.number} is none"
             )
         own = _folder_of(folder, view, alone)
-        self._scale = np.divide(view.size, view.source_size)
+        self._scale = np.divide(view.filed_size, view.source_size)
+        self._upright = view.upright
         self._frames = {frame: people_of(path) for frame, path in numbered(own).items()}
         last = max(self._frames) + 1
         short = view.frames and last < view.frames
@@ -77,7 +79,11 @@ class KeypointFiles:
     def people(self, decoded: Decoded, wait_s: float) -> tuple[Landmarks, ...]:  # noqa: ARG002
         """Everybody whom the file of a frame tells; nobody where there is no such file."""
         people = self._frames.get(decoded.index, ())
-        return tuple(_landmarks_of(person, self._scale) for person in people)
+        return tuple(_landmarks_of(self._as_worked_on(person)) for person in people)
+
+    def _as_worked_on(self, person: Person) -> Person:
+        places = as_worked_on(self._scale * person[:, :2], self._upright)
+        return np.concatenate([places, person[:, 2:]], axis=1)
 
 
 def numbered(folder: Path) -> dict[int, Path]:
@@ -155,16 +161,16 @@ def _with_a_whole_head(person: Person) -> Person:
     return person
 
 
-def _landmarks_of(person: Person, scale: NDArray[np.float64]) -> Landmarks:
-    """Of a person in the video's pixels; the scores are taken for confidence as they are."""
+def _landmarks_of(person: Person) -> Landmarks:
+    """Of a person in the working picture; the scores are taken for confidence as they are."""
     points, scores = person[: len(BODY_POINTS), :2], person[: len(BODY_POINTS), 2]
-    joints, ends = scale * fifteen(points), person[len(BODY_POINTS) :]
+    joints, ends = fifteen(points), person[len(BODY_POINTS) :]
     return Landmarks(
         joints_px=tuple((float(u), float(v)) for u, v in joints),
         confidence=tuple(fifteen_shares(scores).tolist()),
         facing_deg=facing_deg(points),
         facing_confidence=float(scores[FACING].min()),
-        extremities_px=tuple((float(u), float(v)) for u, v in scale * ends[:, :2]),
+        extremities_px=tuple((float(u), float(v)) for u, v in ends[:, :2]),
         extremities_confidence=tuple(ends[:, 2].tolist()),
     )
 

@@ -58,7 +58,7 @@ class MediaPipe:
         refuse_where_missing()
         self.odd: tuple[str, ...] = ()
         self._view, self._stall_s = view, stall_s
-        self._size = working_size(view.source_size, LOOKED_AT)
+        self._size = working_size(view.upright_source, LOOKED_AT)
         self._asked_s: float | None = None
         """When the child was asked what it has not answered yet; None: it has answered all."""
         width, height = self._size

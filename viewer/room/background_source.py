@@ -13,7 +13,7 @@ from common.bus.messages import Landmarks
 from common.config.part_settings import SilhouetteSettings
 from common.video.clip_facts import View
 from common.video.clip_sources import ClipError
-from common.video.decoding import Decoder, Image, named
+from common.video.decoding import Decoder, Image, Source, Wanted, named
 from common.video.frame_cache import Reader
 from viewer.background.background import (
     Background,
@@ -82,7 +82,7 @@ def opening_of_view(view: View, settings: SilhouetteSettings, decoder: Reader) -
     if isinstance(view.source, int) and not view.background:
         return Opening(learn(_now(view, settings.empty_frames, decoder)), "", None)
     if view.background:
-        plate = [got.picture for got in islice(decoder.frames(view.background, view.size), SAMPLE)]
+        plate = list(islice(_pictures(decoder, view.background, view), SAMPLE))
         return Opening(learn(plate), "", None)
     opening, coming = _looked_at(view, settings.empty_frames, decoder)
     return of_clip(opening, list(coming), settings, view)
@@ -215,15 +215,20 @@ def background_of_film(view: View, settings: SilhouetteSettings, decoder: Reader
     return FilmBackground(background, patches, odd and _estimated(view, FILM_OPTION))
 
 
+def _pictures(decoder: Reader, source: Source, view: View) -> Iterator[Image]:
+    """Those of a source, as the view's are worked on."""
+    wanted = Wanted(quarters=view.quarters)
+    return (got.picture for got in decoder.frames(source, view.size, wanted))
+
+
 def _now(view: View, due: int, decoder: Reader) -> list[Image]:
     """The first frames that a camera gives."""
-    return [got.picture for got in islice(decoder.frames(view.source, view.size), due)]
+    return list(islice(_pictures(decoder, view.source, view), due))
 
 
 def _looked_at(view: View, due: int, decoder: Reader) -> tuple[list[Image], Iterator[Image]]:
     """The opening frames, and frames from everywhere in the clip: these as they are decoded."""
-    frames = islice(decoder.frames(view.source, view.size), LOOKED_AT)
-    pictures = (got.picture for got in frames)
+    pictures = islice(_pictures(decoder, view.source, view), LOOKED_AT)
     opening = list(islice(pictures, due))
     return opening, islice(chain(opening, pictures), 0, None, _stride(view))
 
