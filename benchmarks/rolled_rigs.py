@@ -3,8 +3,8 @@
     python benchmarks/rolled_rigs.py --motion walk_toward free --step 15 --size 320x240
 
 One performance is rendered anew for every roll of both cameras (the second may be rolled the other
-way, or not at all), with its exact calibration, and tracked. Errors are means over 12 joints and all
-frames with a person; `upright` is the error less that of the rig that is not rolled.
+way, or not at all), with its exact calibration, and tracked. Errors are means over 12 joints and
+all frames with a person; `upright` is the error less that of the rig that is not rolled.
 """
 
 import argparse
@@ -22,7 +22,6 @@ from common.config.settings import Settings
 from common.rig.camera import Camera, Rig, as_matrix, as_row
 from synth.motion.motions import POSTURES, Motion, performance
 from synth.person.people import Person, person
-from synth.person.skeleton import JOINTS
 from synth.picture.exposure import default_rig
 from synth.write import FPS, Filming, write_clip, write_rig
 from tritrack.offline.lockstep import Decoders, Tracked, track_clip

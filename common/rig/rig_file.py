@@ -1,5 +1,6 @@
 """Calibrations read from their file, checked, and fitted to the size of pictures."""
 
+import json
 from pathlib import Path
 from typing import Final
 
@@ -35,6 +36,7 @@ def load_rig(path: Path, wanted: tuple[str, ...] = ()) -> Rig:
             "person), or take it out of the settings"
         ) from error
     except (msgspec.DecodeError, RecursionError) as error:
+        _refuse_what_is_not_finite(path)
         raise CalibrationError(f"{path} is no calibration: {explained(error, Rig)}") from error
     if wanted:
         by_name = {camera.name: camera for camera in rig.cameras}
@@ -47,6 +49,15 @@ def load_rig(path: Path, wanted: tuple[str, ...] = ()) -> Rig:
     rig = _with_shared_distortion(rig)
     check_rig(rig, str(path))
     return rig
+
+
+def _refuse_what_is_not_finite(path: Path) -> None:
+    """JSON has no NaN and no Infinity, though Python and others write them."""
+    try:
+        rig = msgspec.convert(json.loads(path.read_bytes()), Rig)
+    except (ValueError, RecursionError):
+        return
+    check_rig(rig, str(path))
 
 
 def _with_shared_distortion(rig: Rig) -> Rig:
@@ -69,9 +80,12 @@ def check_rig(rig: Rig, where: str) -> None:
         raise CalibrationError(f"{where}: it names no camera")
     for camera in rig.cameras:
         K = np.array(camera.K)
-        values = np.concatenate([K.ravel(), np.ravel(camera.R), camera.t, camera.distortion])
-        if not np.isfinite(values).all():
-            raise CalibrationError(f"{where}: camera {camera.name} has a number that is not finite")
+        for field in ("K", "R", "t", "distortion"):
+            if not np.isfinite(getattr(camera, field)).all():
+                raise CalibrationError(
+                    f"{where}: {field} of camera {camera.name} has a number that is not finite; "
+                    "calibrate again"
+                )
         rotation = np.array(camera.R)
         off = float(np.abs(rotation @ rotation.T - np.eye(3)).max())
         if off > 1e-3 or np.linalg.det(rotation) < 0:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
 from itertools import pairwise
 from pathlib import Path
-from typing import Final
+from typing import Final, get_args
 
 import msgspec
 import numpy as np
@@ -226,6 +226,8 @@ def _calibrated(rig: Rig, named: Footage, view: View, path: Path, alone: bool) -
     wanted = named.settings.calibrated_as
     if wanted and wanted not in names:
         raise ClipError(f"{path} has no camera {wanted!r}; it has {', '.join(names)}")
+    if not wanted and len(names) > len(get_args(ViewerNumber)):
+        wanted = _of_the_files_name(names, view, path)
     place = names.index(wanted) if wanted else view.number - 1
     if alone and len(names) == 1:
         place = 0
@@ -236,6 +238,18 @@ def _calibrated(rig: Rig, named: Footage, view: View, path: Path, alone: bool) -
         )
     seen = fitted(rig, view.source_size, str(path))
     return fitted(seen, view.size, str(path)).cameras[place]
+
+
+def _of_the_files_name(names: list[str], view: View, path: Path) -> str:
+    """Which of more cameras than there are views: the one that is called as the view is."""
+    name = f"cam{view.number}"
+    if name not in names:
+        raise ClipError(
+            f"{path} has {len(names)} cameras ({', '.join(names)}): say which of them took view "
+            f"{view.number}, by camera_{view.number}.calibrated_as in the settings, or keep two "
+            "(tritrack calibrate import --camera NAME --camera NAME)"
+        )
+    return name
 
 
 def _oddities(views: tuple[View, ...], meta: Meta, rig: Rig | None) -> Iterator[str]:

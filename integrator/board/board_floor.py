@@ -11,7 +11,8 @@ from common.rig.rig_file import CalibrationError
 from integrator.board.lens_start import Place, undone
 
 UPRIGHT: Final = 0.75
-"""How much of a lying board's up is up for the cameras, at least."""
+"""How much of a lying board's up is up for the cameras, at least, or to a side of all that are
+rolled alike."""
 BELOW_M: Final = 0.05
 """No board was ever this far below the floor."""
 ABOVE_M: Final = 0.1
@@ -88,8 +89,8 @@ def _lies(rest: int, boards: Sequence[Place], corners: Vector, cameras: Sequence
     A board that is held at a slant has others below its plane.
     """
     up, at = _up_of(boards[rest]), corners[rest].mean(axis=0)
-    ups = [-cv2.Rodrigues(camera.turn)[0][1] for camera in cameras]
-    if np.mean(ups, axis=0) @ up < UPRIGHT:
+    across_down = np.mean([cv2.Rodrigues(camera.turn)[0][:2] for camera in cameras], axis=0)
+    if np.abs(across_down @ up).max() < UPRIGHT:
         return False
     heights = [(undone(camera).shift - at) @ up for camera in cameras]
     return min(heights) > ABOVE_M and float(((corners - at) @ up).min()) > -BELOW_M

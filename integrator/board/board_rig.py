@@ -180,4 +180,4 @@ def _rig(fit: Fit, floor: Floor, size_px: tuple[int, int]) -> Rig:
         fx, fy, cx, cy, k1, k2 = fit.lenses[n].tolist()
         K = np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
         cameras.append(ForeignCamera(f"cam{n + 1}", size_px, K, R, t, (k1, k2, 0.0, 0.0)))
-    return our_rig(cameras, "the board's rig")
+    return our_rig(cameras, "the board's rig", "y")

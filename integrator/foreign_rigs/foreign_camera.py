@@ -1,7 +1,7 @@
 """Cameras as OpenCV has them, and as we do: pixels' centres, and which way is up."""
 
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,11 +9,20 @@ from numpy.typing import NDArray
 from common.body.body import Vector
 from common.rig.camera import Camera, Rig, as_matrix, as_row
 from common.rig.rig_file import CalibrationError, check_rig
+from common.rig.upright_camera import quarters_of
 
 CENTRE: Final = 0.5
 """OpenCV has the centre of the first pixel at 0, we at this."""
 FORMS: Final = "TOML of Pose2Sim, Caliscope or anipose, Qualisys' .qca.txt, OpenCV's .yml and .xml"
 """What is read."""
+
+
+Up = Literal["x", "y", "z", "-x", "-y", "-z"]
+"""An axis of another program's world."""
+LOOKS_UP: Final = 0.2
+"""Sine of the angle over the horizon at which no camera of a room looks up: rolled ones seem to."""
+UNDER_M: Final = 0.5
+"""Cameras that seem to stand so far under the floor hang upside down over it."""
 
 
 class ForeignCamera(NamedTuple):
@@ -25,13 +34,21 @@ class ForeignCamera(NamedTuple):
     R: NDArray[np.float64]
     t: Vector
     distortion: tuple[float, ...]
+    quarters: int = 0
+    """By how many quarter turns clockwise its picture becomes upright, as far as that is told."""
 
 
-def our_rig(cameras: Sequence[ForeignCamera], where: str) -> Rig:
+def our_rig(cameras: Sequence[ForeignCamera], where: str, up: Up | None = None) -> Rig:
     """The cameras in our conventions: y up, whichever axis theirs has up.
 
+    Args:
+        cameras: In another world.
+        where: Named in errors.
+        up: Which axis of that is up; None: the one that upright pictures have up.
+
     Raises:
-        CalibrationError: When they are none, or of pictures of several sizes, or no rig.
+        CalibrationError: When they are none, or of pictures of several sizes, or no rig, or are
+            rolled so that their pictures do not tell which way is up.
     """
     if not cameras:
         raise CalibrationError(f"{where} holds no camera in a form that is known: {FORMS}")
@@ -41,7 +58,7 @@ def our_rig(cameras: Sequence[ForeignCamera], where: str) -> Rig:
         raise CalibrationError(
             f"{where}: cameras of one size are needed, got {told}: choose with --camera"
         )
-    turn = axes_with_y_up(np.mean([-camera.R[1] for camera in cameras], axis=0))
+    turn = axes_with_y_up(up_in_pictures(cameras, where) if up is None else _named(up))
     ours = []
     for camera in cameras:
         K = camera.K.copy()
@@ -51,6 +68,45 @@ def our_rig(cameras: Sequence[ForeignCamera], where: str) -> Rig:
     rig = Rig(*sizes.pop(), tuple(ours))
     check_rig(rig, where)
     return rig
+
+
+def up_in_pictures(cameras: Sequence[ForeignCamera], where: str) -> Vector:
+    """The axis (3,) of the cameras' world that their pictures have up.
+
+    Raises:
+        CalibrationError: When they do not agree as the pictures of cameras do that are not rolled.
+    """
+    up = axes_with_y_up(np.mean([_up_of(camera) for camera in cameras], axis=0))[1]
+    heights_m = [float(-camera.R.T @ camera.t @ up) for camera in cameras]
+    odd = [one.name for one in cameras if _is_rolled(one, up)]
+    if np.mean(heights_m) < -UNDER_M:
+        odd = [camera.name for camera in cameras]
+    if odd:
+        raise CalibrationError(
+            f"{where}: {', '.join(odd)} seem rolled by 90 degrees or more, so their pictures do "
+            "not tell which axis of its world is up: say it, for example --up z"
+        )
+    return up
+
+
+def _up_of(camera: ForeignCamera) -> Vector:
+    """Up in the camera's picture, (3,) in its world."""
+    right, down, _ = camera.R
+    up: Vector = (-down, -right, down, right)[camera.quarters % 4]
+    return up
+
+
+def _is_rolled(camera: ForeignCamera, up: Vector) -> bool:
+    """Whether a camera, were this up, would stand by more than 45 degrees aslant, or look up."""
+    upwards = float(_up_of(camera) @ up)
+    aside = _up_of(camera._replace(quarters=camera.quarters + 1)) @ up
+    return bool(upwards <= abs(aside) or camera.R[2] @ up > LOOKS_UP)
+
+
+def _named(up: Up) -> Vector:
+    axis = np.zeros(3)
+    axis["xyz".index(up[-1])] = -1.0 if up.startswith("-") else 1.0
+    return axis
 
 
 def axes_with_y_up(up: Vector) -> NDArray[np.float64]:
@@ -70,5 +126,6 @@ def with_z_up(rig: Rig) -> list[ForeignCamera]:
         K[:2, 2] -= CENTRE
         size = (rig.width, rig.height)
         R = np.array(camera.R) @ turn
-        theirs.append(ForeignCamera(camera.name, size, K, R, np.array(camera.t), camera.distortion))
+        bent, quarters = camera.distortion, quarters_of(camera)
+        theirs.append(ForeignCamera(camera.name, size, K, R, np.array(camera.t), bent, quarters))
     return theirs

@@ -4,18 +4,19 @@ from pathlib import Path
 
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError
-from integrator.foreign_rigs.foreign_camera import ForeignCamera, our_rig
+from integrator.foreign_rigs.foreign_camera import ForeignCamera, Up, our_rig
 from integrator.foreign_rigs.opencv_rig import read_opencv
 from integrator.foreign_rigs.qualisys_rig import read_qualisys
 from integrator.foreign_rigs.toml_rig import read_toml
 
 
-def imported_rig(path: Path, wanted: tuple[str, ...] = ()) -> Rig:
+def imported_rig(path: Path, wanted: tuple[str, ...] = (), up: Up | None = None) -> Rig:
     """Two or more cameras of a file.
 
     Args:
         path: In TOML, the text of Qualisys, or what OpenCV's FileStorage writes.
         wanted: Names of the cameras to keep, in this order; all when empty.
+        up: Which axis of its world is up; None: its pictures tell that.
 
     Raises:
         CalibrationError: When the file is of no kind that is known, cannot be read, has no such
@@ -32,7 +33,7 @@ def imported_rig(path: Path, wanted: tuple[str, ...] = ()) -> Rig:
     missing = [name for name in wanted if name not in by_name]
     if missing:
         raise CalibrationError(f"{path} has no camera {missing[0]!r}; it has {', '.join(by_name)}")
-    return our_rig([by_name[name] for name in wanted] if wanted else cameras, str(path))
+    return our_rig([by_name[name] for name in wanted] if wanted else cameras, str(path), up)
 
 
 def _read_xml(path: Path) -> list[ForeignCamera]:

@@ -59,7 +59,16 @@ def _camera(section: str, table: dict[str, Any], path: Path) -> ForeignCamera:
         np.asarray(R, float),
         np.array(table["translation"], float).reshape(3),
         tuple(float(number) for number in np.ravel(table.get("distortions", ()))),
+        _quarters(section, table, path),
     )
+
+
+def _quarters(section: str, table: dict[str, Any], path: Path) -> int:
+    """By how many quarter turns clockwise Caliscope shows a picture; the rest is of it unturned."""
+    count = table.get("rotation_count", 0)
+    if not isinstance(count, int):
+        raise CalibrationError(f"{path}: rotation_count of [{section}] is no whole number: {count}")
+    return count % 4
 
 
 def toml_text(rig: Rig, kind: TomlKind) -> str:
@@ -84,6 +93,7 @@ def _table(number: int, camera: ForeignCamera, kind: TomlKind) -> str:
         lines |= {"name": camera.name, "distortions": distortion[:4], "fisheye": False}
     else:
         section = f"cam_{number}"
-        lines |= {"port": number, "distortions": distortion, "rotation_count": 0, "ignore": False}
+        lines |= {"port": number, "distortions": distortion, "ignore": False}
+        lines["rotation_count"] = camera.quarters
     told = "\n".join(f"{key} = {json.dumps(value)}" for key, value in lines.items())
     return f"[{json.dumps(section)}]\n{told}\n"

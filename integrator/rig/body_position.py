@@ -104,9 +104,9 @@ def _where_rays_meet(rig: Rig, roots_px: tuple[Pixel, Pixel], facade: int) -> Ve
     x_m, z_m = ground_position(
         first[0] - rig.cameras[0].K[0][2], second[0] - rig.cameras[1].K[0][2], paper
     )
-    camera, row = rig.cameras[facade], roots_px[facade][1]
-    scale = px_per_m(camera, np.array([x_m, 0.0, z_m]))
-    return np.array([x_m, centre(camera)[1] - (row - camera.K[1][2]) / scale, z_m])
+    below_m = np.array([x_m, 0.0, z_m])
+    seen_m = _at_depth(rig.cameras[facade], roots_px[facade], below_m)
+    return np.array([x_m, seen_m[1], z_m])
 
 
 def scales_at(rig: Rig, place_m: Vector) -> tuple[float, float]:

@@ -224,20 +224,33 @@ def import_(
             help="Pose2Sim, Caliscope or anipose TOML; Qualisys .qca.txt; OpenCV .yml, .xml."
         ),
     ],
+    out: Annotated[
+        Path,
+        typer.Option(
+            help="The file to write: calibration.json in a clip's folder, or in the one above.",
+            callback=writable_file,
+        ),
+    ],
     camera: Annotated[
         list[str] | None, typer.Option(help="Only this camera; give both, in their order.")
     ] = None,
-    out: Written = OUT,
+    up: Annotated[
+        Literal["x", "y", "z", "-x", "-y", "-z"] | None,
+        typer.Option(help="Which axis of its world is up, where rolled cameras do not tell."),
+    ] = None,
     force: Forced = False,
 ) -> None:
     """Take the calibration of another program.
 
+    Clips in the folder of the file that is written use it, and clips in folders there.
+
     Example: tritrack calibrate import Calib.toml --camera cam01 --camera cam04
+    --out clips/calibration.json
     """
     from integrator.foreign_rigs.imported_rig import imported_rig
     from integrator.rig.calibration import write_rig
 
-    rig = imported_rig(theirs, tuple(camera or ()))
+    rig = imported_rig(theirs, tuple(camera or ()), up)
     refuse_to_replace(out, force)
     write_rig(out, rig)
     console.print(
