@@ -86,7 +86,7 @@ def test_two_views_give_back_the_place(rig: Rig, facade: int, x: float, y: float
 def test_a_rig_that_nearly_is_the_papers_is_what_it_is(
     facade: int, x: float, y: float, z: float
 ) -> None:
-    """Its camera 2 turned by 0.95 degrees and 4.9 cm aside: as the paper's it would be 200 mm off."""
+    """Its camera 2 turned by 0.95 degrees, 4.9 cm aside: as the paper's it was 200 mm off."""
     point, roots = np.array([x, y, z]), seen(NEARLY, np.array([x, y, z]))
     assert place_of(NEARLY, roots, ORIGIN, facade) == pytest.approx(point, abs=1e-9)
     found = upright_place_of(NEARLY, *roots)

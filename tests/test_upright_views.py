@@ -19,7 +19,7 @@ from tritrack.store.pose_arrays import poses
 
 def tracked(clip: Path, views: tuple[Any, ...] = (1, 2), **settings: Any) -> Tracked:
     with Decoders() as decoders:
-        return track_clip(Settings(clip=str(clip), **settings), decoders, views)
+        return track_clip(Settings(clip=str(clip), size="160x160", **settings), decoders, views)
 
 
 @pytest.mark.parametrize(
