@@ -52,6 +52,39 @@ def test_an_absurd_rig_is_named_with_what_to_do(rig: Rig, named: str) -> None:
         refuse_absurd(rig, "calibration.json")
 
 
+def rolled(rig: Rig, deg: float) -> Rig:
+    cos, sin = np.cos(np.radians(deg)), np.sin(np.radians(deg))
+    turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    return _each(rig, lambda R, t: (turn @ R, turn @ t))
+
+
+def near_each_other(rig: Rig) -> Rig:
+    """Camera 2 looks by 35 degrees beside camera 1, from the other end of the same room."""
+    first, second = rig.cameras
+    cos, sin = np.cos(np.radians(35.0)), np.sin(np.radians(35.0))
+    turn = np.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
+    R = np.array(first.R) @ turn
+    other = msgspec.structs.replace(second, R=as_matrix(R), t=first.t)
+    return msgspec.structs.replace(rig, cameras=(first, other))
+
+
+@pytest.mark.parametrize("deg", range(0, 360, 15))
+@pytest.mark.parametrize("rig", [GOOD, near_each_other(GOOD)], ids=["across", "near"])
+def test_rolled_cameras_are_not_absurd(rig: Rig, deg: int) -> None:
+    """Upside down they are as alike as where y points down, yet they stand over the floor."""
+    refuse_absurd(rolled(rig, deg), "calibration.json")
+
+
+def test_a_world_whose_y_points_down_is_named() -> None:
+    """As that of OpenCV's first camera: the cameras are at its height 0."""
+    down = np.diag([1.0, -1.0, -1.0])
+    rig = _each(GOOD, lambda R, t: (R @ down, t))
+    on_floor = _each(rig, lambda R, t: (R, t + R @ [0.0, -1.0, 0.0]))
+    for each in (rig, on_floor):
+        with pytest.raises(CalibrationError, match="y does not point up in its world, y seems to"):
+            refuse_absurd(each, "calibration.json")
+
+
 def test_the_papers_rig_is_not_absurd() -> None:
     """Nor one with the same lenses up to the bounds, and not beyond them."""
     refuse_absurd(GOOD, "calibration.json")

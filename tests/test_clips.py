@@ -121,6 +121,19 @@ def test_two_of_several_cameras_are_taken_by_name(folder: Path, decoder: Decoder
     assert "no camera 'x'; it has a, b, c, d" in refusal(wrong, decoder)
 
 
+def test_of_more_cameras_than_views_none_is_taken_by_its_place(
+    folder: Path, decoder: Decoder
+) -> None:
+    calibrate(folder / "calibration.json", names=("a", "b", "c", "d"))
+    said = refusal(Settings(clip=str(folder)), decoder)
+    assert "has 4 cameras (a, b, c, d): say which of them took view 1" in said
+    assert "camera_1.calibrated_as" in said
+    calibrate(folder / "calibration.json", names=("cam3", "cam2", "cam1"))
+    rig = opened(folder, decoder).rig
+    assert rig is not None
+    assert [camera.name for camera in rig.cameras] == ["cam1", "cam2"]
+
+
 def test_one_video_makes_a_single_view_clip(folder: Path, decoder: Decoder) -> None:
     (folder / "cam1.avi").unlink()
     clip = opened(folder, decoder)

@@ -89,3 +89,52 @@ def test_what_is_no_calibration_is_told_in_one_line(
     (tmp_path / name).write_text(text)
     with pytest.raises(CalibrationError, match=said):
         imported_rig(tmp_path / name)
+
+
+def turned(rig: Rig, deg: float) -> Rig:
+    """The cameras rolled clockwise where they stand."""
+    cos, sin = np.cos(np.radians(deg)), np.sin(np.radians(deg))
+    roll = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    cameras = [
+        Camera(
+            *(one.name, one.K, as_matrix(roll @ np.array(one.R)), as_row(roll @ np.array(one.t)))
+        )
+        for one in rig.cameras
+    ]
+    return Rig(rig.width, rig.height, tuple(cameras))
+
+
+@pytest.mark.parametrize("deg", [0, 80, 100, 180, 270, 280])
+def test_caliscopes_quarter_turns_tell_which_way_is_up(tmp_path: Path, deg: int) -> None:
+    """Its cameras are those of the pictures as they were filmed; it shows them turned."""
+    path, rolled = tmp_path / "camera_array.toml", turned(tilted(), deg)
+    text = toml_text(rolled, "caliscope")
+    assert f"rotation_count = {round(deg / 90) % 4}" in text
+    path.write_text(text.replace("rotation_count = 3", "rotation_count = -1"))
+    points = np.random.default_rng(1).uniform(-0.7, 1.2, (20, 3))
+    for one, other in zip(imported_rig(path).cameras, rolled.cameras, strict=True):
+        assert project(one, points) == pytest.approx(project(other, points), abs=1e-6)
+
+
+@pytest.mark.parametrize("deg", [85, 180, 275])
+def test_rolled_cameras_of_which_nothing_is_told_need_the_axis_that_is_up(
+    tmp_path: Path, deg: int
+) -> None:
+    path, rolled = tmp_path / "Calib.toml", turned(tilted(), deg)
+    path.write_text(toml_text(rolled, "pose2sim"))
+    with pytest.raises(CalibrationError, match=r"seem rolled by 90 degrees or more.*--up z"):
+        imported_rig(path)
+    points = np.random.default_rng(1).uniform(-0.7, 1.2, (20, 3))
+    for one, other in zip(imported_rig(path, up="z").cameras, rolled.cameras, strict=True):
+        assert project(one, points) == pytest.approx(project(other, points), abs=1e-6)
+    upside_down = imported_rig(path, up="-z")
+    heights_m = [centre(camera)[1] for camera in upside_down.cameras]
+    assert heights_m == pytest.approx([-1.4, -1.8])
+
+
+def test_a_quarter_turn_that_is_none_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "camera_array.toml"
+    text = toml_text(tilted(), "caliscope")
+    path.write_text(text.replace("rotation_count = 0", "rotation_count = 0.5", 1))
+    with pytest.raises(CalibrationError, match=r"rotation_count of \[cam_0\] is no whole number"):
+        imported_rig(path)

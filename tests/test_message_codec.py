@@ -49,6 +49,7 @@ from common.bus.messages import (
 from common.raster.silhouette_report import pack, unpack
 from common.rig.camera import paper_rig
 from common.rig.picture_shift import Shift
+from common.rig.upright import Upright
 
 BDP = thesis_bdp(1.75)
 MEASURE = Measure(
@@ -118,10 +119,13 @@ BODY = Body(
 )
 LIFTING = Lifting("forward_left", 0.75, (0.5,) * len(LIMBS), (1.5,) * len(LIMBS))
 LIFTED = msgspec.structs.replace(BODY, views="1", lifting=LIFTING)
+LIES = Upright(REPORT.height, REPORT.width, 3, REPORT.height, REPORT.width)
+"""Its file's picture lies on a side."""
 SAID: list[Message] = [
     REPORT,
     msgspec.structs.replace(REPORT, box=None, measure=None, root_px=None),
     msgspec.structs.replace(REPORT, shift=Shift(right_px=3.5, down_px=-1.25, roll_deg=0.5)),
+    msgspec.structs.replace(REPORT, upright=LIES),
     GUIDE,
     BODY,
     LIFTED,
@@ -394,6 +398,15 @@ def test_a_silhouette_comes_back_at_any_width(mask: np.ndarray[Any, np.dtype[np.
 def test_a_box_that_is_not_in_the_picture_is_refused(box: Box) -> None:
     with pytest.raises(MalformedMessage, match="in a picture of 13x3"):
         decode(encode(msgspec.structs.replace(REPORT, box=box)), Report)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"quarters": 4}, {"quarters": 2}, {"width": 0}, {"square_width": 7}], ids=str
+)
+def test_a_picture_that_was_turned_into_another_is_refused(wrong: dict[str, int]) -> None:
+    report = msgspec.structs.replace(REPORT, upright=msgspec.structs.replace(LIES, **wrong))
+    with pytest.raises(MalformedMessage, match="Upright"):
+        decode(encode(report), Report)
 
 
 def test_a_body_with_a_pose_and_no_joints_is_refused() -> None:

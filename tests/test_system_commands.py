@@ -20,6 +20,9 @@ from spoiling import REFUSED, WORKED_WITH, copied, edit_json, refilmed
 
 import tritrack.__main__ as door
 from common.config.settings import Settings
+from common.rig.camera import paper_rig
+from common.rig.rig_file import load_rig
+from integrator.foreign_rigs.toml_rig import toml_text
 from tritrack.live import session
 from tritrack.store.other_run import run_of
 from tritrack.store.runs import write_run
@@ -571,7 +574,10 @@ def test_what_is_no_ordinary_file_is_refused_before_any_work(
         (["person", "nope"], "there is no clip folder and no settings file nope: check the path"),
         (["board", "nope.mp4", "none.mp4"], "there is no file nope.mp4: check the path"),
         (["poles", "nope.toml"], "cannot read the points nope.toml: No such file or directory"),
-        (["import", "nope.toml"], "cannot read the calibration nope.toml: No such file"),
+        (
+            ["import", "nope.toml", "--out", "calibration.json"],
+            "cannot read the calibration nope.toml: No such file",
+        ),
     ],
     ids=["person", "board", "poles", "import"],
 )
@@ -587,6 +593,21 @@ def test_what_a_calibration_lacks_is_said_before_that_one_is_there(
     said = tritrack("calibrate", *words)
     assert (said.code, len(said.errors)) == (2, 1)
     assert said.errors[0].startswith(f"error: {says}")
+
+
+def test_an_imported_calibration_goes_where_the_user_says_and_nowhere_else(
+    tritrack: Commands, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In the working folder it would be that of every clip below."""
+    monkeypatch.chdir(tmp_path)
+    rig = paper_rig((320, 240), (400.0, 400.0), (4.5, 4.5))
+    Path("theirs.toml").write_text(toml_text(rig, "caliscope"))
+    said = tritrack("calibrate", "import", "theirs.toml")
+    assert (said.code, len(said.errors)) == (2, 1)
+    assert "--out" in said.errors[0]
+    assert not Path("calibration.json").exists()
+    assert tritrack("calibrate", "import", "theirs.toml", "--out", "ours.json").code == 0
+    assert load_rig(Path("ours.json")).cameras[1].name == "cam_1"
 
 
 def test_a_board_that_is_there_is_kept_and_the_option_that_named_it_is_told(

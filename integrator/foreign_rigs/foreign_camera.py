@@ -21,6 +21,8 @@ Up = Literal["x", "y", "z", "-x", "-y", "-z"]
 """An axis of another program's world."""
 LOOKS_UP: Final = 0.2
 """Sine of the angle over the horizon at which no camera of a room looks up: rolled ones seem to."""
+STEEP: Final = 0.3
+"""Cosine of the angle down from the horizon at which a camera's picture hardly shows up at all."""
 UNDER_M: Final = 0.5
 """Cameras that seem to stand so far under the floor hang upside down over it."""
 
@@ -97,10 +99,11 @@ def _up_of(camera: ForeignCamera) -> Vector:
 
 
 def _is_rolled(camera: ForeignCamera, up: Vector) -> bool:
-    """Whether a camera, were this up, would stand by more than 45 degrees aslant, or look up."""
+    """Whether a camera, were this up, would stand by more than 45 degrees aslant, or look up, or
+    straight down."""
     upwards = float(_up_of(camera) @ up)
     aside = _up_of(camera._replace(quarters=camera.quarters + 1)) @ up
-    return bool(upwards <= abs(aside) or camera.R[2] @ up > LOOKS_UP)
+    return bool(upwards < max(abs(aside), STEEP) or camera.R[2] @ up > LOOKS_UP)
 
 
 def _named(up: Up) -> Vector:
