@@ -17,6 +17,7 @@ from typing import Final, NamedTuple
 import msgspec
 import numpy as np
 
+from common.bus.messages import ViewerNumber
 from common.config.picture_size import size_of
 from common.config.settings import Settings
 from common.rig.camera import Camera, Rig, as_matrix, as_row
@@ -81,7 +82,9 @@ def compared(tracked: Tracked, clip: Path) -> Found:
     view = tracked.clip.views[0]
     scale = view.filed_size[0] / view.source_size[0]
     off_m = np.linalg.norm(found["joints_m"][:, ours] - true_m, axis=-1)[present]
-    off_px = np.linalg.norm(found["joints_px"][:, :, ours] - scale * true_px, axis=-1)[present]
+    seen = [each.number - 1 for each in tracked.clip.views]
+    off_px = found["joints_px"][:, :, ours] - scale * true_px
+    off_px = np.linalg.norm(off_px[:, seen], axis=-1)[present]
     posed = np.isfinite(off_m).all(axis=1)
     return Found(1e3 * float(np.nanmean(off_m)), float(np.nanmean(off_px)), float(posed.mean()))
 
@@ -99,11 +102,14 @@ def main() -> None:
     parser.add_argument("--step", type=float, default=15.0)
     parser.add_argument("--size", default="320x240", help="of the pictures that are filmed")
     parser.add_argument("--work", default="320x240", help="that they are tracked at")
+    parser.add_argument("--views", default="12", choices=("12", "1"), help="that are tracked")
+    parser.add_argument("--mode", default="default", choices=("default", "paper", "thesis"))
     parser.add_argument("--second", choices=SECOND, default="alike", help="camera 2's roll")
     given = parser.parse_args()
     level = default_rig(*size_of(given.size))
     moved = performances(given.motion, given.person)
     upright: dict[str, Found] = {}
+    views: tuple[ViewerNumber, ...] = (1,) if given.views == "1" else (1, 2)
     print("| roll | " + " | ".join(f"{name}: mm, upright, px, posed" for name in moved) + " |")
     print("|---|" + "---|" * len(moved))
     with Decoders() as decoders:
@@ -112,8 +118,8 @@ def main() -> None:
             for name, shown in moved.items():
                 with tempfile.TemporaryDirectory() as folder:
                     clip = filmed(Path(folder), shown, rig)
-                    settings = Settings(clip=str(clip), size=given.work)
-                    found = compared(track_clip(settings, decoders), clip)
+                    settings = Settings(clip=str(clip), size=given.work, mode=given.mode)
+                    found = compared(track_clip(settings, decoders, views), clip)
                 first = upright.setdefault(name, found)
                 more = found.off_mm - first.off_mm
                 told.append(

@@ -163,7 +163,10 @@ def _camera_change(key: str, value: object) -> Callable[[dict[str, Any]], object
             "no positive focal",
         ),
         (_camera_change("K", [[400, 0, 0], [0, 400, 0], [160, 120, 1]]), "transposed"),
-        (_camera_change("t", [0.0, 1e999, 4.5]), r"t of camera cam1 has a number that is not finite"),
+        (
+            _camera_change("t", [0.0, 1e999, 4.5]),
+            r"t of camera cam1 has a number that is not finite",
+        ),
         (_camera_change("distortion", [0.1, 0.2, 0.3]), "3 distortion numbers"),
         (lambda content: content.update(width=0), "picture size 0x240 is not positive"),
         (lambda content: content.update(cameras=[]), "names no camera"),
