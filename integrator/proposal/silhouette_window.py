@@ -13,7 +13,7 @@ from common.raster.kernel import NEAREST_M
 from common.raster.silhouette_report import centroid_px
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig, arrays_of, centre, project, ray
-from integrator.rig.body_position import triangulate
+from integrator.rig.body_position import UP_AXIS, triangulate
 
 Floats = NDArray[np.float32]
 
@@ -64,11 +64,14 @@ class Look(NamedTuple):
 def axes_of(one: Camera, other: Camera) -> Vector:
     """Axes of the proposals' frame, rows (3, 3): y up, z towards one camera.
 
-    x is right in that camera, or left in a mirror: there the other always stands where the
-    paper's camera 2 does, to the left, as it does in most of what the network is trained on.
+    x is right in that camera, were it not rolled, or left in a mirror: there the other always
+    stands where the paper's camera 2 does, to the left, as it does in most of what the network is
+    trained on.
     """
     first, second = np.array(one.R)[2], np.array(other.R)[2]
-    right = np.array(one.R)[0] * [1.0, 0.0, 1.0]
+    right = np.cross(first, UP_AXIS)
+    if np.linalg.norm(right) < TO_A_SIDE:
+        right = np.array(one.R)[0] * [1.0, 0.0, 1.0]
     right /= np.linalg.norm(right)
     side = -1.0 if np.cross(first, second)[1] > TO_A_SIDE else 1.0
     return np.stack([side * right, [0.0, 1.0, 0.0], np.cross(right, [0.0, 1.0, 0.0])])
@@ -179,11 +182,14 @@ def _middle_m(masks: tuple[Mask | None, Mask | None], rig: Rig) -> Vector | None
 
 
 def standing_m(mask: Mask, camera: Camera) -> Vector:
-    """The middle of a silhouette whose lowest row is on the floor."""
-    column, row = centroid_px(mask)
-    lowest = float(np.flatnonzero(mask.any(axis=1))[-1] + 1)
-    eye = centre(camera)
-    down, middle = ray(camera, (column, lowest)), ray(camera, (column, row))
+    """The middle of a silhouette whose lowest point is on the floor, as its picture shows down."""
+    middle_px = centroid_px(mask)
+    eye, middle = centre(camera), ray(camera, middle_px)
+    downwards = _downwards(camera, eye + middle)
+    rows, columns = np.nonzero(mask)
+    along = (np.stack([columns, rows], axis=1) + 0.5 - middle_px) @ downwards
+    lowest = middle_px + downwards * (along.max() + 0.5 * np.abs(downwards).sum())
+    down = ray(camera, (float(lowest[0]), float(lowest[1])))
     flat = float(np.hypot(down[0], down[2]))
     steep = -down[1] / max(flat, 1e-9)
     far_m = eye[1] / steep if steep > eye[1] / FAR_M else FAR_M
@@ -191,6 +197,13 @@ def standing_m(mask: Mask, camera: Camera) -> Vector:
         max(far_m, NEAR_M) / max(float(np.hypot(middle[0], middle[2])), 1e-9)
     )
     return found
+
+
+def _downwards(camera: Camera, place_m: Vector) -> Vector:
+    """Which way is down in a picture at a place before its camera, (2,), unit length."""
+    at, above = project(camera, np.stack([place_m, place_m + ABOVE_M * UP_AXIS]))
+    down: Vector = (at - above) / max(float(np.linalg.norm(at - above)), 1e-9)
+    return down
 
 
 def _depth_m(camera: Camera, place_m: Vector) -> float:
