@@ -102,8 +102,8 @@ def _is_rolled(camera: ForeignCamera, up: Vector) -> bool:
     """Whether a camera, were this up, would stand by more than 45 degrees aslant, or look up, or
     straight down."""
     upwards = float(_up_of(camera) @ up)
-    aside = _up_of(camera._replace(quarters=camera.quarters + 1)) @ up
-    return bool(upwards < max(abs(aside), STEEP) or camera.R[2] @ up > LOOKS_UP)
+    aside = abs(float(_up_of(camera._replace(quarters=camera.quarters + 1)) @ up))
+    return bool(upwards < max(aside, STEEP) or camera.R[2] @ up > LOOKS_UP)
 
 
 def _named(up: Up) -> Vector:
