@@ -18,6 +18,7 @@ from common.rig.upright_camera import (
     upright_camera,
     upright_of,
 )
+from common.video.decoder import reduced
 
 SIZE: Final = (320, 240)
 LEVEL: Final = paper_rig(SIZE, (400.0, 400.0), (4.5, 4.5)).cameras[0]
@@ -83,3 +84,18 @@ def test_a_sensor_that_is_tilted_cannot_be_turned_and_says_so() -> None:
         upright_camera(camera, upright_of(camera, SIZE))
     level = rolled(0.0, bent=(*BENT, 0.01, 0.0))
     assert upright_camera(level, upright_of(level, SIZE)) == level
+
+
+@pytest.mark.parametrize("deg", [0.0, 90.0, 180.0, 270.0])
+@pytest.mark.parametrize("aspect", [0.75, 1.0, 1.5])
+def test_the_decoder_turns_pictures_as_cameras_are_turned(deg: float, aspect: float) -> None:
+    """A bright spot is found where the turned camera has it; wide pixels become squares."""
+    upright = upright_of(rolled(deg, aspect), SIZE)
+    picture = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
+    picture[60:72, 200:212] = 255
+    size, quarters = (SIZE, 0) if upright is None else (upright.size, upright.quarters)
+    worked = reduced(picture, size, quarters)
+    assert worked.shape == (size[1], size[0], 3)
+    rows, columns = np.nonzero(worked[..., 0] > 127)
+    (wanted,) = as_worked_on(np.array([[206.0, 66.0]]), upright)
+    assert [columns.mean() + 0.5, rows.mean() + 0.5] == pytest.approx(wanted, abs=0.5)
