@@ -4,6 +4,7 @@ import importlib
 import re
 import subprocess
 import sys
+import tomllib
 from collections import Counter
 from pathlib import Path
 
@@ -18,7 +19,7 @@ BELOW = {
 }
 """Which of our packages each may import."""
 HEAVY = (
-    *("matplotlib", "sklearn", "hmmlearn", "filterpy", "joblib", "distributed", "dask", "torch"),
+    *("matplotlib", "sklearn", "hmmlearn", "joblib", "distributed", "dask", "torch"),
     *("zenoh", "viser", "skimage", "tomlkit", "prometheus_client"),
 )
 """What only some commands need."""
@@ -106,10 +107,12 @@ def test_newer_pythons_are_tried_with_tests_that_are_there() -> None:
 @pytest.mark.parametrize(
     ("module", "heavy"),
     [
-        ("tritrack.__main__", {*HEAVY, "numba", "cv2", "scipy"}),
-        ("tritrack.offline.lockstep", {*HEAVY, "scipy.ndimage", "scipy.stats", "scipy.linalg"}),
+        ("tritrack.__main__", {*HEAVY, "filterpy", "numba", "cv2", "scipy"}),
+        ("tritrack.offline.lockstep", set(HEAVY)),
+        ("viewer.__main__", {*HEAVY, "filterpy"} - {"zenoh"}),
+        ("recognizer.__main__", {*HEAVY, "filterpy"} - {"zenoh"}),
     ],
-    ids=["help", "track"],
+    ids=["help", "track", "viewer", "recognizer"],
 )
 def test_nothing_heavy_is_imported_before_it_is_needed(module: str, heavy: set[str]) -> None:
     code = f"import sys, {module}; print(*sys.modules)"
@@ -117,6 +120,22 @@ def test_nothing_heavy_is_imported_before_it_is_needed(module: str, heavy: set[s
         [sys.executable, "-c", code], cwd=ROOT, capture_output=True, check=True, text=True
     )
     assert heavy.isdisjoint(done.stdout.split())
+
+
+def test_the_filter_is_imported_as_the_integrator_starts() -> None:
+    """A second's import: in the midst of a run it would be missed frames."""
+    code = "import sys, integrator.__main__; print(*sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, check=True, text=True
+    )
+    assert "filterpy.kalman" in done.stdout.split()
+
+
+def test_a_plain_installation_brings_the_five_given_packages() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    base = {re.split(r"[<>=]", each)[0] for each in project["dependencies"]}
+    given = {"numpy", "opencv-python-headless", "eclipse-zenoh", "hmmlearn", "filterpy"}
+    assert given <= base
 
 
 def test_only_one_file_has_functions_compiled() -> None:

@@ -141,7 +141,20 @@ def test_nothing_is_known_before_the_first_measurement() -> None:
     assert angles.tolist() == [10.0, 20.0]
 
 
-def test_all_angles_are_filtered_as_filterpy_filters_each() -> None:
+def test_a_long_watched_angle_is_corrected_by_kalatas_gains() -> None:
+    """Kalata 1984: the steady gains that the tracking index alone determines."""
+    settings = Smoothing()
+    state, _, _ = followed([np.zeros(2)] * 200, 2)
+    index = settings.acceleration_deg_s2 * PERIOD_S**2 / settings.noise_deg
+    r = (4.0 + index - np.sqrt(8.0 * index + index**2)) / 4.0
+    alpha = 1.0 - r**2
+    beta = 2.0 * (2.0 - alpha) - 4.0 * np.sqrt(1.0 - alpha)
+    _, angles, speeds = step(state, np.array([5.0, -2.0]), PERIOD_S)
+    assert angles == pytest.approx([5.0 * alpha, -2.0 * alpha], rel=1e-6)
+    assert speeds == pytest.approx([5.0 * beta / PERIOD_S, -2.0 * beta / PERIOD_S], rel=1e-6)
+
+
+def test_all_angles_together_are_filtered_as_each_alone_would_be() -> None:
     rng, settings, dt_s = np.random.default_rng(3), Smoothing(), 1 / 15
     measured = np.cumsum(rng.normal(0.0, 8.0, (30, 3)), axis=0)
     state = init(3, dt_s)

@@ -47,7 +47,7 @@ def programs(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert done.returncode == 0, done.stderr
     added = {path.name for path in set(site(folder).iterdir()) - before}
     assert added.isdisjoint(NAMES)
-    assert added.isdisjoint({"matplotlib", "sklearn", "hmmlearn", "filterpy"})
+    assert {"hmmlearn", "filterpy"} <= added
     return folder / "bin"
 
 
@@ -101,7 +101,7 @@ def test_a_clip_is_tracked_and_exported_and_ones_own_files_stay_ones_own(
     assert (desk / "runs" / clip.name / "body.bvh").stat().st_size > 10_000
     said(desk, tritrack, "single", clip / "cam1.avi", "--out", "single")
     assert (desk / "single" / "cam1" / "body.bvh").is_file()
-    assert not (desk / "single" / "cam1" / "angles.png").exists()  # an extra draws it
+    assert (desk / "single" / "cam1" / "angles.png").is_file()
     own.write_text(OWN.format(clip=clip))
     names, counted = said(desk, programs / "python", own).splitlines()
     assert names == " ".join(f"my {name}" for name in NAMES)

@@ -24,7 +24,7 @@ from tritrack.extras import refuse_without
 from tritrack.landmark_lessons import work_of
 from tritrack.terminal import counted
 
-LEARN: Final = ("learn", "hmmlearn", "sklearn")
+LEARN: Final = ("learn", "sklearn")
 """The extra of what learns models, and what it brings."""
 RecognizerName = Annotated[
     Literal["default", "paper"], typer.Option(help=f"Which models. {MODES}.")

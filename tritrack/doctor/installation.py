@@ -20,6 +20,8 @@ REQUIRED = {
     "numpy": "numpy",
     "opencv-python-headless": "cv2",
     "eclipse-zenoh": "zenoh",
+    "hmmlearn": "hmmlearn",
+    "filterpy": "filterpy",
     "msgspec": "msgspec",
     "numba": "numba",
 }
@@ -29,7 +31,7 @@ EXTRAS: Final = (
     ("live page", "viser", "page"),
     ("notes of the retouching page", "tomlkit", "page"),
     ("rooms of busy clips", "scikit-image", "single"),
-    ("learning of postures", "hmmlearn", "learn"),
+    ("learning of postures", "scikit-learn", "learn"),
     ("plots of reports and of angles", "matplotlib", "report"),
     ("C3D files", "ezc3d", "export"),
     ("USD files", "usd-core", "usd"),

@@ -93,8 +93,8 @@ def smoothed(
 ) -> NDArray[np.float64]:
     """Places over time, of constant velocity but for unknown accelerations.
 
-    The Kalman filter of `integrator/pose/smoothing.py`, and then from the end to the beginning the
-    smoother of Rauch, Tung and Striebel (1965).
+    A Kalman filter, and then from the end to the beginning the smoother of Rauch, Tung and Striebel
+    (1965), of all places at once: filterpy's, joint by joint, would take 20 times as long.
 
     Args:
         places_m: (n, ...)
