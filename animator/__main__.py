@@ -68,8 +68,15 @@ class Subscriber:
         pictures.update((picture.viewer, picture) for picture in self._pictures.drain())
         postures = self._postures.drain()
         newest = postures[-1] if postures else self._snapshot.posture
-        self._snapshot = Snapshot(body, reports, pictures, newest)
-        return self._snapshot, [posture.event for posture in postures if posture.event]
+        events = [posture.event for posture in postures if posture.event]
+        performed = events[-1].name if events else self._snapshot.performed
+        self._snapshot = Snapshot(body, reports, pictures, newest, performed)
+        return self._snapshot, events
+
+    @property
+    def shown(self) -> Body | None:
+        """The body of the last snapshot."""
+        return self._snapshot.body
 
     def pulses(self) -> list[Pulse]:
         """The newest of each process, if any is new."""
@@ -107,10 +114,19 @@ def run(
             bus.publish(Command(what="start"))
         _exchange(page, subscriber, bus)
         if ending is not None and ending.poll():
+            _show_rest(page, subscriber)
             heart.beat("ended", page.address)
             return _told(ending)
     heart.beat("ended", page.address)
     return None
+
+
+def _show_rest(page: LivePage, subscriber: Subscriber) -> None:
+    """The performance that the end of the run cut off: it is told after the last body."""
+    if subscriber.shown is not None:
+        snapshot, events = subscriber.with_body(subscriber.shown)
+        if events:
+            page.show(snapshot, events)
 
 
 def _exchange(page: LivePage, subscriber: Subscriber, bus: Bus) -> None:

@@ -55,6 +55,8 @@ class Snapshot(msgspec.Struct, frozen=True):
     pictures: Mapping[int, Picture] = {}
     """By viewer."""
     posture: Posture | None = None
+    performed: str = ""
+    """Posture of the last performance that was told."""
 
 
 class Figure(NamedTuple):

@@ -5,6 +5,7 @@ import time
 from pathlib import Path
 from typing import Final, NamedTuple
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +22,7 @@ from common.settled import settle
 from recognizer import events, model_rate, spotting
 from recognizer.features import ROW_NAMES, rows
 from recognizer.model_file import ModelError, load
+from recognizer.performance_judge import Event
 from recognizer.postures import DensityModel, PostureModel
 
 SHIPPED = Path(__file__).parent / "postures.npz"
@@ -32,6 +34,8 @@ REACH_FRAMES: Final = 900
 GAP_S: Final = 1.0
 """No body for longer ends what was going on, as so many frames without a pose do: what came before
 a cut and what comes after it are not one motion."""
+UNNUMBERED: Final = -1
+"""Frame of what is told of no frame of its own, as at the end of a run."""
 HEAR_S = 0.05
 MOVING = ("tracking", "predicted")
 """States in which a body's angles say what it does; the opening posture is no motion."""
@@ -67,24 +71,39 @@ def step(state: State, body: Body) -> tuple[State, Posture]:
     state, row, event = state._replace(rate=rate), row_of(body), None
     for _ in range(due):
         state = _with_row(state, body, row)
-        event = event or state.doing.event
-    judged, doing, frames = state.judged, state.doing, state.frames
-    oldest = state.window.next_frame - len(frames)
-
-    def at(step_number: int) -> tuple[int, float]:
-        return frames[max(step_number - oldest, 0)]
-
+        event = state.doing.event or event
+    judged, doing = state.judged, state.doing
     return state, Posture(
         frame=body.frame,
         captured_s=body.captured_s,
         clock_s=body.clock_s,
         name=judged.name,
         log_likelihoods=judged.log_likelihoods,
-        segment=(at(judged.first)[0], at(judged.last)[0]),
-        doing=doing.name,
+        segment=(_at(state, judged.first)[0], _at(state, judged.last)[0]),
+        doing=judged.name if state.events is None else doing.name,
         times=doing.times,
-        event=event and performance(event, at(event.first), at(event.last)),
+        event=event and performance(event, _at(state, event.first), _at(state, event.last)),
     )
+
+
+def finish(state: State, last: Posture) -> Posture | None:
+    """What there is to tell at the end of a run: the performance that it cuts off, if any.
+
+    Args:
+        state: After the last body.
+        last: What was told of that.
+    """
+    event = None if state.events is None else events.finish(state.events)
+    if event is None:
+        return None
+    told = performance(event, _at(state, event.first), _at(state, event.last))
+    return msgspec.structs.replace(last, frame=UNNUMBERED, event=told)
+
+
+def _at(state: State, step_number: int) -> tuple[int, float]:
+    """Number and time of one of the models' frames; of the oldest kept, where that one is not."""
+    oldest = state.window.next_frame - len(state.frames)
+    return state.frames[max(step_number - oldest, 0)]
 
 
 def _with_row(state: State, body: Body, row: NDArray[np.float64] | None) -> State:
@@ -107,9 +126,7 @@ def _after_a_gap(state: State) -> State:
     return State(window, network)
 
 
-def performance(
-    event: events.Event, onset: tuple[int, float], end: tuple[int, float]
-) -> Performance:
+def performance(event: Event, onset: tuple[int, float], end: tuple[int, float]) -> Performance:
     """An event in the frames and seconds of the stream."""
     return Performance(
         name=event.name,
@@ -141,6 +158,7 @@ def run(
 ) -> None:
     """Judge every body that is published until stopped."""
     state, told = init(model, settings.recognizer.window_frames), ""
+    posture: Posture | None = None
     pace = Pace(period_s)
     heart = Heart(bus, "recognizer", pace)
     bodies = bus.subscribe(Body)
@@ -156,6 +174,10 @@ def run(
             told = words(posture.event) if posture.event else told
             pace.done(body.clock_s - ahead_s, time.monotonic())
             heart.beat("running", told, **_lost(bodies))
+    last = posture and finish(state, posture)
+    if last is not None and last.event is not None:
+        bus.publish(last)
+        told = words(last.event)
     heart.beat("ended", told, **_lost(bodies))
 
 

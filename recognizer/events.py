@@ -7,26 +7,14 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from recognizer.features import ROW_NAMES, TRAVEL_POSES, Bearings, Rows, bearings, with_pose
-from recognizer.forward import forward
-from recognizer.path_network import COUNT, LAST, ONSET, SCALE, PathNetwork, advance, emissions
+from recognizer.features import ROW_NAMES, TRAVEL_POSES, Rows, bearings, with_pose
+from recognizer.path_network import COUNT, LAST, ONSET, PathNetwork, advance, emissions
+from recognizer.performance_judge import Event, event_of
 from recognizer.postures import STATES, Array, DensityModel
 from recognizer.spotting import MISSED_FRAMES
 
 OVER_FRAMES: Final = 2
 """So long a performance must be over on the best path before it is an event."""
-LEAST_FRAMES: Final = 10
-"""A shorter motion is a twitch: the quickest squat takes 1.5 s."""
-LEAST_STATES: Final = 3
-"""Of the five states of a posture, so many must be met: a part of a posture is not the posture."""
-MISFIT: Final = 42.0
-"""Nats a frame by which a performance may fit worse than those learnt from: some one and a half an
-entry, as people differ. A hand at the head fits a raised arm worse by 150 and more."""
-RIVAL: Final = 9.0
-"""Nats a frame by which a posture that holds may fit worse than one that does not."""
-DRIFT, DRIFT_SHARE = 0.09, 0.3
-"""By how much travel may differ from the posture's over a performance, leg lengths in five frames
-times its weight, and as a share of it: people walk slower or faster. Steps back are no walk."""
 AGAIN_FRAMES: Final = 9
 """The same posture within 0.6 s of where the last one ended is that performance going on: some
 pause between two kicks. Whoever rests for longer performs again."""
@@ -36,27 +24,16 @@ KEPT_FRAMES: Final = 150
 """Poses that a performance is judged by: its last ten seconds."""
 
 
-class Event(NamedTuple):
-    """One performance."""
-
-    name: str
-    first: int
-    last: int
-    """First and last frame, counted in calls of `step`."""
-    posterior: float
-    """Of this posture among all and the filler, in [0, 1]."""
-    times: int
-    """How often the posture's course was gone through: strides, kicks, circles."""
-
-
 class Doing(NamedTuple):
     """What the body is doing now."""
 
     name: str
     """"" while standing or doing something unknown."""
     times: int
+    """How often its course was gone through so far."""
     event: Event | None
-    """A performance that is over; told once."""
+    """A performance that is over. One that begins where the event before it does is that one gone
+    on, and takes its place."""
 
 
 NOTHING: Final = Doing("", 0, None)
@@ -80,8 +57,9 @@ class State:
     """Somebody was seen standing: until then no posture begins."""
     judged: int = -1
     """Last frame of the last performance that was judged."""
-    told: str = ""
-    """Posture of the last event; "" where what was judged last was none."""
+    told: tuple[Event, ...] = ()
+    """The parts of the last event, between which it paused; () where what was judged last was
+    none."""
     missed: int = 0
     """How many frames without a pose came last."""
 
@@ -111,15 +89,55 @@ def step(state: State, row: NDArray[np.float64] | None) -> tuple[State, Doing]:
     state = _further(state, new, now)
     best, states = int(state.score.argmax()), len(state.score) - 2
     if best < states:
-        name = state.network.model.names[best // STATES]
-        return state, Doing(name, int(state.record[best, COUNT]), None)
+        name, record = state.network.model.names[best // STATES], state.record[best]
+        before = _parts_before(state.told, name, int(record[ONSET]))
+        return state, Doing(name, _times(before) + int(record[COUNT]), None)
     over = state.over[best]
-    if over[ONSET] <= state.judged or now - over[LAST] < OVER_FRAMES:
+    if over[LAST] <= state.judged or now - over[LAST] < OVER_FRAMES:
         return state, NOTHING
-    event = _event(state, over)
-    again = event and event.name == state.told and event.first - state.judged <= AGAIN_FRAMES
-    state = replace(state, judged=int(over[LAST]), told=event.name if event else "")
-    return state, Doing("", 0, None if again else event)
+    told, event = _judged(state, over)
+    return replace(state, judged=int(over[LAST]), told=told), Doing("", 0, event)
+
+
+def finish(state: State) -> Event | None:
+    """The performance that the end of a stream cuts off, or follows too soon for it to be told."""
+    best = int(state.score.argmax())
+    under_way = best < len(state.score) - 2
+    over = np.append(state.record[best], state.frames[-1]) if under_way else state.over[best]
+    return _judged(state, over)[1] if over[LAST] > state.judged else None
+
+
+def _judged(state: State, over: NDArray[np.int64]) -> tuple[tuple[Event, ...], Event | None]:
+    """The parts of the last event now, and what there is to tell of it.
+
+    The best path may be one that stayed in its posture through a pause after which another one was
+    judged: what was told then is a part of it.
+    """
+    told = state.told
+    seen = [over[ONSET] <= frame <= over[LAST] for frame in state.frames]
+    event = event_of(state.network, over, state.rows[seen])
+    if event is None or (told and event.name != told[-1].name and event.first <= told[-1].last):
+        return (told if over[ONSET] <= state.judged else ()), None
+    before = _parts_before(told, event.name, event.first)
+    if not before and _goes_on(told, event.name, event.first):
+        event = event._replace(first=told[0].first)
+    parts = (*before, event)
+    sure = min(part.posterior for part in parts)
+    return parts, event._replace(first=parts[0].first, times=_times(parts), posterior=sure)
+
+
+def _parts_before(told: tuple[Event, ...], name: str, first: int) -> tuple[Event, ...]:
+    """The parts of the last event that came before what begins then, if that goes on with it."""
+    return tuple(part for part in told if part.first < first and _goes_on(told, name, first))
+
+
+def _goes_on(told: tuple[Event, ...], name: str, first: int) -> bool:
+    """Whether what begins then is the last performance, after a pause at most."""
+    return bool(told) and told[-1].name == name and first - told[-1].last <= AGAIN_FRAMES
+
+
+def _times(parts: tuple[Event, ...]) -> int:
+    return sum(part.times for part in parts)
 
 
 def _begun(network: PathNetwork) -> State:
@@ -141,7 +159,7 @@ def _further(state: State, new: Rows, now: int) -> State:
         seen, speed, model.mean, model.variance, model.rest_mean, model.rest_variance
     )
     score, record, over = advance(
-        state.score, state.record, state.over, emission, network.log_transition, network.turn,
+        state.score, state.record, state.over, emission, network.log_transition, network.side,
         now, state.stood,
     )  # fmt: skip
     return replace(
@@ -153,42 +171,4 @@ def _further(state: State, new: Rows, now: int) -> State:
         frames=(*state.frames, now)[-KEPT_FRAMES:],
         shown=shown,
         stood=state.stood or int(score.argmax()) == len(score) - 2,
-    )
-
-
-def _event(state: State, over: NDArray[np.int64]) -> Event | None:
-    """The performance that is over, if it was one: the likeliest of the postures that it can be."""
-    model, first, last = state.network.model, int(over[ONSET]), int(over[LAST])
-    rows = state.rows[[first <= frame <= last for frame in state.frames]]
-    shown, logs = bearings(rows), model.log_emission(rows)
-    totals = forward(model.start, model.transition, logs)
-    held = [_holds(state.network, p, shown, logs[:, p]) for p in range(len(model.names))]
-    among = np.where(held, totals, -np.inf)
-    posture = int(among.argmax())
-    if among[posture] < totals.max() - RIVAL * len(rows):
-        return None
-    filler = (model.fit[posture] - MISFIT) * len(rows)
-    shares = np.exp(SCALE * (np.append(among, filler) - among[posture]))
-    posterior = float(shares[posture] / shares.sum())
-    return Event(model.names[posture], first, last, posterior, int(over[COUNT]))
-
-
-def _holds(network: PathNetwork, posture: int, shown: Bearings, logs: Array) -> bool:
-    """Whether frames show the posture, and all of it.
-
-    Args:
-        network: Of all postures.
-        posture: Its number.
-        shown: (n, 27) the frames.
-        logs: (n, s) their log densities in the posture's states.
-    """
-    model, state = network.model, logs.argmax(axis=1)
-    meant = model.mean[posture, state, -3:].mean(axis=0)
-    drift = np.linalg.norm(shown[:, -3:].mean(axis=0) - meant)
-    return bool(
-        len(shown) >= LEAST_FRAMES
-        and len(np.unique(state)) >= LEAST_STATES
-        and network.far[posture, state].any()
-        and logs.max(axis=1).mean() >= model.fit[posture] - MISFIT
-        and drift <= DRIFT + DRIFT_SHARE * np.linalg.norm(meant)
     )

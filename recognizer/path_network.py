@@ -37,7 +37,7 @@ gone through, whether it is in its second half; and of one that is over: its las
 
 REACH: Final = 0.75
 """Of the distance from standing at the height of a posture: whoever does not get so far does
-something else."""
+something else. Of a repetition's way too: so far it must go, and so far back."""
 LONG_FRAMES: Final = 1000
 """After so many, where a chain began no longer matters."""
 RARE: Final = 0.05
@@ -71,13 +71,19 @@ class PathNetwork:
         return np.asarray(self.away >= REACH * self.away.max(axis=1, keepdims=True))
 
     @cached_property
-    def turn(self) -> NDArray[np.int64]:
-        """The state of each posture farthest from standing, and before it that farthest from this
-        one: a repetition goes from one to the other and back, (p, 2)."""
-        far = self.away.argmax(axis=1)
-        mean = self.model.mean
-        apart = np.linalg.norm(mean - mean[np.arange(len(far)), far][:, np.newaxis], axis=2)
-        return np.stack([np.where(self.share > RARE, apart, 0.0).argmax(axis=1), far], axis=1)
+    def side(self) -> NDArray[np.int64]:
+        """On which end of the way of a repetition each state lies, (p, s): 1 at the far one, -1 at
+        the near one, 0 between.
+
+        A repetition goes from the state farthest from this one to that farthest from standing.
+        """
+        mean, every = self.model.mean, np.arange(len(self.model.mean))
+        far = mean[every, self.away.argmax(axis=1)][:, np.newaxis]
+        apart = np.where(self.share > RARE, np.linalg.norm(mean - far, axis=2), 0.0)
+        near = mean[every, apart.argmax(axis=1)][:, np.newaxis]
+        along = ((mean - near) * (far - near)).sum(axis=2) / np.square(far - near).sum(axis=2)
+        ends = np.where(along >= REACH, 1, np.where(along <= 1.0 - REACH, -1, 0))
+        return np.where(self.share > RARE, ends, 0)
 
 
 @compiled
@@ -132,18 +138,18 @@ def _way_into(k: int, score: Any, log_transition: Any, enter: float) -> tuple[fl
 
 
 @compiled
-def _turned(s: int, turn: Any, own: Any) -> None:
-    """Count a repetition where a path comes to the far turn after the near one."""
-    if s == turn[1] and own[PHASE] == 0:
+def _turned(side: int, own: Any) -> None:
+    """Count a repetition where a path comes to the far end after the near one."""
+    if side > 0 and own[PHASE] == 0:
         own[COUNT] += 1
         own[PHASE] = 1
-    elif s == turn[0]:
+    elif side < 0:
         own[PHASE] = 0
 
 
 @compiled
 def advance(
-    score: Any, record: Any, over: Any, emission: Any, log_transition: Any, turn: Any, frame: int,
+    score: Any, record: Any, over: Any, emission: Any, log_transition: Any, side: Any, frame: int,
     open_: bool,
 ) -> Any:  # fmt: skip
     """One frame further: the best path into every state of the network.
@@ -155,7 +161,7 @@ def advance(
             its last frame; -1 where there is none.
         emission: What `emissions` gives for this frame.
         log_transition: (p, s, s).
-        turn: (p, 2) the states of each posture between which one repetition goes.
+        side: (p, s) on which end of a repetition each state lies: 1 far, -1 near, 0 between.
         frame: Number of this frame.
         open_: Whether a posture may begin: once somebody was seen standing.
 
@@ -180,7 +186,7 @@ def advance(
         else:
             new_over[k] = over[origin]
             own[:] = record[origin]
-        _turned(k % states, turn[k // states], own)
+        _turned(side[k // states, k % states], own)
     for k, other in ((still, filler), (filler, still)):
         values = (score[k], score[other] - CHANGE, score[leaver] - EXIT)
         best = max(values)

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from acting import perform, performances, standing
 
-from recognizer.events import Event, init, step
-from recognizer.path_network import CHANGE, ENTER, EXIT, LAST, advance
+from recognizer.events import finish, init, step
+from recognizer.path_network import CHANGE, ENTER, EXIT, LAST, PathNetwork, advance
+from recognizer.performance_judge import Event
 from recognizer.postures import DensityModel
 from recognizer.training.learning import extended, train
 
@@ -42,15 +43,28 @@ def model() -> DensityModel:
     return learnt(*SHOWN)
 
 
+@pytest.fixture(scope="module")
+def many() -> DensityModel:
+    return learnt(*SHOWN, "kick_left_side")
+
+
 def told(model: DensityModel, *pieces: np.ndarray) -> list[tuple[Event, int]]:
-    """The events of a stream with the frame in which each was told; everybody moves on from where
-    they are."""
-    state, events = init(model), []
+    """The events of a stream, as they are in the end, with the frame in which each was last told;
+    everybody moves on from where they are."""
+    state, events = init(model), dict[int, tuple[Event, int]]()
     for frame, row in enumerate(np.concatenate(pieces)):
         state, doing = step(state, row)
         if doing.event:
-            events.append((doing.event, frame))
-    return events
+            events[doing.event.first] = (doing.event, frame)
+    return list(events.values())
+
+
+def ended(model: DensityModel, *pieces: np.ndarray) -> Event | None:
+    """What the end of a stream has to tell."""
+    state = init(model)
+    for row in np.concatenate(pieces):
+        state, _ = step(state, row)
+    return finish(state)
 
 
 @pytest.mark.parametrize("posture", ["squat", "raise_right_lateral", "kick_right_forward"])
@@ -88,8 +102,65 @@ def test_five_performances_with_a_rest_between_them_are_five_events(
 
 def test_a_performance_that_pauses_is_one_event(model: DensityModel) -> None:
     """A third of a second, four times: it is over, and judged, after each of its five parts."""
-    events = rests(model, "kick_right_forward", 5)
-    assert [event.name for event, _ in events] == ["kick_right_forward"]
+    (only,) = [event for event, _ in rests(model, "kick_right_forward", 5)]
+    assert only.name == "kick_right_forward"
+    assert (only.first, only.last) == pytest.approx((30, 30 + 5 * 45 - 6), abs=6)
+    assert only.times == 10, "each performance is two kicks"
+
+
+@pytest.mark.parametrize("rest_frames", [5, 8, 10, 14, 20])
+@pytest.mark.parametrize(
+    ("posture", "times"), [("kick_right_forward", 20), ("kick_left_side", 20), ("squat", 20)]
+)
+def test_every_repetition_counts_whatever_the_pause_between_them(
+    many: DensityModel, posture: str, times: int, rest_frames: int
+) -> None:
+    """Ten performances of two bends each, in however many events."""
+    once = np.concatenate([perform(posture, performer=9), still(rest_frames)])
+    events = [event for event, _ in told(many, still(30), *[once] * 10, still(30))]
+    assert {event.name for event in events} == {posture}
+    assert sum(event.times for event in events) == times
+
+
+def test_what_is_under_way_counts_from_before_the_pause(model: DensityModel) -> None:
+    kick = perform("kick_right_forward", performer=9)
+    state, counts = init(model), []
+    for row in np.concatenate([still(30), kick, still(5), kick]):
+        state, doing = step(state, row)
+        counts.append(doing.times)
+    assert max(counts) == 4
+
+
+def test_a_performance_is_told_that_ends_just_before_the_stream_does(model: DensityModel) -> None:
+    """A third of a second; and one that the end cuts off in its second half."""
+    squat = perform("squat", performer=9)
+    for seen in ([squat, still(5)], [squat], [squat[:30]]):
+        event = ended(model, still(30), *seen)
+        assert event is not None
+        assert event.name == "squat"
+        assert event.first == pytest.approx(30, abs=6)
+        assert event.last == pytest.approx(30 + len(seen[0]) - 1, abs=6)
+
+
+def test_the_end_of_a_stream_tells_no_more_than_was_performed(model: DensityModel) -> None:
+    squat, kick = (perform(posture, performer=9) for posture in ("squat", "kick_right_forward"))
+    assert finish(init(model)) is None
+    assert ended(model, still(30)) is None
+    assert ended(model, still(30), squat[:6]) is None
+    assert ended(model, still(30), squat, still(30)) is None, "it was told before"
+    both = ended(model, still(30), kick, still(5), kick)
+    assert both is not None
+    assert (both.first, both.times) == (pytest.approx(30, abs=6), 4), "the last one gone on"
+
+
+def test_a_repetition_goes_to_the_far_states_and_back_to_the_near_ones(many: DensityModel) -> None:
+    """By the model's own poses: the far ones are away from standing, the near ones as standing."""
+    network = PathNetwork(many)
+    away = np.linalg.norm(many.mean - many.rest_mean, axis=2)
+    for posture in ("kick_right_forward", "kick_left_side", "squat"):
+        p = many.names.index(posture)
+        far, near = (away[p][network.side[p] == side] for side in (1, -1))
+        assert far.min() > 2 * near.max()
 
 
 def test_standing_is_no_event(model: DensityModel) -> None:

@@ -233,12 +233,16 @@ def test_a_browser_shows_the_body_both_views_and_asks_nobody_else(
 def test_pictures_and_body_move_an_event_appears_and_the_end_is_played(
     page: LivePage, looking: Looking
 ) -> None:
-    over = Performance("squat", 3, 9, 0.2, 0.6, 1.0, 2)
+    over = Performance("squat", 3, 9, 0.2, 0.6, 1.0, 1)
+    gone_on = Performance("squat", 3, 12, 0.2, 0.8, 1.0, 2)
+    events = {9: [over], 12: [gone_on]}
     for frame in range(30):
-        page.show(snapshot_at(frame), [over] if frame == 9 else [])
+        page.show(snapshot_at(frame), events.get(frame, []))
         time.sleep(1 / 30)
     assert looking.until("document.body.dataset.frame === '29'")
     assert looking.until("document.querySelector('#events').innerText.includes('squat × 2')")
+    assert looking.ask("document.querySelectorAll('#events button').length") == 1
+    assert looking.ask("document.querySelector('#counts').textContent") == "squat 2"
     counts = {"frames": 414, "frames_with_pose": 402}
     page.end({"clip": "walk", "warnings": ["it was dark <b>"], "out": "runs/1", **counts})
     assert looking.until("!document.querySelector('#ending').hidden")

@@ -208,6 +208,25 @@ def test_postures_name_frame_time_segment_and_scores(tmp_path: Path) -> None:
     }
 
 
+def test_a_performance_that_goes_on_takes_the_place_of_what_was_told_of_it(tmp_path: Path) -> None:
+    """One of the same onset; it is told after the last frame, too, and has no row of its own."""
+
+    def told(frame: int, event: Performance | None) -> Posture:
+        return Posture(frame=frame, captured_s=frame / 15, clock_s=0.0, name="", event=event)
+
+    first = Performance("kick_left_side", 8, 36, 0.533, 2.4, 0.99, 2)
+    longer = Performance("kick_left_side", 8, 60, 0.533, 4.0, 0.98, 4)
+    other = Performance("squat", 80, 99, 5.333, 6.6, 0.99, 1)
+    said = [told(40, first), told(50, None), told(64, longer), told(-1, other)]
+    write_postures(tmp_path, said, "squat")
+    written = strict((tmp_path / "posture.json").read_text())
+    assert [(one["name"], one["end"], one["times"]) for one in written["events"]] == [
+        ("kick_left_side", 60, 4),
+        ("squat", 99, 1),
+    ]
+    assert [row["frame"] for row in written["frames"]] == [40, 50, 64]
+
+
 @pytest.mark.parametrize("frames", [0, 1, 3])
 def test_postures_are_laid_out_as_the_rest_of_a_summary_is(tmp_path: Path, frames: int) -> None:
     """Though they are written one by one."""

@@ -8,16 +8,18 @@ import numpy as np
 import pytest
 from show_page import BDP, RIG, pose_at, snapshot_at
 
+from animator.page.page_messages import ShownPosture
 from animator.page.shown import (
     hint,
     outline_of,
     probabilities,
     shown_frame,
+    shown_posture,
     shown_room,
     trust_of,
 )
 from animator.scene import Snapshot
-from common.bus.messages import Agreement, Body, Report
+from common.bus.messages import Agreement, Body, Posture, Report
 from common.raster.silhouette_report import pack, unpack
 
 
@@ -25,6 +27,27 @@ def test_postures_are_as_probable_as_bayes_has_it_with_equal_priors() -> None:
     told = probabilities({"squat": math.log(0.02) - 700, "kick": math.log(0.06) - 700})
     assert told == pytest.approx({"squat": 0.25, "kick": 0.75})
     assert probabilities({}) == {}
+
+
+def test_the_headline_is_what_is_under_way_or_else_what_was_performed_last() -> None:
+    """As the list of performances has it: the sliding window means something else meanwhile."""
+    window = Posture(
+        frame=9, captured_s=0.6, clock_s=0.6, name="squat", log_likelihoods={"squat": -1.0}
+    )
+    kicks = msgspec.structs.replace(window, doing="kick_left_side", times=3)
+    shown = shown_posture(kicks, "walk_toward")
+    assert shown == ShownPosture("kick_left_side", "kick_left_side", 3, [])
+    assert shown_posture(window, "walk_toward") == ShownPosture("walk_toward", "", 0, [])
+    assert shown_posture(window) == ShownPosture("", "", 0, [])
+
+
+def test_rivals_are_those_of_the_posture_in_the_headline() -> None:
+    logs = {"squat": math.log(0.03), "walk_toward": math.log(0.01)}
+    squat = Posture(frame=9, captured_s=0.6, clock_s=0.6, name="squat", log_likelihoods=logs)
+    rivals = [("squat", 0.75), ("walk_toward", 0.25)]
+    under_way = msgspec.structs.replace(squat, doing="squat", times=1)
+    assert shown_posture(under_way) == ShownPosture("squat", "squat", 1, rivals)
+    assert shown_posture(squat, "squat") == ShownPosture("squat", "", 0, rivals)
 
 
 def test_an_outline_filled_is_the_silhouette_again_within_its_smoothing() -> None:

@@ -10,7 +10,7 @@ from rich.console import Console
 from test_exporting import write
 
 from common.body.body import JOINT_NAMES
-from recognizer.events import Event
+from recognizer.performance_judge import Event
 from recognizer.postures import DensityModel
 from recognizer.training import streams
 from recognizer.training.learning import train

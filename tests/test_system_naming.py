@@ -1,15 +1,19 @@
 """From a clip to its posture's name: the made-up person of the demo, and the same in a mirror."""
 
 import shutil
+import threading
+import time
 from pathlib import Path
 
 import cv2
 import msgspec
 import pytest
+from local_bus import LocalBus
 
+from common.bus.control_messages import ClockAnswer, ClockQuestion, Pulse
 from common.bus.messages import Body, Posture
 from common.config.settings import Settings
-from recognizer.__main__ import SHIPPED, init, step
+from recognizer.__main__ import SHIPPED, init, run, step
 from recognizer.model_file import load
 from tritrack.live.recorded import SoFar
 from tritrack.offline.lockstep import Decoders, track_clip
@@ -56,6 +60,33 @@ def mirrored(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_posture_is_named_of_a_person_that_no_model_was_trained_on(clip: Path) -> None:
     """P58: the demo's own answer."""
     assert named(clip) == "raise_right_lateral"
+
+
+def test_what_ends_with_the_clip_is_told_when_the_recognizer_ends(clip: Path) -> None:
+    """By the process itself, after the last body: the arm is still up there."""
+    bodies, bus, stop = tracked(clip), LocalBus(), threading.Event()
+    bus.answer(ClockQuestion, lambda _: ClockAnswer(now_s=time.monotonic()))
+    heard, pulses = bus.subscribe(Posture), bus.subscribe(Pulse)
+    arguments = (load(SHIPPED), Settings(), bus, 1 / 15, stop)
+    recognizer = threading.Thread(target=run, args=arguments)
+    recognizer.start()
+    postures: list[Posture] = []
+    try:
+        assert pulses.take(20.0) is not None, "it is ready"
+        for body in bodies:
+            bus.publish(body)
+            last = heard.take(5.0)
+            assert last is not None
+            postures.append(last)
+    finally:
+        stop.set()
+        recognizer.join()
+    assert [posture.event for posture in postures if posture.event] == []
+    (last,) = heard.drain()
+    assert last.event is not None
+    assert last.event.name == "raise_right_lateral"
+    assert last.event.end == bodies[-1].frame
+    assert (last.frame, last.captured_s) == (-1, bodies[-1].captured_s)
 
 
 def test_a_mirror_changes_the_answer(mirrored: Path) -> None:

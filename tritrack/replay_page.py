@@ -7,7 +7,7 @@ from rich.console import Console
 
 from animator.page.live import LivePage
 from animator.scene import Snapshot
-from common.bus.messages import Body, Posture, Report
+from common.bus.messages import Report
 from common.bus.process import ProcessContext, process
 from common.rig.camera import Rig
 from integrator.pairing import Pair
@@ -49,7 +49,7 @@ def show(page: LivePage, recording: Recording) -> int:
     rigs: dict[int, Rig | None] = {told.calibration: told.rig for told in recording.cameras}
     made_of = {body.captured_s: pair for body, pair in pairs(recording)}
     postures = {posture.captured_s: posture for posture in recording.postures}
-    calibration = -1
+    calibration, performed = -1, ""
     for body in recording.bodies:
         rig = rigs.get(body.calibration, recording.head.rig)
         if rig is not None and calibration != body.calibration:
@@ -57,10 +57,11 @@ def show(page: LivePage, recording: Recording) -> int:
             page.set_rig(rig)
         posture = postures.get(body.captured_s)
         event = () if posture is None or posture.event is None else (posture.event,)
-        page.show(_snapshot(body, made_of.get(body.captured_s), posture), event)
+        performed = event[-1].name if event else performed
+        seen = _reports(made_of.get(body.captured_s))
+        page.show(Snapshot(body, seen, {}, posture, performed), event)
     return len(recording.bodies)
 
 
-def _snapshot(body: Body, pair: Pair | None, posture: Posture | None) -> Snapshot:
-    reports: dict[int, Report] = {report.viewer: report for report in pair or () if report}
-    return Snapshot(body, reports, {}, posture)
+def _reports(pair: Pair | None) -> dict[int, Report]:
+    return {report.viewer: report for report in pair or () if report}

@@ -40,7 +40,9 @@ class ShownPosture(msgspec.Struct, frozen=True):
     """What the body is doing."""
 
     name: str
+    """That of what is under way, else of what was performed last."""
     doing: str
+    """"" while nothing is under way."""
     times: int
     rivals: list[tuple[str, float]]
     """The likeliest names and their probabilities, best first."""

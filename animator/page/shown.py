@@ -89,7 +89,7 @@ def shown_frame(
         solids=[] if standing is None else _solids(standing, body),
         angles=_rounded([body.pose[i] for i in ANGLES_IN_POSE], 1) if body.pose else [],
         views=_views(snapshot, body, standing, rig),
-        posture=shown_posture(snapshot.posture),
+        posture=shown_posture(snapshot.posture, snapshot.performed),
         events=tuple(events),
     )
 
@@ -111,14 +111,20 @@ def shown_room(rig: Rig) -> ShownRoom:
     return ShownRoom(_rounded(seen.look_at), _rounded(seen.position), cameras)
 
 
-def shown_posture(posture: Posture | None) -> ShownPosture | None:
-    """The name and its rivals' probabilities, where all postures are as likely beforehand."""
+def shown_posture(posture: Posture | None, performed: str = "") -> ShownPosture | None:
+    """What is under way or was performed last, and its rivals' probabilities, where all postures
+    are as likely beforehand.
+
+    The sliding window tells of rivals only where it means that posture too: it knows no standing,
+    and reaches back to what came before.
+    """
     if posture is None:
         return None
-    rivals = probabilities(posture.log_likelihoods)
+    name = posture.doing or performed
+    rivals = probabilities(posture.log_likelihoods if posture.name == name else {})
     best = sorted(rivals.items(), key=lambda each: -each[1])[:MOST_RIVALS]
-    told = [(name, round(share, 4)) for name, share in best]
-    return ShownPosture(posture.name, posture.doing, posture.times, told)
+    told = [(rival, round(share, 4)) for rival, share in best]
+    return ShownPosture(name, posture.doing, posture.times, told)
 
 
 def probabilities(log_likelihoods: Mapping[str, float]) -> dict[str, float]:

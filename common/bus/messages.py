@@ -270,11 +270,13 @@ class Posture(Moment, frozen=True, kw_only=True):
     segment: tuple[int, int] = (0, 0)
     """First and last frame of the window that was judged."""
     doing: str = ""
-    """The posture that is under way; "" while standing or doing something unknown."""
+    """The posture that is under way; "" while standing or doing something unknown. By a model that
+    knows no standing (the paper's) it is `name`."""
     times: int = 0
     """How often its course was gone through so far."""
     event: Performance | None = None
-    """A performance that is over; told once."""
+    """A performance that is over, or cut off by the end of the run. One of the same onset as the
+    event before is that performance gone on after a pause, and takes its place."""
 
 
 class Picture(Moment, frozen=True, kw_only=True):

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from common.body.body import ANGLE_NAMES
 from recognizer import events
 from recognizer.features import Rows, features, with_pose
+from recognizer.performance_judge import Event
 from recognizer.postures import DensityModel
 
 PAUSE_FRAMES: Final = (15, 60)
@@ -51,18 +52,23 @@ class Found(NamedTuple):
     delays: tuple[int, ...]
     """Frames from the end of each that was found to its event."""
     missed: tuple[Act, ...]
-    false: tuple[events.Event, ...]
+    false: tuple[Event, ...]
     """Events of nothing, of something else, or told twice."""
 
 
-def spotted(model: DensityModel, rows: Rows) -> list[tuple[events.Event, int]]:
-    """The events of a stream, each with the frame in which it was told."""
-    state, told = events.init(model), []
+def spotted(model: DensityModel, rows: Rows) -> list[tuple[Event, int]]:
+    """The events of a stream, each with the frame in which it was first told."""
+    state, told = events.init(model), dict[int, tuple[Event, int]]()
+
+    def take(event: Event | None, frame: int) -> None:
+        if event is not None:
+            told[event.first] = (event, told.get(event.first, (event, frame))[1])
+
     for frame, row in enumerate(rows):
         state, doing = events.step(state, row)
-        if doing.event is not None:
-            told.append((doing.event, frame))
-    return told
+        take(doing.event, frame)
+    take(events.finish(state), len(rows) - 1)
+    return list(told.values())
 
 
 def found(model: DensityModel, stream: Stream) -> Found:
@@ -80,7 +86,7 @@ def found(model: DensityModel, stream: Stream) -> Found:
     return Found(stream.name, len(stream.rows), count, tuple(delays.values()), missed, tuple(false))
 
 
-def _overlap(event: events.Event, act: Act) -> int:
+def _overlap(event: Event, act: Act) -> int:
     return min(event.last, act.last) - max(event.first, act.first)
 
 

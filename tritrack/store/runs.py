@@ -92,7 +92,9 @@ def write_postures(folder: Path, postures: Iterable[Posture], performed: str) ->
     Raises:
         RunError: When it cannot be written.
     """
-    events = [msgspec.to_builtins(posture.event) for posture in postures if posture.event]
+    told_of = (posture.event for posture in postures if posture.event)
+    newest = {(event.name, event.onset_s): event for event in told_of}
+    events = [msgspec.to_builtins(event) for event in newest.values()]
     told = json_text({"posture": performed, "events": events, "frames": []})
     begin, _, end = told.rpartition("]")
     rows = (_row_of(posture) for posture in postures if posture.frame >= 0)

@@ -19,7 +19,7 @@ export function showStatus(status, words) {
 export function showPosture(posture) {
   const doing = posture?.doing ?? "";
   at("posture").classList.toggle("idle", !doing);
-  set("name", spoken(doing || posture?.name || "") || "no posture yet");
+  set("name", spoken(posture?.name ?? "") || "no posture yet");
   set("times", doing && posture.times > 1 ? `× ${posture.times}` : "");
   const rows = [...at("rivals").children];
   const rivals = posture?.rivals ?? [];
@@ -48,11 +48,15 @@ function percent(share) {
 export class Events {
   constructor(seek) {
     this.seek = seek;
+    this.last = null;
     this.times = new Map();
   }
 
   add(event) {
-    this.times.set(event.name, (this.times.get(event.name) ?? 0) + Math.max(1, event.times));
+    const goesOn = this.last?.event.name === event.name && this.last.event.onset_s === event.onset_s;
+    const counted = goesOn ? Math.max(1, this.last.event.times) : 0;
+    if (goesOn) this.last.item.remove();
+    this.times.set(event.name, (this.times.get(event.name) ?? 0) + Math.max(1, event.times) - counted);
     const all = [...this.times].map(([name, times]) => `${spoken(name)} ${times}`);
     set("counts", all.join(" · "));
     const button = element("button", spoken(event.name) + (event.times > 1 ? ` × ${event.times}` : ""), { type: "button" });
@@ -62,6 +66,7 @@ export class Events {
     const item = document.createElement("li");
     item.append(button);
     at("events").prepend(item);
+    this.last = { event, item };
   }
 }
 
