@@ -174,7 +174,7 @@ def test_limits_turn_a_limb_in_depth_and_leave_the_picture_alone(
     astray_m = joints(body_vector(thesis_bdp(1.75)), turned)
     monkeypatch.setattr(bent_limbs, "bent", lambda sight, joints_m: astray_m)
     sight = sight_of(report_of(ADULT), printed=False)
-    found = lone_proposal.step(lone_proposal.Before(None, None, None), sight).found
+    found = lone_proposal.step(lone_proposal.Before(None, None, None, None), sight).found
     assert found.pose[POSE_INDEX["l_knee_x"]] <= 0.0
     assert project(CAMERA, found.joints_m) == pytest.approx(project(CAMERA, astray_m))
     moved_m = np.linalg.norm(found.joints_m - astray_m, axis=1)

@@ -14,7 +14,7 @@ from integrator.landmarks.landmark_rays import rays_of
 from integrator.proposal import pose_network, pose_proposal
 from integrator.proposal.pose_proposal import HEAD, NECK, PELVIS
 from integrator.rig.undistortion import undistorted_rig
-from integrator.single import bent_limbs, reflection
+from integrator.single import bent_limbs, calm_depth, reflection
 from integrator.single.reflection import Front
 from integrator.single.sight import Hypothesis, Sight, posed
 from integrator.single.stick_similarity import stick_similarity
@@ -37,6 +37,7 @@ class Proposed(NamedTuple):
     memory: pose_proposal.Memory
     front: Front | None
     landmarks: landmark_fusion.Memory | None
+    depth: calm_depth.Memory
 
 
 class Before(NamedTuple):
@@ -47,6 +48,8 @@ class Before(NamedTuple):
     front: Front | None
     """Of front and back; None: the network remembers it."""
     landmarks: landmark_fusion.Memory | None
+    depth: calm_depth.Memory | None
+    """Of how far away joints are; None at the first."""
 
 
 def step(before: Before, sight: Sight) -> Proposed:
@@ -74,6 +77,7 @@ def step(before: Before, sight: Sight) -> Proposed:
         joints_m = reflection.seen_from_behind(camera, joints_m) if behind else joints_m
         joints_m = joints_m if named else reflection.as_shown(camera, joints_m, shown)
     joints_m, confidence, landmarks = _with_landmarks(before, sight, joints_m, known.confidence)
+    depth, joints_m = calm_depth.step(before.depth, centre(camera), joints_m, sight.dt_s)
     joints_m = bent_limbs.bent(sight, joints_m)
     joints_m = reflection.leaning(camera, joints_m, annotations.depth)
     for name, place in annotations.joints_px.items():
@@ -90,7 +94,7 @@ def step(before: Before, sight: Sight) -> Proposed:
     )
     score = stick_similarity(sight, joints_m)
     found = Hypothesis(joints_m, pose, score, confidence, lifting)
-    return Proposed(found, agrees, known.memory, front, landmarks)
+    return Proposed(found, agrees, known.memory, front, landmarks, depth)
 
 
 def _shown(report: Report) -> tuple[float, float] | None:

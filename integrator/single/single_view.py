@@ -10,7 +10,7 @@ from common.rig.camera import TOWARDS, arrays_of, project
 from integrator.landmarks import landmark_fusion
 from integrator.proposal.pose_proposal import Memory
 from integrator.rig.undistortion import undistorted_camera
-from integrator.single import depth_signs, lifted_stick, lone_proposal, reflection
+from integrator.single import calm_depth, depth_signs, lifted_stick, lone_proposal, reflection
 from integrator.single.reflection import Front
 from integrator.single.sight import Hypothesis, Sight
 
@@ -35,6 +35,8 @@ class Alone(NamedTuple):
     """What is remembered of the landmarks."""
     stick: bool
     """A stick body is asked for at the next instant: what is proposed fits badly."""
+    depth: calm_depth.Memory | None = None
+    """What is remembered of how far away joints are."""
 
 
 class Found(NamedTuple):
@@ -76,10 +78,12 @@ def step(memory: Memory | None, alone: Alone, sight: Sight) -> Found:
     if sight.method.stick_lifting:
         signs, lifted = lifted_stick.step(alone.signs, sight)
         return _found(lifted, memory, alone._replace(signs=signs))
-    before = lone_proposal.Before(memory, alone.front, alone.landmarks)
+    before = lone_proposal.Before(memory, alone.front, alone.landmarks, alone.depth)
     seen = lone_proposal.step(before, sight)
     body, suffices = seen.found, seen.agrees and seen.found.score >= GOOD
-    alone = alone._replace(front=seen.front, landmarks=seen.landmarks, stick=not suffices)
+    alone = alone._replace(
+        front=seen.front, landmarks=seen.landmarks, depth=seen.depth, stick=not suffices
+    )
     if suffices or sight.report.fit is None:
         signs = _witnessed(sight, alone.signs, body.joints_m, body.lifting.orientation_confidence)
         return _found(body, seen.memory, alone._replace(signs=signs))
