@@ -115,6 +115,6 @@ def test_a_state_is_a_value() -> None:
     memory, _ = step(None, EYE_M, standing(), PERIOD_S)
     memory, _ = step(memory, EYE_M, standing() + 0.01, PERIOD_S)
     kept = [np.array(each) for each in memory]
-    answers = [step(memory, EYE_M, standing() + 0.05, PERIOD_S)[1] for _ in range(2)]
-    assert np.array_equal(*answers)
+    one, other = (step(memory, EYE_M, standing() + 0.05, PERIOD_S)[1] for _ in range(2))
+    assert np.array_equal(one, other)
     assert all(np.array_equal(a, b) for a, b in zip(memory, kept, strict=True))
