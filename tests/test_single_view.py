@@ -11,7 +11,7 @@ from common.body.stick_body import ADULT, ANGLE, THESIS, Stickman, joints_px, st
 from common.bus.messages import Box, Fit, Report, ViewerNumber
 from common.method import DEFAULT, METHODS
 from common.raster.silhouette_report import pack
-from common.rig.camera import as_matrix, paper_rig, project
+from common.rig.camera import as_matrix, centre, paper_rig, project
 from integrator.single import (
     bent_limbs,
     depth_signs,
@@ -179,6 +179,27 @@ def test_limits_turn_a_limb_in_depth_and_leave_the_picture_alone(
     assert project(CAMERA, found.joints_m) == pytest.approx(project(CAMERA, astray_m))
     moved_m = np.linalg.norm(found.joints_m - astray_m, axis=1)
     assert moved_m[AT["l_ankle"]] > 0.1 > moved_m[AT["r_ankle"]]
+
+
+def test_a_body_that_trembles_along_the_line_of_sight_is_kept_where_it_was(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The picture shows no motion: 12 mm to and fro are noise, in the joints that are published."""
+    pose = rest_pose()
+    pose[POSE_INDEX["y"]] = 0.9
+    still_m = joints(body_vector(thesis_bdp(1.75)), pose)
+    sight = sight_of(msgspec.structs.replace(report_of(ADULT), fit=None), printed=False)
+    off_m = still_m - centre(CAMERA)
+    memory, alone, found = None, single_view.begun(sight, None), []
+    for n in range(40):
+        seen_m = still_m + (-1) ** n * 0.006 * off_m / np.linalg.norm(off_m, axis=1, keepdims=True)
+        monkeypatch.setattr(
+            lone_proposal, "_with_landmarks", lambda *_, seen_m=seen_m: (seen_m, np.ones(15), None)
+        )
+        body, memory, alone = single_view.step(memory, alone, sight._replace(dt_s=1 / 15))
+        found.append(np.linalg.norm(body.joints_m - centre(CAMERA), axis=1))
+    assert np.abs(np.diff(found[20:], axis=0)).max() < 0.003
+    assert found[-1] == pytest.approx(np.linalg.norm(off_m, axis=1), abs=0.004)
 
 
 def test_a_stick_body_is_asked_for_where_what_is_proposed_fits_badly() -> None:
