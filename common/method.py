@@ -35,6 +35,22 @@ class Method(msgspec.Struct, frozen=True, kw_only=True):
     """What both views do not show as one piece of space is no part of the person, where the network
     is surer of what is left."""
 
+    armless_shift: bool
+    """The body's place is searched for by trunk, head and legs: arms have old angles still (P27)."""
+    raised_arm_ranges: bool
+    """The range of theta_Z turns over with an arm that is swung up past the horizontal (P30)."""
+    circular_swings: bool
+    """theta_X of a shoulder has no end at 180 degrees: arms swing in circles (P30)."""
+    hidden_arms: bool
+    """An arm is moved in the flank only for a gain in S: one that is hidden there stays (P32)."""
+    common_squat: bool
+    """The flank also searches for both legs as one squat (P35)."""
+    squat_first: bool
+    """Who squats by the facade lifts no leg, whatever theta_Z of the hip (P53)."""
+    steady_elbows: bool
+    """Algorithm 4 asks for a bend of 15 degrees, away from a curve's ends, and takes the split with
+    the least residual, not the largest difference (T16)."""
+
     legs_to_floor: bool
     """Measured legs reach from the navel to the floor: toes are nearer to a camera than soles."""
     scaled_arbiter: bool
@@ -42,7 +58,7 @@ class Method(msgspec.Struct, frozen=True, kw_only=True):
     held_facing: bool
     """One view that is left alone does not change the facing of a body that both have measured."""
     shared_start: bool
-    """Viewers start where both views have the body, not where each had it itself."""
+    """Viewers start where and how both views have the body, not as each had it itself (L1)."""
     squat_votes: bool
     """Both silhouettes vote on squats with a bowed trunk."""
     place_votes: bool

@@ -13,6 +13,7 @@ import viewer.paper.posed_model
 from common.body.body import LIMBS, POSE_INDEX, Vector
 from common.body.kinematics import segments
 from common.config.part_settings import SearchSettings
+from common.method import DEFAULT, PAPER, Method
 from viewer.paper.arms import facade_arms, flank_arms, inward_limit_deg
 
 PAPERS = SearchSettings()
@@ -110,7 +111,7 @@ def test_a_grid_of_shoulders_and_elbows_is_found_again(
         start = posed(**arm(side, outward + 4.0, elbow + math.copysign(4.0, elbow)))
         model = laid_over(picture(truth), start)
         for _ in range(2):
-            model = facade_arms(model, search, wide=False)
+            model = facade_arms(model, search, wide=False, method=PAPER)
             assert within_range(model.pose, side)
         for limb in ("upper_arm", "lower_arm"):
             errors.append(off_deg(truth, model.pose, f"{side}_{limb}"))
@@ -123,7 +124,7 @@ def test_a_grid_of_shoulders_and_elbows_is_found_again(
 def test_a_straight_arm_is_found_wherever_it_was(side: str, outward_deg: float) -> None:
     """P30, `wide`: nothing is known of the angle."""
     model = laid_over(picture(posed(**arm(side, outward_deg, 0.0))), posed())
-    found = facade_arms(model, PAPERS, wide=True)
+    found = facade_arms(model, PAPERS, wide=True, method=PAPER)
     off = angle(found, f"{side}_shoulder_z") - arm(side, outward_deg, 0.0)[f"{side}_shoulder_z"]
     assert abs(off) <= 4.0
 
@@ -133,7 +134,7 @@ def test_no_pose_is_ever_beyond_a_range(z_deg: float, elbow_deg: float, y_deg: f
     """P30, P31: whatever the start, and whatever is seen."""
     start = posed(r_shoulder_z=z_deg, r_shoulder_y=y_deg, r_elbow_x=elbow_deg)
     seen = picture(posed(r_shoulder_z=140.0, l_shoulder_z=200.0, l_elbow_x=70.0))
-    found = facade_arms(laid_over(seen, start), PAPERS, wide=False)
+    found = facade_arms(laid_over(seen, start), PAPERS, wide=False, method=PAPER)
     assert within_range(found.pose, "r")
     assert within_range(found.pose, "l")
 
@@ -141,7 +142,7 @@ def test_no_pose_is_ever_beyond_a_range(z_deg: float, elbow_deg: float, y_deg: f
 def test_the_facade_leaves_theta_x_alone() -> None:
     """P30."""
     start = posed(r_shoulder_x=17.0, l_shoulder_x=-5.0)
-    found = facade_arms(laid_over(picture(posed(r_shoulder_z=100.0)), start), PAPERS, wide=False)
+    found = facade_arms(laid_over(picture(posed(r_shoulder_z=100.0)), start), PAPERS, wide=False, method=PAPER)
     assert angle(found, "r_shoulder_x") == 17.0
     assert angle(found, "l_shoulder_x") == -5.0
 
@@ -158,7 +159,7 @@ def test_the_facades_search_is_the_shoulder_then_the_elbow_right_then_left(
 
     monkeypatch.setattr("viewer.paper.arms.searched", recorded)
     seen = picture(posed(r_shoulder_z=150.0, l_shoulder_z=210.0))
-    found = facade_arms(laid_over(seen, posed(r_shoulder_z=150.0)), PAPERS, wide=False)
+    found = facade_arms(laid_over(seen, posed(r_shoulder_z=150.0)), PAPERS, wide=False, method=PAPER)
     order = ["r_shoulder_z", "r_elbow_x", "l_shoulder_z", "l_elbow_x"]
     assert [call[0] for call in calls] == [POSE_INDEX[name] for name in order]
     assert {call[1:3] for call in calls} == {(64, 4)}
@@ -171,10 +172,10 @@ def test_a_common_swing_is_found_in_the_flank(swing_deg: float) -> None:
     """P32: one silhouette, both arms."""
     seen = picture(posed(r_shoulder_x=swing_deg, l_shoulder_x=swing_deg), viewer=2)
     start = posed(r_shoulder_x=swing_deg - 20.0, l_shoulder_x=swing_deg - 20.0)
-    found = flank_arms(laid_over(seen, start, viewer=2), PAPERS, near=0, wide=False)
+    found = flank_arms(laid_over(seen, start, viewer=2), PAPERS, near=0, wide=False, method=PAPER)
     for side in "rl":
         assert angle(found, f"{side}_shoulder_x") == pytest.approx(swing_deg, abs=4.0)
-    wide = flank_arms(laid_over(seen, posed(), viewer=2), PAPERS, near=0, wide=True)
+    wide = flank_arms(laid_over(seen, posed(), viewer=2), PAPERS, near=0, wide=True, method=PAPER)
     assert angle(wide, "r_shoulder_x") == pytest.approx(swing_deg, abs=4.0)
 
 
@@ -182,7 +183,7 @@ def test_opposite_swings_are_told_apart_in_the_flank() -> None:
     """P32: one arm forward, one back, from 5 degrees off: beside the trunk a peak is narrow."""
     seen = picture(posed(r_shoulder_x=40.0, l_shoulder_x=-40.0), viewer=2)
     start = posed(r_shoulder_x=35.0, l_shoulder_x=-35.0)
-    found = flank_arms(laid_over(seen, start, viewer=2), PAPERS, near=0, wide=False)
+    found = flank_arms(laid_over(seen, start, viewer=2), PAPERS, near=0, wide=False, method=PAPER)
     assert angle(found, "r_shoulder_x") == pytest.approx(40.0, abs=4.0)
     assert angle(found, "l_shoulder_x") == pytest.approx(-40.0, abs=4.0)
 
@@ -191,7 +192,7 @@ def test_a_tie_is_a_common_swing() -> None:
     """P32: an empty picture explains nothing."""
     nobody = np.zeros((120, 160), np.bool_)
     start = posed(r_shoulder_x=10.0, l_shoulder_x=40.0)
-    found = flank_arms(laid_over(nobody, start, viewer=2), PAPERS, near=0, wide=False)
+    found = flank_arms(laid_over(nobody, start, viewer=2), PAPERS, near=0, wide=False, method=PAPER)
     assert angle(found, "r_shoulder_x") == angle(found, "l_shoulder_x")
 
 
@@ -199,26 +200,45 @@ def test_the_flank_has_one_angle_an_arm() -> None:
     """P30: theta_Z, theta_Y and the elbow keep their values there."""
     start = posed(r_shoulder_z=170.0, r_elbow_x=30.0)
     seen = picture(posed(r_shoulder_x=40.0), viewer=2)
-    found = flank_arms(laid_over(seen, start, viewer=2), PAPERS, near=0, wide=False)
+    found = flank_arms(laid_over(seen, start, viewer=2), PAPERS, near=0, wide=False, method=PAPER)
     changed = {name for name, i in POSE_INDEX.items() if found.pose[i] != start[i]}
     assert changed <= {"r_shoulder_x", "l_shoulder_x"}
 
 
-def test_an_arm_is_followed_round_the_circle() -> None:
-    """P30: theta_X has no end at 180, where an arm points up."""
+@pytest.mark.parametrize(("method", "until_deg"), [(DEFAULT, 360), (PAPER, 180)])
+def test_an_arm_is_followed_round_the_circle_but_as_printed_to_its_top(
+    method: Method, until_deg: int
+) -> None:
+    """P30: printed is [-180, 180]; beyond the print theta_X has no end where an arm points up."""
     model = laid_over(picture(posed(), viewer=2), posed(), viewer=2)
+    followed = []
     for swing_deg in range(20, 361, 20):
         truth = posed(r_shoulder_x=float(swing_deg), l_shoulder_x=float(swing_deg))
         model = laid_over(picture(truth, viewer=2), model.pose, viewer=2)
-        model = flank_arms(model, PAPERS, near=0, wide=False)
+        model = flank_arms(model, PAPERS, near=0, wide=False, method=method)
         off = math.remainder(angle(model, "r_shoulder_x") - swing_deg, 360.0)
-        assert abs(off) <= 8.0
-        assert -180.0 < angle(model, "r_shoulder_x") <= 180.0
+        followed += [swing_deg] if abs(off) <= 8.0 else []
+        assert -180.0 <= angle(model, "r_shoulder_x") <= 180.0
+    assert followed == list(range(20, until_deg + 1, 20))
+
+
+@pytest.mark.parametrize(("method", "stays"), [(DEFAULT, True), (PAPER, False)])
+def test_a_hidden_arm_stays_but_as_printed_follows_every_pixel(method: Method, stays: bool) -> None:
+    """P32: five pixels beside the trunk are no arm; the print takes the best score, whatever it
+    gains."""
+    seen, raised = (
+        picture(posed(r_shoulder_x=x_deg, l_shoulder_x=x_deg), 2) for x_deg in (0.0, 8.0)
+    )
+    for y, x in np.argwhere(raised & ~seen)[:5]:
+        seen[y, x] = True
+    found = flank_arms(laid_over(seen, posed(), 2), PAPERS, near=0, wide=False, method=method)
+    assert ([angle(found, f"{side}_shoulder_x") for side in "rl"] == [0.0, 0.0]) == stays
 
 
 @pytest.mark.parametrize("side", ["r", "l"])
-def test_an_arm_swung_up_forwards_still_leans_outwards(side: str) -> None:
-    """P30: at theta_X = 180 the arm points up, and outwards is beyond theta_Z = 180."""
+def test_an_arm_swung_up_forwards_still_leans_outwards_but_not_as_printed(side: str) -> None:
+    """P30: at theta_X = 180 the arm points up, and outwards is beyond theta_Z = 180, where the
+    printed range ends."""
     outward = 25.0 if side == "r" else -25.0
     name = f"{side}_shoulder_z"
     truth = posed(**{f"{side}_shoulder_x": 180.0, name: 180.0 + outward})
@@ -226,5 +246,8 @@ def test_an_arm_swung_up_forwards_still_leans_outwards(side: str) -> None:
         side == "r"
     )
     start = posed(**{f"{side}_shoulder_x": 180.0, name: 180.0 + outward / 2})
-    found = facade_arms(laid_over(picture(truth), start), PAPERS, wide=False)
+    model = laid_over(picture(truth), start)
+    found = facade_arms(model, PAPERS, wide=False, method=DEFAULT)
     assert angle(found, name) == pytest.approx(180.0 + outward, abs=4.0)
+    printed = angle(facade_arms(model, PAPERS, wide=False, method=PAPER), name)
+    assert (printed <= 180.0) if side == "r" else (printed >= 180.0)

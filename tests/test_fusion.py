@@ -9,6 +9,7 @@ from staging import report
 
 from common.body.body import POSE_INDEX, POSE_NAMES, Vector
 from common.bus.messages import Report
+from common.method import DEFAULT, PAPER, Method
 from integrator.paper.fusion import fused, lifted
 
 FACADE = {
@@ -72,7 +73,7 @@ def test_a_leg_may_be_lifted_within_five_degrees_of_hanging(
 
 def test_arms_are_the_flanks_theta_x_and_the_facades_rest() -> None:
     """P51, M11: whichever viewer is which."""
-    pose = fused(BEFORE, facade(), flank())
+    pose = fused(BEFORE, facade(), flank(), PAPER)
     for side in "rl":
         assert of(pose, f"{side}_shoulder_x") == [FLANK[f"{side}_shoulder_x"]]
         for name in (f"{side}_shoulder_y", f"{side}_shoulder_z", f"{side}_elbow_x"):
@@ -80,35 +81,38 @@ def test_arms_are_the_flanks_theta_x_and_the_facades_rest() -> None:
 
 
 @pytest.mark.parametrize("squatting", [False, True], ids=["not squatting", "squatting"])
+@pytest.mark.parametrize("method", [PAPER, DEFAULT], ids=["paper", "default"])
 @pytest.mark.parametrize("right_deg", [180.0, 160.0], ids=["right lifted", "right not"])
 @pytest.mark.parametrize("left_deg", [183.0, 205.0], ids=["left lifted", "left not"])
 def test_legs_are_the_flanks_where_lifted_else_the_facades(
-    squatting: bool, right_deg: float, left_deg: float
+    squatting: bool, method: Method, right_deg: float, left_deg: float
 ) -> None:
     """P52, P53, P54: the truth table; each leg for itself.
 
-    The print knows no leg that squats and hangs straight down: 180, excluded there, counts as
-    lifted by M16, so a squat is asked for first.
+    As printed a leg within the range is the flank's, also one that squats. Beyond the print a squat
+    is asked for first: 180, excluded there, counts as lifted by M16, and is where squats have it.
     """
-    pose = fused(BEFORE, facade(squatting, r_hip_z=right_deg, l_hip_z=left_deg), flank())
+    seen = facade(squatting, r_hip_z=right_deg, l_hip_z=left_deg)
+    pose = fused(BEFORE, seen, flank(), method)
     for side, hip_z_deg in (("r", right_deg), ("l", left_deg)):
         names = [f"{side}_hip_x", f"{side}_knee_x"]
         from_flank, from_facade = ([view[name] for name in names] for view in (FLANK, FACADE))
-        not_squatting = from_flank if lifted(hip_z_deg) else [0.0, 0.0]
-        assert of(pose, *names) == (from_facade if squatting else not_squatting)
+        unlifted = from_facade if squatting else [0.0, 0.0]
+        may_lift = lifted(hip_z_deg) and not (squatting and method.squat_first)
+        assert of(pose, *names) == (from_flank if may_lift else unlifted)
         assert of(pose, f"{side}_hip_z") == [hip_z_deg]
 
 
 def test_without_the_facade_the_flank_tells_arms_and_legs() -> None:
     """P51, P52: what it cannot see stays."""
-    pose = fused(BEFORE, None, flank())
+    pose = fused(BEFORE, None, flank(), PAPER)
     for name in POSE_NAMES:
         assert of(pose, name) == [FLANK.get(name, float(BEFORE[POSE_INDEX[name]]))]
 
 
 @pytest.mark.parametrize("squatting", [False, True])
 def test_without_the_flank_the_facade_tells_what_it_sees(squatting: bool) -> None:
-    pose = fused(BEFORE, facade(squatting), None)
+    pose = fused(BEFORE, facade(squatting), None, PAPER)
     assert of(pose, "r_shoulder_x") == of(BEFORE, "r_shoulder_x")
     assert of(pose, "r_shoulder_z") == [FACADE["r_shoulder_z"]]
     assert of(pose, "r_hip_x") == [FACADE["r_hip_x"] if squatting else 0.0]
@@ -118,7 +122,7 @@ def test_without_the_flank_the_facade_tells_what_it_sees(squatting: bool) -> Non
 def test_position_trunk_and_neck_are_nobodys_business_here(has_front: bool, has_side: bool) -> None:
     """P22: and what came in is left as it was."""
     before = BEFORE.copy()
-    pose = fused(before, facade() if has_front else None, flank() if has_side else None)
+    pose = fused(before, facade() if has_front else None, flank() if has_side else None, PAPER)
     assert (pose[:9] == BEFORE[:9]).all()
     assert (before == BEFORE).all()
     if not (has_front or has_side):
@@ -127,5 +131,5 @@ def test_position_trunk_and_neck_are_nobodys_business_here(has_front: bool, has_
 
 def test_resting_legs_are_not_squatting_ones() -> None:
     """P33: not squatting, theta_X of a leg that is not lifted is 0."""
-    pose = fused(posed(r_hip_x=40.0, r_knee_x=-80.0), facade(), flank())
+    pose = fused(posed(r_hip_x=40.0, r_knee_x=-80.0), facade(), flank(), PAPER)
     assert of(pose, "r_hip_x", "r_knee_x") == [0.0, 0.0]

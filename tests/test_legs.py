@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 from posing import BODY, SIZE, angle, laid_over, picture, posed
 
-from common.body.body import LIMBS, POSE_INDEX
+from common.body.body import LIMBS, POSE_INDEX, POSE_NAMES
 from common.body.kinematics import segments
 from common.body.proportions import body_vector, thesis_bdp
 from common.config.part_settings import SearchSettings
+from common.method import DEFAULT, PAPER, Method
 from viewer.paper.legs import facade_legs, flank_legs, squats
+from viewer.paper.posed_model import searched
 
 PAPERS = SearchSettings()
 
@@ -85,15 +87,35 @@ def test_a_squat_begins_between_20_and_25_degrees(hip_deg: float, squatting: boo
 
 @pytest.mark.parametrize("speed_deg", [2.0, 4.0, 6.0])
 def test_a_squat_down_and_up_is_followed_in_the_flank(speed_deg: float) -> None:
-    """P35, P52: hips and knees free, both legs in one silhouette, 0 to 60 degrees and back."""
+    """P35, P52: hips and knees free, both legs in one silhouette, 0 to 60 degrees and back.
+
+    Beyond the print, which has each leg alone: see below.
+    """
     down = np.arange(0.0, 61.0, speed_deg)
     model, errors = laid_over(picture(squat(0.0), 2), squat(0.0), 2), []
     for hip_deg in [*down, *down[::-1]]:
         seen = picture(squat(hip_deg), 2)
-        model = flank_legs(laid_over(seen, model.pose, 2), PAPERS, near=0)
+        model = flank_legs(laid_over(seen, model.pose, 2), PAPERS, near=0, method=DEFAULT)
         errors += [abs(angle(model, f"{side}_hip_x") - hip_deg) for side in "rl"]
     assert np.mean(errors) <= 1.5
     assert np.mean(np.array(errors) > 4.0) <= 0.05
+
+
+@pytest.mark.parametrize(("method", "both"), [(DEFAULT, 1), (PAPER, 0)])
+def test_the_flank_searches_hip_and_knee_of_each_leg_and_beyond_the_print_one_squat(
+    method: Method, both: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """P35, P41: the near leg first; both legs as one squat is a departure."""
+    calls: list[tuple[str, ...]] = []
+
+    def recorded(model, how, within):  # type: ignore[no-untyped-def]
+        calls.append(tuple(POSE_NAMES[at] for at, _ in how.parts))
+        return searched(model, how, within)
+
+    monkeypatch.setattr("viewer.paper.legs.searched", recorded)
+    flank_legs(laid_over(picture(squat(8.0), 2), posed(), 2), PAPERS, near=1, method=method)
+    assert calls[:4] == [(name,) for name in ("l_hip_x", "l_knee_x", "r_hip_x", "r_knee_x")]
+    assert calls[4:] == [("r_hip_x", "r_knee_x", "l_hip_x", "l_knee_x")] * both
 
 
 def leg_lifted(side: str, hip_deg: float) -> np.ndarray:
@@ -109,7 +131,7 @@ def test_a_lifted_leg_is_followed_in_the_flank_and_taken_for_the_near_one(lifted
     model = laid_over(picture(posed(), 2), posed(), 2)
     for hip_deg in np.arange(0.0, 51.0, 2.0):
         seen = picture(leg_lifted(lifted, hip_deg), 2)
-        model = flank_legs(laid_over(seen, model.pose, 2), PAPERS, near=0)
+        model = flank_legs(laid_over(seen, model.pose, 2), PAPERS, near=0, method=PAPER)
         assert angle(model, "r_hip_x") == pytest.approx(hip_deg, abs=4.0)
         assert angle(model, "r_knee_x") == pytest.approx(-0.8 * hip_deg, abs=8.0)
         assert angle(model, "l_hip_x") == pytest.approx(0.0, abs=4.0)
@@ -120,7 +142,7 @@ def test_knees_bend_one_way_in_the_flank() -> None:
     seen = picture(posed(r_hip_x=-30.0, r_knee_x=40.0), 2)
     model = laid_over(seen, posed(r_hip_x=-20.0), 2)
     for _ in range(3):
-        model = flank_legs(model, PAPERS, near=0)
+        model = flank_legs(model, PAPERS, near=0, method=PAPER)
         assert -150.0 <= angle(model, "r_knee_x") <= 0.0
 
 
@@ -137,7 +159,7 @@ def test_a_squat_ends_where_the_knee_ends() -> None:
 def test_a_leg_window_reaches_sixteen_degrees_a_frame() -> None:
     """P41, L1: a kick of 30 degrees within a frame is caught up with in two."""
     seen = picture(posed(r_hip_x=30.0), 2)
-    once = flank_legs(laid_over(seen, posed(), 2), PAPERS, near=0)
+    once = flank_legs(laid_over(seen, posed(), 2), PAPERS, near=0, method=PAPER)
     assert angle(once, "r_hip_x") <= 16.0
-    twice = flank_legs(once, PAPERS, near=0)
+    twice = flank_legs(once, PAPERS, near=0, method=PAPER)
     assert angle(twice, "r_hip_x") == pytest.approx(30.0, abs=4.0)

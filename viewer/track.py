@@ -95,7 +95,7 @@ def init(
         camera_fault.init(background),
         silhouette.init(background, setup.settings.silhouette, setup.method),
         tuple(patches),
-        pose_search.init(setup.viewer, setup.camera, setup.settings.search),
+        pose_search.init(setup.viewer, setup.camera, setup.settings.search, setup.method),
         standing,
         somebody if setup.method.landmarks else None,
         moved=_watched(setup, background, None),
@@ -181,7 +181,7 @@ def describe(state: State, report: Report, mask: Mask, guide: Guide | None) -> t
     """
     setup, search = state.setup, state.search
     if report.box is None:
-        return state._replace(search=search._replace(squatting=False)), report
+        return state._replace(search=search._replace(found=None)), report
     facing = search.vote if guide is None else guide.facing[setup.viewer - 1]
     measure, refusal = _opening(mask, report, guide, facing)
     report = msgspec.structs.replace(report, vote=search.vote, measure=measure, refusal=refusal)

@@ -65,7 +65,7 @@ def _posed(
     """Position and angles of this instant, not yet smoothed (P50-P54)."""
     front = 0 if facing[0] == "facade" else 1
     before = rest_pose() if state.pose is None else state.pose
-    pose = fused(before, seen[front], seen[1 - front])
+    pose = fused(before, seen[front], seen[1 - front], state.method)
     if settled_at is None:
         pose[:3] = place_of(rig, roots_of(seen), before[:3], front)
     else:

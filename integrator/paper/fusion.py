@@ -4,6 +4,7 @@ from typing import Final
 
 from common.body.body import POSE_INDEX, Vector, wrapped_deg
 from common.bus.messages import Report
+from common.method import Method
 
 LIFT_WITHIN_DEG: Final = 5.0
 """A leg whose theta_Z is this near to 180 is seen from its flank: it may be lifted (P53, M16)."""
@@ -28,18 +29,21 @@ def lifted(hip_z_deg: float) -> bool:
     return abs(wrapped_deg(hip_z_deg - 180.0)) <= LIFT_WITHIN_DEG
 
 
-def fused(before: Vector, facade: Report | None, flank: Report | None) -> Vector:
+def fused(
+    before: Vector, facade: Report | None, flank: Report | None, method: Method
+) -> Vector:
     """The universal pose from both views' angles.
 
     Arms: theta_X of the shoulders from the flank, the rest from the facade (P51). Legs: theta_Z
-    of the hips from the facade; theta_X of hips and knees from the facade where it finds the knees
-    bent, squatting; else from the flank where the leg is lifted, else 0 (P52, P53). What no view
-    tells stays as it was.
+    of the hips from the facade; theta_X of hips and knees from the flank where the leg is lifted,
+    else from the facade, which has 0 unless it squats (P52, P53). What no view tells stays as it
+    was.
 
     Args:
         before: Pose of the frame before, (25,); its position and trunk are not touched.
         facade: Report of the view that sees the facade, if it has a body.
         flank: Report of the view that sees the flank, if it has a body.
+        method: Whether who squats lifts no leg.
     """
     pose = before.copy()
     if flank is not None:
@@ -50,10 +54,12 @@ def fused(before: Vector, facade: Report | None, flank: Report | None) -> Vector
         hip_x, knee_x = f"{side}_hip_x", f"{side}_knee_x"
         if facade is not None:
             pose = _with_angles(pose, facade, (f"{side}_hip_z",))
-        if facade is not None and facade.squatting:
-            pose = _with_angles(pose, facade, (hip_x, knee_x))
-        elif flank is not None and (facade is None or lifted(pose[POSE_INDEX[f"{side}_hip_z"]])):
+        squats = facade is not None and facade.squatting
+        may_lift = facade is None or lifted(pose[POSE_INDEX[f"{side}_hip_z"]])
+        if flank is not None and may_lift and not (squats and method.squat_first):
             pose = _with_angles(pose, flank, (hip_x, knee_x))
+        elif facade is not None and squats:
+            pose = _with_angles(pose, facade, (hip_x, knee_x))
         elif facade is not None:
             pose[[POSE_INDEX[hip_x], POSE_INDEX[knee_x]]] = 0.0
     return pose

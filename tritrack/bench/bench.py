@@ -20,7 +20,7 @@ from rich.table import Table
 
 from common.config.part_settings import PageSettings, SearchSettings
 from common.config.settings import Settings
-from common.method import DEFAULT, METHODS, Mode
+from common.method import DEFAULT, METHODS, PAPER, Mode
 from common.packages import ROOT
 from common.source_digest import digest_of
 from common.video.clips import open_clip
@@ -115,8 +115,9 @@ def searching(size: tuple[int, int], target: float, repeats: int) -> Iterator[Me
     pairs, settings = model_pairs(size), SearchSettings()
 
     def both(facade: PosedModel, flank: PosedModel) -> int:
-        one = facade_legs(facade_arms(located(facade), settings, False), settings, False)
-        other = flank_legs(flank_arms(located(flank), settings, 0, False), settings, 0)
+        one = facade_legs(facade_arms(located(facade), settings, False, PAPER), settings, False)
+        arms = flank_arms(located(flank), settings, 0, False, PAPER)
+        other = flank_legs(arms, settings, 0, PAPER)
         return one.matches + other.matches
 
     matches = sum(both(*pair) for pair in pairs) / len(pairs)

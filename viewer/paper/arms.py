@@ -6,6 +6,7 @@ from typing import Final
 from common.body.body import LIMITS_DEG, POSE_INDEX, wrapped_deg
 from common.body.kinematics import ARM_LIMBS
 from common.config.part_settings import SearchSettings
+from common.method import Method
 from viewer.paper.posed_model import PosedModel, SearchRange, matched, searched, turn
 
 SIDES: Final = ("r", "l")
@@ -13,8 +14,10 @@ BEND_MOST_DEG: Final = 140.0
 """Furthest that an elbow bends (section 3.3, step 2)."""
 
 HIDDEN: Final = 0.004
-"""What an arm alone must gain in S to be moved in the flank, five pixels of a body of 2000: one
-that the trunk or the other arm hides stays where it was."""
+"""What an arm must gain in S to be moved in the flank, five pixels of a body of 2000: one that the
+trunk or the other arm hides stays where it was."""
+ANY_GAIN: Final = -1.0
+"""As printed the best angle of a search is taken, whatever it gains."""
 
 _SHOULDER_Z = [turn(ARM_LIMBS[i], **{f"{side}_shoulder_z": 1.0}) for i, side in enumerate(SIDES)]
 _SHOULDER_X = [turn(ARM_LIMBS[i], **{f"{side}_shoulder_x": 1.0}) for i, side in enumerate(SIDES)]
@@ -26,7 +29,7 @@ def half_turn_deg(side: str, shoulder_x_deg: float) -> float:
     """What theta_Z has to spare where theta_X has swung the arm up past the horizontal.
 
     There the arm points up at theta_Z = 180, and outwards is beyond it: the ranges of P30 and the
-    inward limit hold for theta_Z less this half turn.
+    inward limit hold for theta_Z less this half turn. A departure: printed is one range.
     """
     if math.cos(math.radians(shoulder_x_deg)) >= 0.0:
         return 0.0
@@ -44,7 +47,9 @@ def inward_limit_deg(side: str, shoulder_z_deg: float) -> float:
     return 2.0 * hanging if hanging < 70.0 else BEND_MOST_DEG
 
 
-def facade_arms(model: PosedModel, settings: SearchSettings, wide: bool) -> PosedModel:
+def facade_arms(
+    model: PosedModel, settings: SearchSettings, wide: bool, method: Method
+) -> PosedModel:
     """Shoulder theta_Z, then theta_Y and elbow, of the right and then the left arm (P30, P31).
 
     theta_X keeps its value: the facade view cannot see it. The elbow is searched with the
@@ -54,7 +59,9 @@ def facade_arms(model: PosedModel, settings: SearchSettings, wide: bool) -> Pose
         outward = 90.0 if side == "r" else -90.0
         model = _with_elbow_outward(model, side, outward)
         low, high = LIMITS_DEG[f"{side}_shoulder_z"]
-        spare = half_turn_deg(side, model.pose[_SHOULDER_X[i].at])
+        spare = 0.0
+        if method.raised_arm_ranges:
+            spare = half_turn_deg(side, model.pose[_SHOULDER_X[i].at])
         limits = (low + spare, high + spare)
         width, stop = settings.arm_window_deg, settings.stop_deg
         model = searched(model, _SHOULDER_Z[i], SearchRange(width, stop, limits, wide))
@@ -64,7 +71,9 @@ def facade_arms(model: PosedModel, settings: SearchSettings, wide: bool) -> Pose
     return model
 
 
-def flank_arms(model: PosedModel, settings: SearchSettings, near: int, wide: bool) -> PosedModel:
+def flank_arms(
+    model: PosedModel, settings: SearchSettings, near: int, wide: bool, method: Method
+) -> PosedModel:
     """theta_X of both shoulders from one silhouette (P32).
 
     Both arms share it: they are searched together as one swing and one after the other (the near
@@ -75,16 +84,18 @@ def flank_arms(model: PosedModel, settings: SearchSettings, near: int, wide: boo
         settings: Widths of the search.
         near: 0 where the right arm is nearer to the camera, 1 where the left is.
         wide: Nothing is known of the angles.
+        method: Whether swings end at 180 degrees, and hidden arms stay.
     """
     width, stop = settings.arm_window_deg, settings.stop_deg
+    least_gain = HIDDEN if method.hidden_arms else ANY_GAIN
     apart = model = matched(model)
     for i in (near, 1 - near):
-        within = SearchRange(width, stop, _whole_turn(model, i), wide)
-        apart = searched(apart, _SHOULDER_X[i], within, HIDDEN)
+        within = SearchRange(width, stop, _swing_deg(model, i, method), wide)
+        apart = searched(apart, _SHOULDER_X[i], within, least_gain)
     start = model.pose.copy()
     start[_SHOULDER_X[1 - near].at] = start[_SHOULDER_X[near].at]
-    within = SearchRange(width, stop, _whole_turn(model, near), wide)
-    together = searched(matched(model._replace(pose=start)), _BOTH_X, within, HIDDEN)
+    within = SearchRange(width, stop, _swing_deg(model, near, method), wide)
+    together = searched(matched(model._replace(pose=start)), _BOTH_X, within, least_gain)
     matches = apart.matches + together.matches - model.matches
     better = apart if apart.score > together.score else together
     pose = better.pose.copy()
@@ -93,8 +104,10 @@ def flank_arms(model: PosedModel, settings: SearchSettings, near: int, wide: boo
     return better._replace(pose=pose, matches=matches)
 
 
-def _whole_turn(model: PosedModel, i: int) -> tuple[float, float]:
-    """The range of theta_X around where it is: it has no end, arms swing in circles (P30)."""
+def _swing_deg(model: PosedModel, i: int, method: Method) -> tuple[float, float]:
+    """The range of theta_X: as printed (P30), or around where it is, as arms swing in circles."""
+    if not method.circular_swings:
+        return LIMITS_DEG[f"{SIDES[i]}_shoulder_x"]
     angle = model.pose[_SHOULDER_X[i].at]
     return angle - 180.0, angle + 180.0
 

@@ -5,6 +5,7 @@ from typing import Final
 from common.body.body import LIMITS_DEG
 from common.body.kinematics import LEG_LIMBS
 from common.config.part_settings import SearchSettings
+from common.method import Method
 from viewer.paper.posed_model import PosedModel, SearchRange, searched, turn
 
 SIDES: Final = ("r", "l")
@@ -45,11 +46,13 @@ def facade_legs(model: PosedModel, settings: SearchSettings, squatting: bool) ->
     return model
 
 
-def flank_legs(model: PosedModel, settings: SearchSettings, near: int) -> PosedModel:
+def flank_legs(
+    model: PosedModel, settings: SearchSettings, near: int, method: Method
+) -> PosedModel:
     """theta_X of the hip and then of the knee, the near leg first (P35).
 
-    Both legs share the silhouette, and a leg alone moves behind the other unseen: they are also
-    searched together as one squat, and the better explanation is kept.
+    Both legs share the silhouette, and a leg alone moves behind the other unseen: beyond the print
+    they are also searched together as one squat, and the better explanation is kept.
     """
     width, stop = settings.leg_window_deg, settings.stop_deg
     apart = model
@@ -57,6 +60,8 @@ def flank_legs(model: PosedModel, settings: SearchSettings, near: int) -> PosedM
         side = SIDES[i]
         apart = searched(apart, _HIP_X[i], SearchRange(width, stop, LIMITS_DEG[f"{side}_hip_x"]))
         apart = searched(apart, _KNEE[i], SearchRange(width, stop, LIMITS_DEG[f"{side}_knee_x"]))
+    if not method.common_squat:
+        return apart
     together = searched(model, _BOTH_SQUAT, SearchRange(width, stop, _SQUAT_LIMITS_DEG))
     better = apart if apart.score >= together.score else together
     return better._replace(matches=apart.matches + together.matches - model.matches)

@@ -7,9 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import POSE_INDEX, rest_pose
+from common.body.kinematics import ALL_LIMBS
 from common.body.proportions import body_vector, stature, thesis_bdp
 from common.bus.messages import Facing, Guide, Report, ViewerNumber
 from common.config.part_settings import SearchSettings
+from common.method import Method
 from common.raster.kernel import CENTRE_X, CENTRE_Y
 from common.raster.similarity import Mask
 from common.rig.camera import Camera
@@ -18,7 +20,7 @@ from viewer.paper.arms import facade_arms, flank_arms
 from viewer.paper.facing import thresholds_px, upper_body_px, vote
 from viewer.paper.legs import facade_legs, flank_legs, squats
 from viewer.paper.posed_model import PosedModel, model_over, rotation_of, view_at, yaw_of
-from viewer.paper.position import located
+from viewer.paper.position import UPRIGHT, located
 
 SQUAT_ANGLES: Final = ("r_hip_x", "l_hip_x", "r_knee_x", "l_knee_x")
 FACADE_ANGLES: Final = (
@@ -35,6 +37,16 @@ FACADE_ANGLES: Final = (
 FLANK_ANGLES: Final = ("r_shoulder_x", "l_shoulder_x", *SQUAT_ANGLES)
 
 
+class Found(NamedTuple):
+    """What a view found itself at one frame."""
+
+    facing: Facing
+    """What it was held to see."""
+    angles_deg: dict[str, float]
+    """What it searched for."""
+    squatting: bool
+
+
 class State(NamedTuple):
     """What a search hands to the next frame's."""
 
@@ -42,15 +54,19 @@ class State(NamedTuple):
     rotation: NDArray[np.float64]
     """World to camera, (3, 3)."""
     settings: SearchSettings
+    method: Method
     vote: Facing
     """What the view takes itself for."""
-    squatting: bool = False
+    found: Found | None = None
+    """At the frame before; None: it had nobody."""
 
 
-def init(viewer: ViewerNumber, camera: Camera | None, settings: SearchSettings) -> State:
+def init(
+    viewer: ViewerNumber, camera: Camera | None, settings: SearchSettings, method: Method
+) -> State:
     """Nothing found yet: viewer 1 starts as the facade, viewer 2 as the flank (P47)."""
     facing: Facing = "facade" if viewer == 1 else "flank"
-    return State(viewer, rotation_of(camera, viewer), settings, facing)
+    return State(viewer, rotation_of(camera, viewer), settings, method, facing)
 
 
 def step(state: State, report: Report, mask: Mask, guide: Guide | None) -> tuple[State, Report]:
@@ -65,31 +81,45 @@ def step(state: State, report: Report, mask: Mask, guide: Guide | None) -> tuple
     known = expected_body(guide, state.viewer)
     facing = state.vote if guide is None else guide.facing[state.viewer - 1]
     if known is not None:
-        model = _expected(state, mask, known)
+        model = _expected(state, mask, known, facing)
     else:
         model = _at_rest(state, mask, report, guide)
     state, width_px, limits_px = _voted(state, mask, model, known)
-    model = located(model)
+    model = located(model, UPRIGHT if state.method.armless_shift else ALL_LIMBS)
     model, squatting = _limbs(state, model, known, facing)
     names = FACADE_ANGLES if facing == "facade" else FLANK_ANGLES
+    angles_deg = {name: float(model.pose[POSE_INDEX[name]]) for name in names}
     report = msgspec.structs.replace(
         report,
         upper_body_px=width_px,
         vote=state.vote,
         thresholds_px=limits_px,
         root_px=(float(model.view[CENTRE_X]), float(model.view[CENTRE_Y])),
-        angles_deg={name: float(model.pose[POSE_INDEX[name]]) for name in names},
+        angles_deg=angles_deg,
         squatting=squatting,
         score=float(model.score),
         matches=model.matches,
     )
-    return state._replace(squatting=squatting), report
+    return state._replace(found=_found(facing, angles_deg, squatting)), report
 
 
-def _expected(state: State, mask: Mask, known: ExpectedBody) -> PosedModel:
-    """The model where and how it is expected."""
-    pose = np.array(known.pose)
+def _found(facing: Facing, angles_deg: dict[str, float], squatting: bool) -> Found:
+    """What to go on from: the facade looks for theta_X of legs in squats alone (P33)."""
+    if facing == "facade" and not squatting:
+        angles_deg = {n: value for n, value in angles_deg.items() if n not in SQUAT_ANGLES}
+    return Found(facing, angles_deg, squatting)
+
+
+def _expected(state: State, mask: Mask, known: ExpectedBody, facing: Facing) -> PosedModel:
+    """The model where and how it is expected.
+
+    As printed each view goes on from the angles that it found itself (L1): the fused pose has legs
+    at rest wherever the facade lifts none (P53), and a search from there never meets a kick.
+    """
+    pose, before = np.array(known.pose), state.found
     pose[:3] = 0.0
+    if before is not None and before.facing == facing and not state.method.shared_start:
+        pose[[POSE_INDEX[name] for name in before.angles_deg]] = [*before.angles_deg.values()]
     view = view_at(state.rotation, known.scale_px_per_m, known.root_px)
     return model_over(mask, body_vector(known.bdp), pose, view)
 
@@ -129,13 +159,15 @@ def _limbs(
     state: State, model: PosedModel, known: ExpectedBody | None, facing: Facing
 ) -> tuple[PosedModel, bool]:
     """Arms, then legs, as this facing sees them (P30-P35)."""
-    settings, wide = state.settings, known is None
+    settings, method, wide = state.settings, state.method, known is None
     if facing == "facade":
-        model = facade_arms(model, settings, wide)
+        model = facade_arms(model, settings, wide, method)
         squatting = False
         if known is not None and known.measured:
             drop_m = (model.view[CENTRE_Y] - known.rest_row_px) / known.scale_px_per_m
-            squatting = squats(state.squatting, float(drop_m) / stature(known.bdp))
+            before = state.found is not None and state.found.squatting
+            squatting = squats(before, float(drop_m) / stature(known.bdp))
         return facade_legs(model, settings, squatting), squatting
     near = 0 if state.rotation[0] @ [0.0, 0.0, 1.0] > 0.0 else 1
-    return flank_legs(flank_arms(model, settings, near, wide), settings, near), False
+    model = flank_arms(model, settings, near, wide, method)
+    return flank_legs(model, settings, near, method), False

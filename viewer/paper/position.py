@@ -4,6 +4,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from common.body.kinematics import ALL_LIMBS
 from common.compiled import compiled
 from common.raster.bits import ONES, popcount
 from common.raster.kernel import CENTRE_X, CENTRE_Y, draw_limbs, score
@@ -13,8 +14,8 @@ SHIFTS_PX: Final = (0, -1, 1, -2, 2, -5, 5)
 """The printed candidates and the incumbent, the least first: ties stay (P27)."""
 
 UPRIGHT: Final = 0b111111
-"""Limbs that are shifted: trunk, head and legs. The arms still have the angles of the frame before,
-and pull the body after them when they move (by 60 mm while they were lowered)."""
+"""Trunk, head and legs. The arms still have the angles of the frame before, and pull the body after
+them when they move (by 60 mm while they were lowered)."""
 
 MOST_PASSES: Final = 3
 """One pass leaves a pixel at shifts of 3, 4, 6 and more (P27)."""
@@ -70,11 +71,9 @@ def shifted_counts(
 
 @compiled
 def best_shift(
-    seen: Any, seen_px: int, width: int, body: Any, pose: Any, view: Any, shifts: Any, passes: int
+    model: Any, seen: Any, seen_px: int, width: int, shifts: Any, passes: int
 ) -> tuple[int, int, float, int]:
-    """(right, down, score, matches) of the best shift of the posed model: x, then y."""
-    model = np.zeros_like(seen)
-    draw_limbs(body, pose, view, UPRIGHT, width, model)
+    """(right, down, score, matches) of the best shift of the drawn model: x, then y."""
     within = extent(model)
     place = np.zeros(2, np.int64)
     best, matches = -1.0, 0
@@ -97,17 +96,17 @@ def best_shift(
     return place[0], place[1], best, matches
 
 
-def located(model: PosedModel) -> PosedModel:
-    """The model shifted to where it fits best: columns first, then rows (P27, P28)."""
+def located(model: PosedModel, limbs: int = ALL_LIMBS) -> PosedModel:
+    """The model shifted to where it fits best: columns first, then rows (P27, P28).
+
+    Args:
+        model: The model so far.
+        limbs: What of it is drawn, as bits.
+    """
+    drawn = np.zeros_like(model.seen)
+    draw_limbs(model.body, model.pose, model.view, limbs, model.width, drawn)
     right, down, value, matches = best_shift(
-        model.seen,
-        model.seen_px,
-        model.width,
-        model.body,
-        model.pose,
-        model.view,
-        _SHIFTS,
-        MOST_PASSES,
+        drawn, model.seen, model.seen_px, model.width, _SHIFTS, MOST_PASSES
     )
     view = model.view.copy()
     view[CENTRE_X] += right

@@ -7,14 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import compiled
+from common.method import Method
 from common.raster.similarity import Mask
 
 CORNER_DISTANCE: Final = 4
 """Points on either side of an elbow at least: minimumCornerDistance."""
-CORNER_SHARE: Final = 0.25
-"""The same as a share of the curve: as printed noise at an end makes an elbow there (M21)."""
-CORNER_DEG: Final = 15.0
-"""minimumCornerAngleDifference is printed as 10, which noise of half a pixel reaches (T16)."""
+CORNER_DEG: Final = 10.0
+"""A bend must be larger: minimumCornerAngleDifference."""
+STEADY_SHARE: Final = 0.25
+"""Points on either side of a steady elbow at least, as a share of the curve (T16)."""
+STEADY_DEG: Final = 15.0
+"""Bend of a steady elbow at least: noise of half a pixel reaches 10 degrees (T16)."""
 
 Curve = NDArray[np.float64]
 """(n, 2): x and y, px, from the trunk outwards."""
@@ -122,23 +125,42 @@ def turn_deg(one_deg: float, other_deg: float) -> float:
 
 @compiled
 def elbow_corner(curve: Any) -> int:
-    """Algorithm 4: the point that parts a curve into two lines of different directions; -1: none.
+    """Algorithm 4: the point that parts a curve into the two lines of the most different
+    directions; -1: nowhere do they differ by more than CORNER_DEG.
 
-    Of the points that do, it is the one at which two lines fit best, away from both ends; printed
-    is the largest difference, which noise at an end decides (M21, T16).
+    The printed loop guards one end of the curve; M21 guards both, and measures angles on the circle.
     """
-    guard = max(CORNER_DISTANCE, math.ceil(CORNER_SHARE * len(curve)))
+    best, most = -1, CORNER_DEG
+    for i in range(CORNER_DISTANCE, len(curve) - CORNER_DISTANCE):
+        bend = turn_deg(_line(curve[: i + 1])[0], _line(curve[i:])[0])
+        if bend > most:
+            best, most = i, bend
+    return best
+
+
+@compiled
+def steady_corner(curve: Any) -> int:
+    """The point at which two lines of different directions fit a curve best; -1: none.
+
+    A departure from algorithm 4, whose largest difference noise at an end decides (T16).
+    """
+    guard = max(CORNER_DISTANCE, math.ceil(STEADY_SHARE * len(curve)))
     best, least = -1, math.inf
     for i in range(guard, len(curve) - guard):
         (upper, one), (lower, other) = _line(curve[: i + 1]), _line(curve[i:])
-        if turn_deg(upper, lower) >= CORNER_DEG and one + other < least:
+        if turn_deg(upper, lower) >= STEADY_DEG and one + other < least:
             best, least = i, one + other
     return best
 
 
-def arm_angles(curve: Curve) -> ArmAngles:
-    """Algorithm 3: one angle for both halves of a straight arm, else one for each (T15)."""
-    corner = int(elbow_corner(curve))
+def arm_angles(curve: Curve, method: Method) -> ArmAngles:
+    """Algorithm 3: one angle for both halves of a straight arm, else one for each (T15).
+
+    Args:
+        curve: Of the arm.
+        method: How its elbow is found.
+    """
+    corner = int(steady_corner(curve) if method.steady_elbows else elbow_corner(curve))
     if corner < 0:
         angle = line_angle_deg(curve)
         return ArmAngles(angle, angle, -1)

@@ -87,7 +87,7 @@ def fit(mask: Mask, before: Vector | None, stature_px: float, method: Method) ->
     if not normal.mask.any():
         raise NoFit(f"no body to fit: {mask.sum()} pixels are nothing of {stature_px}")
     if method.stick_lifting:
-        pose, hidden, evaluations = fit_thesis(normal.mask, float(STATURE_PX))
+        pose, hidden, evaluations = fit_thesis(normal.mask, float(STATURE_PX), method)
     else:
         expected = None if before is None else normal.inward(before)
         pose, hidden, evaluations = fit_tracked(normal.mask, expected)

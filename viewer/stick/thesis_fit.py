@@ -18,6 +18,7 @@ from common.body.stick_body import (
     segments_px,
     standing,
 )
+from common.method import Method
 from common.raster.bits import Bits, pack_words
 from common.raster.similarity import Mask
 from common.raster.stick_raster import match_stick
@@ -27,13 +28,12 @@ from viewer.stick.contour import (
     knees_crossed,
     line_angle_deg,
     lower_leg_curves,
+    outer_runs,
 )
 from viewer.stick.subdivision import angle_found, ratio_found
 
 LIMITS_DEG: Final = {"neck": (45.0, 135.0), "waist": (45.0, 135.0), "hip": (240.0, 300.0)}
 """Table 3.3 (T6)."""
-FOOT_SHARE: Final = 4.0 / 175.0
-"""What a foot takes of the stature: scan lines end above it, for it leads to the side."""
 
 
 class ThesisFit(NamedTuple):
@@ -52,23 +52,25 @@ class _Fit(NamedTuple):
     width: int
     pose: Vector
     matches: list[int]
+    method: Method
 
 
-def fit_thesis(mask: Mask, stature_px: float) -> ThesisFit:
+def fit_thesis(mask: Mask, stature_px: float, method: Method) -> ThesisFit:
     """Torso, head, contours of arms and lower legs, upper legs; each is then foreshortened (T11).
 
     Args:
         mask: (H, W), normalised.
         stature_px: Of the body standing, in its pixels.
+        method: How elbows are found.
     """
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    middle = (columns[0] + columns[-1] + 1) / 2
+    rows = np.flatnonzero(mask.any(axis=1))
     share = (THESIS_RATIOS["head"] + THESIS_RATIOS["torso"]) / THESIS_RATIOS["stature"]
     fit = _Fit(
         pack_words(mask),
         mask.shape[1],
-        standing(middle, rows[0] + share * stature_px, stature_px),
+        standing(_middle(mask, stature_px), rows[0] + share * stature_px, stature_px),
         [],
+        method,
     )
     hidden = np.zeros(len(LIMBS), np.bool_)
     _turned(fit, (TORSO, HEAD), LIMITS_DEG["waist"])
@@ -83,6 +85,15 @@ def fit_thesis(mask: Mask, stature_px: float) -> ThesisFit:
         for limb in (2 + side, 4 + side, 6 + side, 8 + side):
             _shortened(fit, limb)
     return ThesisFit(fit.pose, hidden, sum(fit.matches))
+
+
+def _middle(mask: Mask, stature_px: float) -> float:
+    """Column of the torso: the median of its rows' middles, which one stretched arm leaves (T11)."""
+    rows = np.flatnonzero(mask.any(axis=1))
+    head, torso = (THESIS_RATIOS[name] / THESIS_RATIOS["stature"] for name in ("head", "torso"))
+    high, low = (rows[0] + round(share * stature_px) for share in (head, head + torso))
+    found = outer_runs(mask[high:low] if mask[high:low].any() else mask)
+    return float(np.median(found[found[:, 0] > 0][:, [1, 4]].mean(axis=1)))
 
 
 def _turned(fit: _Fit, limbs: Sequence[int], limits_deg: tuple[float, float]) -> None:
@@ -126,7 +137,7 @@ def _arm(fit: _Fit, mask: Mask, side: int) -> bool:
     curve = arm_curve(mask, trunk, round(reach), side)
     if len(curve) < 2:
         return False
-    found = arm_angles(curve)
+    found = arm_angles(curve, fit.method)
     fit.pose[[ANGLE + 6 + side, ANGLE + 8 + side]] = found.upper, found.lower
     return True
 
@@ -135,7 +146,7 @@ def _lower_legs(fit: _Fit, mask: Mask, bottom: int) -> bool:
     """Angles of both lower legs, exchanged where they cross (algorithms 2 and 5)."""
     size = fit.pose[STATURE]
     top = round(bottom - THESIS.lengths[4] * size)
-    left, right, merged = lower_leg_curves(mask, top, round(bottom - FOOT_SHARE * size))
+    left, right, merged = lower_leg_curves(mask, top, bottom)
     if len(left) < 2:
         return False
     angles = [line_angle_deg(left), line_angle_deg(right)]
