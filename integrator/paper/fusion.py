@@ -20,13 +20,17 @@ ARM_FROM_FACADE: Final = (
 ARM_FROM_FLANK: Final = ("r_shoulder_x", "l_shoulder_x")
 
 
-def lifted(hip_z_deg: float) -> bool:
-    """Whether a leg may be lifted, by the facade's theta_Z of its hip (P53, M16).
+def lifted(side: str, hip_z_deg: float, squats: bool) -> bool:
+    """Whether a leg is lifted, by the facade's theta_Z of its hip (P53, M16).
 
-    The print has 175 < theta_Z < 180 for the right leg; 180 itself is the resting value and on
-    the search's grid, so the range closes there, and the left leg mirrors it.
+    Printed is 175 < theta_Z < 180 for the right leg, which the left mirrors. 180 itself is the
+    resting value and on the search's grid, so M16 reads |theta_Z - 180| <= 5; what it adds to the
+    print is a lifted leg only where the knees are not bent in a squat.
     """
-    return abs(wrapped_deg(hip_z_deg - 180.0)) <= LIFT_WITHIN_DEG
+    inwards_deg = wrapped_deg(hip_z_deg - 180.0) * (-1.0 if side == "r" else 1.0)
+    if squats:
+        return 0.0 < inwards_deg < LIFT_WITHIN_DEG
+    return abs(inwards_deg) <= LIFT_WITHIN_DEG
 
 
 def fused(
@@ -55,8 +59,10 @@ def fused(
         if facade is not None:
             pose = _with_angles(pose, facade, (f"{side}_hip_z",))
         squats = facade is not None and facade.squatting
-        may_lift = facade is None or lifted(pose[POSE_INDEX[f"{side}_hip_z"]])
-        if flank is not None and may_lift and not (squats and method.squat_first):
+        may_lift = not (squats and method.squat_first)
+        if facade is not None and may_lift:
+            may_lift = lifted(side, float(pose[POSE_INDEX[f"{side}_hip_z"]]), squats)
+        if flank is not None and may_lift:
             pose = _with_angles(pose, flank, (hip_x, knee_x))
         elif facade is not None and squats:
             pose = _with_angles(pose, facade, (hip_x, knee_x))
