@@ -151,11 +151,15 @@ def test_a_fit_travels_in_a_report() -> None:
     assert np.allclose(heard.fit.joints_px, stick.joints_px)
 
 
-@pytest.mark.parametrize(("mode", "most"), [("default", 0.04), ("thesis", 0.10)])
+@pytest.mark.parametrize(("mode", "most"), [("default", 0.04), ("thesis", 0.07)])
 def test_joints_of_a_rendered_walk_lie_where_they_are(
     data_dir: Path, mode: Mode, most: float
 ) -> None:
-    """Single view: 12 joints in camera 1, exact masks, a share of the height (asked: 6 %)."""
+    """Single view: 12 joints in camera 1, exact masks, a share of the height (asked: 6 %).
+
+    Without algorithm 2 the thesis is at 0.093, and a standing body that fits nothing at 0.082.
+    Algorithms 1 and 6 this walk does not show: tests/test_thesis_fit.py does.
+    """
     with np.load(data_dir / "dev" / "r07_t1_01_walk_in_place" / "truth.npz") as truth:
         names = truth["joint_names"].tolist()
         bits, places = truth["mask_cam1"], truth["joints2d_cam1"]
