@@ -39,8 +39,6 @@ class Method(msgspec.Struct, frozen=True, kw_only=True):
     """The body's place is searched for by trunk, head and legs: arms have old angles still (P27)."""
     raised_arm_ranges: bool
     """The range of theta_Z turns over with an arm that is swung up past the horizontal (P30)."""
-    circular_swings: bool
-    """theta_X of a shoulder has no end at 180 degrees: arms swing in circles (P30)."""
     hidden_arms: bool
     """An arm is moved in the flank only for a gain in S: one that is hidden there stays (P32)."""
     common_squat: bool

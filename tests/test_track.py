@@ -46,8 +46,8 @@ def exact_silhouettes() -> Iterator[None]:
         yield
 
 
-def viewer(number: ViewerNumber) -> track.State:
-    setup = track.Setup(number, RIG.cameras[number - 1], PAPER, METHODS["paper"])
+def viewer(number: ViewerNumber, method: Method = METHODS["paper"]) -> track.State:
+    setup = track.Setup(number, RIG.cameras[number - 1], PAPER, method)
     return track.init(setup, None)  # type: ignore[arg-type]
 
 
@@ -273,6 +273,36 @@ def test_a_prior_body_never_squats() -> None:
     """P33: the height in the opening posture is what the navel is compared with."""
     truth = squatting(60.0)
     assert not looked(1, truth, guide(truth, measured=False)).squatting
+
+
+def kick_as_followed(method: Method) -> float:
+    """theta_X of the hip that viewer 2 finds of a leg that rises by 10 degrees a frame to 30, while
+    the fused pose has it at rest throughout."""
+    state, found = viewer(2, method), [0.0]
+    for index, hip_deg in enumerate(range(0, 31, 10)):
+        truth = standing(r_hip_x=float(hip_deg))
+        state, report = track.step(state, frame(silhouettes(truth)[1], index), guide(standing()))
+        found = [report.angles_deg["r_hip_x"], report.angles_deg["l_hip_x"]]
+    return max(found)
+
+
+def test_the_flank_goes_on_from_the_legs_that_it_found_itself() -> None:
+    """L1: the fused pose has a leg at rest wherever the facade's theta_Z does not lift it (P53), and
+    from there a window of 16 degrees never meets a kick."""
+    paper = METHODS["paper"]
+    assert kick_as_followed(paper) == pytest.approx(30.0, abs=4.0)
+    shared = msgspec.structs.replace(paper, shared_start=True)
+    assert kick_as_followed(shared) <= 16.0
+
+
+def test_the_facade_goes_on_from_its_own_legs_in_a_squat_alone() -> None:
+    """P33: standing it does not look for theta_X, so that is the fused pose's; L1."""
+    bent, state = standing(r_hip_x=30.0, r_knee_x=-60.0), viewer(1)
+    told = guide(standing())
+    for index in range(2):
+        state, report = track.step(state, frame(silhouettes(standing())[0], index), told)
+        told = msgspec.structs.replace(told, pose=tuple(bent.tolist()))
+    assert report.angles_deg["r_hip_x"] == 30.0
 
 
 def test_the_count_of_matches_is_the_papers_cost() -> None:

@@ -84,17 +84,17 @@ def flank_arms(
         settings: Widths of the search.
         near: 0 where the right arm is nearer to the camera, 1 where the left is.
         wide: Nothing is known of the angles.
-        method: Whether swings end at 180 degrees, and hidden arms stay.
+        method: Whether hidden arms stay.
     """
     width, stop = settings.arm_window_deg, settings.stop_deg
     least_gain = HIDDEN if method.hidden_arms else ANY_GAIN
     apart = model = matched(model)
     for i in (near, 1 - near):
-        within = SearchRange(width, stop, _swing_deg(model, i, method), wide)
+        within = SearchRange(width, stop, _whole_turn(model, i), wide)
         apart = searched(apart, _SHOULDER_X[i], within, least_gain)
     start = model.pose.copy()
     start[_SHOULDER_X[1 - near].at] = start[_SHOULDER_X[near].at]
-    within = SearchRange(width, stop, _swing_deg(model, near, method), wide)
+    within = SearchRange(width, stop, _whole_turn(model, near), wide)
     together = searched(matched(model._replace(pose=start)), _BOTH_X, within, least_gain)
     matches = apart.matches + together.matches - model.matches
     better = apart if apart.score > together.score else together
@@ -104,10 +104,9 @@ def flank_arms(
     return better._replace(pose=pose, matches=matches)
 
 
-def _swing_deg(model: PosedModel, i: int, method: Method) -> tuple[float, float]:
-    """The range of theta_X: as printed (P30), or around where it is, as arms swing in circles."""
-    if not method.circular_swings:
-        return LIMITS_DEG[f"{SIDES[i]}_shoulder_x"]
+def _whole_turn(model: PosedModel, i: int) -> tuple[float, float]:
+    """The printed range of theta_X, [-180, 180], around where it is: its ends are one pose, so a
+    search goes on through them, and every probe lies in the range when it is wrapped (P30)."""
     angle = model.pose[_SHOULDER_X[i].at]
     return angle - 180.0, angle + 180.0
 
