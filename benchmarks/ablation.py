@@ -3,10 +3,11 @@
 Run from the checkout, on clips with a truth; names of performers are the columns:
 
     .venv/bin/python benchmarks/ablation.py clips/*/ [--size 160x120] [--views 1] [--processes 2]
+        [--rows arm squat_first]
 
 The rows follow from `common.method.Method`: the paper, then every departure of the default method
-added in turn, then each left out of all. Prints a table in Markdown: mean error of 12 joints,
-with one view after the hips are moved together, share of frames lost, CPU milliseconds an instant
+added in turn, then each left out of all; of one view the thesis and its departure too. Prints a
+table in Markdown: mean error of 12 joints, with one view after the hips are moved together, share of frames lost, CPU milliseconds an instant
 of the tracking process (the background's learning included, the decoders not).
 """
 
@@ -31,7 +32,7 @@ import numpy as np
 
 from common.bus.messages import ViewerNumber
 from common.config import config_file
-from common.method import DEFAULT, PAPER, Method
+from common.method import DEFAULT, PAPER, THESIS, Method
 from tritrack.accuracy.accuracy import compare, summary
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.overrides import overridden
@@ -68,8 +69,9 @@ def departures(method: Method, printed: Method = PAPER) -> tuple[str, ...]:
     )
 
 
-def rows() -> list[Row]:
-    """The paper, every departure added in turn, and every one left out of all."""
+def rows(alone: bool = False) -> list[Row]:
+    """The paper, every departure added in turn, and every one left out of all; of one view alone
+    the thesis too, whose elbows no other row looks for."""
     names = departures(DEFAULT)
     first = Row("the paper, its silhouettes too", PAPER)
     added = [
@@ -80,7 +82,9 @@ def rows() -> list[Row]:
     ours = Row(
         "the paper's search, our silhouettes", with_fields(PAPER, SILHOUETTE_FIELDS, DEFAULT)
     )
-    return [first, *added, *left, ours]
+    elbows = with_fields(THESIS, ("steady_elbows",), DEFAULT)
+    thesis = [Row("the thesis", THESIS), Row("the thesis + steady_elbows", elbows)]
+    return [first, *added, *left, ours, *(thesis if alone else [])]
 
 
 def measured(
@@ -115,7 +119,7 @@ def numbered(
 ) -> dict[str, Result]:
     """A row by its number, as another process asks for it."""
     cv2.setNumThreads(1)
-    return measured(rows()[number], clips, size, views)
+    return measured(rows(len(views) == 1)[number], clips, size, views)
 
 
 def line(what: str, results: dict[str, Result]) -> str:
@@ -132,16 +136,18 @@ def main() -> None:
     parser.add_argument("--size", help="bound of the working picture")
     parser.add_argument("--views", choices=("12", "1", "2"), default="12")
     parser.add_argument("--processes", type=int, default=1)
+    parser.add_argument("--rows", nargs="+", default=[""], help="only rows that have such a word")
     given = parser.parse_args()
     bare = [clip for clip in given.clips if not (clip / "truth.npz").is_file()]
     if bare:
         parser.error(f"{bare[0]} has no truth.npz")
     chosen: dict[str, tuple[ViewerNumber, ...]] = {"12": (1, 2), "1": (1,), "2": (2,)}
     work = partial(numbered, clips=given.clips, size=given.size, views=chosen[given.views])
-    table = rows()
+    table = rows(len(chosen[given.views]) == 1)
+    asked = [n for n, row in enumerate(table) if any(word in row.what for word in given.rows)]
     with ProcessPoolExecutor(given.processes, get_context("spawn")) as pool:
-        for number, results in enumerate(pool.map(work, range(len(table)))):
-            if number == 0:
+        for number, results in zip(asked, pool.map(work, asked), strict=True):
+            if number == asked[0]:
                 print(f"| | {' | '.join([*results, 'all'])} | CPU ms an instant |")
                 print("|---" * (len(results) + 3) + "|")
             print(line(table[number].what, results))

@@ -10,8 +10,11 @@ Mode = Literal["default", "paper", "thesis"]
 class Method(msgspec.Struct, frozen=True, kw_only=True):
     """How pictures become a body: False is as the paper prints it, True a departure.
 
-    Steps read its fields; nobody asks for the name of a mode. The ablation switches each field
-    by itself, so what is not listed here is no departure.
+    Steps read its fields; none asks for the name of a mode. The ablation switches each field by
+    itself. What is not listed is printed, or one of the readings without which the print does not
+    run (M1 to M25, and where P and T of docs/requirements.md are ambiguous), or what the print
+    leaves out in every mode: the pose before the opening posture and after a loss, found without a
+    pose before it, and whether a pose is believed.
     """
 
     steady_light: bool
@@ -36,7 +39,7 @@ class Method(msgspec.Struct, frozen=True, kw_only=True):
     is surer of what is left."""
 
     armless_shift: bool
-    """The body's place is searched for by trunk, head and legs: arms have old angles still (P27)."""
+    """The body's place is searched by trunk, head and legs: arms still have old angles (P27)."""
     raised_arm_ranges: bool
     """The range of theta_Z turns over with an arm that is swung up past the horizontal (P30)."""
     hidden_arms: bool
@@ -97,7 +100,7 @@ def _all(departs: bool) -> Method:
 
 
 PAPER: Final = _all(False)
-"""Huang & Chung 2004, as printed, with the readings that make it run (M1 to M25)."""
+"""Huang & Chung 2004, as printed, with the readings that make it run."""
 DEFAULT: Final = msgspec.structs.replace(_all(True), stick_lifting=False)
 """The best that is known today."""
 THESIS: Final = msgspec.structs.replace(
@@ -107,11 +110,11 @@ THESIS: Final = msgspec.structs.replace(
     body_colours=True,
     alpha_matte=True,
     slow_light=True,
-    smoothing=True,
     density_recognizer=True,
     stick_lifting=True,
 )
-"""Demir 2006, as printed from the silhouette on: its own threshold has no value (T8)."""
+"""Demir 2006, as printed from the silhouette on: its own threshold has no value (T8), and it names
+no postures."""
 
 METHODS: Final[dict[Mode, Method]] = {"default": DEFAULT, "paper": PAPER, "thesis": THESIS}
 """By the names that settings and commands use."""

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from common.config.settings import Settings
-from common.method import DEFAULT, PAPER, Method, Mode
+from common.method import DEFAULT, PAPER, THESIS, Method, Mode
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.pose_arrays import poses
 
@@ -53,3 +53,11 @@ def test_every_departure_is_a_row_added_and_a_row_left_out(ablation: ModuleType)
     for name, (above, row) in zip(names, pairwise(added), strict=True):
         assert ablation.departures(row.method, above.method) == (name,)
     assert [ablation.departures(row.method, DEFAULT) for row in left] == [(name,) for name in names]
+
+
+def test_of_one_view_the_thesis_and_its_departure_are_rows(ablation: ModuleType) -> None:
+    """No other row fits the thesis's body."""
+    of_two, of_one = ablation.rows(), ablation.rows(True)
+    assert of_one[:-2] == of_two
+    assert of_one[-2].method == THESIS
+    assert ablation.departures(of_one[-1].method, THESIS) == ("steady_elbows",)

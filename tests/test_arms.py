@@ -142,7 +142,9 @@ def test_no_pose_is_ever_beyond_a_range(z_deg: float, elbow_deg: float, y_deg: f
 def test_the_facade_leaves_theta_x_alone() -> None:
     """P30."""
     start = posed(r_shoulder_x=17.0, l_shoulder_x=-5.0)
-    found = facade_arms(laid_over(picture(posed(r_shoulder_z=100.0)), start), PAPERS, wide=False, method=PAPER)
+    found = facade_arms(
+        laid_over(picture(posed(r_shoulder_z=100.0)), start), PAPERS, wide=False, method=PAPER
+    )
     assert angle(found, "r_shoulder_x") == 17.0
     assert angle(found, "l_shoulder_x") == -5.0
 
@@ -159,7 +161,9 @@ def test_the_facades_search_is_the_shoulder_then_the_elbow_right_then_left(
 
     monkeypatch.setattr("viewer.paper.arms.searched", recorded)
     seen = picture(posed(r_shoulder_z=150.0, l_shoulder_z=210.0))
-    found = facade_arms(laid_over(seen, posed(r_shoulder_z=150.0)), PAPERS, wide=False, method=PAPER)
+    found = facade_arms(
+        laid_over(seen, posed(r_shoulder_z=150.0)), PAPERS, wide=False, method=PAPER
+    )
     order = ["r_shoulder_z", "r_elbow_x", "l_shoulder_z", "l_elbow_x"]
     assert [call[0] for call in calls] == [POSE_INDEX[name] for name in order]
     assert {call[1:3] for call in calls} == {(64, 4)}

@@ -19,7 +19,6 @@ from viewer.stick.contour import (
     turn_deg,
 )
 
-
 THESIS_AS_PRINTED = METHODS["thesis"]
 
 

@@ -14,7 +14,14 @@ def test_the_paper_departs_in_nothing() -> None:
 
 def test_the_default_takes_every_departure_but_the_thesis_own_way() -> None:
     assert set(departures(DEFAULT)) == set(Method.__struct_fields__) - {"stick_lifting"}
-    assert "stick_lifting" in departures(THESIS)
+
+
+def test_the_thesis_takes_our_silhouettes_and_its_own_way_from_there_on() -> None:
+    """T8 has no threshold. What names postures is not the thesis's."""
+    assert departures(THESIS) == (
+        *("steady_light", "pixel_evidence", "body_colours", "alpha_matte", "slow_light"),
+        *("density_recognizer", "stick_lifting"),
+    )
 
 
 def test_a_method_names_every_field_and_cannot_be_changed() -> None:

@@ -36,7 +36,12 @@ def angle_deg(pose: Vector, limb: str) -> float:
         ({"torso": 100.0, "head": 100.0}, ("torso", "head"), 6.0),
         ({"torso": 78.0, "head": 78.0}, ("torso", "head"), 8.0),
         (
-            {"r_upper_leg": 250.0, "r_lower_leg": 265.0, "l_upper_leg": 290.0, "l_lower_leg": 275.0},
+            {
+                "r_upper_leg": 250.0,
+                "r_lower_leg": 265.0,
+                "l_upper_leg": 290.0,
+                "l_lower_leg": 275.0,
+            },
             ("r_upper_leg", "l_upper_leg"),
             2.0,
         ),
@@ -47,7 +52,7 @@ def angle_deg(pose: Vector, limb: str) -> float:
 def test_algorithm_1_turns_trunk_head_and_upper_legs(
     turned_deg: dict[str, float], limbs: tuple[str, ...], within_deg: float
 ) -> None:
-    """T11, T12: 10 to 20 degrees from where a standing body has them, where they stay without it."""
+    """T11, T12: 10 to 20 degrees from a standing body, which is what is left without it."""
     pose = stick_pose(ARMS_OUT | turned_deg)
     stick = found(pose)
     for limb in limbs:
@@ -67,7 +72,7 @@ def test_algorithm_1_turns_trunk_head_and_upper_legs(
 def test_algorithm_2_reads_arms_and_lower_legs_off_the_contour(
     turned_deg: dict[str, float], limbs: tuple[str, ...], within_deg: float
 ) -> None:
-    """T11, T14: 15 to 80 degrees from where a standing body has them, where they stay without it."""
+    """T11, T14: 15 to 80 degrees from a standing body, which is what is left without it."""
     pose = stick_pose(ARMS_OUT | turned_deg)
     stick = found(pose)
     for limb in limbs:

@@ -287,8 +287,8 @@ def kick_as_followed(method: Method) -> float:
 
 
 def test_the_flank_goes_on_from_the_legs_that_it_found_itself() -> None:
-    """L1: the fused pose has a leg at rest wherever the facade's theta_Z does not lift it (P53), and
-    from there a window of 16 degrees never meets a kick."""
+    """L1: the fused pose has a leg at rest wherever the facade's theta_Z does not lift it (P53).
+    From there a window of 16 degrees never meets a kick."""
     paper = METHODS["paper"]
     assert kick_as_followed(paper) == pytest.approx(30.0, abs=4.0)
     shared = msgspec.structs.replace(paper, shared_start=True)

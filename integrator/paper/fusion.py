@@ -33,9 +33,7 @@ def lifted(side: str, hip_z_deg: float, squats: bool) -> bool:
     return abs(inwards_deg) <= LIFT_WITHIN_DEG
 
 
-def fused(
-    before: Vector, facade: Report | None, flank: Report | None, method: Method
-) -> Vector:
+def fused(before: Vector, facade: Report | None, flank: Report | None, method: Method) -> Vector:
     """The universal pose from both views' angles.
 
     Arms: theta_X of the shoulders from the flank, the rest from the facade (P51). Legs: theta_Z

@@ -128,7 +128,7 @@ def elbow_corner(curve: Any) -> int:
     """Algorithm 4: the point that parts a curve into the two lines of the most different
     directions; -1: nowhere do they differ by more than CORNER_DEG.
 
-    The printed loop guards one end of the curve; M21 guards both, and measures angles on the circle.
+    The printed loop guards one end of the curve. M21 guards both, and takes angles on the circle.
     """
     best, most = -1, CORNER_DEG
     for i in range(CORNER_DISTANCE, len(curve) - CORNER_DISTANCE):

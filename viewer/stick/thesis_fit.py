@@ -88,7 +88,7 @@ def fit_thesis(mask: Mask, stature_px: float, method: Method) -> ThesisFit:
 
 
 def _middle(mask: Mask, stature_px: float) -> float:
-    """Column of the torso: the median of its rows' middles, which one stretched arm leaves (T11)."""
+    """Column of the torso: the median of its rows' middles; one stretched arm moves few (T11)."""
     rows = np.flatnonzero(mask.any(axis=1))
     head, torso = (THESIS_RATIOS[name] / THESIS_RATIOS["stature"] for name in ("head", "torso"))
     high, low = (rows[0] + round(share * stature_px) for share in (head, head + torso))
