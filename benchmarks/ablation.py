@@ -7,8 +7,9 @@ Run from the checkout, on clips with a truth; names of performers are the column
 
 The rows follow from `common.method.Method`: the paper, then every departure of the default method
 added in turn, then each left out of all; of one view the thesis and its departure too. Prints a
-table in Markdown: mean error of 12 joints, with one view after the hips are moved together, share of frames lost, CPU milliseconds an instant
-of the tracking process (the background's learning included, the decoders not).
+table in Markdown: mean error of 12 joints, with one view after the hips are moved together, share
+of frames lost, CPU milliseconds an instant of the tracking process (the background's learning
+included, the decoders not).
 """
 
 import argparse
