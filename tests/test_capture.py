@@ -20,6 +20,7 @@ import pytest
 from common.bus.messages import Landmarks
 from common.video.clip_facts import View
 from common.video.decoding import (
+    DAMAGED,
     END,
     FRAME,
     HEADER,
@@ -96,7 +97,7 @@ def test_every_frame_comes_in_order_at_the_size_asked_for(tmp_path: Path, decode
     assert [frame.index for frame in frames] == list(range(FRAMES))
     assert [shown(frame.picture) for frame in frames] == list(range(FRAMES))
     assert {frame.picture.shape for frame in frames} == {(48, 64, 3)}
-    assert decoder.came == FRAMES
+    assert decoder.ending.frames == FRAMES
 
 
 def test_a_pixel_is_the_mean_of_what_it_covers(tmp_path: Path, decoder: Decoder) -> None:
@@ -127,7 +128,7 @@ def test_every_third_frame_keeps_its_index_and_the_rest_is_counted(
     frames = list(decoder.frames(written(tmp_path / "cam1.avi"), SIZE, Wanted(3)))
     assert [frame.index for frame in frames] == list(range(0, FRAMES, 3))
     assert [shown(frame.picture) for frame in frames] == list(range(0, FRAMES, 3))
-    assert decoder.came == FRAMES
+    assert decoder.ending.frames == FRAMES
 
 
 def test_one_child_reads_video_after_video(tmp_path: Path, decoder: Decoder) -> None:
@@ -267,7 +268,7 @@ def test_a_film_cut_off_gives_what_it_has_and_says_how_much(
     claimed = decoder.probe(str(cut)).frames
     frames = list(decoder.frames(str(cut), SIZE))
     assert [shown(frame.picture) for frame in frames[:10]] == list(range(10))
-    assert decoder.came == len(frames) < claimed == FRAMES
+    assert decoder.ending.frames == len(frames) < claimed == FRAMES
 
 
 @pytest.mark.parametrize("content", [None, b"", b"no film\n" * 99, b"RIFF\xff\xff\xff\x7fAVI LIST"])
@@ -379,7 +380,7 @@ def test_live_frames_come_no_sooner_than_they_are_due(tmp_path: Path) -> None:
             assert frame.clock_s == start_s + 1000.0 + frame.captured_s
             early_s.append(frame.clock_s - 1000.0 - time.monotonic())
     assert max(early_s) <= 0.0
-    assert len(early_s) + live.dropped == live.came == FRAMES
+    assert len(early_s) + live.dropped == live.ending.frames == FRAMES
 
 
 def test_a_late_reader_gets_the_newest_frames_and_the_loss_is_counted(tmp_path: Path) -> None:
@@ -387,7 +388,7 @@ def test_a_late_reader_gets_the_newest_frames_and_the_loss_is_counted(tmp_path: 
     view = view_of(written(tmp_path / "cam1.avi"), fps=1e6)
     with Live(view, 1, RoomClock(start_s=time.monotonic() + 0.2)) as live:
         deadline = time.monotonic() + 5.0
-        while live.came < FRAMES and time.monotonic() < deadline:
+        while live.ending.frames < FRAMES and time.monotonic() < deadline:
             time.sleep(0.01)
         assert live.dropped == FRAMES - WAITING
         assert [frame.index for frame in all_of(live)] == [FRAMES - 2, FRAMES - 1]
@@ -421,7 +422,7 @@ def test_a_camera_that_is_unplugged_is_not_over(monkeypatch: pytest.MonkeyPatch)
     picture = picture_of(0).tobytes()
     answer = HEADER.pack(MAGIC, INFO, 0, 0.0, 2) + b"{}"
     answer += HEADER.pack(MAGIC, FRAME, 0, time.monotonic() + 0.2, len(picture)) + picture
-    answer += HEADER.pack(MAGIC, END, 1, 0.0, 0)
+    answer += HEADER.pack(MAGIC, END, 1, 0.0, DAMAGED.size) + DAMAGED.pack(0)
     monkeypatch.setattr("common.video.decoding.Child", partial(Babbler, answer))
     with Live(view_of(0, frames=0), 1, RoomClock(0.0)) as live:
         assert live.take(5.0) is not None
@@ -459,4 +460,4 @@ def test_filmed_people_are_read_to_their_end(data_dir: Path, decoder: Decoder, f
         claimed = decoder.probe(str(video)).frames
         indices = [frame.index for frame in decoder.frames(str(video), (160, 120), Wanted(20))]
         assert indices == list(range(0, claimed, 20))
-        assert decoder.came == claimed
+        assert decoder.ending.frames == claimed

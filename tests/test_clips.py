@@ -16,7 +16,7 @@ from common.rig.camera import paper_rig, project
 from common.video.clip_facts import Clip, View, shortfall
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
-from common.video.decoding import Decoder
+from common.video.decoding import Decoder, Ending
 
 SIZE = (320, 240)
 
@@ -345,8 +345,10 @@ def test_a_calibration_for_another_shape_or_too_few_cameras_is_refused(
 
 def test_a_video_that_ended_early_is_told() -> None:
     view = View(1, "cam1.avi", SIZE, SIZE, 15.0, 69)
-    assert shortfall(view, 69) == ""
-    assert shortfall(view, 40) == "cam1.avi ends after 40 of 69 frames: it was cut off"
+    assert shortfall(view, Ending(69)) == ""
+    assert shortfall(view, Ending(40, damaged=1)) == (
+        "cam1.avi was cut off or is damaged: 40 of 69 frames could be read; copy or record it again"
+    )
 
 
 def test_the_development_clips_open_with_truth_and_gaps(data_dir: Path, decoder: Decoder) -> None:

@@ -49,6 +49,13 @@ def test_clips_that_are_mostly_not_believed_end_a_run_with_code_3() -> None:
     assert told(raised.value) == str(raised.value)
 
 
+def test_a_clip_that_was_not_read_to_its_end_goes_before_what_is_believed_of_it() -> None:
+    lost = {"believed": None, "unread": {"clips/a/cam1.mp4": {"read": 15, "of": 228}}}
+    with pytest.raises(Unfollowed, match=r"\(clips/a/cam1\.mp4: 15 of 228\)") as raised:
+        refuse_unfollowed({"good": {"believed": 1.0}, "a": lost})
+    assert code_of(raised.value) == 3
+
+
 def test_a_clip_that_shows_nobody_is_not_followed_and_that_is_said() -> None:
     with pytest.raises(Unfollowed, match=r"in 1 of 2 clips .* \(empty: nobody was found\)"):
         refuse_unfollowed({"good": {"believed": 1.0}, "empty": {"believed": None}})

@@ -5,7 +5,7 @@ from itertools import islice
 
 import numpy as np
 
-from common.video.decoding import ALL, Decoded, Size, Source, Wanted
+from common.video.decoding import ALL, Decoded, Ending, Size, Source, Wanted
 from common.video.frame_cache import Reel, Told
 
 SIZE = (4, 3)
@@ -16,14 +16,14 @@ class Counting:
     """A decoder of films of ten pictures that counts its readings."""
 
     def __init__(self) -> None:
-        self.came, self.readings = 0, 0
+        self.ending, self.readings = Ending(), 0
 
     def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:
         self.readings += 1
         for index in range(-(-wanted.start // wanted.every) * wanted.every, 10, wanted.every):
             picture = np.full((size[1], size[0], 3), hash(source) % 7 + index, np.uint8)
             yield Decoded(index, 0.1 * index, picture, picture if wanted.large else None)
-        self.came = 10
+        self.ending = Ending(10)
 
 
 def indices(reel: Reel, source: Source = "a.avi", every: int = 1) -> list[int]:
@@ -36,7 +36,7 @@ def test_a_second_reading_gives_the_same_pictures_without_decoding() -> None:
     first, second = list(reel.frames("a.avi", SIZE)), list(reel.frames("a.avi", SIZE))
     assert all(one is other for one, other in zip(first, second, strict=True))
     assert decoder.readings == 1
-    assert reel.came == 10
+    assert reel.ending == Ending(10)
 
 
 def test_every_third_picture_comes_from_a_whole_reading_too() -> None:
@@ -109,4 +109,4 @@ def test_who_waits_is_told_which_share_of_the_due_frames_has_come() -> None:
     told = Told(Counting(), 4, heard.append)
     assert [got.index for got in told.frames("a.avi", SIZE)] == list(range(10))
     assert heard == [0.25, 0.5, 0.75, *[1.0] * 7]
-    assert told.came == 10
+    assert told.ending == Ending(10)

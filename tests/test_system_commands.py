@@ -9,6 +9,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
@@ -16,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 import typer
-from spoiling import REFUSED, WORKED_WITH, copied, edit_json, refilmed
+from spoiling import REFUSED, WORKED_WITH, copied, cut_off, damage, edit_json, refilmed
 
 import tritrack.__main__ as door
 from common.config.settings import Settings
@@ -308,6 +309,37 @@ def test_a_clip_that_is_hardly_followed_ends_with_a_code_of_its_own(
     summary = json.loads((tmp_path / clip.name / "summary.json").read_text())
     assert summary["believed"] < 0.2
     assert summary["status"]["lost"] > summary["status"]["predicted"]
+
+
+@pytest.mark.parametrize(
+    ("command", "spoil", "short"),
+    [
+        ("track", cut_off, "cam2.avi"),
+        ("single", lambda folder: damage(folder / "cam1.avi", 30_000), "cam1.avi"),
+    ],
+    ids=["a view is cut off", "damaged in the middle"],
+)
+def test_a_clip_that_is_not_read_to_its_end_is_written_as_far_as_it_goes(
+    tritrack: Commands,
+    clip: Path,
+    tmp_path: Path,
+    command: str,
+    spoil: Callable[[Path], object],
+    short: str,
+) -> None:
+    """With how many of its frames were read, and a code of its own."""
+    folder = copied(clip, tmp_path / "clip")
+    spoil(folder)
+    said = tritrack(command, folder, "--out", tmp_path / "out")
+    run = tmp_path / "out" / "clip"
+    (lost,) = json.loads((run / "summary.json").read_text())["unread"].items()
+    assert lost[0] == str(folder / short)
+    assert 10 < lost[1]["read"] < lost[1]["of"] == 69
+    assert any(f"{lost[1]['read']} of 69 frames could be read" in line for line in said.warnings)
+    assert said.code == 3
+    assert f"{short}: {lost[1]['read']} of 69" in said.errors[-1]
+    with np.load(run / "poses.npz", allow_pickle=False) as found:
+        assert np.isfinite(found["joints_m"]).all(axis=(1, 2)).any()
 
 
 @pytest.mark.parametrize("command", ["track", "single"])

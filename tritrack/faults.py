@@ -23,7 +23,7 @@ HALF: Final = 0.5
 
 
 class Unfollowed(RuntimeError):
-    """Films in less than half of which somebody was followed; what was found is written."""
+    """Clips that were not read to their end, or are mostly not believed; results are written."""
 
 
 class Fault(RuntimeError):
@@ -53,9 +53,10 @@ def refuse_unfollowed(clips: Mapping[str, Mapping[str, Any]]) -> None:
     """End a run with a code of its own where a clip's bodies are mostly not believed.
 
     Raises:
-        Unfollowed: When one is believed in less than half of its frames with a person, or shows
-            nobody.
+        Unfollowed: When one could not be read to its end, is believed in less than half of its
+            frames with a person, or shows nobody.
     """
+    _refuse_unread(clips)
     shares = {name: facts["believed"] for name, facts in clips.items()}
     poor = {name: share or 0.0 for name, share in shares.items() if (share or 0.0) < HALF}
     if poor:
@@ -65,6 +66,18 @@ def refuse_unfollowed(clips: Mapping[str, Mapping[str, Any]]) -> None:
             f"in {len(poor)} of {counted(len(clips), 'clip')} the body is believed in less than "
             f"half of the frames ({worst}: {found}): name an empty picture of the room, "
             "or light it better"
+        )
+
+
+def _refuse_unread(clips: Mapping[str, Mapping[str, Any]]) -> None:
+    lost = {
+        path: read for facts in clips.values() for path, read in facts.get("unread", {}).items()
+    }
+    if lost:
+        parts = ", ".join(f"{path}: {read['read']} of {read['of']}" for path, read in lost.items())
+        raise Unfollowed(
+            f"not all frames could be read ({parts}): the results are of those that could; copy or "
+            "record the video again"
         )
 
 

@@ -140,7 +140,7 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
         raise
     finally:  # Also when the decoder broke: nobody shall wait for this view again.
         bus.publish(Ended(viewer=view.number, frames=pace.frames, why=why))
-    for odd in (shortfall(view, live.came) if live.over else "", haste.odd(pace.frames)):
+    for odd in (shortfall(view, live.ending) if live.over else "", haste.odd(pace.frames)):
         if odd:
             log.warning(odd)
             warnings = (*warnings, odd)

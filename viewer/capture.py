@@ -12,7 +12,7 @@ from common.bus.messages import Landmarks
 from common.bus.rate import Clock, wait_until
 from common.rig.upright import Upright
 from common.video.clip_facts import View
-from common.video.decoding import CameraLost, Decoded, Decoder, Image, Wanted
+from common.video.decoding import CameraLost, Decoded, Decoder, Ending, Image, Wanted
 from common.video.frame_cache import Reader
 from viewer.landmarks.outside_source import OutsideSource
 
@@ -144,9 +144,9 @@ class Live:
         return self._waiting.dropped + self._missed
 
     @property
-    def came(self) -> int:
-        """How many frames the video really had; 0 until its end was reached."""
-        return self._decoder.came
+    def ending(self) -> Ending:
+        """How far the video could be read; of no frames until its end was reached."""
+        return self._decoder.ending
 
     @property
     def over(self) -> bool:
@@ -182,7 +182,7 @@ class Live:
                 else:
                     self._waiting.put(self._with_landmarks(frame, decoded))
             if isinstance(view.source, int):
-                raise CameraLost(view.source, self._decoder.came)
+                raise CameraLost(view.source, self._decoder.ending.frames)
         except Exception as error:  # Whatever ended this thread is the reader's to hear,
             self._failure = None if self._stop.is_set() else error  # unless they have left.
         finally:

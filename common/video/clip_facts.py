@@ -1,12 +1,15 @@
 """What a run knows of its clip."""
 
+from collections.abc import Iterable
+from typing import Any
+
 import msgspec
 
 from common.body.body import Bdp
 from common.bus.messages import ViewerNumber
 from common.rig.camera import Rig
 from common.rig.upright import Upright, swapped
-from common.video.decoding import Source
+from common.video.decoding import Ending, Source
 
 
 class Act(msgspec.Struct, frozen=True):
@@ -97,11 +100,34 @@ class Clip(msgspec.Struct, frozen=True):
     """The person's lengths, metres, where they were measured before."""
 
 
-def shortfall(view: View, came: int) -> str:
-    """What to say of a video that ended before it claimed to; "" where it did not."""
-    if came >= view.frames:
-        return ""
-    return f"{view.source} ends after {came} of {view.frames} frames: it was cut off"
+def unread(view: View, ending: Ending) -> bool:
+    """Whether the end of a video is lost: it was cut off, or is damaged.
+
+    One that claims too many frames, as its duration is the sound's or an edit list hides some of
+    them, is whole: FFmpeg reads it without complaint.
+    """
+    return ending.damaged > 0 and ending.frames < view.frames
+
+
+def shortfall(view: View, ending: Ending) -> str:
+    """What to say of a video that could not be read to its end, or is damaged; "" if neither."""
+    if unread(view, ending):
+        read = f"{ending.frames} of {view.frames} frames could be read"
+        return f"{view.source} was cut off or is damaged: {read}; copy or record it again"
+    if ending.damaged:
+        where = f"in {ending.damaged} of its {ending.frames} frames"
+        return f"{view.source} is damaged {where}, where persons may be missed; copy it again"
+    return ""
+
+
+def unread_facts(endings: Iterable[tuple[View, Ending]]) -> dict[str, Any]:
+    """Of the videos whose end is lost, for the summary: how many frames were read of how many."""
+    lost = {
+        str(view.source): {"read": ending.frames, "of": view.frames}
+        for view, ending in endings
+        if unread(view, ending)
+    }
+    return {"unread": lost} if lost else {}
 
 
 def both_cameras(clip: Clip) -> Rig | None:

@@ -6,14 +6,16 @@ import os
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import IO, Any, Final, NamedTuple
 
 import cv2
 import numpy as np
 
 from common.parent_death import end_with_pipe
+from common.video.complaints import INTERLACED, Complaints
 from common.video.decoding import (
+    DAMAGED,
     END,
     FRAME,
     HEADER,
@@ -33,6 +35,14 @@ SIGN_OF_LIFE: Final = 100
 """Of so many frames that are passed over the asker hears: grabbing many takes a while."""
 
 
+PROGRESSIVE: Final = "make it progressive (ffmpeg -i IN -vf yadif -c:v mjpeg -q:v 2 OUT.avi)"
+"""The cure of a video of fields."""
+
+
+class Refused(ValueError):
+    """A source of which no pictures can be made; the text names it and the cure."""
+
+
 @dataclass(frozen=True, slots=True)
 class Grabbed:
     """A frame of the source; without its picture where that was not asked for or is broken."""
@@ -40,6 +50,8 @@ class Grabbed:
     index: int
     grabbed_s: float
     picture: Image | None
+    damaged: bool = False
+    """The decoder met damage in it, or before it."""
 
 
 class OpenFilm(NamedTuple):
@@ -54,36 +66,43 @@ def main() -> None:
     """Answer until the asker is gone."""
     end_with_pipe(sys.stdin.fileno())
     cv2.setNumThreads(1)
-    answers = os.fdopen(int(sys.argv[1]), "wb")
+    answers, complaints = os.fdopen(int(sys.argv[1]), "wb"), Complaints()
     for line in sys.stdin:
-        serve(json.loads(line), answers)
+        try:
+            serve(json.loads(line), answers, complaints)
+        except Refused as refusal:
+            say(answers, REFUSED, None, str(refusal).encode())
         answers.flush()
 
 
-def serve(request: dict[str, Any], answers: IO[bytes]) -> None:
-    """Say what a source is, send its frames at each size given, else their times; then END."""
+def serve(request: dict[str, Any], answers: IO[bytes], complaints: Complaints) -> None:
+    """Say what a source is, send its frames at each size given, else their times; then END.
+
+    Raises:
+        Refused: When no pictures can be made of it, also in its middle.
+    """
     source, sizes = request["source"], request["sizes"]
-    film = opened(source, request["every"], request["start"])
+    complaints.taken()  # of the source before
+    film = opened(source, request["every"], request["start"], complaints)
     first = next((grab for grab in film.grabs if grab.picture is not None), None)
     if first is None or first.picture is None:
-        refusal = f"{named(source)} gives no picture: {cure(source)}"
-        say(answers, REFUSED, None, refusal.encode())
-        return
+        raise Refused(f"{named(source)} gives no picture: {cure(source)}")
     height, width = first.picture.shape[:2]
     info = {"width": width, "height": height, "fps": film.fps, "frames": film.frames}
     say(answers, INFO, None, json.dumps(info).encode())
     if not sizes:
         say_times(source, answers)
-    came = first.index + 1
+    came, damaged = first.index + 1, 0
     for grab in itertools.chain([first], film.grabs) if sizes else ():
-        came = grab.index + 1
+        came, damaged = grab.index + 1, damaged + grab.damaged
         if grab.picture is not None:
             pictures = [reduced(grab.picture, size, request["quarters"]) for size in sizes]
             say(answers, FRAME, grab, *(picture.data for picture in pictures))
         elif grab.index % SIGN_OF_LIFE == 0:
             say(answers, SKIPPED, grab)
             answers.flush()
-    say(answers, END, Grabbed(came, time.monotonic(), None))
+    damaged += bool(complaints.taken())  # that its end is missing is met by no frame
+    say(answers, END, Grabbed(came, time.monotonic(), None), DAMAGED.pack(damaged))
 
 
 def say_times(source: Source, answers: IO[bytes]) -> None:
@@ -100,19 +119,39 @@ def say_times(source: Source, answers: IO[bytes]) -> None:
         answers.flush()
 
 
-def opened(source: Source, every: int, start: int) -> OpenFilm:
+def opened(source: Source, every: int, start: int, complaints: Complaints) -> OpenFilm:
     """A video, a camera, or a still picture as a film of one frame.
 
     Args:
         source: Of the pictures.
         every: Only frames whose index is a multiple of it are decoded to pictures ...
         start: ... and only the very first one and those from this index on.
+        complaints: What is said of it.
     """
     if isinstance(source, str) and cv2.haveImageReader(source) and cv2.imcount(source) == 1:
         return OpenFilm(0.0, 1, iter([Grabbed(0, time.monotonic(), cv2.imread(source))]))
     capture = cv2.VideoCapture(source)
     fps, frames = capture.get(cv2.CAP_PROP_FPS), capture.get(cv2.CAP_PROP_FRAME_COUNT)
-    return OpenFilm(max(0.0, fps), max(0, round(frames)), grabs(capture, every, start))
+    taken = grabs(capture, every, start)
+    if isinstance(source, str):
+        taken = judged(taken, source, complaints)
+    return OpenFilm(max(0.0, fps), max(0, round(frames)), taken)
+
+
+def judged(taken: Iterator[Grabbed], source: str, complaints: Complaints) -> Iterator[Grabbed]:
+    """The frames of a file, and in which of them the decoder met damage.
+
+    What is said up to the first of them is none: a video that was trimmed may begin in a stream's
+    middle.
+
+    Raises:
+        Refused: When a frame is interlaced: OpenCV's FFmpeg gives no picture, and calls it one.
+    """
+    for grab in taken:
+        said = complaints.taken()
+        if INTERLACED in said:
+            raise Refused(f"{source} is interlaced: {PROGRESSIVE}")
+        yield replace(grab, damaged=grab.index > 0 and bool(said))
 
 
 def grabs(capture: cv2.VideoCapture, every: int, start: int) -> Iterator[Grabbed]:

@@ -32,6 +32,9 @@ MAX_TEXT_BYTES: Final = 1 << 16
 TIMES_AT_ONCE: Final = 4096
 """So many times of packets are in one answer: a long film's take a while to read."""
 
+DAMAGED: Final = struct.Struct("<I")
+"""What END carries: as `Ending.damaged`."""
+
 STALL_S: Final = 10.0
 """A child that gives nothing for so long is stuck: opening a slow camera takes 3 s."""
 
@@ -108,6 +111,15 @@ class Wanted(NamedTuple):
 ALL: Final = Wanted()
 
 
+class Ending(NamedTuple):
+    """How far a source could be read."""
+
+    frames: int = 0
+    """How many it really had."""
+    damaged: int = 0
+    """In how many of them, or behind them, the decoder met damage."""
+
+
 class Decoded(msgspec.Struct, frozen=True):
     """One picture of a source."""
 
@@ -136,8 +148,8 @@ class Decoder:
 
     def __init__(self, stall_s: float = STALL_S) -> None:
         """No child yet; one that gives nothing for `stall_s` will count as stuck."""
-        self.came = 0
-        """How many frames the source that was last read to its end really had."""
+        self.ending = Ending()
+        """Of the source that was last read to its end."""
         self._stall_s = stall_s
         self._child: Child | None = None
 
@@ -184,7 +196,8 @@ class Decoder:
                 pictures = _pictures(answer.payload, sizes)
                 yield Decoded(answer.index, answer.grabbed_s, *pictures)
             elif answer.kind == END:
-                self.came = answer.index
+                (damaged,) = DAMAGED.unpack(answer.payload)
+                self.ending = Ending(answer.index, damaged)
 
     def stop(self) -> None:
         """End the child, from any thread; who reads its frames then meets DecoderDied."""
@@ -249,7 +262,7 @@ def _next_answer(child: Child, sizes: list[Size]) -> _Answer:
     head = bytearray(HEADER.size)
     child.read_into(memoryview(head))
     magic, kind, index, grabbed_s, length = HEADER.unpack(head)
-    due = length <= MAX_TEXT_BYTES
+    due = length == DAMAGED.size if kind == END else length <= MAX_TEXT_BYTES
     if kind == FRAME:
         due = bool(sizes) and length == sum(3 * width * height for width, height in sizes)
     if magic != MAGIC or not due:

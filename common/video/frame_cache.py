@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Final, Protocol
 
-from common.video.decoding import ALL, Decoded, Size, Source, Wanted
+from common.video.decoding import ALL, Decoded, Ending, Size, Source, Wanted
 
 MOST_BYTES: Final = 1 << 27
 """What a reel keeps at most: 38 s at 320x240 and 15 frames a second, 2.5 minutes at 160x120."""
@@ -14,8 +14,8 @@ class Reader(Protocol):
     """Whatever gives the pictures of a source: a decoder, or a reel before it."""
 
     @property
-    def came(self) -> int:
-        """How many frames the source that was last read to its end really had."""
+    def ending(self) -> Ending:
+        """Of the source that was last read to its end."""
 
     def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:
         """The wanted pictures of a source, reduced to `size`."""
@@ -43,9 +43,9 @@ class Reel:
         self._kept: list[Decoded] = []
 
     @property
-    def came(self) -> int:
-        """How many frames the source that was last decoded to its end really had."""
-        return self._decoder.came
+    def ending(self) -> Ending:
+        """Of the source that was last decoded to its end."""
+        return self._decoder.ending
 
     def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:
         """The wanted pictures, reduced to `size`; those of a second size are not kept.
@@ -90,9 +90,9 @@ class Told:
         self._reader, self._due, self._tell = reader, max(1, due), tell
 
     @property
-    def came(self) -> int:
-        """How many frames the source that was last read to its end really had."""
-        return self._reader.came
+    def ending(self) -> Ending:
+        """Of the source that was last read to its end."""
+        return self._reader.ending
 
     def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:
         """The wanted pictures of a source, reduced to `size`."""

@@ -23,6 +23,7 @@ from common.rig.camera import Camera, Rig
 from common.rig.upright_camera import as_worked_on
 from common.video.clip_facts import Clip
 from common.video.clip_sources import ClipError
+from common.video.decoding import Ending
 from common.video.frame_cache import Reader
 from integrator import merge, merge_state
 from integrator.merge_state import Start, State
@@ -79,6 +80,8 @@ class FirstPass(NamedTuple):
     odd: tuple[str, ...] = ()
     """What was odd about the film."""
     spent_s: float = 0.0
+    ending: Ending = Ending()
+    """How far it could be read."""
 
 
 class Lifted(NamedTuple):

@@ -14,7 +14,7 @@ from common.method import METHODS, Method
 from common.notes.notes import Notes
 from common.raster.silhouette_report import with_silhouette
 from common.rig.camera import PAPER_ROTATIONS, Camera
-from common.video.clip_facts import Clip, shortfall
+from common.video.clip_facts import Clip, shortfall, unread_facts
 from common.video.frame_cache import Reader
 from tritrack.offline.film_passes import (
     CUTTING,
@@ -122,6 +122,7 @@ def follow_clip(
         **_times(len(bodies), silhouettes=first.spent_s, poses=posing_s),
         "scale_source": "assumed" if camera is None else "calibrated",
         **_camera_facts(lifted.camera if camera is None else None),
+        **unread_facts([(view, first.ending)]),
         "never_uncovered": round(float(background.background.uncertain.mean()), 4),
         "warnings": [*clip.warnings, *filter(None, odd)],
     }
@@ -143,9 +144,9 @@ def _looked_through(
     with outside_sources(known.settings, clip.views) as sources:
         outside, course = sources.get(view.number), Course(heard.silhouettes, work)
         reports = silhouettes_of(clip, film.background, known, reader, outside, course)
-        odd = (shortfall(view, reader.came), *oddities(sources))
+        odd = (shortfall(view, reader.ending), *oddities(sources))
     spent_s = time.perf_counter() - began + (begun.spent_s if begun else 0.0)
-    return reports, FirstPass(odd, spent_s)
+    return reports, FirstPass(odd, spent_s, reader.ending)
 
 
 def follow_masks(

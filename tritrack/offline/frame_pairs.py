@@ -8,7 +8,7 @@ from typing import Final
 from common.bus.messages import ViewerNumber
 from common.config.part_settings import SilhouetteSettings
 from common.video.clip_facts import Clip, View
-from common.video.decoding import ALL, Decoded, Size, Source, Wanted
+from common.video.decoding import ALL, Decoded, Ending, Size, Source, Wanted
 from common.video.frame_cache import Reader
 from integrator.pairing import are_together
 from viewer.capture import CapturedFrame, recorded
@@ -27,9 +27,9 @@ class _UntilLeft:
         self._reader, self._left = reader, left
 
     @property
-    def came(self) -> int:
+    def ending(self) -> Ending:
         """As the reader's."""
-        return self._reader.came
+        return self._reader.ending
 
     def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:
         """As the reader's.

@@ -11,7 +11,7 @@ from common.body.body import Bdp
 from common.bus.messages import Body, ViewerNumber
 from common.config.settings import Settings
 from common.method import METHODS, Method
-from common.video.clip_facts import Clip, both_cameras, shortfall
+from common.video.clip_facts import Clip, both_cameras, shortfall, unread_facts
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
@@ -143,7 +143,8 @@ def _prepared(
 def _facts(ready: Prepared, done: Performance, sources: Sources) -> dict[str, Any]:
     """For the summary: what was tracked, how long it took, what was odd."""
     clip, acts = ready.clip, ready.clip.meta.acts
-    cut_off = [shortfall(view, ready.reels[view.number].came) for view in clip.views]
+    endings = [(view, ready.reels[view.number].ending) for view in clip.views]
+    cut_off = (shortfall(view, ending) for view, ending in endings)
     seen_odd = (*cut_off, unseen(done.bodies), *oddities(sources))
     odd = [*clip.warnings, *ready.odd, *filter(None, seen_odd)]
     followed_s = done.seconds["following"]
@@ -153,6 +154,7 @@ def _facts(ready: Prepared, done: Performance, sources: Sources) -> dict[str, An
         "performer": clip.meta.performer,
         "posture_meant": clip.meta.posture,
         **({"acts": msgspec.to_builtins(acts)} if acts else {}),
+        **unread_facts(endings),
         "seconds": {name: round(value, 4) for name, value in seconds.items()},
         "frames_a_second": round(len(done.bodies) / followed_s, 1),
         "scale_source": done.integrator.scale_source,

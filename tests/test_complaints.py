@@ -1,0 +1,121 @@
+"""What FFmpeg complains of and OpenCV does not tell: fields, damage, a lost end."""
+
+import struct
+from collections.abc import Iterator
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from spoiling import damage
+
+from common.config.part_settings import CameraSettings
+from common.config.settings import Settings
+from common.video.clip_facts import View, shortfall, unread_facts
+from common.video.clip_sources import ClipError
+from common.video.clips import open_clip
+from common.video.decoding import Decoder, Ending, Image
+
+FRAMES, HZ = 60, 15
+SIZE = (160, 120)
+PAL = (720, 576)
+"""What DV holds: fields, whatever it shows."""
+
+
+@pytest.fixture(scope="module")
+def decoder() -> Iterator[Decoder]:
+    with Decoder() as shared:
+        yield shared
+
+
+def picture_of(index: int, size: tuple[int, int] = SIZE) -> Image:
+    """A disc that moves before a wall of large spots."""
+    spots = np.random.default_rng(0).integers(0, 255, (30, 40, 3), dtype=np.uint8)
+    return cv2.circle(cv2.resize(spots, size), (20 + 2 * index, 60), 20, (200, 180, 90), -1)
+
+
+def shown(picture: Image) -> int:
+    """Which of the pictures it is."""
+    apart = [np.abs(picture.astype(float) - picture_of(n)).mean() for n in range(FRAMES)]
+    return int(np.argmin(apart))
+
+
+def written(path: Path, code: str, size: tuple[int, int] = SIZE, fps: float = HZ) -> Path:
+    fourcc = cv2.VideoWriter.fourcc(*code)
+    writer = cv2.VideoWriter(str(path), cv2.CAP_FFMPEG, fourcc, fps, size)
+    for index in range(FRAMES):
+        writer.write(picture_of(index, size))
+    writer.release()
+    return path
+
+
+def read(path: Path, decoder: Decoder) -> tuple[View, list[Image]]:
+    """A file as a run opens it, and its pictures."""
+    settings = Settings(camera_1=CameraSettings(source=str(path)))
+    view = open_clip(settings, decoder).views[0]
+    return view, [frame.picture for frame in decoder.frames(str(path), view.size)]
+
+
+def test_a_video_of_fields_is_refused_with_the_cure(tmp_path: Path, decoder: Decoder) -> None:
+    """OpenCV gives black pictures of it and calls them good."""
+    path = written(tmp_path / "dv.avi", "dvsd", PAL, 25.0)
+    with pytest.raises(ClipError, match=r"dv\.avi is interlaced: .* \(ffmpeg -i IN -vf yadif "):
+        read(path, decoder)
+
+
+def test_a_decoder_goes_on_behind_a_video_of_fields(tmp_path: Path, decoder: Decoder) -> None:
+    bad = written(tmp_path / "dv.avi", "dvsd", PAL, 25.0)
+    with pytest.raises(ClipError):
+        read(bad, decoder)
+    _, pictures = read(written(tmp_path / "good.avi", "MJPG"), decoder)
+    assert decoder.ending == Ending(FRAMES, 0)
+    assert shown(pictures[7]) == 7
+
+
+@pytest.mark.parametrize(
+    ("name", "code", "least", "most"),
+    [("film.mp4", "mp4v", 10, 20), ("film.avi", "MJPG", 50, FRAMES - 1)],
+    ids=["the decoder stops", "frames are lost"],
+)
+def test_damage_in_the_middle_is_told_with_how_much_was_read(
+    tmp_path: Path, decoder: Decoder, name: str, code: str, least: int, most: int
+) -> None:
+    path = damage(written(tmp_path / name, code))
+    view, pictures = read(path, decoder)
+    assert least <= len(pictures) == decoder.ending.frames <= most
+    told = f"{len(pictures)} of {FRAMES} frames could be read"
+    assert told in shortfall(view, decoder.ending)
+    lost = {str(path): {"read": len(pictures), "of": FRAMES}}
+    assert unread_facts([(view, decoder.ending)]) == {"unread": lost}
+
+
+def test_damage_that_costs_no_frame_is_told(tmp_path: Path, decoder: Decoder) -> None:
+    path = damage(written(tmp_path / "film.avi", "MJPG"), 300)
+    view, pictures = read(path, decoder)
+    assert len(pictures) == FRAMES
+    assert "film.avi is damaged in 1 of its 60 frames" in shortfall(view, decoder.ending)
+    assert unread_facts([(view, decoder.ending)]) == {}
+
+
+def test_a_video_whose_sound_is_longer_is_whole(tmp_path: Path, decoder: Decoder) -> None:
+    """FLV and WMV tell no number of frames: it is guessed from their duration."""
+    path = written(tmp_path / "film.flv", "FLV1")
+    content = bytearray(path.read_bytes())
+    struct.pack_into(">d", content, content.index(b"duration") + 9, FRAMES / HZ + 1.5)
+    path.write_bytes(content)
+    view, pictures = read(path, decoder)
+    assert len(pictures) == FRAMES < view.frames
+    assert shortfall(view, decoder.ending) == ""
+
+
+def test_a_trimmed_video_is_whole(tmp_path: Path, decoder: Decoder) -> None:
+    """A telephone trims by an edit list: what it hides stays in the file, and is counted."""
+    path = written(tmp_path / "film.mp4", "mp4v")
+    content, hidden = bytearray(path.read_bytes()), 20
+    ticks_hz = struct.unpack_from(">I", content, content.index(b"mdhd") + 16)[0]
+    struct.pack_into(">i", content, content.index(b"elst") + 16, hidden * ticks_hz // HZ)
+    path.write_bytes(content)
+    view, pictures = read(path, decoder)
+    assert len(pictures) == FRAMES - hidden < view.frames
+    assert shown(pictures[0]) == hidden
+    assert shortfall(view, decoder.ending) == ""
