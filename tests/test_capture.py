@@ -259,6 +259,71 @@ def test_what_is_no_answer_ends_the_child(answer: bytes, monkeypatch: pytest.Mon
     assert own.pid is None
 
 
+class Mortal(Babbler):
+    """A child that may not be touched once it is closed."""
+
+    def __init__(self, module: str, stall_s: float) -> None:
+        super().__init__(b"", module, stall_s)
+        self.calls: list[str] = []
+
+    def kill(self) -> None:
+        self.calls.append("kill")
+
+    def close(self) -> None:
+        self.calls.append("close")
+
+
+class Hesitant(Decoder):
+    """A decoder whose `stop` looks at the child so slowly that a `close` can come between."""
+
+    def __init__(self) -> None:
+        self.looking, self.closed = threading.Event(), threading.Event()
+        self.child: Mortal | None = Mortal("", 0.0)
+        super().__init__()
+        self.child = Mortal("", 0.0)
+
+    @property
+    def _child(self) -> Mortal | None:
+        child = self.child
+        if threading.current_thread() is threading.main_thread():
+            self.looking.set()
+            self.closed.wait(0.2)
+        return child
+
+    @_child.setter
+    def _child(self, child: Mortal | None) -> None:
+        self.child = child
+
+
+def test_a_decoder_can_be_stopped_while_its_reader_closes_it() -> None:
+    """One after the other: a child that is gone is not killed, nor looked for in vain."""
+    own = Hesitant()
+    child = own.child
+
+    def close() -> None:
+        own.looking.wait()
+        own.close()
+        own.closed.set()
+
+    reader = threading.Thread(target=close)
+    reader.start()
+    own.stop()
+    reader.join()
+    assert child is not None
+    assert child.calls == ["kill", "close"]
+    assert own.child is None
+
+
+def test_a_decoder_that_was_stopped_begins_no_other_source(tmp_path: Path) -> None:
+    """Who leaves a live view before its thread has begun to read does not wait for a picture."""
+    source = written(tmp_path / "cam1.avi")
+    with Decoder() as own:
+        own.stop()
+        with pytest.raises(DecoderDied, match="was stopped"):
+            next(own.frames(source, SIZE))
+        assert own.pid is None
+
+
 def test_a_film_cut_off_gives_what_it_has_and_says_how_much(
     tmp_path: Path, decoder: Decoder
 ) -> None:

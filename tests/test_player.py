@@ -2,6 +2,7 @@
 
 import time
 
+import pytest
 from waiting import until
 
 from animator.retouching.player import ROWS_HZ, Player
@@ -36,4 +37,22 @@ def test_it_stops_where_it_is_asked_to_and_plays_on() -> None:
     assert len(shown) == count
     player.toggle()
     assert until(lambda: len(shown) > count)
+    player.stop()
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_row_that_cannot_be_shown_ends_it_and_it_can_play_again() -> None:
+    shown: list[int] = []
+
+    def advance() -> bool:
+        shown.append(len(shown))
+        if len(shown) == 1:
+            raise RuntimeError("no such row")
+        return True
+
+    player = Player(advance)
+    player.toggle()
+    assert until(lambda: not player.playing)
+    player.toggle()
+    assert until(lambda: len(shown) > 2)
     player.stop()

@@ -154,6 +154,22 @@ def test_ties_go_to_the_middle_then_to_the_left() -> None:
     assert narrowed(0, 64, 1.0, 0.0, 1.0)[:2] == (0, 32)
 
 
+@pytest.mark.parametrize("first", [0, 1, 3], ids=["at once", "at an end", "in the second round"])
+def test_a_score_that_is_no_number_ends_the_search_with_its_angle(first: int) -> None:
+    """M14: it was asked for without end, as what is not a number counts as not yet matched."""
+    asked: list[float] = []
+
+    def score(angle_deg: float) -> float:
+        asked.append(angle_deg)
+        assert len(asked) < 20
+        return 0.5 if len(asked) <= first else float("nan")
+
+    with pytest.raises(ValueError, match=r"^the score of [0-9]+ degrees is not a number$") as raised:
+        tritree(score, (68, 132), STOP)
+    assert len(asked) == first + 1
+    assert f"of {asked[-1]:g} degrees" in str(raised.value)
+
+
 @given(st.integers(0, 2**32 - 1), st.sampled_from([ARM, LEG]))
 def test_the_search_ends_with_the_best_that_it_met(seed: int, width_deg: int) -> None:
     """M14: no score, however wild, keeps it from ending."""

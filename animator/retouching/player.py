@@ -40,6 +40,8 @@ class Player:
         self._stops.set()
 
     def _play(self, stops: threading.Event) -> None:
-        while not stops.wait(1.0 / ROWS_HZ):
-            if not self._advance():
-                stops.set()
+        try:
+            while not stops.wait(1.0 / ROWS_HZ) and self._advance():
+                pass
+        finally:  # Also when a row cannot be shown.
+            stops.set()

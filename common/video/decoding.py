@@ -7,6 +7,7 @@ sends them through a pipe.
 
 import json
 import struct
+import threading
 from collections.abc import Generator
 from pathlib import Path
 from typing import Any, Final, NamedTuple, Self
@@ -152,6 +153,8 @@ class Decoder:
         """Of the source that was last read to its end."""
         self._stall_s = stall_s
         self._child: Child | None = None
+        self._lock = threading.Lock()
+        self._stopped = False
 
     def __enter__(self) -> Self:
         """Nothing to do before the first source."""
@@ -164,7 +167,8 @@ class Decoder:
     @property
     def pid(self) -> int | None:
         """The child's process number; None while there is none."""
-        return self._child.pid if self._child else None
+        child = self._child
+        return child.pid if child else None
 
     def probe(self, source: Source) -> VideoInfo:
         """What a source is; its first picture is decoded for that.
@@ -200,28 +204,29 @@ class Decoder:
                 self.ending = Ending(answer.index, damaged)
 
     def stop(self) -> None:
-        """End the child, from any thread; who reads its frames then meets DecoderDied."""
-        if self._child is not None:
-            self._child.kill()
+        """End it for good, from any thread; whoever reads its frames then meets DecoderDied."""
+        with self._lock:
+            self._stopped = True
+            if self._child is not None:
+                self._child.kill()
 
     def close(self) -> None:
         """End the child and let go of its pipes; the next source gets a new one."""
-        if self._child is not None:
-            self._child.close()
+        with self._lock:
+            if self._child is not None:
+                self._child.close()
             self._child = None
 
     def _answers(
         self, source: Source, sizes: list[Size], wanted: Wanted
     ) -> Generator[_Answer, None, None]:
         """INFO, then FRAMEs and SKIPPEDs if any size is asked for, else TIMES; then END."""
-        if self._child is None:
-            self._child = Child(f"{__package__}.decoder", self._stall_s)
-        frames, whole = 0, False
+        child, frames, whole = self._ready(source), 0, False
         try:
             told = {"every": wanted.every, "start": wanted.start, "quarters": wanted.quarters}
-            self._child.ask(json.dumps({"source": source, "sizes": sizes, **told}).encode())
+            child.ask(json.dumps({"source": source, "sizes": sizes, **told}).encode())
             while not whole:
-                answer = _next_answer(self._child, sizes)
+                answer = _next_answer(child, sizes)
                 whole = answer.kind in (END, REFUSED)
                 if answer.kind == REFUSED:
                     raise Undecodable(answer.payload.tobytes().decode())
@@ -232,6 +237,15 @@ class Decoder:
         finally:
             if not whole:
                 self.close()
+
+    def _ready(self, source: Source) -> Child:
+        """The child, started where there is none."""
+        with self._lock:
+            if self._stopped:
+                raise DecoderDied(source, 0, "it was stopped")
+            if self._child is None:
+                self._child = Child(f"{__package__}.decoder", self._stall_s)
+            return self._child
 
 
 def named(source: Source) -> str:

@@ -123,11 +123,18 @@ def tritree(
         bounds_deg: (low, high) of the range to search: `stop_deg` times a power of two apart.
         stop_deg: Width at which to stop.
 
+    Raises:
+        ValueError: When a score is not a number: it is neither better nor worse than another.
+
     Source: Huang & Chung 2004, section 3.5, steps (1)-(6) (P36-P41).
     """
     tree = begun(*bounds_deg)
     while (which := probe(tree, stop_deg)) >= 0:
-        tell(tree, which, score_at(angle_of(tree, which)))
+        angle_deg = angle_of(tree, which)
+        matched = score_at(angle_deg)
+        if np.isnan(matched):
+            raise ValueError(f"the score of {angle_deg:g} degrees is not a number")
+        tell(tree, which, matched)
     return Found(float(tree[BEST_ANGLE]), float(tree[BEST_SCORE]), int(tree[MATCHES]))
 
 
