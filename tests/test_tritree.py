@@ -164,7 +164,7 @@ def test_a_score_that_is_no_number_ends_the_search_with_its_angle(first: int) ->
         assert len(asked) < 20
         return 0.5 if len(asked) <= first else float("nan")
 
-    with pytest.raises(ValueError, match=r"^the score of [0-9]+ degrees is not a number$") as raised:
+    with pytest.raises(ValueError, match=r"^the score of [0-9]+ degrees") as raised:
         tritree(score, (68, 132), STOP)
     assert len(asked) == first + 1
     assert f"of {asked[-1]:g} degrees" in str(raised.value)

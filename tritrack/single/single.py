@@ -31,6 +31,7 @@ from tritrack.store.other_run import OtherRun, RunOf, refuse_other, run_of
 from tritrack.store.pose_arrays import mapped_poses
 from tritrack.store.runs import believed, write_run
 from tritrack.terminal import Tell, bar, by_pass, complain, say, warn
+from tritrack.unfinished.message_file import writing
 from tritrack.unfinished.resuming import Begun, Wanted, done_before, resumable
 from tritrack.unfinished.unfinished_run import CannotResume
 from tritrack.unfinished.work import InMemory, Work
@@ -197,7 +198,7 @@ def follow(
         RunError, FilmError: When the folder cannot be written.
     """
     found = _found(job, decoder, begun, run.work)
-    with mapped_poses(found.bodies, folder) as arrays:
+    with writing(folder), mapped_poses(found.bodies, folder) as arrays:
         facts = {
             **found.facts,
             "frames_with_pose": sum(bool(body.joints_m) for body in found.bodies),

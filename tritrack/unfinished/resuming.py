@@ -21,7 +21,6 @@ from tritrack.unfinished.unfinished_run import (
     STATE,
     CannotResume,
     UnfinishedRun,
-    discard,
     saved_in,
 )
 from tritrack.unfinished.work import InMemory, Work
@@ -106,10 +105,11 @@ def resumable(wanted: Wanted, console: Console) -> Iterator[Begun]:
         raise
     except BaseException as error:
         run.close()
+        kept = f"{wanted.folder.name}: what is done is kept"
         if (wanted.folder / FOLDER / STATE).is_file():
-            warn(console, f"{wanted.folder.name}: what is done is kept: --resume goes on with it")
-        elif isinstance(error, RunError):  # the disk takes no more
-            discard(wanted.folder)
+            warn(console, f"{kept}: --resume goes on with it")
+        elif isinstance(error, RunError | OSError):  # the disk takes no more, its state neither
+            warn(console, f"{kept} and can be read; --resume begins anew")
         raise
     run.remove()
 

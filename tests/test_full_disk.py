@@ -1,0 +1,136 @@
+"""Runs on a disk that takes no more: what was kept stays, and goes on when there is room."""
+
+import math
+from collections.abc import Callable
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from full_disk import FullDisk
+from rich.console import Console
+
+from common.bus.messages import Body
+from common.config.part_settings import CameraSettings
+from common.config.settings import Settings
+from tritrack.offline.batch import Asked, track_all
+from tritrack.single.single import Given, single_all
+from tritrack.store.past_journal import read_journal
+from tritrack.store.past_run import CUT_SHORT, open_run
+from tritrack.store.runs import RunError
+from tritrack.unfinished import unfinished_run
+from tritrack.unfinished.resuming import Wanted, resumable
+from tritrack.unfinished.unfinished_run import BODIES, FOLDER, STATE, UnfinishedRun
+
+NEVER_S, OFTEN_S = 1e9, 0.2
+"""How often the state is saved."""
+
+Run = Callable[[Path, Path, bool, Console], object]
+
+
+def tracked(clip: Path, out: Path, resume: bool, console: Console) -> None:
+    track_all([clip], out, Asked(resume=resume), console)
+
+
+def single(clip: Path, out: Path, resume: bool, console: Console) -> None:
+    single_all([clip], out, Given(resume=resume), Settings(size="160x120"), console)
+
+
+RUNS = pytest.mark.parametrize("run", [tracked, single], ids=["track", "single"])
+
+
+@pytest.fixture
+def disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> FullDisk:
+    (tmp_path / "disk").mkdir()
+    return FullDisk(tmp_path / "disk", math.inf, monkeypatch)
+
+
+def what_was_said(run: Run, clip: Path, disk: FullDisk) -> str:
+    """Of a run that meets the full disk."""
+    said = Console(file=StringIO(), width=1000)
+    with pytest.raises(RunError, match=r"No space left on device; free some space or name"):
+        run(clip, disk.folder, False, said)
+    assert isinstance(said.file, StringIO)
+    return said.file.getvalue()
+
+
+def resumed(run: Run, clip: Path, disk: FullDisk, tmp_path: Path) -> str:
+    """Make room and go on: the same bytes as of a run that never met it; what was said."""
+    disk.room_bytes = math.inf
+    said = Console(file=StringIO(), width=1000)
+    run(clip, disk.folder, True, said)
+    run(clip, tmp_path / "whole", False, Console(quiet=True))
+    whole, parts = (folder / clip.name for folder in (tmp_path / "whole", disk.folder))
+    assert (whole / "poses.npz").read_bytes() == (parts / "poses.npz").read_bytes()
+    assert {path.name for path in whole.iterdir()} == {path.name for path in parts.iterdir()}
+    assert isinstance(said.file, StringIO)
+    return said.file.getvalue()
+
+
+def test_messages_that_came_onto_the_disk_stay_there(disk: FullDisk, tmp_path: Path) -> None:
+    (tmp_path / "cam1.avi").write_bytes(b"hashed, not decoded")
+    settings = Settings(camera_1=CameraSettings(source=str(tmp_path / "cam1.avi")))
+    wanted = Wanted(disk.folder / "run", settings, {})
+    disk.room_bytes = 50_000
+    with pytest.raises(RunError), resumable(wanted, Console(quiet=True)) as (work, _):
+        bodies = work.messages(BODIES)
+        for n in range(10_000):
+            bodies.append(
+                Body(frame=n, captured_s=n / 15, clock_s=0.0, status="tracking", views="both")
+            )
+    left = read_journal(disk.folder / "run")
+    assert left is not None
+    frames = [body.frame for body in left.bodies]
+    assert frames == [*range(len(frames))]
+    assert len(frames) > 100
+    assert disk.used_bytes == 50_000
+
+
+@pytest.mark.slow
+@RUNS
+def test_what_was_tracked_stays_where_no_state_was_saved_yet(
+    run: Run, clip: Path, disk: FullDisk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever came whole onto the disk can be read."""
+    monkeypatch.setattr(unfinished_run, "SAVES_S", NEVER_S)
+    monkeypatch.setattr("tritrack.unfinished.message_file.AT_ONCE", 4096)
+    disk.room_bytes = 60_000
+    said = what_was_said(run, clip, disk)
+    assert f"{clip.name}: what is done is kept and can be read; --resume begins anew" in said
+    assert disk.used_bytes == pytest.approx(60_000, abs=100)
+    assert "goes on after" not in resumed(run, clip, disk, tmp_path)
+
+
+@pytest.mark.slow
+@RUNS
+def test_a_run_goes_on_from_the_state_that_was_saved_before(
+    run: Run, clip: Path, disk: FullDisk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What does not fit beside it is lost alone: the next state, or messages."""
+    monkeypatch.setattr(unfinished_run, "SAVES_S", OFTEN_S)
+    save = UnfinishedRun.save
+
+    def filling(own: UnfinishedRun, stage: str, state: Any) -> None:
+        save(own, stage, state)
+        disk.room_bytes = disk.used_bytes + 30_000
+
+    monkeypatch.setattr(UnfinishedRun, "save", filling)
+    said = what_was_said(run, clip, disk)
+    assert "what is done is kept: --resume goes on with it" in said
+    assert (disk.folder / clip.name / FOLDER / STATE).is_file()
+    monkeypatch.setattr(UnfinishedRun, "save", save)
+    assert "goes on after" in resumed(run, clip, disk, tmp_path)
+
+
+@pytest.mark.slow
+def test_a_run_whose_disk_is_full_is_read_as_one_that_was_cut_short(
+    clip: Path, disk: FullDisk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(unfinished_run, "SAVES_S", NEVER_S)
+    disk.room_bytes = 60_000
+    what_was_said(tracked, clip, disk)
+    left = open_run(disk.folder / clip.name)
+    assert left.summary["warnings"] == [CUT_SHORT]
+    assert 20 < len(left.poses["frame"]) == left.summary["frames"] < 69
+    assert np.isfinite(left.poses["joints_m"]).all(axis=(1, 2)).sum() > 10
