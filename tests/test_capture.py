@@ -282,7 +282,7 @@ class Hesitant(Decoder):
         super().__init__()
         self.child = Mortal("", 0.0)
 
-    @property
+    @property  # type: ignore[override]
     def _child(self) -> Mortal | None:
         child = self.child
         if threading.current_thread() is threading.main_thread():

@@ -31,7 +31,9 @@ def decoder() -> Iterator[Decoder]:
 def picture_of(index: int, size: tuple[int, int] = SIZE) -> Image:
     """A disc that moves before a wall of large spots."""
     spots = np.random.default_rng(0).integers(0, 255, (30, 40, 3), dtype=np.uint8)
-    return cv2.circle(cv2.resize(spots, size), (20 + 2 * index, 60), 20, (200, 180, 90), -1)
+    picture: Image = cv2.resize(spots, size)
+    cv2.circle(picture, (20 + 2 * index, 60), 20, (200, 180, 90), -1)
+    return picture
 
 
 def shown(picture: Image) -> int:

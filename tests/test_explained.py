@@ -30,7 +30,12 @@ MARKERS = "width = 3\nheight = 4\n[[cameras]]\nname = 'a'\n"
         (Settings, "camera_1 = 3", "camera_1 must be a table, got a whole number"),
         (Settings, "every = 0", "every must be from 1 to 1000, got 0"),
         (Settings, "[page]\nport = -1", "page: port must be from 0 to 65535, got -1"),
-        (Settings, "room = ", "Invalid value (at end of document)"),
+        (
+            Settings,
+            "room = ",
+            "at the end of the file: a value is missing: write a number, true, false, or a text in "
+            "quotes",
+        ),
         (SitesFile, "[[site]]\nname = 'a'", "site 1, settings is missing: add it"),
         (
             SitesFile,

@@ -68,17 +68,24 @@ def resumed(run: Run, clip: Path, disk: FullDisk, tmp_path: Path) -> str:
     return said.file.getvalue()
 
 
+def many_bodies(wanted: Wanted, count: int) -> None:
+    """A run that follows somebody through so many frames."""
+    with resumable(wanted, Console(quiet=True)) as (work, _):
+        bodies = work.messages(BODIES)
+        for n in range(count):
+            at_s = n / 15
+            bodies.append(
+                Body(frame=n, captured_s=at_s, clock_s=at_s, status="tracking", views="both")
+            )
+
+
 def test_messages_that_came_onto_the_disk_stay_there(disk: FullDisk, tmp_path: Path) -> None:
     (tmp_path / "cam1.avi").write_bytes(b"hashed, not decoded")
     settings = Settings(camera_1=CameraSettings(source=str(tmp_path / "cam1.avi")))
     wanted = Wanted(disk.folder / "run", settings, {})
     disk.room_bytes = 50_000
-    with pytest.raises(RunError), resumable(wanted, Console(quiet=True)) as (work, _):
-        bodies = work.messages(BODIES)
-        for n in range(10_000):
-            bodies.append(
-                Body(frame=n, captured_s=n / 15, clock_s=0.0, status="tracking", views="both")
-            )
+    with pytest.raises(RunError):
+        many_bodies(wanted, 10_000)
     left = read_journal(disk.folder / "run")
     assert left is not None
     frames = [body.frame for body in left.bodies]
@@ -97,7 +104,7 @@ def test_what_was_tracked_stays_where_no_state_was_saved_yet(
     monkeypatch.setattr("tritrack.unfinished.message_file.AT_ONCE", 4096)
     disk.room_bytes = 60_000
     said = what_was_said(run, clip, disk)
-    assert f"{clip.name}: what is done is kept and can be read; --resume begins anew" in said
+    assert f"{clip.name}: what is done is kept, but its state did not fit: --resume" in said
     assert disk.used_bytes == pytest.approx(60_000, abs=100)
     assert "goes on after" not in resumed(run, clip, disk, tmp_path)
 

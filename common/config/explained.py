@@ -8,6 +8,8 @@ from typing import Any, Final
 import msgspec
 from msgspec import inspect
 
+from common.config.toml_fault import toml_fault
+
 SAID: Final = re.compile(r"(?P<reason>.*?)(?: - at `\$(?P<place>.*)`)?", re.DOTALL)
 STEP: Final = re.compile(r"\.([^.\[\]]+)|\[(\d+|\.\.\.)\]")
 FIELD: Final = re.compile(
@@ -40,7 +42,7 @@ def explained(error: Exception, kind: type) -> str:
         kind: What the file was to be.
     """
     if not isinstance(error, msgspec.ValidationError):
-        return str(error)
+        return toml_fault(str(error))
     said = SAID.fullmatch(str(error))
     assert said is not None, "the expression takes any text"
     place = STEP.findall(said["place"] or "")

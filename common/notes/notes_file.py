@@ -10,6 +10,7 @@ import msgspec
 from common.atomic_file import replacing
 from common.body.body import JOINT_NAMES, LIMBS
 from common.config.explained import explained
+from common.config.toml_fault import toml_fault
 from common.notes.notes import ORIENTATIONS, Notes
 
 MAX_BYTES: Final = 1 << 20
@@ -71,7 +72,7 @@ def load_notes(path: Path) -> Notes:
     try:
         return msgspec.convert(tomllib.loads(text), Notes)
     except tomllib.TOMLDecodeError as error:
-        raise NotesError(f"{path}: {error}; mend that line") from error
+        raise NotesError(f"{path}: {toml_fault(str(error))}; mend that line") from error
     except (msgspec.ValidationError, RecursionError) as error:
         raise NotesError(f"{path}{_mended(error, text)}") from error
 

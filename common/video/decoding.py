@@ -200,7 +200,7 @@ class Decoder:
                 pictures = _pictures(answer.payload, sizes)
                 yield Decoded(answer.index, answer.grabbed_s, *pictures)
             elif answer.kind == END:
-                (damaged,) = DAMAGED.unpack(answer.payload)
+                (damaged,) = DAMAGED.unpack(answer.payload.tobytes())
                 self.ending = Ending(answer.index, damaged)
 
     def stop(self) -> None:

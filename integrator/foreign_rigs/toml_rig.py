@@ -9,6 +9,7 @@ from typing import Any, Final, Literal
 import cv2
 import numpy as np
 
+from common.config.toml_fault import toml_fault
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError
 from integrator.foreign_rigs.foreign_camera import ForeignCamera, with_z_up
@@ -31,7 +32,9 @@ def read_toml(path: Path) -> list[ForeignCamera]:
     except (ValueError, TypeError, cv2.error) as error:
         if isinstance(error, CalibrationError):
             raise
-        raise CalibrationError(f"{path} is no calibration in TOML: {error}") from error
+        raise CalibrationError(
+            f"{path} is no calibration in TOML: {toml_fault(str(error))}"
+        ) from error
 
 
 def _tables(content: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:

@@ -109,7 +109,7 @@ def resumable(wanted: Wanted, console: Console) -> Iterator[Begun]:
         if (wanted.folder / FOLDER / STATE).is_file():
             warn(console, f"{kept}: --resume goes on with it")
         elif isinstance(error, RunError | OSError):  # the disk takes no more, its state neither
-            warn(console, f"{kept} and can be read; --resume begins anew")
+            warn(console, f"{kept}, but its state did not fit: --resume begins anew")
         raise
     run.remove()
 
