@@ -1,0 +1,74 @@
+"""Newer Pythons in CI: one that is not installed is never taken for one that was tried."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+def script(path: Path, text: str = "exit 0") -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(0o755)
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Path:
+    """A checkout that wants Pythons which nobody has, on a machine whose tests all pass."""
+    shutil.copytree(ROOT / ".ci", tmp_path / ".ci")
+    (tmp_path / "Makefile").write_text("NEWER := 3.98 3.99\n")
+    script(tmp_path / ".venv" / "bin" / "python")
+    script(tmp_path / "bin" / "chromium")
+    script(tmp_path / "bin" / "make", f'echo "$*" >> {tmp_path}/made')
+    return tmp_path
+
+
+def run(machine: Path, *command: str) -> subprocess.CompletedProcess[str]:
+    path = f"{machine / 'bin'}:/usr/bin:/bin"
+    return subprocess.run(
+        [str(machine / ".ci" / command[0]), *command[1:]],
+        env={"PATH": path},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_a_python_that_is_missing_fails_and_that_is_said(machine: Path) -> None:
+    ended = run(machine, "matrix", "3.99")
+    assert ended.returncode == 1
+    assert "Python 3.99 is not installed, so nothing was tested under it" in ended.stderr
+    assert not (machine / "made").exists()
+
+
+def test_a_command_that_refuses_to_run_is_no_python(machine: Path) -> None:
+    """As pyenv's is of a version that is not chosen."""
+    script(machine / "bin" / "python3.99", "exit 127")
+    assert run(machine, "matrix", "3.99", "find").returncode == 1
+    script(machine / "bin" / "python3.99")
+    found = run(machine, "matrix", "3.99", "find")
+    assert (found.returncode, found.stdout) == (0, f"{machine / 'bin' / 'python3.99'}\n")
+
+
+@pytest.mark.parametrize(
+    ("there", "last"),
+    [
+        ([], "NO NEWER PYTHON WAS TRIED: this machine has none of 3.98 3.99"),
+        (["3.98"], "Tried under Python 3.98; not installed here, so NOT TRIED: 3.99"),
+        (["3.98", "3.99"], ""),
+    ],
+    ids=["none", "one of two", "both"],
+)
+def test_the_last_line_of_ci_says_what_was_not_tried(
+    machine: Path, there: list[str], last: str
+) -> None:
+    for version in there:
+        script(machine / "bin" / f"python{version}")
+    ended = run(machine, "run")
+    assert ended.returncode == 0, ended.stderr
+    assert "\n".join(ended.stdout.splitlines()[-1:]) == last
+    made = (machine / "made").read_text().splitlines()
+    assert made[0] == f"-j 3 --output-sync setup matrix NEWER={' '.join(there)}"
