@@ -1,20 +1,29 @@
 """What FFmpeg complains of and OpenCV does not tell: fields, damage, a lost end."""
 
 import struct
+import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
 import pytest
+from local_bus import LocalBus
 from spoiling import damage
 
+from common.bus.control_messages import Pulse
 from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
+from common.method import DEFAULT
 from common.video.clip_facts import View, shortfall, unread_facts
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, Ending, Image
+from tritrack.live.screen import warnings_of
+from viewer import __main__ as viewer
+from viewer import track
+from viewer.background.background import learn
 
 FRAMES, HZ = 60, 15
 SIZE = (160, 120)
@@ -121,3 +130,26 @@ def test_a_trimmed_video_is_whole(tmp_path: Path, decoder: Decoder) -> None:
     assert len(pictures) == FRAMES - hidden < view.frames
     assert shown(pictures[0]) == hidden
     assert shortfall(view, decoder.ending) == ""
+
+
+class Over:
+    """A live view behind its last frame."""
+
+    over, odd, dropped, offset_s = True, (), 0, 0.0
+
+    def __init__(self, ending: Ending) -> None:
+        self.ending = ending
+
+
+def test_a_live_run_is_told_how_much_of_a_view_was_read() -> None:
+    """The last pulse carries it into the summary."""
+    view = View(2, "cam2.mp4", SIZE, SIZE, float(HZ), 228)
+    state = track.init(track.Setup(2, None, Settings(), DEFAULT), learn([picture_of(0)]))
+    bus = LocalBus()
+    pulses = bus.subscribe(Pulse)
+    live: Any = Over(Ending(15, damaged=1))
+    viewer.run(viewer.Prepared(view, state), live, bus, threading.Event())
+    last = pulses.drain()[-1]
+    assert last.state == "ended"
+    assert warnings_of({last.process: last}) == [shortfall(view, live.ending)]
+    assert "15 of 228 frames could be read" in last.detail
