@@ -10,7 +10,7 @@ import pytest
 
 from common.config.settings import Settings
 from common.video.clips import open_clip
-from common.video.decoding import ALL, Decoded, Size, Source, Wanted
+from common.video.decoding import ALL, Decoded, Ending, Size, Source, Wanted
 from tritrack.offline.frame_pairs import instants, openings
 
 SLOW_S = 0.3
@@ -19,7 +19,7 @@ SLOW_S = 0.3
 class Slow:
     """A film that comes picture by picture, for minutes."""
 
-    came = 0
+    ending = Ending()
 
     def frames(self, _source: Source, size: Size, _wanted: Wanted = ALL) -> Iterator[Decoded]:
         for index in range(1000):
@@ -46,7 +46,7 @@ def test_who_stops_it_does_not_wait_for_the_other_view(clip: Path) -> None:
 class Quick:
     """A film of a few pictures."""
 
-    came = 0
+    ending = Ending()
 
     def __init__(self, frames: int) -> None:
         self._frames = frames
