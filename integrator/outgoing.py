@@ -23,7 +23,8 @@ from integrator.rig.undistortion import undistorted_rig
 from integrator.single.sight import Annotations
 
 LOST_FRAMES: Final = 5
-"""After so many frames in a row in which it is not believed the body is lost."""
+"""After so many frames in a row in which it is not believed the body is lost; until then it is
+predicted: it has a pose, with confidence 0."""
 
 
 def body_of(
@@ -50,7 +51,7 @@ def body_of(
     told = state.agreement.told if _views(pair) == "both" else None
     believed = _believed(state, told)
     confidence = np.where(outside, 0.0, _confidence(state, scores) * believed)
-    status, posed = _status(state, bool(outside.any())), {}
+    status, posed = _status(state), {}
     if status != "lost":
         posed = {
             "joints_m": _points(places_m),
@@ -182,7 +183,7 @@ def guide_of(state: State, pair: Pair, settled_now: bool) -> Guide:
     return Guide(
         **_moment(state, pair),
         frames=state.frames,
-        status=_status(state, False),
+        status=_status(state),
         bdp=known.bdp,
         measured=known.measured,
         facing=state.facing,
@@ -243,13 +244,14 @@ def _made_of(pair: Pair) -> tuple[int, int]:
     return first, second
 
 
-def _status(state: State, cut: bool) -> Status:
-    """By presence, the opening and what bears the body out: never by S alone (M25)."""
+def _status(state: State) -> Status:
+    """By presence, the opening and what bears the body out: never by S alone (M25).
+
+    Who is partly outside the only picture is tracked: the joints outside have confidence 0.
+    """
     if state.doubted:
         return "lost" if state.doubted >= LOST_FRAMES else "predicted"
-    if state.opening.under_way:
-        return "measuring"
-    return "predicted" if cut else "tracking"
+    return "measuring" if state.opening.under_way else "tracking"
 
 
 def _views(pair: Pair) -> Views:

@@ -38,7 +38,8 @@ UNNUMBERED: Final = -1
 """Frame of what is told of no frame of its own, as at the end of a run."""
 HEAR_S = 0.05
 MOVING = ("tracking", "predicted")
-"""States in which a body's angles say what it does; the opening posture is no motion."""
+"""States in which a body's angles say what it does; the opening posture is no motion. Smooth angles
+of a predicted body go on as they went: they bridge a gap of a few frames."""
 
 
 class State(NamedTuple):

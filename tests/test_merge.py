@@ -206,6 +206,17 @@ def test_one_view_that_never_believed_anybody_is_lost_at_once() -> None:
     assert stage.see((banner, None)).body.status == "lost"
 
 
+def test_who_is_partly_outside_the_only_picture_is_tracked_and_guessed_outside() -> None:
+    """A desk's camera shows no feet: what it does show is believed."""
+    near = [standing((0.0, 0.15 * n)) for n in range(8)]
+    told = Stage(views=(1,)).show(near)[-1]
+    assert told.reports[0] is not None
+    assert told.reports[0].cut
+    assert told.body.status == "tracking"
+    sure = dict(zip(JOINT_NAMES, told.body.confidence, strict=True))
+    assert sure["l_ankle"] == sure["r_ankle"] == 0.0 < sure["neck"]
+
+
 @pytest.mark.parametrize("silent", [0, 1])
 def test_one_viewer_alone_carries_on(silent: int) -> None:
     """The other falls silent while tracking: position across the line of sight, views named."""

@@ -17,7 +17,14 @@ from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.joint_arrays import on_disk
 from tritrack.store.pose_arrays import poses
 from tritrack.store.run_exports import EXPORTS
-from tritrack.store.runs import RunError, unwritable, write_postures, write_run
+from tritrack.store.runs import (
+    RunError,
+    believed,
+    summary_of,
+    unwritable,
+    write_postures,
+    write_run,
+)
 from tritrack.terminal import json_text
 
 N = 69
@@ -120,6 +127,15 @@ def test_every_word_that_a_body_may_hold_fits_its_array() -> None:
     assert longest["status"][0] == "predicted"
     assert poses([body(0, status="measuring", views="none")])["status"][0] == "measuring"
     assert (longest["views"][0], longest["facing"][0, 0]) == ("both", "facade")
+
+
+def test_only_what_the_views_bear_out_counts_as_believed() -> None:
+    """Of the eight frames with a person four have a pose that is borne out."""
+    often = {"empty": 5, "measuring": 1, "tracking": 3, "predicted": 2, "lost": 2}
+    bodies = [body(0, status=status) for status, count in often.items() for _ in range(count)]
+    assert believed(bodies) == summary_of(bodies, Settings(), {})["believed"] == 0.5
+    assert believed([body(0, status="predicted")]) == 0.0
+    assert believed([body(0)]) is None
 
 
 def test_a_run_without_frames_has_empty_arrays_of_the_same_shapes() -> None:

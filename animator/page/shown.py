@@ -57,7 +57,7 @@ STATUS_WORDS: Final[dict[Status, str]] = {
     "empty": "nobody in view",
     "measuring": "measuring the body",
     "tracking": "tracking",
-    "predicted": "predicted, not seen",
+    "predicted": "predicted, not believed",
     "lost": "lost, searching",
 }
 

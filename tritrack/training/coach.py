@@ -36,7 +36,7 @@ class Look(NamedTuple):
     row: Rows
     """(20,) as a recogniser is told it."""
     joints_m: NDArray[np.float64] | None
-    """(15, 3); None where the body is not believed."""
+    """(15, 3); None where the body is not followed."""
 
 
 class State(NamedTuple):
@@ -66,9 +66,9 @@ class Said(NamedTuple):
     """(n, 20) a performance from its first movement to the last."""
 
 
-def look_at(body: Body, row: Rows, believed: tuple[str, ...]) -> Look:
-    """A body as the coach sees it."""
-    known = body.status in believed and bool(body.joints_m)
+def look_at(body: Body, row: Rows, moving: tuple[str, ...]) -> Look:
+    """A body as the coach sees it; `moving` are the states in which it is followed."""
+    known = body.status in moving and bool(body.joints_m)
     return Look(body.captured_s, row, np.array(body.joints_m) if known else None)
 
 
