@@ -2,11 +2,13 @@
 
 import json
 import math
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import cv2
+import msgspec
 import numpy as np
 import pytest
 
@@ -39,9 +41,10 @@ def folder(tmp_path: Path) -> Path:
 
 
 def film(path: Path, frames: int = 12, size: tuple[int, int] = SIZE, fps: float = 15.0) -> str:
+    """A video of its own: its grey level is the sum of its name's letters."""
     writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), fps, size)
     for _ in range(frames):
-        writer.write(np.zeros((size[1], size[0], 3), np.uint8))
+        writer.write(np.full((size[1], size[0], 3), 2 * sum(path.stem.encode()) % 256, np.uint8))
     writer.release()
     return str(path)
 
@@ -52,7 +55,10 @@ def calibrate(path: Path, size: tuple[int, int] = SIZE, names: tuple[str, ...] =
         {"name": camera.name, "K": camera.K, "R": camera.R, "t": camera.t} for camera in rig.cameras
     ]
     if names:
-        cameras = [{**cameras[0], "name": name} for name in names]
+        cameras = [
+            {**cameras[0], "name": name, "t": (float(n), *cameras[0]["t"][1:])}
+            for n, name in enumerate(names)
+        ]
     path.write_text(json.dumps({"width": size[0], "height": size[1], "cameras": cameras}))
 
 
@@ -136,10 +142,70 @@ def test_of_more_cameras_than_views_none_is_taken_by_its_place(
 
 def test_one_video_makes_a_single_view_clip(folder: Path, decoder: Decoder) -> None:
     (folder / "cam1.avi").unlink()
-    clip = opened(folder, decoder)
+    clip = open_clip(Settings(clip=str(folder)), decoder, (2,))
     assert [view.number for view in clip.views] == [2]
     assert clip.rig is not None
     assert [camera.name for camera in clip.rig.cameras] == ["cam2"]
+
+
+def test_cameras_at_one_place_are_refused_unless_the_user_insists(
+    folder: Path, decoder: Decoder
+) -> None:
+    """For every command alike: live runs and `track` open their clips here."""
+    path = folder / "one_place.json"
+    calibrate(path, names=("left", "right"))
+    told = json.loads(path.read_text())
+    told["cameras"][1]["t"] = told["cameras"][0]["t"]
+    path.write_text(json.dumps(told))
+    settings = Settings(clip=str(folder), calibration=str(path))
+    assert "r01_walk: both cameras stand at one place" in refusal(settings, decoder)
+    insisted = msgspec.structs.replace(settings, trust_calibration=True)
+    assert open_clip(insisted, decoder).rig is not None
+
+
+def test_a_calibration_in_millimetres_is_refused(folder: Path, decoder: Decoder) -> None:
+    told = json.loads((folder.parent / "calibration.json").read_text())
+    for camera in told["cameras"]:
+        camera["t"] = [1000 * each for each in camera["t"]]
+    (folder / "calibration.json").write_text(json.dumps(told))
+    said = refusal(Settings(clip=str(folder)), decoder)
+    assert "the cameras are 6021 m apart: is t in millimetres" in said
+
+
+def test_a_video_under_two_names_is_no_pair(folder: Path, decoder: Decoder) -> None:
+    shutil.copy(folder / "cam1.avi", folder / "cam2.avi")
+    said = refusal(Settings(clip=str(folder)), decoder)
+    assert "views 1 and 2 are the same" in said
+    assert len(open_clip(Settings(clip=str(folder)), decoder, (1,)).views) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "cure"),
+    [
+        ("", "add it"),
+        ("cam_2.avi", "rename cam_2.avi to cam2.avi"),
+        ("Cam2.MP4", "rename Cam2.MP4 to cam2.MP4"),
+        ("notes2.txt", "add it"),
+    ],
+)
+def test_one_of_two_videos_is_refused_with_the_other_ones_likely_name(
+    folder: Path, decoder: Decoder, name: str, cure: str
+) -> None:
+    video = folder / "cam2.avi"
+    if name:
+        video.rename(folder / name)
+    else:
+        video.unlink()
+    said = refusal(Settings(clip=str(folder)), decoder)
+    assert f"has cam1.avi and no cam2.*: {cure}; to track by one camera alone add --views 1" in said
+    assert len(open_clip(Settings(clip=str(folder)), decoder, (1,)).views) == 1
+
+
+def test_the_missing_one_may_be_the_first(folder: Path, decoder: Decoder) -> None:
+    (folder / "cam1.avi").rename(folder / "1.avi")
+    said = refusal(Settings(clip=str(folder)), decoder)
+    assert "has cam2.avi and no cam1.*: rename 1.avi to cam1.avi" in said
+    assert "--views 2" in said
 
 
 def test_files_under_any_name_are_taken_from_the_settings(tmp_path: Path, decoder: Decoder) -> None:

@@ -4,10 +4,7 @@ from typing import Any
 
 import pytest
 
-from common.rig.camera import paper_rig
-from common.video.clip_facts import Clip, Meta, View
-from common.video.clip_sources import ClipError
-from tritrack.offline.rig_check import doubts, refuse_absurd_rig
+from tritrack.offline.rig_check import doubts
 
 TRUST = {
     "apart_mm": 61.4,
@@ -28,10 +25,3 @@ def test_a_run_that_is_not_believable_says_what_is_wrong_and_what_to_do_in_one_l
     (told,) = doubts({"trust": TRUST})
     assert "views 61 mm (2.6 px) apart, soles -80 mm over the floor" in told
     assert "camera 2 seems turned by 8 degrees against camera 1: calibrate again" in told
-
-
-def test_a_calibration_in_millimetres_is_refused_with_the_clips_name() -> None:
-    rig = paper_rig((160, 120), (200.0, 200.0), (4500.0, 4500.0))
-    views = tuple(View(n, "", (160, 120), (160, 120), 15.0, 0) for n in (1, 2))
-    with pytest.raises(ClipError, match="walk: the cameras are 6364 m apart: is t in millimetres"):
-        refuse_absurd_rig(Clip("walk", views, 1, rig, Meta()))

@@ -21,7 +21,9 @@ ALIKE: Final = 0.8
 rolled, and agree better once their pictures are turned upright."""
 HUNG_M: Final = 0.2
 """Cameras that hang upside down are over the floor; where y points down they are not."""
-INSIST: Final = "calibrate again, or add --trust-calibration"
+INSIST: Final = (
+    "calibrate again, or trust it (--trust-calibration, trust_calibration = true in settings)"
+)
 
 
 def refuse_absurd(rig: Rig, where: str) -> None:

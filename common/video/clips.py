@@ -14,13 +14,15 @@ from common.bus.messages import ViewerNumber
 from common.config.explained import explained
 from common.config.picture_size import size_of, working_size
 from common.config.settings import Settings
+from common.rig.absurd_rig import refuse_absurd
 from common.rig.camera import Camera, Rig
 from common.rig.rig_file import CalibrationError, fitted, load_rig
 from common.video.clip_facts import Clip, Meta, View
 from common.video.clip_sources import NOTHING, ClipError, Footage, companions_folder, footage_of
 from common.video.decoding import Decoder, DecoderDied, Source, Undecodable, VideoInfo
 from common.video.frame_times import timed
-from common.video.upright_views import upright_views
+from common.video.upright_views import filed_rig, upright_views
+from common.video.view_pair import refuse_one_of_two, refuse_same_source
 
 SAME_RATE: Final = 0.01
 """Frame rates that differ by less drift apart by less than a frame in a clip of 100."""
@@ -48,21 +50,26 @@ def open_clip(
         numbers: The views to look at; the others are not touched, as they may be on other hosts.
 
     Raises:
-        ClipError: When something is missing, empty, no video, or contradicts the rest.
+        ClipError: When something is missing, empty, no video, or contradicts the rest; when two
+            views are of one camera; when no cameras stand as the calibration has them.
     """
-    named = [view for view in footage_of(settings) if view.number in set(numbers)]
+    wanted = set(numbers)
+    named = [view for view in footage_of(settings) if view.number in wanted]
     if not named:
         raise ClipError(NOTHING)
+    if len(wanted) > 1:
+        refuse_one_of_two(settings, named)
     folder = companions_folder(settings, named)
     meta = _meta(folder)
     with ExitStack() as doors:
         reader = decoder or doors.enter_context(Decoder())
         views = tuple(_view(each, settings, meta, reader) for each in named)
+    refuse_same_source(named)
     _refuse_rates_that_differ(views)
     rig = _rig(settings, folder, named, views)
     if rig is not None:
         rig, views = upright_views(rig, views)
-    return Clip(
+    clip = Clip(
         name=folder.resolve().name if settings.clip else Path(str(named[0].source)).stem,
         views=views,
         every=settings.every,
@@ -70,6 +77,18 @@ def open_clip(
         meta=meta,
         warnings=tuple(_oddities(views, meta, rig)),
     )
+    if not settings.trust_calibration:
+        _refuse_absurd(clip)
+    return clip
+
+
+def _refuse_absurd(clip: Clip) -> None:
+    try:
+        rig = filed_rig(clip)
+        if rig is not None:
+            refuse_absurd(rig, clip.name)
+    except CalibrationError as error:
+        raise ClipError(str(error)) from error
 
 
 def meta_of(settings: Settings) -> Meta:

@@ -24,7 +24,7 @@ from tritrack.offline.film_tracking import Film, Heard, follow_clip, unseen
 from tritrack.offline.frame_pairs import openings
 from tritrack.offline.opening_clip import body_of
 from tritrack.offline.performance import Performance, Prepared, Watch, performed
-from tritrack.offline.rig_check import Witness, doubts, refuse_absurd_rig, trust_facts
+from tritrack.offline.rig_check import Witness, doubts, trust_facts
 from tritrack.offline.rig_from_person import Looked, by_person, calibration_facts
 from tritrack.unfinished.work import Course
 from viewer import track
@@ -85,8 +85,6 @@ def track_clip(
     """
     began = time.perf_counter()
     clip = open_clip(settings, decoders.of[1], views)
-    if not settings.trust_calibration:
-        refuse_absurd_rig(clip)
     method = method or METHODS[settings.mode]
     alone = len(clip.views) == 1
     if method.stick_lifting and not alone:

@@ -5,11 +5,7 @@ from typing import Any, Final, NamedTuple
 import msgspec
 
 from common.bus.messages import Body, Report, ViewerNumber
-from common.rig.absurd_rig import refuse_absurd
-from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip
-from common.video.clip_sources import ClipError
-from common.video.upright_views import filed_rig
 from integrator.selfcalibration.joint_tracks import Row, Sighting, row_of, track_of_rows
 from viewer.capture import CapturedFrame
 
@@ -84,17 +80,3 @@ def doubts(facts: dict[str, Any]) -> list[str]:
         "floor, a person of {stature_m:.2f} m, view 2 {late_frames:+.1f} frames late; {advice}"
     )
     return [f"the calibration is not believable: {told.format(**trust)}"]
-
-
-def refuse_absurd_rig(clip: Clip) -> None:
-    """Refuse a calibration that no room has.
-
-    Raises:
-        ClipError: With what is absurd and what to do.
-    """
-    try:
-        rig = filed_rig(clip)
-        if rig is not None:
-            refuse_absurd(rig, clip.name)
-    except CalibrationError as error:
-        raise ClipError(str(error)) from error

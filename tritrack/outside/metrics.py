@@ -114,7 +114,9 @@ def _latencies(rooms: Mapping[str, RunFigures]) -> Metric:
 
 def _bodies(rooms: Mapping[str, RunFigures]) -> Iterator[Metric]:
     bodies = CounterMetricFamily(
-        "tritrack_bodies", "Bodies by status; measuring and tracking: believed.", labels=("room", "status")
+        "tritrack_bodies",
+        "Bodies by status; measuring and tracking: believed.",
+        labels=("room", "status"),
     )
     offset = GaugeMetricFamily(
         "tritrack_view_offset_seconds",
