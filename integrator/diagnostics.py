@@ -2,6 +2,7 @@
 
 from typing import Final, NamedTuple
 
+from common.bus.messages import CameraFault, Report
 from integrator import merge_state
 from integrator.pairing import Pair
 
@@ -9,21 +10,40 @@ DOUBTED: Final = 0.5
 """Of a rig by which no more than this is left of the joints' confidence something is said."""
 
 
+class Useless(NamedTuple):
+    """Pictures of one camera that showed no scene."""
+
+    faults: tuple[CameraFault, ...] = ()
+    frames: int = 0
+    since_s: float = 0.0
+    """When the first of them was taken."""
+
+
 class State(NamedTuple):
     """How often each viewer saw somebody, and how often only a part of them."""
 
     seen: tuple[int, int] = (0, 0)
     cut: tuple[int, int] = (0, 0)
+    useless: tuple[Useless, Useless] = (Useless(), Useless())
 
 
 def step(state: State, pair: Pair) -> State:
     """One instant more."""
+    first, second = (_with(own, each) for own, each in zip(state.useless, pair, strict=True))
     detected = [report is not None and report.box is not None for report in pair]
     partly = [report is not None and report.cut for report in pair]
     return State(
         (state.seen[0] + detected[0], state.seen[1] + detected[1]),
         (state.cut[0] + partly[0], state.cut[1] + partly[1]),
+        (first, second),
     )
+
+
+def _with(own: Useless, report: Report | None) -> Useless:
+    if report is None or not report.fault:
+        return own
+    since_s = own.since_s if own.frames else report.captured_s
+    return Useless((*{*own.faults, report.fault},), own.frames + 1, since_s)
 
 
 def assumed(merged: merge_state.State) -> list[str]:
@@ -62,6 +82,12 @@ def warnings(state: State, merged: merge_state.State) -> list[str]:
             "nobody took the opening posture, upright with stretched arms, facing camera 1 and "
             "seen from the side by camera 2: the body has the thesis's proportions, unmeasured"
         )
+    for viewer, own in enumerate(state.useless, 1):
+        if own.frames:
+            lines.append(
+                f"the picture of camera {viewer} is {' or '.join(sorted(own.faults))} in "
+                f"{own.frames} frames, first at {own.since_s:.1f} s: it was left out there"
+            )
     for viewer, (seen, cut) in enumerate(zip(state.seen, state.cut, strict=True), 1):
         if cut:
             lines.append(

@@ -11,7 +11,7 @@ from common.raster.bits import count
 from common.raster.kernel import match, view_of
 from common.raster.silhouette_report import words_of
 from common.rig.camera import Camera, Rig
-from integrator import opening_posture, outgoing
+from integrator import opening_posture, outgoing, silhouette_motion
 from integrator.fit import proposed_pose, shape_fit
 from integrator.fit.proposed_pose import ProposedPose
 from integrator.frame_numbers import NO_FRAME, frame_at
@@ -55,7 +55,10 @@ def step(
         annotations: What the user says of the frame, where one view is alone.
     """
     state, dt_s = _at(state, pair)
-    state = state._replace(stands=moved_cameras.step(state.stands, pair))
+    state = state._replace(
+        stands=moved_cameras.step(state.stands, pair),
+        motion=silhouette_motion.step(state.motion, pair),
+    )
     seen = undistorted_pair(state.rig, pair).detections
     state = _with_rig(state, seen)
     if seen == (None, None) or state.rig is None:

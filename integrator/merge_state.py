@@ -11,6 +11,7 @@ from common.config.settings import Settings
 from common.method import Method
 from common.rig.camera import Rig
 from common.rig.upright import Uprights
+from integrator import silhouette_motion
 from integrator.frame_numbers import FrameTimes
 from integrator.landmarks import landmark_fusion
 from integrator.opening_posture import Opening
@@ -76,6 +77,8 @@ class State(NamedTuple):
     """How each view's picture comes from its file's, as it last told."""
     stands: MovedCameras = MovedCameras()
     """How the cameras stand, against how they stood when the rig was told."""
+    motion: silhouette_motion.State = silhouette_motion.NOTHING
+    """The silhouettes of the last half second."""
 
     @property
     def pose(self) -> Vector | None:

@@ -14,6 +14,7 @@ from common.body.proportions import body_vector, stature
 from common.bus.messages import Agreement, Body, Guide, Pixel, Point, Report, Status, Views
 from common.rig.camera import project
 from common.rig.upright_camera import as_filed
+from integrator import silhouette_motion
 from integrator.belief import is_believed
 from integrator.landmarks.extremity_sight import seen_extremities
 from integrator.merge_state import State
@@ -193,6 +194,7 @@ def guide_of(state: State, pair: Pair, settled_now: bool) -> Guide:
         pose=tuple(found.pose.tolist()),
         stick=_asks_for_stick(state),
         proposes=state.proposes,
+        moves=silhouette_motion.moves(state.motion),
     )
 
 

@@ -6,7 +6,8 @@ import pytest
 from numpy.typing import NDArray
 
 from viewer.background.background import learn
-from viewer.camera_fault import FROZEN_AFTER, State, init, step
+from viewer.camera_fault import State, init, step
+from viewer.frozen_picture import FROZEN_AFTER
 
 Picture = NDArray[np.uint8]
 RANDOM = np.random.default_rng(5)

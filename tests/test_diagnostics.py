@@ -1,5 +1,7 @@
 """What is odd about a performance, a line each."""
 
+import msgspec
+
 from common.bus.messages import Box, Report
 from common.config.part_settings import BodySettings
 from common.config.settings import Settings
@@ -54,6 +56,16 @@ def test_without_calibration_the_assumed_stature_is_named_from_the_start() -> No
 def test_proportions_that_were_not_measured_are_the_theses() -> None:
     (told,) = diagnostics.warnings(noticed(Pair(report(1), None)), merged(measured=False))
     assert "thesis's proportions" in told
+
+
+def test_pictures_that_showed_no_scene_are_told_with_their_kind_and_time() -> None:
+    faults = ("", "frozen", "frozen", "", "black")
+    seen = [
+        msgspec.structs.replace(report(2, seen=not fault), fault=fault, captured_s=40.0 + n)
+        for n, fault in enumerate(faults)
+    ]
+    (told,) = diagnostics.warnings(noticed(*(Pair(report(1), each) for each in seen)), merged())
+    assert told.startswith("the picture of camera 2 is black or frozen in 3 frames, first at 41.0 s")
 
 
 def test_an_empty_room_misses_no_opening_posture() -> None:

@@ -99,6 +99,7 @@ GUIDE = Guide(
     frames=(7, 6),
     bdp=BDP,
     pose=tuple(rest_pose().tolist()),
+    moves=(False, True),
 )
 BODY = Body(
     frame=7,

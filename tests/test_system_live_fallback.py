@@ -34,7 +34,7 @@ from tritrack.live.supervise import PartFailed
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.store.joint_arrays import on_disk
 from tritrack.store.pose_arrays import poses
-from viewer.camera_fault import FROZEN_AFTER
+from viewer.frozen_picture import FROZEN_AFTER
 
 pytestmark = pytest.mark.slow
 

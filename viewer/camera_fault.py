@@ -8,13 +8,9 @@ from numpy.typing import NDArray
 from common.bus.messages import CameraFault
 from common.compiled import compiled
 from common.video.decoding import Image
+from viewer import frozen_picture
 from viewer.background.background import DARK, Background
 
-FROZEN_AFTER: Final = 2
-"""Repeats that may be no fault: files made for a faster rate hold each picture two or three times,
-and no filmed clip that was looked at held one more than twice."""
-FROZEN_S: Final = FROZEN_AFTER / 15
-"""How long that takes at the paper's rate (P1): faster files hold pictures more often."""
 STRIDE: Final = 4
 """Every so many rows and columns are looked at for brightness."""
 PLAIN: Final = 16.0
@@ -27,13 +23,11 @@ WHITE: Final = 195.0
 
 
 class State(NamedTuple):
-    """The picture before, for how many frames it has been the same, and since when."""
+    """What pictures are held against."""
 
     background: NDArray[np.float32]
     """Grey levels of the background, every STRIDE pixels."""
-    last: Image | None = None
-    repeats: int = 0
-    since_s: float = 0.0
+    frozen: frozen_picture.State = frozen_picture.State()
 
 
 def init(background: Background) -> State:
@@ -41,19 +35,20 @@ def init(background: Background) -> State:
     return State(_grey(background.centre))
 
 
-def step(state: State, picture: Image, captured_s: float) -> tuple[State, CameraFault]:
+def step(
+    state: State, picture: Image, captured_s: float, moving_since_s: float | None = None
+) -> tuple[State, CameraFault]:
     """One picture (H, W, 3), and when it was taken; the fault that makes it useless, or "".
 
-    A sensor's noise makes every picture of its own, so one that is the same, bit for bit, for
-    more than FROZEN_AFTER frames and FROZEN_S is the camera's memory and not the scene.
+    Args:
+        state: Of the pictures before.
+        picture: (H, W, 3)
+        captured_s: When it was taken.
+        moving_since_s: As for `frozen_picture.step`.
     """
-    if state.last is not None and _same(picture, state.last):
-        state = state._replace(repeats=state.repeats + 1)
-    else:
-        state = State(state.background, picture, 0, captured_s)
-    if state.repeats > FROZEN_AFTER and captured_s - state.since_s > FROZEN_S:
-        return state, "frozen"
-    return state, _blank(state.background, picture)
+    frozen, is_frozen = frozen_picture.step(state.frozen, picture, captured_s, moving_since_s)
+    state = state._replace(frozen=frozen)
+    return state, "frozen" if is_frozen else _blank(state.background, picture)
 
 
 def _blank(background: NDArray[np.float32], picture: Image) -> CameraFault:
@@ -108,16 +103,3 @@ def _grey(picture: NDArray[np.float32] | Image) -> NDArray[np.float32]:
             total = np.float32(pixel[0]) + np.float32(pixel[1]) + np.float32(pixel[2])
             grey[i, j] = total / np.float32(3)
     return grey
-
-
-@compiled
-def _same(one: Image, other: Image) -> bool:
-    """Whether pictures are the same, bit for bit; the first pixels tell when they are not."""
-    if one.shape != other.shape:
-        return False
-    for y in range(one.shape[0]):
-        for x in range(one.shape[1]):
-            for c in range(3):
-                if one[y, x, c] != other[y, x, c]:
-                    return False
-    return True

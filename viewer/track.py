@@ -7,7 +7,17 @@ import msgspec
 import numpy as np
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Box, Facing, Guide, Landmarks, Measure, Pixel, Report, ViewerNumber
+from common.bus.messages import (
+    MOTION_S,
+    Box,
+    Facing,
+    Guide,
+    Landmarks,
+    Measure,
+    Pixel,
+    Report,
+    ViewerNumber,
+)
 from common.config.settings import Settings
 from common.method import Method
 from common.raster.silhouette_report import pack
@@ -146,7 +156,10 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
         frame: The picture.
         guide: What the integrator made of the frame before; None at the start.
     """
-    watched, fault = camera_fault.step(state.fault, frame.picture, frame.captured_s)
+    moving_since_s = _moving_since_s(state, guide)
+    watched, fault = camera_fault.step(
+        state.fault, frame.picture, frame.captured_s, moving_since_s
+    )
     state = state._replace(fault=watched)
     if fault:
         nobody = Seen(np.zeros(frame.picture.shape[:2], np.bool_), None, 0, 0, cut=False)
@@ -168,6 +181,14 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
         landmarks = state.landmarks
     state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box), landmarks=landmarks)
     return state, report, seen.mask
+
+
+def _moving_since_s(state: State, guide: Guide | None) -> float | None:
+    """Since when the person in this view has moved in the other; None where that is not known."""
+    other = 2 - state.setup.viewer
+    if guide is None or state.near_px is None or not guide.moves[other]:
+        return None
+    return guide.captured_s - MOTION_S
 
 
 def describe(state: State, report: Report, mask: Mask, guide: Guide | None) -> tuple[State, Report]:

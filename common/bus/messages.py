@@ -17,6 +17,8 @@ Views = Literal["both", "1", "2", "none"]
 ScaleSource = Literal["calibrated", "person", "assumed"]
 """Where a rig is from: a file, the person who moves before it, or nowhere."""
 CameraFault = Literal["", "frozen", "black", "saturated", "covered"]
+MOTION_S: Final = 0.5
+"""How far back a guide looks for motion, seconds."""
 Pixel = tuple[float, float]
 Point = tuple[float, float, float]
 
@@ -176,6 +178,9 @@ class Guide(Moment, frozen=True, kw_only=True):
     """A stick body is asked for: one view is left, and what it proposes does not fit."""
     proposes: bool = False
     """The integrator reads the pose off the silhouettes: angles are not to be searched for."""
+    moves: tuple[bool, bool] = (False, False)
+    """Whether each view's silhouette has changed within the last MOTION_S as a person's who moves:
+    a picture of the other that has not is no picture of now."""
 
 
 class Lifting(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
