@@ -68,7 +68,8 @@ def doubt(merged: merge_state.State) -> str:
         return ""
     return (
         f"the calibration is not believable: views {told.apart_mm:.0f} mm apart, soles "
-        f"{told.soles_mm:+.0f} mm over the floor, facings {told.facing_deg:.0f} degrees apart; "
+        f"{told.soles_mm:+.0f} mm over the floor, facings {told.facing_deg:.0f} degrees and "
+        f"motions {told.motion_mm:.0f} mm apart; "
         "joints are told with less confidence: calibrate again (tritrack calibrate person), or "
         "set trust_calibration = true"
     )

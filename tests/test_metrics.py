@@ -37,7 +37,7 @@ BODY = Body(
     clock_s=9.98,
     status="tracking",
     views="both",
-    agreement=Agreement(apart_mm=31.0, soles_mm=12.0, facing_deg=4.0, believed=0.9),
+    agreement=Agreement(apart_mm=31.0, soles_mm=12.0, facing_deg=4.0, motion_mm=9.0, believed=0.9),
 )
 SAID: tuple[Told, ...] = (
     Alive("viewer 1", True),

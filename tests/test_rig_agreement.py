@@ -10,10 +10,17 @@ from staging import RIG, report, standing
 from common.body.body import JOINT_NAMES, OTHER_SIDE, POSE_INDEX
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.messages import Landmarks, Report, ViewerNumber
+from common.bus.messages import Agreement, Landmarks, Report, ViewerNumber
 from common.rig.camera import Rig, as_matrix, as_row, centre, project
 from integrator.rig_gate import rig_agreement
-from integrator.rig_gate.rig_agreement import FEWEST, SAMPLES, State
+from integrator.rig_gate.rig_agreement import (
+    FARTHEST_M,
+    FEWEST,
+    LEAST,
+    SAMPLES,
+    State,
+    motion_m,
+)
 from integrator.rig_gate.rig_fault import exchanged_rig
 
 BODY = body_vector(thesis_bdp(1.75))
@@ -73,6 +80,59 @@ def test_a_wrong_rig_is_not_believed(rig: Rig) -> None:
     told = after(rig).told
     assert told is not None
     assert told.believed < 0.2
+
+
+@pytest.mark.parametrize("copied", [1, 2])
+def test_a_copy_of_one_view_is_not_believed(copied: ViewerNumber) -> None:
+    """Their sight lines meet where the person is in the middle: the facing tells them apart."""
+    state = State()
+    for n in range(20):
+        still = np.asarray(joints(BODY, standing()))
+        copies = (seen(copied, n, joints_m=still), seen(copied, n, joints_m=still))
+        state = rig_agreement.step(state, RIG, copies)
+    assert state.told is not None
+    assert state.told.apart_mm < 60.0
+    assert state.told.facing_deg == pytest.approx(90.0, abs=1.0)
+    assert state.told.believed == LEAST
+
+
+def swinging(n: int, late: float = 0.0) -> np.ndarray:
+    """Somebody who lifts both arms to the side and lets them down, once in two seconds."""
+    up_deg = 60.0 * (1.0 - math.cos(0.2 * math.pi * (n - late)))
+    return np.asarray(
+        joints(BODY, standing(r_shoulder_z=180.0 - up_deg, l_shoulder_z=180.0 + up_deg))
+    )
+
+
+def after_swinging(late: float) -> Agreement:
+    """Of two takes, of which view 2 shows one that begins `late` instants later."""
+    state = State()
+    for n in range(40):
+        pair = (seen(1, n, joints_m=swinging(n)), seen(2, n, joints_m=swinging(n, late)))
+        state = rig_agreement.step(state, RIG, pair)
+    assert state.told is not None
+    return state.told
+
+
+def test_views_of_two_takes_are_not_believed_where_their_motions_differ() -> None:
+    one, two = after_swinging(0.0), after_swinging(5.0)
+    assert one.motion_mm < 5.0
+    assert one.believed == 1.0
+    assert two.apart_mm < 60.0  # the trunk stands: places agree
+    assert two.motion_mm > 60.0
+    assert two.believed == LEAST
+
+
+def test_motion_is_the_root_mean_square_of_gaps_about_their_median() -> None:
+    """Worked by hand: 0.05 of one joint, none of another that is 0.3 off all the time; a third is
+    seen too seldom; what is farther off than FARTHEST_M counts so much."""
+    gaps_m = np.full((9, 3), 0.3)
+    gaps_m[:, 0] = [-0.05, 0.05, 0.0, 0.05, -0.05, 0.05, -0.05, 0.05, -0.05]
+    gaps_m[1:, 2] = np.nan
+    assert motion_m(gaps_m, 8) == pytest.approx(0.05 * math.sqrt(8 / 9 / 2))
+    gaps_m[0, 1] = -5.0
+    assert motion_m(gaps_m[:, 1:2], 8) == pytest.approx(FARTHEST_M / 3)
+    assert motion_m(gaps_m[:3], 8) == 0.0
 
 
 def test_nothing_is_told_of_a_moment_of_one_view_or_of_unsure_landmarks() -> None:

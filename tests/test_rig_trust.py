@@ -17,6 +17,7 @@ from integrator.rig_gate.rig_trust import Trust, trust_of
 from integrator.selfcalibration.rig_guess import RIG, pinholes, rotation
 
 PERIOD_S = 1 / 15
+POSTURE = "raise_both_forward_up"
 SHOWN = filmed_by_the_papers_rig(6, "walk_toward").sighting
 
 
@@ -64,6 +65,34 @@ def test_a_rig_that_is_wrong_is_named_and_says_what_to_do(
     trust, advice = judged(wrong(), late_frames)
     assert not trust.believed
     assert re.search(named, advice)
+
+
+@pytest.mark.parametrize("copied", [0, 1])
+def test_a_view_and_its_copy_are_named_whichever_it_is(copied: int) -> None:
+    """They are as far apart in facing as the rig has its cameras: 90 degrees."""
+    twice = SHOWN._replace(first=SHOWN[copied], second=SHOWN[copied])
+    trust = trust_of(PAPER, twice, PERIOD_S)
+    assert trust is not None
+    assert trust.facing_deg == pytest.approx(90.0, abs=2.0)
+    assert "facing" in trust.odd
+    assert not trust.believed
+    assert "both views show the person from one side" in advice_on(PAPER, twice, PERIOD_S, trust)
+
+
+def test_views_of_two_takes_of_one_person_are_named() -> None:
+    """The same person at the same place; the trunk's sight lines meet."""
+    one, other = (filmed_by_the_papers_rig(6, name).sighting for name in ("squat", POSTURE))
+    mixed = one._replace(second=other.second)
+    trust = trust_of(PAPER, mixed, PERIOD_S)
+    assert trust is not None
+    assert trust.motion_mm > 60.0
+    assert "motion" in trust.odd
+    assert "the views do not show one motion" in advice_on(PAPER, mixed, PERIOD_S, trust)
+    for sighting in (one, other):
+        trust = trust_of(PAPER, sighting, PERIOD_S)
+        assert trust is not None
+        assert trust.motion_mm < 35.0
+        assert trust.believed
 
 
 def test_nobody_says_nothing_of_a_rig() -> None:

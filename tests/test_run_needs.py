@@ -33,7 +33,7 @@ def sound(tmp_path: Path) -> Settings:
         kind = cv2.VideoWriter.fourcc(*"MJPG")
         film = cv2.VideoWriter(str(tmp_path / f"cam{number}.avi"), kind, 15, (64, 48))
         for _ in range(3):
-            film.write(np.zeros((48, 64, 3), np.uint8))
+            film.write(np.full((48, 64, 3), 90 * number, np.uint8))
         film.release()
     return free_settings(Settings(clip=str(tmp_path)))
 

@@ -94,10 +94,10 @@ def test_how_far_cameras_are_believed_is_told_beside_the_status() -> None:
     assert body is not None
     assert trust_of(body) == ""
     agrees = msgspec.structs.replace(
-        body, agreement=Agreement(12.4, 3.0, 1.0, 1.0), scale_source="calibrated"
+        body, agreement=Agreement(12.4, 3.0, 1.0, 9.0, 1.0), scale_source="calibrated"
     )
     assert trust_of(agrees) == "cameras agree within 12 mm"
-    doubted = Agreement(88.0, 3.0, 1.0, 0.4)
+    doubted = Agreement(88.0, 3.0, 1.0, 9.0, 0.4)
     by_person = msgspec.structs.replace(agrees, agreement=doubted, scale_source="person")
     assert trust_of(by_person) == (
         "calibrated by the person; cameras agree within 88 mm, the calibration is doubtful"

@@ -206,6 +206,8 @@ class Agreement(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Height of the feet above the floor while both stand on it."""
     facing_deg: float
     """How far they disagree which way in the room the person faces."""
+    motion_mm: float
+    """How far they disagree how the person moves: what changes in how far they place joints apart."""
     believed: float
     """By what the joints' confidence is multiplied: 1 of a rig that is believable."""
 

@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import JOINT_NAMES, Vector
+from common.body.body import JOINT_NAMES, OTHER_SIDE, Vector
 from common.bus.messages import Agreement, Landmarks, Report
 from common.rig.camera import Camera, Rig, arrays_of, rays
 from integrator.pairing import Seen
@@ -29,16 +29,23 @@ STANDS: Final = 0.4
 """Share of the time in which the lower ankle is lower: that foot is on the floor."""
 APART_MM: Final = (60.0, 80.0)
 SOLES_MM: Final = ((-45.0, -75.0), (60.0, 95.0))
-FACING_DEG: Final = (90.0, 120.0)
+FACING_DEG: Final = (45.0, 75.0)
+MOTION_MM: Final = (40.0, 60.0)
 """What is as usual for a good rig, and what no good one has: between them belief falls. The right
 rig has views of r01 and r04 31 mm apart at most, facings 5 degrees apart; the views of other
 people, whom the network sees less well, are up to 56 mm apart. Soles of r01, r04 and 16 made-up
 people in free motion are -29 to 4 mm high, in the last second alone -42 to 47; high heels lift
-ankles by 5 cm more."""
+ankles by 5 cm more. Two pictures of one camera have facings as far apart as the rig has its cameras.
+Motions of r01, r04 and made-up people are 30 mm apart at most, of different takes 60 mostly."""
 SUDDEN: Final = 0.2
 """What is left of the belief in a rig that is contradicted in the last second alone."""
 LEAST: Final = 0.05
 """Share of the confidence that is left to a rig that nobody believes."""
+
+SURE_JOINT: Final = 0.7
+"""Joints of which a view is less sure tell nothing of the motion."""
+FARTHEST_M: Final = 0.2
+"""What is farther off counts so much: a joint that a view takes for another says nothing more."""
 
 _SHOULDERS, _KNEES, _ANKLES = (
     [n for n, name in enumerate(JOINT_NAMES) if name.endswith(part)]
@@ -53,7 +60,8 @@ class State(NamedTuple):
     """What the last seconds showed."""
 
     samples: tuple[Vector, ...] = ()
-    """Of each instant the gaps of POINTS and the lower ankle's height, metres."""
+    """Of each instant, metres: the gaps of POINTS, those of the joints, NaN where a view is not sure,
+    and the lower ankle's height."""
     facings_deg: tuple[float, ...] = ()
     """By how much view 1 had the person turned against view 2, whenever both were sure."""
     last_s: float = -math.inf
@@ -88,8 +96,11 @@ def step(state: State, rig: Rig, seen: Seen) -> State:
 
 
 def agreement_of(samples: NDArray[np.float64], facings_deg: tuple[float, ...]) -> Agreement:
-    """What instants (n, points + 1) say together: errors that change are left out."""
-    apart_mm = 1e3 * float(np.sqrt(np.mean(np.median(samples[:, :-1], axis=0) ** 2)))
+    """What instants (n, points + 15 + 1) say together: of places errors that change are left out,
+    of the motion those that do not."""
+    apart_m = np.sqrt(np.mean(np.median(samples[:, : len(POINTS)], axis=0) ** 2))
+    apart_mm = 1e3 * float(apart_m)
+    motion_mm = 1e3 * motion_m(samples[:, len(POINTS) : -1], FEWEST)
     soles_mm = 1e3 * (float(np.quantile(samples[:, -1], STANDS)) - ANKLE_SHARE * USUAL_M)
     enough = len(facings_deg) >= FEWEST_FACINGS
     facing_deg = float(np.median(np.abs(facings_deg))) if enough else 0.0
@@ -98,8 +109,27 @@ def agreement_of(samples: NDArray[np.float64], facings_deg: tuple[float, ...]) -
         _left(soles_mm, *SOLES_MM[1]),
         _left(-soles_mm, *(-limit for limit in SOLES_MM[0])),
         _left(facing_deg, *FACING_DEG),
+        _left(motion_mm, *MOTION_MM),
     )
-    return Agreement(apart_mm, soles_mm, facing_deg, believed)
+    return Agreement(apart_mm, soles_mm, facing_deg, motion_mm, believed)
+
+
+def motion_m(gaps_m: NDArray[np.float64], fewest: int) -> float:
+    """How far views disagree how joints move, metres, by the gaps between their sight lines.
+
+    Args:
+        gaps_m: (n, joints) with their sign; NaN where a view is not sure.
+        fewest: Instants that must show a joint.
+
+    Returns:
+        The root mean square of each joint's gaps about their median, over the joints that enough
+        instants show.
+    """
+    seen = gaps_m[:, np.isfinite(gaps_m).sum(axis=0) >= fewest]
+    if not seen.size:
+        return 0.0
+    off_m = np.clip(seen - np.nanmedian(seen, axis=0), -FARTHEST_M, FARTHEST_M)
+    return float(np.sqrt(np.mean(np.nanmean(off_m**2, axis=0))))
 
 
 def _left(value: float, usual: float, never: float) -> float:
@@ -115,11 +145,12 @@ def _is_sure(report: Report) -> bool:
 
 
 def _sample(rig: Rig, first: Landmarks, second: Landmarks) -> tuple[Vector, tuple[float, ...]]:
-    """(points + 1,) of one instant, and by how much the facings differ, where both are sure."""
+    """(points + 15 + 1,) of one instant, and by how much the facings differ, where both are sure."""
     cameras = rig.cameras
     gaps_m, places_m = _met(cameras, _points(first), _points(second))
     lower_m = _lower_ankle_m(cameras, first, second)
-    return np.array([*gaps_m, lower_m]), _turned(cameras, (first, second), places_m[0])
+    sample = np.array([*gaps_m, *_joint_gaps_m(cameras, first, second), lower_m])
+    return sample, _turned(cameras, (first, second), places_m[0])
 
 
 def _lower_ankle_m(cameras: tuple[Camera, ...], first: Landmarks, second: Landmarks) -> float:
@@ -150,6 +181,17 @@ def _points(seen: Landmarks) -> NDArray[np.float64]:
     """(points, 2) px, of POINTS."""
     joints_px = np.array(seen.joints_px)
     return np.stack([joints_px[point].mean(axis=0) for point in POINTS])
+
+
+def _joint_gaps_m(cameras: tuple[Camera, ...], first: Landmarks, second: Landmarks) -> Vector:
+    """(15,) how far sight lines of the joints miss each other, sides exchanged in a view where they
+    meet better so; NaN where a view is not sure."""
+    one, other = (np.array(each.joints_px) for each in (first, second))
+    tried = []
+    for order in (slice(None), OTHER_SIDE):
+        sure = np.minimum(first.confidence, np.array(second.confidence)[order]) >= SURE_JOINT
+        tried.append(np.where(sure, _met(cameras, one, other[order])[0], np.nan))
+    return min(tried, key=lambda gaps_m: float(np.nansum(np.abs(gaps_m))))
 
 
 def _turned(

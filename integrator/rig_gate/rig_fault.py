@@ -9,9 +9,10 @@ import numpy as np
 from common.body.body import Vector
 from common.rig.camera import Camera, Rig, as_matrix
 from integrator.rig_gate.rig_trust import Case, Trust, case_of, trust_of, with_lateness
-from integrator.selfcalibration.joint_tracks import Sighting
+from integrator.selfcalibration.joint_tracks import Sighting, at_times
 from integrator.selfcalibration.rig_fit import fitted
 from integrator.selfcalibration.rig_guess import BODY, FOCALS, LATE, PLACE
+from integrator.selfcalibration.rig_residuals import FEWEST_FACINGS, SURE_FACING
 
 SIZES: Final = (0.25, 1 / 3, 0.5, 2 / 3, 0.75, 4 / 3, 1.5, 2.0, 3.0, 4.0)
 """How much larger pictures are that a calibration may have been made for."""
@@ -22,6 +23,8 @@ FREED: Final = {
     "floor": ("height_1", "height_2"),
 }
 """Single faults, and the numbers that would mend each."""
+ONE_SIDE_DEG: Final = 15.0
+"""Two cameras see a person who faces any way turned by as much as they look apart, 30 at least."""
 SIMPLER: Final = 1.0
 """By how much (log likelihood) a number more must explain better."""
 AGAIN: Final = "calibrate again (tritrack calibrate person), or go on with --trust-calibration"
@@ -38,6 +41,11 @@ def advice_on(rig: Rig, sighting: Sighting, period_s: float, trust: Trust) -> st
     """The likeliest cause in a line, with its size; "" of a rig that is believable."""
     if trust.believed:
         return ""
+    if _is_one_side(sighting):
+        return (
+            "both views show the person from one side, as two videos of one camera do: name the "
+            f"videos of two cameras; else {AGAIN}"
+        )
     if "facing" in trust.odd:
         other = trust_of(exchanged_rig(rig), sighting, period_s)
         if other is not None and "facing" not in other.odd:
@@ -47,6 +55,11 @@ def advice_on(rig: Rig, sighting: Sighting, period_s: float, trust: Trust) -> st
             f"view 2 is {trust.late_frames:+.1f} frames late: set capture_s in a meta.json beside "
             "the clip, or start both cameras by one signal"
         )
+    if "motion" in trust.odd and not {"apart", "stature"} & set(trust.odd):
+        return (
+            "the views do not show one motion: see that both are of one take, and that their "
+            f"clocks are less than seconds apart; else {AGAIN}"
+        )
     size = _size(rig, sighting, period_s)
     if size:
         return (
@@ -55,6 +68,15 @@ def advice_on(rig: Rig, sighting: Sighting, period_s: float, trust: Trust) -> st
         )
     case = case_of(rig, sighting)
     return f"{_told(_mended(case, sighting))}: {AGAIN}" if case else AGAIN
+
+
+def _is_one_side(sighting: Sighting) -> bool:
+    """Whether both views have the person turned to them alike, mostly, wherever they stand."""
+    first, second = sighting.first, at_times(sighting.second, sighting.first.times_s)
+    sure = np.minimum(first.facing_confidence, second.facing_confidence) > SURE_FACING
+    turned = np.radians(first.facing_deg - second.facing_deg)[sure]
+    off_deg = np.degrees(np.abs(np.angle(np.exp(1j * turned))))
+    return len(off_deg) >= FEWEST_FACINGS and float(np.median(off_deg)) < ONE_SIDE_DEG
 
 
 def exchanged_rig(rig: Rig) -> Rig:

@@ -9,6 +9,7 @@ import numpy as np
 from common.body.body import JOINT_NAMES, Vector
 from common.rig.camera import Rig
 from integrator.rig_gate.known_rig import as_ideal, guess_of
+from integrator.rig_gate.rig_agreement import SURE_JOINT, motion_m
 from integrator.selfcalibration import person_prior as prior
 from integrator.selfcalibration.joint_tracks import Sighting
 from integrator.selfcalibration.lateness import likely_lateness_s
@@ -34,7 +35,11 @@ FLOOR_MM: Final = (-35.0, 85.0)
 """Where a good rig has the soles, by ankles of bare feet: heels lift them by up to 8 cm."""
 STATURES_M: Final = (0.9, 2.3)
 MOST_LATE_FRAMES: Final = 0.75
-MOST_FACING_DEG: Final = 90.0
+MOST_FACING_DEG: Final = 45.0
+"""Half of a quarter turn: two pictures of one camera are as far off as the rig has its cameras. Of
+r01, r04 and made-up people views disagree by 13 degrees at most."""
+MOST_MOTION_MM: Final = 45.0
+"""Views of one take disagree by 30 mm at most, of different takes mostly by 60."""
 
 
 class Trust(msgspec.Struct, frozen=True):
@@ -52,9 +57,11 @@ class Trust(msgspec.Struct, frozen=True):
     """Of the person, by the calibration's lengths."""
     facing_deg: float
     """How far both views disagree which way in the room the person faces, mostly."""
+    motion_mm: float
+    """How far both views disagree how the person moves, at the lateness that explains most."""
     moments: int
     odd: tuple[str, ...] = ()
-    """What is not believable: words of WORDS."""
+    """What is not believable: apart, late, floor, stature, facing, motion."""
     advice: str = ""
     """What is the likeliest cause, and what to do; "" where all is well."""
 
@@ -136,6 +143,7 @@ def trust_of(rig: Rig, sighting: Sighting, period_s: float) -> Trust | None:
         1e3 * soles_m(one, stature_m),
         stature_m,
         facing_off_deg(fit.guess, one, case.evidence.clips[0].first),
+        1e3 * _motion_m(one, case.evidence),
         len(one.used),
     )
     odd = tuple(_odd(trust))
@@ -158,6 +166,12 @@ def apart(one: Explained, evidence: Evidence) -> float:
     return math.sqrt(float(np.mean(np.square(medians)))) if medians else 0.0
 
 
+def _motion_m(one: Explained, evidence: Evidence) -> float:
+    """How far views disagree how the joints move, metres."""
+    sure = np.minimum(evidence.clips[0].first.confidence, one.second.confidence) >= SURE_JOINT
+    return motion_m(np.where(one.used & sure, one.met.gap_m, np.nan), FEWEST // 2)
+
+
 def soles_m(one: Explained, stature_m: float) -> float:
     """How high the lower foot's sole is, mostly."""
     ankles = np.where(one.used[:, prior.ANKLES], one.met.points_m[:, prior.ANKLES, 1], np.inf).min(
@@ -174,5 +188,6 @@ def _odd(trust: Trust) -> list[str]:
         "floor": not FLOOR_MM[0] <= trust.soles_mm <= FLOOR_MM[1],
         "stature": not STATURES_M[0] <= trust.stature_m <= STATURES_M[1],
         "facing": trust.facing_deg > MOST_FACING_DEG,
+        "motion": trust.motion_mm > MOST_MOTION_MM,
     }
     return [word for word, is_odd in odd.items() if is_odd]

@@ -77,6 +77,7 @@ def doubts(facts: dict[str, Any]) -> list[str]:
         return []
     told = (
         "views {apart_mm:.0f} mm ({apart_px:.1f} px) apart, soles {soles_mm:+.0f} mm over the "
-        "floor, a person of {stature_m:.2f} m, view 2 {late_frames:+.1f} frames late; {advice}"
+        "floor, a person of {stature_m:.2f} m, facings {facing_deg:.0f} degrees apart, motions "
+        "{motion_mm:.0f} mm, view 2 {late_frames:+.1f} frames late; {advice}"
     )
     return [f"the calibration is not believable: {told.format(**trust)}"]

@@ -28,6 +28,7 @@ AGREEMENT: Final = (
     ("rig_apart_meters", "apart_mm", 0.001, "How far apart both views place the joints."),
     ("rig_soles_meters", "soles_mm", 0.001, "Height of the feet above the floor while standing."),
     ("rig_facing_degrees", "facing_deg", 1.0, "How far the views disagree which way is faced."),
+    ("rig_motion_meters", "motion_mm", 0.001, "How far the views disagree how joints move."),
     ("rig_believed_ratio", "believed", 1.0, "By what the joints' confidence is multiplied."),
 )
 """Name of a gauge, its field in an Agreement, by what that is multiplied, what it tells."""
