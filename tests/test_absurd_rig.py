@@ -1,12 +1,13 @@
 """Rigs that no room has."""
 
+import math
 from collections.abc import Callable
 
 import msgspec
 import numpy as np
 import pytest
 
-from common.rig.absurd_rig import FOCALS, refuse_absurd
+from common.rig.absurd_rig import FOCALS, nearly_one_view, refuse_absurd
 from common.rig.camera import Rig, as_matrix, as_row, paper_rig
 from common.rig.rig_file import CalibrationError
 
@@ -92,3 +93,17 @@ def test_the_papers_rig_is_not_absurd() -> None:
         refuse_absurd(paper_rig((160, 120), (160 * share * step, 200.0), (4.5, 4.5)), "it")
         with pytest.raises(CalibrationError, match="focal length of cam1"):
             refuse_absurd(paper_rig((160, 120), (160 * share / step, 200.0), (4.5, 4.5)), "it")
+
+
+@pytest.mark.parametrize(
+    ("apart_deg", "said"), [(90.0, ""), (7.0, "look 7 degrees"), (-170.0, "look 170 degrees")]
+)
+def test_cameras_that_look_one_way_or_at_each_other_are_told(apart_deg: float, said: str) -> None:
+    """Also where the person calibrated them: of two copies of one video they stand side by side."""
+    first, second = GOOD.cameras
+    a = math.radians(apart_deg)
+    turn = np.array([[math.cos(a), 0, math.sin(a)], [0, 1, 0], [-math.sin(a), 0, math.cos(a)]])
+    other = msgspec.structs.replace(second, R=as_matrix(np.array(first.R) @ turn))
+    told = nearly_one_view(msgspec.structs.replace(GOOD, cameras=(first, other)))
+    assert said in told
+    assert bool(told) == bool(said)

@@ -65,7 +65,9 @@ def test_pictures_that_showed_no_scene_are_told_with_their_kind_and_time() -> No
         for n, fault in enumerate(faults)
     ]
     (told,) = diagnostics.warnings(noticed(*(Pair(report(1), each) for each in seen)), merged())
-    assert told.startswith("the picture of camera 2 is black or frozen in 3 frames, first at 41.0 s")
+    assert told.startswith(
+        "the picture of camera 2 is black or frozen in 3 frames, first at 41.0 s"
+    )
 
 
 def test_an_empty_room_misses_no_opening_posture() -> None:

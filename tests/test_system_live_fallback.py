@@ -467,6 +467,32 @@ def test_what_is_no_picture_of_the_room_is_not_looked_at(
     assert np.isfinite(found["joints_m"][MOTION:]).all()
 
 
+def recoded(picture: np.ndarray, n: int) -> np.ndarray:
+    """A picture as a codec gives it: blocks are off by some grey levels, others in each frame."""
+    high, wide = picture.shape[:2]
+    off = np.random.default_rng(n).integers(-3, 4, (high // 8, wide // 8, 1))
+    return np.clip(picture + np.kron(off, np.ones((8, 8, 1))), 0, 255).astype(np.uint8)
+
+
+@pytest.mark.slow
+def test_a_picture_that_a_codec_repeats_to_the_end_is_left_out_within_a_second(
+    clip: Path, tmp_path: Path
+) -> None:
+    """104 to 212 mm before, believed at first and without a word."""
+    folder, held = copied(clip, tmp_path / "held"), MOTION + 4
+
+    def change(film: Film) -> Film:
+        return [recoded(film[min(n, held)], n) for n in range(len(film))]
+
+    refilmed(folder, change, cameras=(2,))
+    with Decoders() as decoders:
+        tracked = track_clip(settings_of(folder), decoders)
+    found = poses(tracked.bodies)
+    assert set(found["views"][MOTION:held]) == {"both"}
+    assert set(found["views"][held + 15 :]) == {"1"}
+    assert any("the picture of camera 2 is frozen in" in told for told in tracked.facts["warnings"])
+
+
 def test_a_clip_that_ends_early_leaves_the_other_view(short_clip: Path, tmp_path: Path) -> None:
     folder = shutil.copytree(short_clip, tmp_path / "short")
     refilmed(folder, lambda film: film[: LOST.start], cameras=(2,))

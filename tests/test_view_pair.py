@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from common.bus.messages import ViewerNumber
 from common.config.part_settings import CameraSettings
 from common.video.clip_sources import ClipError, Footage
 from common.video.decoding import Source
@@ -11,8 +12,9 @@ from common.video.view_pair import refuse_same_source
 
 
 def named(*sources: Source) -> list[Footage]:
-    numbers = (1, 2)
-    return [Footage(n, source, CameraSettings()) for n, source in zip(numbers, sources)]  # type: ignore[arg-type]
+    numbers: tuple[ViewerNumber, ...] = (1, 2)
+    views = zip(numbers, sources, strict=False)
+    return [Footage(number, source, CameraSettings()) for number, source in views]
 
 
 def test_equal_files_are_one_video_whatever_their_names(tmp_path: Path) -> None:

@@ -157,9 +157,7 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
         guide: What the integrator made of the frame before; None at the start.
     """
     moving_since_s = _moving_since_s(state, guide)
-    watched, fault = camera_fault.step(
-        state.fault, frame.picture, frame.captured_s, moving_since_s
-    )
+    watched, fault = camera_fault.step(state.fault, frame.picture, frame.captured_s, moving_since_s)
     state = state._replace(fault=watched)
     if fault:
         nobody = Seen(np.zeros(frame.picture.shape[:2], np.bool_), None, 0, 0, cut=False)

@@ -207,7 +207,7 @@ class Agreement(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     facing_deg: float
     """How far they disagree which way in the room the person faces."""
     motion_mm: float
-    """How far they disagree how the person moves: what changes in how far they place joints apart."""
+    """How far they disagree how the joints move: what changes in how far apart they are placed."""
     believed: float
     """By what the joints' confidence is multiplied: 1 of a rig that is believable."""
 

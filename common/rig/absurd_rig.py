@@ -1,5 +1,6 @@
-"""Rigs that no room has: refused before a run, unless the user insists."""
+"""Rigs that no room has, refused before a run unless the user insists, and those of little use."""
 
+import math
 from typing import Final
 
 import numpy as np
@@ -11,6 +12,8 @@ from common.rig.upright_camera import quarters_of
 
 FOCALS: Final = (0.2, 20.0)
 """Focal lengths in widths of the picture: a fisheye, a telescope."""
+APART_DEG: Final = (30.0, 150.0)
+"""Two cameras that look less or more apart see nearly one silhouette, as it is or in a mirror."""
 TOGETHER_M, APART_M = 0.05, 60.0
 DEEP_M: Final = 1.0
 """A camera this deep under the floor has another floor."""
@@ -83,3 +86,17 @@ def _up_when_turned(camera: Camera) -> Vector:
     right, down = np.array(camera.R)[:2]
     up: Vector = (-down, -right, down, right)[quarters_of(camera)]
     return up
+
+
+def nearly_one_view(rig: Rig) -> str:
+    """What to say of two cameras that look nearly the same way, or at each other; "" of others."""
+    if len(rig.cameras) != 2:
+        return ""
+    one, other = (np.array(camera.R)[2] for camera in rig.cameras)
+    apart_deg = math.degrees(math.acos(float(np.clip(one @ other, -1.0, 1.0))))
+    if APART_DEG[0] <= apart_deg <= APART_DEG[1]:
+        return ""
+    return (
+        f"the cameras look {apart_deg:.0f} degrees apart: how far from them arms and legs "
+        "are is hard to tell; 60 to 120 are good"
+    )

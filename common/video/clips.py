@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import Final, get_args
 
 import msgspec
-import numpy as np
 
 from common.bus.messages import ViewerNumber
 from common.config.explained import explained
 from common.config.picture_size import size_of, working_size
 from common.config.settings import Settings
-from common.rig.absurd_rig import refuse_absurd
+from common.rig.absurd_rig import nearly_one_view, refuse_absurd
 from common.rig.camera import Camera, Rig
 from common.rig.rig_file import CalibrationError, fitted, load_rig
 from common.video.clip_facts import Clip, Meta, View
@@ -30,8 +29,6 @@ SAME_ASPECT: Final = 0.02
 """Pictures whose sides have ratios that differ by less show the same, at two sizes."""
 AVI_HEAD: Final = b"RIFF"
 
-APART_DEG: Final = (30.0, 150.0)
-"""Two cameras that look less or more apart see nearly one outline, as it is or in a mirror."""
 CAMERA_HZ: Final = 15.0
 """Taken for the rate of a camera that names none: the paper's (P1)."""
 
@@ -286,11 +283,5 @@ def _oddities(views: tuple[View, ...], meta: Meta, rig: Rig | None) -> Iterator[
         plain = not (first.capture_s or second.capture_s)
         if plain and first.frames and second.frames and first.frames != second.frames:
             yield f"the views differ in length: {first.frames} and {second.frames} frames"
-    if rig is not None and len(rig.cameras) == 2:
-        one, other = (np.array(camera.R)[2] for camera in rig.cameras)
-        apart_deg = math.degrees(math.acos(float(np.clip(one @ other, -1.0, 1.0))))
-        if not APART_DEG[0] <= apart_deg <= APART_DEG[1]:
-            yield (
-                f"the cameras look {apart_deg:.0f} degrees apart: how far from them arms and legs "
-                "are is hard to tell; 60 to 120 are good"
-            )
+    if rig is not None and (odd := nearly_one_view(rig)):
+        yield odd

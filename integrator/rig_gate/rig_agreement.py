@@ -35,7 +35,7 @@ MOTION_MM: Final = (40.0, 60.0)
 rig has views of r01 and r04 31 mm apart at most, facings 5 degrees apart; the views of other
 people, whom the network sees less well, are up to 56 mm apart. Soles of r01, r04 and 16 made-up
 people in free motion are -29 to 4 mm high, in the last second alone -42 to 47; high heels lift
-ankles by 5 cm more. Two pictures of one camera have facings as far apart as the rig has its cameras.
+ankles by 5 cm more. Two pictures of one camera have facings as far apart as the rig has cameras.
 Motions of r01, r04 and made-up people are 30 mm apart at most, of different takes 60 mostly."""
 SUDDEN: Final = 0.2
 """What is left of the belief in a rig that is contradicted in the last second alone."""
@@ -60,8 +60,8 @@ class State(NamedTuple):
     """What the last seconds showed."""
 
     samples: tuple[Vector, ...] = ()
-    """Of each instant, metres: the gaps of POINTS, those of the joints, NaN where a view is not sure,
-    and the lower ankle's height."""
+    """Of each instant, metres: the gaps of POINTS, those of the joints (NaN where a view is not
+    sure), and the lower ankle's height."""
     facings_deg: tuple[float, ...] = ()
     """By how much view 1 had the person turned against view 2, whenever both were sure."""
     last_s: float = -math.inf
@@ -145,7 +145,7 @@ def _is_sure(report: Report) -> bool:
 
 
 def _sample(rig: Rig, first: Landmarks, second: Landmarks) -> tuple[Vector, tuple[float, ...]]:
-    """(points + 15 + 1,) of one instant, and by how much the facings differ, where both are sure."""
+    """(points + 15 + 1,) of an instant, and by how much the facings differ, where both are sure."""
     cameras = rig.cameras
     gaps_m, places_m = _met(cameras, _points(first), _points(second))
     lower_m = _lower_ankle_m(cameras, first, second)

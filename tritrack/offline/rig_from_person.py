@@ -8,6 +8,7 @@ import msgspec
 from common.bus.messages import Report, ViewerNumber
 from common.config.settings import Settings
 from common.method import Method
+from common.rig.absurd_rig import nearly_one_view
 from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip, View
 from common.video.frame_cache import Reader
@@ -91,7 +92,8 @@ def by_person(
         return Looked(clip, warning=f"not calibrated by the person: {error}")
     first, second = clip.views
     views = (first, _on_time(second, found.late_s[0]))
-    return Looked(msgspec.structs.replace(clip, rig=found.rig, views=views), found)
+    calibrated = msgspec.structs.replace(clip, rig=found.rig, views=views)
+    return Looked(calibrated, found, nearly_one_view(found.rig))
 
 
 def calibration_facts(looked: Looked) -> dict[str, Any]:

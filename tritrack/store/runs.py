@@ -23,8 +23,8 @@ from tritrack.terminal import json_text
 VERSIONS_OF: Final = ("tritrack", "numpy", "opencv-python-headless", "numba", "eclipse-zenoh")
 
 BELIEVED: Final[tuple[Status, ...]] = ("measuring", "tracking")
-"""Of a body's status: what the views show bears it out. A predicted body was borne out a moment ago:
-it has a pose, with confidence 0."""
+"""Of a body's status: what the views show bears it out. A predicted body was borne out a moment
+ago: it has a pose, with confidence 0."""
 
 NOBODY_SEEN: Final = (
     "nobody was seen: the person must move, and be a sixth of the picture high at least"
