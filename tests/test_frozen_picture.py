@@ -19,7 +19,7 @@ def person(lean_px: int = 0, high: int = HIGH, wide: int = WIDE) -> Picture:
     """A dark person before a wall, drawn without noise; they lean to the right."""
     picture = WALL.copy()
     cv2.line(picture, (80 + lean_px, 20), (80, 110), (40, 60, 80), 14)
-    return cv2.resize(picture, (wide, high), interpolation=cv2.INTER_AREA)
+    return np.asarray(cv2.resize(picture, (wide, high), interpolation=cv2.INTER_AREA), np.uint8)
 
 
 def by_sensor(picture: Picture, seed: int) -> Picture:

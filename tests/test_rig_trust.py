@@ -14,6 +14,7 @@ from common.rig.camera import Rig, as_matrix, as_row, centre
 from integrator.rig_gate.known_rig import guess_of
 from integrator.rig_gate.rig_fault import advice_on, exchanged_rig
 from integrator.rig_gate.rig_trust import Trust, trust_of
+from integrator.selfcalibration.joint_tracks import JointTrack
 from integrator.selfcalibration.rig_guess import RIG, pinholes, rotation
 
 PERIOD_S = 1 / 15
@@ -67,10 +68,10 @@ def test_a_rig_that_is_wrong_is_named_and_says_what_to_do(
     assert re.search(named, advice)
 
 
-@pytest.mark.parametrize("copied", [0, 1])
-def test_a_view_and_its_copy_are_named_whichever_it_is(copied: int) -> None:
+@pytest.mark.parametrize("copied", [SHOWN.first, SHOWN.second], ids=["front", "side"])
+def test_a_view_and_its_copy_are_named_whichever_it_is(copied: JointTrack) -> None:
     """They are as far apart in facing as the rig has its cameras: 90 degrees."""
-    twice = SHOWN._replace(first=SHOWN[copied], second=SHOWN[copied])
+    twice = SHOWN._replace(first=copied, second=copied)
     trust = trust_of(PAPER, twice, PERIOD_S)
     assert trust is not None
     assert trust.facing_deg == pytest.approx(90.0, abs=2.0)

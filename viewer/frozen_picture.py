@@ -70,12 +70,13 @@ def _repeated(state: State, picture: Image, captured_s: float) -> State:
     """The state with how often a picture came again, bit for bit, or where it changed."""
     last, high, wide = state.last, *picture.shape[:2]
     if last is None or last.shape != picture.shape:
-        reached = np.zeros((-(-high // CELL), -(-wide // CELL)), np.bool_)
-        return State(picture, since_s=captured_s, reached=reached)
+        nothing = np.zeros((-(-high // CELL), -(-wide // CELL)), np.bool_)
+        return State(picture, since_s=captured_s, reached=nothing)
     if _same(picture, last):
         return state._replace(repeats=state.repeats + 1)
-    reached = state.reached if _is_noisy(state) else _with_changes(picture, last, state.reached)
-    return state._replace(last=picture, repeats=0, since_s=captured_s, reached=reached)
+    if not _is_noisy(state):
+        state = state._replace(reached=_with_changes(picture, last, state.reached))
+    return state._replace(last=picture, repeats=0, since_s=captured_s)
 
 
 def _is_noisy(state: State) -> bool:
