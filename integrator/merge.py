@@ -11,7 +11,7 @@ from common.raster.bits import count
 from common.raster.kernel import match, view_of
 from common.raster.silhouette_report import words_of
 from common.rig.camera import Camera, Rig
-from integrator import opening_posture, outgoing, silhouette_motion
+from integrator import opening_posture, outgoing
 from integrator.fit import proposed_pose, shape_fit
 from integrator.fit.proposed_pose import ProposedPose
 from integrator.frame_numbers import NO_FRAME, frame_at
@@ -23,7 +23,7 @@ from integrator.rig.assumed_rig import assumed_rig
 from integrator.rig.body_position import facing_of
 from integrator.rig.tilted_camera import assumed_rig_of_one
 from integrator.rig.undistortion import undistorted_pair, undistorted_rig
-from integrator.rig_gate import moved_cameras, rig_agreement
+from integrator.rig_gate import moved_cameras, rig_agreement, silhouette_motion
 from integrator.single import single_view
 from integrator.single.sight import Annotations, Sight
 

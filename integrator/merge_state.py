@@ -11,13 +11,12 @@ from common.config.settings import Settings
 from common.method import Method
 from common.rig.camera import Rig
 from common.rig.upright import Uprights
-from integrator import silhouette_motion
 from integrator.frame_numbers import FrameTimes
 from integrator.landmarks import landmark_fusion
 from integrator.opening_posture import Opening
 from integrator.pose import smoothing
 from integrator.proposal.pose_proposal import Memory
-from integrator.rig_gate import rig_agreement
+from integrator.rig_gate import rig_agreement, silhouette_motion
 from integrator.rig_gate.moved_cameras import MovedCameras
 from integrator.single.single_view import Alone
 

@@ -14,13 +14,13 @@ from common.body.proportions import body_vector, stature
 from common.bus.messages import Agreement, Body, Guide, Pixel, Point, Report, Status, Views
 from common.rig.camera import project
 from common.rig.upright_camera import as_filed
-from integrator import silhouette_motion
 from integrator.belief import is_believed
 from integrator.landmarks.extremity_sight import seen_extremities
 from integrator.merge_state import State
 from integrator.pairing import Pair, Seen
 from integrator.rig.body_position import pixels_of, scales_since
 from integrator.rig.undistortion import undistorted_rig
+from integrator.rig_gate import silhouette_motion
 from integrator.single.sight import Annotations
 
 LOST_FRAMES: Final = 5

@@ -8,7 +8,7 @@ from staging import NOBODY, report
 from common.bus.messages import Report, ViewerNumber
 from common.raster.similarity import Mask
 from integrator.pairing import Pair
-from integrator.silhouette_motion import NOTHING, State, moves, step
+from integrator.rig_gate.silhouette_motion import NOTHING, State, moves, step
 
 RATE_HZ = 15.0
 
