@@ -7,7 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import cv2
+import msgspec
 import numpy as np
+
+from common.config.part_settings import CameraSettings
+from common.config.settings import Settings
 
 Film = list[np.ndarray]
 
@@ -181,3 +185,9 @@ WORKED_WITH: dict[str, tuple[Callable[[Path], None], str]] = {
     "capture times": (odd_capture_times, "60 capture times for camera 1, .* has 69 frames"),
 }
 """What can be worked with: how to do it to a clip, and the warning."""
+
+
+def of_one_view(settings: Settings, view: int) -> Settings:
+    """Settings of one camera of a clip, which a folder of two does not mean."""
+    camera = CameraSettings(source=f"{settings.clip}/cam{view}.avi")
+    return msgspec.structs.replace(settings, clip="", **{f"camera_{view}": camera})

@@ -13,6 +13,7 @@ import psutil
 import pytest
 import zenoh
 from rich.console import Console
+from spoiling import of_one_view
 
 from common.bus.messages import Body, ViewerNumber
 from common.config.part_settings import BusSettings, PageSettings
@@ -148,8 +149,7 @@ def test_a_live_run_with_one_viewer_equals_tracking_one_view(
     """One camera is the same system: the viewer fits, the integrator lifts, bit for bit."""
     folder = tmp_path / "alone"
     shutil.copytree(slow_clip, folder)
-    (folder / f"cam{3 - view}.avi").unlink()
-    facts = live_in_time(settings_of(folder), tmp_path / "out")
+    facts = live_in_time(of_one_view(settings_of(folder), view), tmp_path / "out")
     assert facts["processes"][f"viewer {view}"]["guide_misses"] == 0
     with Decoders() as decoders:
         done = track_clip(Settings(clip=str(slow_clip)), decoders, (view,))

@@ -418,8 +418,12 @@ def test_one_view_is_enough(tritrack: Commands, clip: Path, tmp_path: Path, view
     """A run with one viewer; rows are counted by its own frames."""
     folder = copied(clip, tmp_path / "alone")
     (folder / f"cam{3 - view}.avi").unlink()
-    for path, options in ((clip, ("--views", str(view))), (folder, ())):
-        assert tritrack("track", path, "--out", tmp_path / "out", *options).code == 0
+    refused = tritrack("track", folder, "--out", tmp_path / "out")
+    assert refused.code == 2
+    assert f"and no cam{3 - view}.*" in refused.errors[0]
+    for path in (clip, folder):
+        given = ("track", path, "--views", str(view), "--out", tmp_path / "out")
+        assert tritrack(*given).code == 0
         with np.load(tmp_path / "out" / path.name / "poses.npz", allow_pickle=False) as found:
             assert found["frame"].tolist() == list(range(69))
             assert set(found["views"]) == {"none", str(view)}
