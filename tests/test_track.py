@@ -403,3 +403,28 @@ def test_who_is_in_the_first_frame_is_known_where_landmarks_are_asked_for(
     somebody = landmarks_of(standing())
     state = track.init(setup, learn([np.zeros((240, 320, 3), np.uint8)]), somebody=somebody)
     assert (state.landmarks == somebody) == known
+
+
+@pytest.mark.parametrize(
+    ("number", "moves", "since_s"),
+    [(1, (False, True), 1.5), (1, (True, False), None), (2, (True, False), 1.5), (2, (), None)],
+)
+def test_a_frozen_picture_is_judged_by_the_motion_of_the_other_view(
+    monkeypatch: pytest.MonkeyPatch,
+    number: ViewerNumber,
+    moves: tuple[bool, ...],
+    since_s: float | None,
+) -> None:
+    """A guide of 2 s tells of the half second before; of whom this view does not see, nothing."""
+    told: list[float | None] = []
+
+    def step(state: object, _picture: object, _s: float, moving_since_s: float | None) -> object:
+        told.append(moving_since_s)
+        return state, ""
+
+    monkeypatch.setattr("viewer.camera_fault.step", step)
+    said = guide(standing(), captured_s=2.0, moves=moves or (False, True))
+    state = viewer(number)
+    for _ in range(2):
+        state, _, _ = track.look(state, frame(silhouettes(standing())[number - 1]), said)
+    assert told == [None, since_s]

@@ -1,1 +1,1 @@
-"""Whether a rig that is given is believable by what both views show, and what is likeliest wrong."""
+"""Is a given rig believable by what both views show, and what is likeliest wrong with it."""
