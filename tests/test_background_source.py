@@ -128,6 +128,22 @@ def test_a_cameras_room_is_what_it_shows_first(clip: Path, decoder: Decoder) -> 
     assert share_off(room, room_of(clip)) < 0.001
 
 
+def test_a_plate_goes_before_what_a_camera_shows(
+    clip: Path, decoder: Decoder, tmp_path: Path
+) -> None:
+    """And is read anew each time: it is not kept as what was learnt of the camera is."""
+    plate = np.full((120, 160, 3), (10, 120, 200), np.uint8)
+    cv2.imwrite(str(tmp_path / "plate.png"), plate)
+    view = msgspec.structs.replace(
+        view_of(clip, decoder), source=0, frames=0, background=str(tmp_path / "plate.png")
+    )
+    for _ in range(2):
+        room, odd, _ = opening_of_run(view, SilhouetteSettings(), decoder, tmp_path)
+        assert odd == ""
+        assert share_off(room, plate) == 0.0
+    assert not [*tmp_path.glob("*.npz")]
+
+
 def test_a_viewer_that_is_started_again_knows_its_cameras_room(clip: Path, tmp_path: Path) -> None:
     """Somebody stands before the camera by then; a run after that learns its room anew."""
     film = film_of(clip / "cam1.avi")

@@ -251,6 +251,8 @@ def test_a_run_with_one_viewer_tells_a_body(mode: Mode, alone: int) -> None:
     assert {t.body.views for t in told} == {str(alone)}
     assert len(told[-1].body.joints_m) == 15
     assert told[-1].reports[2 - alone] is None
+    assert told[-1].body.score[alone - 1] > 0.6
+    assert told[-1].body.score[2 - alone] == 0.0
 
 
 @MODES

@@ -3,15 +3,26 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from spoiling import copied, refilmed
+from staging import PERIOD_S, RIG, report
 
-from common.bus.messages import ViewerNumber
+from common.bus.messages import Body, Guide, Report, ViewerNumber
 from common.config.settings import Settings
-from common.method import Mode
+from common.method import DEFAULT, Mode
+from common.video.clip_facts import Clip, Meta, View
+from integrator import merge_state
+from integrator.pairing import Pair
+from tritrack.offline import performance
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.offline.performance import STAGE, Going, Prepared, performed
+from tritrack.offline.rig_check import Witness
 from tritrack.unfinished.state_codec import packed, unpacked
 from tritrack.unfinished.work import Course, Kept
+from viewer.capture import CapturedFrame
+
+VIEWS: tuple[ViewerNumber, ...] = (1, 2)
 
 STOP_AT = 30
 
@@ -80,3 +91,101 @@ def test_a_run_that_stops_every_thirty_instants_gives_the_same_bodies(
         for measured in ("seconds", "frames_a_second"):
             facts.pop(measured)
     assert parts.facts == whole.facts
+
+
+FRAMES = 4
+MOVED_AT = 2
+"""From this frame on a camera is reported to be moved."""
+
+
+class Noted:
+    """Keeps every state that it is handed, and is always due."""
+
+    due = True
+
+    def __init__(self, resumed: Going | None = None) -> None:
+        self.left, self.states, self.bodies = resumed, list[Going](), list[Body]()
+
+    def messages(self, _: str) -> list[Body]:
+        return self.bodies
+
+    def resumed(self, _stage: str, _kind: object) -> Any:
+        return self.left
+
+    def save(self, stage: str, state: object) -> None:
+        assert stage == STAGE
+        assert isinstance(state, Going)
+        self.states.append(state)
+
+
+def prepared() -> Prepared:
+    """A clip of four instants; a viewer's state says whose it is and counts what that saw."""
+    views = tuple(View(n, f"cam{n}.avi", (160, 120), (160, 120), 15.0, FRAMES) for n in VIEWS)
+    clip = Clip("made up", views, 1, RIG, Meta())
+    state = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)
+    return Prepared(clip, {}, {1: 100, 2: 200}, state, [], 0.0)  # type: ignore[dict-item]
+
+
+@pytest.fixture
+def guided(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int | None]]:
+    """Every look of a viewer, without pictures: its state, and the frame of the guide it had."""
+    given: list[tuple[int, int | None]] = []
+
+    def look(state: int, frame: CapturedFrame, guide: Guide | None) -> tuple[int, Report]:
+        given.append((state, None if guide is None else guide.frames[0]))
+        seen = report(state // 100, frame=frame.index, captured_s=frame.captured_s)  # type: ignore[arg-type]
+        return state + 1, seen
+
+    def merged(state: Any, pair: Pair) -> tuple[Any, Body, Guide]:
+        assert [one and one.viewer for one in pair] == [1, 2]
+        n, moment = pair.newest.frame, {"captured_s": 0.0, "clock_s": 0.0}
+        moved = (1,) if n == MOVED_AT else ()
+        body = Body(frame=n, status="empty", views="none", moved=moved, **moment)  # type: ignore[arg-type]
+        return state, body, Guide(frame=n, frames=(n, n), **moment)
+
+    def frames(_clip: object, _reels: object, _sources: object, starts: dict[int, int]) -> Any:
+        for n in range(starts.get(2, 0), FRAMES):
+            yield dict.fromkeys(VIEWS, CapturedFrame(n, n / 15, n / 15, np.zeros((0, 0, 3), "u1")))
+
+    monkeypatch.setattr(performance.track, "step", look)
+    monkeypatch.setattr(performance.merge, "step", merged)
+    monkeypatch.setattr(performance, "instants", frames)
+    return given
+
+
+def test_each_view_goes_on_from_its_own_state_by_the_guide_of_the_instant_before(
+    guided: list[tuple[int, int | None]],
+) -> None:
+    told: list[float] = []
+    shown: list[int] = []
+    course = Course(told.append)
+    done = performed(prepared(), {}, Witness(), lambda *of: shown.append(of[2].frame), course)
+    assert sorted(guided[:4]) == [(100, None), (101, 0), (200, None), (201, 0)]
+    assert [body.frame for body in done.bodies] == shown == [0, 1, 2, 3]
+    assert told == [0.25, 0.5, 0.75, 1.0]
+    assert done.seconds.keys() == {"viewers", "integrator", "following"}
+    assert min(done.seconds.values()) > 0.0
+    assert done.seconds["following"] >= done.seconds["viewers"] + done.seconds["integrator"]
+
+
+def test_all_that_is_remembered_is_in_every_state_that_is_saved(
+    guided: list[tuple[int, int | None]],
+) -> None:
+    """Also what is remembered elsewhere: a camera that was moved stays so for who goes on."""
+    work, witness = Noted(), Witness()
+    performed(prepared(), {}, witness, None, Course(work=work))
+    assert [state.starts for state in work.states] == [{1: n, 2: n} for n in (1, 2, 3, 4)]
+    assert [state.witness.moved for state in work.states] == [False, False, True, True]
+    assert [len(state.witness.rows[2]) for state in work.states] == [2] * FRAMES, "one list"
+    assert [state.calibration.now_s for state in work.states] == [n / 15 for n in range(FRAMES)]
+    spent_s = [state.spent["following"] for state in work.states]
+    assert sorted(set(spent_s)) == spent_s
+
+    again, later = Noted(work.states[2]), Witness()
+    guided.clear()
+    done = performed(prepared(), {}, later, None, Course(work=again))
+    assert sorted(guided) == [(103, 2), (203, 2)]
+    assert [body.frame for body in done.bodies] == [3]
+    assert later.seen.moved
+    assert done.seconds["following"] > spent_s[2]
+    assert done.noticed.seen == (0, 0)

@@ -2,16 +2,20 @@
 
 import json
 from contextlib import nullcontext
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from acting import perform
 from rich.console import Console
 
 from recognizer.evaluation import Recording
 from recognizer.learning_error import LearningError
+from recognizer.model_file import save
+from recognizer.training.learning import train
 from tritrack.faults import code_of
 from tritrack.postures import posture_evaluation
 from tritrack.postures.posture_evaluation import Plan, evaluate_postures
@@ -19,16 +23,16 @@ from tritrack.postures.posture_split import EACH_IN_TURN
 from tritrack.training.training import TrainingError
 
 QUIET = Console(quiet=True)
-SHOWN = ("squat", "raise_right_lateral", "bow")
+DANCED = (
+    *(("squat", "squat"), ("raise_right_lateral", "raise_right_lateral")),
+    ("bow", "swing_both_backforth"),
+)
+"""Names, and the motions that are danced under them."""
 
 
 def of(performer: str, number: int) -> list[Recording]:
     """Three motions; the bow is one of ours that no list names."""
-    danced = ("squat", "raise_right_lateral", "swing_both_backforth")
-    return [
-        Recording(performer, name, perform(motion, number))
-        for name, motion in zip(SHOWN, danced, strict=True)
-    ]
+    return [Recording(performer, name, perform(motion, number)) for name, motion in DANCED]
 
 
 def shown(given: list[Recording], patch: pytest.MonkeyPatch) -> None:
@@ -166,6 +170,41 @@ def test_what_would_measure_nothing_is_refused_before_anything_is_tracked(
     monkeypatch.setattr(posture_evaluation, "recordings", tracked)
     with pytest.raises((TrainingError, LearningError), match=reason):
         evaluate(tmp_path, split)
+
+
+@pytest.mark.parametrize(("performers", "refused"), [(("bob", "zoe"), True), (("zoe",), False)])
+def test_a_model_is_not_tested_on_who_it_was_learnt_from(
+    people: list[Recording],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    performers: tuple[str, ...],
+    refused: bool,
+) -> None:
+    """Before anything is tracked: what it would say of them is no measure of unseen people."""
+    model, tracked = tmp_path / "model.npz", []
+    learnt = train({name: [perform(motion, n) for n in range(3)] for name, motion in DANCED})
+    save(replace(learnt, card=msgspec.structs.replace(learnt.card, performers=performers)), model)
+    monkeypatch.setattr(posture_evaluation, "recordings", lambda *_: tracked.append(1) or people)
+    plan = Plan(recognizers=("default",), model=model)
+    with (
+        pytest.raises(LearningError, match="bob: in training and in test")
+        if refused
+        else (nullcontext())
+    ):
+        report = evaluate_postures([], tmp_path / "out", plan, QUIET)
+        result = report["recognizers"]["default"]
+        assert (result["all"]["correct"], result["all"]["tested"]) == (7, 9), "all but cas's"
+        assert report["split"] == f"{model} models"
+    assert bool(tracked) is not refused
+
+
+def test_a_model_that_knows_none_of_the_postures_measures_nothing(
+    people: list[Recording], tmp_path: Path
+) -> None:
+    model = tmp_path / "model.npz"
+    save(train({"walk_toward": [perform("walk_toward", n) for n in range(3)]}), model)
+    with pytest.raises(TrainingError, match="knows none of the postures of these clips"):
+        evaluate_postures([], tmp_path, Plan(recognizers=("default",), model=model), QUIET)
 
 
 def test_a_fault_of_ours_is_not_dressed_as_a_users_mistake(

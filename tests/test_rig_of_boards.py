@@ -1,5 +1,6 @@
 """From videos to `calibration.json`, as the command does it."""
 
+import io
 from pathlib import Path
 
 import cv2
@@ -9,9 +10,14 @@ import pytest
 from filmed_board import FilmedRig, pictures_of, random_rig
 from rich.console import Console
 
-from common.rig.camera import centre
+from common.rig.camera import centre, paper_rig
 from common.rig.rig_file import CalibrationError, load_rig
-from integrator.board.board import BOARDS
+from integrator.board.board import BOARDS, Board
+from integrator.board.board_quality import CameraQuality, Quality
+from integrator.board.board_rig import BoardCalibration
+from integrator.board.still_board import Film, Moments
+from tritrack.offline import rig_of_boards
+from tritrack.offline.board_films import Looked
 from tritrack.offline.rig_of_boards import Shown, calibrate_by_videos
 
 QUIET = Console(quiet=True)
@@ -63,3 +69,80 @@ def test_a_room_without_a_board_is_told_with_the_cure(tmp_path: Path) -> None:
 def test_a_chessboard_needs_its_squares_measured(tmp_path: Path) -> None:
     with pytest.raises(CalibrationError, match="--square MM"):
         calibrate_by_videos([], Shown(chessboard="9x6"), tmp_path / "calibration.json", QUIET)
+
+
+def looked_at(board: Board, size_px: tuple[int, int]) -> Looked:
+    width, height = size_px
+    film = Film("cam", size_px, np.empty(0), np.empty((0, 12, 2)))
+    return Looked(film, board, np.zeros((height, width, 3), np.uint8))
+
+
+class Bench:
+    """Films of a board, and a rig that they give: what the command hands on between both."""
+
+    rig = paper_rig((320, 240), (400.0, 400.0), (4.0, 4.0))
+
+    def __init__(self, patch: pytest.MonkeyPatch, printed: Board, coverage: float = 0.9) -> None:
+        self.asked: tuple[Board, ...] = ()
+        self.board = printed
+        self.floor_s: float | None = None
+        self.printed, self.coverage = printed, coverage
+        patch.setattr(rig_of_boards, "looked_through", self.looked_through)
+        patch.setattr(rig_of_boards, "calibrated_by_board", self.calibrated)
+
+    def looked_through(
+        self, videos: list[str], boards: tuple[Board, ...], _: object
+    ) -> list[Looked]:
+        self.asked = boards
+        return [looked_at(boards[0] if len(boards) == 1 else self.printed, (320, 240))] * 2
+
+    def calibrated(
+        self, films: list[Film], board: Board, floor_s: float | None
+    ) -> BoardCalibration:
+        self.board, self.floor_s = board, floor_s
+        corners = np.array([[0.0, 0.0], [319.0, 0.0], [319.0, 239.0], [0.0, 239.0]])
+        px = np.full((1, 2, 4, 2), np.nan)
+        px[0, 0] = corners
+        shown = [
+            CameraQuality(f"cam{n}", 400.0, 1.0, 0.0, 0.0, 0.1, 9, self.coverage) for n in (1, 2)
+        ]
+        quality = Quality(tuple(shown), 0.1, 9, 1.0, 1)
+        return BoardCalibration(self.rig, quality, Moments(np.zeros(1), np.ones(1), px))
+
+
+def test_the_squares_that_are_measured_are_metres_inside(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """A chessboard of 30 mm, and a sheet of ours that came out of the printer at 47 mm."""
+    bench, out = Bench(monkeypatch, BOARDS["a4"]), tmp_path / "calibration.json"
+    calibrate_by_videos([Path("1.avi")] * 2, Shown(30.0, "9x6", 4.5), out, QUIET)
+    assert bench.asked == (Board(9, 6, 0.030, None),)
+    assert bench.board.square_m == pytest.approx(0.030)
+    assert bench.floor_s == 4.5
+    calibrate_by_videos([Path("1.avi")] * 2, Shown(47.0), out, QUIET)
+    assert bench.asked == tuple(BOARDS.values())
+    assert bench.board == BOARDS["a4"]._replace(square_m=0.047)
+    calibrate_by_videos([Path("1.avi")] * 2, Shown(), out, QUIET)
+    assert bench.board == BOARDS["a4"]
+
+
+def test_each_camera_is_drawn_with_what_it_saw_and_named_where_that_is_little(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The board filled the first picture and was never in the second."""
+    Bench(monkeypatch, BOARDS["a4"], 0.39)
+    console = Console(record=True, width=200, file=io.StringIO())
+    out = tmp_path / "calibration.json"
+    _, drawn = calibrate_by_videos([Path("1.avi")] * 2, Shown(), out, console)
+    assert drawn == tmp_path / "calibration_coverage.png"
+    green = cv2.imread(str(drawn))[:, :, 1]  # type: ignore[index]
+    assert green[180, 240] > 0
+    assert green[180, 720] == 0
+    assert load_rig(out) == Bench.rig
+    said = console.export_text()
+    assert "covered 39% of the picture of cam1" in said
+    assert "covered 39% of the picture of cam2" in said
+    Bench(monkeypatch, BOARDS["a4"], 0.41)
+    console = Console(record=True, width=200, file=io.StringIO())
+    calibrate_by_videos([Path("1.avi")] * 2, Shown(), out, console)
+    assert "covered" not in console.export_text()
