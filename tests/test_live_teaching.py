@@ -11,12 +11,15 @@ from common.bus.messages import Body
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from recognizer.model_file import load, save
+from recognizer.postures import Recognizer
 from recognizer.training.learning import train
+from recognizer.training.lesson import taught
 from synth.motion.streaming import streamed
 from synth.person.people import person
 from synth.picture.exposure import default_rig
 from synth.write import FPS, Filming, write_clip, write_rig
 from tritrack.live.launch import nothing_heard
+from tritrack.training import live_teaching
 from tritrack.training.coach import Said
 from tritrack.training.live_teaching import MOST_TAKES, Teaching, teach_live
 from tritrack.training.training import Plan, TrainingError
@@ -77,6 +80,35 @@ def test_who_never_shows_one_motion_is_not_waited_for_for_ever(
     assert teaching.lesson is None
     assert sum("all over again" in line for line in said) >= 1
     assert sum(line.startswith("take ") for line in said) <= MOST_TAKES
+
+
+@pytest.mark.parametrize(("kind", "learns"), [("default", True), ("paper", False)])
+def test_the_run_is_in_the_mode_of_the_model_and_beside_it(
+    plan: Plan, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, kind: Recognizer, learns: bool
+) -> None:
+    """Takes of another mode would be other features; a run without three takes writes nothing."""
+    ran: list[tuple[object, ...]] = []
+    takes = [perform(NEW, n) for n in range(3)] if learns else []
+    known = train({name: [perform(name, n) for n in range(3)] for name in KNOWN}, kind)
+    monkeypatch.setattr(live_teaching, "model_to_teach", lambda *_: known)
+
+    def live(settings: Settings, run: Path, _: Console, name: str, tell: Teaching) -> None:
+        ran.append((settings.mode, run, name))
+        if takes:
+            tell.lesson = taught(known, NEW, takes, ["live"])
+
+    monkeypatch.setattr(live_teaching, "live", live)
+    out = tmp_path / "mine.npz"
+    if learns:
+        facts = teach_live(NEW, Settings(mode="paper"), out, plan, Console(quiet=True))
+        assert [take["clip"] for take in facts["takes"]] == ["take 1", "take 2", "take 3"]
+        assert facts["run"] == str(tmp_path / f"mine_{NEW}")
+        assert load(out).names == (*KNOWN, NEW)
+    else:
+        with pytest.raises(TrainingError, match="ended before 3 takes"):
+            teach_live(NEW, Settings(), out, plan, Console(quiet=True))
+        assert not out.exists()
+    assert ran == [(kind, tmp_path / f"mine_{NEW}", NEW)]
 
 
 @pytest.mark.slow

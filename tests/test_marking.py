@@ -12,7 +12,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -51,9 +51,20 @@ from common.rig.camera import as_paper_rig
 from common.rig.rig_file import CalibrationError, load_rig
 from integrator.rig.calibration import read_points, run_markers, run_poles
 from integrator.rig.poles import Poles
-from tritrack.marking.marking import HEAD, Asked, KeptPoints, answered, kept_points, mark_poles
+from tritrack.marking import marking
+from tritrack.marking.marker_sheet import markers_of, markers_text
+from tritrack.marking.marking import (
+    HEAD,
+    Asked,
+    KeptPoints,
+    answered,
+    kept_points,
+    mark_markers,
+    mark_poles,
+)
+from tritrack.marking.marking_method import MarkingMethod
 from tritrack.marking.pole_sheet import pole_method, poles_text, sheet_of_poles
-from tritrack.marking.stills import Album, Running
+from tritrack.marking.stills import Album, Film, Running
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 QUIET = Console(quiet=True)
@@ -107,6 +118,32 @@ def test_points_of_other_pictures_are_not_gone_on_with(tmp_path: Path) -> None:
     path.write_text(poles_text(msgspec.structs.replace(measured, width=1280, height=960)))
     with pytest.raises(CalibrationError, match="1280x960 pictures, these have 640x480"):
         mark_poles(asked, tmp_path / "calibration.json", QUIET)
+
+
+def test_markers_of_other_pictures_are_not_gone_on_with_and_a_file_without_any_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was clicked before stands on the sheet; nothing is asked for but the page."""
+    path, album = tmp_path / "markers.toml", Album(SIZE, {n: Film((), ()) for n in (1, 2)})
+    served: list[tuple[MarkingMethod, Asked, str]] = []
+    monkeypatch.setattr(marking, "open_album", lambda *_: nullcontext(album))
+    monkeypatch.setattr(
+        marking, "_serve", lambda m, _a, asked, _p, writes, _: served.append((m, asked, writes))
+    )
+    asked, sheet = Asked(tmp_path, path, 1), clicked_markers()
+    path.write_text(markers_text(markers_of(sheet, (1280, 960), (1, 2))))
+    with pytest.raises(CalibrationError, match="1280x960 pictures, these have 640x480"):
+        mark_markers(asked, QUIET)
+    path.write_text(markers_text(markers_of(sheet, SIZE, (1, 2))))
+    mark_markers(asked, QUIET)
+    method, said, writes = served[-1]
+    assert (method.name, method.start.marks, said, writes) == ("markers", sheet.marks, asked, "")
+    path.write_text("width = 1280\nheight = 960\ncameras = []\n")
+    mark_markers(asked, QUIET)
+    assert all(not any(mark.px) for mark in served[-1][0].start.marks)
+    path.unlink()
+    mark_markers(asked, QUIET)
+    assert len(served) == 3
 
 
 def test_poles_want_both_cameras(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """The retouching command over a real page: its run, its video and its notes, found or refused."""
 
+import io
 import json
 import os
 import re
@@ -8,17 +9,26 @@ import socket
 import subprocess
 import sys
 import urllib.request
+from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
+from types import SimpleNamespace
 
 import cv2
+import msgspec
 import numpy as np
 import pytest
 from rich.console import Console
 from test_exporting import write
 
+from animator.retouching.fitting import FitError
 from common.body.body import JOINT_NAMES
+from common.config.part_settings import CameraSettings
+from common.config.settings import Settings
 from common.notes.notes import Note, Notes
-from common.notes.notes_file import save_notes
+from common.notes.notes_file import load_notes, save_notes
+from common.video.clips import open_clip
+from tritrack.single import retouching
 from tritrack.single.retouching import RetouchError, how_to_go_on, retouch
 from tritrack.store.past_run import open_run
 
@@ -32,10 +42,10 @@ def film(path: Path, count: int = 4) -> None:
     writer.release()
 
 
-def run_of(folder: Path, video: Path, n: int = 4) -> Path:
+def run_of(folder: Path, video: Path, n: int = 4, frames: Sequence[int] = ()) -> Path:
     """A run of n frames in which nobody was found."""
     arrays = {
-        "frame": np.arange(n),
+        "frame": np.array(frames or range(n), np.int64),
         "time_s": np.arange(n) / 15,
         "joints_m": np.full((n, 15, 3), np.nan),
         "joints_px": np.full((n, 2, 15, 2), np.nan),
@@ -118,3 +128,91 @@ def test_what_to_do_with_the_notes_names_the_video_and_what_they_are_of(tmp_path
     said = how_to_go_on(video, run)
     assert "two cameras" in said
     assert said.endswith("tritrack single 'my dance.avi'")
+
+
+class Page:
+    """What a browser would be shown; the notes that are said on it are `SAID`."""
+
+    address = "http://127.0.0.1:1/"
+    SAID = Notes("dance.avi", (Note(1, "left"),))
+
+    def __init__(self, take, size, picture_of, notes, save, fit, port) -> None:  # type: ignore[no-untyped-def]
+        self.take, self.size, self.picture_of = take, size, picture_of
+        self.begun, self.save, self.fit, self.port = notes, save, fit, port
+        self.notes, self.fitted, self.closed = notes, None, False
+
+    def told(self) -> "Page":
+        self.notes = self.SAID
+        self.kept = self.save(self.SAID)
+        return self
+
+    def close(self) -> None:
+        self.closed = True
+
+
+@pytest.fixture
+def pages(monkeypatch: pytest.MonkeyPatch) -> list[Page]:
+    """The pages that were shown; something is said on each, then comes Ctrl-C."""
+    pytest.importorskip("viser", reason="the page is an extra: install tritrack[page]")
+    shown: list[Page] = []
+    monkeypatch.setattr(
+        "animator.retouching.retouch.RetouchPage", lambda *of: shown.append(Page(*of)) or shown[-1]
+    )
+    over = SimpleNamespace(wait=lambda: shown.append(shown.pop().told()))
+    monkeypatch.setattr(retouching, "process", lambda *_: nullcontext(over))
+    return shown
+
+
+def test_every_row_has_its_own_picture_and_what_is_said_is_kept_beside_the_video(
+    pages: list[Page], tmp_path: Path
+) -> None:
+    """Frames of 0, 60, 120 and 180 grey; the run begins with the second and skips the third."""
+    film(tmp_path / "dance.avi")
+    run = run_of(tmp_path / "run", tmp_path / "dance.avi", 2, (1, 3))
+    console = Console(record=True, width=200, file=io.StringIO())
+    facts = retouch(run, None, None, 4321, console)
+    (page,) = pages
+    assert (page.size, page.port, page.closed) == ((320, 240), 4321, True)
+    assert [float(page.picture_of(row).mean()) for row in (0, 1)] == pytest.approx([60, 180], abs=3)
+    assert page.begun == Notes("dance.avi")
+    notes = tmp_path / "notes.toml"
+    assert load_notes(notes) == Page.SAID
+    assert page.kept == ("1 input, kept in notes.toml", True)
+    assert facts["notes"] == str(notes)
+    assert facts["inputs"]["orientation"] == 1
+    said = console.export_text()
+    assert "the page is at http://127.0.0.1:1/" in said
+    assert "then fit the video again with these notes: tritrack single" in said
+    with pytest.raises(FitError, match="tritrack single"):
+        page.fit(Page.SAID, lambda _: None)
+
+
+def test_notes_named_are_gone_on_with_and_what_cannot_be_kept_is_said(
+    pages: list[Page], tmp_path: Path
+) -> None:
+    film(tmp_path / "moved.avi")
+    run = run_of(tmp_path / "run", tmp_path / "gone.avi")
+    named, before = tmp_path / "mine.toml", Notes("dance.avi", (Note(0, "right"),))
+    save_notes(named, before)
+    retouch(run, tmp_path / "moved.avi", named, 1, QUIET)
+    assert pages[-1].begun == before
+    assert load_notes(named) == Page.SAID
+    (tmp_path / "file").write_text("")
+    retouch(run, tmp_path / "moved.avi", tmp_path / "file" / "notes.toml", 1, QUIET)
+    told, well = pages[-1].kept
+    assert not well
+    assert "file/notes.toml" in told
+
+
+def test_a_run_of_a_camera_wants_a_film_of_it(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    film(tmp_path / "dance.avi")
+    run = run_of(tmp_path / "run", tmp_path / "dance.avi")
+    settings = Settings(camera_1=CameraSettings(source=str(tmp_path / "dance.avi")))
+    found = open_clip(settings, None, (1,))
+    camera = msgspec.structs.replace(found.views[0], source=0)
+    live = msgspec.structs.replace(found, views=(camera,))
+    monkeypatch.setattr(retouching, "open_clip", lambda *_: live)
+    with pytest.raises(RetouchError, match="is of a camera: name a film of it with --video"):
+        retouch(run, None, None, 8080, QUIET)

@@ -8,7 +8,8 @@ from common.body.proportions import stature
 from common.bus.messages import ViewerNumber
 from common.config.settings import Settings
 from common.rig.camera import Rig, paper_rig
-from integrator.live_rig.rig_change import set_back, with_rig
+from integrator.live_rig.rig_change import set_back, with_rig, word_of
+from integrator.live_rig.rig_job import Solved, Trusted
 
 
 def larger(rig: Rig, times: float) -> Rig:
@@ -58,3 +59,32 @@ def test_only_view_2_is_set_back_and_the_rooms_clock_is_let_be(
     assert told.captured_s == 3.0 - back_s
     assert told.next_s == pytest.approx(3.1 - back_s)
     assert told.clock_s == 50.0
+
+
+@pytest.mark.parametrize(
+    ("before", "late_s", "begins", "late"),
+    [
+        (None, 0.0, "the cameras are now calibrated by the person", "degrees; the body"),
+        (41.0, -0.0667, "a better calibration by the person is used now", "late; the body"),
+    ],
+)
+def test_what_is_said_of_a_new_rig_names_what_it_is_known_to(
+    before: float | None, late_s: float, begins: str, late: str
+) -> None:
+    by = Trusted(12.4, ())
+    was = None if before is None else Trusted(before, ())
+    said = word_of(Solved(turn_error_deg=1.6, trust=by, before=was), late_s)
+    assert said.startswith(f"{begins}: views 12 mm apart, camera 2 known to 2 degrees")
+    assert late in said
+    assert ("camera 2 -67 ms late" in said) is bool(late_s)
+
+
+@pytest.mark.parametrize(
+    ("moved", "named"), [((2,), "camera 2 was"), ((1, 2), "both cameras were")]
+)
+def test_what_is_said_of_a_camera_that_was_moved_names_it(
+    moved: tuple[ViewerNumber, ...], named: str
+) -> None:
+    solved = Solved(trust=Trusted(12.4, ()), before=Trusted(41.0, ()))
+    said = word_of(solved, 0.2, moved)
+    assert said == f"{named} placed anew by the person: views 12 mm apart"
