@@ -40,3 +40,11 @@ def test_what_is_no_clip_is_left_out_and_said(tmp_path: Path) -> None:
 def test_two_clips_of_one_name_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ClipsFailed, match="would both be written to walk"):
         run_names([tmp_path / "a" / "walk", tmp_path / "b" / "walk"])
+
+
+def test_a_run_is_called_after_its_clip_or_its_settings_file(tmp_path: Path) -> None:
+    folder, settings = tmp_path / "dance.v2", tmp_path / "gym.toml"
+    folder.mkdir()
+    settings.write_text("")
+    assert run_names([folder, settings]) == {"dance.v2": folder, "gym": settings}
+    assert run_names([folder / ".." / "dance.v2"]).keys() == {"dance.v2"}

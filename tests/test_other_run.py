@@ -10,7 +10,7 @@ from spoiling import copied, refilmed
 from common.config.settings import Settings
 from tritrack.offline.batch import Asked, track_all
 from tritrack.single.single import Given, single_all
-from tritrack.store.other_run import OtherRun, refuse_other, run_of
+from tritrack.store.other_run import OtherRun, refuse_other, run_of, run_told
 from tritrack.store.runs import write_run
 
 TRACKED = run_of("track", ["day1/dance.mp4"])
@@ -47,6 +47,20 @@ def test_a_live_run_that_does_not_tell_of_what_gives_way_to_a_live_run(tmp_path:
 def test_what_tells_nothing_of_itself_is_no_hindrance(tmp_path: Path, text: str) -> None:
     (tmp_path / "summary.json").write_text(text)
     refuse_other(tmp_path, TRACKED)
+
+
+def test_what_a_run_is_of_is_read_back_from_its_summary(tmp_path: Path) -> None:
+    """Whole paths of films, numbers of cameras; nothing where there is no run."""
+    assert run_told(tmp_path) is None
+    for made in (TRACKED, run_of("live", [0, 1]), run_of("replay", [])):
+        write_run(tmp_path, [], Settings(), made.facts)
+        assert run_told(tmp_path) == made
+    assert TRACKED.footage == (str(Path("day1/dance.mp4").absolute()),)
+    assert run_of("live", [0, 1]).footage == ("0", "1")
+    assert run_of("replay", []).told == "tritrack replay"
+    for text in ("[3]", '{"run_of": {"footage": "x"}}', "{"):
+        (tmp_path / "summary.json").write_text(text)
+        assert run_told(tmp_path) is None
 
 
 def test_both_commands_leave_the_other_run_as_it_is(clip: Path, tmp_path: Path) -> None:
