@@ -54,6 +54,8 @@ SYSTEM = {
     "system_naming": "from a clip to the name of its posture",
 }
 """Tests of more than one module; every other file of tests bears its module's name."""
+MOST_LINES = 300
+"""Of a file."""
 MOST_FILES = 15
 """Of a folder: more are a heap, no longer a list."""
 
@@ -88,6 +90,36 @@ def test_every_folder_is_a_package_that_says_what_it_is(found: list[Source]) -> 
 def test_no_folder_is_a_heap(found: list[Source]) -> None:
     files = Counter(each.folder for each in found)
     assert {folder: n for folder, n in files.items() if n > MOST_FILES} == {}
+
+
+@pytest.mark.parametrize(
+    ("counted", "usual", "share", "most"),
+    [("code_lines", 20, 0.95, 45), ("nesting", 3, 0.98, 5), ("parameters", 6, 0.99, 9)],
+)
+def test_functions_are_small_but_for_a_few(
+    found: list[Source], counted: str, usual: int, share: float, most: int
+) -> None:
+    """Rule 7 of CONTRIBUTING.md. Options are a command's parameters, as arrays are a kernel's."""
+    given = [each for source in found for each in source.functions]
+    if counted == "parameters":
+        given = [each for each in given if each.kind == "plain"]
+    sizes = {each.place: getattr(each, counted) for each in given}
+    assert {place: n for place, n in sizes.items() if n > most} == {}
+    long = sorted((each for each in sizes if sizes[each] > usual), key=lambda each: -sizes[each])
+    assert len(long) <= (1.0 - share) * len(given), long[:10]
+
+
+def test_no_file_is_longer_than_one_can_hold(found: list[Source]) -> None:
+    lengths = {each.path: len((ROOT / each.path).read_text().splitlines()) for each in found}
+    assert {path: n for path, n in lengths.items() if n > MOST_LINES} == {}
+
+
+def test_rule_7_names_what_is_held() -> None:
+    """The numbers of both tests above, and of folders, as CONTRIBUTING.md has them."""
+    rule = re.search(r"^7\. (.+?)^8\. ", (ROOT / "CONTRIBUTING.md").read_text(), re.M | re.DOTALL)
+    assert rule is not None
+    told = [int(n) for n in re.findall(r"\d+", rule[1])]
+    assert told == [100, 95, 20, 98, 3, 99, 6, 45, 5, 9, MOST_LINES, MOST_FILES]
 
 
 def test_a_test_bears_the_name_of_what_it_tests() -> None:
