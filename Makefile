@@ -3,10 +3,12 @@ PYTHON ?= $(firstword $(foreach v,3.11 3.12 3.13,$(shell python$(v) -c "import s
 VENV := .venv
 BIN := $(VENV)/bin
 EXTRAS := page,export,usd,mcap,metrics,osc,lsl,keys,learn,report,single,cluster,docs,dev
+# What `.ci/run` has besides: 2.5 GB of what trains networks, and of programs that open exports.
+LARGE := train,clients
 
 NEWER := 3.12 3.13
 
-.PHONY: setup demo test matrix check bench docs clean
+.PHONY: setup everything demo test matrix check bench docs clean
 
 setup: $(VENV)/.installed
 	@$(BIN)/python -m tritrack.first_run
@@ -16,6 +18,13 @@ $(VENV)/.installed: pyproject.toml constraints.txt
 	@echo "once, some two minutes: libraries into $(VENV)"
 	@$(PYTHON) -m venv $(VENV)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[$(EXTRAS)]'
+	@touch $@
+
+everything: $(VENV)/.everything
+	@$(BIN)/python -m tritrack.first_run
+
+$(VENV)/.everything: $(VENV)/.installed
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[$(EXTRAS),$(LARGE)]'
 	@touch $@
 
 demo: setup
