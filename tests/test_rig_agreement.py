@@ -193,3 +193,52 @@ def test_who_stands_on_one_leg_for_long_does_not_make_a_right_rig_doubted() -> N
     assert state.told is not None
     assert abs(state.told.soles_mm) < 30.0
     assert state.told.believed == 1.0
+
+
+def samples(gap_mm: float, ankle_m: float, n: int = 20) -> np.ndarray:
+    """Instants in which every point's sight lines miss by so much, and the ankle is so high."""
+    points = len(rig_agreement.POINTS)
+    return np.tile([gap_mm / 1e3] * points + [ankle_m], (n, 1))
+
+
+ANKLE_M = 0.05 * 1.75
+
+
+@pytest.mark.parametrize(
+    ("gap_mm", "raised_mm", "facing_deg", "believed"),
+    [
+        (60.0, 0.0, 0.0, 1.0),
+        (70.0, 0.0, 0.0, 0.525),
+        (80.0, 0.0, 0.0, 0.05),
+        (0.0, 60.0, 0.0, 1.0),
+        (0.0, 77.5, 0.0, 0.525),
+        (0.0, 95.0, 0.0, 0.05),
+        (0.0, -45.0, 0.0, 1.0),
+        (0.0, -60.0, 0.0, 0.525),
+        (0.0, -75.0, 0.0, 0.05),
+        (0.0, 0.0, -90.0, 1.0),
+        (0.0, 0.0, 105.0, 0.525),
+        (0.0, 0.0, 120.0, 0.05),
+        (70.0, 95.0, 0.0, 0.05),
+    ],
+)
+def test_belief_falls_between_what_is_usual_and_what_no_good_rig_has(
+    gap_mm: float, raised_mm: float, facing_deg: float, believed: float
+) -> None:
+    given = samples(gap_mm, ANKLE_M + raised_mm / 1e3)
+    told = rig_agreement.agreement_of(given, (facing_deg,) * 5)
+    assert told.apart_mm == pytest.approx(gap_mm)
+    assert told.soles_mm == pytest.approx(raised_mm, abs=1e-6)
+    assert told.facing_deg == abs(facing_deg)
+    assert told.believed == pytest.approx(believed)
+
+
+def test_errors_that_change_and_feet_in_the_air_and_few_facings_say_nothing() -> None:
+    given = samples(0.0, ANKLE_M)
+    given[::3, :-1] = 0.5
+    given[9:, -1] += 0.3
+    told = rig_agreement.agreement_of(given, (180.0,) * 4)
+    assert (told.apart_mm, told.facing_deg, told.believed) == (0.0, 0.0, 1.0)
+    assert told.soles_mm == pytest.approx(0.0, abs=1e-6)
+    given[7:, -1] += 0.3
+    assert rig_agreement.agreement_of(given, ()).believed < 0.06
