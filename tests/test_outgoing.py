@@ -1,0 +1,219 @@
+"""What is told of an instant: a body whose doubts count, and where the next search starts."""
+
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+from staging import NOBODY, PAPER, RIG, Stage, exact, report, silhouettes, standing
+
+from common.bus.messages import Agreement, Report
+from common.method import DEFAULT
+from integrator import outgoing
+from integrator.merge_state import State
+from integrator.outgoing import LOST_FRAMES, body_of, guide_of, no_detection, weighed
+from integrator.pairing import Pair
+from integrator.rig.body_position import pixels_of, scales_at
+from integrator.rig_gate import rig_agreement
+from integrator.single.sight import Annotations
+
+SCORES = (0.8, 0.7)
+FRONT, SIDE = silhouettes(standing())
+
+
+def seen(n: int, **said: Any) -> Report:
+    """Of viewer n, with its own place of the navel."""
+    given = {"frame": 10 + n, "captured_s": 2.0, "clock_s": 5.0 + n, "root_px": (70.0 + n, 50.0)}
+    return report(n, (FRONT, SIDE)[n - 1], **{**given, **said})  # type: ignore[arg-type]
+
+
+BOTH = Pair(seen(1), seen(2))
+
+
+@pytest.fixture
+def state(monkeypatch: pytest.MonkeyPatch) -> State:
+    """Somebody has stood before both for three frames, as printed."""
+    exact(monkeypatch)
+    stage = Stage(settings=PAPER)
+    stage.show([standing((0.2, 0.1))] * 3)
+    return stage.state._replace(number=41, frames=(11, 12), calibration=3)
+
+
+def told(state: State, pair: Pair = BOTH, scores: tuple[float, float] = SCORES) -> Any:
+    assert state.found is not None
+    angles = np.linspace(1.0, 17.0, 17)
+    return body_of(state, pair, pair.detections, angles, scores)
+
+
+def test_a_body_is_of_its_instant_and_of_the_frames_that_it_was_made_of(state: State) -> None:
+    body = told(state)
+    assert (body.frame, body.captured_s, body.clock_s) == (41, 2.0, 7.0)
+    assert (body.made_of, body.views, body.status) == ((11, 12), "both", "tracking")
+    assert (body.calibration, body.scale_source) == (3, "calibrated")
+    assert body.confidence == (0.8,) * 15
+    assert body.score == SCORES
+    assert state.found is not None
+    assert body.pose[:3] == tuple(state.found.pose[:3])
+    assert sorted(set(body.pose) & set(np.linspace(1.0, 17.0, 17))) == [*np.linspace(1.0, 17.0, 17)]
+    assert body.angles_raw_deg != body.pose[-17:]
+    assert len(body.extremities_m) == len(body.extremities_confidence) == 7
+    alone = told(state, Pair(None, seen(2)))
+    assert (alone.made_of, alone.views) == ((-1, 12), "2")
+    assert told(state, Pair(seen(1), None)).views == "1"
+
+
+def test_matches_of_both_viewers_and_of_their_sticks_are_counted(state: State) -> None:
+    pair = Pair(seen(1, matches=30), seen(2, matches=12))
+    assert told(state, pair).matches == 42
+
+
+@pytest.mark.parametrize(
+    ("doubted", "status", "confidence"),
+    [(0, "tracking", 0.8), (1, "predicted", 0.0), (4, "predicted", 0.0), (5, "lost", 0.0)],
+)
+def test_a_doubted_body_is_predicted_for_four_frames_and_then_has_no_pose(
+    state: State, doubted: int, status: str, confidence: float
+) -> None:
+    body = told(state._replace(doubted=doubted))
+    assert body.status == status
+    assert set(body.confidence) == {confidence}
+    assert bool(body.joints_m) is (status != "lost")
+
+
+def test_what_was_found_with_a_pose_goes_before_how_well_it_fits(state: State) -> None:
+    own = np.linspace(0.1, 0.8, 15)
+    assert state.found is not None
+    state = state._replace(found=state.found._replace(confidence=own))
+    assert told(state).confidence == tuple(own)
+
+
+@pytest.mark.parametrize(
+    ("pair", "trusts", "left"),
+    [(BOTH, False, 0.25), (BOTH, True, 1.0), (Pair(seen(1), None), False, 1.0)],
+    ids=["both", "trusted", "one view"],
+)
+def test_a_rig_that_both_views_contradict_takes_confidence_away(
+    state: State, pair: Pair, trusts: bool, left: float
+) -> None:
+    doubts = rig_agreement.State(told=Agreement(70.0, 0.0, 0.0, 0.25))
+    settings = msgspec.structs.replace(state.settings, trust_calibration=trusts)
+    body = told(state._replace(agreement=doubts, settings=settings), pair)
+    assert body.confidence == pytest.approx([0.8 * left] * 15)
+
+
+def test_joints_that_the_only_picture_cuts_off_are_guessed(state: State) -> None:
+    """The lower half is outside; of two views the other may show it."""
+    high = RIG.height // 2
+    assert state.found is not None
+    cut = msgspec.structs.replace(seen(1, cut=True), height=high)
+    body = told(state, Pair(cut, None))
+    below = [place[1] > high for place in body.joints_px[0]]
+    assert 2 < sum(below) < 12
+    assert [sure == 0.0 for sure in body.confidence] == below
+    assert body.status == "predicted"
+    assert told(state, Pair(cut, seen(2))).status == "tracking"
+    assert told(state, Pair(seen(1), None)).status == "tracking"
+
+
+@pytest.mark.parametrize(
+    ("annotated", "believed"), [(False, True), (True, False)], ids=["borne out", "placed by hand"]
+)
+def test_a_body_that_is_believed_is_doubted_no_more(
+    state: State, monkeypatch: pytest.MonkeyPatch, annotated: bool, believed: bool
+) -> None:
+    monkeypatch.setattr(outgoing, "is_believed", lambda *_: believed)
+    notes = Annotations(joints_px={"l_wrist": (3.0, 4.0)} if annotated else {})
+    after = weighed(state._replace(doubted=3, met=False), BOTH, SCORES, notes)
+    assert (after.doubted, after.met) == (0, True)
+
+
+def test_what_the_network_remembers_of_a_body_that_both_lost_is_forgotten_every_five_frames(
+    state: State, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(outgoing, "is_believed", lambda *_: False)
+    assert state.found is not None
+    memory: Any = object()
+    state = state._replace(found=state.found._replace(memory=memory), doubted=0, met=False)
+    kept = []
+    for _ in range(2 * LOST_FRAMES):
+        state = weighed(state, BOTH, SCORES, Annotations())
+        assert state.found is not None
+        kept.append(state.found.memory is memory)
+        state = state._replace(found=state.found._replace(memory=memory))
+    assert state.doubted == 2 * LOST_FRAMES
+    assert kept == [True, True, True, True, False] * 2
+
+
+@pytest.mark.parametrize(("met", "doubted"), [(True, 1), (False, LOST_FRAMES)])
+def test_one_view_keeps_what_it_remembers_and_loses_at_once_who_it_never_met(
+    state: State, monkeypatch: pytest.MonkeyPatch, met: bool, doubted: int
+) -> None:
+    monkeypatch.setattr(outgoing, "is_believed", lambda *_: False)
+    memory, alone = object(), object()
+    assert state.found is not None
+    found = state.found._replace(memory=memory, alone=alone)  # type: ignore[arg-type]
+    after = weighed(
+        state._replace(found=found, met=met), Pair(seen(1), None), SCORES, Annotations()
+    )
+    assert after.doubted == doubted
+    assert after.found is not None
+    assert after.found.memory is memory
+
+
+def test_as_printed_each_viewer_starts_where_it_had_the_body_itself(state: State) -> None:
+    guide = guide_of(state, BOTH, False)
+    assert guide.root_px == ((71.0, 50.0), (72.0, 50.0))
+    assert (guide.frame, guide.clock_s, guide.frames) == (41, 7.0, (11, 12))
+    assert state.found is not None
+    place = state.found.pose[:3]
+    shared = pixels_of(RIG, place)
+    assert guide_of(state, Pair(seen(1), None), False).root_px == ((71.0, 50.0), shared[1])
+    assert guide_of(state, BOTH, True).root_px == shared, "the body has just been measured"
+    assert guide_of(state._replace(method=DEFAULT), BOTH, False).root_px == shared
+
+
+def test_a_guide_tells_the_size_of_a_metre_and_the_row_of_who_stands_upright(state: State) -> None:
+    """By how the body was measured, where it was: 1.1 m high, 0.3 m nearer to camera 1."""
+    guide = guide_of(state, BOTH, False)
+    assert state.found is not None
+    place = state.found.pose[:3]
+    assert guide.scale_px_per_m == pytest.approx(scales_at(RIG, place))
+    assert guide.pose == tuple(state.found.pose)
+    assert guide.rest_row_px == pytest.approx([at[1] for at in pixels_of(RIG, place)])
+    known = state.opening._replace(measured_at_m=(0.0, 1.1, 0.3), measured=True)
+    later = guide_of(state._replace(opening=known), BOTH, False)
+    raised = pixels_of(RIG, np.array([place[0], 1.1, place[2]]))
+    assert later.rest_row_px == pytest.approx([at[1] for at in raised])
+    assert later.measured
+    assert later.scale_px_per_m == pytest.approx(scales_at(RIG, place), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("stick", "source", "asked"),
+    [(True, "assumed", True), (True, "calibrated", False), (False, "assumed", False)],
+)
+def test_a_stick_is_asked_of_one_view_that_fits_badly_by_an_assumed_rig(
+    state: State, stick: bool, source: Any, asked: bool
+) -> None:
+    assert state.found is not None
+    assert not guide_of(state._replace(scale_source="assumed"), BOTH, False).stick
+
+    class Alone:
+        """One view that wants a stick, or not."""
+
+    alone: Any = Alone()
+    alone.stick = stick
+    state = state._replace(found=state.found._replace(alone=alone), scale_source=source)
+    assert guide_of(state, Pair(seen(1), None), False).stick is asked
+
+
+def test_where_nobody_is_the_lengths_and_the_facing_are_kept(state: State) -> None:
+    empty = Pair(report(1, NOBODY, frame=11), None)
+    state = state._replace(facing=("flank", "facade"), proposes=True)
+    body, guide = no_detection(state, empty)
+    assert (body.status, body.views, body.joints_m, body.made_of) == ("empty", "none", (), (11, -1))
+    assert (body.facing, guide.facing) == (state.facing,) * 2
+    assert body.bdp == guide.bdp == state.opening.bdp is not None
+    assert (body.calibration, body.scale_source) == (3, "calibrated")
+    assert (guide.frames, guide.status, guide.proposes) == ((11, 12), "empty", True)
+    assert guide.measured is state.opening.measured
