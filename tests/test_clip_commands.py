@@ -1,0 +1,152 @@
+"""What is typed for recorded clips reaches what does the work; what that gives is said."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typed import instead, typed
+
+from common.config.part_settings import BusSettings
+from common.config.settings import Settings
+from synth.write import ClipSet
+from tritrack.commands.clip_commands import (
+    export,
+    line_of_runs,
+    replay,
+    retouch,
+    single,
+    synth,
+    track,
+)
+from tritrack.faults import Unfollowed
+
+FACTS = {"clips": {"dance": {"believed": 0.9, "frames": 30, "seen": 30}}}
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def test_all_that_is_typed_for_tracking_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    done = instead(monkeypatch, "tritrack.offline.batch.track_all", FACTS)
+    refused = instead(monkeypatch, "tritrack.commands.clip_commands.refuse_unfollowed")
+    words = ["a", "b", "--out", "new", "--mode", "thesis", "--views", "2", "--size", "160x120"]
+    words += ["--landmarks", "none", "--trust-calibration", "--record", "--resume", "--force"]
+    said = typed(track, *words)
+    clips, out, asked, _ = done.last
+    assert (clips, out) == ([Path("a"), Path("b")], Path("new"))
+    assert (asked.mode, asked.size, asked.landmarks, asked.views) == (
+        *("thesis", "160x120", "none"),
+        (2,),
+    )
+    assert asked.trusted is asked.record is asked.resume is asked.force is True
+    assert "1 clip tracked, written to new; believed in 90% of the frames" in said.output
+    assert refused.last == (FACTS["clips"],)
+    typed(track, "a")
+    clips, out, asked, _ = done.last
+    assert (out, asked.mode, asked.size, asked.landmarks) == (Path("runs"), None, None, None)
+    assert asked.views == (1, 2)
+    assert asked.trusted is asked.record is asked.resume is asked.force is False
+    assert json.loads(typed(track, "a", "--json").stdout) == FACTS
+    assert typed(track, "a", "--views", "1").exit_code == 0
+    assert done.last[2].views == (1,)
+
+
+def test_a_body_that_is_hardly_believed_is_no_success(monkeypatch: pytest.MonkeyPatch) -> None:
+    facts = {"clips": {"dance": {"believed": 0.1, "warnings": []}}}
+    instead(monkeypatch, "tritrack.offline.batch.track_all", facts)
+    instead(monkeypatch, "tritrack.single.single.single_all", facts)
+    for command in (track, single):
+        with pytest.raises(Unfollowed):
+            typed(command, "a")
+
+
+def test_the_line_of_runs_averages_what_is_believed_and_names_rigs_that_are_not() -> None:
+    clips: dict[str, dict[str, Any]] = {
+        "a": {"believed": 0.5},
+        "b": {"believed": 1.0, "trust": {"advice": "turn it"}},
+        "c": {"believed": None, "trust": None},
+    }
+    line = line_of_runs(clips, Path("runs"))
+    assert line.startswith("3 clips tracked, written to runs; believed in 75% of the frames")
+    assert line.endswith("not believable: the calibration of b, see the warning above")
+    assert line_of_runs({"c": clips["c"]}, Path("x")) == "1 clip tracked, written to x"
+
+
+def test_people_are_made_as_many_and_as_they_are_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made = instead(monkeypatch, "tritrack.making.make_clips", [Path("x/a"), Path("x/b")])
+    words = ["--motion", "postures", "--performers", 3, "--takes", 2, "--seed", 7]
+    said = typed(synth, "--out", "x", *words, "--size", "160x120", "--posture", "squat")
+    assert made.last[:3] == (Path("x"), ClipSet("postures", 3, 2, 7, ("squat",)), "160x120")
+    assert "2 clips written to x" in said.output
+    said = typed(synth, "--out", "x", "--json")
+    assert made.last[1:3] == (ClipSet("postures", 1, 1, 0, ()), "320x240")
+    assert json.loads(said.stdout) == {"clips": ["x/a", "x/b"]}
+
+
+def test_all_that_is_typed_for_one_camera_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    done = instead(monkeypatch, "tritrack.single.single.single_all", FACTS)
+    instead(monkeypatch, "tritrack.commands.clip_commands.refuse_unfollowed")
+    words = ["--notes", "n.toml", "--mode", "thesis", "--size", "160x120", "--landmarks", "none"]
+    words += ["--background", "room.png", "--resume", "--force", "--json", "--out", "new"]
+    said = typed(single, "a.mp4", *words)
+    videos, out, given, settings, _ = done.last
+    assert (videos, out) == ([Path("a.mp4")], Path("new"))
+    assert given == (Path("n.toml"), Path("room.png"), True, True, "none")
+    assert (settings.mode, settings.size) == ("thesis", "160x120")
+    assert json.loads(said.stdout) == FACTS
+    said = typed(single, "a.mp4")
+    assert done.last[2] == (None, None, False, False, None)
+    assert (done.last[3].mode, done.last[3].size) == ("default", "320x240")
+    assert said.stdout == ""
+
+
+def test_a_run_is_exported_as_it_is_typed_and_how_far_bones_are_off_is_said(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    facts = {"frames": 5, "file": "x.bvh"}
+    done = instead(monkeypatch, "tritrack.commands.clip_commands.export_run", facts)
+    said = typed(export, "run", "--to", "bvh", "--out", "x.bvh", "--scale", "cm", "--force")
+    assert done.last == (Path("run"), "bvh", Path("x.bvh"), "cm", True)
+    assert "5 frames written to x.bvh" in said.output
+    assert "mm off" not in said.output
+    done.answer = {**facts, "off_mm": {"median": 1.5, "p95": 4.0}}
+    said = typed(export, "run", "--to", "gltf")
+    assert done.last == (Path("run"), "gltf", None, "m", False)
+    assert "fixed bones: 1.5 mm off, 95 % within 4.0 mm" in said.output
+
+
+def test_a_recording_is_integrated_said_on_a_bus_or_played_on_a_page(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    run = instead(monkeypatch, "tritrack.replaying.replay_run", {"bodies": 1, "same": 1})
+    bus = instead(monkeypatch, "tritrack.replaying.replay_on_bus", {"said": 4})
+    page = instead(monkeypatch, "tritrack.replay_page.replay_on_page", {"shown": 9})
+    said = typed(replay, "run", "--out", "new", "--force")
+    assert run.last == (Path("run"), Path("new"), True)
+    assert "1 body, 1 of them the same byte for byte; written to new" in said.output
+    assert "written" not in typed(replay, "run").output
+    assert run.last == (Path("run"), None, False)
+    said = typed(replay, "run", "--bus", "tls/127.0.0.1:7", "--speed", 2.5, "--keys", "k")
+    settings = BusSettings(endpoint="tls/127.0.0.1:7", keys="k")
+    assert bus.last[:3] == (Path("run"), settings, 2.5)
+    assert "4 messages said" in said.output
+    said = typed(replay, "run", "--page", "--port", 9000)
+    assert page.last[:2] == (Path("run"), 9000)
+    assert "9 frames shown" in said.output
+    assert len(run.given) == 2
+
+
+def test_a_run_is_retouched_with_its_video_and_notes(monkeypatch: pytest.MonkeyPatch) -> None:
+    done = instead(monkeypatch, "tritrack.single.retouching.retouch", {"notes": "n"})
+    instead(monkeypatch, "tritrack.single.ledger.line_of", "three inputs")
+    said = typed(retouch, "run", "--video", "v.mp4", "--notes", "n.toml", "--port", 9000)
+    assert done.last[:4] == (Path("run"), Path("v.mp4"), Path("n.toml"), 9000)
+    assert "three inputs" in said.output
+    typed(retouch, "run")
+    assert done.last[:4] == (Path("run"), None, None, 8080)
+    assert Settings().page.port == 8080, "the same page as a live run's"
