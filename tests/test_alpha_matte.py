@@ -3,11 +3,11 @@
 import cv2
 import numpy as np
 import pytest
-from test_difference import LUMA, held
+from picture_rules import LUMA, held, scene
 
-from viewer.background.background import BackgroundModel
 from viewer.silhouette.alpha_matte import FACTS, SIDES, matte, sides_of
 
+SEEDS = pytest.mark.parametrize("seed", [0, 1, 2])
 CORNER = (3, 2)
 """Row and column at which the window begins."""
 WINDOW = (15, 22)
@@ -25,10 +25,9 @@ def window(picture: np.ndarray) -> np.ndarray:
     return picture[top : top + WINDOW[0], left : left + WINDOW[1]].astype(float)
 
 
-def test_sides_are_the_bodys_colour_and_the_light_seen_and_due_beside_it(
-    scene: tuple[np.ndarray, BackgroundModel],
-) -> None:
-    frame, model = scene
+@SEEDS
+def test_sides_are_the_bodys_colour_and_the_light_seen_and_due_beside_it(seed: int) -> None:
+    frame, model = scene(seed)
     inside = inside_of(0)
     found = sides_of(frame, model, inside, CORNER)
     assert found.shape == (*WINDOW, SIDES)
@@ -48,10 +47,9 @@ def opponent(off: np.ndarray) -> np.ndarray:
     return np.concatenate([luma[..., None], 0.4 * (off - luma[..., None])], axis=-1)
 
 
-def test_a_pixel_is_a_mix_of_the_body_beside_it_and_the_shaded_background(
-    scene: tuple[np.ndarray, BackgroundModel],
-) -> None:
-    frame, model = scene
+@SEEDS
+def test_a_pixel_is_a_mix_of_the_body_beside_it_and_the_shaded_background(seed: int) -> None:
+    frame, model = scene(seed)
     inside = inside_of(0)
     sides = cv2.blur(
         sides_of(frame, model, inside, CORNER).astype(np.float32), (7, 7), borderType=0

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from test_difference import CELL, held
+from picture_rules import CELL, held, scene
 
-from viewer.background.background import BackgroundModel
 from viewer.silhouette.colour_model import SHADES, body_colours_of, counted, fresh
+
+SEEDS = pytest.mark.parametrize("seed", [0, 1, 2])
 
 
 def test_a_colour_speaks_for_whom_it_was_seen_on_the_more_often_it_was() -> None:
@@ -17,11 +18,10 @@ def test_a_colour_speaks_for_whom_it_was_seen_on_the_more_often_it_was() -> None
     assert (np.delete(found, [5, 6, 7]) == 0).all()
 
 
-def test_pixels_well_inside_and_surely_outside_are_counted_and_old_ones_fade(
-    scene: tuple[np.ndarray, BackgroundModel],
-) -> None:
+@SEEDS
+def test_pixels_well_inside_and_surely_outside_are_counted_and_old_ones_fade(seed: int) -> None:
     """Every other pixel, like a chessboard, of the cells alone."""
-    frame, model = scene
+    frame, model = scene(seed)
     high, wide = frame.shape[:2]
     rng = np.random.default_rng(4)
     inside = rng.choice([0, 3, 9], (high, wide)).astype(np.uint8)

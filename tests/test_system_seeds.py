@@ -31,6 +31,8 @@ from synth.picture.random_rig import random_rig, rig_about
 from synth.picture.render import render
 from synth.picture.shown_joints import shown_joints
 from synth.picture.synth_room import furnished, lamp_pixels, lit_from
+from tritrack.training.lifting_examples import lifting_examples
+from tritrack.training.proposal_examples import example_of
 
 MAKERS = (falling, footing, moves, roaming, portrait, rings, skeleton, tailor, raster)
 """What the others call: a change in one of these is a change of what seeds make, too."""
@@ -179,6 +181,15 @@ def posed_anyhow() -> list[Any]:
 
 SCENES = (0, 1, 3, 4, 5, 7, 8)
 """Backdrops: one of a room, the others heaped."""
+
+
+def taught() -> list[Any]:
+    """What networks are trained on, as they see it."""
+    lifted = [one for seed in range(10) for one in lifting_examples(seed)]
+    manners = (silhouette_examples.ORDINARY, silhouette_examples.AT_LARGE)
+    return [lifted, [example_of((seed, manner)) for seed, manner in enumerate(manners)]]
+
+
 SMOOTH, DRAWN = 1e-7, 1e-5
 """How far numbers may be off, of their size: those of curves, and those of pictures, of which a
 pixel may be rounded otherwise elsewhere."""
@@ -206,6 +217,7 @@ MADE: dict[str, tuple[Callable[[], Any], float, tuple[float, float, float]]] = {
     "shots": (shots, DRAWN, (134.030346, 58.3905818, 10.9113542)),
     "outlines": (outlines, DRAWN, (0.179516377, 3.5939525, 0.0742107292)),
     "pictures": (pictures, DRAWN, (127.878745, 74.4646827, 10.8702198)),
+    "taught": (taught, DRAWN, (34.3506187, 69.21771, 8.98508423)),
     "landmarks": (landmarks, SMOOTH, (66.5828403987, 36.1427016792, 17.3950898554)),
 }
 
