@@ -22,7 +22,7 @@ def inside_of(seed: int) -> np.ndarray:
 
 def window(picture: np.ndarray) -> np.ndarray:
     top, left = CORNER
-    return picture[top : top + WINDOW[0], left : left + WINDOW[1]].astype(float)
+    return np.asarray(picture[top : top + WINDOW[0], left : left + WINDOW[1]], float)
 
 
 @SEEDS

@@ -15,7 +15,7 @@ ENDS_M = tuple((5.0 + n, 0.0, 0.5) for n in range(len(EXTREMITY_NAMES)))
 
 
 def body(**more: Any) -> Body:
-    moment = {"frame": 7, "captured_s": 2.25, "clock_s": 2.25}
+    moment: dict[str, Any] = {"frame": 7, "captured_s": 2.25, "clock_s": 2.25}
     return Body(status="tracking", views="both", **moment, **more)
 
 

@@ -29,7 +29,7 @@ from tritrack.store.other_run import OtherRun, run_of
 from tritrack.store.runs import write_run
 
 CAMERAS = Settings(camera_1=CameraSettings(device=0), camera_2=CameraSettings(device=1))
-VIEWS = tuple(View(n, n, (160, 120), (160, 120), 30.0, 0) for n in (1, 2))  # type: ignore[arg-type]
+VIEWS = tuple(View(n, n, (160, 120), (160, 120), 30.0, 0) for n in (1, 2))
 CLIP = Clip("room", VIEWS, 2, None, Meta())
 
 

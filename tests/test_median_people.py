@@ -1,5 +1,7 @@
 """Where in the median picture of a clip somebody may stand: scenes painted by hand."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ HIGH, WIDE, N = 60, 80, 20
 GREY, BODY = 90.0, 180.0
 
 
-def clip(places: list[int | None]) -> np.ndarray:
+def clip(places: Sequence[int | None]) -> np.ndarray:
     """A grey room; somebody 10 px wide and 36 high stands at these columns, one a frame."""
     frames = np.full((len(places), HIGH, WIDE, 3), GREY, np.float32)
     for frame, left in zip(frames, places, strict=True):

@@ -10,6 +10,7 @@ from common.atomic_file import FileRefused
 from common.config.settings import Settings
 from tritrack.commands import model_commands
 from tritrack.commands.model_commands import evaluate_app, teach, train
+from tritrack.commands.options import CACHE
 from tritrack.landmark_lessons import work_of
 from tritrack.postures.posture_evaluation import KINDS
 from tritrack.postures.posture_evaluation import Plan as Split
@@ -35,7 +36,7 @@ def test_postures_are_learnt_of_the_clips_that_are_typed(monkeypatch: pytest.Mon
     )
     assert "1 posture learnt, 2 known; written to m.npz" in said.output
     typed(train, "a", "--out", "m.npz")
-    assert done.last[2] == Plan(None, "default", model_commands.CACHE)
+    assert done.last[2] == Plan(None, "default", CACHE)
     said = typed(train, "--out", "m.npz")
     assert (said.exit_code, "name clips or run folders" in said.output) == (2, True)
 
@@ -94,7 +95,7 @@ def test_a_posture_is_taught_by_takes_or_before_cameras_not_by_both(
     said = typed(teach, "jump", "--live", "cams.toml", "--count-in", 5, "--out", "m.npz")
     posture, given, out, plan, _, count_s = live.last
     assert (posture, given, out, count_s) == ("jump", settings, Path("m.npz"), 5.0)
-    assert plan == Plan(None, "default", model_commands.CACHE, Path("shipped"), False)
+    assert plan == Plan(None, "default", CACHE, Path("shipped"), False)
     assert "taught: 2" in said.output
     for words in (["jump"], ["jump", "a", "--live", "cams.toml"]):
         said = typed(teach, *words, "--out", "m.npz")
@@ -112,7 +113,7 @@ def test_what_is_evaluated_is_what_is_typed(monkeypatch: pytest.MonkeyPatch) -> 
     assert done.last[:3] == ([Path("x"), Path("y")], Path("r"), plan)
     assert "default recogniser:\nA\n\npaper recogniser:\nB" in said.output
     typed(evaluate_app, "postures", "x", "--out", "r")
-    assert done.last[2] == Split(cache=model_commands.CACHE)
+    assert done.last[2] == Split(cache=CACHE)
 
 
 def test_spotting_and_tracking_are_measured_as_they_are_typed(

@@ -138,7 +138,7 @@ def guided(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int | None]]:
 
     def merged(state: Any, pair: Pair) -> tuple[Any, Body, Guide]:
         assert [one and one.viewer for one in pair] == [1, 2]
-        n, moment = pair.newest.frame, {"captured_s": 0.0, "clock_s": 0.0}
+        n, moment = pair.newest.frame, dict[str, Any](captured_s=0.0, clock_s=0.0)
         moved = (1,) if n == MOVED_AT else ()
         body = Body(frame=n, status="empty", views="none", moved=moved, **moment)  # type: ignore[arg-type]
         return state, body, Guide(frame=n, frames=(n, n), **moment)
@@ -147,8 +147,8 @@ def guided(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int | None]]:
         for n in range(starts.get(2, 0), FRAMES):
             yield dict.fromkeys(VIEWS, CapturedFrame(n, n / 15, n / 15, np.zeros((0, 0, 3), "u1")))
 
-    monkeypatch.setattr(performance.track, "step", look)
-    monkeypatch.setattr(performance.merge, "step", merged)
+    monkeypatch.setattr("viewer.track.step", look)
+    monkeypatch.setattr("integrator.merge.step", merged)
     monkeypatch.setattr(performance, "instants", frames)
     return given
 

@@ -7,6 +7,7 @@ import pytest
 from common.bus.process import ProcessContext
 from common.config.settings import Settings
 from common.video.clip_facts import Clip, Meta, View
+from tritrack.forking.zygote import FORK, SPAWN
 from tritrack.live import process_table
 from tritrack.live.process_table import (
     END_S,
@@ -139,15 +140,19 @@ def test_a_part_whose_zygote_dies_is_a_new_python(monkeypatch: pytest.MonkeyPatc
 
     def start(part: Part, context: object) -> str:
         begun.append(context)
-        if context is process_table.FORK:
+        if context is FORK:
             raise EOFError
         return part.name
 
     class Warm:
-        context = process_table.FORK
+        context = FORK
 
     monkeypatch.setattr(process_table, "_begun", start)
     part = Part("viewer 1", viewer_main, ())
-    assert process_table.started(part) == "viewer 1"
-    assert process_table.started(part._replace(zygote=Warm())) == "viewer 1"  # type: ignore[arg-type]
-    assert begun == [process_table.SPAWN, process_table.FORK, process_table.SPAWN]
+    warm: Any = Warm()
+    given: list[Any] = [
+        process_table.started(part),
+        process_table.started(part._replace(zygote=warm)),
+    ]
+    assert given == ["viewer 1"] * 2
+    assert begun == [SPAWN, FORK, SPAWN]

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import cv2
 import msgspec
@@ -155,9 +156,12 @@ def pages(monkeypatch: pytest.MonkeyPatch) -> list[Page]:
     """The pages that were shown; something is said on each, then comes Ctrl-C."""
     pytest.importorskip("viser", reason="the page is an extra: install tritrack[page]")
     shown: list[Page] = []
-    monkeypatch.setattr(
-        "animator.retouching.retouch.RetouchPage", lambda *of: shown.append(Page(*of)) or shown[-1]
-    )
+
+    def show(*of: Any) -> Page:
+        shown.append(Page(*of))
+        return shown[-1]
+
+    monkeypatch.setattr("animator.retouching.retouch.RetouchPage", show)
     over = SimpleNamespace(wait=lambda: shown.append(shown.pop().told()))
     monkeypatch.setattr(retouching, "process", lambda *_: nullcontext(over))
     return shown

@@ -5,7 +5,8 @@ from typing import Any
 
 import msgspec
 import pytest
-from test_rig_trust import PAPER, PERIOD_S, SHOWN
+from test_person_calibration import PAPER
+from test_rig_trust import PERIOD_S, SHOWN
 
 from integrator.rig_gate import rig_fault
 from integrator.rig_gate.rig_fault import AGAIN, FREED, advice_on

@@ -4,7 +4,6 @@ import pytest
 from staging import report
 
 from common.bus.control_messages import ClockQuestion
-from integrator.hearing import run_start
 from integrator.hearing.run_start import LEAD_S, Starter
 
 
@@ -12,7 +11,7 @@ from integrator.hearing.run_start import LEAD_S, Starter
 def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """What the room's clock says."""
     now = [100.0]
-    monkeypatch.setattr(run_start.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr("integrator.hearing.run_start.time.monotonic", lambda: now[0])
     return now
 
 

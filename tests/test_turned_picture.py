@@ -71,7 +71,9 @@ def test_a_background_turns_with_its_camera_and_its_rim_is_as_the_frame_has_it()
     spread = np.full((high, wide, 2), (1.0, 2.5), np.float32)
     uncertain = np.zeros((high, wide), bool)
     uncertain[:, 30] = True
-    first = estimated(np.array(ramp), spread, uncertain)._replace(high=ramp + 9.0, step=ramp + 3.0)
+    first = estimated(np.array(ramp), spread, uncertain)._replace(
+        high=ramp + np.float32(9.0), step=ramp + np.float32(3.0)
+    )
     frame = np.full((high, wide, 3), 200, np.uint8)
     turn = about(0.0, 5.0, 0.0)
     now = turned_background(first, lens, turn, frame)

@@ -21,14 +21,14 @@ class Called:
     """Stands where work would be done: keeps what it was asked for, and answers."""
 
     def __init__(self, answer: Any = None) -> None:
-        self.answer, self.given = answer, list[tuple[Any, ...]]()
+        self.answer, self.given = answer, list[Any]()
 
     def __call__(self, *given: Any) -> Any:
         self.given.append(given)
         return self.answer
 
     @property
-    def last(self) -> tuple[Any, ...]:
+    def last(self) -> Any:
         return self.given[-1]
 
 
