@@ -17,12 +17,14 @@ def inside_of(seed: int) -> np.ndarray:
     """How many of a pixel's neighbours are in a body of the window, 0 to 9."""
     body = np.zeros(WINDOW, np.float32)
     body[3:12, 4 + seed : 13] = 1
-    return np.rint(9 * cv2.blur(body, (3, 3), borderType=cv2.BORDER_CONSTANT)).astype(np.uint8)
+    means = cv2.blur(body, (3, 3), borderType=cv2.BORDER_CONSTANT)
+    return np.asarray(np.rint(9 * means), np.uint8)
 
 
 def window(picture: np.ndarray) -> np.ndarray:
     top, left = CORNER
-    return np.asarray(picture[top : top + WINDOW[0], left : left + WINDOW[1]], float)
+    cut: np.ndarray = picture[top : top + WINDOW[0], left : left + WINDOW[1]].astype(float)
+    return cut
 
 
 @SEEDS

@@ -13,7 +13,7 @@ def typed(command: Callable[..., None] | typer.Typer, *words: object) -> Result:
     app = command
     if not isinstance(app, typer.Typer):
         app = typer.Typer()
-        app.command()(command)  # type: ignore[arg-type]
+        app.command()(command)
     return CliRunner().invoke(app, [str(word) for word in words], catch_exceptions=False)
 
 
