@@ -189,7 +189,7 @@ def test_ezc3d_reads_markers(tmp_path: Path, where: str) -> None:
 def test_another_reader_of_c3d_knows_lost_markers_by_their_residual(
     tmp_path: Path, where: str
 ) -> None:
-    c3d = pytest.importorskip("c3d", reason="pip install c3d")
+    c3d = pytest.importorskip("c3d", reason="pip install 'tritrack[clients]'")
     pytest.importorskip("ezc3d", reason="pip install 'tritrack[export]'")
     with written(tmp_path, where, "c3d").open("rb") as file:
         frames = np.array([points for _, points, _ in c3d.Reader(file).read_frames()])
