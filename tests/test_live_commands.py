@@ -11,6 +11,7 @@ from common.config.part_settings import CameraSettings, PageSettings
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
 from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_sources import ClipError
 from tritrack.commands import live_commands
 from tritrack.commands.live_commands import (
     animate,
@@ -175,3 +176,21 @@ def test_poses_are_sent_where_the_protocol_is_heard(
     assert "1 body sent" in said.output
     typed(bridge, protocol, *words)
     assert sent.last[1:3] == (Settings().bus.endpoint, Settings().room)
+
+
+def test_the_page_is_asked_for_where_it_is_shown_and_footage_before_a_run(
+    monkeypatch: pytest.MonkeyPatch, given: Called, ran: Called
+) -> None:
+    lacks = instead(monkeypatch, "tritrack.commands.live_commands.refuse_without")
+    instead(monkeypatch, "tritrack.demo.run_demo", {"posture": "squat"})
+    typed(demo, "--no-page", "--force")
+    assert lacks.given == []
+    typed(demo, "--force")
+    assert lacks.given == [("page", "websockets")]
+    given.answer = Settings()
+    with pytest.raises(ClipError, match=r"gym\.toml: there is nothing to look at"):
+        typed(live, "gym.toml")
+    given.answer = Settings(clip="nowhere")
+    with pytest.raises(ClipError, match="there is no clip folder nowhere"):
+        typed(view, "gym.toml", "--viewer", 1)
+    assert not ran.given

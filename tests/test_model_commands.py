@@ -133,3 +133,40 @@ def test_spotting_and_tracking_are_measured_as_they_are_typed(
     said = typed(evaluate_app, "tracking", "x", "--out", "r", *words)
     assert tracked.last[:5] == ([Path("x")], Path("r"), Path("runs"), "paper", "160x120")
     assert "20 mm; written to r" in said.output
+
+
+LEARN = ("learn", "hmmlearn", "sklearn")
+REPORT = ("report", "matplotlib")
+
+
+@pytest.mark.parametrize(
+    ("command", "words", "needs"),
+    [
+        (train, ("a",), [LEARN]),
+        (train, ("--what", "silhouettes"), [LEARN]),
+        (train, ("--what", "landmarks"), [("train", "torch", "onnx", "onnxscript", "anny")]),
+        (teach, ("jump", "a"), [LEARN]),
+        (evaluate_app, ("postures", "a"), [REPORT, LEARN]),
+        (evaluate_app, ("postures", "a", "--model", "m.npz"), [REPORT]),
+        (evaluate_app, ("tracking", "a"), [REPORT]),
+    ],
+)
+def test_what_a_command_lacks_is_said_before_it_begins(
+    monkeypatch: pytest.MonkeyPatch, command: Any, words: tuple[str, ...], needs: list[Any]
+) -> None:
+    """The last thing that is asked for is missing: the work is never begun."""
+
+    class Lacking(Exception):
+        """It is not there."""
+
+    asked: list[tuple[str, ...]] = []
+
+    def refuse(*given: str) -> None:
+        asked.append(given)
+        if len(asked) == len(needs):
+            raise Lacking
+
+    monkeypatch.setattr(model_commands, "refuse_without", refuse)
+    with pytest.raises(Lacking):
+        typed(command, *words, "--out", "m.npz")
+    assert asked == needs

@@ -180,3 +180,34 @@ def test_a_rig_goes_to_another_program_and_comes_back(here: Path) -> None:
     assert np.array(back.cameras[0].K) == pytest.approx(np.array(RIG.cameras[1].K))
     with pytest.raises(FileRefused):
         typed(calibrate_app, "import", "theirs.toml", *words, "--out", "back.json")
+
+
+def test_what_is_found_is_written_and_what_shows_nothing_is_refused_before(
+    by_clips: Called, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written = instead(monkeypatch, "integrator.rig.calibration.write_rig")
+    looked = instead(monkeypatch, "common.video.clip_sources.refuse_no_footage")
+    typed(calibrate_app, "person", "a", "b", "--out", "r.json")
+    rig, quality_told = by_clips.answer
+    assert written.last == (Path("r.json"), rig, quality_told)
+    assert [given[1] for given in looked.given] == [Path("a"), Path("b")]
+
+
+@pytest.mark.parametrize(
+    ("words", "needs"),
+    [
+        (("board", "--print", "b.pdf"), ("report", "matplotlib")),
+        (("markers", "m.toml", "--page", "clip"), ("page", "websockets")),
+        (("poles", "p.toml", "--page", "clip"), ("page", "websockets")),
+    ],
+)
+def test_what_a_command_lacks_is_said_before_it_begins(
+    monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...], needs: tuple[str, ...]
+) -> None:
+    lacks = instead(monkeypatch, "tritrack.commands.rig_commands.refuse_without")
+    instead(monkeypatch, "integrator.board.board_print.print_board")
+    for name in ("mark_markers", "mark_poles"):
+        result = Result((), None, None)  # type: ignore[arg-type]
+        instead(monkeypatch, f"tritrack.marking.marking.{name}", result)
+    typed(calibrate_app, *words)
+    assert lacks.given == [needs]
