@@ -102,7 +102,8 @@ def _follow(watch: Callable[..., None]) -> None:
         command = (sys.executable, "-m", "tritrack", "synth", "--out", folder, *asked)
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         clip = next(Path(folder).glob(f"*{POSTURE}"))
-        offline.track_clip(Settings(clip=str(clip)), doors, (1, 2), watch)
+        shown = getattr(offline, "Watch", lambda each: each)  # older versions take a function
+        offline.track_clip(Settings(clip=str(clip)), doors, (1, 2), shown(watch))
 
 
 def _is_there(module: str) -> bool:

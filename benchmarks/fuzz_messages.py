@@ -54,6 +54,7 @@ from integrator.single.sight import Annotations
 from tritrack.live.table import table_of_rows
 from tritrack.offline.frame_pairs import openings
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.offline.performance import Watch
 from viewer import track
 
 WORDS = ("refused", "taken", "handed on", "harm")
@@ -78,7 +79,9 @@ def honest(path: Path) -> Honest:
     method = METHODS[settings.mode]
     heard: list[tuple[dict[int, Any], dict[int, Report], Body]] = []
     with Decoders() as decoders:
-        track_clip(settings, decoders, watch=lambda *instant: heard.append(instant))
+        track_clip(
+            settings, decoders, watch=Watch(lambda *instant: heard.append(instant), heard.clear)
+        )
         clip = open_clip(settings, decoders.of[1])
         assert clip.rig is not None, f"{path} has no calibration"
         reels = {view.number: Reel(decoders.of[view.number]) for view in clip.views}

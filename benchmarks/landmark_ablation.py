@@ -39,6 +39,7 @@ from integrator.rig.body_position import triangulate
 from integrator.rig.undistortion import undistorted_rig
 from tritrack.accuracy.accuracy import Compared, compare, summary
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.offline.performance import Watch
 from tritrack.overrides import overridden
 from tritrack.store.pose_arrays import poses
 from viewer import track
@@ -92,7 +93,7 @@ def followed(clips: Sequence[Path], source: str, size: str | None) -> dict[str, 
             settings = overridden(config_file.load(clip), "default", size)
             settings = msgspec.structs.replace(settings, landmarks=source)
             single = Alone(rig_of(clip, decoders, settings))
-            done = track_clip(settings, decoders, watch=single.watch)
+            done = track_clip(settings, decoders, watch=Watch(single.watch))
             with np.load(clip / "truth.npz", allow_pickle=False) as truth:
                 for how, bodies in (("both", done.bodies), ("alone", single.bodies)):
                     rows = poses([body for body in bodies if body.frame >= 0])

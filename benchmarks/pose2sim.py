@@ -33,6 +33,7 @@ from common.rig.camera import Rig
 from common.video.clip_facts import both_cameras
 from integrator.rig.undistortion import undistorted
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.offline.performance import Watch
 from tritrack.store.runs import write_run
 from viewer.capture import CapturedFrame
 
@@ -245,7 +246,9 @@ def main() -> None:
         for path in write_settings(asked.data.resolve(), asked.out, asked.size, asked.every):
             settings = config_file.load(path)
             rows: list[Row] = []
-            tracked = track_clip(settings, decoders, watch=lambda *row, to=rows: to.append(row))
+            tracked = track_clip(
+                settings, decoders, watch=Watch(lambda *row, to=rows: to.append(row), rows.clear)
+            )
             write_run(asked.out / path.stem, tracked.bodies, settings, tracked.facts)
             rig = both_cameras(tracked.clip)
             assert rig is not None

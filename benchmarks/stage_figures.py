@@ -28,6 +28,7 @@ from recognizer.__main__ import init as recognizer_init
 from recognizer.model_file import load
 from synth.write import ClipSet, write_set
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.offline.performance import Watch
 from tritrack.store.joint_arrays import all_joints_m
 from tritrack.store.pose_arrays import poses
 
@@ -56,7 +57,7 @@ def performance() -> list[Seen]:
             pictures = {n: frame.picture for n, frame in frames.items()}
             seen.append(Seen(pictures, dict(reports), body))
 
-        track_clip(Settings(clip=str(clip), size="320x240"), decoders, watch=watch)
+        track_clip(Settings(clip=str(clip), size="320x240"), decoders, watch=Watch(watch))
     return seen
 
 

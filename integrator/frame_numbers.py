@@ -5,6 +5,7 @@ from bisect import bisect_left
 from typing import Final
 
 import msgspec
+import numpy as np
 
 from common.video.clip_facts import Clip
 
@@ -30,6 +31,8 @@ def frame_times(clip: Clip) -> FrameTimes | None:
     view = clip.views[0]
     if view.number != 1:
         return None
+    if view.picked:
+        return FrameTimes(float(np.median(np.diff(view.capture_s))), captured_s=view.capture_s)
     return FrameTimes(
         clip.every / view.fps, clip.every, isinstance(view.source, int), view.capture_s
     )

@@ -23,9 +23,9 @@ from integrator.rig.undistortion import undistorted_rig
 from integrator.rig_gate import silhouette_motion
 from integrator.single.sight import Annotations
 
-LOST_FRAMES: Final = 5
-"""After so many frames in a row in which it is not believed the body is lost; until then it is
-predicted: it has a pose, with confidence 0."""
+LOST_S: Final = 1.0 / 3.0
+"""After so long in which it is not believed the body is lost: five frames of 15 a second. Until
+then it is predicted: it has a pose, with confidence 0."""
 
 
 def body_of(
@@ -95,11 +95,17 @@ def weighed(
     places_m = _places_m(state, found.pose)
     if annotations.joints_px or is_believed(places_m, state.rig, pair, scores):
         return state._replace(doubted=0, met=True)
-    least = LOST_FRAMES if found.alone is not None and not state.met else 1
+    lost = _lost_frames(state)
+    least = lost if found.alone is not None and not state.met else 1
     state = state._replace(doubted=max(least, state.doubted + 1))
-    if state.doubted % LOST_FRAMES or found.alone is not None:
+    if state.doubted % lost or found.alone is not None:
         return state
     return state._replace(found=found._replace(memory=None))
+
+
+def _lost_frames(state: State) -> int:
+    """In how many instants in a row it is not believed then."""
+    return max(1, round(LOST_S / state.smooth.period_s))
 
 
 def _places_m(state: State, pose: Vector) -> NDArray[np.float64]:
@@ -252,7 +258,7 @@ def _status(state: State) -> Status:
     Who is partly outside the only picture is tracked: the joints outside have confidence 0.
     """
     if state.doubted:
-        return "lost" if state.doubted >= LOST_FRAMES else "predicted"
+        return "lost" if state.doubted >= _lost_frames(state) else "predicted"
     return "measuring" if state.opening.under_way else "tracking"
 
 

@@ -120,7 +120,6 @@ REFUSED: dict[str, tuple[Callable[[Path], None], str]] = {
     "truncated at the head": (without_head, "cam1.avi is no AVI from its first byte"),
     "only its head": (head_alone, "cam1.avi gives no picture: convert it"),
     "undecodable": (no_video, "cam1.avi gives no picture: convert it"),
-    "different rates": (other_rates, "15 frames a second, .*cam2.avi 25: set fps or capture_s"),
     "R not orthonormal": (no_rotation, "R of camera cam1 is no rotation .*calibrate again"),
     "wrong image size": (wrong_size, "is for 999x120 pictures, the clip has 160x120"),
     "calibration that is none": (no_calibration, "calibration.json is no calibration"),

@@ -122,7 +122,7 @@ def test_a_cameras_room_is_what_it_shows_first(clip: Path, decoder: Decoder) -> 
     """No more frames are taken than the settings say; the person comes after them."""
     camera = FakeCamera(film_of(clip / "cam1.avi"))
     view = msgspec.structs.replace(view_of(clip, decoder), source=0, frames=0)
-    room, odd, _ = opening_of_view(view, SilhouetteSettings(empty_frames=8), camera)
+    room, odd, _ = opening_of_view(view, SilhouetteSettings(), camera)
     assert odd == ""
     assert camera.given <= 8
     assert share_off(room, room_of(clip)) < 0.001

@@ -12,7 +12,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from common.config.part_settings import CameraSettings
+from common.config.part_settings import CameraSettings, SilhouetteSettings
 from common.config.settings import Settings
 from common.rig.camera import paper_rig, project
 from common.video.clip_facts import Clip, View, shortfall
@@ -279,14 +279,38 @@ def test_cameras_that_see_nearly_one_outline_are_named(
     assert [f"look {apart_deg} degrees apart" in one for one in warnings] == [True] * odd
 
 
-def test_rates_that_differ_need_capture_times(folder: Path, decoder: Decoder) -> None:
+def test_views_of_other_rates_are_looked_at_at_the_slower_ones(
+    folder: Path, decoder: Decoder
+) -> None:
+    film(folder / "cam2.avi", fps=30.0)
+    clip = opened(folder, decoder)
+    assert [view.fps for view in clip.views] == [15.0, 15.0]
+    assert [view.picked for view in clip.views] == [(), tuple(range(0, 12, 2))]
+    assert any("cam2.avi those 6 are looked at" in warning for warning in clip.warnings)
+
+
+def test_a_view_whose_capture_times_are_told_keeps_its_frames(
+    folder: Path, decoder: Decoder
+) -> None:
     film(folder / "cam2.avi", fps=25.0)
-    said = refusal(Settings(clip=str(folder)), decoder)
-    assert "15 frames a second" in said
-    assert "set fps or capture_s" in said
     times = [n / 15 for n in range(12)]
-    tell(folder, capture_s={"cam1": times, "cam2": times})
-    assert len(opened(folder, decoder).views) == 2
+    tell(folder, fps=15, capture_s={"cam1": times, "cam2": times})
+    assert [view.picked for view in opened(folder, decoder).views] == [(), ()]
+
+
+def test_the_offset_of_the_settings_sets_camera_2_back(folder: Path, decoder: Decoder) -> None:
+    first, second = open_clip(Settings(clip=str(folder), offset_s=0.5), decoder).views
+    assert first.captured_s(3) == pytest.approx(3 / 15)
+    assert second.captured_s(3) == pytest.approx(3 / 15 - 0.5)
+
+
+@pytest.mark.parametrize(("hz", "frames"), [(10.0, 5), (15.0, 8), (25.0, 13), (30.0, 15)])
+def test_half_a_second_has_as_many_frames_as_the_rate_says(hz: float, frames: int) -> None:
+    view = View(1, "cam1.avi", (160, 120), (160, 120), hz, 100)
+    assert view.frames_in(SilhouetteSettings().empty_s) == frames
+    assert view.frames_in(SilhouetteSettings(empty_frames=6).empty_s) == round(6 / 15 * hz)
+    uneven = msgspec.structs.replace(view, capture_s=(0.0, 0.2, 0.4, 0.6))
+    assert uneven.frames_in(0.5) == 3
 
 
 def test_a_missing_folder_file_or_source_is_named(tmp_path: Path, decoder: Decoder) -> None:

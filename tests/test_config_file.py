@@ -78,6 +78,8 @@ def test_what_is_misspelt_or_ill_typed_is_refused_with_its_place(
         ("[body]\nstature_m = 3.0", "got 3.0"),
         ("[body]\nopening_frames = 0", "got 0"),
         ("[silhouette]\nmin_height_share = nan", "nan"),
+        ("[silhouette]\nempty_s = 0.0", "empty_s must be from 0.01 to 100.0, got 0.0"),
+        ("offset_s = 4000.0", "offset_s must be from -3600.0 to 3600.0, got 4000.0"),
         ("[search]\narm_window_deg = 60", "arm_window_deg.*got 60"),
         ("[search]\nstop_deg = 0", "got 64"),
         ("[search]\nleg_window_deg = 4", "leg_window_deg"),

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from viewer.capture import CapturedFrame
-from viewer.haste import LASTS, LATE, Haste
+from viewer.haste import LASTS_S, LATE, Haste
 
 PERIOD_S = 1 / 15
 FRAME = CapturedFrame(0, 0.0, 0.0, np.zeros((2, 2, 3), np.uint8))
@@ -27,7 +27,7 @@ def test_who_is_in_time_looks_at_every_frame() -> None:
 def test_a_late_frame_and_those_of_the_third_of_a_second_from_it_on_are_in_a_hurry() -> None:
     told = hurried([0.0, 0.03, *[0.0] * 8])
     assert told == [False, *[True] * 5, *[False] * 4]
-    assert pytest.approx(1 / 3) == LASTS * PERIOD_S
+    assert pytest.approx(1 / 3) == LASTS_S
 
 
 def test_who_is_always_late_looks_at_every_sixth() -> None:

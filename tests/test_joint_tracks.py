@@ -54,7 +54,7 @@ def test_moments_count_where_both_views_are_sure_and_are_thinned() -> None:
     first, second = moving(400), moving(400)
     first.confidence[:100] = 0.1
     second.confidence[300:] = 0.1
-    times = useful_times(Sighting(first, second, (160, 120)))
+    times = useful_times(Sighting(first, second, (160, 120)), 0.0)
     assert len(times) == MOST_FRAMES
     assert (times[0], times[-1]) == pytest.approx((10.0, 29.9))
 
@@ -65,7 +65,7 @@ def test_moments_between_two_views_that_never_saw_somebody_together_do_not_count
     later = JointTrack(*(part[[0, *range(30, 40)]] for part in second))
     later.confidence[0] = 0.0
     first.confidence[30:] = 0.0
-    assert not len(useful_times(Sighting(first, later, (160, 120))))
+    assert not len(useful_times(Sighting(first, later, (160, 120)), 0.0))
 
 
 def test_nobody_has_no_height() -> None:

@@ -1,42 +1,96 @@
-"""By how much one view is late, held against films that were shifted."""
+"""By how much one view is late, held against clips that were shifted."""
+
+from typing import Final
 
 import numpy as np
 import pytest
-from test_person_calibration import filmed_by_the_papers_rig
+from test_person_calibration import PAPER, filmed_by_the_papers_rig
+from wild_rigs import AT, Film, seen
 
-from integrator.selfcalibration.joint_tracks import JointTrack
-from integrator.selfcalibration.lateness import likely_lateness_s
+from integrator.selfcalibration.joint_tracks import JointTrack, Sighting
+from integrator.selfcalibration.lateness import LEAST_SHARED, UNSEEN, clock_of
+from synth.motion.motions import performance
+from synth.person.people import person
 
-WALKS = filmed_by_the_papers_rig(8, "walk_in_place").sighting
-SHOWN = filmed_by_the_papers_rig(8, "raise_both_forward_up").sighting
-
-
-def late(track: JointTrack, by_s: float) -> JointTrack:
-    return track._replace(times_s=track.times_s + by_s)
-
-
-@pytest.mark.parametrize("by_s", [-0.5, 0.2, 0.6])
-def test_a_view_whose_clock_is_late_is_found_within_a_frame_and_a_half(by_s: float) -> None:
-    found = likely_lateness_s(SHOWN.first, late(SHOWN.second, by_s))
-    assert found == pytest.approx(by_s, abs=0.1)
+WALKS: Final = filmed_by_the_papers_rig(3, "walk_slow_bigswing").sighting
+SHOWN: Final = filmed_by_the_papers_rig(8, "squat").sighting
+PERIOD_S: Final = 1 / 15
+CYCLE_S: Final = 40 / 15
+"""After so long made-up walks repeat themselves, to the last hair."""
+OPENING: Final = 24
+"""Frames of a T, and of arms that come down."""
 
 
-@pytest.mark.parametrize("by_s", [-0.4, 0.0, 0.3])
-def test_somebody_who_rises_slowly_in_one_picture_and_sinks_in_the_other_is_timed_by_his_steps(
-    by_s: float,
-) -> None:
-    up, down = moved_slowly(WALKS.first, -60.0), moved_slowly(WALKS.second, 60.0)
-    assert likely_lateness_s(up, late(down, by_s)) == pytest.approx(by_s, abs=0.1)
+def walking(seed: int) -> Sighting:
+    """Eight seconds of steps on the spot alone."""
+    someone = person(seed)
+    motion = performance(someone, "walk_in_place", seed, 15.0, 8.0)
+    steps_m = motion.joints_m[motion.present][OPENING:, AT]
+    film = Film(steps_m, np.ones(len(steps_m), bool), motion.fps)
+    return seen(film, PAPER, 0.0, np.random.default_rng(seed))
 
 
-def moved_slowly(track: JointTrack, rows_px: float) -> JointTrack:
-    """The track by so many rows lower at its end than at its beginning."""
-    share = (track.times_s - track.times_s[0]) / np.ptp(track.times_s)
-    down = np.zeros_like(track.joints_px)
-    down[..., 1] = rows_px * share[:, None]
-    return track._replace(joints_px=track.joints_px + down)
+def late(sighting: Sighting, by_s: float) -> Sighting:
+    second = sighting.second._replace(times_s=sighting.second.times_s + by_s)
+    return sighting._replace(second=second)
 
 
-def test_a_view_that_shows_nobody_is_not_late() -> None:
+def from_frame(track: JointTrack, first: int) -> JointTrack:
+    """What a camera shows that was started so many frames later, by times of its own."""
+    rest = JointTrack(*(part[first:] for part in track))
+    return rest._replace(times_s=rest.times_s - rest.times_s[0])
+
+
+@pytest.mark.parametrize("by_s", [-7.0, -0.5, 0.0, 0.2, 3.0])
+@pytest.mark.parametrize("shown", [WALKS, SHOWN], ids=["walks", "squats"])
+def test_a_view_whose_clock_is_late_is_found_within_a_frame(shown: Sighting, by_s: float) -> None:
+    found = clock_of(late(shown, by_s))
+    assert found.is_found
+    assert found.late_s == pytest.approx(by_s, abs=PERIOD_S)
+    assert found.may_be_on_time == (abs(by_s) < 0.5) or by_s == 0.2
+
+
+@pytest.mark.parametrize("frames", [6, 12])
+def test_a_camera_that_was_started_later_shows_all_earlier(frames: int) -> None:
+    found = clock_of(WALKS._replace(second=from_frame(WALKS.second, frames)))
+    assert found.late_s == pytest.approx(-frames * PERIOD_S, abs=PERIOD_S)
+    found = clock_of(WALKS._replace(first=from_frame(WALKS.first, frames)))
+    assert found.late_s == pytest.approx(frames * PERIOD_S, abs=PERIOD_S)
+
+
+@pytest.mark.parametrize("seed", [3, 5])
+@pytest.mark.parametrize("by_s", [0.0, 1.0])
+def test_a_gait_that_repeats_itself_is_called_ambiguous(seed: int, by_s: float) -> None:
+    found = clock_of(late(walking(seed), by_s))
+    assert found.state == "ambiguous"
+    assert found.rivals_s
+    likely_s = np.array([found.late_s, *found.rivals_s])
+    cycles = (likely_s - by_s) / CYCLE_S
+    assert (np.abs(cycles - np.round(cycles)) < 2 * PERIOD_S / CYCLE_S).any()
+
+
+def test_who_stands_still_shows_no_time() -> None:
+    still = JointTrack(*(np.repeat(part[20:21], 60, axis=0) for part in WALKS.first))
+    still = still._replace(times_s=np.linspace(0.0, 59 * PERIOD_S, 60))
+    assert not clock_of(WALKS._replace(first=still, second=still)).is_found
+
+
+def test_cameras_of_other_rates_are_told_apart_in_seconds() -> None:
+    every_other = JointTrack(*(part[::2] for part in WALKS.second))
+    found = clock_of(late(WALKS._replace(second=every_other), 1.0))
+    assert found.is_found
+    assert found.late_s == pytest.approx(1.0, abs=PERIOD_S)
+
+
+def test_of_less_than_two_seconds_in_common_no_clock_is_told() -> None:
+    short = JointTrack(*(part[30:58] for part in WALKS.second))
+    assert clock_of(WALKS._replace(second=short)) == UNSEEN
+
+
+def test_a_view_that_shows_nobody_has_no_clock() -> None:
     blind = SHOWN.second._replace(confidence=np.zeros_like(SHOWN.second.confidence))
-    assert likely_lateness_s(SHOWN.first, blind) == 0.0
+    assert clock_of(SHOWN._replace(second=blind)) == UNSEEN
+    few = JointTrack(*(part[: LEAST_SHARED - 1] for part in SHOWN.second))
+    assert clock_of(SHOWN._replace(second=few)) == UNSEEN
+    assert UNSEEN.state == "unknown"
+    assert UNSEEN.may_be_on_time

@@ -13,8 +13,10 @@ from spoiling import Film, copied, cut_off, edit_json, refilmed
 
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
+from synth.write import ClipSet, write_set
 from tritrack.offline.batch import Asked, track_all
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.offline.performance import Watch
 from tritrack.overrides import overridden
 from tritrack.store.pose_arrays import poses
 
@@ -124,3 +126,51 @@ def test_a_pair_filmed_without_calibration_is_tracked(data_dir: Path, tmp_path: 
     assert done["clips"]["frontside_walk"]["scale_source"] == "person"
     with np.load(tmp_path / "frontside_walk" / "poses.npz", allow_pickle=False) as found:
         assert np.isfinite(found["joints_m"]).all(axis=(1, 2)).mean() > 0.9
+
+
+@pytest.fixture(scope="module")
+def squats(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Somebody who squats, which repeats nothing within two seconds."""
+    wanted = ClipSet("postures", seed=90_001, postures=("squat",))
+    return write_set(tmp_path_factory.mktemp("squats"), wanted, (160, 120))[0]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("calibrated", [True, False], ids=["calibrated", "by the person"])
+def test_a_view_that_is_late_is_found_and_the_clip_is_tracked_with_its_times_set_back(
+    squats: Path, tmp_path: Path, calibrated: bool
+) -> None:
+    """Camera 2 was started six frames later: it shows all 0.4 s earlier, and is told so."""
+    folder = copied(squats, tmp_path / "clip")
+    refilmed(folder, lambda film: film[6:], cameras=(2,))
+    if not calibrated:
+        (folder / "calibration.json").unlink()
+    shown: list[object] = []
+    with Decoders() as decoders:
+        watch = Watch(lambda *_: shown.append(1), shown.clear)
+        done = track_clip(Settings(clip=str(folder)), decoders, watch=watch)
+    assert done.facts["clock"]["state"] == "found"
+    assert done.facts["clock"]["applied_s"] == pytest.approx(-0.4, abs=0.05)
+    assert len(shown) == len(done.bodies)
+    if calibrated:
+        found = poses([body for body in done.bodies if body.frame >= 0])
+        truth = np.load(squats / "truth.npz")
+        names = truth["joint_names"].tolist()
+        true_m = truth["joints3d"][:, [names.index(name) for name in found["joint_names"]]]
+        off_m = np.linalg.norm(found["joints_m"] - true_m[found["frame"]], axis=-1)[29:]
+        assert np.nanmean(off_m) < 0.04
+
+
+@pytest.mark.slow
+def test_an_offset_that_is_given_is_used_and_not_looked_for(squats: Path, tmp_path: Path) -> None:
+    folder = copied(squats, tmp_path / "clip")
+    refilmed(folder, lambda film: film[6:], cameras=(2,))
+    track_all([folder], tmp_path / "runs", Asked(offset_s=-0.4), QUIET)
+    told = json.loads((tmp_path / "runs/clip/summary.json").read_text())
+    assert told["clock"] == {
+        "state": "given",
+        "applied_s": -0.4,
+        "may_be_s": [],
+        "may_be_on_time": True,
+    }
+    assert told["settings"]["offset_s"] == -0.4

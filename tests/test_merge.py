@@ -30,10 +30,11 @@ from common.config.settings import Settings
 from common.method import DEFAULT, Mode
 from common.rig.camera import project
 from integrator import merge, merge_state
-from integrator.outgoing import LOST_FRAMES
+from integrator.outgoing import LOST_S
 from integrator.pairing import Pair
 from integrator.rig.body_position import scales_at
 
+LOST = round(15 * LOST_S)
 MODES = pytest.mark.parametrize("mode", ["paper", "default"])
 
 
@@ -183,8 +184,8 @@ def test_a_body_that_fits_nothing_is_predicted_then_lost_then_found() -> None:
     stage.show([standing()])
     block = NOBODY.copy()
     block[2:14, 10:150] = True  # a banner
-    states = [stage.see((block, block)).body for _ in range(LOST_FRAMES + 1)]
-    assert [body.status for body in states] == ["predicted"] * (LOST_FRAMES - 1) + ["lost"] * 2
+    states = [stage.see((block, block)).body for _ in range(LOST + 1)]
+    assert [body.status for body in states] == ["predicted"] * (LOST - 1) + ["lost"] * 2
     assert set(states[-1].confidence) == {0.0}
     assert states[0].joints_m
     assert not states[-1].joints_m

@@ -4,11 +4,9 @@ import numpy as np
 from local_bus import LocalBus
 
 from common.bus.control_messages import Command
-from common.config.settings import Settings
 from viewer.background.new_background import Learning
 
-SETTINGS = Settings()
-DUE = SETTINGS.silhouette.empty_frames
+DUE = 8
 RNG = np.random.default_rng(5)
 
 
@@ -18,13 +16,13 @@ def room(level: int) -> np.ndarray:
 
 
 def test_nothing_is_learnt_before_it_is_asked_for() -> None:
-    learning = Learning(LocalBus().subscribe(Command), 1, SETTINGS)
+    learning = Learning(LocalBus().subscribe(Command), 1, DUE)
     assert [learning.step(room(90), "") for _ in range(2 * DUE)] == [(None, None)] * 2 * DUE
 
 
 def test_frames_after_the_word_become_the_background_once() -> None:
     bus = LocalBus()
-    learning = Learning(bus.subscribe(Command), 2, SETTINGS)
+    learning = Learning(bus.subscribe(Command), 2, DUE)
     learning.step(room(40), "")
     bus.publish(Command(what="background"))
     told = [learning.step(room(140), "") for _ in range(2 * DUE)]
@@ -39,7 +37,7 @@ def test_frames_after_the_word_become_the_background_once() -> None:
 
 def test_where_somebody_moves_the_old_one_stays() -> None:
     bus = LocalBus()
-    learning = Learning(bus.subscribe(Command), 1, SETTINGS)
+    learning = Learning(bus.subscribe(Command), 1, DUE)
     bus.publish(Command(what="background"))
     answers = []
     for n in range(DUE):
@@ -54,7 +52,7 @@ def test_where_somebody_moves_the_old_one_stays() -> None:
 
 def test_a_camera_that_is_covered_learns_no_cover() -> None:
     bus = LocalBus()
-    learning = Learning(bus.subscribe(Command), 1, SETTINGS)
+    learning = Learning(bus.subscribe(Command), 1, DUE)
     bus.publish(Command(what="background"))
     background, answer = learning.step(room(2), "black")
     assert background is None

@@ -49,6 +49,9 @@ class Stopping:
     def resumed(self, stage: str, kind: type[Any]) -> Any:
         return unpacked(self.saved[1], kind) if self.saved and self.saved[0] == stage else None
 
+    def restart(self) -> None:
+        self.saved = None
+
     def save(self, stage: str, state: object) -> None:
         lengths = {name: len(messages) for name, messages in self.kept.items()}
         self.saved, self.saves = (stage, packed(state), lengths), self.saves + 1

@@ -162,7 +162,7 @@ def test_the_summary_tells_what_the_contract_names(run: Path) -> None:
     assert told["warnings"] == []
     assert {"tritrack", "numpy", "opencv-python-headless", "python"} <= set(told["versions"])
     assert told["settings"]["size"] == "160x120"
-    assert told["settings"]["silhouette"]["empty_frames"] == 8
+    assert told["settings"]["silhouette"]["empty_s"] == 0.5
 
 
 def strict(text: str) -> dict[str, Any]:

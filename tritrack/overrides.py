@@ -10,7 +10,11 @@ from common.method import Mode
 
 
 def overridden(
-    settings: Settings, mode: Mode | None, size: str | None, landmarks: str | None = None
+    settings: Settings,
+    mode: Mode | None,
+    size: str | None,
+    landmarks: str | None = None,
+    offset_s: float | None = None,
 ) -> Settings:
     """The settings with what a command line names instead; None leaves what they say.
 
@@ -23,6 +27,7 @@ def overridden(
             mode=mode or settings.mode,
             size=size or settings.size,
             landmarks=settings.landmarks if landmarks is None else landmarks,
+            offset_s=settings.offset_s if offset_s is None else offset_s,
         )
     except ValueError as error:
         raise SettingsError(str(error)) from error

@@ -1,6 +1,7 @@
 """The viewer process: one camera's frames in, its reports out."""
 
 import logging
+import math
 import threading
 import time
 from pathlib import Path
@@ -110,7 +111,7 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
     heart = Heart(bus, f"viewer {view.number}", pace)
     guides = Guides(bus.subscribe(Guide), view.number)
     unheard, alive = Unheard(), bus.watch_alive()
-    learning = Learning(bus.subscribe(Command), view.number, state.setup.settings)
+    learning = Learning(bus.subscribe(Command), view.number, _empty_frames(state, view))
     haste, before, why = Haste(period_s), -1, ""
     try:
         while not stop.is_set() and not live.over:
@@ -197,7 +198,7 @@ def _prepared(settings: Settings, viewer: ViewerNumber, context: ProcessContext)
     """A viewer that knows its background."""
     with Decoder() as decoder:
         clip = open_clip(settings, decoder, (viewer,))
-        view = clip.views[0]
+        view = _beside_the_other(clip.views[0], settings, decoder)
         opening = opening_of_run(view, settings.silhouette, decoder, context.kept)
     warnings = (*clip.warnings, *([opening.odd] if opening.odd else []))
     for warning in warnings:
@@ -207,6 +208,21 @@ def _prepared(settings: Settings, viewer: ViewerNumber, context: ProcessContext)
     setup = track.Setup(viewer, camera, settings, METHODS[settings.mode], alone)
     state = track.init(setup, opening.background, somebody=opening.somebody)
     return Prepared(view, state, warnings, context.kept)
+
+
+def _empty_frames(state: track.State, view: View) -> int:
+    """How many frames that are looked at make a background."""
+    every, empty_s = state.setup.settings.every, state.setup.settings.silhouette.empty_s
+    return math.ceil(view.frames_in(empty_s) / every)
+
+
+def _beside_the_other(view: View, settings: Settings, decoder: Decoder) -> View:
+    """The view at the rate of both, where the other's video is on this host too."""
+    named = footage_of(settings)
+    here = [isinstance(each.source, str) and Path(each.source).is_file() for each in named]
+    if len(named) < 2 or not all(here):
+        return view
+    return next(each for each in open_clip(settings, decoder).views if each.number == view.number)
 
 
 def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | None:

@@ -61,10 +61,12 @@ def recorded(
         DecoderDied: When the decoder broke; the frames before that are good.
     """
     large = source.large if source else None
-    wanted = Wanted(every, start, large, view.quarters)
+    wanted = Wanted(view.every(every), start, large, view.quarters)
     for decoded in decoder.frames(view.source, view.size, wanted):
+        if not view.is_looked_at(decoded.index):
+            continue
         moment_s = view.captured_s(decoded.index)
-        next_s = view.captured_s(decoded.index + every)
+        next_s = view.next_s(decoded.index, every)
         people = source.people(decoded, PATIENCE_S) if source else ()
         yield CapturedFrame(
             decoded.index, moment_s, moment_s, decoded.picture, next_s, people, view.upright
@@ -169,10 +171,10 @@ class Live:
     def _run(self) -> None:
         """Hand on each frame at its moment; in a thread of its own."""
         view, large = self._view, self._source.large if self._source else None
-        wanted = Wanted(self._every, large=large, quarters=view.quarters)
+        wanted = Wanted(view.every(self._every), large=large, quarters=view.quarters)
         frames = self._decoder.frames(view.source, view.size, wanted)
         try:
-            for decoded in frames:
+            for decoded in (each for each in frames if view.is_looked_at(each.index)):
                 frame = self._timed(decoded)
                 due_s = frame.clock_s - self._room.offset_s
                 if not wait_until(due_s, self._stop, self._clock):
@@ -200,9 +202,10 @@ class Live:
         if isinstance(self._view.source, int):
             now_s = decoded.grabbed_s + self._room.offset_s
             index = self._counted_from(now_s) + decoded.index
-            return CapturedFrame(index, now_s, now_s, decoded.picture, upright=self._view.upright)
+            captured_s, upright = now_s - self._view.late_s, self._view.upright
+            return CapturedFrame(index, captured_s, now_s, decoded.picture, upright=upright)
         captured_s = self._view.captured_s(decoded.index)
-        next_s = self._view.captured_s(decoded.index + self._every)
+        next_s = self._view.next_s(decoded.index, self._every)
         clock_s = self._room.start_s + captured_s
         return CapturedFrame(
             decoded.index, captured_s, clock_s, decoded.picture, next_s, upright=self._view.upright

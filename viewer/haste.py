@@ -8,9 +8,9 @@ from viewer.capture import CapturedFrame
 
 LATE: Final = 0.15
 """Shares of a frame's period that a viewer may be late without being in a hurry."""
-LASTS: Final = 5
-"""For how many frames it is then in a hurry, a third of a second at 15 Hz; so many looks in a row
-are left out at most."""
+LASTS_S: Final = 1.0 / 3.0
+"""For how long it is then in a hurry, five frames of 15 a second; so many looks in a row are left
+out at most."""
 TOLD: Final = 0.02
 """What share of a run's frames may be hurried without a word."""
 
@@ -27,12 +27,13 @@ class Haste:
         self.frames = 0
         """How many were in a hurry."""
         self._period_s = period_s
+        self._lasts = max(1, round(LASTS_S / period_s))
         self._left = self._in_a_row = 0
 
     def of_frame(self, frame: CapturedFrame, late_s: float) -> CapturedFrame:
         """A frame that was due so long ago, as one in a hurry where there is need."""
-        self._left = LASTS if late_s > LATE * self._period_s else max(self._left - 1, 0)
-        if not self._left or self._in_a_row >= LASTS:
+        self._left = self._lasts if late_s > LATE * self._period_s else max(self._left - 1, 0)
+        if not self._left or self._in_a_row >= self._lasts:
             self._in_a_row = 0
             return frame
         self._in_a_row += 1

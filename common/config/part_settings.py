@@ -11,6 +11,8 @@ from common.endpoint import is_endpoint, is_exposed, is_host
 MOST_SESSION: Final = 64
 """Letters of a session's word, which goes with every message."""
 
+PAPER_HZ: Final = 15.0
+"""Frames a second that settings in frames spoke of (P1)."""
 AUTO: Final = "auto"
 """An endpoint that is left open."""
 
@@ -36,15 +38,21 @@ class CameraSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class SilhouetteSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How a person is told from the room (P3)."""
 
-    empty_frames: int = 8
-    """How many opening frames show the empty room in a clip; if somebody stands there already,
-    the background is estimated from the whole clip instead."""
+    empty_s: float = 0.5
+    """For how long a clip shows the empty room at first; if somebody stands there already, the
+    background is estimated from the whole clip instead."""
+    empty_frames: int = 0
+    """What settings said before there was `empty_s`: so many frames, of 15 a second."""
     min_height_share: float = 0.15
     """A region lower than this share of the picture is nobody."""
 
     def __post_init__(self) -> None:
         """Refuse what no run could mean."""
-        within("empty_frames", self.empty_frames, 1, 1000)
+        within("empty_frames", self.empty_frames, 0, 1000)
+        if self.empty_frames:
+            msgspec.structs.force_setattr(self, "empty_s", self.empty_frames / PAPER_HZ)
+            msgspec.structs.force_setattr(self, "empty_frames", 0)
+        within("empty_s", self.empty_s, 0.01, 100.0)
         within("min_height_share", self.min_height_share, 0.01, 1.0)
 
 
@@ -85,7 +93,8 @@ class RecognizerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True
     model: str = ""
     """A file that `tritrack train` wrote; the one in the package when empty."""
     window_frames: int = 40
-    """The stretch of motion that is judged at each frame (section 5: about 40)."""
+    """The stretch of motion that is judged at each frame (section 5: about 40), of 15 a second,
+    which is the recogniser's own rate whatever the camera's is."""
 
     def __post_init__(self) -> None:
         """Refuse what no run could mean."""

@@ -20,6 +20,7 @@ from common.method import Mode
 
 LANDMARK_SOURCES: Final = ("own", "none", "mediapipe")
 """What `landmarks` may say instead of a path."""
+MOST_OFFSET_S: Final = 3600.0
 NETWORK: Final = ".onnx"
 """What the name of a network of ours ends in."""
 
@@ -50,6 +51,9 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     fps: float = 0.0
     """Rate at which recorded clips are taken to run, and played; 0: what they say themselves. Of
     cameras on another host than the integrator's: theirs."""
+    offset_s: float | None = None
+    """How late camera 2 is, seconds: what camera 1 shows at t, camera 2 shows at t + offset_s of
+    its own times. Below 0 where it was started later. None: who moves in a recorded clip tells."""
     metrics: str = ""
     """HOST:PORT at which a live run answers /metrics (Prometheus) and /healthz; nowhere when
     empty."""
@@ -80,5 +84,6 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             )
         within("every", self.every, 1, 1000)
         within("fps", self.fps, 0.0, 1000.0)
+        within("offset_s", self.offset_s or 0.0, -MOST_OFFSET_S, MOST_OFFSET_S)
         if self.metrics:
             address_of(self.metrics)

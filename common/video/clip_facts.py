@@ -1,7 +1,8 @@
 """What a run knows of its clip."""
 
+from bisect import bisect_right
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, Final
 
 import msgspec
 
@@ -10,6 +11,9 @@ from common.bus.messages import ViewerNumber
 from common.rig.camera import Rig
 from common.rig.upright import Upright, swapped
 from common.video.decoding import Ending, Source
+
+TOUCH_S: Final = 1e-6
+"""By which times that are written as fractions of a second may be off."""
 
 
 class Act(msgspec.Struct, frozen=True):
@@ -53,6 +57,10 @@ class View(msgspec.Struct, frozen=True):
     """A picture or video of the empty room; "" where there is none."""
     upright: Upright | None = None
     """How the picture that is worked on comes from the file's; None: it is that, made smaller."""
+    picked: tuple[int, ...] = ()
+    """Those of its frames that are looked at, where the other view is slower; (): all."""
+    late_s: float = 0.0
+    """By how much its own times are late: they are set back by it."""
 
     @property
     def quarters(self) -> int:
@@ -79,6 +87,35 @@ class View(msgspec.Struct, frozen=True):
 
         Frames beyond the end of `capture_s` follow its last at the frame rate.
         """
+        return self._own_s(index) - self.late_s
+
+    def frames_in(self, lasts_s: float) -> int:
+        """How many frames are taken from the first on before so long is over: one, at least."""
+        until_s, count = self.captured_s(0) + lasts_s - TOUCH_S, 1
+        while self.captured_s(count) < until_s:
+            count += 1
+        return count
+
+    def every(self, every: int) -> int:
+        """Every how manieth frame is to be decoded, where every n-th of a clip is looked at."""
+        return 1 if self.picked else every
+
+    def next_s(self, index: int, every: int) -> float:
+        """When the frame is taken that is looked at after one, at the earliest."""
+        if not self.picked:
+            return self.captured_s(index + every)
+        place = bisect_right(self.picked, index)
+        return self.captured_s(self.picked[place] if place < len(self.picked) else self.frames)
+
+    def is_looked_at(self, index: int) -> bool:
+        """Whether a frame is, of those that are decoded."""
+        if not self.picked:
+            return True
+        place = bisect_right(self.picked, index)
+        return place > 0 and self.picked[place - 1] == index
+
+    def _own_s(self, index: int) -> float:
+        """The same by its own times."""
         beyond = index - len(self.capture_s) + 1
         if beyond <= 0:
             return self.capture_s[index]
@@ -128,6 +165,13 @@ def unread_facts(endings: Iterable[tuple[View, Ending]]) -> dict[str, Any]:
         if unread(view, ending)
     }
     return {"unread": lost} if lost else {}
+
+
+def set_back(clip: Clip, late_s: float) -> Clip:
+    """The clip with the times of its second view set back by so much more."""
+    first, second = clip.views
+    second = msgspec.structs.replace(second, late_s=second.late_s + late_s)
+    return msgspec.structs.replace(clip, views=(first, second))
 
 
 def both_cameras(clip: Clip) -> Rig | None:

@@ -20,11 +20,10 @@ from common.video.clip_facts import Clip, Meta, View
 from common.video.clip_sources import NOTHING, ClipError, Footage, companions_folder, footage_of
 from common.video.decoding import Decoder, DecoderDied, Source, Undecodable, VideoInfo
 from common.video.frame_times import timed
+from common.video.shared_rate import at_one_rate
 from common.video.upright_views import filed_rig, upright_views
 from common.video.view_pair import refuse_one_of_two, refuse_same_source
 
-SAME_RATE: Final = 0.01
-"""Frame rates that differ by less drift apart by less than a frame in a clip of 100."""
 SAME_ASPECT: Final = 0.02
 """Pictures whose sides have ratios that differ by less show the same, at two sizes."""
 AVI_HEAD: Final = b"RIFF"
@@ -60,9 +59,9 @@ def open_clip(
     meta = _meta(folder)
     with ExitStack() as doors:
         reader = decoder or doors.enter_context(Decoder())
-        views = tuple(_view(each, settings, meta, reader) for each in named)
+        each_view = tuple(_view(each, settings, meta, reader) for each in named)
     refuse_same_source(named)
-    _refuse_rates_that_differ(views)
+    views = at_one_rate(each_view, settings.every)
     rig = _rig(settings, folder, named, views)
     if rig is not None:
         rig, views = upright_views(rig, views)
@@ -145,6 +144,7 @@ def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> V
         frames=info.frames if of_a_file else 0,
         capture_s=_told_s(meta, named) or (() if told_hz else info.shown_s),
         background=named.settings.background,
+        late_s=(settings.offset_s or 0.0) if named.number == 2 else 0.0,
     )
 
 
@@ -209,16 +209,6 @@ def _refuse_a_lost_head(path: Path) -> None:
             raise ClipError(f"{path} is no AVI from its first byte on: copy or record it again")
 
 
-def _refuse_rates_that_differ(views: tuple[View, ...]) -> None:
-    files = [view for view in views if isinstance(view.source, str) and not view.capture_s]
-    for first, second in pairwise(files):
-        if abs(first.fps / second.fps - 1) > SAME_RATE:
-            raise ClipError(
-                f"{first.source} has {first.fps:g} frames a second, {second.source} "
-                f"{second.fps:g}: set fps or capture_s in a meta.json beside them"
-            )
-
-
 def _rig(
     settings: Settings, folder: Path, named: list[Footage], views: tuple[View, ...]
 ) -> Rig | None:
@@ -276,6 +266,11 @@ def _oddities(views: tuple[View, ...], meta: Meta, rig: Rig | None) -> Iterator[
                 f"meta.json has {len(told_s)} capture times for camera {view.number}, "
                 f"{view.source} has {view.frames} frames"
             )
+    for view in (view for view in views if view.picked):
+        yield (
+            f"the views differ in rate: of the {view.frames} frames of {view.source} those "
+            f"{len(view.picked)} are looked at that meet the other's, {view.fps:g} a second"
+        )
     for first, second in pairwise(views):
         if first.source_size != second.source_size:
             sizes = "{}x{} and {}x{}".format(*first.source_size, *second.source_size)

@@ -7,8 +7,8 @@ from integrator.live_rig.rig_job import Stand, packed
 from integrator.pairing import Pair
 from integrator.selfcalibration.joint_tracks import LEAST_SURE, row_of
 
-MOST: Final = 120
-"""Frames that are kept: eight seconds of 15."""
+KEPT_S: Final = 8.0
+"""So long is kept what was seen."""
 NOTICED_S: Final = 1.0
 """So long before a move is told the camera may have been moved already."""
 
@@ -29,7 +29,7 @@ def step(state: State, pair: Pair) -> State:
     if min(one[2].mean(), other[2].mean()) < LEAST_SURE:
         return state
     row = (first.captured_s, packed(one), packed(other))
-    return State((*state.rows, row)[-MOST:])
+    return State((*(kept for kept in state.rows if kept[0] > row[0] - KEPT_S), row))
 
 
 def stand_before(state: State, rig: Rig, now_s: float) -> Stand:

@@ -15,6 +15,7 @@ from integrator.rig_gate.rig_fault import exchanged_rig
 from integrator.rig_gate.rig_trust import case_of, soles_m
 from integrator.selfcalibration import person_prior as prior
 from integrator.selfcalibration.joint_tracks import Sighting
+from integrator.selfcalibration.lateness import Clock
 from integrator.selfcalibration.rig_evidence import Evidence, Known
 from integrator.selfcalibration.rig_fit import Fit, fitted, sides_of
 from integrator.selfcalibration.rig_guess import BODY, LATE, PLACE, Pinhole, pinholes
@@ -87,7 +88,7 @@ def placed(
         other = None if stood is None else Stood(exchanged_rig(stood.rig), _other(stood.sighting))
         found = placed(exchanged_rig(rig), _other(sighting), (2,), -late_s, other)
         return None if found is None else found._replace(rig=exchanged_rig(found.rig))
-    case = case_of(rig, sighting)
+    case = case_of(rig, sighting, Clock(late_s))
     if case is None:
         return None
     free = np.zeros(len(case.guess), np.bool_)
@@ -117,7 +118,7 @@ def _other(sighting: Sighting) -> Sighting:
 
 def _person(stood: Stood, late_s: float) -> Person | None:
     """The person by the rig before, as the landmarks see them."""
-    case = case_of(stood.rig, stood.sighting)
+    case = case_of(stood.rig, stood.sighting, Clock(late_s))
     if case is None:
         return None
     free = np.zeros(len(case.guess), np.bool_)

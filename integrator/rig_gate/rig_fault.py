@@ -10,6 +10,7 @@ from common.body.body import Vector
 from common.rig.camera import Camera, Rig, as_matrix
 from integrator.rig_gate.rig_trust import Case, Trust, case_of, trust_of, with_lateness
 from integrator.selfcalibration.joint_tracks import Sighting, at_times
+from integrator.selfcalibration.lateness import Clock, clock_of
 from integrator.selfcalibration.rig_fit import fitted
 from integrator.selfcalibration.rig_guess import BODY, FOCALS, LATE, PLACE
 from integrator.selfcalibration.rig_residuals import FEWEST_FACINGS, SURE_FACING
@@ -37,7 +38,9 @@ class _Mended(NamedTuple):
     """Of the guess."""
 
 
-def advice_on(rig: Rig, sighting: Sighting, period_s: float, trust: Trust) -> str:
+def advice_on(
+    rig: Rig, sighting: Sighting, period_s: float, trust: Trust, clock: Clock | None = None
+) -> str:
     """The likeliest cause in a line, with its size; "" of a rig that is believable."""
     if trust.believed:
         return ""
@@ -46,28 +49,32 @@ def advice_on(rig: Rig, sighting: Sighting, period_s: float, trust: Trust) -> st
             "both views show the person from one side, as two videos of one camera do: name the "
             f"videos of two cameras; else {AGAIN}"
         )
+    clock = clock or clock_of(sighting)
     if "facing" in trust.odd:
-        other = trust_of(exchanged_rig(rig), sighting, period_s)
+        other = trust_of(exchanged_rig(rig), sighting, period_s, clock)
         if other is not None and "facing" not in other.odd:
             return f"the cameras are exchanged: change their order; else {AGAIN}"
+    if trust.odd == ("late",) and clock.rivals_s:
+        several = ", ".join(f"{late:+.2f}" for late in sorted((clock.late_s, *clock.rivals_s)))
+        return f"the motion does not tell which of {several} s: say it by --offset SECONDS"
     if trust.odd == ("late",):
         return (
-            f"view 2 is {trust.late_frames:+.1f} frames late: set capture_s in a meta.json beside "
-            "the clip, or start both cameras by one signal"
+            f"view 2 is {trust.late_frames:+.1f} frames late: say so "
+            f"(--offset {trust.late_frames * period_s:.2f}), or start both cameras by one signal"
         )
     if "motion" in trust.odd and not {"apart", "stature"} & set(trust.odd):
         return (
             "the views do not show one motion: see that both are of one take, and that their "
             f"clocks are less than seconds apart; else {AGAIN}"
         )
-    size = _size(rig, sighting, period_s)
+    size = _size(rig, sighting, period_s, clock)
     if size:
         return (
             f"the calibration is for pictures {size:.3g} times as large: correct its width and "
             f"height; else {AGAIN}"
         )
-    case = case_of(rig, sighting)
-    return f"{_told(_mended(case, sighting))}: {AGAIN}" if case else AGAIN
+    case = case_of(rig, sighting, clock)
+    return f"{_told(_mended(case))}: {AGAIN}" if case else AGAIN
 
 
 def _is_one_side(sighting: Sighting) -> bool:
@@ -85,12 +92,12 @@ def exchanged_rig(rig: Rig) -> Rig:
     return msgspec.structs.replace(rig, cameras=(second, first))
 
 
-def _size(rig: Rig, sighting: Sighting, period_s: float) -> float:
+def _size(rig: Rig, sighting: Sighting, period_s: float, clock: Clock) -> float:
     """How much larger pictures are of which the calibration would be believable; 0: none."""
     for size in SIZES:
         cameras = tuple(_scaled(camera, 1 / size) for camera in rig.cameras)
         smaller = msgspec.structs.replace(rig, cameras=cameras)
-        trust = trust_of(smaller, sighting, period_s)
+        trust = trust_of(smaller, sighting, period_s, clock)
         if trust is not None and not {"apart", "floor", "stature"} & set(trust.odd):
             return size
     return 0.0
@@ -101,9 +108,9 @@ def _scaled(camera: Camera, scale: float) -> Camera:
     return msgspec.structs.replace(camera, K=as_matrix(K))
 
 
-def _mended(case: Case, sighting: Sighting) -> _Mended:
+def _mended(case: Case) -> _Mended:
     """The single fault whose mending explains most of what is seen."""
-    start = with_lateness(case, sighting).guess
+    start = with_lateness(case).guess
     found = []
     for name, freed in FREED.items():
         free = np.zeros(len(start), np.bool_)

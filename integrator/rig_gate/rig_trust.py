@@ -12,7 +12,7 @@ from integrator.rig_gate.known_rig import as_ideal, guess_of
 from integrator.rig_gate.rig_agreement import SURE_JOINT, motion_m
 from integrator.selfcalibration import person_prior as prior
 from integrator.selfcalibration.joint_tracks import Sighting
-from integrator.selfcalibration.lateness import likely_lateness_s
+from integrator.selfcalibration.lateness import Clock, clock_of
 from integrator.selfcalibration.rig_evidence import Evidence, Known, gathered
 from integrator.selfcalibration.rig_fit import Fit, fitted, sides_of
 from integrator.selfcalibration.rig_guess import BODY, LATE, RIG
@@ -21,7 +21,7 @@ from integrator.selfcalibration.rig_residuals import (
     explained,
     facing_off_deg,
 )
-from integrator.selfcalibration.rig_starts import known_of
+from integrator.selfcalibration.rig_starts import known_of, with_clocks
 
 STEADY: Final = [n for n, name in enumerate(JOINT_NAMES) if not name.endswith(("elbow", "wrist"))]
 SURE: Final = 0.6
@@ -71,13 +71,20 @@ class Case(NamedTuple):
 
     guess: Vector
     evidence: Evidence
+    clock: Clock
 
 
-def case_of(rig: Rig, sighting: Sighting) -> Case | None:
+def case_of(rig: Rig, sighting: Sighting, clock: Clock | None = None) -> Case | None:
     """A rig and the person before it, whose stature is as the rig has it; None where both views
-    see too little of anybody."""
-    ideal = as_ideal(sighting, rig)
-    known = _held(guess_of(rig), known_of(rig.width, 1.75, 1))
+    see too little of anybody.
+
+    Args:
+        rig: Of both cameras.
+        sighting: What both views show.
+        clock: Of view 2, where it is known.
+    """
+    ideal, clock = as_ideal(sighting, rig), clock or clock_of(sighting)
+    known = with_clocks(_held(guess_of(rig), known_of(rig.width, 1.75, 1)), (clock,))
     evidence = gathered((ideal,), known).thinned(ENOUGH)
     clip = evidence.clips[0]
     if len(clip.first.times_s) < FEWEST or not all(clip.units_px):
@@ -89,7 +96,7 @@ def case_of(rig: Rig, sighting: Sighting) -> Case | None:
         mean = known.mean.copy()
         mean[BODY] = guess[BODY]
         evidence = evidence._replace(known=known._replace(mean=mean, stature_m=stature_m))
-    return Case(guess, evidence)
+    return Case(guess, evidence, clock)
 
 
 def _held(rig: Vector, known: Known) -> Known:
@@ -114,24 +121,34 @@ def _stature_m(one: Explained) -> float:
     return max(total / prior.CROWN_SHARE, 0.05)
 
 
-def with_lateness(case: Case, sighting: Sighting) -> Fit:
-    """The rig with the lateness of view 2 that explains most; all else is kept."""
+def with_lateness(case: Case) -> Fit:
+    """The rig with the lateness of view 2 that explains most, near its clock where that is found;
+    all else is kept."""
     free = np.zeros(len(case.guess), np.bool_)
     free[LATE] = True
     fits = []
-    for late_s in {0.0, likely_lateness_s(sighting.first, sighting.second)}:
+    for late_s in {0.0, case.clock.late_s} if case.clock.rivals_s else {case.clock.late_s}:
         start = case.guess.copy()
         start[LATE] = late_s
         fits.append(fitted(start, case.evidence, free, 2, 8))
     return min(fits, key=lambda fit: fit.cost)
 
 
-def trust_of(rig: Rig, sighting: Sighting, period_s: float) -> Trust | None:
-    """Whether a rig and its clocks are believable; None where too little is seen to say."""
-    case = case_of(rig, sighting)
+def trust_of(
+    rig: Rig, sighting: Sighting, period_s: float, clock: Clock | None = None
+) -> Trust | None:
+    """Whether a rig and its clocks are believable; None where too little is seen to say.
+
+    Args:
+        rig: Of both cameras.
+        sighting: What both views show.
+        period_s: Between frames.
+        clock: Of view 2, where it is known.
+    """
+    case = case_of(rig, sighting, clock)
     if case is None:
         return None
-    fit = with_lateness(case, sighting)
+    fit = with_lateness(case)
     one = explained(fit.guess, case.evidence, 0, fit.sides[0])
     stature_m = case.evidence.known.stature_m
     apart_m = apart(one, case.evidence)

@@ -88,13 +88,18 @@ def is_upright(seen: Landmarks) -> bool:
     return bool(down >= UPRIGHT * math.hypot(across, down))
 
 
-def useful_times(sighting: Sighting) -> Vector:
-    """(n,) Moments of the first view at which both are sure of somebody, evenly thinned."""
+def useful_times(sighting: Sighting, late_s: float) -> Vector:
+    """(n,) Moments of the first view at which both are sure of somebody, evenly thinned.
+
+    Args:
+        sighting: Both views.
+        late_s: How late view 2 is believed to be.
+    """
     sure = sighting.first.confidence.mean(axis=1) >= LEAST_SURE
     at = sighting.first.times_s
     if not len(at) or len(sighting.second.times_s) < 2:
         return np.empty(0)
-    also = at_times(sighting.second, at).confidence.mean(axis=1) >= LEAST_SURE
+    also = at_times(sighting.second, at + late_s).confidence.mean(axis=1) >= LEAST_SURE
     times = at[sure & also]
     lasts_s = float(np.ptp(times)) if len(times) else 0.0
     most = min(max(MOST_FRAMES, int(ENOUGH_HZ * lasts_s)), LONGEST, len(times))

@@ -11,7 +11,7 @@ from common.rig.rig_file import CalibrationError
 from integrator.selfcalibration import person_prior as prior
 from integrator.selfcalibration.film_worth import measured_worth
 from integrator.selfcalibration.joint_tracks import Sighting
-from integrator.selfcalibration.lateness import likely_lateness_s
+from integrator.selfcalibration.lateness import Clock, clock_of
 from integrator.selfcalibration.rig_certainty import (
     STEP,
     covariance_of,
@@ -23,7 +23,7 @@ from integrator.selfcalibration.rig_fit import Fit, fitted, on_time, sides_of
 from integrator.selfcalibration.rig_guess import FOCALS, LATE, PLACE, RIG, pinholes
 from integrator.selfcalibration.rig_quality import CameraQuality, PersonCalibration, Quality
 from integrator.selfcalibration.rig_residuals import Explained, explained, misfits
-from integrator.selfcalibration.rig_starts import known_of, level_starts
+from integrator.selfcalibration.rig_starts import known_of, level_starts, with_clocks
 from integrator.selfcalibration.world_axes import origin_of, published_rig
 
 FEWEST: Final = 12
@@ -45,7 +45,10 @@ rigs and people 0.89 and more do (seeds from 1000 on), of two films of different
 
 
 def calibrated_by_person(
-    sightings: tuple[Sighting, ...], stature_m: float, fov_deg: float | None = None
+    sightings: tuple[Sighting, ...],
+    stature_m: float,
+    fov_deg: float | None = None,
+    clocks: tuple[Clock, ...] | None = None,
 ) -> PersonCalibration:
     """Find both cameras from clips of one rig and one person.
 
@@ -53,11 +56,15 @@ def calibrated_by_person(
         sightings: What both views saw in each clip.
         stature_m: Of the person: the measure of all lengths.
         fov_deg: How wide the cameras see, where it is known.
+        clocks: Of view 2 in each clip, where that is known.
 
     Raises:
         CalibrationError: When both views see too little of anybody, or what fits no rig.
     """
-    known = known_of(sightings[0].size_px[0], stature_m, len(sightings), fov_deg)
+    clocks = clocks or tuple(clock_of(one) for one in sightings)
+    known = with_clocks(
+        known_of(sightings[0].size_px[0], stature_m, len(sightings), fov_deg), clocks
+    )
     evidence = gathered(sightings, known)
     moments = evidence.moments
     if moments < FEWEST or not all(all(clip.units_px) for clip in evidence.clips):
@@ -65,7 +72,7 @@ def calibrated_by_person(
             f"both cameras see the same person in {moments} moments only: film somebody, whole in "
             f"both pictures, who moves for some seconds"
         )
-    found = best_fit(evidence, sightings)
+    found = best_fit(evidence, clocks)
     seen = _explained(found, evidence)
     if _met_share(seen, evidence) < LEAST_MET:
         raise CalibrationError(
@@ -77,18 +84,18 @@ def calibrated_by_person(
     rig = published_rig(found.guess, evidence.size_px, person_m)
     period_s = float(np.median(np.diff(sightings[0].second.times_s)))
     quality = _quality(found, evidence, rig, person_m, seen, period_s)
-    return PersonCalibration(rig, tuple(found.guess[LATE:].tolist()), quality)
+    return PersonCalibration(rig, tuple(found.guess[LATE:].tolist()), clocks, quality)
 
 
-def best_fit(evidence: Evidence, sightings: tuple[Sighting, ...]) -> Fit:
+def best_fit(evidence: Evidence, clocks: tuple[Clock, ...]) -> Fit:
     """The best of all starts: cameras alone first, then all, then with all moments."""
     few = evidence.thinned(max(FEW, FEW_EACH * len(evidence.clips)))
     every = np.ones(len(evidence.known.mean), np.bool_)
     cameras = every & (np.arange(len(every)) < RIG)
     cameras[FOCALS] = False
-    late_s = np.array([likely_lateness_s(one.first, one.second) for one in sightings])
+    late_s = np.array([clock.late_s for clock in clocks])
     starts = level_starts(evidence, late_s)
-    if late_s.any():
+    if not all(clock.is_found for clock in clocks):
         starts += level_starts(evidence, np.zeros(len(late_s)))
     starts.sort(key=lambda start: float((misfits(start, few, sides_of(start, few)) ** 2).sum()))
     rough = [fitted(start, few, cameras, 1, 8) for start in _of_both_sides(starts)]

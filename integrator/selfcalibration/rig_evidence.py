@@ -15,6 +15,7 @@ from integrator.selfcalibration.joint_tracks import (
     smoothed,
     useful_times,
 )
+from integrator.selfcalibration.rig_guess import LATE
 
 CLOSE: Final = 0.03
 """What a landmark's confidence speaks of: how probably it is less than so many statures off."""
@@ -90,9 +91,9 @@ class Evidence(NamedTuple):
 def gathered(sightings: tuple[Sighting, ...], known: Known) -> Evidence:
     """What both views saw, made ready for the fit."""
     clips = []
-    for one in sightings:
+    for one, late_s in zip(sightings, known.mean[LATE:], strict=True):
         smooth = one._replace(first=smoothed(one.first), second=smoothed(one.second))
-        first = at_times(smooth.first, useful_times(one))
+        first = at_times(smooth.first, useful_times(one, late_s))
         units = (
             height_px(one.first) / prior.CROWN_SHARE,
             height_px(one.second) / prior.CROWN_SHARE,

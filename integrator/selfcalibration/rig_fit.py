@@ -8,7 +8,6 @@ from scipy.optimize import least_squares
 
 from common.body.body import Vector
 from integrator.selfcalibration import person_prior as prior
-from integrator.selfcalibration.lateness import MOST_S
 from integrator.selfcalibration.rig_evidence import Evidence, Sides, own_moments
 from integrator.selfcalibration.rig_guess import LATE
 from integrator.selfcalibration.rig_residuals import UNSEEN, Explained, explained, misfits
@@ -20,6 +19,10 @@ EXCHANGE_COST: Final = 0.5
 NEAR_FRAMES: Final = np.arange(-3, 4) / 4
 """Steps from a clock to better ones, frames. Landmarks err less between frames than at them, so
 what is made small has a hump at each whole frame that a fit does not cross by itself."""
+
+
+ANYWHERE: Final = 10.0
+"""Sigmas from what is believed of a clock at which better ones are looked for."""
 
 
 class Fit(NamedTuple):
@@ -68,12 +71,16 @@ def on_time(guess: Vector, evidence: Evidence) -> Vector:
     found = guess.copy()
     for n, clip in enumerate(evidence.clips):
         period_s = float(np.median(np.diff(clip.second.times_s)))
-        anywhere = np.arange(-MOST_S, MOST_S + period_s, period_s)
-        tried = [*anywhere.tolist(), *(guess[LATE + n] + period_s * NEAR_FRAMES).tolist()]
+        believed_s, sigma_s = evidence.known.mean[LATE + n], evidence.known.sigma[LATE + n]
+        anywhere = np.arange(-ANYWHERE * sigma_s, ANYWHERE * sigma_s + period_s, period_s)
+        tried = [
+            *(believed_s + anywhere).tolist(),
+            *(guess[LATE + n] + period_s * NEAR_FRAMES).tolist(),
+        ]
         costs, share = [], own_moments(clip) / len(clip.first.times_s)
         for late_s in tried:
             found[LATE + n] = late_s
-            believed = 2.0 * np.log1p((late_s / evidence.known.sigma[LATE + n]) ** 2 / 2.0)
+            believed = 2.0 * np.log1p(((late_s - believed_s) / sigma_s) ** 2 / 2.0)
             costs.append(2.0 * share * _apart(found, evidence, n) + believed)
         found[LATE + n] = tried[int(np.argmin(costs))]
     return found

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import msgspec
 
 from common.rig.camera import Rig
+from integrator.selfcalibration.lateness import Clock
 
 
 class CameraQuality(msgspec.Struct, frozen=True):
@@ -43,4 +44,6 @@ class PersonCalibration(NamedTuple):
     rig: Rig
     late_s: tuple[float, ...]
     """How late view 2 is in each clip."""
+    clocks: tuple[Clock, ...]
+    """Whether that is known."""
     quality: Quality

@@ -8,6 +8,7 @@ import numpy as np
 from common.body.body import Vector
 from integrator.selfcalibration import person_prior as prior
 from integrator.selfcalibration.joint_tracks import at_times
+from integrator.selfcalibration.lateness import Clock
 from integrator.selfcalibration.rig_evidence import Evidence, Known
 from integrator.selfcalibration.rig_guess import BODY, LATE, PLACE, rotation
 from integrator.selfcalibration.sight_lines import Numbers
@@ -22,6 +23,8 @@ LEVEL_DEG: Final = {"pitch": 6.0, "roll": 2.5}
 """How far cameras on stands are from level, mostly."""
 HEIGHT_M: Final = (1.2, 0.6)
 LATE_S: Final = 0.1
+FOUND_S: Final = 0.03
+"""How far a view is from on time, mostly, and from a clock that was found."""
 YAWS_DEG: Final = tuple(range(-165, 180, 30))
 MIDDLE_SHARE: Final = 0.65
 """Height of the middle between pelvis and neck, in statures."""
@@ -49,6 +52,15 @@ def known_of(width_px: int, stature_m: float, clips: int, fov_deg: float | None 
     mean[BODY], sigma[BODY] = np.log(prior.SHARES * stature_m), prior.SPREADS
     sigma[LATE:], soft[LATE:] = LATE_S, True
     return Known(mean, sigma, soft, stature_m)
+
+
+def with_clocks(known: Known, clocks: tuple[Clock, ...]) -> Known:
+    """What is believed where the clocks of view 2 are known too."""
+    mean, sigma = known.mean.copy(), known.sigma.copy()
+    for n, clock in enumerate(clocks):
+        if clock.is_found:
+            mean[LATE + n], sigma[LATE + n] = clock.late_s, FOUND_S
+    return known._replace(mean=mean, sigma=sigma)
 
 
 def level_starts(evidence: Evidence, late_s: Vector) -> list[Vector]:

@@ -16,6 +16,7 @@ from tritrack.commands.options import (
     Force,
     Forced,
     LandmarkSource,
+    Offset,
     Out,
     Record,
     Resume,
@@ -49,6 +50,7 @@ def track(
     trust_calibration: Annotated[
         bool, typer.Option("--trust-calibration", help="Go on with a calibration that seems wrong.")
     ] = False,
+    offset: Offset = None,
     record: Record = False,
     resume: Resume = False,
     force: Force = False,
@@ -68,7 +70,8 @@ def track(
     """
     from tritrack.offline.batch import Asked, track_all
 
-    asked = Asked(mode, size, landmarks, VIEWERS[views], trust_calibration, record, resume, force)
+    seen = mode, size, landmarks, VIEWERS[views], trust_calibration
+    asked = Asked(*seen, record, resume, force, offset)
     facts = track_all(clips, out, asked, console)
     tell(facts, json_wanted, line_of_runs(facts["clips"], out))
     refuse_unfollowed(facts["clips"])

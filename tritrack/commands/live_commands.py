@@ -12,7 +12,7 @@ from common.config.part_settings import BusSettings
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
 from tritrack.commands.command_output import JsonWanted, console, tell
-from tritrack.commands.options import Force, LandmarkSource, ModeName, Out, Record, Size
+from tritrack.commands.options import Force, LandmarkSource, ModeName, Offset, Out, Record, Size
 from tritrack.extras import refuse_without
 from tritrack.overrides import overridden
 from tritrack.terminal import counted
@@ -54,6 +54,7 @@ def live(
     mode: ModeName = None,
     size: Size = None,
     landmarks: LandmarkSource = None,
+    offset: Offset = None,
     record: Record = False,
     wait: Wait = True,
     force: Force = False,
@@ -70,7 +71,7 @@ def live(
 
     own = config_file.load(settings_file)
     refuse_no_footage(own, settings_file)
-    given = overridden(own, mode, size, landmarks)
+    given = overridden(own, mode, size, landmarks, offset)
     settings = waiting(given, wait)
     if not force:
         _refuse_other_than_last(out, settings)

@@ -9,6 +9,7 @@ import typer
 
 from common.atomic_file import refuse_special
 from common.config.picture_size import size_of
+from common.config.settings import MOST_OFFSET_S
 
 MODES: Final = "default: most accurate; paper: as published 2004"
 WORKED_ON: Final = "Largest working picture, WIDTHxHEIGHT."
@@ -71,6 +72,7 @@ def measured(unit: str, low: float, high: float, hundredths: bool = False) -> Ch
 
 stature_given = measured("metres", 0.5, 2.6, hundredths=True)
 fov_given = measured("degrees", 10.0, 150.0)
+offset_given = measured("seconds", -MOST_OFFSET_S, MOST_OFFSET_S)
 square_given = measured("mm", 1.0, 1000.0)
 
 
@@ -115,6 +117,14 @@ Resume = Annotated[
 ]
 Force = Annotated[
     bool, typer.Option("--force", help="Write over a run of another clip or command.")
+]
+Offset = Annotated[
+    float | None,
+    typer.Option(
+        help="Seconds by which camera 2 is late: above 0 where it shows later what camera 1 shows; "
+        "below 0 where it was started later.",
+        callback=offset_given,
+    ),
 ]
 Forced = Annotated[bool, typer.Option("--force", help="Replace a file that is there.")]
 LandmarkSource = Annotated[

@@ -60,10 +60,13 @@ def person(
     for path in clips:
         refuse_no_footage(config_file.load(path), path)
     refuse_to_replace(out, force)
-    rig, quality = calibrated_by_clips(clips, Given(stature, fov))
+    rig, quality, clocks = calibrated_by_clips(clips, Given(stature, fov))
     write_rig(out, rig, quality)
     tell_rows(quality.cameras, json_wanted)
-    late = ", ".join(f"{round(frames, 1) + 0.0:+.1f}" for frames in quality.late_frames)
+    late = ", ".join(
+        f"{round(frames, 1) + 0.0:+.1f}" + ("" if clock.is_found else f" ({clock.state})")
+        for frames, clock in zip(quality.late_frames, clocks, strict=True)
+    )
     console.print(
         f"both views agree to {quality.gap_mm:.0f} mm in {counted(quality.moments, 'moment')}; "
         f"view 2 is late by {late} frames",

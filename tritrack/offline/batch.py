@@ -18,12 +18,13 @@ from common.video.decoding import DecoderDied, Undecodable
 from integrator.frame_numbers import frame_times
 from tritrack.offline.lockstep import Decoders, Tracked, measured_before, track_clip
 from tritrack.offline.performance import Watch
+from tritrack.offline.rig_check import clock_word
 from tritrack.overrides import overridden
 from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_files
 from tritrack.store.other_run import OtherRun, RunOf, refuse_other, run_of
 from tritrack.store.recording import Head, recording_to, refuse_without_library
 from tritrack.store.runs import believed, write_run
-from tritrack.terminal import Tell, bar, by_share, complain, warn
+from tritrack.terminal import Tell, bar, by_share, complain, say, warn
 from tritrack.unfinished.resuming import Wanted, done_before, resumable
 from tritrack.unfinished.unfinished_run import CannotResume
 from tritrack.unfinished.work import Course, Kept
@@ -49,6 +50,8 @@ class Asked(NamedTuple):
     """Go on with what was cut short, and leave out what is done."""
     force: bool = False
     """Write over the runs of other clips."""
+    offset_s: float | None = None
+    """How late camera 2 is."""
 
 
 def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) -> dict[str, Any]:
@@ -78,7 +81,7 @@ def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) 
             try:
                 own = config_file.load(path)
                 refuse_no_footage(own, path)
-                settings = overridden(own, given.mode, given.size, given.landmarks)
+                settings = overridden(own, given.mode, given.size, given.landmarks, given.offset_s)
                 if given.trusted:
                     settings = msgspec.structs.replace(settings, trust_calibration=True)
                 told = {"the views": given.views, "what is recorded": given.record}
@@ -108,6 +111,8 @@ def _tracked(
         tracked = track_clip(settings, decoders, given.views, watch=watch, course=course)
         for warning in tracked.facts["warnings"]:
             warn(console, f"{folder.name}: {warning}")
+        if word := clock_word(tracked.facts):
+            say(console, f"{folder.name}: {word}")
         named = {"clip": folder.name, "believed": believed(tracked.bodies)}
         facts = {**tracked.facts, **named, **_run_of(settings).facts, **made_of}
         write_run(folder, tracked.bodies, settings, facts)
@@ -151,11 +156,11 @@ def head_of(
 def _recorder(heard: Kept) -> Watch:
     """Gathers what is said of every instant, in the order in which it is said."""
 
-    def watch(_frames: object, reports: dict[int, Report], body: Body) -> None:
+    def each(_frames: object, reports: dict[int, Report], body: Body) -> None:
         for message in (*reports.values(), body):
             heard.append(message)
 
-    return watch
+    return Watch(each, heard.clear)
 
 
 def _write_recording(

@@ -11,7 +11,7 @@ from common.body.body import Bdp
 from common.bus.messages import Body, ViewerNumber
 from common.config.settings import Settings
 from common.method import METHODS, Method
-from common.video.clip_facts import Clip, both_cameras, shortfall, unread_facts
+from common.video.clip_facts import Clip, both_cameras, set_back, shortfall, unread_facts
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
@@ -19,12 +19,28 @@ from common.video.frame_cache import Reel
 from integrator import diagnostics, merge_state, opening_posture
 from integrator.frame_numbers import frame_times
 from integrator.merge_state import Start
+from integrator.selfcalibration.lateness import Clock
 from tritrack.moved_facts import moved_facts
 from tritrack.offline.film_tracking import Film, Heard, follow_clip, unseen
 from tritrack.offline.frame_pairs import openings
 from tritrack.offline.opening_clip import body_of
-from tritrack.offline.performance import Performance, Prepared, Watch, performed
-from tritrack.offline.rig_check import Witness, doubts, trust_facts
+from tritrack.offline.performance import (
+    STAGE,
+    Going,
+    Performance,
+    Prepared,
+    Watch,
+    performed,
+)
+from tritrack.offline.rig_check import (
+    Witness,
+    clock_facts,
+    clock_seen,
+    doubted,
+    doubts,
+    is_late,
+    trust_facts,
+)
 from tritrack.offline.rig_from_person import Looked, by_person, calibration_facts
 from tritrack.unfinished.work import Course
 from viewer import track
@@ -60,6 +76,25 @@ class Decoders:
         self._doors.close()
 
 
+class _Job(NamedTuple):
+    """What is asked of a clip."""
+
+    settings: Settings
+    method: Method
+    decoders: Decoders
+    sources: Sources
+    watch: Watch | None
+    course: Course
+
+
+class _Followed(NamedTuple):
+    """A clip that was followed."""
+
+    ready: Prepared
+    done: Performance
+    witness: Witness
+
+
 def track_clip(
     settings: Settings,
     decoders: Decoders,
@@ -92,15 +127,48 @@ def track_clip(
     if alone and (method.stick_lifting or (method.proposals and clip.rig is None)):
         return _in_two_passes(clip, settings, method, decoders, course)
     with outside_sources(settings, clip.views) as sources:
-        looked = by_person(clip, settings, method, decoders.of, sources)
-        ready = _prepared(looked, settings, method, decoders, began)
-        witness = Witness()
-        done = performed(ready, sources, witness, watch, course)
-        trust = trust_facts(looked.clip, witness, insisted=settings.trust_calibration)
-        facts = _facts(ready, done, sources) | calibration_facts(looked) | trust
-        facts |= moved_facts(done.bodies)
-        facts["warnings"] += doubts(facts)
-        return Tracked(looked.clip, done.bodies, facts)
+        job = _Job(settings, method, decoders, sources, watch, course)
+        looked = _as_left(by_person(clip, settings, method, decoders.of, sources), course)
+        followed = _followed(looked, job, began)
+        clock = clock_seen(looked.clip, followed.witness)
+        if looked.clock is None and settings.offset_s is None and is_late(looked.clip, clock):
+            looked = looked._replace(clip=set_back(looked.clip, clock.late_s), clock=clock)
+            _begin_anew(job)
+            followed = _followed(looked, job, began)
+            clock = clock_seen(looked.clip, followed.witness)
+        return _told(looked, job, followed, clock)
+
+
+def _as_left(looked: Looked, course: Course) -> Looked:
+    """With the clock by which a run that was cut short was being tracked again."""
+    left = course.work.resumed(STAGE, Going)
+    late_s = left.late_s - looked.clip.views[-1].late_s if left else 0.0
+    if not late_s:
+        return looked
+    return looked._replace(clip=set_back(looked.clip, late_s), clock=Clock(late_s))
+
+
+def _begin_anew(job: _Job) -> None:
+    job.course.work.restart()
+    if job.watch:
+        job.watch.begin()
+
+
+def _followed(looked: Looked, job: _Job, began: float) -> _Followed:
+    """All instants of a clip."""
+    ready, witness = _prepared(looked, job.settings, job.method, job.decoders, began), Witness()
+    done = performed(ready, job.sources, witness, job.watch, job.course)
+    return _Followed(ready, done, witness)
+
+
+def _told(looked: Looked, job: _Job, followed: _Followed, clock: Clock) -> Tracked:
+    """What tracking gave, with what is known of the rig and of the clock as it is set now."""
+    clip, settings, (ready, done, witness) = looked.clip, job.settings, followed
+    trust = trust_facts(clip, witness, clock, insisted=settings.trust_calibration)
+    facts = _facts(ready, done, job.sources) | calibration_facts(looked) | trust
+    facts |= moved_facts(done.bodies) | clock_facts(clip, looked.clock or clock, settings.offset_s)
+    facts["warnings"] += doubts(facts)
+    return Tracked(clip, doubted(done.bodies, clock), facts)
 
 
 def _in_two_passes(

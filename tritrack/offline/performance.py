@@ -28,8 +28,16 @@ TURNS_S: Final = 0.0002
 """How long a thread that has computed waits for its turn to be interpreted: by Python's own 5 ms
 two viewers side by side would be no faster than one after the other."""
 
-Watch = Callable[[dict[ViewerNumber, CapturedFrame], dict[int, Report], Body], object]
+Each = Callable[[dict[ViewerNumber, CapturedFrame], dict[int, Report], Body], object]
 """Looks at the frames of an instant, the reports on them and the body they gave."""
+
+
+class Watch(NamedTuple):
+    """Looks at a clip while it is followed."""
+
+    each: Each
+    begin: Callable[[], object] = lambda: None
+    """Forgets what it saw: the clip is followed from its first instant on again."""
 
 
 class Prepared(NamedTuple):
@@ -58,6 +66,8 @@ class Going(NamedTuple):
     """The next frame of each view that has given one."""
     spent: dict[str, float]
     """Seconds of each stage."""
+    late_s: float = 0.0
+    """By how much the times of view 2 are set back."""
 
 
 class Performance(NamedTuple):
@@ -94,8 +104,9 @@ def performed(
         for frames in instants(clip, ready.reels, sources, going.starts):
             going, reports, body = _stepped(going, frames, calibration, pool)
             bodies.append(body)
-            for each in (witness, watch) if watch else (witness,):
-                each(frames, reports, body)
+            witness(frames, reports, body)
+            if watch:
+                watch.each(frames, reports, body)
             course.tell(share_of(clip, frames))
             if work.due:
                 now_s = before_s + time.perf_counter() - began
@@ -126,6 +137,7 @@ def _begun(ready: Prepared, calibration: LiveCalibration, witness: Witness) -> G
         guide=None,
         starts={},
         spent={"viewers": 0.0, "integrator": 0.0, "following": 0.0},
+        late_s=ready.clip.views[-1].late_s,
     )
 
 

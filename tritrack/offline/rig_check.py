@@ -1,5 +1,6 @@
 """Whether the rig of a run is believable: what both viewers saw is kept and asked at its end."""
 
+from collections.abc import Sequence
 from typing import Any, Final, NamedTuple
 
 import msgspec
@@ -7,8 +8,13 @@ import msgspec
 from common.bus.messages import Body, Report, ViewerNumber
 from common.video.clip_facts import Clip
 from integrator.selfcalibration.joint_tracks import Row, Sighting, row_of, track_of_rows
+from integrator.selfcalibration.lateness import UNSEEN, Clock, clock_of
 from viewer.capture import CapturedFrame
 
+MOST_LATE_FRAMES: Final = 0.75
+"""What is later is tracked again, with its times set back."""
+DOUBTED: Final = 0.05
+"""Share of the confidence that is left to bodies of views that do not belong together in time."""
 MOST_FRAMES: Final = 3_000
 """So much of a run is kept."""
 
@@ -46,12 +52,24 @@ class Witness:
         return Sighting(first, second, clip.views[0].size)
 
 
-def trust_facts(clip: Clip, witness: Witness, *, insisted: bool) -> dict[str, Any]:
+def clock_seen(clip: Clip, witness: Witness) -> Clock:
+    """The clock of view 2, by all that both views saw; not known where there is no second."""
+    return clock_of(witness.sighting(clip)) if len(clip.views) == 2 else UNSEEN
+
+
+def is_late(clip: Clip, clock: Clock) -> bool:
+    """Whether view 2 is found to be later than its clock may be off unnoticed."""
+    period_s = clip.every / clip.views[0].fps
+    return clock.is_found and abs(clock.late_s) > MOST_LATE_FRAMES * period_s
+
+
+def trust_facts(clip: Clip, witness: Witness, clock: Clock, *, insisted: bool) -> dict[str, Any]:
     """For the summary: how far the rig is to be believed, and what to do where it is not.
 
     Args:
         clip: What was tracked.
         witness: What both views saw in it.
+        clock: Of view 2, as the clip has it.
         insisted: The user trusts the calibration: nothing is advised.
     """
     from integrator.rig_gate.rig_fault import advice_on
@@ -61,11 +79,11 @@ def trust_facts(clip: Clip, witness: Witness, *, insisted: bool) -> dict[str, An
     if clip.rig is None or len(clip.views) < 2 or len(sighting.second.times_s) < 2:
         return {}
     period_s = clip.every / clip.views[0].fps
-    trust = trust_of(clip.rig, sighting, period_s)
+    trust = trust_of(clip.rig, sighting, period_s, clock)
     if trust is None:
         return {}
     if not insisted:
-        advice = advice_on(clip.rig, sighting, period_s, trust)
+        advice = advice_on(clip.rig, sighting, period_s, trust, clock)
         trust = msgspec.structs.replace(trust, advice=advice)
     return {"trust": msgspec.to_builtins(trust)}
 
@@ -81,3 +99,53 @@ def doubts(facts: dict[str, Any]) -> list[str]:
         "{motion_mm:.0f} mm, view 2 {late_frames:+.1f} frames late; {advice}"
     )
     return [f"the calibration is not believable: {told.format(**trust)}"]
+
+
+def clock_facts(clip: Clip, clock: Clock, given_s: float | None) -> dict[str, Any]:
+    """For the summary: by how much the times of view 2 were set back, and what else may be.
+
+    Args:
+        clip: As it was tracked.
+        clock: Of view 2, by the times that its files tell and what the user says.
+        given_s: How late the user says that it is.
+    """
+    if len(clip.views) < 2:
+        return {}
+    state = "given" if given_s is not None else clock.state
+    rivals_s = sorted((clock.late_s, *clock.rivals_s)) if clock.rivals_s else []
+    applied_s = round(clip.views[1].late_s, 4)
+    may_be_s = [round(late_s, 2) + 0.0 for late_s in rivals_s] if state == "ambiguous" else []
+    on_time = state != "ambiguous" or clock.may_be_on_time
+    return {
+        "clock": {
+            "state": state,
+            "applied_s": applied_s,
+            "may_be_s": may_be_s,
+            "may_be_on_time": on_time,
+        }
+    }
+
+
+def doubted(bodies: Sequence[Body], clock: Clock) -> Sequence[Body]:
+    """The bodies, hardly believed where view 2 is late and nobody knows by how much."""
+    if clock.may_be_on_time:
+        return bodies
+    return [
+        msgspec.structs.replace(body, confidence=tuple(DOUBTED * each for each in body.confidence))
+        for body in bodies
+    ]
+
+
+def clock_word(facts: dict[str, Any]) -> str:
+    """What to say of the clock of view 2; "" where it is right, or nothing tells."""
+    told = facts.get("clock")
+    if not told or (told["state"] != "ambiguous" and not told["applied_s"]):
+        return ""
+    if told["state"] != "ambiguous":
+        return f"view 2 is {told['applied_s']:+.2f} s late: its times were set back by that"
+    several = ", ".join(f"{late_s:+.2f}" for late_s in told["may_be_s"])
+    left = "" if told["may_be_on_time"] else ", and joints are hardly believed"
+    return (
+        f"how late view 2 is, the motion does not tell, as a gait repeats itself ({several} s): "
+        f"its times were left as they are{left}; say it by --offset SECONDS"
+    )

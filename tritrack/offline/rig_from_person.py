@@ -10,15 +10,17 @@ from common.config.settings import Settings
 from common.method import Method
 from common.rig.absurd_rig import nearly_one_view
 from common.rig.rig_file import CalibrationError
-from common.video.clip_facts import Clip, View
+from common.video.clip_facts import Clip, set_back
 from common.video.frame_cache import Reader
 from integrator.selfcalibration.joint_tracks import Sighting, track_of
-from integrator.selfcalibration.lateness import LEAST_LATE
+from integrator.selfcalibration.lateness import LEAST_LATE, Clock, clock_of
 from integrator.selfcalibration.rig_quality import PersonCalibration
 from tritrack.offline.frame_pairs import instants, openings
 from viewer import track
 from viewer.landmarks.landmark_sources import Sources
 
+ON_TIME: Final = Clock(0.0)
+"""Where the user says how late view 2 is, it is on time by that."""
 MOST_FRAMES: Final = 3_000
 """So much of a clip is looked at."""
 
@@ -30,6 +32,8 @@ class Looked(NamedTuple):
     """With the rig, where one was found, and with the clock of view 2 set right."""
     found: PersonCalibration | None = None
     warning: str = ""
+    clock: Clock | None = None
+    """Of view 2, by its own times; None where it was not asked for."""
 
 
 def sighting_of(
@@ -86,14 +90,27 @@ def by_person(
     if not (method.landmarks and method.proposals):
         return Looked(clip)
     sighting = sighting_of(clip, settings, method, readers, sources)
+    clock = clock_of(sighting) if settings.offset_s is None else ON_TIME
     try:
-        found = calibrated_by_person((sighting,), settings.body.stature_m)
+        found = calibrated_by_person((sighting,), settings.body.stature_m, clocks=(clock,))
     except CalibrationError as error:
-        return Looked(clip, warning=f"not calibrated by the person: {error}")
-    first, second = clip.views
-    views = (first, _on_time(second, found.late_s[0]))
-    calibrated = msgspec.structs.replace(clip, rig=found.rig, views=views)
-    return Looked(calibrated, found, nearly_one_view(found.rig))
+        told = f"not calibrated by the person: {error}"
+        return Looked(on_time(clip, clock, clock.late_s), None, told, clock)
+    clip = on_time(msgspec.structs.replace(clip, rig=found.rig), clock, found.late_s[0])
+    return Looked(clip, found, nearly_one_view(found.rig), clock)
+
+
+def on_time(clip: Clip, clock: Clock, late_s: float) -> Clip:
+    """The clip with the times of view 2 set back by its lateness, where that is found.
+
+    Args:
+        clip: Of two views.
+        clock: Of view 2.
+        late_s: The same, by the rig that is used.
+    """
+    period_s = clip.every / clip.views[1].fps
+    is_late = clock.is_found and abs(late_s) >= LEAST_LATE * period_s
+    return set_back(clip, late_s) if is_late else clip
 
 
 def calibration_facts(looked: Looked) -> dict[str, Any]:
@@ -102,11 +119,3 @@ def calibration_facts(looked: Looked) -> dict[str, Any]:
         return {}
     rig, quality = (msgspec.to_builtins(part) for part in (looked.found.rig, looked.found.quality))
     return {"calibration": {**rig, "quality": quality}}
-
-
-def _on_time(view: View, late_s: float) -> View:
-    """The view with its clock set by its lateness."""
-    if abs(late_s) < LEAST_LATE / view.fps:
-        return view
-    times = tuple(view.captured_s(n) - late_s for n in range(view.frames))
-    return msgspec.structs.replace(view, capture_s=times)

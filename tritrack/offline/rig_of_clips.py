@@ -13,9 +13,10 @@ from common.rig.rig_file import CalibrationError, fitted
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reader, Reel
+from integrator.selfcalibration.lateness import Clock, clock_of
 from integrator.selfcalibration.person_calibration import calibrated_by_person
 from integrator.selfcalibration.rig_quality import Quality
-from tritrack.offline.rig_from_person import sighting_of
+from tritrack.offline.rig_from_person import ON_TIME, sighting_of
 from viewer.landmarks.landmark_sources import outside_sources
 
 
@@ -27,15 +28,25 @@ class Given(NamedTuple):
     """How wide the cameras see."""
 
 
-def calibrated_by_clips(paths: Sequence[Path], given: Given) -> tuple[Rig, Quality]:
-    """One rig by all the clips of it, at the size of their pictures.
+class FoundByClips(NamedTuple):
+    """A rig, and what else the clips tell."""
+
+    rig: Rig
+    """At the size of their pictures."""
+    quality: Quality
+    clocks: tuple[Clock, ...]
+    """Of view 2 in each clip."""
+
+
+def calibrated_by_clips(paths: Sequence[Path], given: Given) -> FoundByClips:
+    """One rig by all the clips of it.
 
     Raises:
         CalibrationError: When too little of anybody is seen, or the clips are of two rigs.
         ClipError, SettingsError, DecoderDied, Undecodable: When a clip cannot be used.
     """
     method = METHODS["default"]
-    sightings, sizes = [], set()
+    sightings, clocks, sizes = [], [], set()
     with ExitStack() as doors:
         decoders: list[Reader] = [doors.enter_context(Decoder()) for _ in range(2)]
         for path in paths:
@@ -47,8 +58,11 @@ def calibrated_by_clips(paths: Sequence[Path], given: Given) -> tuple[Rig, Quali
             readers = {view.number: Reel(decoders[view.number - 1]) for view in clip.views}
             with outside_sources(settings, clip.views) as sources:
                 sightings.append(sighting_of(clip, settings, method, readers, sources))
+            is_told = settings.offset_s is not None
+            clocks.append(ON_TIME if is_told else clock_of(sightings[-1]))
     if len(sizes) > 1:
         told = ", ".join(f"{width}x{height}" for width, height in sorted(sizes))
         raise CalibrationError(f"pictures of several sizes ({told}) are not of one rig")
-    found = calibrated_by_person(tuple(sightings), given.stature_m, given.fov_deg)
-    return fitted(found.rig, sizes.pop(), "the calibration"), found.quality
+    found = calibrated_by_person(tuple(sightings), given.stature_m, given.fov_deg, tuple(clocks))
+    rig = fitted(found.rig, sizes.pop(), "the calibration")
+    return FoundByClips(rig, found.quality, found.clocks)

@@ -15,6 +15,7 @@ from common.rig.camera import Rig
 from common.video.clip_facts import both_cameras
 from recognizer.__main__ import MOVING
 from tritrack.offline.lockstep import Decoders, track_clip
+from tritrack.offline.performance import Watch
 from tritrack.overrides import overridden
 from viewer.capture import CapturedFrame
 from viewer.jpeg import jpeg_of
@@ -43,7 +44,9 @@ def contact_strip(path: Path, mode: Mode | None, decoders: Decoders) -> bytes:
     """
     instants: list[Instant] = []
     settings = overridden(config_file.load(path), mode, None)
-    tracked = track_clip(settings, decoders, watch=lambda *now: instants.append(now))
+    tracked = track_clip(
+        settings, decoders, watch=Watch(lambda *now: instants.append(now), instants.clear)
+    )
     moving = [now for now in instants if now[2].status in MOVING] or instants
     moving = moving[-settings.recognizer.window_frames :]
     chosen = [moving[i] for i in np.linspace(0, len(moving) - 1, SHOWN).round().astype(int)]

@@ -26,6 +26,8 @@ from viewer.background.image_stack import Floats
 from viewer.silhouette import silhouette
 from viewer.silhouette.pixel_classifier import HIDDEN, PixelClassifier, save
 
+EMPTY_FRAMES: Final = 8
+"""So many of a made-up clip show the room at first."""
 PERFORMANCES: Final = 70
 """People in rooms that are learnt from."""
 SIZE: Final = (320, 240)
@@ -167,7 +169,7 @@ def _small(film: LabelledFilm, share: int) -> LabelledFilm:
 def _doubtful_pixels(film: LabelledFilm, rng: np.random.Generator) -> Iterator[Examples]:
     """What the viewer would look at again in some frames, and what is there."""
     settings = SilhouetteSettings()
-    state = silhouette.init(learn(film.frames[: settings.empty_frames]), settings, DEFAULT)
+    state = silhouette.init(learn(film.frames[:EMPTY_FRAMES]), settings, DEFAULT)
     for count, (frame, truth) in enumerate(zip(film.frames, film.masks, strict=True)):
         if not truth.any():
             continue

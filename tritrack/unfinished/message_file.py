@@ -72,6 +72,7 @@ class MessageFile(Sequence[Kind], Generic[Kind]):
             RunError: When it cannot be written; also when messages are appended or read.
         """
         self._path = path
+        self._first = framed(HEAD, head) if head else b""
         self._starts = array("Q")
         if place is not None:
             self._size = self._scanned(place)
@@ -80,11 +81,9 @@ class MessageFile(Sequence[Kind], Generic[Kind]):
                 self._file.truncate(self._size)
                 self._file.seek(self._size)
             return
-        first = framed(HEAD, head) if head else b""
         with self._writing():
             self._file = path.open("wb", AT_ONCE)
-            self._file.write(first)
-        self._size = len(first)
+            self._size = self._file.write(self._first)
 
     def append(self, message: Kind) -> None:
         """One message more."""
@@ -93,6 +92,15 @@ class MessageFile(Sequence[Kind], Generic[Kind]):
         with self._writing():
             self._file.write(record)
         self._size += len(record)
+
+    def clear(self) -> None:
+        """Forget all messages."""
+        with self._writing():
+            self._file.flush()
+            self._file.truncate(len(self._first))
+            self._file.seek(len(self._first))
+        self._size = len(self._first)
+        del self._starts[:]
 
     def synced(self) -> Place:
         """How far it has come; so far it outlives a power cut."""

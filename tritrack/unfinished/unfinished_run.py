@@ -129,6 +129,10 @@ class UnfinishedRun:
             os.fsync(file.fileno())
         self._due_s = time.monotonic() + SAVES_S
 
+    def restart(self) -> None:
+        """The run begins anew: what was kept is forgotten when it is asked for again."""
+        self._saved = None
+
     def close(self) -> None:
         """Write no more; what is done stays."""
         for file in self._files.values():

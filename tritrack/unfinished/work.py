@@ -26,6 +26,9 @@ class Work(Protocol):
     def save(self, stage: str, state: object) -> None:
         """The state of a stage, for the case that the run is cut short."""
 
+    def restart(self) -> None:
+        """The run begins anew: what was kept is forgotten when it is asked for again."""
+
 
 class InMemory:
     """Nothing outlives the run."""
@@ -35,6 +38,9 @@ class InMemory:
     def messages(self, _name: str) -> Kept:
         """A list."""
         return []
+
+    def restart(self) -> None:
+        """Nothing was kept."""
 
     def resumed(self, _stage: str, _kind: type[State]) -> State | None:
         """Nothing was begun."""

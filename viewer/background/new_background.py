@@ -3,7 +3,6 @@
 from common.bus.control_messages import Answer, Command
 from common.bus.inbox import Inbox
 from common.bus.messages import CameraFault, ViewerNumber
-from common.config.settings import Settings
 from common.video.decoding import Image
 from viewer.background.background import Background, learnt, lit, overlaid_opening
 from viewer.background.empty_opening import is_still
@@ -12,10 +11,15 @@ from viewer.background.empty_opening import is_still
 class Learning:
     """Gathers frames once it is asked to, and learns the background from them."""
 
-    def __init__(self, commands: Inbox[Command], viewer: ViewerNumber, settings: Settings) -> None:
-        """Listen to commands; nothing is gathered yet."""
-        self._commands, self._viewer = commands, viewer
-        self._due = settings.silhouette.empty_frames
+    def __init__(self, commands: Inbox[Command], viewer: ViewerNumber, due: int) -> None:
+        """Listen to commands; nothing is gathered yet.
+
+        Args:
+            commands: Of the run.
+            viewer: Whose camera it is.
+            due: How many frames make a background.
+        """
+        self._commands, self._viewer, self._due = commands, viewer, due
         self._frames: list[Image] | None = None
 
     def step(self, picture: Image, fault: CameraFault) -> tuple[Background | None, Answer | None]:

@@ -72,7 +72,7 @@ def opening_of_view(view: View, settings: SilhouetteSettings, decoder: Reader) -
 
     Args:
         view: A recorded file's, or a camera's: nobody is taken to be before that one now.
-        settings: How many opening frames show nobody.
+        settings: How long nobody is in view at first.
         decoder: Reads the file; left at its start.
 
     Raises:
@@ -80,11 +80,11 @@ def opening_of_view(view: View, settings: SilhouetteSettings, decoder: Reader) -
         DecoderDied: When the decoder broke on it.
     """
     if isinstance(view.source, int) and not view.background:
-        return Opening(learn(_now(view, settings.empty_frames, decoder)), "", None)
+        return Opening(learn(_now(view, settings, decoder)), "", None)
     if view.background:
         plate = list(islice(_pictures(decoder, view.background, view), SAMPLE))
         return Opening(learn(plate), "", None)
-    opening, coming = _looked_at(view, settings.empty_frames, decoder)
+    opening, coming = _looked_at(view, settings, decoder)
     return of_clip(opening, list(coming), settings, view)
 
 
@@ -201,13 +201,13 @@ def background_of_film(view: View, settings: SilhouetteSettings, decoder: Reader
 
     Args:
         view: Of the film; likewise `settings`, `decoder`: as for `opening_of_view`.
-        settings: How many opening frames show nobody.
+        settings: How long nobody is in view at first.
         decoder: Reads the file; left at its start.
     """
     background, odd, _ = opening_of_view(view, settings, decoder)
     if isinstance(view.source, int):
         return FilmBackground(background, [], odd)
-    sample = list(_looked_at(view, settings.empty_frames, decoder)[1])
+    sample = list(_looked_at(view, settings, decoder)[1])
     if not (odd or view.background):
         busy = learn_uncovered(sample)
         background = busy if busy.uncertain.mean() < LEFT_HIDDEN else background
@@ -221,15 +221,18 @@ def _pictures(decoder: Reader, source: Source, view: View) -> Iterator[Image]:
     return (got.picture for got in decoder.frames(source, view.size, wanted))
 
 
-def _now(view: View, due: int, decoder: Reader) -> list[Image]:
+def _now(view: View, settings: SilhouetteSettings, decoder: Reader) -> list[Image]:
     """The first frames that a camera gives."""
+    due = view.frames_in(settings.empty_s)
     return list(islice(_pictures(decoder, view.source, view), due))
 
 
-def _looked_at(view: View, due: int, decoder: Reader) -> tuple[list[Image], Iterator[Image]]:
+def _looked_at(
+    view: View, settings: SilhouetteSettings, decoder: Reader
+) -> tuple[list[Image], Iterator[Image]]:
     """The opening frames, and frames from everywhere in the clip: these as they are decoded."""
     pictures = islice(_pictures(decoder, view.source, view), LOOKED_AT)
-    opening = list(islice(pictures, due))
+    opening = list(islice(pictures, view.frames_in(settings.empty_s)))
     return opening, islice(chain(opening, pictures), 0, None, _stride(view))
 
 

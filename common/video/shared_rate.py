@@ -1,0 +1,47 @@
+"""Two films of different rates: of the faster those frames are looked at that meet the slower's."""
+
+from typing import Final
+
+import msgspec
+import numpy as np
+
+from common.body.body import Vector
+from common.video.clip_facts import TOUCH_S, View
+
+SAME_RATE: Final = 0.01
+"""Frame rates that differ by less drift apart by less than a frame in a clip of 100."""
+
+
+def at_one_rate(views: tuple[View, ...], every: int) -> tuple[View, ...]:
+    """The views of a clip, at the rate of the slower.
+
+    A frame without a partner would have the body follow one view alone for a moment, again and
+    again, which is less exact than both at a lower rate.
+
+    Args:
+        views: One or two; a camera's frames come when they come.
+        every: Every n-th frame of the slower is looked at.
+    """
+    if len(views) < 2 or not all(view.frames for view in views):
+        return views
+    slow, fast = sorted(views, key=lambda view: view.fps)
+    if fast.fps / slow.fps - 1.0 <= SAME_RATE:
+        return views
+    thin = _meeting(fast, slow, every)
+    return tuple(thin if view.number == thin.number else view for view in views)
+
+
+def _meeting(fast: View, slow: View, every: int) -> View:
+    """The faster view, with the frames nearest to those of the slower: each at most once, and none
+    that is farther than half of its own period."""
+    own_s, wanted_s = _times_s(fast), _times_s(slow)[::every]
+    after = np.clip(np.searchsorted(own_s, wanted_s), 1, len(own_s) - 1)
+    nearest = after - (wanted_s - own_s[after - 1] < own_s[after] - wanted_s)
+    near = np.abs(own_s[nearest] - wanted_s) <= 0.5 / fast.fps + TOUCH_S
+    picked = tuple(np.unique(nearest[near]).tolist())
+    times_s = tuple((own_s + fast.late_s).tolist())
+    return msgspec.structs.replace(fast, fps=slow.fps, capture_s=times_s, picked=picked)
+
+
+def _times_s(view: View) -> Vector:
+    return np.array([view.captured_s(n) for n in range(view.frames)])

@@ -1,0 +1,56 @@
+"""Views of other rates: of the faster those frames are looked at that meet the slower's."""
+
+import numpy as np
+import pytest
+
+from common.video.clip_facts import View
+from common.video.shared_rate import at_one_rate
+
+
+def view(number: int, hz: float, seconds: float = 10.0, late_s: float = 0.0) -> View:
+    size = (160, 120)
+    frames = round(hz * seconds)
+    return View(1 if number == 1 else 2, f"cam{number}.avi", size, size, hz, frames, late_s=late_s)
+
+
+@pytest.mark.parametrize(("slow_hz", "fast_hz"), [(25.0, 29.97), (15.0, 30.0), (24.0, 60.0)])
+@pytest.mark.parametrize("fast", [1, 2])
+def test_each_frame_of_the_slower_has_the_nearest_of_the_faster(
+    slow_hz: float, fast_hz: float, fast: int
+) -> None:
+    views = (view(1, fast_hz if fast == 1 else slow_hz), view(2, fast_hz if fast == 2 else slow_hz))
+    thin, whole = (at_one_rate(views, 1)[n - 1] for n in (fast, 3 - fast))
+    assert whole == views[2 - fast]
+    assert thin.fps == slow_hz
+    own_s = np.arange(thin.frames) / fast_hz
+    assert [thin.captured_s(n) for n in range(thin.frames)] == pytest.approx(own_s)
+    for n in range(whole.frames - 2):
+        nearest_s = np.abs(own_s[list(thin.picked)] - whole.captured_s(n)).min()
+        assert nearest_s == pytest.approx(np.abs(own_s - whole.captured_s(n)).min(), abs=1e-9)
+    assert abs(len(thin.picked) - whole.frames) <= 1
+
+
+def test_a_view_that_is_late_is_met_where_it_shows_the_same() -> None:
+    fast = at_one_rate((view(1, 15.0), view(2, 30.0, late_s=1.0)), 1)[1]
+    assert fast.picked[:3] == (30, 32, 34)
+    assert fast.captured_s(30) == pytest.approx(0.0)
+
+
+def test_of_the_slower_every_third_frame_is_met() -> None:
+    assert at_one_rate((view(1, 15.0), view(2, 30.0)), 3)[1].picked[:3] == (0, 6, 12)
+
+
+def test_frames_that_are_looked_at_follow_each_other() -> None:
+    fast = at_one_rate((view(1, 25.0), view(2, 50.0)), 1)[1]
+    assert (fast.every(4), view(1, 25.0).every(4)) == (1, 4)
+    assert [fast.is_looked_at(n) for n in range(4)] == [True, False, True, False]
+    assert fast.next_s(2, 1) == pytest.approx(4 / 50)
+    assert view(1, 25.0).next_s(2, 3) == pytest.approx(5 / 25)
+
+
+def test_rates_that_are_nearly_one_and_cameras_are_left_alone() -> None:
+    nearly = (view(1, 30.0), view(2, 29.97))
+    assert at_one_rate(nearly, 1) == nearly
+    camera = View(2, 0, (160, 120), (160, 120), 30.0, 0)
+    assert at_one_rate((view(1, 15.0), camera), 1) == (view(1, 15.0), camera)
+    assert at_one_rate((view(1, 15.0),), 1) == (view(1, 15.0),)
