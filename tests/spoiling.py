@@ -92,12 +92,6 @@ def no_video(folder: Path) -> None:
     (folder / "cam1.avi").write_text("once upon a time\n" * 50)
 
 
-def other_rates(folder: Path) -> None:
-    video = folder / "cam2.avi"
-    write_film(video, film_of(video), fps=25.0)
-    edit_json(folder / "meta.json", lambda meta: meta.pop("fps"))
-
-
 def no_rotation(folder: Path) -> None:
     edit_json(folder / "calibration.json", lambda rig: rig["cameras"][0]["R"][0].reverse())
 
