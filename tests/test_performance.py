@@ -16,7 +16,7 @@ from integrator import merge_state
 from integrator.pairing import Pair
 from tritrack.offline import performance
 from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.offline.performance import STAGE, Going, Prepared, performed
+from tritrack.offline.performance import STAGE, Going, Prepared, Watch, performed
 from tritrack.offline.rig_check import Witness
 from tritrack.unfinished.state_codec import packed, unpacked
 from tritrack.unfinished.work import Course, Kept
@@ -115,6 +115,9 @@ class Noted:
     def resumed(self, _stage: str, _kind: object) -> Any:
         return self.left
 
+    def restart(self) -> None:
+        raise AssertionError("no clock is off")
+
     def save(self, stage: str, state: object) -> None:
         assert stage == STAGE
         assert isinstance(state, Going)
@@ -162,7 +165,8 @@ def test_each_view_goes_on_from_its_own_state_by_the_guide_of_the_instant_before
     told: list[float] = []
     shown: list[int] = []
     course = Course(told.append)
-    done = performed(prepared(), {}, Witness(), lambda *of: shown.append(of[2].frame), course)
+    watch = Watch(lambda *of: shown.append(of[2].frame))
+    done = performed(prepared(), {}, Witness(), watch, course)
     assert sorted(guided[:4]) == [(100, None), (101, 0), (200, None), (201, 0)]
     assert [body.frame for body in done.bodies] == shown == [0, 1, 2, 3]
     assert told == [0.25, 0.5, 0.75, 1.0]

@@ -23,6 +23,7 @@ def doubted(*odd: str, late_frames: float = 0.0) -> Trust:
         soles_mm=0.0,
         stature_m=1.75,
         facing_deg=0.0,
+        motion_mm=10.0,
         moments=30,
         odd=odd,
     )

@@ -8,7 +8,7 @@ from acting import perform
 from rich.console import Console
 
 from recognizer.evaluation import wilson
-from recognizer.events import Event
+from recognizer.performance_judge import Event
 from recognizer.training.learning import train
 from recognizer.training.streams import Act, Found
 from tritrack.postures import spotting_report

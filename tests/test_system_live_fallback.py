@@ -471,7 +471,8 @@ def recoded(picture: np.ndarray, n: int) -> np.ndarray:
     """A picture as a codec gives it: blocks are off by some grey levels, others in each frame."""
     high, wide = picture.shape[:2]
     off = np.random.default_rng(n).integers(-3, 4, (high // 8, wide // 8, 1))
-    return np.clip(picture + np.kron(off, np.ones((8, 8, 1))), 0, 255).astype(np.uint8)
+    changed: np.ndarray = picture + np.kron(off, np.ones((8, 8, 1)))
+    return changed.clip(0, 255).astype(np.uint8)
 
 
 @pytest.mark.slow
