@@ -138,7 +138,10 @@ def _parameters(node: Definition) -> int:
 def _kind(node: Definition) -> str:
     if any(COMPILING.match(ast.unparse(mark)) for mark in node.decorator_list):
         return "compiled"
-    return "command" if "typer." in ast.unparse(node.args) else "plain"
+    typed = "typer." in ast.unparse(node.args) or "Example: tritrack" in (
+        ast.get_docstring(node) or ""
+    )
+    return "command" if typed else "plain"
 
 
 def _imports(root: Path, tree: ast.Module) -> Iterator[str]:

@@ -143,8 +143,18 @@ def uncalibrated(folder: Path) -> None:
     (folder / "calibration.json").unlink()
 
 
-def partly_outside(folder: Path) -> None:
-    refilmed(folder, lambda film: [np.roll(frame, -70, axis=1) for frame in film])
+def partly_outside(folder: Path, px: int = 70) -> None:
+    """Both pictures lack so many columns at their left, and the calibration knows."""
+
+    def shifted(frame: np.ndarray) -> np.ndarray:
+        return np.pad(frame[:, px:], ((0, 0), (0, px), (0, 0)), mode="edge")
+
+    def known(rig: dict[str, Any]) -> None:
+        for camera in rig["cameras"]:
+            camera["K"][0][2] -= px
+
+    refilmed(folder, lambda film: [shifted(frame) for frame in film])
+    edit_json(folder / "calibration.json", known)
 
 
 def damage(video: Path, size: int = 4000) -> Path:

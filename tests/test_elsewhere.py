@@ -13,7 +13,7 @@ from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from tritrack.live.elsewhere import two_camera_clip
 
-NOWHERE = CameraSettings(device=63)
+NOWHERE, NEITHER = CameraSettings(device=63), CameraSettings(device=62)
 
 
 @pytest.fixture
@@ -22,7 +22,7 @@ def calibration(clip: Path, tmp_path: Path) -> Path:
 
 
 def settings_of(calibration: Path, **more: object) -> Settings:
-    own = Settings(calibration=str(calibration), camera_1=NOWHERE, camera_2=NOWHERE)
+    own = Settings(calibration=str(calibration), camera_1=NOWHERE, camera_2=NEITHER)
     return msgspec.structs.replace(own, **more)
 
 
@@ -30,7 +30,7 @@ def test_a_camera_is_known_by_its_calibration(calibration: Path) -> None:
     rig = load_rig(calibration)
     clip = two_camera_clip(settings_of(calibration, size="4096x4096"))
     assert [view.source_size for view in clip.views] == [(rig.width, rig.height)] * 2
-    assert [view.source for view in clip.views] == [63, 63]
+    assert [view.source for view in clip.views] == [63, 62]
     assert clip.rig is not None
     assert clip.rig.cameras == rig.cameras
 
@@ -57,4 +57,4 @@ def test_a_calibration_that_cannot_be_read_is_told(calibration: Path) -> None:
 
 def test_without_a_calibration_the_camera_itself_must_be_there() -> None:
     with pytest.raises(ClipError, match="camera 63"):
-        two_camera_clip(Settings(camera_1=NOWHERE, camera_2=NOWHERE))
+        two_camera_clip(Settings(camera_1=NOWHERE, camera_2=NEITHER))

@@ -135,7 +135,7 @@ def test_spotting_and_tracking_are_measured_as_they_are_typed(
     assert "20 mm; written to r" in said.output
 
 
-LEARN = ("learn", "hmmlearn", "sklearn")
+LEARN = ("learn", "sklearn")
 REPORT = ("report", "matplotlib")
 
 

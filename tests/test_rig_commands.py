@@ -14,12 +14,14 @@ from common.rig.camera import paper_rig
 from common.rig.rig_file import load_rig
 from integrator.board.board_quality import CameraQuality
 from integrator.rig.calibration import write_rig
+from integrator.selfcalibration.lateness import Clock
 from tritrack.commands.rig_commands import calibrate_app
 from tritrack.marking.marking import Asked, Result
 from tritrack.offline.rig_of_boards import Shown
-from tritrack.offline.rig_of_clips import Given
+from tritrack.offline.rig_of_clips import FoundByClips, Given
 
 RIG = paper_rig((320, 240), (400.0, 400.0), (4.0, 4.0))
+CLOCKS = (Clock(0.0), Clock(-0.15, (1.2,)))
 CAMERAS = (CameraQuality("cam1", 400.0, 1.0, 0.0, 0.0, 0.1, 9, 0.5),)
 
 
@@ -40,7 +42,7 @@ def by_clips(monkeypatch: pytest.MonkeyPatch) -> Called:
     instead(monkeypatch, "common.config.config_file.load")
     instead(monkeypatch, "integrator.rig.calibration.write_rig")
     place = "tritrack.offline.rig_of_clips.calibrated_by_clips"
-    return instead(monkeypatch, place, (RIG, quality()))
+    return instead(monkeypatch, place, FoundByClips(RIG, quality(), CLOCKS))
 
 
 def test_a_person_of_the_stature_that_is_typed_calibrates_all_clips(by_clips: Called) -> None:
@@ -48,10 +50,14 @@ def test_a_person_of_the_stature_that_is_typed_calibrates_all_clips(by_clips: Ca
         calibrate_app, "person", "a", "b", "--stature", 1.9, "--fov", 60, "--out", "r.json"
     )
     assert by_clips.last == ([Path("a"), Path("b")], Given(1.9, 60.0))
-    assert "both views agree to 12 mm in 30 moments; view 2 is late by +0.0, -2.3" in said.output
+    assert (
+        "both views agree to 12 mm in 30 moments; view 2 is late by +0.0, -2.3 (ambiguous) frames"
+        in said.output
+    )
     assert "written to r.json" in said.output
     assert "not known" not in said.output
-    by_clips.answer = (RIG, quality(unsure=("focal lengths to 9 % only", "clocks")))
+    unsure = quality(unsure=("focal lengths to 9 % only", "clocks"))
+    by_clips.answer = FoundByClips(RIG, unsure, CLOCKS)
     said = typed(calibrate_app, "person", "a", "--json")
     assert by_clips.last == ([Path("a")], Given(1.75, None))
     assert "not known well enough: focal lengths to 9 % only, clocks: film" in said.output
@@ -188,7 +194,7 @@ def test_what_is_found_is_written_and_what_shows_nothing_is_refused_before(
     written = instead(monkeypatch, "integrator.rig.calibration.write_rig")
     looked = instead(monkeypatch, "common.video.clip_sources.refuse_no_footage")
     typed(calibrate_app, "person", "a", "b", "--out", "r.json")
-    rig, quality_told = by_clips.answer
+    rig, quality_told, _ = by_clips.answer
     assert written.last == (Path("r.json"), rig, quality_told)
     assert [given[1] for given in looked.given] == [Path("a"), Path("b")]
 

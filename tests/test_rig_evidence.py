@@ -84,10 +84,10 @@ def test_a_clip_counts_five_moments_at_most_and_the_person_is_as_high_as_the_cro
 ) -> None:
     monkeypatch.setattr(rig_evidence, "height_px", lambda track: 95.2 * len(track.times_s) / 150)
     monkeypatch.setattr(rig_evidence, "smoothed", lambda track: track)
-    monkeypatch.setattr(rig_evidence, "useful_times", lambda one: one.first.times_s[::2])
+    monkeypatch.setattr(rig_evidence, "useful_times", lambda one, _: one.first.times_s[::2])
     ten, two = track(10.0), track(2.0)
     sightings = (Sighting(ten, two, (320, 240)), Sighting(two, ten, (320, 240)))
-    evidence = gathered(sightings, KNOWN)
+    evidence = gathered(sightings, known_of(320, 1.75, len(sightings)))
     assert evidence.size_px == (320, 240)
     assert evidence.worth == pytest.approx(5.0 + 28 / 15)
     first, second = evidence.clips

@@ -262,7 +262,7 @@ def test_what_contradicts_itself_or_cannot_be_read_is_refused(
         ('clip = "x"\nsizze = "1x1"', "unknown setting sizze"),
         ('clip = "x"\nevery = "two"', "every must be a whole number, got text"),
         ('clip = "x"\nsize = "huge"', "size must look like 160x120, got 'huge'"),
-        ("clip =", "Invalid value"),
+        ("clip =", "a value is missing"),
         ("", r"bad\.toml: there is nothing to look at: set clip, or camera_1"),
     ],
     ids=["unknown", "ill-typed", "meaningless", "no TOML", "none"],

@@ -71,4 +71,4 @@ def test_the_last_line_of_ci_says_what_was_not_tried(
     assert ended.returncode == 0, ended.stderr
     assert "\n".join(ended.stdout.splitlines()[-1:]) == last
     made = (machine / "made").read_text().splitlines()
-    assert made[0] == f"-j 3 --output-sync setup matrix NEWER={' '.join(there)}"
+    assert made[0] == f"-j 3 --output-sync everything matrix NEWER={' '.join(there)}"

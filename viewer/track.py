@@ -10,10 +10,8 @@ from common.body.body import JOINT_NAMES
 from common.bus.messages import (
     MOTION_S,
     Box,
-    Facing,
     Guide,
     Landmarks,
-    Measure,
     Pixel,
     Report,
     ViewerNumber,
@@ -34,7 +32,7 @@ from viewer.landmarks.landmark_looks import network_of
 from viewer.landmarks.outside_source import nearest_landmarks
 from viewer.landmarks.own_landmarks import Eye, own_landmarks
 from viewer.paper import pose_search
-from viewer.paper.measure import measure_front, measure_side, refusal_of
+from viewer.paper.measure import opening_measure
 from viewer.room.outline_correction import corrected, is_trusted
 from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen
@@ -202,7 +200,7 @@ def describe(state: State, report: Report, mask: Mask, guide: Guide | None) -> t
     if report.box is None:
         return state._replace(search=search._replace(found=None)), report
     facing = search.vote if guide is None else guide.facing[setup.viewer - 1]
-    measure, refusal = _opening(mask, report, guide, facing)
+    measure, refusal = opening_measure(mask, report, guide, facing)
     report = msgspec.structs.replace(report, vote=search.vote, measure=measure, refusal=refusal)
     if setup.method.stick_lifting or (guide is not None and guide.stick):
         known = expected_body(guide, setup.viewer)
@@ -291,18 +289,3 @@ def _middle_px(box: Box | None) -> Pixel | None:
     if box is None:
         return None
     return (box.left + box.right + 1) / 2, (box.top + box.bottom + 1) / 2
-
-
-def _opening(
-    mask: Mask, report: Report, guide: Guide | None, facing: Facing
-) -> tuple[Measure | None, str]:
-    """What the opening posture tells, or why this is not it; nothing once measured."""
-    assert report.box is not None
-    if guide is not None and guide.measured:
-        return None, ""
-    if report.cut:
-        return None, "the person is partly outside the picture"
-    if facing == "flank":
-        return measure_side(mask, report.box), ""
-    refusal = refusal_of(mask, report.box)
-    return (None, refusal) if refusal else (measure_front(mask, report.box), "")

@@ -137,15 +137,14 @@ def doubted(bodies: Sequence[Body], clock: Clock) -> Sequence[Body]:
 
 
 def clock_word(facts: dict[str, Any]) -> str:
-    """What to say of the clock of view 2; "" where it is right, or nothing tells."""
+    """What to say of the clock of view 2; "" where nothing speaks against the files' times."""
     told = facts.get("clock")
-    if not told or (told["state"] != "ambiguous" and not told["applied_s"]):
+    if not told or (told["may_be_on_time"] and not told["applied_s"]):
         return ""
     if told["state"] != "ambiguous":
         return f"view 2 is {told['applied_s']:+.2f} s late: its times were set back by that"
     several = ", ".join(f"{late_s:+.2f}" for late_s in told["may_be_s"])
-    left = "" if told["may_be_on_time"] else ", and joints are hardly believed"
     return (
         f"how late view 2 is, the motion does not tell, as a gait repeats itself ({several} s): "
-        f"its times were left as they are{left}; say it by --offset SECONDS"
+        "its times were left as they are, and joints are hardly believed; say it by --offset SECONDS"
     )

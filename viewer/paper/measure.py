@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from common.body.body import Bdp, Elliptic, Round
 from common.body.proportions import SHOULDER_DROP, THESIS_RATIOS, TORSO_DEPTH_SHARE
-from common.bus.messages import Box, Measure
+from common.bus.messages import Box, Facing, Guide, Measure, Report
 from common.raster.similarity import Mask
 from viewer.paper.fine_tuning import fine_tuned
 
@@ -40,6 +40,21 @@ class FacadeShape(NamedTuple):
     head: float
     torso: float
     leg: float
+
+
+def opening_measure(
+    mask: Mask, report: Report, guide: Guide | None, facing: Facing
+) -> tuple[Measure | None, str]:
+    """What the opening posture tells, or why this is not it; nothing once measured."""
+    assert report.box is not None
+    if guide is not None and guide.measured:
+        return None, ""
+    if report.cut:
+        return None, "the person is partly outside the picture"
+    if facing == "flank":
+        return measure_side(mask, report.box), ""
+    refusal = refusal_of(mask, report.box)
+    return (None, refusal) if refusal else (measure_front(mask, report.box), "")
 
 
 def projection_width(mask: Mask) -> tuple[float, float]:
