@@ -31,7 +31,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def quality(**more: Any) -> SimpleNamespace:
+def quality(**more: Any) -> Any:
     found = {"cameras": CAMERAS, "late_frames": (0.04, -2.26), "gap_mm": 12.4, "moments": 30}
     return SimpleNamespace(**{**found, "unsure": (), **more})
 

@@ -146,5 +146,6 @@ def clock_word(facts: dict[str, Any]) -> str:
     several = ", ".join(f"{late_s:+.2f}" for late_s in told["may_be_s"])
     return (
         f"how late view 2 is, the motion does not tell, as a gait repeats itself ({several} s): "
-        "its times were left as they are, and joints are hardly believed; say it by --offset SECONDS"
+        "its times were left as they are, and joints are hardly believed; say it by --offset "
+        "SECONDS"
     )
