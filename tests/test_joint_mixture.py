@@ -1,10 +1,23 @@
 """Where a joint most probably is, held against places that are known."""
 
+from collections.abc import Iterator
+from itertools import product
+
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from integrator.landmarks.joint_mixture import PROPOSED, Witnesses, most_probable
+from integrator.landmarks.joint_mixture import (
+    HARDLY,
+    HELD,
+    PROPOSED,
+    ROUNDS,
+    SHOWN,
+    Spread,
+    Witnesses,
+    most_probable,
+)
 
 CENTRES_M = np.array([[0.0, 1.0, 4.0], [-4.0, 1.0, 0.0]])
 TRUE_M = np.array([0.1, 1.2, -0.2])
@@ -134,3 +147,100 @@ def test_the_place_is_never_beyond_what_was_said(
     assert np.isfinite(value)
     assert np.isfinite(precision).all()
     assert np.abs(place_m).max() < 4.0
+
+
+def bell(square: float, spread_m: float, axes: int) -> float:
+    return float(np.exp(-square / (2 * spread_m**2)) / spread_m**axes)
+
+
+def anywhere(roughly_m: float, unlikely: float, often: float, kind: Spread, axes: int) -> float:
+    beyond = unlikely * (1 - often) / (kind.far * roughly_m) ** axes
+    return float(beyond * np.exp(-HARDLY * often / kind.often)) + 1e-30
+
+
+def weighed(w: Witnesses, here: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """Log probability of a place, and normal equations, by matrices."""
+    square, unlikely = float(np.square(here - w.proposed_m).sum()), 1 - w.surety
+    right = w.surety * bell(square, w.spreads_m[0], 3)
+    rough = unlikely * w.often * bell(square, w.roughly_m, 3)
+    total = right + rough + anywhere(w.roughly_m, unlikely, w.often, PROPOSED, 3)
+    weight = (right / w.spreads_m[0] ** 2 + rough / w.roughly_m**2) / total + HELD
+    normal, side, log = weight * np.eye(3), weight * w.proposed_m, np.log(total)
+    for view in range(2):
+        sure, other = w.sureties[view]
+        if sure <= 0.0:
+            continue
+        spread_m, roughly_m = w.spreads_m[1 + view], SHOWN.roughly * w.stature_m
+        across = [np.eye(3) - np.outer(along, along) for along in w.directions[view]]
+        centre_m = w.centres_m[view]
+        first, second = (float((here - centre_m) @ each @ (here - centre_m)) for each in across)
+        unlikely = 1 - sure - other
+        right = sure * bell(first, spread_m, 2)
+        rough = unlikely * SHOWN.often * bell(first, roughly_m, 2)
+        elsewhere = other * bell(second, spread_m, 2)
+        total = right + rough + elsewhere + anywhere(roughly_m, unlikely, SHOWN.often, SHOWN, 2)
+        weights = (right / spread_m**2 + rough / roughly_m**2, elsewhere / spread_m**2)
+        for each, pull in zip(across, weights, strict=True):
+            normal = normal + pull / total * each
+            side = side + pull / total * each @ centre_m
+        log += np.log(total)
+    return float(log), normal, side
+
+
+def starts(w: Witnesses) -> Iterator[np.ndarray]:
+    """The proposed place, those nearest to it on each ray, and where rays of both views meet."""
+    yield w.proposed_m
+    rays = [[(w.centres_m[v], w.directions[v, r]) for r in range(2) if w.sureties[v, r] > 0]
+            for v in range(2)]  # fmt: skip
+    for centre_m, along in (*rays[0], *rays[1]):
+        yield centre_m + (w.proposed_m - centre_m) @ along * along
+    for (one_m, one), (two_m, two) in product(*rays):
+        along = np.linalg.lstsq(np.stack([one, -two], axis=1), two_m - one_m, rcond=None)[0]
+        yield (one_m + along[0] * one + two_m + along[1] * two) / 2
+
+
+def expected_place(w: Witnesses) -> tuple[np.ndarray, float, np.ndarray]:
+    found = []
+    for here in starts(w):
+        for _ in range(ROUNDS):
+            _, normal, side = weighed(w, here)
+            here = np.linalg.solve(normal, side)
+        log, normal, _ = weighed(w, here)
+        found.append((log, here, normal[[0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]]))
+    log, here, precision = max(found, key=lambda each: each[0])
+    return here, log, precision
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_place_is_the_highest_peak_that_climbing_from_all_witnesses_finds(seed: int) -> None:
+    """Plain numpy, for witnesses that are some centimetres to decimetres off each other."""
+    rng = np.random.default_rng(seed)
+    spread_m = (0.01, 0.05, 0.3)[seed % 3]
+    shown = rays_through(*(TRUE_M + rng.normal(0.0, spread_m, (2, 3))))
+    elsewhere = rays_through(*(TRUE_M + rng.normal(0.0, 2 * spread_m, (2, 3))))
+    sureties = ((0.7, 0.5), (0.7, 0.0), (0.0, 0.6), (0.1, 0.2))[seed % 4]
+    w = told(
+        TRUE_M + rng.normal(0.0, spread_m, 3), shown, rng.uniform(0.01, 0.9), sureties,
+        wider_m=rng.uniform(0.0, 0.02), others=(elsewhere, 0.15 * (seed % 2)),
+        often=(0.05, 0.95)[seed % 5 > 1],
+    )  # fmt: skip
+    w = w._replace(sureties=w.sureties * (w.sureties[:, :1] > 0))
+    found, expected = place_of(w), expected_place(w)
+    for one, other in zip(found, expected, strict=True):
+        assert one == pytest.approx(other, rel=1e-6, abs=1e-7)
+
+
+def test_views_that_look_along_one_line_do_not_meet() -> None:
+    """The second camera stands behind the first: where both rays are one, no place is between."""
+    along = (TRUE_M - CENTRES_M[0]) / np.linalg.norm(TRUE_M - CENTRES_M[0])
+    w = told(TRUE_M, np.stack([along, along]))._replace(
+        centres_m=np.stack([CENTRES_M[0], CENTRES_M[0] - along])
+    )
+    place_m, log, _ = place_of(w)
+    assert np.isfinite(log)
+    assert place_m == pytest.approx(TRUE_M)
+
+
+def test_the_surer_a_witness_the_narrower_is_its_spread() -> None:
+    spread = Spread(right=0.01, unsure=0.05, roughly=0.1, often=0.5, far=8)
+    assert spread.right_of(np.array([1.0, 0.5, 0.0])) == pytest.approx([0.01, 0.035, 0.06])

@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from integrator.landmarks.limb_springs import ENDS, lengths_m, sprung
+from integrator.landmarks.limb_springs import (
+    ENDS,
+    ROUNDS,
+    SPRING_M,
+    UNLIKE,
+    USUAL,
+    lengths_m,
+    sprung,
+)
 from integrator.proposal.network_weights import JOINTS
 
 AT = {name: i for i, name in enumerate(JOINTS)}
@@ -68,3 +76,57 @@ def test_what_one_camera_takes_for_longer_again_and_again_does_not_grow_beyond_a
         known_m = lengths_m(known_m, sprung(nearer, loose, known_m), STATURE_M)
     forearm = next(i for i, (near, _) in enumerate(ENDS) if JOINTS[near].endswith("elbow"))
     assert known_m[forearm] <= 1.3 * 0.145 * STATURE_M + 1e-9
+
+
+def symmetric(packed: np.ndarray) -> np.ndarray:
+    """(n, 3, 3) of (n, 6) xx, xy, xz, yy, yz, zz."""
+    return np.asarray(packed[:, [[0, 1, 2], [1, 3, 4], [2, 4, 5]]])
+
+
+def expected_sprung(joints_m: np.ndarray, precisions: np.ndarray, known_m: np.ndarray) -> np.ndarray:
+    """Gauss-Newton by whole matrices: residuals of places, whitened, and of lengths."""
+    n, found = len(joints_m), joints_m.copy()
+    white = np.linalg.cholesky(symmetric(precisions)).transpose(0, 2, 1)
+    for _ in range(ROUNDS):
+        rows, left = [], []
+        for joint in range(n):
+            block = np.zeros((3, 3 * n))
+            block[:, 3 * joint : 3 * joint + 3] = white[joint]
+            rows.append(block)
+            left.append(white[joint] @ (found[joint] - joints_m[joint]))
+        for (near, far), long_m in zip(ENDS, known_m, strict=True):
+            way, block = found[near] - found[far], np.zeros((1, 3 * n))
+            block[0, 3 * near : 3 * near + 3] = way / np.linalg.norm(way) / SPRING_M
+            block[0, 3 * far : 3 * far + 3] = -way / np.linalg.norm(way) / SPRING_M
+            rows.append(block)
+            left.append(np.array([(np.linalg.norm(way) - long_m) / SPRING_M]))
+        step = np.linalg.lstsq(np.concatenate(rows), -np.concatenate(left), rcond=None)[0]
+        found = found + step.reshape(n, 3)
+    return found
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_springs_are_two_steps_of_gauss_and_newton(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    joints_m = standing() + rng.normal(0.0, 0.05, (len(JOINTS), 3))
+    loose = rng.normal(0.0, 20.0, (len(JOINTS), 3, 3)) + 30.0 * np.eye(3)
+    packed = (loose @ loose.transpose(0, 2, 1))[:, [0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]]
+    known_m = lengths_m(None, standing(), STATURE_M)
+    found = sprung(joints_m, packed, known_m)
+    assert found == pytest.approx(expected_sprung(joints_m, packed, known_m), abs=1e-6)
+    assert np.abs(found - joints_m).max() > 0.01
+
+
+def test_both_sides_take_the_mean_of_their_lengths_and_each_girdle_its_own() -> None:
+    joints_m = standing()
+    joints_m[AT["l_wrist"], 1] -= 0.04
+    known_m = lengths_m(None, joints_m, STATURE_M)
+    of = {tuple(JOINTS[i] for i in ends): long for ends, long in zip(ENDS, known_m, strict=True)}
+    assert of["l_elbow", "l_wrist"] == of["r_elbow", "r_wrist"] == pytest.approx(0.27)
+    assert of["l_shoulder", "r_shoulder"] == pytest.approx(0.4)
+
+
+def test_a_length_that_nobody_has_is_taken_to_the_limit_on_either_side() -> None:
+    usual_m = STATURE_M * USUAL
+    assert lengths_m(None, 9.0 * standing(), STATURE_M) == pytest.approx(usual_m * UNLIKE)
+    assert lengths_m(None, 0.1 * standing(), STATURE_M) == pytest.approx(usual_m / UNLIKE)
