@@ -197,3 +197,13 @@ def test_blender_opens_it_in_centimetres(tmp_path: Path) -> None:
         for bone in skeleton.bones:
             x, y, z = expected[JOINT_NAMES.index(bone.starts)]
             assert heads[bone.name] == pytest.approx([x, -z, y], abs=1e-3)
+
+
+def test_in_centimetres_every_length_is_a_hundred_times_as_long() -> None:
+    skeleton, motion, steps = steady(random_joints(6), np.arange(40) / 15)
+    metres, centimetres = (
+        read_bvh(bvh_text(skeleton, motion, steps.step_s, scale)) for scale in ("m", "cm")
+    )
+    for name, places_m in metres.places.items():
+        assert centimetres.places[name] == pytest.approx(100.0 * places_m, abs=1e-3), name
+    assert centimetres.angles == pytest.approx(metres.angles)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from animator.bvh import steady
 from animator.skeleton.bones import OF_JOINTS, joints_of, skeleton_of
-from animator.skeleton.foot_contact import WANDERS_M, Stance, _held, stances
+from animator.skeleton.foot_contact import STANDS_S, WANDERS_M, Stance, _bridged, _held, stances
 from animator.skeleton.planted_feet import planted
 from common.body.body import JOINT_NAMES
 from common.body.extremities import ALL_JOINT_NAMES, extremities
@@ -214,3 +214,36 @@ def test_hands_and_feet_are_bones_where_a_run_has_them() -> None:
     made = joints_of(skeleton, motion)
     toe = ALL_JOINT_NAMES.index("l_toe")
     assert np.linalg.norm(made[:, toe] - whole[:, toe], axis=1).max() < 0.01
+
+
+def stood(rows: tuple[int, int], rate_hz: float) -> list[Stance]:
+    """Contacts of a left foot that is low and still in these of 60 rows, and high in others."""
+    body = np.repeat(walking()[:1], 60, axis=0)
+    body[:, JOINT_NAMES.index("l_ankle"), 1] += 0.3
+    body[slice(*rows), JOINT_NAMES.index("l_ankle"), 1] -= 0.3
+    found = stances(body, np.arange(60) / rate_hz)
+    return [stance for stance in found if stance.side == "l"]
+
+
+@pytest.mark.parametrize(("rows", "stands"), [((20, 23), False), ((20, 24), True)])
+def test_a_foot_stands_that_is_down_for_long_enough_to_the_very_row(
+    rows: tuple[int, int], stands: bool
+) -> None:
+    """At 20 Hz four rows last 0.15 s, however that is rounded; three only touch the floor."""
+    assert STANDS_S == pytest.approx(3 / 20.0)
+    padded = (rows[0] - 1, rows[1] + 1)  # while it comes down and goes up it is too fast
+    assert bool(stood(padded, 20.0)) == stands
+
+
+@pytest.mark.parametrize(("between", "steps"), [(5, False), (7, True)])
+def test_a_foot_that_slips_off_for_as_long_as_it_may_has_not_stepped(
+    between: int, steps: bool
+) -> None:
+    """At 20 Hz: from the last row of a contact to the first of the next, 0.3 s at most."""
+    ankle_m = np.zeros((40, 3))
+    ends, time_s = [(0, 15), (15 + between, 40)], np.arange(40) / 20.0
+    low = np.ones(40, np.bool_)
+    found = _bridged(ends, ankle_m, low, time_s)
+    assert found == (ends if steps else [(0, 40)])
+    low[16] = False
+    assert _bridged(ends, ankle_m, low, time_s) == ends, "it was lifted"

@@ -130,3 +130,24 @@ def test_blender_opens_it_as_a_skinned_armature(tmp_path: Path) -> None:
         for bone in skeleton.bones:
             x, y, z = expected[JOINT_NAMES.index(bone.starts)]
             assert heads[bone.name] == pytest.approx([x, -z, y], abs=1e-3)
+
+
+def test_frames_are_as_far_apart_as_said_and_arrays_are_what_their_entries_say() -> None:
+    pygltflib = pytest.importorskip("pygltflib", reason="pip install pygltflib")
+    _, _, content = made()
+    file = pygltflib.GLTF2.load_from_bytes(content)
+    times = array_of(file, file.animations[0].samplers[0].input)[:, 0]
+    assert times == pytest.approx(np.arange(40) / 15, abs=1e-6)
+    for number, accessor in enumerate(file.accessors):
+        values = array_of(file, number)
+        assert accessor.min == pytest.approx(values.min(axis=0).tolist())
+        assert accessor.max == pytest.approx(values.max(axis=0).tolist())
+        assert file.bufferViews[accessor.bufferView].byteOffset % 4 == 0
+    figure = file.meshes[0].primitives[0]
+    numbers = vars(figure.attributes)
+    drawn = [n for n in (*numbers.values(), figure.indices) if isinstance(n, int)]
+    assert len(drawn) == 4
+    for number, accessor in enumerate(file.accessors):
+        target = file.bufferViews[accessor.bufferView].target
+        assert target == ({True: 34963, False: 34962}[number == figure.indices]
+                          if number in drawn else None)  # fmt: skip

@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from show_page import ANKLE_M, snapshot_at
 
-from animator.hands_and_feet import hands_and_feet
+from animator.hands_and_feet import FOOT_THICK, HAND_THICK, hands_and_feet
 from animator.scene import LEFT, UNSURE, Figure, Shapes, limb_shapes
 from common.body.body import LIMBS
 from common.body.kinematics import segments
@@ -64,3 +64,14 @@ def test_what_nobody_measured_is_pale() -> None:
     assert shapes.colours[1].tolist() == list(UNSURE)
     faint = np.abs(shapes.colours[3].astype(int) - LEFT).max()
     assert 0 < faint < 60, "a toe that is 0.8 sure"
+
+
+def test_a_hand_and_a_foot_are_as_thick_as_their_lengths_say() -> None:
+    """Eggs that are round about their axis; half a foot is longer than half a hand."""
+    shapes, _ = drawn(standing())
+    wide, half, deep = shapes.scales.T
+    assert wide == pytest.approx(deep)
+    assert wide[:2] / half[:2] == pytest.approx([HAND_THICK] * 2)
+    assert wide[2:] / half[2:] == pytest.approx([FOOT_THICK] * 2)
+    assert (half > 0.05).all()
+    assert (half < 0.2).all()

@@ -11,7 +11,7 @@ from moving import random_joints
 from animator.bvh import steady
 from animator.exchange.marker_files import forward_x, trc_text
 from animator.exchange.opensim_model import mot_text, osim_text
-from animator.skeleton.bones import joints_of
+from animator.skeleton.bones import joints_of, skeleton_of
 from common.body.body import JOINT_NAMES
 
 PLAYED = """
@@ -88,3 +88,55 @@ def test_opensims_inverse_kinematics_runs_on_the_markers(tmp_path: Path) -> None
     written(tmp_path)
     paths = [str(tmp_path / name) for name in ("body.osim", "body.trc")]
     assert answer_of("opensim", SOLVED, *paths, str(tmp_path)) < 1e-3
+
+
+def test_rows_of_the_motion_are_as_far_apart_as_the_frames(tmp_path: Path) -> None:
+    written(tmp_path)
+    lines = (tmp_path / "body.mot").read_text().splitlines()
+    rows = [line.split("\t") for line in lines[lines.index("endheader") + 2 :]]
+    assert [float(row[0]) for row in rows] == pytest.approx(np.arange(40) / 15, abs=1e-6)
+
+
+def test_the_hips_shift_and_turn_and_every_other_bone_turns_alone() -> None:
+    """Each axis of a joint moves by the coordinate of its own name, or not at all."""
+    model = ElementTree.fromstring(osim_text(skeleton_of(random_joints(4)))[38:])
+    for joint in model.iter("CustomJoint"):
+        kinds = {
+            str(each.get("name")): each.findtext("motion_type")
+            for each in joint.iter("Coordinate")
+        }
+        bone = joint.get("name")
+        turns = {f"{bone}_r{axis}": "rotational" for axis in "xyz"}
+        shifts = {f"{bone}_t{axis}": "translational" for axis in "xyz"}
+        assert kinds == (turns | shifts if bone == "Hips" else turns)
+        moved = {}
+        for axis in joint.iter("TransformAxis"):
+            said = axis.findtext("coordinates") or ""
+            moves = axis.find("LinearFunction") is not None
+            assert moves == (axis.find("Constant") is None) == (said in kinds)
+            moved |= {said: str(axis.get("name"))} if said else {}
+            along = np.array([float(each) for each in str(axis.findtext("axis")).split()])
+            assert along.sum() == np.linalg.norm(along) == 1.0
+            if said:
+                assert "xyz"[int(along.argmax())] == said[-1]
+        assert moved.keys() == kinds.keys()
+        assert all(place.startswith(kinds[name][:4]) or kinds[name] == "translational"
+                   for name, place in moved.items())  # fmt: skip
+
+
+def test_markers_stand_where_bones_start_and_end() -> None:
+    skeleton = skeleton_of(random_joints(4))
+    model = ElementTree.fromstring(osim_text(skeleton)[38:])
+    at = {
+        str(each.get("name")): (
+            str(each.findtext("socket_parent_frame")).removeprefix("/bodyset/"),
+            [float(value) for value in str(each.findtext("location")).split()],
+        )
+        for each in model.iter("Marker")
+    }
+    bones = {bone.name: i for i, bone in enumerate(skeleton.bones)}
+    for joint, (body, place_m) in at.items():
+        bone = skeleton.bones[bones[body]]
+        assert joint in (bone.starts, bone.ends)
+        tip_m = skeleton.tips_m[bones[body]] if joint == bone.ends else np.zeros(3)
+        assert place_m == pytest.approx(tip_m.tolist(), abs=1e-8)

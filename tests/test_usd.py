@@ -55,6 +55,8 @@ def test_the_library_puts_every_joint_where_the_skeleton_has_it(path: Path) -> N
             assert names[BONES.index(bone)] == bone.name
             assert place == pytest.approx(expected[frame, JOINT_NAMES.index(bone.starts)], abs=1e-3)
     assert UsdGeom.GetStageUpAxis(stage) == "Y"
+    assert stage.GetDefaultPrim().GetPath() == "/Body"
+    assert stage.GetFramesPerSecond() == pytest.approx(15)
     assert UsdGeom.GetStageMetersPerUnit(stage) == 1.0
     assert (stage.GetStartTimeCode(), stage.GetEndTimeCode()) == (0, 39)
     assert stage.GetTimeCodesPerSecond() == pytest.approx(15)

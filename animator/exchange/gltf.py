@@ -31,9 +31,10 @@ class _Buffer:
         self.accessors: list[dict[str, Any]] = []
 
     def add(self, values: NDArray[Any], target: int | None = None) -> int:
-        """Lay an array into the buffer; its accessor's number."""
+        """Lay an array into the buffer; its accessor's number. Its bytes are a multiple of four, as
+        those of all arrays that the figure has: so each begins where the format wants it."""
         start, content = len(self.data), np.ascontiguousarray(values).tobytes()
-        self.data += content + b"\0" * (-len(content) % 4)
+        self.data += content
         view = {"buffer": 0, "byteOffset": start, "byteLength": len(content)}
         self.views.append(view | ({"target": target} if target else {}))
         flat = values.reshape(len(values), -1)

@@ -34,7 +34,7 @@ def sticks_of(skeleton: Skeleton) -> Sticks:
     for i, tip_m in enumerate(skeleton.tips_m):
         length_m = max(float(np.linalg.norm(tip_m)), 1e-3)
         scaled = unit.vertices * (THICKNESS * length_m, length_m, THICKNESS * length_m)
-        turned = arc(_UP, tip_m[None] / length_m).apply(scaled)
+        turned = arc(_UP, tip_m[None]).apply(scaled)
         faces.append(unit.faces + i * len(unit.vertices))
         places.append(origins_m[i] + turned)
         bones.append(np.full(len(turned), i))
