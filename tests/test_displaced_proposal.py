@@ -10,7 +10,15 @@ from test_proposal_misfit import BODY_M, STATURE_M, rays_to
 
 from common.body.body import Vector
 from integrator.landmarks import displaced_proposal
-from integrator.landmarks.displaced_proposal import SURELY, USUAL
+from integrator.landmarks.displaced_proposal import (
+    LATELY,
+    LOOSELY,
+    OUTLYING,
+    ROUNDS,
+    SURELY,
+    USUAL,
+)
+from integrator.landmarks.joint_mixture import SHOWN
 from integrator.landmarks.landmark_rays import Rays
 
 Joints = np.ndarray
@@ -74,3 +82,42 @@ def test_three_joints_that_speak_of_somebody_else_do_not_carry_the_body_away() -
     wrong_m[:3] += (0.0, 0.6, 0.0)
     _, moved_m = after(30, BODY_M, rays_to(wrong_m))
     assert np.linalg.norm(moved_m - BODY_M, axis=1).max() < 0.03
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_an_instant_is_least_squares_weighted_by_how_far_rays_are_outlying(seed: int) -> None:
+    """One joint at a time, by the projection beside its ray."""
+    rng = np.random.default_rng(seed)
+    rays = rays_to(BODY_M, (0.9, 0.6))
+    proposed_m = BODY_M + rng.normal(0.0, 0.05, 3) + rng.normal(0.0, 0.02, (12, 3))
+    away_m, found = proposed_m - proposed_m.mean(axis=0), np.zeros(4)
+    for _ in range(ROUNDS):
+        normal, right = LOOSELY.copy(), np.zeros(4)
+        for view in range(2):
+            for joint in range(12):
+                along, sure = rays.directions[view, joint], rays.confidence[view, joint]
+                across = np.eye(3) - np.outer(along, along)
+                x, _, z = away_m[joint]
+                moves = across @ np.column_stack([np.eye(3), [z, 0.0, -x]])
+                off_m = across @ (proposed_m[joint] - rays.centres_m[view])
+                spread_m = STATURE_M * (SHOWN.right + SHOWN.unsure * (1.0 - sure))
+                square = float(np.square(off_m + moves @ found).sum())
+                weight = sure / (spread_m**2 + square / OUTLYING**2)
+                normal += weight * moves.T @ moves
+                right -= weight * moves.T @ off_m
+        found = np.linalg.solve(normal, right)
+    known, moved_m = displaced_proposal.step(None, proposed_m, rays.confidence, rays, STATURE_M)
+    assert known == pytest.approx(LATELY * found)
+    off = np.linalg.norm(known / USUAL)
+    turn_x = np.column_stack([away_m[:, 2], np.zeros(12), -away_m[:, 0]])
+    back = known * max(0.0, 1.0 - SURELY / off)
+    assert moved_m == pytest.approx(proposed_m + back[:3] + back[3] * turn_x)
+    later, _ = displaced_proposal.step(known, proposed_m, rays.confidence, rays, STATURE_M)
+    assert later == pytest.approx(LATELY * found + (1.0 - LATELY) * known)
+
+
+def test_one_view_alone_does_not_say_how_far_a_proposal_is_displaced() -> None:
+    rays = rays_to(BODY_M, (0.9, 0.0))
+    known, moved_m = after(3, BODY_M + FORWARD_M, rays)
+    assert not known.any()
+    assert np.array_equal(moved_m, BODY_M + FORWARD_M)

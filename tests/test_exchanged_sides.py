@@ -2,7 +2,15 @@
 
 import numpy as np
 
-from integrator.landmarks.exchanged_sides import Exchanged, step
+from integrator.landmarks.exchanged_sides import (
+    ANEW,
+    BOTH_ASIDE,
+    PART,
+    PART_ASIDE,
+    TRUST,
+    Exchanged,
+    step,
+)
 
 FACADE_AND_FLANK = (0.0, 1.0)
 SURE = (0.001, 0.001)
@@ -54,3 +62,37 @@ def test_what_a_sure_front_is_told_to_exchange_an_unsure_one_does() -> None:
     _, sure = step(None, said, said, FACADE_AND_FLANK, SURE)
     assert unsure == Exchanged((1, 0), (1, 0))
     assert sure == Exchanged((0, 0), (0, 0))
+
+
+def test_an_instant_is_one_step_of_a_model_of_sixteen_states() -> None:
+    """Each state by itself; before it, either view's sides are drawn anew now and then."""
+    rng = np.random.default_rng(0)
+    before, aside, confused = rng.dirichlet(np.ones(16)).reshape(2, 2, 2, 2), (0.3, 0.8), (0.2, 0.1)
+    arms, legs = rng.normal(size=(2, 2, 2))
+
+    def usual(view: int, arm: int, leg: int) -> float:
+        share = aside[view]
+        part = (1 - share) * PART + share * PART_ASIDE
+        both = (1 - share) * confused[view] + share * BOTH_ASIDE
+        return {(0, 0): 1 - both - 2 * part, (1, 1): both}.get((arm, leg), part)
+
+    def drawn(known: np.ndarray, view: int) -> np.ndarray:
+        new = np.empty_like(known)
+        for state in np.ndindex(2, 2, 2, 2):
+            same = [o for o in np.ndindex(2, 2, 2, 2)
+                    if (o[1 - view], o[3 - view]) == (state[1 - view], state[3 - view])]  # fmt: skip
+            own = usual(view, state[view], state[2 + view])
+            new[state] = (1 - ANEW) * known[state] + ANEW * own * sum(known[o] for o in same)
+        return new
+
+    for known, expected in (
+        (before, drawn(drawn(before, 0), 1)),
+        (None, np.array([usual(0, a, c) * usual(1, b, d) for a, b, c, d in np.ndindex(2, 2, 2, 2)])
+         .reshape(2, 2, 2, 2)),
+    ):  # fmt: skip
+        for a, b, c, d in np.ndindex(2, 2, 2, 2):
+            expected[a, b, c, d] *= np.exp(TRUST * (arms[a, b] + legs[c, d]))
+        found, decided = step(known, arms, legs, aside, confused)
+        assert np.allclose(found, expected / expected.sum(), atol=1e-12)
+        a, b, c, d = np.unravel_index(expected.argmax(), expected.shape)
+        assert decided == Exchanged((int(a), int(b)), (int(c), int(d)))

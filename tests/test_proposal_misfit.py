@@ -105,3 +105,46 @@ def test_no_proposal_is_farther_off_than_a_landmark_may_say(far_m: float) -> Non
 def test_what_was_is_forgotten_by_the_same_share_each_instant() -> None:
     found = after(7, BODY_M, rays_to(BODY_M, (1.0, 1.0)), before=0.2)
     assert found == pytest.approx(0.2 * (1.0 - LATELY) ** 3.5)
+
+
+def test_an_instant_is_a_mean_weighted_by_how_sure_its_landmarks_are() -> None:
+    """Joint by joint; each pair of a view by its own sides or exchanged, whichever is nearer."""
+    rng = np.random.default_rng(2)
+    rays = rays_to(BODY_M)
+    sure = rng.uniform(0.0, 0.9, (2, 12))
+    proposed_m = BODY_M + rng.normal(0.0, 0.2, (12, 3))
+    proposed_m[4] += 3.0
+    rays = rays._replace(confidence=sure)
+    squares, weights = np.zeros(6), np.zeros(6)
+    for view in range(2):
+        for pair in range(6):
+            at = [2 * pair, 2 * pair + 1]
+            offs = []
+            for ends in (at, at[::-1]):
+                away = proposed_m[at] - CENTRES_M[view]
+                cross = np.cross(away, rays.directions[view, ends])
+                offs.append(np.linalg.norm(cross, axis=1) / STATURE_M)
+            nearer = min(offs, key=sum)
+            squares[pair] += (sure[view, at] * np.minimum(nearer, FARTHEST) ** 2).sum()
+            weights[pair] += sure[view, at].sum()
+    before = Misfit(0.002, rng.uniform(0.0, 0.01, 6))
+    found = proposal_misfit.step(before, proposed_m, rays, STATURE_M)
+    share = LATELY * min(1.0, weights.sum() / 12)
+    mean = squares.sum() / weights.sum()
+    assert found.whole == pytest.approx(share * mean + (1 - share) * before.whole)
+    shares = LATELY * np.minimum(1.0, weights / 2)
+    assert found.pairs == pytest.approx(shares * squares / weights + (1 - shares) * before.pairs)
+    first = proposal_misfit.step(None, proposed_m, rays, STATURE_M)
+    assert first.whole == pytest.approx(share * mean)
+
+
+def test_pairs_are_doubted_one_by_one_where_one_view_alone_has_landmarks() -> None:
+    pairs = np.array([0.0, 0.1, 0.2, 0.0, 0.07, 0.0]) ** 2
+    misfit = Misfit(0.08**2, pairs)
+    by_whole, by_pair = (
+        proposal_misfit.wider_m(misfit, rays_to(BODY_M, sure), STATURE_M)
+        for sure in ((0.8, 0.8), (0.8, 0.0))
+    )
+    assert by_whole == pytest.approx(np.full(12, WIDER * (0.08 - USUAL) * STATURE_M))
+    worse = np.repeat(np.maximum(np.sqrt(pairs), 0.08), 2)
+    assert by_pair == pytest.approx(WIDER * (worse - USUAL) * STATURE_M)

@@ -1,0 +1,116 @@
+"""Whether a proposal has front for back, by what views say of where somebody faces."""
+
+import math
+
+import numpy as np
+import pytest
+from test_proposal_misfit import BODY_M, rays_to
+
+from integrator.landmarks.landmark_rays import Rays
+from integrator.landmarks.turned_about import (
+    ANEW,
+    ANYHOW,
+    INSISTS,
+    RARELY,
+    SHARPER,
+    TRUST,
+    UNTOLD,
+    WIDE_DEG,
+    confused,
+    step,
+    yaw_deg,
+)
+from integrator.proposal.network_weights import JOINTS
+
+
+def facing(deg: float, lean_deg: float = 0.0) -> np.ndarray:
+    """Twelve joints of a trunk that faces so before a camera with the world's axes (y down)."""
+    a, b = math.radians(deg), math.radians(lean_deg)
+    joints_m = np.zeros((12, 3))
+    for i, name in enumerate(JOINTS):
+        side = 0.2 if name[0] == "l" else -0.2
+        across = side * np.array([math.cos(a), 0.0, math.sin(a)])
+        high = 0.5 if name[2:] in ("shoulder", "elbow", "wrist") else 0.0
+        joints_m[i] = across + (0.0, -high, 0.0)
+    roll = [[math.cos(b), -math.sin(b), 0.0], [math.sin(b), math.cos(b), 0.0], [0.0, 0.0, 1.0]]
+    return np.asarray(joints_m @ np.array(roll).T)
+
+
+@pytest.mark.parametrize("deg", [-170.0, -100.0, -30.0, 0.0, 45.0, 90.0, 135.0])
+def test_who_stands_upright_faces_where_shoulders_and_hips_say(deg: float) -> None:
+    """0: the left side is to the right of the picture, as of who faces the camera."""
+    assert yaw_deg(np.eye(3), facing(deg)) == pytest.approx(deg)
+    quarter = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+    assert yaw_deg(quarter, facing(deg) @ quarter) == pytest.approx(deg)
+
+
+def test_hips_and_shoulders_that_are_twisted_against_each_other_face_between() -> None:
+    twisted = facing(20.0)
+    twisted[6:] = facing(60.0)[6:]
+    assert yaw_deg(np.eye(3), twisted) == pytest.approx(40.0)
+
+
+def test_who_lies_across_the_picture_faces_as_if_they_stood() -> None:
+    for deg in (-40.0, 0.0, 40.0):
+        assert yaw_deg(np.eye(3), facing(deg, lean_deg=80.0)) == pytest.approx(deg, abs=3.0)
+
+
+def test_how_often_a_view_takes_front_for_back_falls_with_how_sure_it_is() -> None:
+    assert confused(0.0) == UNTOLD
+    assert confused(0.5) == pytest.approx(0.5)
+    assert confused(0.2) == 0.5
+    odds = 0.8 / 0.2
+    assert confused(0.8) == pytest.approx(1.0 / (1.0 + odds**SHARPER))
+    assert confused(1.0) < 1e-6
+
+
+def told(*facings: tuple[float, float]) -> Rays:
+    degs, sures = zip(*facings, strict=True)
+    return rays_to(BODY_M)._replace(facing_deg=degs, facing_confidence=sures)
+
+
+def expected(before: float, joints_m: np.ndarray, rays: Rays) -> float:
+    """The same by probabilities: a hidden Markov model of two states."""
+
+    def near(off_deg: float) -> float:
+        off_deg = math.remainder(off_deg, 360.0)
+        return math.exp(-(off_deg**2) / (2 * WIDE_DEG**2))
+
+    def says(said_deg: float, deg: float, wrong: float) -> float:
+        return (1 - wrong) * near(said_deg - deg) + wrong * near(said_deg + deg - 180.0) + ANYHOW
+
+    is_so = before + ANEW * (RARELY - before)
+    is_not = 1.0 - is_so
+    for view, (said_deg, sure) in enumerate(
+        zip(rays.facing_deg, rays.facing_confidence, strict=True)
+    ):
+        if sure > 0.0:
+            deg = yaw_deg(rays.rotations[view], joints_m)
+            is_so *= says(said_deg, deg + 180.0, confused(sure)) ** TRUST
+            is_not *= says(said_deg, deg, confused(sure)) ** TRUST
+    return is_so / (is_so + is_not)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_an_instant_is_one_step_of_a_hidden_markov_model(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    degs, sures = rng.uniform(-180.0, 180.0, 2), rng.uniform(0.4, 0.95, 2) * [1.0, seed % 3]
+    rays = told(*zip(degs.tolist(), np.minimum(sures, 0.95).tolist(), strict=True))
+    before = float(rng.uniform(0.01, 0.9))
+    joints_m = facing(float(rng.uniform(-90.0, 90.0)))
+    found, _ = step((before, False), joints_m, rays)
+    assert found == pytest.approx(expected(before, joints_m, rays))
+    assert step(None, joints_m, rays)[0] == pytest.approx(expected(RARELY, joints_m, rays))
+
+
+def test_a_proposal_is_turned_once_that_is_sure_and_until_it_is_as_surely_not_so() -> None:
+    nothing = told((0.0, 0.0), (0.0, 0.0))
+    unsure = (0.5 - ANEW * RARELY) / (1 - ANEW)
+    between = 0.5
+    assert 1.0 - INSISTS < between < INSISTS
+    for was in (True, False):
+        now, turned = step((unsure, was), BODY_M, nothing)
+        assert now == pytest.approx(between)
+        assert turned == was
+    assert step((0.999, False), BODY_M, nothing)[1]
+    assert not step((0.1, True), BODY_M, nothing)[1]
