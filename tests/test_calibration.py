@@ -5,6 +5,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from common.atomic_file import FileRefused
 from common.rig.camera import as_paper_rig
 from common.rig.rig_file import CalibrationError, load_rig
 from integrator.rig.calibration import run_markers, run_poles
@@ -116,3 +117,13 @@ def test_files_that_cannot_be_read_or_written_are_told(tmp_path: Path) -> None:
     (tmp_path / "noise.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(CalibrationError, match=r"noise\.toml"):
         run_markers(tmp_path / "noise.toml")
+
+
+def test_a_calibration_that_is_there_is_lost_only_where_it_may_be(tmp_path: Path) -> None:
+    out = tmp_path / "calibration.json"
+    out.write_text("an afternoon")
+    with pytest.raises(FileRefused, match="--force"):
+        run_poles(CONFIGS / "poles.toml", out)
+    assert out.read_text() == "an afternoon"
+    run_poles(CONFIGS / "poles.toml", out, replace=True)
+    assert load_rig(out).cameras

@@ -4,11 +4,28 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
-from common.body.body import JOINT_NAMES, POSE_INDEX, Vector, rest_pose
+from common.body.body import (
+    ELBOW,
+    HIP,
+    JOINT_NAMES,
+    KNEE,
+    POSE_INDEX,
+    SHOULDER,
+    Vector,
+    rest_pose,
+)
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
-from integrator.pose.inverse_kinematics import PLACES, pose_of
+from integrator.pose.inverse_kinematics import (
+    PLACES,
+    STRAIGHT_DEG,
+    bend,
+    pose_of,
+    trunk_of,
+    turn_deg,
+)
 from integrator.proposal.network_weights import JOINTS
 from integrator.proposal.pose_proposal import AT, pose_and_rest, trunk_axes
 
@@ -116,3 +133,32 @@ def test_a_neck_is_as_high_as_its_shoulders_say() -> None:
         pose, rest = pose_and_rest(BODY, rest_pose(), found)
         heights_m.append(joints(BODY, pose)[neck, 1] + rest[neck, 1])
     assert heights_m[1] - heights_m[0] == pytest.approx(0.03, abs=1e-3)
+
+
+@pytest.mark.parametrize("bent_deg", [3.0, -3.0, STRAIGHT_DEG + 2.0, 60.0])
+@pytest.mark.parametrize(("at", "at_bend"), [(SHOULDER, ELBOW), (HIP, KNEE)])
+def test_a_limb_bends_its_own_way_alone(bent_deg: float, at: int, at_bend: int) -> None:
+    """Elbows forwards and knees backwards; where one is nearly straight its twist stays, an elbow
+    may be over-stretched a little, and a knee is straight at most."""
+    pose = posed()
+    pose[at : at + 3] = 20.0, 35.0, 170.0
+    turned = bent_deg if at_bend == ELBOW else -bent_deg
+    upper = Rotation.from_euler("ZXY", [170.0, 20.0, 35.0], degrees=True)
+    lower = (upper * Rotation.from_euler("X", turned, degrees=True)).apply([0.0, 1.0, 0.0])
+    assert turn_deg(lower, pose, at) == pytest.approx(turned)
+    bend(pose, at, at_bend, lower)
+    if abs(bent_deg) < STRAIGHT_DEG:
+        assert pose[at + 1] == 35.0
+        stays = turned if at_bend == ELBOW else min(0.0, turned)
+        assert pose[at_bend] == pytest.approx(stays, abs=1e-6)
+    else:
+        assert pose[at + 1] == pytest.approx(35.0)
+        assert pose[at_bend] == pytest.approx(turned)
+
+
+def test_the_trunk_has_square_axes_to_the_left_up_and_ahead() -> None:
+    joints_m = twelve(posed(torso_y=30.0, torso_x=10.0))
+    axes = trunk_of(joints_m)
+    assert axes.T @ axes == pytest.approx(np.eye(3), abs=1e-12)
+    assert np.linalg.det(axes) == pytest.approx(1.0)
+    assert axes == pytest.approx(trunk_axes(BODY, posed(torso_y=30.0, torso_x=10.0)), abs=1e-6)

@@ -6,10 +6,19 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.optimize import least_squares
 
 from common.rig.camera import Rig, as_paper_rig, paper_rig, project
 from common.rig.rig_file import CalibrationError
-from integrator.rig.poles import Pole, Poles, Quality, camera_by_poles, poles
+from integrator.rig.poles import (
+    READING_SD_PX,
+    TAPE_SD_M,
+    Pole,
+    Poles,
+    Quality,
+    camera_by_poles,
+    poles,
+)
 
 SIZE = (160, 120)
 CORNERS = ((0.0, 0.0), (0.0, 1.0), (1.0, 0.0))
@@ -218,3 +227,58 @@ def test_a_pole_at_the_lens_itself_is_refused() -> None:
     measured = Poles(160, 120, 1.0, (Pole(near, 0.0, None, (1.0, 1.0)),) * 2, None, 1e-200)
     with pytest.raises(CalibrationError, match="do not tell how far cam2 stands"):
         camera_by_poles(measured, 2)
+
+
+def refitted(measured: Poles, number: int) -> np.ndarray:
+    """Distance, focal length, rise and off-centre that make the weighted squares least, by a solver
+    that knows nothing of ours."""
+    half = (measured.width / 2, measured.height / 2)
+    taped_m = measured.distance_1_m if number == 1 else measured.distance_2_m
+
+    def off(values: np.ndarray) -> np.ndarray:
+        distance_m, focal_px, rise, off_centre_px = values
+        found = []
+        for pole in measured.poles:
+            across, towards = (pole.x_m, pole.z_m) if number == 1 else (pole.z_m, -pole.x_m)
+            pixel = pole.cam1_px if number == 1 else pole.cam2_px
+            if pixel is not None:
+                deep_m = distance_m - towards
+                found.append(pixel[0] - half[0] - focal_px * across / deep_m - off_centre_px)
+                found.append(half[1] - pixel[1] - rise / deep_m)
+        if taped_m is not None:
+            found.append((taped_m - distance_m) * READING_SD_PX / TAPE_SD_M)
+        return np.array(found)
+
+    start = (taped_m or 4.0, 150.0, 180.0, 0.0)
+    return np.asarray(least_squares(off, start, xtol=1e-14, ftol=1e-14, gtol=1e-14).x)
+
+
+@pytest.mark.parametrize("taped_m", [(None, None), (4.03, 4.44)], ids=["poles", "and a tape"])
+def test_the_rig_is_that_of_the_least_weighted_squares(
+    taped_m: tuple[float | None, float | None],
+) -> None:
+    """Each camera by its own readings and its own tape, which say different things."""
+    noise = np.random.default_rng(8)
+    measured = seen(room(size=(640, 480)), CROWD, 2.2, noise, taped_m)
+    for number, camera in enumerate(poles(measured)[1].cameras, 1):
+        distance_m, focal_px, rise, off_centre_px = refitted(measured, number)
+        assert camera.name == f"cam{number}"
+        assert camera.distance_m == pytest.approx(distance_m, rel=1e-6)
+        assert camera.focal_px == pytest.approx(focal_px, rel=1e-6)
+        assert camera.height_m == pytest.approx(2.2 - rise / focal_px, rel=1e-6)
+        assert camera.off_centre_px == pytest.approx(off_centre_px, abs=1e-4)
+
+
+def test_readings_that_fit_no_rig_are_off_by_their_root_mean_square() -> None:
+    """Of columns and rows alone: a tape that lies is no misfit of the tops."""
+    measured = seen(room(), CROWD, taped_m=(4.2, None))
+    camera = camera_by_poles(measured, 1)
+    off = []
+    for pole in measured.poles:
+        assert pole.cam1_px is not None
+        deep_m = camera.distance_m - pole.z_m
+        column = camera.focal_px * pole.x_m / deep_m + camera.off_centre_px
+        row = camera.focal_px * (2.2 - camera.height_m) / deep_m
+        off += [pole.cam1_px[0] - 80.0 - column, 60.0 - pole.cam1_px[1] - row]
+    assert camera.misfit_px == pytest.approx(np.sqrt(np.mean(np.square(off))), rel=1e-6)
+    assert camera.misfit_px > 0.05
