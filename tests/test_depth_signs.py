@@ -4,11 +4,20 @@ import numpy as np
 import pytest
 from stick_posing import STATURE_PX, stick_pose
 
-from common.body.body import LIMBS
+from common.body.body import LIMB_ENDS, LIMBS
 from common.body.stick_body import ADULT, BREADTH, joints_px
 from common.notes.notes import Orientation
 from integrator.single import depth_signs
-from integrator.single.lifting import StickPicture, lift
+from integrator.single.depth_signs import (
+    CHAINS,
+    FORWARDS,
+    LEANING,
+    MOMENTUM,
+    MOTION,
+    SOFTNESS,
+    WAYS,
+)
+from integrator.single.lifting import StickPicture, lift, yaw_of
 from integrator.single.orientation import faced
 
 LENGTHS_M = ADULT.lengths * 1.75
@@ -98,3 +107,60 @@ def test_confidences_are_shares() -> None:
 def test_what_does_not_lean_is_not_sure() -> None:
     """A limb in the plane has no sign: its confidence says so."""
     assert chosen(stick_pose({})).confidence.max() < 0.75
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("known", [False, True])
+def test_a_chain_costs_what_its_segments_lean_move_and_bend(seed: int, known: bool) -> None:
+    """Each way of each chain by itself, segment by segment."""
+    rng = np.random.default_rng(seed)
+    flat_m, deep_m = rng.normal(0.0, 0.3, (10, 2)), rng.uniform(0.0, 0.5, 10)
+    yaw = rng.uniform(-3.0, 3.0)
+    forward = np.array([np.sin(yaw), 0.0, np.cos(yaw)])
+    before, turning = rng.normal(size=(2, 10, 3))
+    memory = depth_signs.init()
+    if known:
+        memory = memory._replace(directions=before, turning=turning)
+
+    def cost(chain: int, signs: np.ndarray) -> float:
+        total, ways = 0.0, []
+        for limb, sign in zip(CHAINS[chain], signs, strict=True):
+            way = np.array([*flat_m[limb], sign * deep_m[limb]])
+            ways.append(way / np.linalg.norm(way))
+            total -= LEANING * sign * FORWARDS[limb] * forward[2]
+            if known:
+                expected = before[limb] + MOMENTUM * turning[limb]
+                total += MOTION * float(np.square(ways[-1] - expected).sum())
+        upper, lower = ways
+        back = max(0.0, -float(upper @ forward))
+        bend = float(lower @ forward - (lower @ upper) * (upper @ forward))
+        total += 0.2 * back
+        if chain == 0:
+            return total + 0.8 * back
+        if chain < 3:
+            return total + max(0.0, back - 0.6) + max(0.0, -bend - 0.1)
+        return total + 2.0 * max(0.0, back - 0.3) + 2.0 * max(0.0, bend - 0.1)
+
+    found = depth_signs._costs(memory, flat_m, deep_m, forward)
+    expected = [[cost(chain, signs) for chain in range(5)] for signs in WAYS]
+    assert found == pytest.approx(np.array(expected), abs=1e-12)
+
+
+def test_the_confidence_in_a_sign_is_its_share_of_the_odds() -> None:
+    """Softmax of the costs over the ways of a chain that give the segment this sign."""
+    pose = stick_pose({}, dict.fromkeys(LIMBS, 0.7))
+    found = chosen(pose, orientation="forward_right")
+    seen = StickPicture(joints_px(ADULT, pose), float(pose[BREADTH]), LENGTHS_M, PX_PER_M)
+    pixels = seen.of_own_sides("forward_right")
+    flat_m = (pixels[LIMB_ENDS[:, 1]] - pixels[LIMB_ENDS[:, 0]]) / PX_PER_M * [1.0, -1.0]
+    deep_m = np.sqrt(np.maximum(0.0, LENGTHS_M[:10] ** 2 - np.square(flat_m).sum(axis=1)))
+    yaw = np.radians(yaw_of("forward_right", float(pose[BREADTH])))
+    forward = np.array([np.sin(yaw), 0.0, np.cos(yaw)])
+    costs = depth_signs._costs(depth_signs.init(), flat_m, deep_m, forward)
+    for chain in range(5):
+        odds = np.exp(-costs[:, chain] / SOFTNESS)
+        for i, limb in enumerate(CHAINS[chain]):
+            sign = WAYS[costs[:, chain].argmin(), i]
+            assert found.signs[limb] == sign
+            share = odds[WAYS[:, i] == sign].sum() / odds.sum()
+            assert found.confidence[limb] == pytest.approx(share)

@@ -5,8 +5,21 @@ import pytest
 from stick_posing import STATURE_PX, stick_pose
 
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS
-from common.body.stick_body import ADULT, joints_px
-from integrator.single.lifting import StickPicture, depths_m, lift, tilt_errors_deg, yaw_of
+from common.body.stick_body import (
+    ADULT,
+    HALF_HIPS,
+    HALF_SHOULDERS,
+    SHOULDERS_BELOW,
+    joints_px,
+)
+from integrator.single.lifting import (
+    StickPicture,
+    _before_m,
+    depths_m,
+    lift,
+    tilt_errors_deg,
+    yaw_of,
+)
 
 LENGTHS_M = ADULT.lengths * 1.75
 PX_PER_M = STATURE_PX / 1.75
@@ -100,3 +113,27 @@ def test_who_faces_the_right_has_the_left_shoulder_away_from_the_camera() -> Non
 def test_all_ten_limbs_lie_between_joints() -> None:
     assert LIMB_ENDS.shape == (len(LIMBS), 2)
     assert [JOINT_NAMES[i] for i in LIMB_ENDS[LIMBS.index("l_lower_leg")]] == ["l_knee", "l_ankle"]
+
+
+def test_joints_are_before_the_pelvis_by_the_sum_of_what_leads_to_them() -> None:
+    """Shoulders and hips aside by the yaw, the rest segment by segment; to the left at -90."""
+    rng = np.random.default_rng(4)
+    depth_m, yaw_deg = rng.uniform(-0.2, 0.2, 10), 35.0
+    found = _before_m(LENGTHS_M, depth_m, yaw_deg)
+    of = dict(zip(LIMBS, depth_m, strict=True))
+    sine = np.sin(np.radians(yaw_deg))
+    assert found[AT["pelvis"]] == 0.0
+    assert found[AT["neck"]] == pytest.approx(of["torso"])
+    assert found[AT["head_top"]] == pytest.approx(of["torso"] + of["head"])
+    share = 1.0 - LENGTHS_M[SHOULDERS_BELOW] / LENGTHS_M[LIMBS.index("torso")]
+    for side, sign in (("l", -1.0), ("r", 1.0)):
+        shoulder = of["torso"] * share + sign * LENGTHS_M[HALF_SHOULDERS] * sine
+        hip = sign * LENGTHS_M[HALF_HIPS] * sine
+        arm = of[f"{side}_upper_arm"], of[f"{side}_lower_arm"]
+        leg = of[f"{side}_upper_leg"], of[f"{side}_lower_leg"]
+        expected = {
+            "shoulder": shoulder, "elbow": shoulder + arm[0], "wrist": shoulder + sum(arm),
+            "hip": hip, "knee": hip + leg[0], "ankle": hip + sum(leg),
+        }  # fmt: skip
+        for name, before_m in expected.items():
+            assert found[AT[f"{side}_{name}"]] == pytest.approx(before_m), name

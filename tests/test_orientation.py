@@ -4,8 +4,20 @@ import numpy as np
 import pytest
 from stick_posing import in_profile, stick_pose
 
+from common.body.body import JOINT_NAMES
 from common.body.stick_body import ADULT, BREADTH, X, joints_px
-from integrator.single.orientation import Bearing, faced
+from common.notes.notes import Orientation
+from integrator.single.orientation import (
+    CONFIDENT_AT,
+    FADING,
+    FRONTAL,
+    INERTIA,
+    PROFILE,
+    UNKNOWN_FRONT,
+    WALKING,
+    Bearing,
+    faced,
+)
 
 STEP = {"r_upper_leg": 285.0, "r_lower_leg": 262.0, "l_upper_leg": 262.0, "l_lower_leg": 228.0}
 """A stride to the right: knees bend backwards."""
@@ -49,3 +61,43 @@ def test_a_frame_of_a_thin_trunk_is_no_profile() -> None:
     thin = in_profile(stick_pose({}))
     bearing = faced(bearing, joints_px(ADULT, thin), float(thin[BREADTH]))
     assert bearing.orientation.startswith("forward")
+
+
+def test_evidence_is_what_bends_and_steps_say_and_fades() -> None:
+    """A step of a trunk's length, three trunks to a stature; bends of a whole profile."""
+    pose = in_profile(stick_pose(STEP))
+    places = joints_px(ADULT, pose)
+    pelvis, neck = (places[JOINT_NAMES.index(name)] for name in ("pelvis", "neck"))
+    trunk_px = float(np.linalg.norm(neck - pelvis))
+    before = Bearing("right", 0.9, 0.4, 1.0, (float(pelvis[0]) - trunk_px, 50.0))
+    bends = faced(Bearing(), places, 0.4).to_right
+    assert bends > 0.0
+    found = faced(before, places, 0.5)
+    assert found.to_right == pytest.approx(FADING * 1.0 + bends + WALKING / 3.0)
+    assert found.breadth == pytest.approx(INERTIA * 0.4 + (1.0 - INERTIA) * 0.5)
+    assert found.at == pytest.approx((pelvis[0], trunk_px))
+    odds = np.exp(found.to_right / CONFIDENT_AT)
+    assert found.confidence == pytest.approx(odds / (1.0 + odds))
+
+
+@pytest.mark.parametrize(
+    ("was", "breadth", "now"),
+    [
+        ("right", FRONTAL - 0.01, "right"),
+        ("right", FRONTAL + 0.01, "forward_right"),
+        ("backward_left", PROFILE + 0.01, "backward_left"),
+        ("backward_left", PROFILE - 0.01, "right"),
+    ],
+    ids=["profile stays", "profile turns", "back stays", "back turns"],
+)
+def test_a_profile_begins_where_a_trunk_is_thin_and_ends_where_it_is_broad(
+    was: Orientation, breadth: float, now: Orientation
+) -> None:
+    places = joints_px(ADULT, in_profile(stick_pose(STEP)))
+    before = Bearing(was, 0.6, breadth, 2.0, None)
+    found = faced(before, places, breadth)
+    assert found.orientation == now
+    if now == was and was.startswith("backward"):
+        assert found.confidence == 0.6
+    if now.startswith("forward"):
+        assert found.confidence == UNKNOWN_FRONT

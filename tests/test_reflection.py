@@ -3,11 +3,19 @@
 import numpy as np
 import pytest
 
-from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
+from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
+from common.notes.notes import Orientation
 from common.rig.camera import paper_rig, project
 from integrator.single.reflection import (
+    ANEW_ASIDE_HZ,
+    ANEW_HZ,
+    CERTAIN,
+    PROPOSED_HZ,
+    SHOWN_HZ,
+    SIDEWAYS_DEG,
+    SUREST,
     Front,
     agrees,
     as_deep,
@@ -15,6 +23,7 @@ from integrator.single.reflection import (
     faces,
     front_of,
     leaning,
+    mirrored,
     seen_from_behind,
     yaw_deg,
 )
@@ -140,3 +149,59 @@ def test_a_picture_after_a_minute_without_one_is_believed(facing: float) -> None
     assert after(front, 5.0, (180.0 - facing, 0.97), 40).away == pytest.approx(
         float(facing == 0.0), abs=0.1
     )
+
+
+@pytest.mark.parametrize("way", ["toward", "away"])
+@pytest.mark.parametrize("limb", ["l_upper_arm", "r_lower_leg", "l_upper_leg"])
+def test_a_segment_that_leans_as_annotated_leans_by_as_much_as_before(limb: str, way: str) -> None:
+    """In depth its far end is as far from its near one, the other way or the same."""
+    seen = body(30.0)
+    moved = leaning(CAMERA, seen, {limb: way})
+    near, far = LIMB_ENDS[LIMBS.index(limb)]
+    forward = np.array(CAMERA.R)[2]
+    before, after = ((each[far] - each[near]) @ forward for each in (seen, moved))
+    assert after == pytest.approx(abs(before) * (1.0 if way == "away" else -1.0))
+    assert project(CAMERA, moved) == pytest.approx(project(CAMERA, seen))
+    other = mirrored(CAMERA, seen, LIMBS.index(limb))
+    assert (other[far] - other[near]) @ forward == pytest.approx(-before)
+
+
+def expected_front(away: float, yaw: float, shown: tuple[float, float] | None, dt_s: float) -> float:
+    """The same by odds."""
+    aside = abs(abs(yaw) - 90.0) <= SIDEWAYS_DEG
+    anew = 1.0 - np.exp(-dt_s * (ANEW_ASIDE_HZ if aside else ANEW_HZ))
+    away += anew * (0.5 - away)
+    said = 0.0 if aside else (PROPOSED_HZ if abs(yaw) > 90.0 else -PROPOSED_HZ)
+    if shown is not None and shown[1] > 0.5:
+        sure = min(shown[1], SUREST)
+        said -= SHOWN_HZ * np.log(sure / (1.0 - sure)) * np.cos(np.radians(shown[0]))
+    odds = away / (1.0 - away) * np.exp(np.clip(said * dt_s, -CERTAIN, CERTAIN))
+    return float(odds / (1.0 + odds))
+
+
+@pytest.mark.parametrize("yaw", [-160.0, -95.0, 20.0, 75.0])
+@pytest.mark.parametrize("shown", [None, (10.0, 0.4), (20.0, 0.6), (150.0, 0.99)])
+@pytest.mark.parametrize("dt_s", [1 / 15, 30.0])
+def test_front_or_back_is_a_model_of_two_states(
+    yaw: float, shown: tuple[float, float] | None, dt_s: float
+) -> None:
+    for away in (0.2, 0.45, 0.9):
+        now, behind = front_of(Front(away), yaw, shown, None, dt_s)
+        wanted = expected_front(away, yaw, shown, dt_s)
+        assert now.away == pytest.approx(wanted, abs=1e-12)
+        aside = abs(abs(yaw) - 90.0) <= SIDEWAYS_DEG
+        assert behind == (not aside and (wanted > 0.5) != (abs(yaw) > 90.0))
+
+
+@pytest.mark.parametrize(
+    ("named", "away", "behind_at"),
+    [("left", 0.5, ()), ("right", 0.5, ()), ("forward_left", 0.0, (150.0,)),
+     ("backward_right", 1.0, (30.0,))],
+)  # fmt: skip
+def test_the_users_word_settles_front_and_back(
+    named: Orientation, away: float, behind_at: tuple[float, ...]
+) -> None:
+    for yaw in (30.0, 150.0):
+        now, behind = front_of(Front(0.3), yaw, (0.0, 0.9), named, 1 / 15)
+        assert now.away == away
+        assert behind == (yaw in behind_at)

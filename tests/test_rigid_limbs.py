@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from common.body.body import JOINT_NAMES
-from integrator.single.rigid_limbs import with_lengths
+from integrator.single.rigid_limbs import DEPTH_TIMES, with_lengths
 
 CAMERA = np.array([0.0, 1.2, 4.0])
 SHOULDER, ELBOW, WRIST = (JOINT_NAMES.index(f"l_{name}") for name in ("shoulder", "elbow", "wrist"))
@@ -52,3 +52,34 @@ def test_a_limb_whose_ends_were_found_at_one_place_has_its_length_too() -> None:
     found[0, [ELBOW, WRIST]] = found[0, SHOULDER]
     made = with_lengths(found, standing(), CAMERA)
     assert np.isclose(np.linalg.norm(made[0, ELBOW] - made[0, SHOULDER]), 0.3)
+
+
+def test_an_arm_whose_ends_were_found_at_one_place_points_where_the_rigid_one_does() -> None:
+    found = standing()
+    found[0, ELBOW] = found[0, SHOULDER]
+    made = with_lengths(found, standing(), CAMERA)
+    assert (made[0, ELBOW] - made[0, SHOULDER]) @ [1.0, 0.0, 0.0] > 0.0, "to the same side"
+
+
+@given(st.integers(0, 1000))
+def test_a_limb_is_the_likeliest_of_its_length(seed: int) -> None:
+    """No other of that length is nearer to what was found, weighed twice as loosely in depth."""
+    rng = np.random.default_rng(seed)
+    found = standing()
+    found[0, [ELBOW, WRIST]] += rng.normal(0.0, 0.1, (2, 3))
+    made = with_lengths(found, standing(), CAMERA)[0]
+    for near, far in ((SHOULDER, ELBOW), (ELBOW, WRIST)):
+        sight = (found[0, far] - CAMERA) / np.linalg.norm(found[0, far] - CAMERA)
+        length = np.linalg.norm(made[far] - made[near])
+
+        def apart(
+            place: np.ndarray, far: int = far, sight: np.ndarray = sight
+        ) -> float:
+            away = place - found[0, far]
+            deep = away @ sight
+            return float(away @ away - deep**2 + (deep / DEPTH_TIMES) ** 2)
+
+        for _ in range(20):
+            turned = made[far] - made[near] + rng.normal(0.0, 0.03, 3)
+            other = made[near] + turned * length / np.linalg.norm(turned)
+            assert apart(made[far]) <= apart(other) + 1e-9
