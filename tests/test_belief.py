@@ -9,7 +9,7 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Box, Landmarks, Report
 from common.rig.camera import project
-from integrator.belief import is_believed
+from integrator.belief import ASTRAY, FACES, _astray, _is_turned_about, is_believed
 from integrator.pairing import Pair
 from integrator.single.reflection import yaw_deg
 
@@ -99,3 +99,39 @@ def test_a_body_that_no_view_shows_anybody_of_is_not_believed_however_it_fits() 
 def test_a_body_of_whom_one_view_shows_a_little_is_believed_where_it_fits() -> None:
     seen = Pair(report(0, BODY, 0.15), report(1, BODY, 0.35))
     assert is_believed(BODY, RIG, seen, FITS)
+
+
+@pytest.mark.parametrize("share", [0.95, 1.05])
+def test_a_body_is_astray_by_how_tall_it_is_in_the_picture(share: float) -> None:
+    """Half of the landmarks lie so many of its heights beside it, the others on it."""
+    joints_px = project(RIG.cameras[0], BODY)
+    tall_px = float(np.linalg.norm(np.ptp(joints_px, axis=0)))
+    seen_px = joints_px.copy()
+    seen_px[:8, 1] += share * ASTRAY * tall_px
+    first, second = pair(BODY)
+    assert first is not None
+    assert first.landmarks is not None
+    beside = msgspec.structs.replace(
+        first,
+        landmarks=msgspec.structs.replace(
+            first.landmarks, joints_px=tuple(map(tuple, seen_px.tolist()))
+        ),
+    )
+    found = _astray(BODY, RIG.cameras[0], beside.landmarks)
+    assert found == pytest.approx(share * ASTRAY, rel=1e-6)
+    assert is_believed(BODY, RIG, Pair(beside, second), FITS) == (share < 1.0)
+
+
+def test_an_outline_without_landmarks_says_nothing_of_how_somebody_faces() -> None:
+    """Nor does a view that is not sure; of two the nearer counts."""
+    told = [(each, camera) for each, camera in zip(pair(BODY), RIG.cameras, strict=True) if each]
+    assert not _is_turned_about(BODY, told)
+    assert _is_turned_about(turned(), told)
+    (first, camera_1), (second, camera_2) = told
+    silent = msgspec.structs.replace(second, landmarks=None)
+    assert not _is_turned_about(turned(), [(first, camera_1), (silent, camera_2)])
+    assert second.landmarks is not None
+    for confidence, is_turned in ((FACES + 0.01, True), (FACES - 0.01, False)):
+        unsure = msgspec.structs.replace(second.landmarks, facing_confidence=confidence)
+        other = msgspec.structs.replace(second, landmarks=unsure)
+        assert _is_turned_about(turned(), [(first, camera_1), (other, camera_2)]) == is_turned

@@ -1,10 +1,12 @@
 """What the person at the page asks of the integrator, on people whose pose is known."""
 
 import pytest
-from staging import NOBODY, Stage, exact, opening, silhouettes, standing
+from staging import NOBODY, PERIOD_S, RIG, Stage, exact, opening, silhouettes, standing
 
 from common.bus.control_messages import Command, Wish
-from integrator import commands
+from common.config.settings import Settings
+from common.method import DEFAULT
+from integrator import commands, merge_state
 from integrator.single.sight import Annotations
 
 
@@ -61,3 +63,13 @@ def test_what_is_for_others_is_not_answered(monkeypatch: pytest.MonkeyPatch) -> 
     others: tuple[Wish, ...] = ("start", "stop", "record", "save", "background")
     for what in others:
         assert commands.step(stage.state, Annotations(), Command(what=what))[2] is None
+
+
+def test_what_is_for_others_changes_and_answers_nothing() -> None:
+    """State and what was said come back as they were, each in its place."""
+    state = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)
+    said = Annotations(orientation="left")
+    found = commands.step(state, said, Command(what="record"))
+    assert found[0] is state
+    assert found[1] is said
+    assert found[2] is None

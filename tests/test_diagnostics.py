@@ -1,14 +1,17 @@
 """What is odd about a performance, a line each."""
 
 import msgspec
+import pytest
 
-from common.bus.messages import Box, Report
+from common.bus.messages import Agreement, Box, Report, ScaleSource
 from common.config.part_settings import BodySettings
 from common.config.settings import Settings
 from common.method import DEFAULT
 from common.rig.camera import paper_rig
 from integrator import diagnostics, merge_state
+from integrator.diagnostics import DOUBTED
 from integrator.pairing import Pair
+from integrator.rig_gate import rig_agreement
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
 
@@ -81,3 +84,33 @@ def test_a_person_partly_outside_is_counted_by_viewer() -> None:
         "viewer 2 saw the person partly outside its picture in 3 of 10 frames: "
         "what is outside is guessed"
     ]
+
+
+def test_each_way_to_be_without_a_calibration_is_named() -> None:
+    plain = merged()
+    assumed, person = (
+        diagnostics.assumed(plain._replace(scale_source=source)) for source in ("assumed", "person")
+    )
+    assert diagnostics.assumed(plain) == []
+    assert "a rig of the paper's kind is assumed" in assumed[0]
+    assert "calibrated by the person" in person[0]
+
+
+@pytest.mark.parametrize("source", ["calibrated", "person", "assumed"])
+@pytest.mark.parametrize("trusts", [True, False])
+@pytest.mark.parametrize("by", [-0.01, 0.01])
+def test_a_rig_is_doubted_that_both_views_contradict_and_the_user_does_not_insist_on(
+    source: ScaleSource, trusts: bool, by: float
+) -> None:
+    """A rig that was assumed is known to be wrong."""
+    told = Agreement(apart_mm=91.0, soles_mm=-12.0, facing_deg=33.0, believed=DOUBTED + by)
+    settings = Settings(trust_calibration=trusts)
+    state = merged()._replace(scale_source=source, settings=settings)
+    said = diagnostics.doubt(state._replace(agreement=rig_agreement.State(told=told)))
+    doubted = source != "assumed" and not trusts and by < 0.0
+    assert bool(said) == doubted
+    if doubted:
+        assert "91 mm apart" in said
+        assert "-12 mm over the floor" in said
+        assert "33 degrees" in said
+    assert diagnostics.doubt(state) == ""

@@ -9,9 +9,11 @@ from common.bus.control_messages import Ended
 from common.config.settings import Settings
 from common.method import METHODS
 from common.rig.camera import paper_rig
+from common.rig.picture_shift import Shift
 from integrator import merge_state
 from integrator.handed_over import NAME, Estate
 from integrator.opening_posture import Opening
+from integrator.rig_gate.moved_cameras import AS_IT_WAS, MovedCameras
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
 FRESH = merge_state.init(None, 1 / 15, Settings(), METHODS["default"])
@@ -76,3 +78,23 @@ def test_a_body_that_has_just_been_measured_is_left_at_once(tmp_path: Path) -> N
 def test_what_cannot_be_read_is_as_if_nothing_were_left(tmp_path: Path) -> None:
     (tmp_path / NAME).write_bytes(msgspec.msgpack.encode({"bdp": 3}))
     assert Estate(tmp_path).taken_up(FRESH) == FRESH
+
+
+def test_where_the_cameras_stand_is_where_the_rig_that_was_left_had_them(tmp_path: Path) -> None:
+    """A successor takes them for unmoved until its viewers say otherwise."""
+    moved = MovedCameras((Shift(9.0, 0.0, 0.0), AS_IT_WAS), (Shift(3.0, 1.0, 0.5), AS_IT_WAS))
+    Estate(tmp_path).leave(KNOWN._replace(stands=moved), 0.0, 9.0)
+    taken = Estate(tmp_path).taken_up(FRESH).stands
+    assert taken.now == taken.of_rig == moved.of_rig
+    assert taken.moved == ()
+
+
+def test_without_a_folder_or_a_file_nothing_is_taken_up(tmp_path: Path) -> None:
+    for folder in (None, tmp_path, tmp_path / "none"):
+        estate = Estate(folder)
+        assert estate.taken_up(FRESH) is FRESH
+        assert (estate.late_s, estate.over, estate.start_s) == (0.0, (), None)
+
+
+def test_where_nothing_can_be_written_the_run_goes_on(tmp_path: Path) -> None:
+    Estate(tmp_path / "none").leave(KNOWN, 0.0, 9.0)

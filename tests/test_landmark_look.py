@@ -16,6 +16,7 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.rig.camera import Camera, Rig, as_row, centre, paper_rig, project
 from integrator.proposal.landmark_look import FACED, JOINTS, KNOWN, MIDDLE, STANDS, Shown, look
+from integrator.proposal.silhouette_window import LONGEST_S, NEARNESS, USUAL_S, axes_of
 
 TALL_M = 1.75
 RIG = paper_rig((320, 240), (300.0, 300.0), (4.0, 5.0))
@@ -155,3 +156,33 @@ def test_from_straight_above_nothing_is_told() -> None:
     shown = shown_by(above, somebody())
     shown.joints_px[MIDDLE] = 160.0, 120.0
     assert look((shown, None), Rig(320, 240, (above, above)), TALL_M, 1 / 15) is None
+
+
+def test_each_view_says_how_near_it_is_and_how_long_ago_the_look_before_was() -> None:
+    """Stature over distance, times NEARNESS, about 0; sixths of the longest gap that is told."""
+    for tall_m in (1.0, TALL_M):
+        seen = look(both(RIG, somebody()), RIG, tall_m, 2 * USUAL_S)
+        assert seen is not None
+        for n, camera in enumerate(RIG.cameras):
+            far_m = np.linalg.norm(centre(camera) - seen.middle_m)
+            assert seen.inputs[n * KNOWN + STANDS + 3] == pytest.approx(
+                NEARNESS * tall_m / far_m - 1.0, abs=1e-6
+            )
+        assert seen.inputs[-2:].tolist() == [1.0, 1.0]
+    late = look(both(RIG, somebody()), RIG, TALL_M, 99.0)
+    assert late is not None
+    assert late.inputs[-2] == pytest.approx(LONGEST_S / USUAL_S - 1.0)
+
+
+def test_the_frame_is_camera_1s_where_both_see_and_that_of_the_view_that_is_alone() -> None:
+    first, second = both(RIG, somebody())
+    one, other = RIG.cameras
+    for views, axes in (
+        ((first, second), axes_of(one, other)),
+        ((first, None), axes_of(one, one)),
+        ((None, second), axes_of(other, other)),
+    ):
+        seen = look(views, RIG, TALL_M, 1 / 15)
+        assert seen is not None
+        assert seen.turn == pytest.approx(axes)
+        assert seen.inputs[-1] == (1.0 if None not in views else 0.0)

@@ -14,7 +14,7 @@ from common.bus.messages import Measure, Report
 from common.method import DEFAULT, PAPER
 from common.rig.camera import Camera, Rig, as_matrix, as_row, paper_rig
 from integrator import opening_posture as stage
-from integrator.opening_posture import Opening, universal_bdp
+from integrator.opening_posture import LEG_KEPT, Opening, universal_bdp
 from viewer.paper.measure import measure_front, measure_side
 
 Seen = tuple[Report | None, Report | None]
@@ -202,3 +202,44 @@ def test_bdps_without_a_facade_are_refused() -> None:
     side = Measure(height_px=66.0, centre_px=(80.0, 60.0), depth_px=5.0)
     with pytest.raises(ValueError, match="did not see the facade"):
         universal_bdp(side, side, 37.5)
+
+
+@pytest.mark.parametrize("to_floor", [True, False])
+@pytest.mark.parametrize("share", [LEG_KEPT[0] + 0.01, LEG_KEPT[1] - 0.01, LEG_KEPT[1] + 0.01, 0.4])
+def test_legs_reach_from_the_navel_to_the_floor_where_legs_could(
+    to_floor: bool, share: float
+) -> None:
+    """Both halves of both alike; the paper leaves them as the silhouette has them."""
+    navel_m = 2 * share * PERSON.r_upper_leg.height
+    known = Opening(bodies=(PERSON,) * 3, places_m=((0.1, navel_m, -0.2),) * 3)
+    method = msgspec.structs.replace(DEFAULT, legs_to_floor=to_floor)
+    found, place = stage._settled(known, 3, method)
+    assert place == pytest.approx([0.1, navel_m, -0.2])
+    assert found.measured_at_m == pytest.approx((0.1, navel_m, -0.2))
+    assert found.bdp is not None
+    fits = to_floor and LEG_KEPT[0] <= share <= LEG_KEPT[1]
+    for leg in ("r_upper_leg", "l_upper_leg", "r_lower_leg", "l_lower_leg"):
+        own = getattr(PERSON, leg).height
+        assert getattr(found.bdp, leg).height == pytest.approx(navel_m / 2 if fits else own)
+        assert getattr(found.bdp, leg).long_radius == getattr(PERSON, leg).long_radius
+    assert stage._settled(known, 4, method) == (known, None)
+
+
+def test_a_body_is_measured_anew_by_a_rig_that_is_known_only_now() -> None:
+    """The same pictures by cameras twice as far away are of a body twice as large; what a rig
+    cannot have seen is left out, and a body that was known before the run is kept."""
+    seen = measured()
+    known = Opening()
+    for _ in range(3):
+        known, _ = stage.step(known, RIG, seen, 3, PAPER)
+    far = paper_rig((160, 120), (200.0, 200.0), (8.0, 8.0))
+    found = stage.elsewhere(known, far, 3, PAPER, 1.6)
+    assert found.measured
+    assert known.bdp is not None
+    assert found.bdp is not None
+    assert stature(found.bdp) == pytest.approx(2 * stature(known.bdp), rel=0.02)
+    assert not stage.elsewhere(known, far, 4, PAPER, 1.6).measured
+    alike = looking_from(10.0)
+    assert stage.elsewhere(known, alike, 1, PAPER, 1.6) == Opening(bdp=thesis_bdp(1.6))
+    before = stage.init(PERSON)
+    assert stage.elsewhere(before, far, 3, PAPER, 1.6) == before

@@ -9,16 +9,27 @@ from rolling import BODY, ROLLED, on_one_leg, outlines, told
 
 from common.body.body import JOINT_NAMES, POSE_INDEX, Vector
 from common.body.kinematics import joints
-from common.body.proportions import body_vector
+from common.body.proportions import body_vector, stature
 from common.bus.messages import Landmarks, Report
 from common.method import DEFAULT
 from common.rig.camera import Camera, project
 from integrator.fit import proposed_pose
 from integrator.fit.proposed_pose import Before, Instant
 from integrator.pairing import Seen
-from integrator.proposal import lifting_network, pose_proposal
+from integrator.pose.inverse_kinematics import trunk_of
+from integrator.proposal import lifting_network, pose_network, pose_proposal
 from integrator.proposal.lifting_network import Lifted
-from integrator.proposal.pose_proposal import AT, CONFIDENT, Memory, PoseProposal
+from integrator.proposal.pose_proposal import (
+    AT,
+    BELIEVED,
+    BELIEVED_AFTER_S,
+    CONFIDENT,
+    HARDLY,
+    JOINTS_OFF,
+    PLACED,
+    Memory,
+    PoseProposal,
+)
 
 
 def glaring() -> tuple[Report, Report]:
@@ -99,3 +110,134 @@ def test_where_one_view_is_alone_the_person_stands_between_what_outline_and_land
     lifting(monkeypatch, alone + beyond_m)
     joined = pose_proposal.step(None, BODY, ROLLED, (first, None), 1 / 15).joints_m
     assert joined - alone == pytest.approx(np.tile(beyond_m / 2, (len(AT), 1)), abs=1e-5)
+
+
+@pytest.mark.parametrize("sure", [(0.2, 0.8), (0.9, 0.5)])
+@pytest.mark.parametrize("alone_s", [0.0, 2.0, 60.0])
+def test_outlines_and_landmarks_are_joined_by_their_odds(
+    sure: tuple[float, float], alone_s: float
+) -> None:
+    rng = np.random.default_rng(1)
+    proposed_m, lifted_m = rng.normal(size=(2, 12, 3))
+    given = np.full(12, sure[0]), np.full(12, sure[1])
+    found_m, confidence = pose_proposal._joined(
+        proposed_m, given[0], Lifted(lifted_m, given[1]), alone_s
+    )
+    assert confidence == pytest.approx(np.full(12, sum(sure) / 2))
+    share = 1.0
+    if alone_s:
+        share = min(1.0, alone_s / BELIEVED_AFTER_S)
+        hips_m = [each[6:8].mean(axis=0) for each in (proposed_m, lifted_m)]
+        place_m = hips_m[0] + PLACED * share * (hips_m[1] - hips_m[0])
+        proposed_m, lifted_m = (
+            each + place_m - own for each, own in zip((proposed_m, lifted_m), hips_m, strict=True)
+        )
+    odds = [each / (1.0 - each + HARDLY) for each in sure]
+    odds[1] *= BELIEVED * share
+    expected_m = (odds[0] * proposed_m + odds[1] * lifted_m) / sum(odds)
+    assert found_m == pytest.approx(expected_m)
+
+
+class Networks:
+    """Networks that propose and lift this, and what they were asked."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.looked: list[tuple[bool, bool]] = []
+        self.joints_m = joints(body_vector(BODY), on_one_leg())[AT]
+        self.meet = True
+        self.lifted_m = self.joints_m + 0.3
+        lifting(monkeypatch, self.lifted_m)
+        monkeypatch.setattr(pose_proposal, "look", self.look)
+        found = pose_network.Proposal(self.joints_m, np.full(12, 0.5))
+        monkeypatch.setattr(
+            pose_network, "step", lambda *_: (np.zeros(1, np.float32), found)
+        )
+
+    def look(self, masks: tuple[object, object], *_: object) -> object:
+        self.looked.append((masks[0] is not None, masks[1] is not None))
+        return "a look" if self.meet or sum(self.looked[-1]) == 1 else None
+
+
+@pytest.fixture
+def networks(monkeypatch: pytest.MonkeyPatch) -> Networks:
+    return Networks(monkeypatch)
+
+
+def both_shown(first: bool = True, second: bool = True) -> Seen:
+    made = zip((1, 2), outlines(on_one_leg()), ROLLED.cameras, (first, second), strict=True)
+    one, other = (
+        shown(told(n, mask), camera, 0.9) if there else None for n, mask, camera, there in made
+    )
+    return one, other
+
+
+def test_outlines_are_off_by_what_they_are_off_in_the_trunks_axes(networks: Networks) -> None:
+    found = pose_proposal.step(None, BODY, ROLLED, both_shown(), 1 / 15)
+    off_m = (networks.joints_m - found.joints_m) @ trunk_of(networks.joints_m)
+    assert off_m == pytest.approx(stature(BODY) * JOINTS_OFF, abs=1e-9)
+
+
+def test_landmarks_are_lifted_in_beside_one_view_and_for_who_leans_far(networks: Networks) -> None:
+    up = np.array([1.0, 0.0, 0.0])
+    plain = pose_proposal.step(None, BODY, ROLLED, both_shown(), 1 / 15, lifts=False).joints_m
+    for seen, leans, lifts in (
+        (both_shown(), None, False),
+        (both_shown(), up, True),
+        (both_shown(second=False), None, True),
+        (both_shown(first=False), None, True),
+    ):
+        found = pose_proposal.step(None, BODY, ROLLED, seen, 1 / 15, leans)
+        assert np.allclose(found.joints_m, plain) != lifts
+        assert found.memory.lifting is not None
+        assert found.memory.alone_s == (math.inf if None in seen else 0.0)
+    told_nothing = (told(1, outlines(on_one_leg())[0]), None)
+    found = pose_proposal.step(None, BODY, ROLLED, told_nothing, 1 / 15)
+    assert np.allclose(found.joints_m, plain)
+    assert found.memory.lifting is None
+    half = (both_shown()[0], told(2, outlines(on_one_leg())[1]))
+    assert pose_proposal.step(None, BODY, ROLLED, half, 1 / 15).memory.lifting is not None
+
+
+def test_one_view_is_alone_for_as_long_as_it_has_been(networks: Networks) -> None:
+    known = Memory(None, None, 2.0)
+    assert pose_proposal.step(known, BODY, ROLLED, both_shown(), 0.5).memory.alone_s == 0.0
+    alone = both_shown(second=False)
+    assert pose_proposal.step(known, BODY, ROLLED, alone, 0.5).memory.alone_s == 2.5
+
+
+@pytest.mark.parametrize("larger", [1, 2])
+def test_of_two_things_that_no_one_person_casts_the_larger_is_looked_at(
+    networks: Networks, larger: int
+) -> None:
+    networks.meet = False
+    first, second = both_shown()
+    assert first is not None
+    assert second is not None
+    first = msgspec.structs.replace(first, area_px=500 if larger == 1 else 400)
+    second = msgspec.structs.replace(second, area_px=400 if larger == 1 else 500)
+    pose_proposal.step(None, BODY, ROLLED, (first, second), 1 / 15)
+    assert networks.looked == [(True, True), (larger == 1, larger == 2)]
+
+
+def test_a_silhouette_that_is_cut_is_looked_at_only_where_none_is_whole(networks: Networks) -> None:
+    first, second = both_shown()
+    assert first is not None
+    assert second is not None
+    cut, other = (msgspec.structs.replace(each, cut=True) for each in (first, second))
+    for seen in ((cut, second), (first, other), (cut, other)):
+        pose_proposal.step(None, BODY, ROLLED, seen, 1 / 15)
+    assert networks.looked == [(False, True), (True, False), (True, True)]
+
+
+def test_joints_lie_beside_the_cylinders_where_they_are_free(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Else they are where the cylinders end."""
+    proposing(monkeypatch, 0.9, 0.9)
+    ends = []
+    for free in (True, False):
+        method = msgspec.structs.replace(DEFAULT, free_joints=free)
+        seen = (told(1, outlines(on_one_leg())[0]), told(2, outlines(on_one_leg())[1]))
+        found = proposed_pose.step(Before(), Instant(BODY, ROLLED, seen, 1 / 15, method))
+        ends.append(np.allclose(found.joints_m, joints(body_vector(BODY), found.pose)))
+    assert ends == [False, True]

@@ -9,7 +9,7 @@ from staging import report
 from common.bus.control_messages import Ended
 from common.bus.inbox import Inbox
 from common.bus.messages import Report
-from integrator.hearing.subscriber import Subscriber
+from integrator.hearing.subscriber import GATHER_S, OVERDUE_PERIODS, Subscriber
 
 PERIOD_S = 1 / 15
 OVER = tuple(Ended(viewer=viewer, frames=330) for viewer in (1, 2))
@@ -56,3 +56,65 @@ def test_a_last_report_that_comes_as_the_wait_runs_out_keeps_its_partner(
     pairs = [pair for _ in range(3) for pair in subscriber.pairs()]
     assert [None in pair for pair in pairs] == [False]
     assert subscriber.over == OVER[:1]
+
+
+class Clock:
+    """Time that passes as the test says."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now_s, self.slept_s = 100.0, list[float]()
+        monkeypatch.setattr(time, "monotonic", lambda: self.now_s)
+        monkeypatch.setattr(time, "sleep", self.sleep)
+        monkeypatch.setattr(Inbox, "take", lambda inbox, _: next(iter(inbox.drain()), None))
+
+    def sleep(self, for_s: float) -> None:
+        self.slept_s.append(for_s)
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    return Clock(monkeypatch)
+
+
+@pytest.mark.parametrize("period_s", [0.1, 0.05])
+def test_a_report_that_has_no_partner_goes_on_alone_after_two_periods(
+    clock: Clock, period_s: float
+) -> None:
+    bus = LocalBus()
+    subscriber = Subscriber(bus, (1, 2), period_s, 0.0, start_s=99.0)
+    bus.publish(report(1, clock_s=clock.now_s))
+    assert subscriber.pairs() == []
+    clock.now_s += OVERDUE_PERIODS * period_s - 0.01
+    assert subscriber.pairs() == []
+    clock.now_s += 0.02
+    (alone,) = subscriber.pairs()
+    assert (alone.first is not None, alone.second) == (True, None)
+
+
+@pytest.mark.parametrize("started", [None, 99.0], ids=["from the start", "in the place of one"])
+def test_what_comes_at_the_very_first_is_gathered_for_a_moment_and_later_no_more(
+    clock: Clock, started: float | None
+) -> None:
+    bus = LocalBus()
+    subscriber = Subscriber(bus, (1, 2), PERIOD_S, 0.0, start_s=started)
+    subscriber.pairs()
+    assert clock.slept_s == []
+    for frame in range(3):
+        bus.publish(report(1, frame=frame, clock_s=clock.now_s))
+        subscriber.pairs()
+    assert clock.slept_s == [GATHER_S]
+
+
+def test_times_of_view_2_are_set_back_and_waited_for_as_much_longer(clock: Clock) -> None:
+    bus = LocalBus()
+    subscriber = Subscriber(bus, (1, 2), 0.1, 0.0, start_s=99.0)
+    subscriber.late_s = 0.5
+    bus.publish(report(1, captured_s=7.0, clock_s=clock.now_s))
+    assert subscriber.pairs() == []
+    clock.now_s += 0.3
+    assert subscriber.pairs() == [], "longer than two periods"
+    bus.publish(report(2, captured_s=7.5, clock_s=clock.now_s))
+    (both,) = subscriber.pairs()
+    assert both.first is not None
+    assert both.second is not None
+    assert both.second.captured_s == pytest.approx(7.0)
