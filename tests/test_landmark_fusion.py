@@ -14,6 +14,16 @@ from common.bus.messages import Landmarks
 from common.rig.camera import Camera, project
 from integrator.landmarks import landmark_fusion, turned_about
 from integrator.landmarks.exchanged_sides import Exchanged
+from integrator.landmarks.joint_mixture import (
+    LEAST,
+    MOST,
+    PROPOSED,
+    SECOND,
+    SHOWN,
+    Witnesses,
+    most_probable,
+)
+from integrator.landmarks.landmark_fusion import FIRM_M
 from integrator.landmarks.landmark_rays import AT, Rays, rays_of
 from integrator.proposal.pose_network import OTHER_SIDES
 from integrator.rig.undistortion import undistorted_camera, undistorted_report
@@ -241,3 +251,77 @@ def test_a_picture_turned_upright_says_which_way_somebody_faces(
     rolled = np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]]) @ level
     off_deg = turned_about.yaw_deg(rolled, joints_m) - turned_about.yaw_deg(level, joints_m)
     assert np.cos(np.radians(off_deg)) == pytest.approx(1.0, abs=1e-3)
+
+
+def drawn_rays(seed: int) -> Rays:
+    """Views that see joints where they may be, and others, each as surely as it likes."""
+    rng, true_m = np.random.default_rng(seed), walking()
+    found = rays(true_m + rng.normal(0.0, 0.03, (15, 3)), true_m + rng.normal(0.0, 0.03, (15, 3)))
+    others = rays(true_m + 0.1, true_m - 0.1).directions
+    sure, second = rng.uniform(0.1, 0.9, (2, 12)), rng.uniform(0.0, 0.3, (2, 12))
+    second[:, 3] = 0.9 * SECOND
+    sure[0, 5] = 0.0
+    return found._replace(confidence=sure, others=others, others_confidence=second)
+
+
+def test_each_joint_is_looked_for_with_both_sides_of_either_view() -> None:
+    """`most_probable` of what is said of it, joint by joint, for all that may be exchanged."""
+    seen, rng = drawn_rays(1), np.random.default_rng(2)
+    confidence, wider_m = rng.uniform(0.1, 0.95, 12), rng.uniform(0.0, 0.05, 12)
+    proposal = landmark_fusion.Proposal(walking()[AT], confidence, wider_m, 0.7)
+    values, places_m, precisions = landmark_fusion._weighed(proposal, seen, 1.75)
+
+    def share(sure: float, between: tuple[float, float]) -> float:
+        return float(np.clip((sure - between[0]) / (between[1] - between[0]), LEAST, MOST))
+
+    for joint, first, second in np.ndindex(12, 2, 2):
+        at = [(view, joint ^ side) for view, side in enumerate((first, second))]
+        sureties = np.zeros((2, 2))
+        for view, own in at:
+            sure = seen.confidence[view, own]
+            sureties[view, 0] = share(sure, landmark_fusion.SHOWN_RIGHT) if sure else 0.0
+            other = seen.others_confidence[view, own]
+            sureties[view, 1] = min(other if other >= SECOND else 0.0, MOST - sureties[view, 0])
+        sure = float(confidence[joint])
+        right_m = PROPOSED.right + PROPOSED.unsure * (1.0 - sure)
+        shown = [1.75 * (SHOWN.right + SHOWN.unsure * (1.0 - seen.confidence[each])) for each in at]
+        witnesses = Witnesses(
+            proposal.joints_m[joint],
+            share(sure, landmark_fusion.PROPOSED_RIGHT),
+            seen.centres_m,
+            np.array([[seen.directions[each], seen.others[each]] for each in at]),
+            sureties,
+            np.array([np.hypot(right_m, wider_m[joint]), *shown]),
+            float(np.hypot(PROPOSED.roughly, wider_m[joint])),
+            0.7,
+            1.75,
+        )
+        place_m, precision = np.empty(3), np.empty(6)
+        value = most_probable(witnesses, place_m, precision)
+        assert values[joint, first, second] == pytest.approx(value)
+        assert places_m[joint, first, second] == pytest.approx(place_m)
+        assert precisions[joint, first, second] == pytest.approx(precision)
+
+
+def test_the_tighter_a_joint_is_held_the_surer_it_is() -> None:
+    """At FIRM_M as sure as Platt's offset says; doubt lowers odds by so many times."""
+    precision = np.array([[1 / FIRM_M**2, 0.0, 0.0, 1 / FIRM_M**2, 0.0, 1 / FIRM_M**2]])
+    certain, steep = landmark_fusion.PLATT
+    for wider in (1.0, 3.0):
+        sure = landmark_fusion._confidence(precision / wider**2)[0]
+        assert np.log(sure / (1.0 - sure)) == pytest.approx(certain - steep * np.log(wider))
+    doubted = landmark_fusion._doubted(0.8, 5.0)
+    assert doubted / (1.0 - doubted) == pytest.approx(0.8 / 0.2 / 5.0)
+
+
+@pytest.mark.parametrize("yaw_deg", [0.0, 30.0, 90.0])
+def test_a_view_sees_a_profile_by_how_far_the_girdles_point_along_its_sight(
+    yaw_deg: float,
+) -> None:
+    """0 of a front; 1 of a profile."""
+    joints_m = walking(yaw_deg)[AT]
+    centres_m = rays(walking(), walking()).centres_m
+    found = landmark_fusion._aside(joints_m, centres_m)
+    sine = abs(np.sin(np.radians(yaw_deg)))
+    assert found[0] == pytest.approx(sine, abs=0.06)
+    assert found[1] == pytest.approx(np.sqrt(1.0 - sine**2), abs=0.06)

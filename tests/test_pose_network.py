@@ -8,7 +8,7 @@ from glass import MIRROR, in_mirror
 from small_network import network
 
 from integrator.proposal import network_weights, pose_network
-from integrator.proposal.network_weights import JOINTS
+from integrator.proposal.network_weights import JOINTS, PoseNetwork
 from integrator.proposal.pose_network import OTHER_SIDES
 from integrator.proposal.silhouette_window import BESIDE, CELLS, Look, look
 from synth.person.skeleton import JOINTS as ALL_JOINTS
@@ -146,3 +146,69 @@ def test_parts_are_told_apart_by_pairs() -> None:
     """Left before right, joint by joint: what limbs.py and the outlines rely on."""
     assert all(a[2:] == b[2:] for a, b in list(pairwise(JOINTS))[::2])
     assert [name[0] for name in JOINTS] == ["l", "r"] * 6
+
+
+def drawn_network(seed: int) -> PoseNetwork:
+    """Weights and biases at random."""
+    rng, made = np.random.default_rng(seed), network()
+    parts = {
+        name: network_weights.to_bfloat16(rng.normal(0.0, 0.5, part.shape).astype(np.float32))
+        if part.dtype == np.uint16
+        else rng.normal(0.0, 0.5, part.shape).astype(np.float32)
+        for name, part in made._asdict().items()
+    }
+    return made._replace(**parts)
+
+
+def plain(values: np.ndarray, weights: np.ndarray, bias: np.ndarray) -> np.ndarray:
+    return values @ network_weights.from_bfloat16(weights) + bias
+
+
+@pytest.mark.parametrize("count", [0, 1, 3, 4, 5, 8, 11])
+def test_a_product_leaves_out_what_is_nought_and_nothing_else(count: int) -> None:
+    rng = np.random.default_rng(count)
+    values = np.zeros(20, np.float32)
+    values[rng.permutation(20)[:count]] = rng.normal(size=count)
+    weights = network_weights.to_bfloat16(rng.normal(size=(20, 6)).astype(np.float32))
+    bias = rng.normal(size=6).astype(np.float32)
+    before = bias.copy()
+    found = pose_network._product(values, weights, bias)
+    assert found == pytest.approx(plain(values, weights, bias), abs=1e-5)
+    assert np.array_equal(bias, before)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_step_is_two_layers_a_gated_memory_and_two_layers(seed: int) -> None:
+    """Cho et al. 2014, with the reset gate behind the product, in plain numpy."""
+    rng, n = np.random.default_rng(seed), drawn_network(seed)
+    memory, told = (rng.normal(size=k).astype(np.float32) for k in (4, len(n.fc1)))
+    hidden = np.maximum(plain(told, n.fc1, n.fc1_bias), 0.0)
+    hidden = hidden + plain(hidden, n.fc2, n.fc2_bias)
+    hidden = np.maximum(hidden, 0.0)
+    own = np.split(plain(hidden, n.gru_ih, n.gru_ih_bias), 3)
+    kept = np.split(plain(memory, n.gru_hh, n.gru_hh_bias), 3)
+    reset, update = (1.0 / (1.0 + np.exp(-(own[i] + kept[i]))) for i in (0, 1))
+    new = np.tanh(own[2] + reset * kept[2])
+    later = (1.0 - update) * new + update * memory
+    joined = np.maximum(plain(np.concatenate([hidden, later]), n.fc3, n.fc3_bias), 0.0)
+    found, said = pose_network.recurrent_step(n, memory, told)
+    assert found == pytest.approx(later, abs=1e-5)
+    assert said == pytest.approx(plain(joined, n.out, n.out_bias), abs=1e-4)
+
+
+def test_each_view_is_told_by_its_components_beside_what_is_said_of_both() -> None:
+    rng, n = np.random.default_rng(6), drawn_network(6)
+    windows = rng.random((2, CELLS)).astype(np.float32)
+    beside = rng.normal(size=BESIDE).astype(np.float32)
+    for sees in ((1.0, 1.0), (1.0, 0.0), (0.0, 1.0)):
+        beside[list(pose_network.SEES)] = sees
+        found = pose_network._inputs(n, windows, beside)
+        for view in range(2):
+            due = plain(windows[view], n.pca, n.pca_bias) if sees[view] else np.zeros(3)
+            assert found[3 * view : 3 * view + 3] == pytest.approx(due, abs=1e-3)
+        assert found[6:] == pytest.approx(beside)
+
+
+def test_probabilities_of_logits_stay_finite() -> None:
+    found = pose_network.sigmoid(np.array([-1e6, -1.0, 0.0, 1.0, 1e6]))
+    assert found == pytest.approx([0.0, 1 / (1 + np.e), 0.5, np.e / (1 + np.e), 1.0])

@@ -7,10 +7,12 @@ from posing import posed
 from staging import report, silhouettes
 
 from common.body.body import Bdp, Vector
-from common.body.proportions import stature, thesis_bdp
+from common.body.proportions import body_vector, stature, thesis_bdp
 from common.bus.messages import Report
+from common.raster.similarity import similarity
 from common.rig.camera import paper_rig
 from integrator.fit import shape_fit
+from integrator.fit.silhouette_pair import silhouettes_of
 from integrator.opening_posture import Opening, Sample
 
 SIZE = (320, 240)
@@ -103,3 +105,44 @@ def test_no_limb_becomes_wider_than_a_persons() -> None:
     found = shape_fit.fitted(PRIOR, RIG, (Sample(pose, seen_as(slab, pose)),))
     widest = shape_fit.WIDEST * PRIOR.r_lower_leg.long_radius
     assert PRIOR.r_lower_leg.long_radius < found.r_lower_leg.long_radius <= widest
+
+
+def test_a_fit_is_the_sum_of_similarities_over_samples_and_views() -> None:
+    body, other = body_vector(PRIOR), standing()
+    other[0] += 0.2
+    samples = [(pose, seen_as(slim(), pose)) for pose in (standing(), other)]
+    both = [silhouettes_of(RIG, seen) for _, seen in samples]
+    found = shape_fit.fit(
+        body,
+        np.array([pose for pose, _ in samples]),
+        both[0].views,
+        np.array([each.seen for each in both]),
+        np.array([each.seen_px for each in both]),
+        SIZE[0],
+    )
+    expected = [
+        similarity(mask, drawn)
+        for pose, _ in samples
+        for mask, drawn in zip(
+            silhouettes(pose, slim(), RIG), silhouettes(pose, PRIOR, RIG), strict=True
+        )
+    ]
+    assert found == pytest.approx(sum(expected))
+    assert min(expected) < 0.95
+
+
+def test_a_body_is_sampled_once_it_fits_and_then_every_so_many_frames() -> None:
+    """A first time at once, and the last time with all of the samples."""
+    pose, known = standing(), Opening(bdp=PRIOR)
+    fits, cut = seen_as(slim(), pose), seen_as(slim(), pose, cut=True)
+    assert shape_fit.step(known, RIG, cut, pose) == known
+    far = pose.copy()
+    far[0] += 1.0
+    assert shape_fit.step(known, RIG, fits, far) == known, "it does not fit"
+    counts = []
+    for _ in range(shape_fit.APART * shape_fit.MOST_SAMPLES + 9):
+        known = shape_fit.step(known, RIG, fits, pose)
+        counts.append(len(known.samples))
+    changes = np.flatnonzero(np.diff([0, *counts]))
+    assert changes.tolist() == [(shape_fit.APART + 1) * n for n in range(shape_fit.MOST_SAMPLES)]
+    assert known.bdp != PRIOR

@@ -10,7 +10,28 @@ from hypothesis import strategies as st
 
 from common.rig.camera import Camera, Rig, as_matrix, as_row, centre, paper_rig, project
 from common.rig.rig_file import fitted
-from integrator.proposal.silhouette_window import BESIDE, CELLS, axes_of, look, standing_m
+from integrator.proposal.silhouette_window import (
+    ASIDE,
+    BESIDE,
+    CELLS,
+    COLUMNS,
+    DOWN,
+    FAR_M,
+    FINER,
+    LONGEST_S,
+    NEAR_M,
+    NEARNESS,
+    ROWS,
+    STEEPEST,
+    UP,
+    _about,
+    _from_a_side,
+    _tell,
+    _warp,
+    axes_of,
+    look,
+    standing_m,
+)
 
 RIG = paper_rig((640, 480), (800.0, 800.0), (4.5, 4.5))
 STATURE_M = 1.75
@@ -221,3 +242,114 @@ def test_the_axes_are_where_the_camera_looks_however_it_is_rolled(deg: int) -> N
     tilted = msgspec.structs.replace(first, R=as_matrix(down @ np.array(first.R)))
     axes = axes_of(rolled(tilted, deg), RIG.cameras[1])
     assert axes == pytest.approx(np.eye(3), abs=1e-9)
+
+
+@given(st.floats(-180.0, 180.0), st.floats(20.0, 200.0))
+@settings(max_examples=30, deadline=None)
+def test_the_window_reaches_so_many_statures_from_the_middle(up_deg: float, size_px: float) -> None:
+    """Its sides upright as the body is in the picture, whatever the roll; of samples the centres."""
+    way = np.array([np.sin(np.radians(up_deg)), -np.cos(np.radians(up_deg))])
+    right = np.array([-way[1], way[0]])
+    middle = np.array([33.0, 71.0])
+    warp = _warp(np.stack([middle, middle + 7.0 * way]), size_px)
+    wide, high = FINER * COLUMNS, FINER * ROWS
+
+    def place(column: float, row: float) -> np.ndarray:
+        """Of a point in the window, in continuous pixels of the picture."""
+        return np.asarray(warp @ [column - 0.5, row - 0.5, 1.0] + 0.5)
+
+    for column, row, due in (
+        (wide / 2, high * UP / (UP + DOWN), middle),
+        (wide / 2, 0.0, middle + UP * size_px * way),
+        (wide / 2, high, middle - DOWN * size_px * way),
+        (wide, 0.0, middle + size_px * (UP * way + ASIDE * right)),
+        (0.0, high, middle - size_px * (DOWN * way + ASIDE * right)),
+    ):
+        assert place(column, row) == pytest.approx(due, abs=1e-6)
+
+
+@pytest.mark.parametrize("masked", [(True, True), (True, False), (False, True)])
+def test_axes_about_who_leans_point_to_the_head_and_to_a_camera(masked: tuple[bool, bool]) -> None:
+    """To camera 1 where it sees, x to the side where camera 2 does not stand; to the right of
+    camera 2's sight where that alone sees."""
+    up = np.array([0.6, 0.8, 0.0])
+    middle_m = np.array([0.1, 1.0, -0.2])
+    mask = np.ones((2, 2), np.bool_)
+    masks = mask if masked[0] else None, mask if masked[1] else None
+    axes = _about(masks, RIG, middle_m, up)
+    assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-9)
+    assert axes[1] == pytest.approx(up)
+    first, second = (centre(camera) - middle_m for camera in RIG.cameras)
+    if masked[0]:
+        assert axes[2] @ first > 0.9 * np.linalg.norm(first - (first @ up) * up)
+        if masked[1]:
+            assert axes[0] @ second < 0.0
+    else:
+        assert axes[0] @ second < 0.0
+        assert np.linalg.det(axes) == pytest.approx(1.0)
+    assert not masked[0] or np.linalg.det(axes) > 0.0
+
+
+def test_in_a_room_the_other_way_round_the_axes_about_who_leans_are_left_handed() -> None:
+    mask, up = np.ones((2, 2), np.bool_), np.array([0.0, 0.6, 0.8])
+    middle_m = np.array([0.1, 1.0, -0.2])
+    plain = _about((mask, mask), RIG, middle_m, up)
+    glass = _about((mask, mask), in_mirror(RIG), middle_m * MIRROR, up * MIRROR)
+    assert glass == pytest.approx(plain * MIRROR, abs=1e-9)
+    assert np.linalg.det(glass) == pytest.approx(-1.0)
+    one = _about((mask, None), in_mirror(RIG), middle_m * MIRROR, up * MIRROR)
+    assert np.linalg.det(one) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("lean_deg", [0.0, 40.0])
+@pytest.mark.parametrize("steeper", [0, 1])
+def test_a_view_along_the_body_is_left_out_where_it_is_the_steeper_and_too_steep(
+    steeper: int, lean_deg: float
+) -> None:
+    masks = np.ones((2, 2), np.bool_), np.ones((2, 2), np.bool_)
+    middle_m = np.array([0.0, 1.0, 0.0])
+    away = centre(RIG.cameras[steeper]) - middle_m
+    away /= np.linalg.norm(away)
+    side = np.array([0.0, 1.0, 0.0])
+    side = side - (side @ away) * away
+    for rise, out in ((STEEPEST - 0.02, False), (STEEPEST + 0.02, True)):
+        up = rise * away + np.sqrt(1.0 - rise**2) * side / np.linalg.norm(side)
+        first, second = _from_a_side(masks, RIG, middle_m, up)
+        assert (first is None) == (out and steeper == 0)
+        assert (second is None) == (out and steeper == 1)
+    alone = (masks[0], None) if steeper == 0 else (None, masks[1])
+    assert _from_a_side(alone, RIG, middle_m, up) == alone
+
+
+def test_a_view_says_where_its_camera_is_and_how_large_the_person_is_there() -> None:
+    turn, away_m, said = (
+        np.linalg.qr(np.arange(9.0).reshape(3, 3) ** 2)[0],
+        np.array([1, 2, -2.0]),
+        np.zeros(5, np.float32),
+    )
+    _tell(turn, away_m, 1.5, said)
+    assert said[0] == 1.0
+    assert said[1:4] == pytest.approx(turn @ away_m / 3.0, abs=1e-6)
+    assert said[4] == pytest.approx(NEARNESS * 1.5 / 3.0)
+
+
+@pytest.mark.parametrize("since_s", [0.0, 0.1, LONGEST_S, 9.0])
+def test_a_gap_is_said_in_frames_and_no_longer_than_it_may_be(since_s: float) -> None:
+    mask = drawn(RIG.cameras[0], (640, 480))
+    found = look((mask, None), RIG, STATURE_M, since_s)
+    assert found is not None
+    assert found.beside[-1] == pytest.approx(min(since_s, LONGEST_S) * 15.0 - 1.0, abs=1e-6)
+    assert found.beside[5:10].tolist() == [0.0] * 5
+
+
+def test_who_seems_to_stand_too_near_or_too_far_is_looked_for_at_the_bounds() -> None:
+    """A level camera; the feet just under its horizon, or at its own."""
+    camera = RIG.cameras[0]
+    for rows, far_m in (((200, 242), FAR_M), ((100, 200), FAR_M), ((2, 478), None)):
+        mask = np.zeros((480, 640), np.bool_)
+        mask[rows[0] : rows[1], 310:330] = True
+        found = standing_m(mask, camera)
+        flat_m = float(np.hypot(*(found - centre(camera))[[0, 2]]))
+        lens_m = centre(camera)[1]
+        due = lens_m * 800.0 / (rows[1] - 240.0) if far_m is None else far_m
+        assert flat_m == pytest.approx(max(due, NEAR_M), rel=0.01)

@@ -8,9 +8,10 @@ import numpy as np
 from posing import posed
 from rolling import ROLLED, on_one_leg, outlines, told
 
+from common.raster.kernel import view_of
 from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
-from common.rig.camera import project
+from common.rig.camera import centre, project
 from integrator.fit import visual_hull
 from integrator.pairing import Pair
 
@@ -118,3 +119,65 @@ def test_a_rehearsal_compiles_what_a_doubtful_pose_needs() -> None:
         cwd=Path(__file__).parent,
     )
     assert rehearsal.stdout.split() == ["1", "0"]
+
+
+def test_a_cell_counts_the_views_that_show_it_covered() -> None:
+    """-1 where a view shows the room there; what is outside a picture or behind is not judged."""
+    masks = outlines(on_one_leg())
+    corner_m = np.array([-0.6, 0.05, -0.6])
+    full = np.zeros((24, 40, 24), np.int8)
+    full[3, 4, 5] = -1
+    due = full.copy()
+    places_m = corner_m + (np.stack(np.indices(full.shape), axis=-1) + 0.5) * visual_hull.CELL_M
+    for mask, camera in zip(masks, ROLLED.cameras, strict=True):
+        u, v = project(camera, places_m.reshape(-1, 3)).T.reshape(2, *full.shape)
+        inside = (u >= 0) & (v >= 0) & (u < mask.shape[1]) & (v < mask.shape[0])
+        shown = np.zeros(full.shape, np.bool_)
+        shown[inside] = mask[v[inside].astype(int), u[inside].astype(int)]
+        due[inside & shown & (due >= 0)] += 1
+        due[inside & ~shown & (due >= 0)] = -1
+        visual_hull._carve(full, corner_m, view_of(camera), mask)
+        assert np.array_equal(full, due)
+    assert {-1, 0, 2} <= set(np.unique(full).tolist()) | {0}
+
+
+def test_what_stands_behind_a_camera_is_not_judged_by_it() -> None:
+    full = np.zeros((4, 4, 4), np.int8)
+    camera = ROLLED.cameras[0]
+    behind_m = centre(camera) - np.array(camera.R)[2] * 2.0
+    visual_hull._carve(full, behind_m, view_of(camera), outlines(on_one_leg())[0])
+    assert not full.any()
+
+
+def test_of_two_pieces_the_one_of_more_volume_times_height_is_a_person() -> None:
+    """A box that is low and broad, and one that is as large and tall; an arm that one view alone
+    shows belongs to what it hangs on, as far as an arm reaches."""
+    full = np.zeros((60, 40, 60), np.int8)
+    full[5:15, 0:4, 5:15] = 2
+    full[40:45, 2:18, 40:45] = 2
+    full[45:58, 10, 42] = 1
+    full[15:18, 0, 5] = 1
+    found = visual_hull._largest(full)
+    kept = np.zeros(full.shape, np.bool_)
+    kept[tuple(found.T)] = True
+    assert kept[40:45, 2:18, 40:45].all()
+    assert not kept[:20].any()
+    reach = visual_hull.REACH_CELLS
+    assert kept[45 : 45 + reach, 10, 42].all()
+    assert not kept[45 + reach :, 10, 42].any()
+    assert not len(visual_hull._largest(np.zeros((4, 4, 4), np.int8)))
+
+
+def test_little_clutter_is_left_as_it_is() -> None:
+    """Its share of a silhouette is what counts, to either side of the bound."""
+    first, second = outlines(on_one_leg())
+    area = int(second.sum())
+    for share, is_clutter in ((0.0, False), (3.0, True)):
+        spoilt = second.copy()
+        rows = int(np.ceil(share * visual_hull.CLUTTER_SHARE * area / 20))
+        spoilt[10 : 10 + rows, 0:20] = True
+        pair = Pair(told(1, first), told(2, spoilt))
+        found = visual_hull.cleaned(ROLLED, pair)
+        assert found.clutter == is_clutter
+        if not is_clutter:
+            assert found.pair == pair
