@@ -12,13 +12,14 @@ from hypothesis import strategies as st
 from animator.page.inset import (
     NIGHT,
     SEEN,
+    TINT,
     Image,
     draw_contours,
     inset,
     limb_contours,
     limb_ends,
 )
-from animator.scene import Figure
+from animator.scene import Figure, limb_colours
 from common.body.body import LIMBS, POSE_INDEX, Vector, rest_pose
 from common.body.kinematics import segments
 from common.body.proportions import body_vector, stature, thesis_bdp
@@ -193,3 +194,52 @@ def test_a_rehearsal_compiles_what_draws_a_body() -> None:
         [sys.executable, "-c", REHEARSED], capture_output=True, text=True, check=True, timeout=300
     )
     assert told.stdout.split() == ["1", "1", "1"]
+
+
+def covered(left_half: bool = True) -> Report:
+    mask = np.zeros((60, 320), np.bool_)
+    mask[:, :160] = left_half
+    return Report(frame=0, captured_s=0.0, clock_s=0.0, viewer=1, width=320, height=60,
+                  silhouette=pack(mask), box=None)  # fmt: skip
+
+
+def test_a_silhouette_tints_the_picture_and_is_painted_over_nothing_without_one() -> None:
+    """A share of its colour over a grey picture; all of it over the night."""
+    grey = np.full((30, 160, 3), 100, np.uint8)
+    jpeg = cv2.imencode(".jpg", grey, [cv2.IMWRITE_JPEG_QUALITY, 98])[1].tobytes()
+    picture = Picture(frame=0, captured_s=0.0, clock_s=0.0, viewer=1, jpeg=jpeg)
+    over = inset(covered(), picture).astype(float)
+    assert over[30, 40] == pytest.approx(100 + TINT * (SEEN - 100.0), abs=3)
+    assert over[30, 280] == pytest.approx([100] * 3, abs=3)
+    alone = inset(covered(), None).astype(float)
+    assert alone[30, 40] == pytest.approx(np.array(SEEN, float), abs=1)
+    assert alone[30, 280] == pytest.approx(np.array(NIGHT, float), abs=1)
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_a_contour_is_drawn_at_its_places_in_the_colour_of_its_limb(times: int) -> None:
+    """A pixel's centre is at a half; the first limb's, and no other's."""
+    image = np.zeros((60 * times, 60 * times, 3), np.uint8)
+    square = np.array([[10.5, 20.5], [40.5, 20.5], [40.5, 50.5], [10.5, 50.5]])
+    draw_contours(image, [square, *[np.empty((0, 2))] * (len(LIMBS) - 1)], 60)
+    drawn = np.argwhere(image.any(axis=2))
+    colour = limb_colours()[0].astype(float)
+    strong = np.argwhere((image >= 0.45 * colour).all(axis=2))
+    assert np.corrcoef(image.max(axis=(0, 1)), colour)[0, 1] > 0.99
+    low, high = 10.5 * times - 0.5, 40.5 * times - 0.5
+    assert strong[:, 1].min() == pytest.approx(low, abs=0.5)
+    assert strong[:, 1].max() == pytest.approx(high, abs=0.5)
+    assert strong[:, 0].min() == pytest.approx(20.5 * times - 0.5, abs=0.5)
+    assert drawn[:, 0].max() == pytest.approx(50.5 * times - 0.5, abs=1.5)
+
+
+def test_a_limb_in_a_ball_and_a_section_are_hulls_as_broad_as_they_are() -> None:
+    """Pixels of a contour are of both axes: an arm's end is round."""
+    ends = limb_ends(Figure(BDP, T_POSE))
+    contours = limb_contours(RIG.cameras[0], ends)
+    assert [contour.shape[1] for contour in contours] == [2] * len(LIMBS)
+    arm = contours[LIMBS.index("l_lower_arm")]
+    broad_px = np.ptp(arm[:, 1])
+    assert broad_px == pytest.approx(2 * BDP.l_lower_arm.radius * PX_PER_M, rel=0.1)
+    behind = ends + np.array([0.0, 0.0, 9.0])
+    assert [len(contour) for contour in limb_contours(RIG.cameras[0], behind)] == [0] * len(LIMBS)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from animator.overlay import LEAST_HEIGHT_PX, draw_stick, overlay, side_view
+from animator.overlay import BELOW_M, LEAST_HEIGHT_PX, TALL_M, draw_stick, overlay, side_view
 from animator.scene import LEFT, RIGHT
 from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
@@ -103,3 +103,37 @@ def test_a_joint_far_outside_the_picture_is_no_fault() -> None:
     joints_px = in_picture(body())
     joints_px[3] = (1e12, -1e12)
     assert overlay(GREY, None, joints_px, body(), SURE).shape[0] == LEAST_HEIGHT_PX
+
+
+@pytest.mark.parametrize("times", [1, 2, 4])
+def test_lines_are_as_broad_as_the_picture_is_large(times: int) -> None:
+    """Two pixels in one of 240 rows, within a white one of three; both scale together."""
+    image = np.full((240 * times, 320 * times, 3), 90, np.uint8)
+    joints_px = np.tile([160.0 * times, 20.0 * times], (15, 1))
+    ends = [JOINT_NAMES.index(name) for name in ("l_elbow", "l_wrist")]
+    joints_px[ends] = np.array([[100.0, 200.0], [300.0, 200.0]]) * times
+    draw_stick(image, joints_px, SURE)
+    column = image[:, 200 * times].astype(int)
+    coloured = (np.abs(column - LEFT[::-1]).max(axis=1) < 60).sum()
+    touched = (column != 90).any(axis=1).sum()
+    assert coloured == pytest.approx(2 * times, abs=1)
+    assert touched == pytest.approx(3 * times + 3.5, abs=1.5), "and what is soft at its edges"
+    disc = (image[:, 300 * times].astype(int) != 90).any(axis=1).sum()
+    assert disc == pytest.approx(5 * times + 2, abs=2), "a joint's"
+    assert (image == 255).all(axis=2).any(), "white beside it"
+
+
+def test_from_the_side_the_body_stands_in_the_middle_and_limbs_have_their_breadth() -> None:
+    """What is before the pelvis is to its left; the trunk is a tenth of the height broad."""
+    high = 480
+    view = side_view(body(l_shoulder_x=90.0, l_shoulder_z=180.0), SURE, high)
+    empty = side_view(NOBODY_M, SURE, high)
+    changed = (view != empty).any(axis=2)
+    px = high / TALL_M
+    trunk_row = round(high * (1 - BELOW_M / TALL_M) - px * 1.15)
+    columns = np.flatnonzero(changed[trunk_row])
+    assert columns.mean() == pytest.approx(view.shape[1] / 2, abs=4)
+    tall_px = px * float(np.ptp(body()[:, 1]))
+    assert np.ptp(columns) + 1 == pytest.approx(2 * 0.05 * tall_px + 3, abs=4)
+    hand = where(view, LEFT)
+    assert hand[:, 0].min() < view.shape[1] / 2 - 0.4 * px
