@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from acting import perform, performances, standing
 
+from recognizer import events
 from recognizer.events import finish, init, step
+from recognizer.features import bearings
 from recognizer.path_network import CHANGE, ENTER, EXIT, LAST, PathNetwork, advance
 from recognizer.performance_judge import Event
 from recognizer.postures import DensityModel
@@ -255,3 +257,26 @@ def move(transition: np.ndarray, i: int, j: int) -> float:
     if i >= 4 and j >= 4:
         return 0.0 if i == j else -CHANGE
     return -ENTER if i >= 4 else -EXIT
+
+
+def test_what_a_frame_shows_is_its_vector_and_how_fast_limbs_turn(
+    model: DensityModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By all rows so far; how far the body goes counts twice as much as how far limbs turn."""
+    heard: list[tuple[np.ndarray, float]] = []
+
+    def emissions(seen: np.ndarray, speed: float, *_: np.ndarray) -> np.ndarray:
+        heard.append((seen.copy(), speed))
+        return np.zeros(5 * len(model.names) + 2)
+
+    monkeypatch.setattr(events, "emissions", emissions)
+    rows = perform("walk_toward", performer=9)[:20]
+    state = init(model)
+    for row in rows:
+        state, _ = step(state, row)
+    every = bearings(rows)
+    for at, (seen, speed) in enumerate(heard):
+        assert seen == pytest.approx(every[at])
+        change = every[at] - every[max(at - events.SPEED_FRAMES, 0)]
+        change[-3:] = 2.0 * every[at, -3:]
+        assert speed == pytest.approx(np.linalg.norm(change))

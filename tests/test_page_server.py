@@ -310,3 +310,32 @@ def test_a_server_that_never_listens_is_not_waited_for_for_ever(
     monkeypatch.setattr(PageServer, "_run", lambda *_: None)
     with pytest.raises(PageError, match="it does not answer"):
         PageServer(free_port(), list)
+
+
+def test_text_says_how_it_is_written_and_pictures_do_not(server: PageServer) -> None:
+    with urllib.request.urlopen(f"{server.address}/page.js") as answer:
+        assert answer.headers["Content-Type"] == "text/javascript; charset=utf-8"
+    headers = page_server._headers("image/png", b"1234")
+    assert headers["Content-Type"] == "image/png"
+    assert headers["Content-Length"] == "4"
+
+
+def test_what_a_browser_says_is_heard_as_bytes_whether_it_was_text_or_not(
+    server: PageServer,
+) -> None:
+    with connect(socket_of(server)) as browser:
+        browser.recv(timeout=5)
+        browser.send("as text")
+        browser.send(b"as bytes")
+        assert [server.asked.get(timeout=5) for _ in range(2)] == [b"as text", b"as bytes"]
+
+
+def test_no_port_is_taken_where_none_is_named() -> None:
+    with pytest.raises(PageError, match=r"page\.port is 0"):
+        PageServer(0, lambda: [])
+
+
+def test_a_name_that_is_none_is_named_with_its_port() -> None:
+    port = free_port()
+    with pytest.raises(PageError, match=rf"port {port} of no\.such\.host\.invalid: "):
+        PageServer(port, lambda: [], Entrance("no.such.host.invalid", token=TOKEN))

@@ -11,10 +11,15 @@ import pytest
 from local_bus import LocalBus
 
 from common.bus.control_messages import ClockAnswer, ClockQuestion, Pulse
+from common.bus.inbox import Inbox
 from common.bus.messages import Body, Posture
+from common.bus.rate import Pace
 from common.config.settings import Settings
-from recognizer.__main__ import SHIPPED, init, run, step
-from recognizer.model_file import load
+from recognizer import events
+from recognizer.__main__ import SHIPPED, init, model_of, run, step, words
+from recognizer.events import Doing
+from recognizer.model_file import ModelError, load
+from recognizer.performance_judge import Event
 from tritrack.live.recorded import SoFar
 from tritrack.offline.lockstep import Decoders, track_clip
 
@@ -121,3 +126,80 @@ def test_a_camera_of_60_frames_a_second_shows_no_slow_motion(clip: Path) -> None
     slow, fast = told(bodies), told(quick)
     assert fast[-1].name == slow[-1].name == "raise_right_lateral"
     assert (fast[-1].doing, fast[-1].times) == (slow[-1].doing, slow[-1].times)
+
+
+def a_body(frame: int) -> Body:
+    return Body(frame=frame, captured_s=frame / 15, clock_s=0.0, status="empty", views="both")
+
+
+class Scripted:
+    """Events in the place of those of a network, at the calls of `step` that they are told."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, events_at: dict[int, Event]) -> None:
+        self.call = -1
+
+        def step(state: object, _row: object) -> tuple[object, Doing]:
+            self.call += 1
+            return state, Doing("", 0, events_at.get(self.call))
+
+        monkeypatch.setattr(events, "step", step)
+        monkeypatch.setattr(events, "finish", lambda _: events_at.get(-1))
+
+
+def test_an_event_is_told_in_the_frames_and_seconds_of_the_stream(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its first and last count calls; the stream's frames begin at 700."""
+    Scripted(monkeypatch, {30: Event("squat", 5, 25, 0.75, 2)})
+    postures = told([a_body(700 + n) for n in range(40)])
+    (event,) = [posture.event for posture in postures if posture.event]
+    assert (event.onset, event.end) == (705, 725)
+    assert (event.onset_s, event.end_s) == pytest.approx((47.0, 725 / 15))
+    assert (event.name, event.posterior, event.times) == ("squat", 0.75, 2)
+    assert words(event) == "47.0 to 48.3 s: squat, 2 times (75% sure)"
+    once = msgspec.structs.replace(event, times=1)
+    assert words(once) == "47.0 to 48.3 s: squat (75% sure)"
+
+
+@pytest.mark.parametrize("last", [None, Event("squat", 1, 2, 0.9, 1)])
+def test_a_run_ends_with_what_its_end_cuts_off_if_anything(
+    monkeypatch: pytest.MonkeyPatch, last: Event | None
+) -> None:
+    """Each body is answered, its delay by the integrator's clock; each beat says the newest event."""
+    delays: list[float] = []
+    monkeypatch.setattr(Pace, "done", lambda _, taken_s, now_s: delays.append(now_s - taken_s))
+    Scripted(monkeypatch, {} if last is None else {-1: last})
+    bus, stop = LocalBus(), threading.Event()
+    bus.answer(ClockQuestion, lambda _: ClockAnswer(now_s=time.monotonic() + 100.0))
+    heard, pulses = bus.subscribe(Posture), bus.subscribe(Pulse)
+    given = [a_body(n) for n in range(3)]
+
+    def take(inbox: Inbox[Body], _wait_s: float) -> Body | None:
+        if given:
+            return msgspec.structs.replace(given.pop(0), clock_s=time.monotonic() + 100.0)
+        stop.set()
+        return None
+
+    monkeypatch.setattr(Inbox, "take", take)
+    run(load(SHIPPED), Settings(), bus, 1 / 15, stop)
+    said = heard.drain()
+    assert [each.frame for each in said] == [0, 1, 2] + ([-1] if last else [])
+    assert [each.event.name for each in said if each.event] == (["squat"] if last else [])
+    assert len(delays) == 3
+    assert max(map(abs, delays)) < 1.0
+    beats = pulses.drain()
+    assert beats[0].state == "ready"
+    assert beats[-1].state == "ended"
+
+
+def test_a_model_that_does_not_know_the_clips_posture_is_refused_by_name(tmp_path: Path) -> None:
+    assert model_of(Settings()).names == load(SHIPPED).names
+    assert model_of(Settings(mode="paper")).card.recognizer == "paper"
+    assert model_of(Settings(), "squat").names == load(SHIPPED).names
+    with pytest.raises(ModelError, match="other postures than 'handstand'.*squat"):
+        model_of(Settings(), "handstand")
+    copy = tmp_path / "mine.npz"
+    shutil.copy(SHIPPED, copy)
+    own = msgspec.structs.replace(Settings().recognizer, model=str(copy))
+    with pytest.raises(ModelError, match="mine.npz"):
+        model_of(Settings(recognizer=own), "handstand")
