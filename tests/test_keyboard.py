@@ -1,6 +1,7 @@
 """The retouching page by keyboard alone: in words of the page, and with a browser's own keys."""
 
 from pathlib import Path
+from unittest.mock import MagicMock
 
 import pytest
 
@@ -10,7 +11,7 @@ from browser import Tab, open_tab, saved, waited
 from test_retouch import CHROMIUM, filmed, page, said
 from test_take import ARM, WRIST
 
-from animator.retouching.keyboard import KEYS, Key, spoken_keys
+from animator.retouching.keyboard import KEYS, Key, bind, spoken_keys
 from animator.retouching.retouch import RetouchPage
 from common.body.body import JOINT_NAMES, LIMB_ENDS
 from common.notes.notes import Notes, held
@@ -138,3 +139,20 @@ def seen(tab: Tab, words: str) -> str:
     """The page's text once it has these words, or in the end."""
     waited(tab, lambda _, text: words in text, 20.0)
     return tab.text()
+
+
+def test_each_key_of_a_browser_does_its_deed() -> None:
+    gui, page = MagicMock(), MagicMock()
+    bind(gui, page)
+    given = gui.add_command.call_args_list
+    assert [(each.args[0], each.kwargs) for each in given] == [
+        (one.does, {"hotkey": one.letter, "modifier": "shift" if one.shift else None})
+        for one in KEYS
+    ]
+    triggers = gui.add_command.return_value.on_trigger.call_args_list
+    for one, trigger in zip(KEYS, triggers, strict=True):
+        expected = MagicMock()
+        one.deed(expected)
+        page.reset_mock()
+        trigger.args[0](None)
+        assert page.mock_calls == expected.mock_calls, one.does

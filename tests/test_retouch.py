@@ -266,3 +266,25 @@ def seen_from_the_side(joints_m: np.ndarray, joints: list[int]) -> np.ndarray:
     """Where in the room, to the right and up, the middle of some joints is drawn."""
     middle = (joints_m[joints] - joints_m[0] * (1.0, 0.0, 1.0)).mean(axis=0)
     return np.array([TALL_M * SIZE[0] / SIZE[1] + GAP_M - middle[2], middle[1]])
+
+
+def test_what_is_said_or_undone_stops_the_player_and_is_shown_at_once(
+    page: RetouchPage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So does going to a frame; the first is shown as the page opens."""
+    heard: list[str] = []
+    monkeypatch.setattr(page._player, "stop", lambda: heard.append("stop"))
+    monkeypatch.setattr(page, "_show", lambda: heard.append("show"))
+    for deed in (lambda: page.say(Notes()), page.undo, lambda: page.go_to(3)):
+        heard.clear()
+        deed()
+        assert heard == ["stop", "show"]
+    heard.clear()
+    page.go_to(None)
+    assert heard == ["stop"]
+
+
+def test_the_first_frame_with_a_pose_is_shown_as_the_page_opens(page: RetouchPage) -> None:
+    assert page._controls._slider.value == int(page.take.frame[page._row])
+    assert page._easel._balls.visible
+    assert np.array(page._easel._balls.batched_positions).any()
