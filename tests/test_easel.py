@@ -144,9 +144,7 @@ def test_all_of_it_is_seen_in_a_window_of_any_shape(room: Room, aspect: float) -
 def dragged(room: Room, phase: str, joint: int | None, pointer: tuple[float, float, float]) -> None:
     """By a spectator 5 m before the picture's corner."""
     client = SimpleNamespace(camera=SimpleNamespace(position=(0.0, 0.0, 5.0)))
-    event = SimpleNamespace(
-        instance_index=joint, client=client, end_position=pointer, phase=phase
-    )
+    event = SimpleNamespace(instance_index=joint, client=client, end_position=pointer, phase=phase)
     asyncio.run(room.easel._dragged(event))
 
 

@@ -67,7 +67,8 @@ def test_what_a_sure_front_is_told_to_exchange_an_unsure_one_does() -> None:
 def test_an_instant_is_one_step_of_a_model_of_sixteen_states() -> None:
     """Each state by itself; before it, either view's sides are drawn anew now and then."""
     rng = np.random.default_rng(0)
-    before, aside, confused = rng.dirichlet(np.ones(16)).reshape(2, 2, 2, 2), (0.3, 0.8), (0.2, 0.1)
+    before = rng.dirichlet(np.ones(16)).reshape(2, 2, 2, 2)
+    aside, confused = (0.3, 0.8), (0.2, 0.1)
     arms, legs = rng.normal(size=(2, 2, 2))
 
     def usual(view: int, arm: int, leg: int) -> float:

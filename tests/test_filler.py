@@ -12,7 +12,7 @@ def test_standing_is_the_median_of_how_all_sequences_open() -> None:
     opening = [[[0.0], [1.0], [2.0]], [[1.0], [2.0], [3.0]], [[90.0], [90.0], [90.0]]]
     shown = [[np.array([*one, [500.0]]) for one in opening[:2]], [np.array(opening[2])]]
     mean, variance = standing(shown)
-    assert OPENING_POSES == len(opening[0])
+    assert len(opening[0]) == OPENING_POSES
     assert mean.tolist() == [2.0]
     assert variance == pytest.approx([(NORMAL_MAD * 1.0) ** 2])
 

@@ -230,7 +230,7 @@ def test_a_foot_stands_that_is_down_for_long_enough_to_the_very_row(
     rows: tuple[int, int], stands: bool
 ) -> None:
     """At 20 Hz four rows last 0.15 s, however that is rounded; three only touch the floor."""
-    assert STANDS_S == pytest.approx(3 / 20.0)
+    assert pytest.approx(3 / 20.0) == STANDS_S
     padded = (rows[0] - 1, rows[1] + 1)  # while it comes down and goes up it is too fast
     assert bool(stood(padded, 20.0)) == stands
 

@@ -1,6 +1,6 @@
 """The forward algorithm, held against the sum over all paths."""
 
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def by_all_paths(start: np.ndarray, transition: np.ndarray, logs: np.ndarray) ->
     for path in product(range(start.shape[1]), repeat=len(logs)):
         seen = np.exp(sum(logs[at, :, state] for at, state in enumerate(path)))
         way = start[:, path[0]]
-        for i, j in zip(path, path[1:], strict=False):
+        for i, j in pairwise(path):
             way = way * transition[:, i, j]
         total += way * seen
     return np.asarray(np.log(total))

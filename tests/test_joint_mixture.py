@@ -201,7 +201,8 @@ def starts(w: Witnesses) -> Iterator[np.ndarray]:
 
 def expected_place(w: Witnesses) -> tuple[np.ndarray, float, np.ndarray]:
     found = []
-    for here in starts(w):
+    for start in starts(w):
+        here = start
         for _ in range(ROUNDS):
             _, normal, side = weighed(w, here)
             here = np.linalg.solve(normal, side)

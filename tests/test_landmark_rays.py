@@ -12,7 +12,7 @@ from integrator.landmarks.landmark_rays import AT, rays_of
 from integrator.proposal.network_weights import JOINTS
 
 rng = np.random.default_rng(5)
-JOINTS_M, SECOND_M = rng.uniform(-0.5, 0.5, (2, 15, 3)) + (0.0, 1.0, 0.0)
+JOINTS_M, SECOND_M = rng.uniform(-0.5, 0.5, (2, 15, 3)) + np.array([0.0, 1.0, 0.0])
 SURE, LESS = rng.uniform(0.1, 0.9, (2, 15))
 
 

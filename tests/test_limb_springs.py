@@ -83,7 +83,9 @@ def symmetric(packed: np.ndarray) -> np.ndarray:
     return np.asarray(packed[:, [[0, 1, 2], [1, 3, 4], [2, 4, 5]]])
 
 
-def expected_sprung(joints_m: np.ndarray, precisions: np.ndarray, known_m: np.ndarray) -> np.ndarray:
+def expected_sprung(
+    joints_m: np.ndarray, precisions: np.ndarray, known_m: np.ndarray
+) -> np.ndarray:
     """Gauss-Newton by whole matrices: residuals of places, whitened, and of lengths."""
     n, found = len(joints_m), joints_m.copy()
     white = np.linalg.cholesky(symmetric(precisions)).transpose(0, 2, 1)

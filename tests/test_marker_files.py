@@ -31,7 +31,11 @@ def test_a_trc_file_holds_every_joint_in_millimetres() -> None:
     facts = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=True))
     assert (facts["NumFrames"], facts["NumMarkers"], facts["Units"]) == ("12", "15", "mm")
     assert lines[3].split("\t")[2::3][:15] == list(JOINT_NAMES)
-    assert lines[4].split("\t") == ["", "", *(f"{axis}{n + 1}" for n in range(15) for axis in "XYZ")]
+    assert lines[4].split("\t") == [
+        "",
+        "",
+        *(f"{axis}{n + 1}" for n in range(15) for axis in "XYZ"),
+    ]
     assert facts["DataRate"] == facts["CameraRate"] == facts["OrigDataRate"] == "15.000000"
     assert (facts["OrigDataStartFrame"], facts["OrigNumFrames"]) == ("1", "12")
     table = [line.split("\t") for line in lines[6:]]

@@ -102,8 +102,7 @@ def test_the_hips_shift_and_turn_and_every_other_bone_turns_alone() -> None:
     model = ElementTree.fromstring(osim_text(skeleton_of(random_joints(4)))[38:])
     for joint in model.iter("CustomJoint"):
         kinds = {
-            str(each.get("name")): each.findtext("motion_type")
-            for each in joint.iter("Coordinate")
+            str(each.get("name")): each.findtext("motion_type") for each in joint.iter("Coordinate")
         }
         bone = joint.get("name")
         turns = {f"{bone}_r{axis}": "rotational" for axis in "xyz"}

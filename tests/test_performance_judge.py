@@ -16,7 +16,6 @@ from recognizer.performance_judge import (
     LEAST_STATES,
     MISFIT,
     RIVAL,
-    Event,
     event_of,
 )
 from recognizer.postures import Card, DensityModel

@@ -149,9 +149,7 @@ class Networks:
         lifting(monkeypatch, self.lifted_m)
         monkeypatch.setattr(pose_proposal, "look", self.look)
         found = pose_network.Proposal(self.joints_m, np.full(12, 0.5))
-        monkeypatch.setattr(
-            pose_network, "step", lambda *_: (np.zeros(1, np.float32), found)
-        )
+        monkeypatch.setattr(pose_network, "step", lambda *_: (np.zeros(1, np.float32), found))
 
     def look(self, masks: tuple[object, object], *_: object) -> object:
         self.looked.append((masks[0] is not None, masks[1] is not None))

@@ -166,7 +166,9 @@ def test_a_segment_that_leans_as_annotated_leans_by_as_much_as_before(limb: str,
     assert (other[far] - other[near]) @ forward == pytest.approx(-before)
 
 
-def expected_front(away: float, yaw: float, shown: tuple[float, float] | None, dt_s: float) -> float:
+def expected_front(
+    away: float, yaw: float, shown: tuple[float, float] | None, dt_s: float
+) -> float:
     """The same by odds."""
     aside = abs(abs(yaw) - 90.0) <= SIDEWAYS_DEG
     anew = 1.0 - np.exp(-dt_s * (ANEW_ASIDE_HZ if aside else ANEW_HZ))

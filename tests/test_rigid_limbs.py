@@ -72,9 +72,7 @@ def test_a_limb_is_the_likeliest_of_its_length(seed: int) -> None:
         sight = (found[0, far] - CAMERA) / np.linalg.norm(found[0, far] - CAMERA)
         length = np.linalg.norm(made[far] - made[near])
 
-        def apart(
-            place: np.ndarray, far: int = far, sight: np.ndarray = sight
-        ) -> float:
+        def apart(place: np.ndarray, far: int = far, sight: np.ndarray = sight) -> float:
             away = place - found[0, far]
             deep = away @ sight
             return float(away @ away - deep**2 + (deep / DEPTH_TIMES) ** 2)

@@ -247,7 +247,7 @@ def test_the_axes_are_where_the_camera_looks_however_it_is_rolled(deg: int) -> N
 @given(st.floats(-180.0, 180.0), st.floats(20.0, 200.0))
 @settings(max_examples=30, deadline=None)
 def test_the_window_reaches_so_many_statures_from_the_middle(up_deg: float, size_px: float) -> None:
-    """Its sides upright as the body is in the picture, whatever the roll; of samples the centres."""
+    """Its sides as upright as the body in the picture, whatever the roll; centres of samples."""
     way = np.array([np.sin(np.radians(up_deg)), -np.cos(np.radians(up_deg))])
     right = np.array([-way[1], way[0]])
     middle = np.array([33.0, 71.0])

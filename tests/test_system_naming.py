@@ -165,7 +165,7 @@ def test_an_event_is_told_in_the_frames_and_seconds_of_the_stream(
 def test_a_run_ends_with_what_its_end_cuts_off_if_anything(
     monkeypatch: pytest.MonkeyPatch, last: Event | None
 ) -> None:
-    """Each body is answered, its delay by the integrator's clock; each beat says the newest event."""
+    """Each body is answered, and its delay is by the integrator's clock."""
     delays: list[float] = []
     monkeypatch.setattr(Pace, "done", lambda _, taken_s, now_s: delays.append(now_s - taken_s))
     Scripted(monkeypatch, {} if last is None else {-1: last})
@@ -196,10 +196,10 @@ def test_a_model_that_does_not_know_the_clips_posture_is_refused_by_name(tmp_pat
     assert model_of(Settings()).names == load(SHIPPED).names
     assert model_of(Settings(mode="paper")).card.recognizer == "paper"
     assert model_of(Settings(), "squat").names == load(SHIPPED).names
-    with pytest.raises(ModelError, match="other postures than 'handstand'.*squat"):
+    with pytest.raises(ModelError, match=r"other postures than 'handstand'.*squat"):
         model_of(Settings(), "handstand")
     copy = tmp_path / "mine.npz"
     shutil.copy(SHIPPED, copy)
     own = msgspec.structs.replace(Settings().recognizer, model=str(copy))
-    with pytest.raises(ModelError, match="mine.npz"):
+    with pytest.raises(ModelError, match=r"mine\.npz"):
         model_of(Settings(recognizer=own), "handstand")

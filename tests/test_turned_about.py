@@ -31,7 +31,7 @@ def facing(deg: float, lean_deg: float = 0.0) -> np.ndarray:
         side = 0.2 if name[0] == "l" else -0.2
         across = side * np.array([math.cos(a), 0.0, math.sin(a)])
         high = 0.5 if name[2:] in ("shoulder", "elbow", "wrist") else 0.0
-        joints_m[i] = across + (0.0, -high, 0.0)
+        joints_m[i] = across - np.array([0.0, high, 0.0])
     roll = [[math.cos(b), -math.sin(b), 0.0], [math.sin(b), math.cos(b), 0.0], [0.0, 0.0, 1.0]]
     return np.asarray(joints_m @ np.array(roll).T)
 
