@@ -80,8 +80,8 @@ def test_an_instant_is_one_step_of_a_model_of_sixteen_states() -> None:
     def drawn(known: np.ndarray, view: int) -> np.ndarray:
         new = np.empty_like(known)
         for state in np.ndindex(2, 2, 2, 2):
-            same = [o for o in np.ndindex(2, 2, 2, 2)
-                    if (o[1 - view], o[3 - view]) == (state[1 - view], state[3 - view])]  # fmt: skip
+            kept = state[1 - view], state[3 - view]
+            same = [o for o in np.ndindex(2, 2, 2, 2) if (o[1 - view], o[3 - view]) == kept]
             own = usual(view, state[view], state[2 + view])
             new[state] = (1 - ANEW) * known[state] + ANEW * own * sum(known[o] for o in same)
         return new
