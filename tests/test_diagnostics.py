@@ -103,7 +103,9 @@ def test_a_rig_is_doubted_that_both_views_contradict_and_the_user_does_not_insis
     source: ScaleSource, trusts: bool, by: float
 ) -> None:
     """A rig that was assumed is known to be wrong."""
-    told = Agreement(apart_mm=91.0, soles_mm=-12.0, facing_deg=33.0, believed=DOUBTED + by)
+    told = Agreement(
+        motion_mm=0.0, apart_mm=91.0, soles_mm=-12.0, facing_deg=33.0, believed=DOUBTED + by
+    )
     settings = Settings(trust_calibration=trusts)
     state = merged()._replace(scale_source=source, settings=settings)
     said = diagnostics.doubt(state._replace(agreement=rig_agreement.State(told=told)))
