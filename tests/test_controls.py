@@ -99,7 +99,7 @@ class Gui:
 
 def test_each_button_does_what_it_says(page: Heard) -> None:
     gui = Gui()
-    Controls(gui, filmed(), page)  # type: ignore[arg-type]
+    Controls(gui, filmed(), page)
     due = {
         "Fit again": ("fit_again", ()),
         "Next uncertain frame": ("look", (1,)),
@@ -118,7 +118,7 @@ def test_each_button_does_what_it_says(page: Heard) -> None:
 
 def test_the_slider_goes_from_the_first_frame_to_the_last(page: Heard) -> None:
     gui, take = Gui(), filmed()
-    Controls(gui, take, page)  # type: ignore[arg-type]
+    Controls(gui, take, page)
     (slider,) = gui.sliders
     first, last = int(take.frame[0]), int(take.frame[-1])
     assert (slider["min"], slider["max"], slider["initial_value"]) == (first, last, first)

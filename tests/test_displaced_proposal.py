@@ -90,7 +90,8 @@ def test_an_instant_is_least_squares_weighted_by_how_far_rays_are_outlying(seed:
     rng = np.random.default_rng(seed)
     rays = rays_to(BODY_M, (0.9, 0.6))
     proposed_m = BODY_M + rng.normal(0.0, 0.05, 3) + rng.normal(0.0, 0.02, (12, 3))
-    away_m, found = proposed_m - proposed_m.mean(axis=0), np.zeros(4)
+    away_m = proposed_m - proposed_m.mean(axis=0)
+    found: np.ndarray = np.zeros(4)
     for _ in range(ROUNDS):
         normal, right = LOOSELY.copy(), np.zeros(4)
         for view in range(2):
@@ -110,7 +111,7 @@ def test_an_instant_is_least_squares_weighted_by_how_far_rays_are_outlying(seed:
     assert known == pytest.approx(LATELY * found)
     off = np.linalg.norm(known / USUAL)
     turn_x = np.column_stack([away_m[:, 2], np.zeros(12), -away_m[:, 0]])
-    back = known * max(0.0, 1.0 - SURELY / off)
+    back = known * max(0.0, 1.0 - SURELY / float(off))
     assert moved_m == pytest.approx(proposed_m + back[:3] + back[3] * turn_x)
     later, _ = displaced_proposal.step(known, proposed_m, rays.confidence, rays, STATURE_M)
     assert later == pytest.approx(LATELY * found + (1.0 - LATELY) * known)

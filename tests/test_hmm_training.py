@@ -26,17 +26,17 @@ from recognizer.training.hmm_training import (
 
 def test_states_follow_each_other_or_any() -> None:
     assert allowed("ergodic", 3).all()
-    assert allowed("left_right", 3).tolist() == [
+    assert allowed("left-right", 3).tolist() == [
         [True, True, False],
         [False, True, True],
         [False, False, True],
     ]
     assert start("ergodic", 4).tolist() == [0.25] * 4
-    assert start("left_right", 3).tolist() == [1.0, 0.0, 0.0]
+    assert start("left-right", 3).tolist() == [1.0, 0.0, 0.0]
 
 
 def test_no_allowed_transition_is_impossible_and_no_other_is_possible() -> None:
-    may = allowed("left_right", 3)
+    may = allowed("left-right", 3)
     found = _open(np.array([[1.0, 0.0, 0.0], [0.0, 0.5, 0.5], [0.3, 0.3, 0.4]]), may)
     assert found.sum(axis=1) == pytest.approx([1.0] * 3)
     assert found[0, 1] == pytest.approx(TRANSITION_FLOOR / (1.0 + TRANSITION_FLOOR))
@@ -65,11 +65,11 @@ def hopping(topology: str) -> list[np.ndarray]:
     """Sequences of two places, three frames at each."""
     rng = np.random.default_rng(1)
     places = np.repeat([[0.0, 0.0], [1.0, 2.0]], 3, axis=0)
-    times = 1 if topology == "left_right" else 4
+    times = 1 if topology == "left-right" else 4
     return [np.tile(places, (times, 1)) + rng.normal(0.0, 0.02, (6 * times, 2)) for _ in range(5)]
 
 
-@pytest.mark.parametrize("topology", ["ergodic", "left_right"])
+@pytest.mark.parametrize("topology", ["ergodic", "left-right"])
 def test_densities_of_two_places_stand_at_both_and_hop_once_in_three_frames(topology: str) -> None:
     transition, mean, variance = train_densities(hopping(topology), topology, 0, states=2)  # type: ignore[arg-type]
     order = mean[:, 0].argsort()
@@ -90,12 +90,12 @@ def test_fewer_poses_than_states_are_refused() -> None:
     still = [np.tile([[1.0, 2.0]], (9, 1)), np.tile([[3.0, 4.0]], (9, 1))]
     with pytest.raises(LearningError, match="fewer than 3 different poses"):
         train_densities(still, "ergodic", 0, states=3)
-    assert train_densities(still, "left_right", 0, states=2)[1].shape == (2, 2)
+    assert train_densities(still, "left-right", 0, states=2)[1].shape == (2, 2)
 
 
 def test_symbols_of_two_stretches_are_those_of_both_states() -> None:
     given = [np.array([0, 0, 0, 1, 1, 1])] * 4
-    transition, emission = train_symbols(given, np.eye(3), "left_right", states=2)
+    transition, emission = train_symbols(given, np.eye(3), "left-right", states=2)
     assert emission[0].argmax() == 0
     assert emission[1].argmax() == 1
     assert emission.min() == pytest.approx(EMISSION_FLOOR, rel=0.01)

@@ -1,6 +1,7 @@
 """Proposed joints, held against made-up people whom the network was never taught on."""
 
 from itertools import islice, pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -151,7 +152,7 @@ def test_parts_are_told_apart_by_pairs() -> None:
 def drawn_network(seed: int) -> PoseNetwork:
     """Weights and biases at random."""
     rng, made = np.random.default_rng(seed), network()
-    parts = {
+    parts: dict[str, Any] = {
         name: network_weights.to_bfloat16(rng.normal(0.0, 0.5, part.shape).astype(np.float32))
         if part.dtype == np.uint16
         else rng.normal(0.0, 0.5, part.shape).astype(np.float32)
@@ -161,7 +162,7 @@ def drawn_network(seed: int) -> PoseNetwork:
 
 
 def plain(values: np.ndarray, weights: np.ndarray, bias: np.ndarray) -> np.ndarray:
-    return values @ network_weights.from_bfloat16(weights) + bias
+    return np.asarray(values @ network_weights.from_bfloat16(weights) + bias)
 
 
 @pytest.mark.parametrize("count", [0, 1, 3, 4, 5, 8, 11])

@@ -275,7 +275,12 @@ def test_what_is_said_or_undone_stops_the_player_and_is_shown_at_once(
     heard: list[str] = []
     monkeypatch.setattr(page._player, "stop", lambda: heard.append("stop"))
     monkeypatch.setattr(page, "_show", lambda: heard.append("show"))
-    for deed in (lambda: page.say(Notes()), page.undo, lambda: page.go_to(3)):
+    deeds: list[Callable[[], object]] = [
+        lambda: page.say(Notes()),
+        page.undo,
+        lambda: page.go_to(3),
+    ]
+    for deed in deeds:
         heard.clear()
         deed()
         assert heard == ["stop", "show"]

@@ -21,7 +21,8 @@ FOUND = paper_rig((160, 120), (210.0, 190.0), (3.0, 5.0))
 def row(time_s: float) -> Row:
     """Numbers that are all different."""
     joints_px = time_s + np.arange(2.0 * JOINTS).reshape(JOINTS, 2)
-    return (time_s, joints_px, time_s + 0.01 * np.arange(JOINTS), time_s + 0.5, time_s + 0.7)
+    sure = np.asarray(time_s + 0.01 * np.arange(JOINTS), np.float64)
+    return (time_s, joints_px, sure, time_s + 0.5, time_s + 0.7)
 
 
 def rows(*times_s: float) -> bytes:

@@ -128,7 +128,7 @@ def test_a_cell_counts_the_views_that_show_it_covered() -> None:
     full = np.zeros((24, 40, 24), np.int8)
     full[3, 4, 5] = -1
     due = full.copy()
-    places_m = corner_m + (np.stack(np.indices(full.shape), axis=-1) + 0.5) * visual_hull.CELL_M
+    places_m = corner_m + (np.moveaxis(np.indices(full.shape), 0, -1) + 0.5) * visual_hull.CELL_M
     for mask, camera in zip(masks, ROLLED.cameras, strict=True):
         u, v = project(camera, places_m.reshape(-1, 3)).T.reshape(2, *full.shape)
         inside = (u >= 0) & (v >= 0) & (u < mask.shape[1]) & (v < mask.shape[0])
