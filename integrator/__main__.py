@@ -12,7 +12,7 @@ from common.bus.rate import Pace
 from common.config.settings import Settings
 from common.method import METHODS
 from common.settled import settle
-from common.video.clip_facts import Clip
+from common.video.clip_facts import Clip, uprights_of
 from integrator import commands, diagnostics, merge, merge_state, opening_posture
 from integrator.frame_numbers import frame_times
 from integrator.handed_over import Estate
@@ -114,6 +114,7 @@ def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContex
                 opening=opening_posture.init(clip.body),
                 times=frame_times(clip),
                 by_person=is_by_person(clip, settings),
+                uprights=uprights_of(clip),
             ),
         )
         state = estate.taken_up(state)

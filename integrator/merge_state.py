@@ -98,6 +98,8 @@ class Start(NamedTuple):
     """When camera 1 takes its frames."""
     by_person: bool = False
     """A rig that is assumed is only the first guess: the person will tell it."""
+    uprights: Uprights = (None, None)
+    """How the pictures of viewer 1 and viewer 2 come from their files', before either reports."""
 
 
 def init(
@@ -117,4 +119,5 @@ def init(
     proposes = method.proposals and (start.alone or start.by_person or source != "assumed")
     smooth = smoothing.init(len(ANGLE_NAMES), period_s)
     known = (rig, source, proposes, start.alone)
-    return State(settings, method, *known, smooth, start.opening, times=start.times)
+    state = State(settings, method, *known, smooth, start.opening, times=start.times)
+    return state._replace(uprights=start.uprights)

@@ -242,3 +242,22 @@ def test_errors_that_change_and_feet_in_the_air_and_few_facings_say_nothing() ->
     assert told.soles_mm == pytest.approx(0.0, abs=1e-6)
     given[7:, -1] += 0.3
     assert rig_agreement.agreement_of(given, ()).believed < 0.06
+
+
+def test_joints_that_one_side_alone_shows_keep_their_gaps() -> None:
+    """Exchanged, a sure left meets an unsure right: fewer gaps are no better ones."""
+    sure = tuple(0.3 if name.startswith("r_") else 0.9 for name in JOINT_NAMES)
+    one, other = (msgspec.structs.replace(shown(n), confidence=sure) for n in (1, 2))
+    gaps_m = rig_agreement._joint_gaps_m(RIG.cameras, one, other)
+    left = [name.startswith("l_") for name in JOINT_NAMES]
+    assert np.isfinite(gaps_m[left]).all()
+    assert np.isnan(gaps_m[[name.startswith("r_") for name in JOINT_NAMES]]).all()
+
+
+def shown(viewer: ViewerNumber) -> Landmarks:
+    """Joints of which none is exactly where the other view's sight line passes."""
+    told = seen(viewer, 3).landmarks
+    assert told is not None
+    return msgspec.structs.replace(
+        told, joints_px=tuple((x, y + 2.0 * viewer) for x, y in told.joints_px)
+    )

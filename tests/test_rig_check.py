@@ -105,3 +105,4 @@ def test_bodies_of_a_view_that_is_late_by_nobody_knows_how_much_are_hardly_belie
     assert left.confidence == pytest.approx((0.9 * DOUBTED, 0.4 * DOUBTED))
     assert doubted([body], Clock(1.0, (0.1,))) == [body]
     assert doubted([body], UNSEEN) == [body]
+    assert doubted([body], Clock(0.05, (), False)) == [body], "found, and less than a frame"

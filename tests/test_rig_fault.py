@@ -11,6 +11,7 @@ from test_rig_trust import PERIOD_S, SHOWN
 from integrator.rig_gate import rig_fault
 from integrator.rig_gate.rig_fault import AGAIN, FREED, advice_on
 from integrator.rig_gate.rig_trust import Trust
+from integrator.selfcalibration.lateness import Clock
 from integrator.selfcalibration.rig_guess import LATE, PLACE
 
 
@@ -81,6 +82,12 @@ def test_a_late_view_is_told_by_frames_and_only_where_it_is_late_alone(
     monkeypatch.setattr(rig_fault, "_size", lambda *_: 2.0)
     said = advice_on(PAPER, SHOWN, PERIOD_S, doubted("late", late_frames=-6.26))
     assert said.startswith("view 2 is -6.3 frames late")
+    again = advice_on(
+        PAPER, SHOWN, PERIOD_S, doubted("late", late_frames=6.0), Clock(0.4), set_back_s=1.0
+    )
+    assert f"--offset {1.0 + 6.0 * PERIOD_S:.2f}" in again, (
+        "an offset that is stated replaces the one before"
+    )
     said = advice_on(PAPER, SHOWN, PERIOD_S, doubted("late", "apart", late_frames=-6.26))
     assert "pictures 2 times as large" in said
     believed = msgspec.structs.replace(doubted("late"), believed=True)

@@ -1,5 +1,6 @@
 """Views of other rates: of the faster those frames are looked at that meet the slower's."""
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -54,3 +55,12 @@ def test_rates_that_are_nearly_one_and_cameras_are_left_alone() -> None:
     camera = View(2, 0, (160, 120), (160, 120), 30.0, 0)
     assert at_one_rate((view(1, 15.0), camera), 1) == (view(1, 15.0), camera)
     assert at_one_rate((view(1, 15.0),), 1) == (view(1, 15.0),)
+
+
+def test_times_that_are_rounded_make_no_other_rate() -> None:
+    """A phone's gaps of 33 and 34 ms: 30 a second, though most of them say 30.3."""
+    gaps_s = np.tile([0.033, 0.033, 0.034], 100)
+    times_s = tuple(np.concatenate([[0.0], np.cumsum(gaps_s)]).tolist())
+    phone = msgspec.structs.replace(view(1, 1 / 0.033), capture_s=times_s, frames=len(times_s))
+    steady = view(2, 30.0)
+    assert at_one_rate((phone, steady), 1) == (phone, steady)

@@ -59,3 +59,25 @@ def test_a_run_that_saved_nothing_begins_anew(tmp_path: Path) -> None:
     run.close()
     assert saved_in(tmp_path, IDENTITY) is None
     assert len(UnfinishedRun(tmp_path, IDENTITY, HEAD).messages(BODIES)) == 0
+
+
+def test_a_run_that_begins_anew_has_one_journal_whole_and_no_state_of_before(
+    tmp_path: Path,
+) -> None:
+    """What the first pass had yet to write must not come into the second one's journal."""
+    run = UnfinishedRun(tmp_path, IDENTITY, HEAD)
+    first = run.messages(BODIES)
+    for frame in range(9_000):
+        first.append(body(frame))
+    run.save("instants", State(9_000))
+    first.append(body(9_000))
+    run.restart()
+    assert saved_in(tmp_path, IDENTITY) is None, "the second pass goes on from nothing"
+    second = run.messages(BODIES)
+    for frame in range(7):
+        second.append(body(100 + frame))
+    del first
+    run.close()
+    told = read_journal(tmp_path)
+    assert told is not None
+    assert [one.frame for one in told.bodies] == [*range(100, 107)]

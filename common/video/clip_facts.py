@@ -9,7 +9,7 @@ import msgspec
 from common.body.body import Bdp
 from common.bus.messages import ViewerNumber
 from common.rig.camera import Rig
-from common.rig.upright import Upright, swapped
+from common.rig.upright import Upright, Uprights, swapped
 from common.video.decoding import Ending, Source
 
 TOUCH_S: Final = 1e-6
@@ -172,6 +172,12 @@ def set_back(clip: Clip, late_s: float) -> Clip:
     first, second = clip.views
     second = msgspec.structs.replace(second, late_s=second.late_s + late_s)
     return msgspec.structs.replace(clip, views=(first, second))
+
+
+def uprights_of(clip: Clip) -> Uprights:
+    """How the pictures of viewer 1 and viewer 2 come from their files'."""
+    own = {view.number: view.upright for view in clip.views}
+    return own.get(1), own.get(2)
 
 
 def both_cameras(clip: Clip) -> Rig | None:

@@ -10,6 +10,9 @@ from common.video.clip_facts import TOUCH_S, View
 
 SAME_RATE: Final = 0.01
 """Frame rates that differ by less drift apart by less than a frame in a clip of 100."""
+SAME_VARYING: Final = 0.05
+"""The same where a view's frames have times of their own, which pair them: its rate is that of its
+usual gap, which times that are rounded to milliseconds tell no better (33 ms of 33.3)."""
 
 
 def at_one_rate(views: tuple[View, ...], every: int) -> tuple[View, ...]:
@@ -25,7 +28,8 @@ def at_one_rate(views: tuple[View, ...], every: int) -> tuple[View, ...]:
     if len(views) < 2 or not all(view.frames for view in views):
         return views
     slow, fast = sorted(views, key=lambda view: view.fps)
-    if fast.fps / slow.fps - 1.0 <= SAME_RATE:
+    varies = any(view.capture_s for view in views)
+    if fast.fps / slow.fps - 1.0 <= (SAME_VARYING if varies else SAME_RATE):
         return views
     thin = _meeting(fast, slow, every)
     return tuple(thin if view.number == thin.number else view for view in views)

@@ -191,7 +191,10 @@ def _joint_gaps_m(cameras: tuple[Camera, ...], first: Landmarks, second: Landmar
     for order in (slice(None), OTHER_SIDE):
         sure = np.minimum(first.confidence, np.array(second.confidence)[order]) >= SURE_JOINT
         tried.append(np.where(sure, _met(cameras, one, other[order])[0], np.nan))
-    return min(tried, key=lambda gaps_m: float(np.nansum(np.abs(gaps_m))))
+    as_is, exchanged = tried
+    both = np.isfinite(as_is) & np.isfinite(exchanged)
+    is_better = np.abs(exchanged[both]).sum() < np.abs(as_is[both]).sum()
+    return exchanged if is_better else as_is
 
 
 def _turned(

@@ -39,9 +39,24 @@ class _Mended(NamedTuple):
 
 
 def advice_on(
-    rig: Rig, sighting: Sighting, period_s: float, trust: Trust, clock: Clock | None = None
+    rig: Rig,
+    sighting: Sighting,
+    period_s: float,
+    trust: Trust,
+    clock: Clock | None = None,
+    set_back_s: float = 0.0,
 ) -> str:
-    """The likeliest cause in a line, with its size; "" of a rig that is believable."""
+    """The likeliest cause in a line, with its size; "" of a rig that is believable.
+
+    Args:
+        rig: Of both cameras.
+        sighting: What both views show of the person.
+        period_s: From a frame to the next.
+        trust: What is wrong with the rig.
+        clock: Of view 2; None: it is looked for.
+        set_back_s: By how much the times of view 2 were set back before: an offset that the user
+            states takes the place of that.
+    """
     if trust.believed:
         return ""
     if _is_one_side(sighting):
@@ -55,12 +70,14 @@ def advice_on(
         if other is not None and "facing" not in other.odd:
             return f"the cameras are exchanged: change their order; else {AGAIN}"
     if trust.odd == ("late",) and clock.rivals_s:
-        several = ", ".join(f"{late:+.2f}" for late in sorted((clock.late_s, *clock.rivals_s)))
+        candidates_s = sorted(set_back_s + late for late in (clock.late_s, *clock.rivals_s))
+        several = ", ".join(f"{late_s:+.2f}" for late_s in candidates_s)
         return f"the motion does not tell which of {several} s: say it by --offset SECONDS"
     if trust.odd == ("late",):
+        late_s = set_back_s + trust.late_frames * period_s
         return (
             f"view 2 is {trust.late_frames:+.1f} frames late: say so "
-            f"(--offset {trust.late_frames * period_s:.2f}), or start both cameras by one signal"
+            f"(--offset {late_s:.2f}), or start both cameras by one signal"
         )
     if "motion" in trust.odd and not {"apart", "stature"} & set(trust.odd):
         return (

@@ -8,10 +8,17 @@ from typing import Any, NamedTuple, get_args
 import msgspec
 
 from common.body.body import Bdp
-from common.bus.messages import Body, ViewerNumber
+from common.bus.messages import Body, ScaleSource, ViewerNumber
 from common.config.settings import Settings
 from common.method import METHODS, Method
-from common.video.clip_facts import Clip, both_cameras, set_back, shortfall, unread_facts
+from common.video.clip_facts import (
+    Clip,
+    both_cameras,
+    set_back,
+    shortfall,
+    unread_facts,
+    uprights_of,
+)
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
@@ -168,7 +175,8 @@ def _told(looked: Looked, job: _Job, followed: _Followed, clock: Clock) -> Track
     facts = _facts(ready, done, job.sources) | calibration_facts(looked) | trust
     facts |= moved_facts(done.bodies) | clock_facts(clip, looked.clock or clock, settings.offset_s)
     facts["warnings"] += doubts(facts)
-    return Tracked(clip, doubted(done.bodies, clock), facts)
+    given = settings.offset_s is not None
+    return Tracked(clip, done.bodies if given else doubted(done.bodies, clock), facts)
 
 
 def _in_two_passes(
@@ -201,7 +209,8 @@ def _prepared(
         viewers[view.number] = track.init(setup, opens.background, somebody=opens.somebody)
     period_s = clip.every / clip.views[0].fps
     opening = opening_posture.init(known)
-    start = Start(alone, "person" if looked.found else None, opening, frame_times(clip))
+    source: ScaleSource | None = "person" if looked.found else None
+    start = Start(alone, source, opening, frame_times(clip), uprights=uprights_of(clip))
     integrator = merge_state.init(rig, period_s, settings, method, start)
     return Prepared(clip, reels, viewers, integrator, odd, time.perf_counter() - began)
 

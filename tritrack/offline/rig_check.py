@@ -83,7 +83,7 @@ def trust_facts(clip: Clip, witness: Witness, clock: Clock, *, insisted: bool) -
     if trust is None:
         return {}
     if not insisted:
-        advice = advice_on(clip.rig, sighting, period_s, trust, clock)
+        advice = advice_on(clip.rig, sighting, period_s, trust, clock, clip.views[1].late_s)
         trust = msgspec.structs.replace(trust, advice=advice)
     return {"trust": msgspec.to_builtins(trust)}
 
@@ -128,7 +128,7 @@ def clock_facts(clip: Clip, clock: Clock, given_s: float | None) -> dict[str, An
 
 def doubted(bodies: Sequence[Body], clock: Clock) -> Sequence[Body]:
     """The bodies, hardly believed where view 2 is late and nobody knows by how much."""
-    if clock.may_be_on_time:
+    if clock.state != "ambiguous" or clock.may_be_on_time:
         return bodies
     return [
         msgspec.structs.replace(body, confidence=tuple(DOUBTED * each for each in body.confidence))

@@ -130,8 +130,14 @@ class UnfinishedRun:
         self._due_s = time.monotonic() + SAVES_S
 
     def restart(self) -> None:
-        """The run begins anew: what was kept is forgotten when it is asked for again."""
+        """The run begins anew: no state is left to go on from, and what is still to be written of
+        the journal is written before a new one takes its place."""
         self._saved = None
+        with writing(self._folder):
+            (self._folder / FOLDER / STATE).unlink(missing_ok=True)
+        journal_before = self._files.pop(BODIES, None)
+        if journal_before is not None:
+            journal_before.close()
 
     def close(self) -> None:
         """Write no more; what is done stays."""
