@@ -5,6 +5,7 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -17,6 +18,21 @@ from tritrack import subscribe, track
 from tritrack.offline import lockstep
 
 EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"
+
+
+def test_a_clip_is_tracked_by_its_settings_with_the_views_that_are_named(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    asked: list[Any] = []
+
+    def tracked(settings: Any, decoders: Any, views: Any) -> Any:
+        asked.append((settings.clip, sorted(decoders.of), views))
+        return SimpleNamespace(bodies=iter(["a", "b"]))
+
+    monkeypatch.setattr(lockstep, "track_clip", tracked)
+    bodies: list[object] = [*track(tmp_path, (2,))]
+    assert bodies == ["a", "b"]
+    assert asked == [(str(tmp_path), [1, 2], (2,))]
 
 
 def test_a_loop_hears_every_body_and_ends_with_the_run() -> None:
