@@ -73,6 +73,7 @@ def snapshot_at(frame: int) -> Snapshot:
             captured_s=seconds,
             clock_s=seconds,
             name="walk_in_place",
+            doing="walk_in_place",
             log_likelihoods={"walk_in_place": -61.0, "squat": -142.5, "kick_left_side": -171.2},
             segment=(max(0, frame - 39), frame),
         ),
