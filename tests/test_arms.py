@@ -250,3 +250,15 @@ def test_an_arm_swung_up_forwards_still_leans_outwards_but_not_as_printed(side: 
     assert angle(found, name) == pytest.approx(180.0 + outward, abs=4.0)
     printed = angle(facade_arms(model, PAPERS, wide=False, method=PAPER), name)
     assert (printed <= 180.0) if side == "r" else (printed >= 180.0)
+
+
+def test_matches_of_the_flanks_arms_are_counted_once() -> None:
+    """The start, two searches apart, and the common swing with its own start."""
+    seen = picture(posed(r_shoulder_x=40.0, l_shoulder_x=-20.0), viewer=2)
+    counts = []
+    for before in (0, 1000):
+        model = laid_over(seen, posed(), 2)._replace(matches=before)
+        found = flank_arms(model, PAPERS, near=1, wide=False, method=PAPER)
+        counts.append(found.matches - before)
+    assert counts[0] == counts[1]
+    assert 1 + 2 * 6 + 1 + 6 <= counts[0] <= 1 + 2 * 9 + 1 + 9

@@ -163,3 +163,16 @@ def test_a_leg_window_reaches_sixteen_degrees_a_frame() -> None:
     assert angle(once, "r_hip_x") <= 16.0
     twice = flank_legs(once, PAPERS, near=0, method=PAPER)
     assert angle(twice, "r_hip_x") == pytest.approx(30.0, abs=4.0)
+
+
+def test_matches_of_the_flanks_legs_are_counted_once() -> None:
+    """Four searches apart and one together, on top of what was matched before."""
+    seen = picture(posed(r_hip_x=20.0), 2)
+    counts = []
+    for before in (0, 1000):
+        model = laid_over(seen, posed(), 2)._replace(matches=before)
+        counts.append(flank_legs(model, PAPERS, near=1, method=DEFAULT).matches - before)
+        apart = flank_legs(model, PAPERS, near=1, method=PAPER).matches - before
+        assert 4 * 5 <= apart <= 4 * 7
+        assert 5 <= counts[-1] - apart <= 7
+    assert counts[0] == counts[1]

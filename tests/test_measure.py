@@ -8,18 +8,28 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from posing import BODY, ROOT_PX, box_around, picture, posed, stretched
+from posing import BODY, ROOT_PX, SIZE, box_around, picture, posed, stretched, view
 
 from common.body.body import LIMBS, Bdp, Elliptic, Vector
 from common.body.kinematics import segments
 from common.body.proportions import body_vector, thesis_bdp
+from common.bus.messages import Guide, Report
+from common.raster.bits import count, pack_words, unpack_words
+from common.raster.kernel import draw_limbs
+from common.raster.silhouette_report import pack
 from common.raster.similarity import Mask, similarity
-from viewer.paper.fine_tuning import fine_tuned
+from viewer.paper import fine_tuning
+from viewer.paper.fine_tuning import ABOVE_CENTRE, _climbed, _score, _tuned, fine_tuned
 from viewer.paper.measure import (
+    FacadeShape,
+    _arm_angles,
+    _arm_lengths,
+    _arm_thickness,
     arm_angle_deg,
     facade_shape,
     measure_front,
     measure_side,
+    opening_measure,
     projection_width,
     refusal_of,
     without_head,
@@ -251,3 +261,201 @@ def test_somebody_too_broad_to_be_one_person_upright_is_refused() -> None:
     torso = msgspec.structs.replace(BDP.torso, long_radius=22.0)
     broad = drawn(msgspec.structs.replace(BDP, torso=torso), (90.0, 270.0), ROOT_PX)
     assert "closed feet" in refusal_of(broad, box_around(broad))
+
+
+def blocks(
+    head_px: int = 10,
+    trunk_px: int = 20,
+    right_px: int = 40,
+    left_px: int = 45,
+    tip_row: int | None = None,
+) -> Mask:
+    """Rows 10 to 109: a head, a trunk around column 80, thin arms; a right tip that hangs."""
+    mask = np.zeros((120, 160), np.bool_)
+    begin, end = 80 - trunk_px // 2, 80 + (trunk_px + 1) // 2
+    mask[10 : 10 + head_px, 77:83] = True
+    mask[10 + head_px : 110, begin:end] = True
+    mask[24:29, begin - right_px : begin] = True
+    mask[27:34, end : end + left_px] = True
+    if tip_row is not None:
+        mask[24:29, begin - right_px : begin - right_px + 5] = False
+        mask[tip_row : tip_row + 5, begin - right_px : begin - right_px + 5] = True
+    return mask
+
+
+def refused(mask: Mask) -> str:
+    return refusal_of(mask, box_around(mask))
+
+
+def test_a_body_of_blocks_is_read_as_worked_by_hand() -> None:
+    """Shoulders at row 20, 90 px above the soles; arms from 4.5 px below them, to their tips."""
+    mask = blocks()
+    box = box_around(mask)
+    found = facade_shape(mask, box)
+    assert found == FacadeShape(70.0, 90.0, 80.0, 20, 10, 36.0, pytest.approx(27.0))
+    right, left = (-40.0, 26.5 - 24.5), (45.0, 30.5 - 24.5)
+    assert _arm_lengths(mask, box, found) == pytest.approx((math.hypot(*right), math.hypot(*left)))
+    angles = [math.degrees(math.atan2(abs(dx), -dy)) for dx, dy in (right, left)]
+    assert _arm_angles(mask, box, found) == pytest.approx((angles[0], 360.0 - angles[1]))
+    assert _arm_thickness(mask, found, box) == 7.0
+    assert _arm_thickness(blocks(left_px=30), found, box_around(blocks(left_px=30))) == 5.0
+    assert refused(mask) == ""
+
+
+@pytest.mark.parametrize(
+    ("mask", "reason"),
+    [
+        (blocks(right_px=20, left_px=29), "the arms are not stretched out to the sides"),
+        (blocks(right_px=20, left_px=30), ""),
+        (blocks(trunk_px=36), ""),
+        (
+            blocks(trunk_px=37),
+            "the trunk seems 37% of the height wide: stand upright with closed feet",
+        ),
+        (blocks(trunk_px=12), ""),
+        (
+            blocks(trunk_px=11),
+            "the trunk seems 11% of the height wide: stand upright with closed feet",
+        ),
+        (blocks(tip_row=40), ""),
+        (blocks(tip_row=41), "the right arm is not level (25 degrees off)"),
+        (blocks(tip_row=64), "the right arm is not level (46 degrees off)"),
+    ],
+)
+def test_what_is_refused_says_by_how_much_and_on_which_side(mask: Mask, reason: str) -> None:
+    """P10: both sides of each bound, in a body of 100 px."""
+    assert refused(mask) == reason
+
+
+def test_the_left_arm_is_refused_as_the_right_one() -> None:
+    mask = blocks(tip_row=64)
+    mirrored = mask[:, ::-1].copy()
+    assert refused(mirrored) == "the left arm is not level (46 degrees off)"
+
+
+@pytest.mark.parametrize(("head_px", "reason"), [(4, "no head above the shoulders"), (5, "")])
+def test_a_head_is_a_twentieth_of_the_height_at_least(head_px: int, reason: str) -> None:
+    assert refused(blocks(head_px=head_px)) == reason
+
+
+@pytest.mark.parametrize(("head_px", "reason"), [(31, "no head above the shoulders"), (30, "")])
+def test_a_head_is_no_more_than_three_tenths_of_the_height(head_px: int, reason: str) -> None:
+    mask = blocks(head_px=head_px)
+    mask[24:34, :70] = mask[24:34, 90:] = False
+    low = 10 + head_px
+    mask[low + 3 : low + 8, 30:70] = mask[low + 3 : low + 8, 90:130] = True
+    assert refused(mask) == reason
+
+
+def test_the_depth_is_read_above_the_centre_alone() -> None:
+    """P21: rows 10 to 58 of 100 px, the trunk's columns 60 to 71; legs apart are far broader."""
+    mask = np.zeros((120, 160), np.bool_)
+    mask[10:60, 60:72] = True
+    mask[60:110, 45:91] = True
+    measure = measure_side(mask, box_around(mask))
+    assert (measure.height_px, measure.centre_px, measure.depth_px) == (100.0, (66.0, 10.0), 6.0)
+
+
+def report_of(mask: Mask, cut: bool = False) -> Report:
+    return Report(
+        frame=0, captured_s=0.0, clock_s=0.0, viewer=1, width=160, height=120,
+        silhouette=pack(mask), box=box_around(mask), cut=cut,
+    )  # fmt: skip
+
+
+def test_a_view_measures_until_the_body_is_measured() -> None:
+    """P10, P21: the facade its opening posture, the flank a depth; who is cut tells nothing."""
+    mask = blocks()
+    box = box_around(mask)
+    guide = Guide(frame=0, captured_s=0.0, clock_s=0.0, frames=(0, 0), measured=True)
+    unmeasured = msgspec.structs.replace(guide, measured=False)
+    assert opening_measure(mask, report_of(mask), guide, "facade") == (None, "")
+    for known in (None, unmeasured):
+        facade = opening_measure(mask, report_of(mask), known, "facade")
+        assert facade == (measure_front(mask, box), "")
+        assert opening_measure(mask, report_of(mask), known, "flank") == (
+            measure_side(mask, box),
+            "",
+        )
+    hanging = blocks(tip_row=64)
+    assert opening_measure(hanging, report_of(hanging), None, "facade") == (None, refused(hanging))
+    outside = "the person is partly outside the picture"
+    assert opening_measure(mask, report_of(mask, cut=True), None, "flank") == (None, outside)
+
+
+def test_fine_tuning_starts_from_what_was_read_and_reaches_as_far_as_it_may_be_wrong(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """P20: a quarter of the trunk's radius, the arms' own, a pixel of a tip, eight degrees."""
+    got: list[tuple[list[float], list[float]]] = []
+
+    def climbed(_score_of: object, values: list[float], spans: list[float]) -> list[float]:
+        got.append((values, spans))
+        return [11.0, 3.0, 42.0, 46.0, 93.0, 267.0]
+
+    monkeypatch.setattr(fine_tuning, "_climbed", climbed)
+    bdp = measure_front(blocks(), box_around(blocks())).bdp_px
+    assert bdp is not None
+    assert bdp.torso.long_radius == 11.0
+    assert [bdp.r_upper_arm.height, bdp.l_upper_arm.height] == [21.0, 23.0]
+    values, spans = got[0]
+    assert values[:4] == pytest.approx([10.0, 3.5, math.hypot(40.0, 2.0), math.hypot(45.0, 6.0)])
+    assert spans == [2.5, 3.5, 1.0, 1.0, 8.0, 8.0]
+    thin = msgspec.structs.replace(BDP.torso, long_radius=3.0)
+    fine_tuned(blocks(), msgspec.structs.replace(BDP, torso=thin), (80.0, 56.0), (90.0, 270.0))
+    assert got[1][1][:2] == [1.0, max(1.0, BDP.r_upper_arm.radius)]
+
+
+def test_a_climb_sets_each_value_in_turn_within_its_span() -> None:
+    """By hand: eighths, spans of 2 and 4 about 5 and 9; a third value is moved by no score."""
+    asked: list[list[float]] = []
+
+    def score_of(values: list[float]) -> float:
+        asked.append(values)
+        return 5.0 - abs(values[0] - 6.25) - 0.1 * abs(values[1] - 20.0)
+
+    found = _climbed(score_of, [5.0, 9.0, 2.0], [2.0, 4.0, 1.0])
+    assert found == [pytest.approx(6.25, abs=0.25), pytest.approx(20.0, abs=0.5), 2.0]
+    firsts = [values[0] for values in asked[1:10] if values[1:] == [9.0, 2.0]]
+    assert (min(firsts), max(firsts)) == (3.0, 7.0)
+    assert min(values[0] for values in asked) >= 1 / 8
+
+
+def test_a_climb_ends_when_a_round_adds_little() -> None:
+    """The first round finds the top, the second adds nothing; each costs what its trees cost."""
+    asked: list[float] = []
+
+    def score_of(values: list[float]) -> float:
+        asked.append(values[0])
+        return 1.0 - 0.01 * abs(values[0] - 5.0)
+
+    assert _climbed(score_of, [5.0], [1.0]) == [5.0]
+    assert len(asked) == 1 + 3 + 2 + 2
+
+
+def test_a_value_is_never_tuned_below_an_eighth() -> None:
+    asked: list[float] = []
+
+    def score_of(values: list[float]) -> float:
+        asked.append(values[0])
+        return 5.0 - values[0]
+
+    assert _climbed(score_of, [0.5], [1.0])[0] == 0.125
+    assert min(asked) == 0.125
+
+
+def test_the_score_of_fine_tuning_is_that_of_the_tuned_body_above_the_centre() -> None:
+    """P20: trunk radius, arm radius, arms' lengths and angles, right before left."""
+    mask = opening(r_shoulder_z=95.0, l_shoulder_z=262.0)
+    mask[round(ROOT_PX[1]) :] = False
+    bdp = BDP.scaled(0.01)
+    values = [0.13, 0.03, 0.36, 0.30, 97.0, 258.0]
+    body, pose = body_vector(_tuned(bdp, values)), stretched(r_shoulder_z=97.0, l_shoulder_z=258.0)
+    bits = np.zeros_like(pack_words(mask))
+    draw_limbs(body, pose, view(1), ABOVE_CENTRE, SIZE[0], bits)
+    seen = pack_words(mask)
+    found = _score(
+        np.array(values), np.array(bdp.lengths()), stretched(), view(1), SIZE[0], seen, count(seen)
+    )
+    assert found == pytest.approx(similarity(mask, unpack_words(bits, SIZE[0])))
+    assert 0.5 < found < 0.95

@@ -127,12 +127,12 @@ def test_as_printed_a_view_goes_on_from_the_angles_that_it_found(
     guide = guide_of(pose=tuple(posed(r_knee_x=-10.0, neck_z=7.0).tolist()))
     known = expected_body(guide, 2)
     assert known is not None
-    known = known._replace(pose=(1.0, 2.0, 3.0, *known.pose[3:]))
+    known = known._replace(pose=(1.0, 2.0, 3.0, 4.0, *known.pose[4:]))
     state = state_of(2, method)._replace(found=Found("facade", {"r_knee_x": -44.0}, True))
     model = _expected(state, mask, known, facing)
     assert model.pose[POSE_INDEX["r_knee_x"]] == knee_deg
     assert model.pose[POSE_INDEX["neck_z"]] == 7.0
-    assert model.pose[:3].tolist() == [0.0, 0.0, 0.0]
+    assert model.pose[:4].tolist() == [0.0, 0.0, 0.0, 4.0]
     assert model.view[[CENTRE_X, CENTRE_Y, FOCAL_X]].tolist() == [70.0, 62.0, 90.0]
     assert model.view[:9].tolist() == np.array(PAPER_ROTATIONS[1]).ravel().tolist()
 

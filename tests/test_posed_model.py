@@ -9,6 +9,7 @@ from common.body.kinematics import ARM_LIMBS, LEG_LIMBS
 from common.bus.messages import Facing, ViewerNumber
 from common.raster.kernel import draw_body
 from common.rig.camera import paper_rig
+from viewer.paper import posed_model
 from viewer.paper.posed_model import SearchRange, rotation_of, searched, turn, view_at, yaw_of
 
 SHOULDER = turn(ARM_LIMBS[0], r_shoulder_z=1.0)
@@ -85,3 +86,38 @@ def test_a_search_counts_its_matches_and_leaves_the_rest_of_the_pose() -> None:
     assert set(changed) <= {POSE_INDEX["r_shoulder_z"]}
     assert start.matches == 5
     assert view(1)[16] == 1.0
+
+
+def test_a_wide_search_tiles_the_whole_range(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Windows about 32, 96 and 160 degrees, the last pushed inside; the best of all is taken."""
+    asked = []
+
+    def search(*given: object) -> tuple[float, float, int]:
+        low, high, stop = given[-3:]
+        asked.append((low, high, stop))
+        return float(low) + 5.0, {0: 0.3, 64: 0.7, 116: 0.5}[int(low)], 6  # type: ignore[call-overload, arg-type]
+
+    monkeypatch.setattr(posed_model, "search", search)
+    start = laid_over(picture(posed()), posed())._replace(matches=2)
+    found = searched(start, SHOULDER, SearchRange(64, 4, (0.0, 180.0), wide=True))
+    assert asked == [(0, 64, 4), (64, 128, 4), (116, 180, 4)]
+    assert (angle(found, "r_shoulder_z"), found.score, found.matches) == (69.0, 0.7, 20)
+
+
+@pytest.mark.parametrize(("gain", "taken"), [(0.09, True), (0.11, False)])
+def test_an_angle_changes_for_its_gain_alone(
+    monkeypatch: pytest.MonkeyPatch, gain: float, taken: bool
+) -> None:
+    monkeypatch.setattr(posed_model, "search", lambda *_: (50.0, 0.5, 7))
+    start = laid_over(picture(posed()), posed(r_shoulder_z=170.0))._replace(score=0.4, matches=3)
+    found = searched(start, SHOULDER, SearchRange(64, 4, (0.0, 180.0)), gain)
+    assert angle(found, "r_shoulder_z") == (50.0 if taken else 170.0)
+    assert found.score == (0.5 if taken else 0.4)
+    assert found.matches == 10
+
+
+def test_what_is_coupled_to_an_angle_takes_its_share_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(posed_model, "search", lambda *_: (30.0, 0.5, 7))
+    how = turn(LEG_LIMBS[1], l_hip_x=1.0, l_knee_x=-2.0)
+    found = searched(laid_over(picture(posed()), posed()), how, SearchRange(32, 4, (0.0, 75.0)))
+    assert (angle(found, "l_hip_x"), angle(found, "l_knee_x")) == (30.0, -60.0)
