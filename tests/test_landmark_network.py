@@ -14,7 +14,7 @@ from synth.picture.backdrops import backdrop
 from synth.picture.composites import Composite, composite
 from synth.picture.picture_examples import SIDE_PX, PictureExample, picture_examples
 from viewer.landmarks import landmark_network
-from viewer.landmarks.landmark_looks import BINS, CELLS
+from viewer.landmarks.landmark_looks import BINS, CELLS, SHIPPED
 from viewer.landmarks.landmark_network import Found, find
 from viewer.landmarks.landmark_window import GREY, SIDE, Planes, planes_of, whole
 
@@ -102,6 +102,113 @@ def test_the_facing_is_the_direction_of_the_likeliest_bin(bin_: int) -> None:
     turned, sure = landmark_network._facing(bins)
     assert (turned - 360.0 / BINS * bin_ + 180) % 360 - 180 == pytest.approx(0.0, abs=1e-3)
     assert sure > 0.99
+
+
+def plain_peak(shares: np.ndarray, row: int, column: int) -> tuple[np.ndarray, float]:
+    """Where the bell through three sums about a cell has its peak, and what lies about it."""
+    about = np.pad(shares, 1)[row : row + 3, column : column + 3]
+    place = []
+    for sums, at in ((about.sum(axis=0), column), (about.sum(axis=1), row)):
+        low, middle, high = np.log(sums + 1e-9)
+        bent = min(low - 2 * middle + high, -1e-3)
+        place.append((at + 0.5 + np.clip((low - high) / bent / 2, -0.8, 0.8)) * SIDE / CELLS)
+    return np.array(place), float(about.sum())
+
+
+def test_peaks_are_those_of_plain_numpy_at_every_border_of_a_map() -> None:
+    """The next peak is more than four cells away, down or across."""
+    rng = np.random.default_rng(8)
+    corners = [(0, 0), (0, 47), (47, 0), (47, 47), (3, 40), (30, 0), (47, 20)] * 2 + [(20, 21)]
+    maps = np.zeros((15, CELLS, CELLS), np.float32)
+    rows, columns = np.indices((CELLS, CELLS))
+    for j, (row, column) in enumerate(corners):
+        bell = -0.3 * ((rows - row + 0.3) ** 2 + (columns - column - 0.2) ** 2)
+        other = 2.5 - 0.7 * ((rows - 24) ** 2 + (columns - 30) ** 2)
+        maps[j] = np.maximum(4.0 + bell, other) + rng.normal(0.0, 0.3, (CELLS, CELLS))
+    joints, about = landmark_network._peaks(maps)
+    for j, logits in enumerate(maps):
+        below = logits.astype(float) - logits.max()
+        shares = np.where(below >= -16.0, np.exp(below), 0.0)
+        row, column = np.unravel_index(shares.argmax(), shares.shape)
+        far = (abs(rows - row) > 4) | (abs(columns - column) > 4)
+        second = np.unravel_index(np.where(far, shares, -1.0).argmax(), shares.shape)
+        for i, at in enumerate(((row, column), second)):
+            place, near = plain_peak(shares, int(at[0]), int(at[1]))
+            assert joints[j, i] == pytest.approx(place)
+            assert about[j, i] == pytest.approx(near / shares.sum())
+
+
+def test_cells_far_below_the_highest_are_left_out() -> None:
+    """By a hand's count: of 48 x 48 cells but one exp(-15.9) counts, exp(-16.1) does not."""
+    for depth, rest in ((15.9, np.exp(-15.9)), (16.1, 0.0)):
+        maps = np.full((15, CELLS, CELLS), -depth, np.float32)
+        maps[:, 10, 20] = 0.0
+        about = landmark_network._peaks(maps)[1]
+        due = (1.0 + 8 * rest) / (1.0 + (CELLS * CELLS - 1) * rest)
+        assert about[:, 0] == pytest.approx(np.full(15, due), abs=1e-9)
+
+
+def test_a_facing_is_the_mean_of_the_bins_near_the_likeliest() -> None:
+    """By hand: shares 3, 2 and 1 of bins 5, 6 and 14; the last is across and counts for nothing
+    but the sum. Bins that lie 45 degrees off are no longer near."""
+    bins = np.full(BINS, -60.0)
+    bins[[5, 6, 14]] = np.log([3.0, 2.0, 1.0])
+    turned, sure = landmark_network._facing(bins)
+    angles = np.radians([112.5, 135.0])
+    mean = np.degrees(np.arctan2(np.array([3, 2]) @ np.sin(angles), [3, 2] @ np.cos(angles)))
+    assert turned == pytest.approx(mean)
+    assert sure == pytest.approx(5.0 / 6.0)
+    bins[[7, 3, 8]] = np.log([0.5, 0.25, 4.0e-6])
+    turned, sure = landmark_network._facing(bins)
+    assert turned == pytest.approx(mean)
+    assert sure == pytest.approx(5.5 / 6.75, abs=1e-6)
+
+
+def test_a_joint_is_as_probable_as_its_peak_and_the_network_say() -> None:
+    """The logit: 0.75 of the network's own, 0.94 of the share's logit, and 0.57."""
+    near, sure = np.array([0.2, 0.9, 0.0, 1.0]), np.array([1.5, -2.0, 0.5, 0.5], np.float32)
+    kept = np.clip(near, 1e-4, 1.0 - 1e-4)
+    logits = 0.75 * sure + 0.94 * np.log(kept / (1.0 - kept)) + 0.57
+    found = landmark_network._probable(near, sure, 0.75, 0.94, 0.57)
+    assert found == pytest.approx(1.0 / (1.0 + np.exp(-logits)))
+    assert landmark_network._sigmoid(np.float32(100.0)) == 1.0 / (1.0 + np.exp(-60.0))
+
+
+@pytest.mark.parametrize("twice", [False, True])
+def test_what_a_look_tells_is_put_where_it_belongs(
+    monkeypatch: pytest.MonkeyPatch, twice: bool
+) -> None:
+    maps = np.full((15, CELLS, CELLS), -20.0, np.float32)
+    for j in range(15):
+        maps[j, 10, 3 + j], maps[j, 40, 2 * j] = np.log(0.7), np.log(0.3)
+    bins = np.full(BINS, -30.0)
+    bins[3] = 0.0
+    sure = np.linspace(-2.0, 2.0, 15)
+    told = np.concatenate([bins, [1.1], sure]).astype(np.float32)
+    asked = []
+
+    def look(name: str) -> object:
+        return lambda planes, network: (asked.append((name, planes.shape, network)), (maps, told))[1]
+
+    monkeypatch.setattr(landmark_network, "seen", look("once"))
+    monkeypatch.setattr(landmark_network, "seen_twice", look("twice"))
+    found = find(np.zeros((1, 4, SIDE, SIDE), np.uint8), SHIPPED, twice)
+    assert asked == [("twice" if twice else "once", (1, 4, SIDE, SIDE), SHIPPED)]
+    step = SIDE / CELLS
+    assert found.joints == pytest.approx(
+        np.array([[(3.5 + j) * step, 10.5 * step] for j in range(15)])
+    )
+    assert found.second == pytest.approx(
+        np.array([[(2 * j + 0.5) * step, 40.5 * step] for j in range(15)])
+    )
+    due = [
+        slope * sure + share * np.log(part / (1.0 - part)) + offset
+        for part, (slope, share, offset) in ((0.7, (0.75, 0.94, 0.57)), (0.3, (-0.08, 1.52, 0.54)))
+    ]
+    assert found.confidence == pytest.approx(1.0 / (1.0 + np.exp(-due[0])), abs=1e-4)
+    assert found.second_confidence == pytest.approx(1.0 / (1.0 + np.exp(-due[1])), abs=1e-4)
+    assert (found.facing_deg, found.facing_confidence) == pytest.approx((67.5, 1.0))
+    assert found.nobody == pytest.approx(1.0 / (1.0 + np.exp(-1.1)))
 
 
 def test_a_second_look_in_the_mirror_has_left_where_left_is() -> None:

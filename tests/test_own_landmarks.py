@@ -17,8 +17,23 @@ from synth.person.people import person
 from synth.person.skeleton import JOINTS
 from synth.picture.exposure import default_rig
 from synth.picture.render import Shot, render
-from viewer.landmarks.landmark_network import find
-from viewer.landmarks.own_landmarks import own_landmarks
+from viewer.landmarks import own_landmarks as source
+from viewer.landmarks.landmark_looks import SHIPPED
+from viewer.landmarks.landmark_network import Found, find
+from viewer.landmarks.landmark_window import (
+    Window,
+    turned_window_of,
+    window_about,
+    window_of,
+)
+from viewer.landmarks.own_landmarks import (
+    Eye,
+    _about,
+    _turn_deg,
+    found_anywhere,
+    found_between,
+    own_landmarks,
+)
 from viewer.silhouette.silhouette import Seen
 
 RIG = default_rig(320, 240)
@@ -141,3 +156,182 @@ def test_who_seemed_to_lie_and_stands_is_looked_at_upright_again() -> None:
     before = Landmarks(tuple((x, y) for x, y in wrong.tolist()), (0.9,) * 15)
     found = own_landmarks(shot.frame1, seen(shot.mask1), before)
     assert off(found) < 0.03
+
+
+class Looks:
+    """A network that finds what it is told to, look by look, and keeps what it was shown."""
+
+    def __init__(self, patch: pytest.MonkeyPatch, *found: Found) -> None:
+        self.found, self.shown, self.eyes = list(found), [], []  # type: ignore[var-annotated]
+        patch.setattr(source, "planes_of", self.planes_of)
+        patch.setattr(source, "find", self.find)
+
+    def planes_of(self, _picture: Image, mask: Mask | None, window: Window) -> None:
+        self.shown.append((window, mask is not None))
+
+    def find(self, _planes: None, *eye: object) -> Found:
+        self.eyes.append(eye)
+        return self.found.pop(0)
+
+
+UPRIGHT = np.array([[96.0, 100.0], [96.0, 60.0], [96.0, 40.0], *[[90.0 + i, 150.0] for i in range(12)]])
+"""Joints in the planes of a trunk that stands: pelvis, neck, head, and limbs below."""
+
+
+def looked(sure: float, nobody: float = 0.0, joints: np.ndarray = UPRIGHT) -> Found:
+    return Found(
+        joints, np.full(15, sure), 12.0, 0.7, nobody, joints + 1.0, np.full(15, 0.25 * sure)
+    )
+
+
+PICTURE = np.zeros((240, 320, 3), np.uint8)
+BOXED = np.zeros((240, 320), np.bool_)
+BOXED[60:200, 100:160] = True
+WHOLE = Window(0, -40, 320)
+
+
+def lying() -> np.ndarray:
+    """The same, along the row: the head to the right of the pelvis."""
+    return np.stack([192.0 - UPRIGHT[:, 1], UPRIGHT[:, 0]], axis=1)
+
+
+def test_a_sure_look_at_the_outline_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    looks = Looks(monkeypatch, looked(0.5))
+    found = own_landmarks(PICTURE, seen(BOXED), None, Eye(SHIPPED, twice=True))
+    window = window_of(Box(left=100, right=159, top=60, bottom=199))
+    assert looks.shown == [(window, True)]
+    assert looks.eyes == [(SHIPPED, True)]
+    assert found is not None
+    assert np.array(found.joints_px) == pytest.approx(window.in_picture(UPRIGHT))
+    assert np.array(found.second_px) == pytest.approx(window.in_picture(UPRIGHT + 1.0))
+    assert found.confidence == (0.5,) * 15
+    assert found.second_confidence == (0.125,) * 15
+    assert (found.facing_deg, found.facing_confidence) == (12.0, 0.7)
+
+
+@pytest.mark.parametrize(("first", "best"), [(0.49, 0.6), (0.49, 0.3)])
+def test_an_unsure_look_is_held_against_all_of_the_picture(
+    monkeypatch: pytest.MonkeyPatch, first: float, best: float
+) -> None:
+    """First whole, then closer, without the outline; the surest is believed."""
+    looks = Looks(monkeypatch, looked(first), looked(0.4), looked(best))
+    found = own_landmarks(PICTURE, seen(BOXED), None)
+    closer = window_about(WHOLE.in_picture(UPRIGHT), 0.0, 0.06)
+    assert looks.shown[1:] == [(WHOLE, False), (closer, False)]
+    assert found is not None
+    assert found.confidence[0] == max(first, best)
+
+
+def test_who_is_not_found_in_all_of_the_picture_is_not_looked_at_closer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    looks = Looks(monkeypatch, looked(0.1))
+    assert own_landmarks(PICTURE, nobody(), None) is None
+    assert looks.shown == [(WHOLE, False)]
+
+
+@pytest.mark.parametrize(
+    ("sure", "empty", "there"),
+    [(0.31, 0.5, True), (0.29, 0.0, False), (0.9, 0.51, False), (0.6, 0.4, True)],
+)
+def test_without_an_outline_somebody_must_be_sure_and_likely(
+    monkeypatch: pytest.MonkeyPatch, sure: float, empty: float, there: bool
+) -> None:
+    before = Landmarks(tuple((150.0 + i, 90.0 + 3 * i) for i in range(15)), (0.9,) * 15)
+    looks = Looks(monkeypatch, looked(sure, empty))
+    found = own_landmarks(PICTURE, nobody(), before)
+    assert (found is not None) == there
+    known = _about(np.array(before.joints_px), before.confidence)
+    assert looks.shown == [(known, False)]
+
+
+@pytest.mark.parametrize(
+    ("sure", "empty", "kept"), [(0.49, 0.09, 0.0), (0.49, 0.08, 0.49), (0.5, 0.9, 0.5)]
+)
+def test_an_outline_of_nobody_has_no_sure_joints(
+    monkeypatch: pytest.MonkeyPatch, sure: float, empty: float, kept: float
+) -> None:
+    Looks(monkeypatch, looked(sure, empty), looked(0.01))
+    found = own_landmarks(PICTURE, seen(BOXED), None)
+    assert found is not None
+    assert found.confidence == (kept,) * 15
+    assert (found.facing_deg, found.facing_confidence) == ((12.0, 0.7) if kept else (0.0, 0.0))
+
+
+def test_a_trunk_that_leans_in_its_window_is_looked_at_again_upright(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The head is to the right: the window is turned clockwise, about the outline."""
+    looks = Looks(monkeypatch, looked(0.6, joints=lying()), looked(0.7, joints=lying()))
+    found = own_landmarks(PICTURE, seen(BOXED), None)
+    (_, (window, outlined)) = looks.shown
+    assert window.turn_deg == pytest.approx(90.0)
+    assert outlined
+    assert window == turned_window_of(BOXED, window.turn_deg)
+    assert found is not None
+    assert found.confidence[0] == 0.7
+    looks = Looks(monkeypatch, looked(0.6, joints=lying()), looked(0.55))
+    found = own_landmarks(PICTURE, seen(BOXED), None)
+    assert found is not None
+    assert found.confidence[0] == 0.6
+
+
+def before_lying() -> Landmarks:
+    places = Window(60, 60, 96).in_picture(lying())
+    return Landmarks(tuple((float(x), float(y)) for x, y in places), (0.9,) * 15)
+
+
+@pytest.mark.parametrize(
+    ("sures", "turns"),
+    [((0.6,), (90.0,)), ((0.3, 0.6), (90.0, 90.0)), ((0.3, 0.2, 0.4), (90.0, 90.0, 0.0))],
+)
+def test_who_lay_is_looked_at_as_they_lay_and_upright_where_that_shows_nobody(
+    monkeypatch: pytest.MonkeyPatch, sures: tuple[float, ...], turns: tuple[float, ...]
+) -> None:
+    """The outline in the turned window, the place of before, the outline as the picture stands."""
+    looks = Looks(monkeypatch, *[looked(sure) for sure in sures])
+    found = own_landmarks(PICTURE, seen(BOXED), before_lying())
+    assert [window.turn_deg for window, _ in looks.shown] == pytest.approx(turns)
+    assert [outlined for _, outlined in looks.shown] == [True, False, True][: len(turns)]
+    assert found is not None
+    assert found.confidence[0] == max(sures)
+
+
+def test_pictures_of_which_nothing_is_known_are_looked_at_in_the_mirror_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    looks = Looks(monkeypatch, looked(0.4), looked(0.6, 0.03), looked(0.7, 0.04))
+    found, empty = found_anywhere(PICTURE)
+    assert (found.confidence[0], empty) == (0.6, 0.03)
+    corners = np.array([[100.0, 50.0], [130.0, 170.0]])
+    found, empty = found_between(PICTURE, corners, 0.2)
+    assert (found.confidence[0], empty) == (0.7, 0.04)
+    assert looks.shown[2] == (window_about(corners, margin=0.2), False)
+    assert looks.eyes == [(SHIPPED, True)] * 3
+
+
+def test_the_next_window_holds_the_joints_that_count() -> None:
+    """Surer than 0.15, seven of 15 at least; upright where the trunk does not count."""
+    joints = Window(60, 60, 96).in_picture(lying())
+    sure = np.zeros(15)
+    sure[:7] = 0.16
+    window = _about(joints, tuple(sure))
+    assert window is not None
+    assert window.turn_deg == pytest.approx(90.0)
+    assert window == window_about(joints[:7], window.turn_deg, 0.06)
+    sure[6] = 0.15
+    assert _about(joints, tuple(sure)) is None
+    sure[:] = 0.5
+    sure[1] = 0.1
+    window = _about(joints, tuple(sure))
+    assert window is not None
+    assert window.turn_deg == 0.0
+
+
+@pytest.mark.parametrize(("trunk_px", "turn_deg"), [(9.9, 0.0), (10.1, 90.0)])
+def test_a_trunk_that_points_at_the_camera_tells_no_lean(trunk_px: float, turn_deg: float) -> None:
+    """Shorter than a tenth of the longer side of what holds the joints, 100 px of 40 by 100."""
+    joints = np.zeros((15, 2))
+    joints[1] = trunk_px, 0.0
+    sure = np.array([[0.0, 0.0], [40.0, 100.0]])
+    assert _turn_deg(joints, sure) == pytest.approx(turn_deg)
