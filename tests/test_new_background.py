@@ -1,9 +1,10 @@
 """A background that is taken anew: of frames that show nobody, or not at all."""
 
 import numpy as np
+import pytest
 from local_bus import LocalBus
 
-from common.bus.control_messages import Command
+from common.bus.control_messages import Answer, Command
 from viewer.background.new_background import Learning
 
 DUE = 8
@@ -60,3 +61,48 @@ def test_a_camera_that_is_covered_learns_no_cover() -> None:
     assert not answer.well
     assert "black" in answer.text
     assert [learning.step(room(2), "") for _ in range(DUE)] == [(None, None)] * DUE
+
+
+def test_each_answer_says_which_camera_and_why() -> None:
+    bus = LocalBus()
+    learning = Learning(bus.subscribe(Command), 2, 3)
+    bus.publish(Command(what="background"))
+    answered = [learning.step(room(90), fault)[1] for fault in ("", "frozen", "")]  # type: ignore[arg-type]
+    frozen = "camera 2: its picture is frozen: the background stays as it was"
+    assert answered == [None, Answer(what="background", well=False, text=frozen), None]
+    bus.publish(Command(what="background"))
+    answered = [learning.step(room(level), "")[1] for level in (90, 90, 90)]
+    new = Answer(what="background", well=True, text="camera 2: it has a new background")
+    assert answered == [None, None, new]
+    assert learning.step(room(90), "") == (None, None)
+
+
+def test_a_word_that_comes_again_begins_anew_and_others_are_not_for_it() -> None:
+    """Two frames of before are not counted; pictures are copied, for a camera's may be reused."""
+    bus = LocalBus()
+    learning = Learning(bus.subscribe(Command), 1, 3)
+    bus.publish(Command(what="turn"))
+    shared = room(60)
+    assert [learning.step(shared, "")[0] for _ in range(3)] == [None] * 3
+    bus.publish(Command(what="background"))
+    assert [learning.step(shared, "")[0] for _ in range(2)] == [None] * 2
+    bus.publish(Command(what="background"))
+    levels, learnt = (140, 150, 145), []
+    for level in levels:
+        shared[:] = level
+        learnt.append(learning.step(shared, "")[0])
+    assert learnt[:2] == [None, None]
+    assert learnt[2] is not None
+    assert [float(learnt[2].low.max()), float(learnt[2].high.min())] == [140.0, 150.0]
+
+
+def test_black_frames_among_those_that_are_learnt_from_are_left_out() -> None:
+    bus = LocalBus()
+    learning = Learning(bus.subscribe(Command), 1, 3)
+    bus.publish(Command(what="background"))
+    told = [learning.step(room(level), "") for level in (140, 0, 140)]
+    background, answer = told[-1]
+    assert answer is not None
+    assert answer.well
+    assert background is not None
+    assert background.centre.mean() == pytest.approx(140.0, abs=1.0)

@@ -2,12 +2,13 @@
 
 import msgspec
 import numpy as np
+import pytest
 from test_body_region import true_landmarks, without
 from test_own_landmarks import acted, nobody, seen
 
 from common.bus.messages import Landmarks
 from common.raster.similarity import Mask
-from viewer.room.outline_correction import corrected
+from viewer.room.outline_correction import _covered, _distance_2, _far_share, corrected
 
 
 def iou(one: Mask, other: Mask) -> float:
@@ -80,3 +81,49 @@ def test_a_door_goes_though_no_ankle_is_seen() -> None:
 def test_landmarks_that_tell_no_size_overrule_nothing() -> None:
     own = seen(with_door()[0])
     assert corrected(own, without("pelvis", "l_knee", "r_knee"), 0.15).seen is own
+
+
+def plain_distance(x: float, y: float, ends: np.ndarray) -> float:
+    """To the nearest of many places along a bone."""
+    along = ends[0] + np.linspace(0.0, 1.0, 4001)[:, None] * (ends[1] - ends[0])
+    return float(np.hypot(along[:, 0] - x, along[:, 1] - y).min())
+
+
+@pytest.mark.parametrize("place", [(3.0, 20.0), (30.0, 8.0), (12.0, 14.0), (25.0, 31.0)])
+def test_a_place_is_as_far_from_a_bone_as_from_its_nearest_point(
+    place: tuple[float, float],
+) -> None:
+    ends = np.array([[8.0, 12.0], [22.0, 19.0]])
+    assert np.sqrt(_distance_2(*place, ends)) == pytest.approx(plain_distance(*place, ends), abs=1e-3)
+    point = np.array([[8.0, 12.0], [8.0, 12.0]])
+    assert _distance_2(11.0, 16.0, point) == pytest.approx(25.0)
+
+
+def test_the_share_of_an_outline_far_from_all_bones_is_that_of_every_third_pixel() -> None:
+    mask = np.random.default_rng(6).integers(0, 2, (40, 61)).astype(np.uint8)
+    bones = np.array([[[8.0, 12.0], [22.0, 19.0]], [[45.0, 3.0], [50.0, 30.0]]])
+    far = [
+        min(plain_distance(x + 0.5, y + 0.5, ends) for ends in bones) > 7.0
+        for y in range(0, 40, 3)
+        for x in range(0, 61, 3)
+        if mask[y, x]
+    ]
+    assert 0.2 < np.mean(far) < 0.8
+    assert _far_share(mask, bones, 7.0) == pytest.approx(np.mean(far))
+    assert _far_share(np.zeros_like(mask), bones, 7.0) == 0.0
+
+
+def test_a_bone_is_covered_where_its_places_are_in_the_outline() -> None:
+    """Nine places, tenths of the way apart; those outside of the picture are not asked for."""
+    mask = np.zeros((30, 40), np.uint8)
+    mask[:, :15] = 1
+    bones = np.array(
+        [
+            [[5.0, 10.0], [25.0, 10.0]],  # 7, 9, 11, 13 of 7 to 23
+            [[20.0, 2.0], [20.0, 28.0]],
+            [[5.0, 5.0], [5.0, 45.0]],  # 9 to 29, then outside
+            [[-30.0, 5.0], [-10.0, 5.0]],
+            [[30.0, 25.0], [50.0, 25.0]],
+        ]
+    )
+    assert _covered(mask, bones).tolist() == pytest.approx([4 / 9, 0.0, 1.0, 1.0, 0.0])
