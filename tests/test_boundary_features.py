@@ -9,7 +9,14 @@ from numpy.typing import NDArray
 from common.video.decoding import Image
 from viewer.background.background import BackgroundModel
 from viewer.silhouette.alpha_matte import NOISE, SHARES
-from viewer.silhouette.boundary_features import CROSS, FEATURES, features_of
+from viewer.silhouette.boundary_features import (
+    CROSS,
+    FEATURES,
+    _gathered,
+    _window,
+    counts_3x3,
+    features_of,
+)
 from viewer.silhouette.colour_model import SHADES
 
 BODY, ROOM = (40.0, 60.0, 160.0), (150.0, 150.0, 150.0)
@@ -90,3 +97,55 @@ def test_of_nobody_nothing_is_looked_at() -> None:
     nobody = np.zeros((ROWS, COLUMNS), np.uint8)
     places, found = features_of(mixed(0.5, 1.0), wall(), nobody, nobody)
     assert (places.shape, found.shape) == ((0, 2), (0, FEATURES))
+
+
+def test_the_window_around_a_mask_ends_at_the_picture() -> None:
+    mask = np.zeros((40, 60), np.uint8)
+    mask[10:20, 30:37] = 1
+    assert _window(mask, 4) == (26, 6, 41, 24)
+    assert _window(mask, 15) == (15, 0, 52, 35)
+    assert _window(mask, 35) == (0, 0, 60, 40)
+
+
+def test_neighbours_in_the_mask_are_counted() -> None:
+    mask = np.zeros((5, 7), np.uint8)
+    mask[1:4, 2:5] = 1
+    assert counts_3x3(mask)[2].tolist() == [0, 3, 6, 9, 6, 3, 0]
+
+
+@pytest.mark.parametrize("stride", [1, 2])
+def test_features_are_gathered_from_a_cross_of_neighbours_then_from_around(stride: int) -> None:
+    """Against plain indexing; neighbours beyond the window are its border's."""
+    rng = np.random.default_rng(2)
+    shares = rng.normal(size=(9, 12, SHARES)).astype(np.float32)
+    around, wide = rng.integers(0, 256, (2, 9, 12), dtype=np.uint8)
+    places = np.array([[0, 0], [4, 7], [8, 11], [1, 10]], np.int32)
+    facts = rng.normal(size=(4, FEATURES - FACTS)).astype(np.float32)
+    there = places.copy()
+    found = _gathered(there, shares, facts, around, wide, stride, (20, 3))
+    assert there.tolist() == (places + [20, 3]).tolist()
+    for n, (y, x) in enumerate(places.tolist()):
+        rows = np.clip(y + stride * CROSS[:, 0], 0, 8)
+        columns = np.clip(x + stride * CROSS[:, 1], 0, 11)
+        due = [*shares[rows, columns].ravel(), around[y, x] / 255, wide[y, x] / 255, *facts[n]]
+        assert found[n] == pytest.approx(np.array(due), rel=1e-6)
+
+
+@pytest.mark.parametrize("rows", [120, 480])
+def test_a_taller_picture_is_looked_at_as_far_around_by_its_height(rows: int) -> None:
+    """The band is a hundred-and-twentieth of the height to either side of the outline."""
+    times = rows // 120
+    model = BackgroundModel(
+        np.full((rows, 160, 3), ROOM, np.float32),
+        np.full((rows, 160, 2), 0.25, np.float32),
+        np.ones(3, np.float32),
+        np.zeros(SHADES, np.float32),
+    )
+    frame = np.full((rows, 160, 3), ROOM, np.uint8)
+    frame[:, 60:100] = BODY
+    mask = np.zeros((rows, 160), np.uint8)
+    mask[:, 60:100] = 1
+    places, _ = features_of(frame, model, mask, np.zeros_like(mask))
+    columns = np.unique(places[places[:, 0] == rows // 2, 1])
+    reach = [*range(60 - times, 60 + times), *range(100 - times, 100 + times)]
+    assert columns.tolist() == reach

@@ -13,6 +13,7 @@ from viewer.silhouette.pixel_classifier import (
     PixelClassifier,
     load,
     log_odds,
+    redraw,
     save,
     shipped,
 )
@@ -73,3 +74,12 @@ def test_a_pickle_is_not_read(tmp_path: Path) -> None:
     np.savez(tmp_path / "network.npz", allow_pickle=True, **objects)
     with pytest.raises(NetworkError):
         load(tmp_path / "network.npz")
+
+
+def test_a_pixel_is_drawn_where_the_odds_are_likely() -> None:
+    """Beyond -0.4, in places and out of them; what is not asked for stays."""
+    mask = np.zeros((3, 4), np.uint8)
+    mask[0] = 1
+    places = np.array([[0, 1], [0, 2], [2, 3], [1, 0]], np.int32)
+    redraw(mask, places, np.array([-0.41, -0.39, 0.5, -2.0], np.float32))
+    assert mask.tolist() == [[1, 0, 1, 1], [0, 0, 0, 0], [0, 0, 0, 1]]

@@ -7,7 +7,8 @@ from test_silhouette import HEIGHT, WIDTH, body, dressed, room, shot
 from common.config.part_settings import SilhouetteSettings
 from common.method import PAPER
 from common.raster.similarity import Mask
-from viewer.background.background import learn
+from viewer.background.background import Background, learn
+from viewer.silhouette.printed_silhouette import printed
 from viewer.silhouette.silhouette import State, init, step
 
 
@@ -53,3 +54,63 @@ def test_a_brighter_picture_is_foreground_as_printed() -> None:
     brighter = np.clip(1.25 * shot(room(), 1.0, 60).astype(np.float32), 0, 255).astype(np.uint8)
     _, seen = step(begun(1.0), brighter, None)
     assert seen.mask.mean() > 0.3
+
+
+EVEN = np.ones(3, np.float32)
+
+
+def ranged(step: float = 2.0) -> Background:
+    """An even wall of 90 to 110 grey levels, 60 by 100 pixels."""
+    learnt = learn([np.full((60, 100, 3), 100, np.uint8)])
+    return learnt._replace(
+        low=learnt.centre - 10, high=learnt.centre + 10, step=np.full_like(learnt.step, step)
+    )
+
+
+def found_at(level: float, step: float = 2.0, gain: np.ndarray = EVEN) -> int:
+    """How much of a square of 20 by 30 pixels, of a level, is foreground."""
+    frame = np.full((60, 100, 3), 100, np.uint8) * 1
+    frame[10:40, 20:40, 1] = level
+    return int(printed(ranged(step), frame, gain, 5.0, None).mask[10:40, 20:40].sum())
+
+
+@pytest.mark.parametrize(
+    ("level", "step", "count"),
+    [
+        (131.0, 2.0, 600),
+        (130.0, 2.0, 0),
+        (69.0, 2.0, 600),
+        (70.0, 2.0, 0),
+        (136.0, 13.0, 0),
+        (137.0, 13.0, 600),
+    ],
+)
+def test_a_pixel_is_foreground_beyond_its_range_by_twenty_levels_or_twice_the_step(
+    level: float, step: float, count: int
+) -> None:
+    """W4: brighter or darker, in one channel, both sides of the limit."""
+    assert found_at(level, step) == count
+
+
+def test_the_range_is_that_of_the_frames_light() -> None:
+    assert found_at(131.0, gain=np.array([1.0, 1.05, 1.0], np.float32)) == 0
+
+
+def test_regions_are_whole_but_for_what_shows_between_arm_and_trunk() -> None:
+    """Holes of less than a thousandth of 6000 pixels are filled; a lower region is nobody."""
+    frame = np.full((60, 100, 3), 100, np.uint8)
+    frame[10:40, 20:50] = 200
+    frame[15, 25] = 100  # closed
+    frame[18:25, 30:40] = 100  # a hole of 70 pixels, 66 between its pixels' middles
+    frame[50:54, 70:90] = 200
+    wanted = np.zeros((60, 100), np.uint8)
+    wanted[10:40, 20:50] = 1
+    wanted[18:25, 30:40] = 0
+    found = printed(ranged(), frame, EVEN, 5.0, None)
+    assert found.blobs == 1
+    assert np.array_equal(found.mask, wanted)
+    assert printed(ranged(), frame, EVEN, 4.0, None).blobs == 2
+    there = printed(ranged(), frame, EVEN, 4.0, (80.0, 52.0)).mask
+    assert np.flatnonzero(there.any(axis=1)).tolist() == [50, 51, 52, 53]
+    nobody = printed(ranged(), frame, EVEN, 31.0, None)
+    assert (nobody.blobs, int(nobody.mask.sum())) == (0, 0)

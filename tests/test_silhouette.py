@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import cv2
+import msgspec
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -10,18 +11,37 @@ from spoiling import film_of
 
 from common.config.part_settings import SilhouetteSettings
 from common.config.settings import Settings
-from common.method import DEFAULT
+from common.bus.messages import Box
+from common.method import DEFAULT, PAPER
 from common.raster.similarity import Mask
 from common.video.decoding import Image
 from viewer import track
 from viewer.background.background import learn, light_gain
+from viewer.background.background import BackgroundModel
+from viewer.background.moved_objects import Patch
 from viewer.background.occluded_background import learn_uncovered
 from viewer.silhouette.alpha_matte import matte, sides_of
 from viewer.silhouette.colour_model import body_colours_of, counted
 from viewer.silhouette.difference import adapted, label, seeds
 from viewer.silhouette.pixel_classifier import redraw
 from viewer.silhouette.regions import same_body
-from viewer.silhouette.silhouette import SETTLES, Seen, State, init, step, without_things
+from viewer.silhouette.silhouette import (
+    SETTLES,
+    Seen,
+    State,
+    _adapted,
+    _as_bright_as,
+    _tidy,
+    before,
+    guess,
+    in_light_of,
+    init,
+    learn_colours,
+    patched,
+    seen_of,
+    step,
+    without_things,
+)
 from viewer.viewer_warmup import warm_up
 
 HEIGHT, WIDTH = 240, 320
@@ -283,3 +303,186 @@ def test_the_background_grows_no_brighter_in_hours_of_flicker_and_of_somebodys_s
         state, _ = step(state, film[frame % len(film)], None)
     level = state.model.centre.mean(axis=(0, 1)) / state.background.centre.mean(axis=(0, 1))
     assert level == pytest.approx(np.ones(3), abs=0.002)
+
+
+def plain(level: float = 100.0, shape: tuple[int, int] = (60, 80)) -> State:
+    """A silhouette's state before an even wall, known to two grey levels."""
+    return init(learn([np.full((*shape, 3), level, np.uint8)]), SETTINGS, DEFAULT)
+
+
+def test_a_background_with_a_patch_has_its_colour_and_its_weight_there_alone() -> None:
+    state = plain()
+    where = np.zeros((60, 80), np.bool_)
+    where[10:12, 20:23] = True
+    patch = Patch(5, where, np.full((6, 3), 33.0, np.float32), np.full((6, 2), 4.0, np.float32))
+    found = patched(state, patch)
+    assert found.model.centre[where].tolist() == [[33.0] * 3] * 6
+    assert found.model.weight[where].tolist() == [[1 / 16] * 2] * 6
+    assert np.array_equal(found.model.centre[~where], state.model.centre[~where])
+    assert state.model.centre[11, 21, 0] == 100.0
+
+
+def test_another_background_keeps_whose_colours_are_whose_and_nothing_else() -> None:
+    colours = np.ones_like(plain().colours)
+    state = plain()._replace(colours=colours, frames=7, doubted=np.ones((60, 80), np.uint8))
+    own = np.full_like(state.model.body_colours, 0.5)
+    state = state._replace(model=state.model._replace(body_colours=own))
+    other = learn([np.full((60, 80, 3), 140, np.uint8)])
+    found = before(state, other)
+    assert found.model.centre is other.centre
+    assert found.background is other
+    assert found.model.body_colours is own
+    assert found.colours is colours
+    assert (found.frames, found.doubted) == (0, None)
+
+
+def test_the_light_of_a_frame_is_asked_for_where_the_method_does() -> None:
+    frame = np.full((60, 80, 3), 120, np.uint8)
+    assert in_light_of(plain(), frame).model.gain == pytest.approx([1.2] * 3)
+    as_printed = plain()._replace(method=PAPER)
+    assert in_light_of(as_printed, frame) is as_printed
+
+
+def test_a_thing_becomes_background_in_its_own_light_after_ten_frames() -> None:
+    """By hand: 60 levels under a gain of 1.2 are 50; the count begins anew where it settled, or
+    where a frame shows no thing."""
+    state = plain()
+    state = state._replace(model=state.model._replace(gain=np.full(3, 1.2, np.float32)))
+    frame = np.full((60, 80, 3), 60, np.uint8)
+    thing = np.zeros((60, 80), np.uint8)
+    thing[10:20, 30:50] = 1
+    for n in range(1, 10):
+        state = without_things(state, state, frame, thing)
+        assert state.doubted is not None
+        assert (state.doubted[15, 40], state.doubted[5, 5]) == (n, 0)
+        assert state.model.centre[15, 40, 0] == 100.0
+    less = thing.copy()
+    less[:, 40:] = 0
+    settled = without_things(state, state, frame, less)
+    assert settled.doubted is not None
+    assert not settled.doubted.any()
+    assert settled.model.centre[15, 35] == pytest.approx([50.0] * 3)
+    assert settled.model.centre[15, 45, 0] == 100.0
+    assert without_things(state, state, frame, None).doubted is None
+
+
+def test_what_an_outline_with_a_thing_told_of_colours_is_forgotten() -> None:
+    state = plain()
+    after = state._replace(
+        colours=state.colours + 1.0,
+        frames=3,
+        model=state.model._replace(body_colours=state.model.body_colours + 0.5),
+    )
+    frame, thing = np.full((60, 80, 3), 60, np.uint8), np.ones((60, 80), np.uint8)
+    for things in (None, thing):
+        found = without_things(after, state, frame, things)
+        assert found.colours is state.colours
+        assert found.model.body_colours is state.model.body_colours
+        assert found.frames == 3
+
+
+@pytest.mark.parametrize(("side", "kept"), [(2, False), (3, True)])
+def test_specks_below_a_five_thousandth_of_the_picture_are_dropped(side: int, kept: bool) -> None:
+    """Of 100 x 200 pixels four: a square of three has an area of four by its contour, of two 1."""
+    mask = np.zeros((100, 200), np.uint8)
+    mask[30:70, 50:120] = 1
+    mask[5 : 5 + side, 8 : 8 + side] = 1
+    _tidy(mask)
+    assert mask[6, 9] == int(kept)
+    assert mask[30:70, 50:120].all()
+
+
+@pytest.mark.parametrize(("side", "closed"), [(3, True), (5, False)])
+def test_holes_below_a_thousandth_of_the_picture_are_closed(side: int, closed: bool) -> None:
+    """Of 100 x 200 pixels twenty: the contour about a hole of three encloses 4 x 4, of five 6 x 6,
+    less its corners."""
+    mask = np.zeros((100, 200), np.uint8)
+    mask[30:70, 50:120] = 1
+    mask[40 : 40 + side, 60 : 60 + side] = 0
+    _tidy(mask)
+    assert mask[41, 61] == int(closed)
+
+
+@pytest.mark.parametrize(("rows", "there"), [(15, True), (14, False)])
+def test_a_mask_as_tall_as_a_person_tells_its_box_area_and_border(rows: int, there: bool) -> None:
+    mask = np.zeros((100, 200), np.uint8)
+    mask[20 : 20 + rows, 60:70] = 1
+    found = seen_of(mask, 3, 0.15)
+    assert found.mask.dtype == np.bool_
+    if there:
+        box = Box(left=60, right=69, top=20, bottom=34)
+        assert found[1:] == (box, 150, 3, False)
+        mask[20:22, 190:] = 1
+        assert seen_of(mask, 1, 0.15).cut
+    else:
+        assert found[1:] == (None, 0, 0, False)
+        assert not found.mask.any()
+
+
+def test_a_guess_tells_the_regions_and_where_one_is_expected() -> None:
+    state = in_light_of(begin(), shot(room(), 2.0, 50))
+    picture = dressed(room(), body(90) | body(250))
+    frame = shot(picture, 2.0, 51)
+    for near, x in (((90.0, 120.0), 90), ((250.0, 120.0), 250)):
+        found = guess(state, frame, near)
+        assert (found.cell, found.blobs) == (4, 2)
+        assert found.cells.shape == (60, 80)
+        assert iou(found.mask > 0, body(x)) > 0.85
+        assert len(found.places) == len(found.features) > 100
+    nobody = guess(state, shot(room(), 2.0, 52), None)
+    assert (nobody.blobs, len(nobody.places)) == (0, 0)
+    assert not nobody.mask.any()
+
+
+def test_colours_are_counted_inside_and_outside_of_the_outline() -> None:
+    state = in_light_of(begin(), shot(dressed(room(), body()), 2.0, 9))
+    frame = shot(dressed(room(), body()), 2.0, 9)
+    first = guess(state, frame, None)
+    found = learn_colours(state, body().view(np.uint8), frame, first)
+    assert state.colours.sum() == 0.0
+    assert 0.2 * body().sum() < found.colours[1].sum() < 0.5 * body().sum()
+    assert found.colours[0].sum() > 100
+    assert np.array_equal(found.model.body_colours, body_colours_of(found.colours))
+
+
+def test_gain_and_background_change_places_without_a_change_of_their_product() -> None:
+    """By hand: blue 110 where 100 was learnt is a gain a tenth higher."""
+    background = learn([np.full((6, 8, 3), 100, np.uint8)])
+    centre = background.centre * np.array([1.1, 0.8, 1.0], np.float32)
+    model = BackgroundModel(
+        centre, background.spread, np.array([1.0, 2.0, 0.5], np.float32), np.zeros(4, np.float32)
+    )
+    found = _as_bright_as(background, model)
+    assert found.centre == pytest.approx(background.centre)
+    assert found.gain == pytest.approx([1.1, 1.6, 0.5])
+    assert found.centre * found.gain == pytest.approx(centre * model.gain)
+
+
+def test_the_slow_light_is_taken_on_every_eighth_frame_and_not_beside_the_person() -> None:
+    """Four grey levels more, of which a fifth is taken on; a twelfth of 60 rows is 5 pixels."""
+    frame = np.full((60, 80, 3), 104, np.uint8)
+    state = plain()._replace(method=msgspec.structs.replace(DEFAULT, steady_light=False))
+    for n in range(1, 8):
+        state = _adapted(state, frame, None)
+        assert (state.frames, state.model.centre[0, 0, 0]) == (n, 100.0)
+    box = Box(left=30, right=40, top=20, bottom=35)
+    found = _adapted(state, frame, box).model.centre[..., 0]
+    near = np.zeros((60, 80), np.bool_)
+    near[15:41, 25:46] = True
+    assert found[near] == pytest.approx(np.full(near.sum(), 100.0))
+    assert found[~near] == pytest.approx(np.full((~near).sum(), 100.8))
+    assert _adapted(state, frame, None).model.centre[..., 0] == pytest.approx(np.full((60, 80), 100.8))
+    assert _adapted(state, frame, None).model.centre[1, 0, 0] == pytest.approx(100.8)
+    assert _adapted(state, frame, None).frames == 8
+
+
+@pytest.mark.parametrize(("gain", "taken"), [(0.19, False), (0.21, True)])
+def test_in_the_dark_nothing_is_taken_on(gain: float, taken: bool) -> None:
+    """Where a channel has less than a fifth of its light."""
+    state = plain()._replace(frames=7)
+    gains = np.array([1.0, gain, 1.0], np.float32)
+    state = state._replace(model=state.model._replace(gain=gains))
+    frame = np.rint(100.0 * gains + 2.0).astype(np.uint8) * np.ones((60, 80, 1), np.uint8)
+    found = _adapted(state, frame, None)
+    assert found.frames == 8
+    assert (found.model.centre is not state.model.centre) == taken
