@@ -89,3 +89,16 @@ def test_an_opening_is_judged_by_the_contours_of_all_frames(
     monkeypatch.setattr(empty_opening, "_steeper", lambda *_: told.pop(0))
     clip = [shot(room(), 2.0, n) for n in range(3)]
     assert is_empty_opening(overlaid_opening(clip), [shot(walker(n), 2.0, n) for n in (0, 5)]) == empty
+
+
+@pytest.mark.parametrize("light", [(1.3, 1.3, 1.3), (0.7, 0.8, 0.9)])
+def test_an_opening_is_judged_under_the_light_of_each_frame(
+    light: tuple[float, float, float],
+) -> None:
+    """Who stays in a clip whose light changes: empty before, and not where they stood."""
+    empty = [shot(room(), 2.0, n) for n in range(4)]
+    later = [shot(walker(n) * light, 2.0, n) for n in range(0, 40, 8)]
+    assert is_empty_opening(overlaid_opening(empty), later)
+    begun = [shot(walker(0), 2.0, n) for n in range(4)]
+    gone = [shot(room() * light, 2.0, n) for n in range(5)]
+    assert not is_empty_opening(overlaid_opening(begun), gone)

@@ -2,6 +2,7 @@
 
 import cv2
 import numpy as np
+import pytest
 from test_background import HEIGHT, WIDTH, shot
 
 from common.config.part_settings import SilhouetteSettings
@@ -79,3 +80,36 @@ def test_a_room_that_no_side_tells_is_seen_where_landmarks_have_nobody() -> None
     room = learn_behind(frames, standing(), away)
     assert not room.uncertain[hung].any()
     assert np.abs(room.centre[hung] - (200, 220, 230)).max() < 5
+
+
+def hidden_by(clothes: int, shown: int) -> tuple[np.ndarray, np.ndarray]:
+    """What is made of a body of one grey before a grey wall that so many of 30 frames show: the
+    background in its middle, and whether that is unknown."""
+    frames = [np.full((40, 60, 3), 100, np.uint8) for _ in range(30)]
+    body = np.zeros((40, 60), np.bool_)
+    body[10:30, 20:26] = True
+    for frame in frames[shown:]:
+        frame[body] = clothes
+    learnt = learn_behind(frames, body, [np.ones((40, 60), np.uint8)] * 30)
+    assert learnt.centre[5, 5] == pytest.approx([100.0] * 3, abs=0.5)
+    assert not learnt.uncertain[5, 5]
+    return learnt.centre[20, 23], learnt.uncertain[20, 23]
+
+
+@pytest.mark.parametrize(
+    ("clothes", "shown", "level", "unknown"),
+    [
+        (200, 0, 0.0, True),
+        (60, 0, 255.0, True),
+        (200, 2, 0.0, True),
+        (200, 3, 100.0, False),
+        (60, 4, 100.0, False),
+    ],
+)
+def test_what_a_tenth_of_the_frames_show_is_the_wall_else_it_is_farthest_from_the_body(
+    clothes: int, shown: int, level: float, unknown: bool
+) -> None:
+    """Black behind the bright, white behind the dark: three of thirty frames are enough."""
+    centre, uncertain = hidden_by(clothes, shown)
+    assert centre == pytest.approx([level] * 3, abs=0.5)
+    assert uncertain == unknown

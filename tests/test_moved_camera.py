@@ -11,8 +11,18 @@ from common.rig.turned_camera import angle_deg
 from common.video.decoding import Image
 from viewer.background import moved_camera
 from viewer.background.background import learn
-from viewer.background.moved_camera import AGAIN, LOOK_EVERY, State
-from viewer.background.turned_picture import lens_of
+from viewer.background.moved_camera import (
+    AGAIN,
+    LOOK_EVERY,
+    PATCH,
+    State,
+    _alike,
+    _found,
+    _inside,
+    _middle_shift,
+    even_of,
+)
+from viewer.background.turned_picture import lens_of, seen_at
 
 SIZE = (160, 120)
 LENS = lens_of(None, SIZE)
@@ -126,3 +136,119 @@ def test_a_background_that_is_learnt_after_a_move_knows_of_it() -> None:
     state = moved_camera.init(learn([shown(room, turn)]), LENS, turn)
     assert state.shift is not None
     assert state.shift.right_px == pytest.approx(np.tan(np.radians(4.0)) * 200.0)
+
+
+def test_marks_lie_apart_and_not_where_the_background_was_guessed() -> None:
+    """A twentieth of 120 rows from each other; half a patch beside what was never seen."""
+    known = learn([shown(wall(), seed=n) for n in range(8)])
+    uncertain = np.zeros((120, 160), np.bool_)
+    uncertain[:, 60:100] = True
+    marks = moved_camera.init(known._replace(uncertain=uncertain), LENS).marks_px
+    assert len(marks) > 16
+    apart = np.linalg.norm(marks[:, None] - marks[None], axis=2) + 1e9 * np.eye(len(marks))
+    assert apart.min() >= 6.0
+    beside = PATCH // 2
+    assert not ((marks[:, 0] >= 60 - beside) & (marks[:, 0] < 100 + beside)).any()
+
+
+def looked(
+    monkeypatch: pytest.MonkeyPatch, turns: list[float | None]
+) -> tuple[State, list[bool], int]:
+    """A camera that is looked at, look by look, and found turned by so many degrees."""
+    state = begun(wall())
+    coming = list(turns)
+    monkeypatch.setattr(moved_camera, "_is_where_it_was", lambda *_: False)
+
+    def found(*_: object) -> Vector | None:
+        by_deg = coming.pop(0)
+        return None if by_deg is None else turn_about((0.0, 1.0, 0.0), by_deg)
+
+    monkeypatch.setattr(moved_camera, "_found", found)
+    told, frames, picture = [], 0, shown(wall())
+    while coming:
+        before = len(coming)
+        state, is_new = moved_camera.step(state, picture)
+        frames += 1
+        if len(coming) < before:
+            told.append(is_new)
+        else:
+            assert not is_new
+    return state, told, frames
+
+
+def test_a_camera_has_moved_when_two_looks_in_a_row_find_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Every fourth frame is looked at; a look that finds nothing, or another turn, begins anew."""
+    state, told, frames = looked(monkeypatch, [3.0, None, 3.0, 5.0, 5.0])
+    assert told == [False, False, False, False, True]
+    assert frames == 5 * LOOK_EVERY
+    assert angle_deg(state.turn) == pytest.approx(5.0)
+    assert (state.found, state.looks) == (None, 0)
+
+
+def test_a_turn_by_less_than_a_pixel_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    """1.2 px of a focal length of 200 are a third of a degree."""
+    state, told, _ = looked(monkeypatch, [0.3, 0.3, 0.3])
+    assert told == [False] * 3
+    assert (state.found, state.looks) == (None, 0)
+    assert state.shift is None
+    state, told, _ = looked(monkeypatch, [0.4, 0.4])
+    assert told == [False, True]
+    assert state.shift is not None
+
+
+def test_a_turn_is_searched_from_where_the_picture_and_its_middle_lie(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The marks as far aside as the whole is, as far as its middle is, and where they are due."""
+    room = cv2.resize(wall(), (320, 240))
+    state = begun(room)
+    there = np.ascontiguousarray(np.roll(state.even, (5, -7), axis=(0, 1)))
+    turn = turn_about((0.0, 1.0, 0.0), 2.0)
+    state = state._replace(turn=turn)
+    starts: list[np.ndarray] = []
+    shares = [0.5, 0.6, 0.55]
+
+    def turn_from(_state: State, _even: np.ndarray, start: np.ndarray) -> tuple[float, Vector]:
+        starts.append(start)
+        return shares[len(starts) - 1], np.eye(3) * len(starts)
+
+    monkeypatch.setattr(moved_camera, "_turn_from", turn_from)
+    assert np.array_equal(_found(state, there), 2.0 * np.eye(3))
+    aside = np.array([-7.0, 5.0])
+    assert starts[0] - state.marks_px == pytest.approx(np.tile(aside, (len(starts[0]), 1)), abs=0.5)
+    assert starts[1] - state.marks_px == pytest.approx(np.tile(aside, (len(starts[0]), 1)))
+    assert starts[2] == pytest.approx(seen_at(LENS, turn, state.marks_px), abs=1e-3)
+    starts.clear()
+    shares[:] = [0.49, 0.3, 0.1]
+    assert _found(state, there) is None
+
+
+def test_the_middle_of_a_picture_is_found_where_it_went() -> None:
+    even = even_of(shown(wall()))
+    assert _middle_shift(even, np.roll(even, (4, 9), axis=(0, 1))) == (9.0, 4.0)
+
+
+def test_what_is_about_marks_is_alike_by_its_correlation() -> None:
+    """Against numpy's; places at the border repeat it."""
+    one, other = even_of(shown(wall(1))), even_of(shown(wall(2)))
+    at = np.array([[40.0, 30.0], [80.4, 70.6], [2.0, 118.0]], np.float32)
+    there = np.array([[50.0, 20.0], [83.0, 71.0], [157.0, 3.0]])
+
+    def patch(picture: np.ndarray, place: np.ndarray) -> np.ndarray:
+        wide = np.pad(picture, 6, mode="edge").astype(float)
+        x, y = np.rint(place).astype(int)
+        return wide[y : y + PATCH, x : x + PATCH].ravel()
+
+    due = [
+        np.corrcoef(patch(one, own), patch(other, far))[0, 1]
+        for own, far in zip(at, there, strict=True)
+    ]
+    assert _alike(one, at, other, there) == pytest.approx(due, abs=1e-4)
+    assert _alike(one, at, one, at) == pytest.approx([1.0] * 3, abs=1e-5)
+
+
+def test_a_place_is_inside_of_a_margin_on_all_sides() -> None:
+    places = np.array([[4.0, 4.0], [3.9, 9.0], [9.0, 3.9], [26.0, 9.0], [25.9, 15.9], [9.0, 16.0]])
+    assert _inside(places, (20, 30), 4).tolist() == [True, False, False, False, True, False]

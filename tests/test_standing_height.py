@@ -43,6 +43,7 @@ def test_who_comes_nearer_grows_with_their_feet() -> None:
     found = standing_of(list(zip(crowns, soles, strict=True)), [True] * 30)
     assert found is not None
     assert [found.at(sole) for sole in soles] == pytest.approx(true.tolist(), rel=0.03)
+    assert (found.sole_row, found.tall_px) == pytest.approx((85.0, 45.0), rel=0.03)
 
 
 def test_who_is_partly_outside_tells_no_height() -> None:
@@ -62,3 +63,37 @@ def test_a_few_frames_of_which_one_is_odd_still_have_a_height() -> None:
     assert found is not None
     assert all(np.isfinite(found))
     assert min(found.at(110.0), found.at(51.0)) > 0.0
+
+
+def test_heights_by_hand() -> None:
+    """Four heights on one row: three quarters are at most 80.5, a tenth at most 71; soles that
+    move by less than 0.15 of the height tell no slope."""
+    rows = [(30.0, 110.0), (31.0, 110.0), (28.0, 110.0), (43.0, 110.0)]
+    found = standing_of(rows, [True] * 4)
+    assert found is not None
+    assert found == pytest.approx((110.0, 80.5, 80.5, 0.0, 70.6))
+    near = [(30.0 + 0.1 * n, 104.0 + 0.9 * n) for n in range(12)]
+    found = standing_of(near, [True] * 12)
+    assert found is not None
+    assert found.slope == 0.0
+    nearer = [(30.0 + 0.1 * n, 104.0 + 1.6 * n) for n in range(12)]
+    found = standing_of(nearer, [True] * 12)
+    assert found is not None
+    assert found.slope == pytest.approx(1.5 / 1.6)
+
+
+def test_where_all_are_cut_all_count() -> None:
+    found = standing_of([(0.0, 60.0), (2.0, 64.0)], [False, False])
+    assert found is not None
+    assert found.sole_row == 62.0
+    assert found.tall_px == pytest.approx(61.5)
+
+
+def test_the_head_is_looked_for_near_the_median_column() -> None:
+    """A twentieth of 100 rows to either side of column 50: an arm at 56 is none, at 55 it is."""
+    mask = np.zeros((120, 160), np.bool_)
+    mask[15:110, 40:61] = True
+    mask[10, 56] = True
+    assert standing_rows(mask) == (15.0, 110.0)
+    mask[10, 55] = True
+    assert standing_rows(mask) == (10.0, 110.0)

@@ -124,6 +124,22 @@ def test_what_is_expected_of_a_posed_body_is_where_its_picture_has_it(yaw_deg: f
     assert right <= left
 
 
+@pytest.mark.parametrize(
+    ("yaw_deg", "limb", "angle_deg"), [(0.0, "r_upper_arm", 180.0), (180.0, "l_upper_arm", 0.0)]
+)
+def test_who_shows_the_back_has_the_right_arm_on_the_right_of_the_picture(
+    yaw_deg: float, limb: str, angle_deg: float
+) -> None:
+    """T10: the right arm is out; r is what is on the left, whoever's it is."""
+    pose = rest_pose()
+    pose[POSE_INDEX["torso_y"]], pose[POSE_INDEX["r_shoulder_z"]] = yaw_deg, 90.0
+    view = view_at(np.array(PAPER_ROTATIONS[0]), 100.0, (160.0, 120.0))
+    found = expected(body_vector(thesis_bdp(1.75)), pose, view, 175.0)
+    out = [angle for angle in found[ANGLE + 6 : ANGLE + 10] if abs(angle - 270.0) > 30.0]
+    assert (found[ANGLE + LIMBS.index(limb)] - angle_deg + 180.0) % 360.0 == pytest.approx(180.0)
+    assert len(out) == 2
+
+
 def test_nobody_is_refused() -> None:
     with pytest.raises(ValueError, match="no body to fit"):
         fit(np.zeros((120, 160), np.bool_), None, 100.0, DEFAULT)

@@ -67,3 +67,18 @@ def test_a_longer_limb_is_measured_finer() -> None:
     short, long = (ratio_found(peak_at(0.613), length) for length in (8.0, 80.0))
     assert short.matches < long.matches
     assert abs(long.angle_deg - 0.613) <= 1 / 80
+
+
+@pytest.mark.parametrize("best", [0.0, 80.0])
+def test_a_search_at_the_end_of_a_range_does_not_go_beyond_half_a_width(best: float) -> None:
+    """T12: nine probes, then five of every pass: 80, 20, 5 and 1.25 degrees, half of each."""
+    asked: list[float] = []
+
+    def score(value: float) -> float:
+        asked.append(value)
+        return peak_at(best)(value)
+
+    found = angle_found(score, (0.0, 80.0))
+    assert (found.angle_deg, found.matches) == (best, 9 + 3 * 5)
+    assert (min(asked), max(asked)) == (0.0, 80.0)
+    assert max(abs(value - best) for value in asked[9:14]) == 10.0

@@ -7,7 +7,10 @@ from stick_posing import STATURE_PX, drawn, stick_pose
 from common.body.body import LIMBS, Vector
 from common.body.stick_body import ANGLE, THESIS, X
 from common.method import METHODS
+from viewer.paper.tritree import Found
+from viewer.stick import thesis_fit
 from viewer.stick.stick_fit import Stick, fit
+from viewer.stick.thesis_fit import fit_thesis
 
 ARMS_OUT = {
     **{"r_upper_arm": 225.0, "r_lower_arm": 225.0},
@@ -99,3 +102,39 @@ def test_one_arm_that_is_stretched_out_does_not_move_the_trunk(
     columns = np.flatnonzero(drawn(pose, THESIS).any(axis=0))
     assert abs((columns[0] + columns[-1] + 1) / 2 - pose[X]) > 20.0
     assert found(pose).pose[X] == pytest.approx(pose[X], abs=2.0)
+
+
+def test_every_match_of_the_stages_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """T11: trunk, neck and both hips are turned, ten limbs are shortened."""
+    monkeypatch.setattr(thesis_fit, "angle_found", lambda *_: Found(90.0, 0.5, 100))
+    monkeypatch.setattr(thesis_fit, "ratio_found", lambda *_: Found(0.7, 0.5, 1))
+    found = fit_thesis(drawn(stick_pose({}), THESIS), STATURE_PX, METHODS["thesis"])
+    assert found.evaluations == 4 * 100 + 10
+
+
+@pytest.mark.parametrize(
+    ("right", "left", "legs", "hidden"),
+    [
+        (False, True, True, ("r_upper_arm", "r_lower_arm")),
+        (True, False, True, ("l_upper_arm", "l_lower_arm")),
+        (True, True, False, ("r_lower_leg", "l_lower_leg")),
+    ],
+)
+def test_what_has_no_curve_is_hidden(
+    monkeypatch: pytest.MonkeyPatch, right: bool, left: bool, legs: bool, hidden: tuple[str, ...]
+) -> None:
+    """T26: an arm with both its halves; both lower legs at once."""
+    monkeypatch.setattr(thesis_fit, "_arm", lambda _fit, _mask, side: (right, left)[side])
+    monkeypatch.setattr(thesis_fit, "_lower_legs", lambda *_: legs)
+    found = fit_thesis(drawn(stick_pose({}), THESIS), STATURE_PX, METHODS["thesis"])
+    assert {limb for limb, is_so in zip(LIMBS, found.hidden, strict=True) if is_so} == set(hidden)
+
+
+@pytest.mark.parametrize("crossed", [False, True])
+def test_crossed_lower_legs_change_places(monkeypatch: pytest.MonkeyPatch, crossed: bool) -> None:
+    """T17: the curve on the left of the picture is then the other leg's."""
+    monkeypatch.setattr(thesis_fit, "knees_crossed", lambda _: crossed)
+    pose = stick_pose(APART | {"r_lower_leg": 262.0, "l_lower_leg": 276.0})
+    stick = found(pose)
+    legs = [angle_deg(stick.pose, f"{side}_lower_leg") for side in ("lr" if crossed else "rl")]
+    assert legs == pytest.approx([262.0, 276.0], abs=4.0)
