@@ -2,15 +2,26 @@
 
 import msgspec
 import numpy as np
+import pytest
 from test_judged_background import film
 from test_own_landmarks import RIG
 
+from common.bus.messages import Landmarks
 from synth.motion.motions import MOTION, performance
 from synth.person.people import person
 from synth.picture.render import render
 from viewer.background.image_stack import median
+from viewer.landmarks.body_region import body_region
 from viewer.room.room_people import Look, looked_at
-from viewer.room.standing_body import standing
+from viewer.room.standing_body import (
+    SHADES,
+    UNSEEN,
+    _colours,
+    _known,
+    _smooth,
+    _votes,
+    standing,
+)
 
 
 def test_somebody_who_stays_is_found_whole() -> None:
@@ -48,3 +59,64 @@ def test_what_is_larger_than_anybody_is_nobody() -> None:
 
 def iou(one: np.ndarray, other: np.ndarray) -> float:
     return float((one & other).sum() / (one | other).sum())
+
+
+def look_at(x: float, sure: float, is_somebody: bool = True) -> Look:
+    places = tuple((x + 2.0 * (n % 4), 10.0 + 6.0 * n) for n in range(15))
+    return Look(Landmarks(places, (sure,) * 15), is_somebody)
+
+
+def test_the_surest_looks_vote_most_and_those_of_nobody_for_none() -> None:
+    """By their confidence squared: 0.16, 0.36 and 0.64 of 1.16."""
+    looks = [look_at(30.0, 0.4), look_at(70.0, 0.6, is_somebody=False), look_at(90.0, 0.8)]
+    votes = _votes(looks, (120, 160, 3), 0.03)
+    first, _, third = (body_region(look.landmarks, (120, 160), 0.03) for look in looks)
+    assert not (first & third).any()
+    assert votes == pytest.approx(0.16 / 1.16 * first + 0.64 / 1.16 * third)
+
+
+def test_how_often_a_colour_is_seen_is_shared_with_its_neighbours() -> None:
+    """A half stays, a quarter goes to either side, of each of three axes; by hand."""
+    shades = np.array([(3 * SHADES + 4) * SHADES + 5, (7 * SHADES + 0) * SHADES + 2])
+    found = _known(shades, np.array([3.0, 1.0])).reshape((SHADES,) * 3)
+    kept = 3.0 + 1.0 * 0.75 * 0.75  # at two ends of an axis a quarter is lost
+    assert found[3, 4, 5] == pytest.approx(3.0 / 8 / kept)
+    assert found[2, 4, 5] == pytest.approx(3.0 / 16 / kept)
+    assert found[3, 5, 6] == pytest.approx(3.0 / 32 / kept)
+    assert found[7, 0, 2] == pytest.approx(1.0 / 8 / kept)
+    assert found.sum() == pytest.approx(1.0)
+    few = _known(np.array([0]), np.array([0.25]))
+    assert few[0] == pytest.approx(0.25 / 8)
+
+
+def test_a_colour_speaks_for_the_body_as_often_as_it_is_seen_there() -> None:
+    """Only pixels near the body are counted, blue is the first of three eighths of the range."""
+    picture = np.zeros((4, 6, 3))
+    picture[:, :3] = (200.0, 40.0, 100.0)
+    picture[:, 3:] = (10.0, 240.0, 250.0)
+    body, near = np.full((4, 6), 0.1), np.ones((4, 6), np.bool_)
+    body[:, :3], near[2:] = 0.9, False
+    picture[2:, :3] = 60.0
+    found = _colours(picture, body, near)
+    shade = [(6 * 8 + 1) * 8 + 3, (0 * 8 + 7) * 8 + 7]
+    own = _known(np.repeat(shade, 6), np.repeat([0.9, 0.1], 6))
+    other = _known(np.repeat(shade, 6), np.repeat([0.1, 0.9], 6))
+    due = np.log((own + UNSEEN) / (other + UNSEEN))
+    assert found[0, 0] == pytest.approx(due[shade[0]])
+    assert found[1, 5] == pytest.approx(due[shade[1]])
+    assert found[0, 0] > 1.0 > -1.0 > found[1, 5]
+    assert found[3, 1] == pytest.approx(0.0)
+
+
+def test_values_that_are_a_linear_function_of_colours_stay_and_noise_on_them_is_smoothed() -> None:
+    rng = np.random.default_rng(4)
+    guide = rng.uniform(0.0, 1.0, (30, 40, 3))
+    values = guide @ [0.5, -0.3, 0.2] + 0.1
+    assert _smooth(guide, values, 3) == pytest.approx(values, abs=0.01)
+    noisy = values + rng.normal(0, 0.1, values.shape)
+    assert np.std(_smooth(guide, noisy, 3) - values) < 0.05
+    flat = np.full((30, 40, 3), 0.5)
+    steps = (np.arange(40) >= 20) * np.ones((30, 1))
+    found = _smooth(flat, steps, 2)
+    assert found[15, 20] == pytest.approx(0.6, abs=0.01)  # the mean of five means of fifths
+    assert found[15, [10, 30]] == pytest.approx([0.0, 1.0], abs=0.01)

@@ -24,6 +24,7 @@ def about(*degrees: float) -> np.ndarray:
 def test_a_camera_without_a_calibration_has_a_usual_lens_that_looks_from_the_middle() -> None:
     lens = lens_of(None, SIZE)
     assert lens.focal_px.tolist() == [80.0, 80.0]
+    assert lens.K.tolist() == [[80.0, 0.0, 31.5], [0.0, 80.0, 23.5], [0.0, 0.0, 1.0]]
     assert rays_of(lens, np.array([[31.5, 23.5]])) == pytest.approx(np.array([[0.0, 0.0, 1.0]]))
     assert lens.distortion.tolist() == [0.0] * 4
 
@@ -34,6 +35,7 @@ def test_a_ray_is_where_the_camera_projects_it(distortion: tuple[float, ...] | N
     plain = paper_rig(SIZE, (90.0, 90.0), (4.0, 4.0)).cameras[0]
     camera = Camera(plain.name, plain.K, plain.R, plain.t, distortion or ())
     lens = lens_of(camera, SIZE)
+    assert (np.array(camera.K) - lens.K).tolist() == [[0, 0, 0.5], [0, 0, 0.5], [0, 0, 0]]
     places = np.array([[3.0, 5.0], [40.0, 30.0], [60.0, 44.0]])
     rays = rays_of(lens, places)
     assert np.linalg.norm(rays, axis=1) == pytest.approx([1.0] * 3)
