@@ -114,3 +114,15 @@ def test_regions_are_whole_but_for_what_shows_between_arm_and_trunk() -> None:
     assert np.flatnonzero(there.any(axis=1)).tolist() == [50, 51, 52, 53]
     nobody = printed(ranged(), frame, EVEN, 31.0, None)
     assert (nobody.blobs, int(nobody.mask.sum())) == (0, 0)
+
+
+@pytest.mark.parametrize(("side", "filled"), [(3, True), (7, False)])
+def test_a_hole_is_filled_below_a_thousandth_of_the_picture(side: int, filled: bool) -> None:
+    """Of 19200 pixels 19: between the pixels around a hole of three lie 16, of seven 64."""
+    learnt = learn([np.full((120, 160, 3), 100, np.uint8)])
+    frame = np.full((120, 160, 3), 100, np.uint8)
+    frame[20:80, 30:90] = 200
+    frame[40 : 40 + side, 50 : 50 + side] = 100
+    found = printed(learnt, frame, EVEN, 5.0, None).mask
+    assert found[41, 51] == int(filled)
+    assert found[45, 49] == 1
