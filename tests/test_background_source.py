@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import cv2
 import msgspec
@@ -10,19 +12,28 @@ import pytest
 from spoiling import Film, copied, film_of, refilmed, write_film
 
 from common.body.body import JOINT_NAMES
+from common.bus.messages import Landmarks
 from common.config.part_settings import CameraSettings, SilhouetteSettings
 from common.config.settings import Settings
 from common.video.clip_facts import View
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
-from common.video.decoding import ALL, Decoded, Decoder
+from common.video.decoding import ALL, Decoded, Decoder, Wanted
 from viewer.background.background import Background
+from viewer.background.background import learn
+from viewer.room import background_source
 from viewer.room.background_source import (
+    LOOKED_AT,
+    Opening,
+    _looked_at,
+    _stride,
     background_of_film,
     keep,
+    of_clip,
     opening_of_run,
     opening_of_view,
 )
+from viewer.room.room_people import Look
 
 GREY_LEVELS = 5
 """T7's bound of what a learnt background may be off."""
@@ -174,3 +185,228 @@ def test_a_camera_that_comes_back_with_another_picture_is_refused(tmp_path: Path
 
 def blank(width: int, height: int) -> Film:
     return [np.full((height, width, 3), 90, np.uint8)]
+
+
+FILM_VIEW = View(1, "film.avi", (8, 6), (8, 6), 10.0, 400)
+
+
+def numbered(n: int) -> np.ndarray:
+    return np.full((6, 8, 3), n, np.uint8)
+
+
+class Numbers:
+    """A reader of pictures that show their own number."""
+
+    def __init__(self, count: int) -> None:
+        self.count, self.asked = count, []  # type: ignore[var-annotated]
+
+    def frames(self, source: object, size: object, wanted: Wanted) -> Iterator[Decoded]:
+        self.asked.append((source, size, wanted.quarters))
+        return (Decoded(n, 0.0, numbered(n % 250)) for n in range(self.count))
+
+
+def test_the_opening_and_frames_from_all_over_are_looked_at() -> None:
+    """Half a second of ten frames, then every tenth of 400, for forty; of a long film 1500."""
+    reader: Any = Numbers(400)
+    opening, sample = _looked_at(FILM_VIEW, SilhouetteSettings(), reader)
+    assert [int(picture[0, 0, 0]) for picture in opening] == [0, 1, 2, 3, 4]
+    assert [int(p[0, 0, 0]) for p in sample] == [n % 250 for n in range(0, 400, 10)]
+    assert reader.asked == [("film.avi", (8, 6), 0)]
+    long = msgspec.structs.replace(FILM_VIEW, frames=5000)
+    assert _stride(long) == 38
+    assert _stride(msgspec.structs.replace(FILM_VIEW, frames=41)) == 2
+    assert _stride(msgspec.structs.replace(FILM_VIEW, frames=0)) == 1
+    sample = _looked_at(long, SilhouetteSettings(), Numbers(5000))[1]  # type: ignore[arg-type]
+    assert len(list(sample)) == -(-LOOKED_AT // 38)
+
+
+SOMEBODY = Landmarks(tuple((float(n), 1.0) for n in range(15)), (0.9,) * 15)
+
+
+class Clip:
+    """A clip of which each stage is decided here; what is made, and in which order it is tried."""
+
+    def __init__(
+        self,
+        patch: pytest.MonkeyPatch,
+        still: bool = True,
+        empty: bool = False,
+        seen: tuple[bool, ...] = (True, True),
+        first: bool = True,
+        sure: bool = True,
+    ) -> None:
+        self.rooms = {
+            name: learn([numbered(level)])
+            for name, level in (("uncovered", 11), ("behind", 12), ("around", 13), ("opened", 14))
+        }
+        self.told: dict[str, Any] = {}
+        self.takes = "uncovered"
+        rooms, told = self.rooms, self.told
+
+        def made(name: str) -> Any:
+            def make(*given: Any) -> Background:
+                told[name] = given
+                return rooms[name]
+
+            return make
+
+        def looked_at(pictures: Any) -> list[Look]:
+            if len(pictures) == 1:
+                told["opening"] = int(pictures[0][0, 0, 0])
+                return [Look(SOMEBODY, first)]
+            told["judges"] = [int(picture[0, 0, 0]) for picture in pictures]
+            return [Look(SOMEBODY, seen[n % len(seen)]) for n in range(len(pictures))]
+
+        def best_of(groups: Any, *rest: Any) -> Background:
+            tried = [[make() for make in group] for group in groups]
+            names = {id(room): name for name, room in rooms.items()}
+            told["groups"] = [[names[id(room)] for room in group] for group in tried]
+            told["best_of"] = rest
+            return rooms[self.takes]
+
+        for name, value in {
+            "is_still": lambda _: still,
+            "is_empty_opening": lambda *_: empty,
+            "looked_at": looked_at,
+            "are_sure": lambda _: sure,
+            "standing": lambda *given: given,
+            "learn_uncovered": made("uncovered"),
+            "learn_behind": made("behind"),
+            "learn_around": made("around"),
+            "learnt": made("opened"),
+            "best_of": best_of,
+        }.items():
+            patch.setattr(background_source, name, value)
+
+    def opening(self) -> Opening:
+        """Of five pictures at first, and 45 all over."""
+        return of_clip(
+            [numbered(100 + n) for n in range(5)],
+            [numbered(90 + n) for n in range(45)],
+            SilhouetteSettings(),
+            FILM_VIEW,
+        )
+
+
+def test_an_empty_opening_is_the_room_and_nobody_is_looked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    clip = Clip(monkeypatch, empty=True)
+    assert clip.opening() == (clip.rooms["opened"], "", None)
+    assert set(clip.told) == {"opened"}
+
+
+@pytest.mark.parametrize(
+    ("decided", "groups"),
+    [
+        ({}, [["uncovered", "behind"], ["around"], ["opened"]]),
+        ({"first": False}, [["opened"], ["uncovered", "behind"], ["around"]]),
+        ({"sure": False}, [["uncovered"], ["around"], ["opened"]]),
+        ({"still": False, "empty": True}, [["uncovered", "behind"], ["around"]]),
+        ({"seen": (False, False)}, [["uncovered"]]),
+        ({"seen": (False, True)}, [["uncovered", "behind"], ["around"], ["opened"]]),
+    ],
+    ids=["somebody", "nobody at first", "not sure", "moving", "nobody at all", "later"],
+)
+def test_backgrounds_are_tried_the_likelier_first(
+    monkeypatch: pytest.MonkeyPatch, decided: dict[str, Any], groups: list[list[str]]
+) -> None:
+    clip = Clip(monkeypatch, **decided)
+    found = clip.opening()
+    assert clip.told["groups"] == groups
+    assert clip.told["opening"] == 100
+    assert clip.told["judges"] == list(range(90, 135, 3))  # twenty of 45 at most
+    odd = (
+        "film.avi does not open with an empty room: the background is estimated from the clip "
+        "(name an empty picture with camera_1.background)"
+    )
+    knows = decided.get("sure", True) and decided.get("seen", (True,))[0]
+    assert found == (clip.rooms["uncovered"], odd, SOMEBODY if knows else None)
+    judges, looks, settings = clip.told["best_of"]
+    assert (len(judges), len(looks), settings) == (15, 15, SilhouetteSettings())
+
+
+def test_backgrounds_are_made_of_the_frames_that_tell_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is uncovered of all, what is behind or around somebody of those that are judged."""
+    clip = Clip(monkeypatch)
+    clip.opening()
+    assert len(clip.told["uncovered"][0]) == 45
+    judges, body, regions = clip.told["behind"]
+    assert (len(judges), len(regions), len(body[1])) == (15, 15, 15)
+    assert clip.told["around"][0] is judges
+    assert clip.told["around"][1] is regions
+    assert regions[0].shape == (6, 8)
+
+
+def test_an_opening_that_is_judged_to_be_the_room_is_nothing_odd(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    clip = Clip(monkeypatch)
+    clip.takes = "opened"
+    assert clip.opening() == (clip.rooms["opened"], "", None)
+
+
+@pytest.mark.parametrize(
+    ("odd", "plate", "hidden", "taken"),
+    [
+        ("", "", 0.0, "busy"),
+        ("", "", 0.5, "opening"),
+        ("it is busy", "", 0.0, "opening"),
+        ("", "room.png", 0.0, "opening"),
+    ],
+)
+def test_a_film_has_the_background_of_all_over_it_where_nobody_stays_on_a_spot(
+    monkeypatch: pytest.MonkeyPatch, odd: str, plate: str, hidden: float, taken: str
+) -> None:
+    """And patches of the frames that are looked at, ten apart."""
+    rooms = {"opening": learn([numbered(10)]), "busy": learn([numbered(20)])}
+    rooms["busy"].uncertain[: round(6 * hidden)] = True
+    monkeypatch.setattr(
+        background_source, "opening_of_view", lambda *_: Opening(rooms["opening"], odd, None)
+    )
+    monkeypatch.setattr(background_source, "learn_uncovered", lambda _: rooms["busy"])
+    told: list[Any] = []
+    monkeypatch.setattr(background_source, "patches_of", lambda *given: told.append(given) or ["p"])
+    view = msgspec.structs.replace(FILM_VIEW, background=plate)
+    found = background_of_film(view, SilhouetteSettings(), Numbers(400))  # type: ignore[arg-type]
+    assert found.background is rooms[taken]
+    assert found.patches == ["p"]
+    assert ("--background" in found.odd) == bool(odd)
+    background, sample, spacing, fps = told[0]
+    assert background is rooms[taken]
+    assert (len(sample), spacing, fps) == (40, 10, 10.0)
+
+
+def test_a_cameras_film_has_no_patches(monkeypatch: pytest.MonkeyPatch) -> None:
+    room = learn([numbered(10)])
+    monkeypatch.setattr(background_source, "opening_of_view", lambda *_: Opening(room, "", None))
+    view = msgspec.structs.replace(FILM_VIEW, source=0)
+    found = background_of_film(view, SilhouetteSettings(), SimpleNamespace())  # type: ignore[arg-type]
+    assert found == (room, [], "")
+
+
+def test_only_a_cameras_own_background_is_kept_and_read_again(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Not a video's, nor a plate's, nor where there is no folder."""
+    room = learn([numbered(10)])
+    monkeypatch.setattr(background_source, "opening_of_view", lambda *_: Opening(room, "", None))
+    camera = msgspec.structs.replace(FILM_VIEW, source=0)
+    reader: Any = None
+    for view, folder in (
+        (FILM_VIEW, tmp_path),
+        (camera, None),
+        (msgspec.structs.replace(camera, background="room.png"), tmp_path),
+    ):
+        assert opening_of_run(view, SilhouetteSettings(), reader, folder).background is room
+        assert list(tmp_path.iterdir()) == []
+    opening_of_run(camera, SilhouetteSettings(), reader, tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["background_1.npz"]
+    again = opening_of_run(camera, SilhouetteSettings(), reader, tmp_path)
+    assert again.background is not room
+    assert all(np.array_equal(a, b) for a, b in zip(again.background, room, strict=True))
+    wide = msgspec.structs.replace(camera, size=(6, 8))
+    with pytest.raises(
+        ClipError, match=r"another shape than the run began with \(6x8 at .*, 8x6 then\)"
+    ):
+        opening_of_run(wide, SilhouetteSettings(), reader, tmp_path)
