@@ -135,7 +135,9 @@ def test_a_gain_is_the_median_of_ratios_and_the_mean_around_it(size: tuple[int, 
     rng = np.random.default_rng(7)
     background = rng.uniform(25, 240, (*size, 3)).astype(np.float32)
     share = rng.choice([1.0, 0.93, 1.08, 0.4], (*size, 1), p=[0.5, 0.2, 0.1, 0.2])
-    frame = np.clip(background * share * (1.2, 0.9, 0.75) + rng.normal(0, 3, background.shape), 0, 255)
+    frame = np.clip(
+        background * share * (1.2, 0.9, 0.75) + rng.normal(0, 3, background.shape), 0, 255
+    )
     shown = frame.astype(np.uint8)
     assert light_gain(shown, background) == pytest.approx(plain_gain(shown, background), rel=1e-3)
 

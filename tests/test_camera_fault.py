@@ -6,7 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from viewer.background.background import learn
-from viewer.camera_fault import State, init, step
+from viewer.camera_fault import State, _blank, _contrast, _contrast_of, _grey, init, step
 from viewer.frozen_picture import FROZEN_AFTER
 
 Picture = NDArray[np.uint8]
@@ -86,3 +86,54 @@ def test_who_stands_before_a_wall_that_goes_dark_is_not_looked_for() -> None:
 def test_other_light_is_no_fault(view: Picture, gain: float) -> None:
     lit = np.clip(gain * view, 0, 255).astype(np.uint8)
     assert faults(knows(view), [noisy(lit), noisy(somebody(lit))]) == ["", ""]
+
+
+def sums_of(picture: Picture) -> NDArray[np.int64]:
+    """Of every fourth pixel of every fourth row, the least first."""
+    return np.sort(picture[::4, ::4].sum(axis=2).astype(np.int64), axis=None)
+
+
+@pytest.mark.parametrize("size", [(13, 30), (40, 22), (120, 160)])
+def test_contrast_is_what_lies_between_the_darkest_and_the_brightest_tenth(
+    size: tuple[int, int],
+) -> None:
+    """Against numpy's sorting; of a picture by counting, of the background by its grey levels."""
+    picture = np.random.default_rng(size[0]).integers(0, 256, (*size, 3), dtype=np.uint8)
+    picture[: size[0] // 2, :, 1] //= 3
+    ranked = sums_of(picture)
+    tenth = len(ranked) // 10
+    due = (ranked[-1 - tenth] - ranked[tenth]) / 3
+    assert _contrast_of(picture) == pytest.approx(due)
+    grey = _grey(picture)
+    assert grey == pytest.approx(picture[::4, ::4].mean(axis=2), rel=1e-6)
+    assert _contrast(grey) == pytest.approx(due, rel=1e-5)
+
+
+def halves(low: int, high: int) -> Picture:
+    """Two even halves, of so many grey levels."""
+    picture = np.full((40, 60, 3), low, np.uint8)
+    picture[:, 30:] = high
+    return picture
+
+
+@pytest.mark.parametrize(
+    ("background", "picture", "fault"),
+    [
+        ((60, 150), (100, 117), ""),
+        ((60, 150), (100, 116), "covered"),
+        ((100, 131), (100, 116), ""),
+        ((100, 132), (100, 116), "covered"),
+        ((60, 150), (59, 59), "black"),
+        ((60, 150), (60, 60), "covered"),
+        ((60, 150), (195, 195), "covered"),
+        ((60, 150), (196, 196), "saturated"),
+        ((100, 100), (20, 20), ""),
+        ((100, 100), (19, 19), "black"),
+    ],
+)
+def test_a_plain_picture_is_named_by_its_level_unless_the_wall_is_plain(
+    background: tuple[int, int], picture: tuple[int, int], fault: str
+) -> None:
+    """Both sides of each bound: 16 and 32 grey levels of contrast, 60 and 195, a fifth of the
+    light."""
+    assert _blank(_grey(halves(*background)), halves(*picture)) == fault

@@ -88,7 +88,9 @@ def test_an_opening_is_judged_by_the_contours_of_all_frames(
     told = [(60.0, 20.0), (40.0, flatter - 20.0)]
     monkeypatch.setattr(empty_opening, "_steeper", lambda *_: told.pop(0))
     clip = [shot(room(), 2.0, n) for n in range(3)]
-    assert is_empty_opening(overlaid_opening(clip), [shot(walker(n), 2.0, n) for n in (0, 5)]) == empty
+    assert (
+        is_empty_opening(overlaid_opening(clip), [shot(walker(n), 2.0, n) for n in (0, 5)]) == empty
+    )
 
 
 @pytest.mark.parametrize("light", [(1.3, 1.3, 1.3), (0.7, 0.8, 0.9)])

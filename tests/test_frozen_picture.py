@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from viewer.frozen_picture import State, step
+from viewer.frozen_picture import State, _compared, _same, _with_changes, step
 
 Picture = NDArray[np.uint8]
 RATE_HZ = 15.0
@@ -92,3 +92,73 @@ def test_what_is_drawn_without_noise_may_stand_still() -> None:
 def test_what_a_sensor_took_does_not_come_again_bit_for_bit() -> None:
     pictures = [by_sensor(person(), n) for n in range(3)]
     assert frozen([*pictures, *[pictures[-1]] * 5], [None] * 8) == [False] * 5 + [True] * 3
+
+
+def test_pictures_are_the_same_bit_for_bit_and_cells_tell_where_they_are_not() -> None:
+    """Cells of 16 pixels, the last one in part; what was reached before stays so."""
+    one = np.random.default_rng(2).integers(0, 255, (40, 50, 3), dtype=np.uint8)
+    assert _same(one, one.copy())
+    for y, x, c in ((0, 0, 0), (39, 49, 2), (17, 30, 1)):
+        other = one.copy()
+        other[y, x, c] += 1
+        assert not _same(one, other)
+        before = np.zeros((3, 4), np.bool_)
+        before[1, 0] = True
+        reached = _with_changes(one, other, before)
+        due = before.copy()
+        due[y // 16, x // 16] = True
+        assert np.array_equal(reached, due)
+        assert before.sum() == 1
+
+
+def test_blocks_of_a_fortieth_of_the_longer_side_are_held_against_the_first() -> None:
+    """Eight grey levels of one block are a codec's, nine are a change; slow drifts add up."""
+    first = np.full((60, 80, 3), 100, np.uint8)
+    state = _compared(State(), first, 1.0)
+    assert state.blocks is not None
+    assert state.blocks.shape == (30, 40, 3)
+    shown = first.copy()
+    shown[10:12, 40:42] = 108
+    contradicted = state._replace(contradicted=True)
+    assert _compared(contradicted, shown, 2.0) is contradicted
+    shown[10:12, 40:42] = 109
+    found = _compared(contradicted, shown, 3.0)
+    assert (found.still_since_s, found.contradicted) == (3.0, False)
+    assert found.blocks is not None
+    assert found.blocks[5, 20, 0] == 109.0
+    repeated = state._replace(repeats=1)
+    assert _compared(repeated, shown, 4.0) is repeated
+    upright = _compared(State(), np.ascontiguousarray(first.transpose(1, 0, 2)), 1.0)
+    assert upright.blocks is not None
+    assert upright.blocks.shape == (40, 30, 3)
+
+
+@pytest.mark.parametrize(("rate_hz", "first"), [(15.0, 3), (30.0, 5), (10.0, 3)])
+def test_a_noisy_picture_is_frozen_after_two_repeats_and_their_time(
+    rate_hz: float, first: int
+) -> None:
+    """Two fifteenths of a second: more than two repeats, and longer than that."""
+    state = State()
+    for n in range(4):
+        state, _ = step(state, by_sensor(WALL, n), n / rate_hz, None)
+    still = by_sensor(WALL, 3)
+    found = []
+    for n in range(4, 12):
+        state, is_frozen = step(state, still, n / rate_hz, None)
+        found.append(is_frozen)
+    assert found.index(True) + 1 == first
+    assert all(found[first - 1 :])
+
+
+def test_a_picture_of_another_shape_begins_anew() -> None:
+    state = State()
+    for n in range(9):
+        state, is_frozen = step(state, by_sensor(WALL, min(n, 2)), n / RATE_HZ, None)
+    assert is_frozen
+    assert state.repeats == 6
+    turned = np.ascontiguousarray(by_sensor(WALL, 2).transpose(1, 0, 2))
+    state, is_frozen = step(state, turned, 1.0, None)
+    assert not is_frozen
+    assert (state.repeats, state.since_s) == (0, 1.0)
+    assert state.reached is not None
+    assert state.reached.shape == (10, 8)

@@ -60,3 +60,18 @@ def test_at_the_end_it_is_told_how_many_were_and_what_to_do_but_not_of_a_few() -
     assert haste.odd(250) == ""
     assert haste.odd(100).startswith("5 of 100 frames came too late")
     assert "fewer rooms" in haste.odd(100)
+
+
+@pytest.mark.parametrize(("frames", "told"), [(250, False), (249, True)])
+def test_two_in_a_hundred_frames_may_be_hurried_without_a_word(frames: int, told: bool) -> None:
+    haste = Haste(PERIOD_S)
+    haste.frames = 5
+    assert bool(haste.odd(frames)) == told
+    assert haste.odd(40).startswith("5 of 40 frames came too late to be looked into, only their")
+
+
+@pytest.mark.parametrize(("period_s", "lasts"), [(1 / 30, 10), (1 / 4, 1), (1.0, 1)])
+def test_a_hurry_lasts_a_third_of_a_second_at_any_rate(period_s: float, lasts: int) -> None:
+    haste = Haste(period_s)
+    told = [haste.of_frame(FRAME, late_s).hurried for late_s in (0.2 * period_s, *[0.0] * 15)]
+    assert told == [True] * lasts + [False] * (16 - lasts)

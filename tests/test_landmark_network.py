@@ -188,7 +188,9 @@ def test_what_a_look_tells_is_put_where_it_belongs(
     asked = []
 
     def look(name: str) -> object:
-        return lambda planes, network: (asked.append((name, planes.shape, network)), (maps, told))[1]
+        return lambda planes, network: (asked.append((name, planes.shape, network)), (maps, told))[
+            1
+        ]
 
     monkeypatch.setattr(landmark_network, "seen", look("once"))
     monkeypatch.setattr(landmark_network, "seen_twice", look("twice"))

@@ -116,7 +116,9 @@ def test_how_far_somebody_travels_is_told_by_the_middles_of_what_changes() -> No
     specks = changed.copy()
     specks[0] = 0
     specks[0, 10:12, 50:60] = 1
-    assert _travelled(specks, own) == pytest.approx(np.diff(np.quantile(2 * np.arange(1, 21), (0.05, 0.95)))[0])
+    assert _travelled(specks, own) == pytest.approx(
+        np.diff(np.quantile(2 * np.arange(1, 21), (0.05, 0.95)))[0]
+    )
     changed[:, 26:30, :] = 1
     assert _travelled(changed, own) == pytest.approx(36.0)
 

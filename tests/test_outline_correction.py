@@ -94,7 +94,9 @@ def test_a_place_is_as_far_from_a_bone_as_from_its_nearest_point(
     place: tuple[float, float],
 ) -> None:
     ends = np.array([[8.0, 12.0], [22.0, 19.0]])
-    assert np.sqrt(_distance_2(*place, ends)) == pytest.approx(plain_distance(*place, ends), abs=1e-3)
+    assert np.sqrt(_distance_2(*place, ends)) == pytest.approx(
+        plain_distance(*place, ends), abs=1e-3
+    )
     point = np.array([[8.0, 12.0], [8.0, 12.0]])
     assert _distance_2(11.0, 16.0, point) == pytest.approx(25.0)
 

@@ -174,7 +174,9 @@ class Looks:
         return self.found.pop(0)
 
 
-UPRIGHT = np.array([[96.0, 100.0], [96.0, 60.0], [96.0, 40.0], *[[90.0 + i, 150.0] for i in range(12)]])
+UPRIGHT = np.array(
+    [[96.0, 100.0], [96.0, 60.0], [96.0, 40.0], *[[90.0 + i, 150.0] for i in range(12)]]
+)
 """Joints in the planes of a trunk that stands: pelvis, neck, head, and limbs below."""
 
 

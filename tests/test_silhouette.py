@@ -471,7 +471,9 @@ def test_the_slow_light_is_taken_on_every_eighth_frame_and_not_beside_the_person
     near[15:41, 25:46] = True
     assert found[near] == pytest.approx(np.full(near.sum(), 100.0))
     assert found[~near] == pytest.approx(np.full((~near).sum(), 100.8))
-    assert _adapted(state, frame, None).model.centre[..., 0] == pytest.approx(np.full((60, 80), 100.8))
+    assert _adapted(state, frame, None).model.centre[..., 0] == pytest.approx(
+        np.full((60, 80), 100.8)
+    )
     assert _adapted(state, frame, None).model.centre[1, 0, 0] == pytest.approx(100.8)
     assert _adapted(state, frame, None).frames == 8
 

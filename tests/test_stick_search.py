@@ -7,7 +7,16 @@ import pytest
 from stick_posing import stick_pose
 
 from common.body.body import LIMBS, Vector
-from common.body.stick_body import ADULT, ANGLE, BREADTH, GIRTH, RATIO, STATURE, segments_px, standing
+from common.body.stick_body import (
+    ADULT,
+    ANGLE,
+    BREADTH,
+    GIRTH,
+    RATIO,
+    STATURE,
+    segments_px,
+    standing,
+)
 from common.raster.bits import count, pack_words
 from common.raster.similarity import Mask, similarity
 from common.raster.stick_raster import ALL_SEGMENTS, WITHOUT_ARMS, draw_stick
@@ -80,7 +89,9 @@ def plain_refined(
     best, matches = score_of(pose), 1
     for k in range(len(moves.rows)):
         start = pose
-        found = tritree(lambda n, s=start, k=k: score_of(moved(s, moves, k, n)), (-half, half), stop)  # type: ignore[misc]
+        found = tritree(
+            lambda n, s=start, k=k: score_of(moved(s, moves, k, n)), (-half, half), stop
+        )  # type: ignore[misc]
         matches += found.matches - 1
         if found.score > best:
             best, pose = found.score, moved(start, moves, k, found.angle_deg)

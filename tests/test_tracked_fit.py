@@ -219,6 +219,8 @@ def test_what_fits_the_pose_before_is_not_looked_for_afresh() -> None:
 def test_a_limb_is_hidden_where_most_of_it_lies_over_the_body() -> None:
     pose = body(l_upper_arm=250.0, l_lower_arm=200.0, r_upper_arm=200.0, r_lower_arm=190.0)
     hidden = fit_tracked(draw_stick(ADULT, pose, NORMAL_SIZE), pose).hidden
-    assert hidden.tolist() == [i == L_FOREARM or (i == L_ARM and bool(hidden[i])) for i in range(10)]
+    assert hidden.tolist() == [
+        i == L_FOREARM or (i == L_ARM and bool(hidden[i])) for i in range(10)
+    ]
     assert hidden[L_FOREARM]
     assert not hidden[[TORSO, HEAD, R_ARM, R_FOREARM]].any()

@@ -243,9 +243,7 @@ def test_a_background_that_is_learnt_is_told_and_looked_before(
     monkeypatch.setattr(track, "step", watched)
     steady = [msgspec.structs.replace(frame(n), picture=frame(40).picture) for n in range(10)]
     run(prepared(), Frames(steady), room.bus, threading.Event())  # type: ignore[arg-type]
-    assert [answer.text for answer in room.answers.drain()] == [
-        "camera 2: it has a new background"
-    ]
+    assert [answer.text for answer in room.answers.drain()] == ["camera 2: it has a new background"]
     levels = [float(state.silhouette.background.centre.mean()) for state in states]
     assert levels == pytest.approx([100.0] * 8 + [140.0] * 2)
 
