@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import cv2
@@ -19,8 +18,7 @@ from common.video.clip_facts import View
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import ALL, Decoded, Decoder, Wanted
-from viewer.background.background import Background
-from viewer.background.background import learn
+from viewer.background.background import Background, learn
 from viewer.room import background_source
 from viewer.room.background_source import (
     LOOKED_AT,
@@ -366,11 +364,17 @@ def test_a_film_has_the_background_of_all_over_it_where_nobody_stays_on_a_spot(
     )
     monkeypatch.setattr(background_source, "learn_uncovered", lambda _: rooms["busy"])
     told: list[Any] = []
-    monkeypatch.setattr(background_source, "patches_of", lambda *given: told.append(given) or ["p"])
+    patches: Any = ["a patch"]
+
+    def patches_of(*given: Any) -> Any:
+        told.append(given)
+        return patches
+
+    monkeypatch.setattr(background_source, "patches_of", patches_of)
     view = msgspec.structs.replace(FILM_VIEW, background=plate)
     found = background_of_film(view, SilhouetteSettings(), Numbers(400))  # type: ignore[arg-type]
     assert found.background is rooms[taken]
-    assert found.patches == ["p"]
+    assert found.patches is patches
     assert ("--background" in found.odd) == bool(odd)
     background, sample, spacing, fps = told[0]
     assert background is rooms[taken]
@@ -381,7 +385,8 @@ def test_a_cameras_film_has_no_patches(monkeypatch: pytest.MonkeyPatch) -> None:
     room = learn([numbered(10)])
     monkeypatch.setattr(background_source, "opening_of_view", lambda *_: Opening(room, "", None))
     view = msgspec.structs.replace(FILM_VIEW, source=0)
-    found = background_of_film(view, SilhouetteSettings(), SimpleNamespace())  # type: ignore[arg-type]
+    reader: Any = None
+    found = background_of_film(view, SilhouetteSettings(), reader)
     assert found == (room, [], "")
 
 

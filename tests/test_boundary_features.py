@@ -123,7 +123,7 @@ def test_features_are_gathered_from_a_cross_of_neighbours_then_from_around(strid
     facts = rng.normal(size=(4, FEATURES - FACTS)).astype(np.float32)
     there = places.copy()
     found = _gathered(there, shares, facts, around, wide, stride, (20, 3))
-    assert there.tolist() == (places + [20, 3]).tolist()
+    assert there.tolist() == (places + np.array([20, 3])).tolist()
     for n, (y, x) in enumerate(places.tolist()):
         rows = np.clip(y + stride * CROSS[:, 0], 0, 8)
         columns = np.clip(x + stride * CROSS[:, 1], 0, 11)

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from synth.picture.backdrops import backdrop
 from synth.picture.composites import Composite, composite
 from synth.picture.picture_examples import SIDE_PX, PictureExample, picture_examples
 from viewer.landmarks import landmark_network
-from viewer.landmarks.landmark_looks import BINS, CELLS, SHIPPED
+from viewer.landmarks.landmark_looks import BINS, CELLS, SHIPPED, Seen
 from viewer.landmarks.landmark_network import Found, find
 from viewer.landmarks.landmark_window import GREY, SIDE, Planes, planes_of, whole
 
@@ -129,11 +130,11 @@ def test_peaks_are_those_of_plain_numpy_at_every_border_of_a_map() -> None:
     for j, logits in enumerate(maps):
         below = logits.astype(float) - logits.max()
         shares = np.where(below >= -16.0, np.exp(below), 0.0)
-        row, column = np.unravel_index(shares.argmax(), shares.shape)
-        far = (abs(rows - row) > 4) | (abs(columns - column) > 4)
-        second = np.unravel_index(np.where(far, shares, -1.0).argmax(), shares.shape)
-        for i, at in enumerate(((row, column), second)):
-            place, near = plain_peak(shares, int(at[0]), int(at[1]))
+        first = divmod(int(shares.argmax()), CELLS)
+        far = (abs(rows - first[0]) > 4) | (abs(columns - first[1]) > 4)
+        second = divmod(int(np.where(far, shares, -1.0).argmax()), CELLS)
+        for i, at in enumerate((first, second)):
+            place, near = plain_peak(shares, *at)
             assert joints[j, i] == pytest.approx(place)
             assert about[j, i] == pytest.approx(near / shares.sum())
 
@@ -187,10 +188,12 @@ def test_what_a_look_tells_is_put_where_it_belongs(
     told = np.concatenate([bins, [1.1], sure]).astype(np.float32)
     asked = []
 
-    def look(name: str) -> object:
-        return lambda planes, network: (asked.append((name, planes.shape, network)), (maps, told))[
-            1
-        ]
+    def look(name: str) -> Callable[[Planes, Path], Seen]:
+        def looked(planes: Planes, network: Path) -> Seen:
+            asked.append((name, planes.shape, network))
+            return maps, told
+
+        return looked
 
     monkeypatch.setattr(landmark_network, "seen", look("once"))
     monkeypatch.setattr(landmark_network, "seen_twice", look("twice"))

@@ -292,7 +292,7 @@ def test_a_body_of_blocks_is_read_as_worked_by_hand() -> None:
     mask = blocks()
     box = box_around(mask)
     found = facade_shape(mask, box)
-    assert found == FacadeShape(70.0, 90.0, 80.0, 20, 10, 36.0, pytest.approx(27.0))
+    assert found == pytest.approx(FacadeShape(70.0, 90.0, 80.0, 20, 10, 36.0, 27.0))
     right, left = (-40.0, 26.5 - 24.5), (45.0, 30.5 - 24.5)
     assert _arm_lengths(mask, box, found) == pytest.approx((math.hypot(*right), math.hypot(*left)))
     angles = [math.degrees(math.atan2(abs(dx), -dy)) for dx, dy in (right, left)]

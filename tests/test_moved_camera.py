@@ -215,7 +215,9 @@ def test_a_turn_is_searched_from_where_the_picture_and_its_middle_lie(
         return shares[len(starts) - 1], np.eye(3) * len(starts)
 
     monkeypatch.setattr(moved_camera, "_turn_from", turn_from)
-    assert np.array_equal(_found(state, there), 2.0 * np.eye(3))
+    best = _found(state, there)
+    assert best is not None
+    assert np.array_equal(best, 2.0 * np.eye(3))
     aside = np.array([-7.0, 5.0])
     assert starts[0] - state.marks_px == pytest.approx(np.tile(aside, (len(starts[0]), 1)), abs=0.5)
     assert starts[1] - state.marks_px == pytest.approx(np.tile(aside, (len(starts[0]), 1)))
@@ -233,7 +235,7 @@ def test_the_middle_of_a_picture_is_found_where_it_went() -> None:
 def test_what_is_about_marks_is_alike_by_its_correlation() -> None:
     """Against numpy's; places at the border repeat it."""
     one, other = even_of(shown(wall(1))), even_of(shown(wall(2)))
-    at = np.array([[40.0, 30.0], [80.4, 70.6], [2.0, 118.0]], np.float32)
+    at = np.array([[40.0, 30.0], [80.4, 70.6], [2.0, 118.0]])
     there = np.array([[50.0, 20.0], [83.0, 71.0], [157.0, 3.0]])
 
     def patch(picture: np.ndarray, place: np.ndarray) -> np.ndarray:
@@ -245,8 +247,9 @@ def test_what_is_about_marks_is_alike_by_its_correlation() -> None:
         np.corrcoef(patch(one, own), patch(other, far))[0, 1]
         for own, far in zip(at, there, strict=True)
     ]
-    assert _alike(one, at, other, there) == pytest.approx(due, abs=1e-4)
-    assert _alike(one, at, one, at) == pytest.approx([1.0] * 3, abs=1e-5)
+    marks = at.astype(np.float32)
+    assert _alike(one, marks, other, there) == pytest.approx(due, abs=1e-4)
+    assert _alike(one, marks, one, at) == pytest.approx([1.0] * 3, abs=1e-5)
 
 
 def test_a_place_is_inside_of_a_margin_on_all_sides() -> None:

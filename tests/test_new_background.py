@@ -67,7 +67,7 @@ def test_each_answer_says_which_camera_and_why() -> None:
     bus = LocalBus()
     learning = Learning(bus.subscribe(Command), 2, 3)
     bus.publish(Command(what="background"))
-    answered = [learning.step(room(90), fault)[1] for fault in ("", "frozen", "")]  # type: ignore[arg-type]
+    answered = [learning.step(room(90), fault)[1] for fault in ("", "frozen", "")]
     frozen = "camera 2: its picture is frozen: the background stays as it was"
     assert answered == [None, Answer(what="background", well=False, text=frozen), None]
     bus.publish(Command(what="background"))
@@ -81,7 +81,7 @@ def test_a_word_that_comes_again_begins_anew_and_others_are_not_for_it() -> None
     """Two frames of before are not counted; pictures are copied, for a camera's may be reused."""
     bus = LocalBus()
     learning = Learning(bus.subscribe(Command), 1, 3)
-    bus.publish(Command(what="turn"))
+    bus.publish(Command(what="front"))
     shared = room(60)
     assert [learning.step(shared, "")[0] for _ in range(3)] == [None] * 3
     bus.publish(Command(what="background"))

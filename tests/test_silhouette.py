@@ -9,15 +9,14 @@ import pytest
 from numpy.typing import NDArray
 from spoiling import film_of
 
+from common.bus.messages import Box
 from common.config.part_settings import SilhouetteSettings
 from common.config.settings import Settings
-from common.bus.messages import Box
 from common.method import DEFAULT, PAPER
 from common.raster.similarity import Mask
 from common.video.decoding import Image
 from viewer import track
-from viewer.background.background import learn, light_gain
-from viewer.background.background import BackgroundModel
+from viewer.background.background import BackgroundModel, learn, light_gain
 from viewer.background.moved_objects import Patch
 from viewer.background.occluded_background import learn_uncovered
 from viewer.silhouette.alpha_matte import matte, sides_of

@@ -91,7 +91,7 @@ def test_how_often_a_colour_is_seen_is_shared_with_its_neighbours() -> None:
 
 def test_a_colour_speaks_for_the_body_as_often_as_it_is_seen_there() -> None:
     """Only pixels near the body are counted, blue is the first of three eighths of the range."""
-    picture = np.zeros((4, 6, 3))
+    picture = np.zeros((4, 6, 3), np.float32)
     picture[:, :3] = (200.0, 40.0, 100.0)
     picture[:, 3:] = (10.0, 240.0, 250.0)
     body, near = np.full((4, 6), 0.1), np.ones((4, 6), np.bool_)
@@ -120,3 +120,28 @@ def test_values_that_are_a_linear_function_of_colours_stay_and_noise_on_them_is_
     found = _smooth(flat, steps, 2)
     assert found[15, 20] == pytest.approx(0.6, abs=0.01)  # the mean of five means of fifths
     assert found[15, [10, 30]] == pytest.approx([0.0, 1.0], abs=0.01)
+
+
+def drawn_looks() -> tuple[np.ndarray, np.ndarray, list[Look]]:
+    """A red body before a grey wall of its brightness, whose landmarks are off to either side; the
+    picture, where the body is, and the looks."""
+    looks = [look_at(78.0 + off, 0.8) for off in (-3.0, -2.0, -1.0, 1.0, 2.0, 3.0)]
+    body = body_region(look_at(78.0, 0.8).landmarks, (120, 160), 0.01) > 0
+    noise = np.random.default_rng(5).normal(0.0, 3.0, (120, 160, 3))
+    picture = np.where(body[..., None], (60.0, 70.0, 190.0), (110.0, 110.0, 110.0)) + noise
+    return picture.astype(np.float32), body, looks
+
+
+def test_colours_tell_a_body_whose_landmarks_are_off() -> None:
+    picture, body, looks = drawn_looks()
+    found = standing(picture, looks)
+    assert iou(found, body) > 0.97
+    voted = np.mean([look.region((120, 160), 0.0) for look in looks], axis=0) > 0.5
+    assert iou(voted, body) < 0.95
+
+
+def test_a_body_of_its_walls_colour_is_where_most_landmarks_have_it() -> None:
+    picture, _, looks = drawn_looks()
+    picture[:] = 110.0 + np.random.default_rng(6).normal(0.0, 3.0, picture.shape)
+    voted = np.mean([look.region((120, 160), 0.0) for look in looks], axis=0) > 0.5
+    assert iou(standing(picture, looks), voted) > 0.8

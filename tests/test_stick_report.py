@@ -14,7 +14,7 @@ from common.raster.similarity import Mask
 from common.rig.camera import PAPER_ROTATIONS
 from viewer.expected_body import ExpectedBody
 from viewer.paper.posed_model import view_at
-from viewer.stick import stick_fit, stick_report
+from viewer.stick import stick_fit
 from viewer.stick.standing_height import Standing
 from viewer.stick.stick_report import with_stick
 
@@ -46,7 +46,7 @@ def asked(
         got.append((before, stature_px))
         raise stick_fit.NoFit
 
-    monkeypatch.setattr(stick_report.stick_fit, "fit", fit)
+    monkeypatch.setattr(stick_fit, "fit", fit)
     mask = np.zeros((140, 160), np.bool_)
     mask[20:120, 70:80] = True
     report = report_of(mask)

@@ -310,7 +310,8 @@ def test_a_run_begins_when_its_start_is_known_and_the_clock_was_asked_five_times
     asked = answering(monkeypatch, start_after=0, silent=(2,))
     room = met(LocalBus(), 2, threading.Event())
     assert room is not None
-    assert (room.start_s, room.offset_s) == (77.5, pytest.approx(40.0))
+    assert room.start_s == 77.5
+    assert room.offset_s == pytest.approx(40.0)
     assert [question.ready for question in asked] == [False] * 5 + [True]
     assert {question.viewer for question in asked} == {2}
     asked = answering(monkeypatch, start_after=7)
@@ -337,14 +338,18 @@ def test_a_view_has_the_rate_of_both_where_both_videos_are_here(
     here.write_bytes(b"")
     both = [msgspec.structs.replace(VIEW, number=n, fps=12.0) for n in (1, 2)]
     monkeypatch.setattr(viewer_process, "open_clip", lambda *_: SimpleNamespace(views=both))
-    there = [str(here), str(here)]
-    monkeypatch.setattr(
-        viewer_process, "footage_of", lambda _: [SimpleNamespace(source=s) for s in there]
-    )
+    named: list[Any] = []
+    monkeypatch.setattr(viewer_process, "footage_of", lambda _: named)
     decoder: Any = None
-    assert _beside_the_other(VIEW, Settings(), decoder) is both[1]
-    for there in ([str(here)], [str(here), str(tmp_path / "none.avi")], [0, str(here)]):  # type: ignore[assignment]
-        assert _beside_the_other(VIEW, Settings(), decoder) is VIEW
+    first, gone = str(here), str(tmp_path / "none.avi")
+    for sources, found in (
+        ([first, first], both[1]),
+        ([first], VIEW),
+        ([first, gone], VIEW),
+        ([0, first], VIEW),
+    ):
+        named[:] = [SimpleNamespace(source=source) for source in sources]
+        assert _beside_the_other(VIEW, Settings(), decoder) is found
 
 
 @pytest.mark.parametrize(("odd", "cameras"), [("", 0), ("no empty room", 2)])

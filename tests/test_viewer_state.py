@@ -249,13 +249,14 @@ def test_a_camera_that_was_moved_looks_before_its_background_as_it_is_turned(
     """Who was there is looked for anew; how it is turned is in the report."""
     Stages(monkeypatch)
     state = track.init(setup(), room())
-    assert state.moved is not None
+    still = state.moved
+    assert still is not None
     state = state._replace(landmarks=landmarks(0.9), near_px=(7.0, 8.0))
     angle = np.radians(3.0)
     turn = np.array(
         [[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]]
     )
-    moved = state.moved._replace(turn=turn)
+    moved = still._replace(turn=turn)
     told: list[Any] = []
     new = room(140)
 
