@@ -13,8 +13,14 @@ from common.bus.messages import Landmarks
 from common.config.settings_error import SettingsError
 from common.video.clip_facts import View
 from common.video.decoding import Decoded
-from viewer.landmarks.keypoint_files import MOST_BYTES, KeypointFiles, numbered, people_of
-from viewer.landmarks.keypoint_layouts import BODY_POINTS
+from viewer.landmarks.keypoint_files import (
+    MOST_BYTES,
+    KeypointFiles,
+    _with_a_whole_head,
+    numbered,
+    people_of,
+)
+from viewer.landmarks.keypoint_layouts import BODY_POINTS, POINT
 
 WRIST = JOINT_NAMES.index("l_wrist")
 
@@ -183,3 +189,19 @@ def test_feet_and_nose_are_told_where_a_layout_has_them(tmp_path: Path) -> None:
 def test_a_folder_without_keypoint_files_is_said_to_be_one(tmp_path: Path) -> None:
     with pytest.raises(SettingsError, match="no keypoint files"):
         numbered(tmp_path)
+
+
+@pytest.mark.parametrize("side", ["l", "r"])
+def test_a_hidden_ear_is_where_the_other_is_and_a_hidden_nose_between_the_ears(side: str) -> None:
+    """By hand: a score of 0 alone is hidden, and a nose that is seen stays."""
+    other = "r" if side == "l" else "l"
+    nose, own, far = (POINT[name] for name in ("nose", f"{side}_ear", f"{other}_ear"))
+    seen = np.full((24, 3), 7.0)
+    seen[nose], seen[own], seen[far] = (50.0, 60.0, 0.8), (90.0, 91.0, 0.0), (40.0, 70.0, 0.6)
+    found = _with_a_whole_head(seen.copy())
+    assert found[own].tolist() == found[far].tolist() == [40.0, 70.0, 0.6]
+    assert found[nose].tolist() == [50.0, 60.0, 0.8]
+    seen[own], seen[nose, 2] = (60.0, 80.0, 0.2), 0.0
+    found = _with_a_whole_head(seen.copy())
+    assert found[nose].tolist() == pytest.approx([50.0, 75.0, 0.4])
+    assert found[own].tolist() == [60.0, 80.0, 0.2]

@@ -6,16 +6,18 @@ import sys
 from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from common.body.body import OTHER_SIDE
+from common.config.settings_error import SettingsError
 from synth.picture.backdrops import backdrop
 from synth.picture.composites import Composite, composite
 from synth.picture.picture_examples import SIDE_PX, PictureExample, picture_examples
-from viewer.landmarks import landmark_network
-from viewer.landmarks.landmark_looks import BINS, CELLS, SHIPPED, Seen
+from viewer.landmarks import landmark_looks, landmark_network
+from viewer.landmarks.landmark_looks import BINS, CELLS, SHIPPED, Seen, refuse_no_network
 from viewer.landmarks.landmark_network import Found, find
 from viewer.landmarks.landmark_window import GREY, SIDE, Planes, planes_of, whole
 
@@ -312,3 +314,28 @@ def test_the_runtime_reports_nothing_to_anybody(tmp_path: Path) -> None:
         env={**os.environ, "TMPDIR": str(tmp_path), "ORT_DISABLE_TELEMETRY": "0"},
     )
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "kind", "refused"),
+    [
+        ("planes", [1, 4, SIDE, SIDE], "tensor(uint8)", False),
+        ("planes", [1, 4, SIDE, SIDE], "tensor(float)", True),
+        ("input", [1, 4, SIDE, SIDE], "tensor(uint8)", True),
+        ("planes", [1, 3, SIDE, SIDE], "tensor(uint8)", True),
+    ],
+)
+def test_a_network_of_anything_else_is_refused(
+    monkeypatch: pytest.MonkeyPatch, name: str, shape: list[int], kind: str, refused: bool
+) -> None:
+    taken = SimpleNamespace(name=name, shape=shape, type=kind)
+    monkeypatch.setattr(
+        landmark_looks, "opened", lambda _: SimpleNamespace(get_inputs=lambda: [taken])
+    )
+    if refused:
+        with pytest.raises(
+            SettingsError, match=r"^mine\.onnx is no network of landmarks: tritrack"
+        ):
+            refuse_no_network("mine.onnx")
+    else:
+        refuse_no_network("mine.onnx")

@@ -100,3 +100,17 @@ def test_the_window_of_who_lies_is_as_large_as_that_of_who_stands() -> None:
 
 def overlap(start: int, side: int, size: int) -> int:
     return max(0, min(start + side, size) - max(start, 0))
+
+
+def test_a_margin_is_added_on_both_sides() -> None:
+    """40 by 80 about (60, 70), a tenth of 80 more on either side, and a quarter of that."""
+    corners = np.array([[40.0, 30.0], [80.0, 110.0]])
+    assert window_about(corners, margin=0.1) == Window(0, 10, 120)
+
+
+@pytest.mark.parametrize("turn_deg", [30.0, 45.0, 190.0])
+def test_a_turned_window_sees_the_picture_up_to_its_corners(turn_deg: float) -> None:
+    picture = np.full((240, 320, 3), 200, np.uint8)
+    planes = planes_of(picture, np.ones((240, 320), np.bool_), Window(110, 70, 100, turn_deg))
+    assert (planes[0, :3] == 200).all()
+    assert (planes[0, 3] == 255).all()

@@ -37,3 +37,19 @@ def test_without_an_outline_it_is_the_largest() -> None:
 
 def test_where_nobody_is_seen_there_are_no_landmarks() -> None:
     assert nearest_landmarks((), None) is None
+
+
+def test_the_largest_covers_most_of_the_picture() -> None:
+    """35 by 35 is more than 10 by 100."""
+    narrow, square = person(0, 0, 10, 100), person(0, 0, 35, 35)
+    assert nearest_landmarks((narrow, square), None) is square
+
+
+@pytest.mark.parametrize("edge", range(4))
+def test_an_outlines_box_ends_behind_its_last_pixel(edge: int) -> None:
+    """Columns 20 to 59 and rows 30 to 89 reach from 20 to 60 and from 30 to 90."""
+    box = Box(left=20, right=59, top=30, bottom=89)
+    exact = [20.0, 30.0, 60.0, 90.0]
+    smaller = exact.copy()
+    smaller[edge] -= 1.6
+    assert nearest_landmarks((person(*smaller), person(*exact)), box) == person(*exact)
