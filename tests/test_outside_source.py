@@ -8,7 +8,7 @@ from common.bus.messages import Box, Landmarks
 from viewer.landmarks.outside_source import nearest_landmarks
 
 
-def person(left: float, top: float, right: float, bottom: float, seen: int = 15) -> Landmarks:
+def person(left: int, top: int, right: int, bottom: int, seen: int = 15) -> Landmarks:
     """Of whom so many joints are seen, on the diagonal of a box; the others stand anywhere."""
     steps = np.linspace(0.0, 1.0, seen)
     places = [(left + (right - left) * at, top + (bottom - top) * at) for at in steps]
@@ -49,7 +49,8 @@ def test_the_largest_covers_most_of_the_picture() -> None:
 def test_an_outlines_box_ends_behind_its_last_pixel(edge: int) -> None:
     """Columns 20 to 59 and rows 30 to 89 reach from 20 to 60 and from 30 to 90."""
     box = Box(left=20, right=59, top=30, bottom=89)
-    exact = [20.0, 30.0, 60.0, 90.0]
+    exact = [20, 30, 60, 90]
     smaller = exact.copy()
-    smaller[edge] -= 1.6
-    assert nearest_landmarks((person(*smaller), person(*exact)), box) == person(*exact)
+    smaller[edge] -= 2
+    smaller_one, exact_one = (person(*sides) for sides in (smaller, exact))
+    assert nearest_landmarks((smaller_one, exact_one), box) is exact_one

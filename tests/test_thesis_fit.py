@@ -138,3 +138,14 @@ def test_crossed_lower_legs_change_places(monkeypatch: pytest.MonkeyPatch, cross
     stick = found(pose)
     legs = [angle_deg(stick.pose, f"{side}_lower_leg") for side in ("lr" if crossed else "rl")]
     assert legs == pytest.approx([262.0, 276.0], abs=4.0)
+
+
+def test_stages_come_in_the_order_of_the_print(monkeypatch: pytest.MonkeyPatch) -> None:
+    """T11: trunk with head, head; then of each side the leg is turned, leg and arm shortened."""
+    done: list[tuple[int, ...]] = []
+    monkeypatch.setattr(thesis_fit, "_turned", lambda _fit, limbs, _limits: done.append(limbs))
+    monkeypatch.setattr(thesis_fit, "_shortened", lambda _fit, limb: done.append((limb,)))
+    fit_thesis(drawn(stick_pose({}), THESIS), STATURE_PX, METHODS["thesis"])
+    upright = [(0, 1), (0,), (1,), (1,)]
+    right, left = [(2, 4), (2,), (4,), (6,), (8,)], [(3, 5), (3,), (5,), (7,), (9,)]
+    assert done == upright + right + left

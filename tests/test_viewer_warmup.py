@@ -1,5 +1,6 @@
 """What is stepped through before the first frame: a person, guided as a run guides one."""
 
+from itertools import pairwise
 from typing import Any
 
 import msgspec
@@ -45,7 +46,7 @@ def test_a_person_in_the_opening_posture_is_stepped_through_with_every_kind_of_g
     assert guide.bdp == thesis_bdp(1.0)
     arms = [guide.pose[POSE_INDEX[f"{side}_shoulder_z"]] for side in "rl"]
     assert arms == [90.0, 270.0]
-    for (_, one, _), (_, other, _) in zip(shown, shown[1:], strict=False):
+    for (_, one, _), (_, other, _) in pairwise(shown):
         assert not np.array_equal(one.picture, other.picture)
     person = shown[0][1].picture[..., 0] == 255 - 90
     assert (shown[0][1].picture[~person] == 90).all()
