@@ -118,3 +118,41 @@ def test_a_state_is_a_value() -> None:
     one, other = (step(memory, EYE_M, standing() + 0.05, PERIOD_S)[1] for _ in range(2))
     assert np.array_equal(one, other)
     assert all(np.array_equal(a, b) for a, b in zip(memory, kept, strict=True))
+
+
+def test_one_instant_is_kalmans_filter_with_what_moves_across_the_sight() -> None:
+    """Equation by equation: what may change, what is foreseen, what is far off, and the gain."""
+    first_m = standing()
+    memory, kept_m = step(None, EYE_M, first_m, 0.1)
+    assert np.array_equal(kept_m, first_m)
+    P = memory.P.copy()
+    assert np.allclose(P, 0.015**2 + 0.006**2 * np.eye(15), atol=0.0)
+    P[4, 4] *= 2.0
+    memory = memory._replace(P=P)
+    moved_m = first_m + np.linspace(-0.03, 0.05, 15)[:, None] * [1.0, 0.2, 0.0]
+    moved_m[7] += 0.5 * (EYE_M - moved_m[7])
+    dt_s = 0.1
+    found, found_m = step(memory, EYE_M, moved_m, dt_s)
+
+    ranges_m = np.linalg.norm(moved_m - EYE_M, axis=1)
+    rays = (moved_m - EYE_M) / ranges_m[:, None]
+    turn = (1.0 - np.exp(-dt_s / 0.13)) * (rays - memory.rays)
+    across_m = ranges_m * np.sqrt((turn**2).sum(axis=1))
+    along_m = 24.0 * np.clip(across_m - 0.04 * dt_s, 0.0, None)
+    assert (along_m == 0.0).any()
+    drift_m2 = 0.004**2 * dt_s
+    Q = np.full((15, 15), along_m.mean() ** 2 + drift_m2)
+    Q[np.diag_indices(15)] += along_m**2 + drift_m2
+    R = 0.015**2 + 0.006**2 * np.eye(15)
+    P = P + Q
+    off_m = ranges_m - memory.range_m
+    beyond_m = np.maximum(np.abs(off_m) - 3.0 * np.sqrt(np.diag(P) + np.diag(R)), 0.0)
+    assert beyond_m[7] > 0.0
+    jump_m = np.sign(off_m) * beyond_m
+    P = P + jump_m[:, None] * jump_m
+    gain = P @ np.linalg.inv(P + R)
+    expected_m = memory.range_m + gain @ off_m
+    assert found.range_m == pytest.approx(expected_m)
+    assert np.allclose(found.P, (np.eye(15) - gain) @ P, atol=1e-9)
+    assert found.rays == pytest.approx(memory.rays + turn)
+    assert found_m == pytest.approx(EYE_M + rays * expected_m[:, None])

@@ -43,3 +43,25 @@ def test_several_clips_count_as_one_of_their_length() -> None:
 def test_a_habit_is_no_better_known_after_an_hour() -> None:
     habit = np.broadcast_to(np.random.default_rng(2).normal(0, 1, 15), (3600, 15))
     assert measured_worth([film_of(habit)]) == LEAST
+
+
+def test_what_films_count_worked_by_hand() -> None:
+    """Two joints of two clips: of four moments one joint is used in all, the other in three; a
+    gap of 9 sigmas counts as 3, to either side."""
+    one = film_of(np.array([[0.2, 0.5], [9.0, 0.1]]))
+    two = film_of(np.array([[-0.4, -7.0], [0.0, 0.9]]))
+    one.used[:] = [[True, False], [True, True]]
+    two.met.before[:] = [[True, True], [False, True]]
+    two = two._replace(used=np.ones((2, 2), bool))
+    means = (0.2 + 3.0 - 0.4) / 3, (0.1 - 3.0 + 0.9) / 3
+    lasting = (3 * means[0] ** 2 + 3 * means[1] ** 2) / 6
+    assert 1.0 / (lasting * (1.0 + 20.0 * lasting)) < LEAST
+    assert measured_worth([one, two]) == LEAST
+    small = [each._replace(met=each.met._replace(gap=0.14 * each.met.gap)) for each in (one, two)]
+    means = 0.14 * (0.2 + 9.0 - 0.4) / 3, 0.14 * (0.1 - 7.0 + 0.9) / 3
+    lasting = (3 * means[0] ** 2 + 3 * means[1] ** 2) / 6
+    expected = 1.0 / (lasting * (1.0 + 20.0 * lasting))
+    assert 2.0 < expected < 4.0
+    assert measured_worth(small) == pytest.approx(expected)
+    calm = [each._replace(met=each.met._replace(gap=1e-6 * each.met.gap)) for each in (one, two)]
+    assert measured_worth(calm) == pytest.approx(4.0), "no more than there are moments"

@@ -101,3 +101,38 @@ def test_a_profile_begins_where_a_trunk_is_thin_and_ends_where_it_is_broad(
         assert found.confidence == 0.6
     if now.startswith("forward"):
         assert found.confidence == UNKNOWN_FRONT
+
+
+def limbs_px(**places: tuple[float, float]) -> np.ndarray:
+    """(15, 2) a body that hangs straight down, but for the joints that are given."""
+    heights = {"head_top": 10, "neck": 20, "shoulder": 24, "elbow": 40, "wrist": 55, "pelvis": 60}
+    heights |= {"hip": 62, "knee": 80, "ankle": 100}
+    joints = [
+        (50.0, float(heights.get(name, heights.get(name.rpartition("_")[2], 0))))
+        for name in JOINT_NAMES
+    ]
+    for name, place in places.items():
+        joints[JOINT_NAMES.index(name)] = place
+    return np.array(joints)
+
+
+@pytest.mark.parametrize(
+    ("places", "says"),
+    [
+        ({}, 0.0),
+        ({"l_ankle": (30.0, 80.0)}, 1.0),
+        ({"r_wrist": (65.0, 40.0)}, 0.5),
+        ({"l_ankle": (30.0, 80.0), "l_wrist": (38.0, 40.0)}, 0.5),
+        # the thigh leans to the right by 0.6, the shank goes on to the right, level
+        ({"r_knee": (63.5, 80.0), "r_ankle": (70.0, 80.0)}, -(1.0 - 0.6**2)),
+        # the upper arm leans to the left by 0.6, the forearm goes straight down
+        ({"l_elbow": (38.0, 40.0), "l_wrist": (38.0, 52.0)}, 0.5 * 0.8 * 0.6),
+    ],
+    ids=["straight", "knee", "elbow", "knee and elbow", "kick", "arm back"],
+)
+def test_knees_bend_backwards_elbows_forwards_by_the_sine_across(
+    places: dict[str, tuple[float, float]], says: float
+) -> None:
+    """A twentieth of ten times what they say is new in a frame."""
+    found = faced(Bearing(), limbs_px(**places), 0.5)
+    assert found.to_right == pytest.approx(0.5 * says)

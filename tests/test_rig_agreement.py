@@ -261,3 +261,131 @@ def shown(viewer: ViewerNumber) -> Landmarks:
     return msgspec.structs.replace(
         told, joints_px=tuple((x, y + 2.0 * viewer) for x, y in told.joints_px)
     )
+
+
+def test_sight_lines_miss_by_what_lies_across_both_and_meet_half_way() -> None:
+    """A point for each view, 0.08 m apart along what is across both lines, on one side and on the
+    other: the gap has the side's sign."""
+    first, second = RIG.cameras
+    middle = np.array([[0.3, 1.2, 0.4], [-0.6, 0.5, -0.2]])
+    one, other = (middle - centre(camera) for camera in (first, second))
+    across = np.cross(one, other)
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    half_m = np.array([[0.04], [-0.025]]) * across
+    gaps_m, places_m = rig_agreement._met(
+        RIG.cameras, project(first, middle - half_m), project(second, middle + half_m)
+    )
+    assert gaps_m == pytest.approx([0.08, -0.05], rel=1e-3)
+    assert places_m == pytest.approx(middle, abs=1e-3)
+
+
+def test_lines_that_are_nearly_one_miss_by_no_more_than_narrow_ones() -> None:
+    """Seen twice from one place, a hand's breadth apart: 0.05 is the least squared sine."""
+    first = RIG.cameras[0]
+    beside = msgspec.structs.replace(first, t=as_row(np.array(first.t) - [0.1, 0.0, 0.0]))
+    point, raised = np.array([[0.0, 1.0, 0.0]]), np.array([[0.0, 1.03, 0.0]])
+    one = point[0] - centre(first)
+    other = raised[0] - centre(beside)
+    one, other = one / np.linalg.norm(one), other / np.linalg.norm(other)
+    shown_px = project(first, point), project(beside, raised)
+    gaps_m, _ = rig_agreement._met((first, beside), *shown_px)
+    base = centre(beside) - centre(first)
+    assert gaps_m[0] == pytest.approx(np.cross(one, other) @ base / math.sqrt(0.05))
+
+
+def test_the_views_are_turned_against_each_other_by_the_rays_to_their_cameras() -> None:
+    """Worked by hand: from the person camera 1 is at 45 degrees, camera 2 at -90; 20 and 130 to
+    the right of them are 65 and 40. From -170 to 170 it is the short way round."""
+    first, second = RIG.cameras
+    place = np.array([centre(first)[0] - 1.5, 1.0, centre(first)[2] - 1.5])
+    moved = -np.array(second.R) @ (place - np.array([3.0, -0.4, 0.0]))
+    cameras = (first, msgspec.structs.replace(second, t=as_row(moved)))
+    told = seen(1, 0).landmarks
+    assert told is not None
+
+    def facing(deg: float, sure: float = 0.9) -> Landmarks:
+        return msgspec.structs.replace(told, facing_deg=deg, facing_confidence=sure)
+
+    def turned_deg(one: Landmarks, other: Landmarks) -> tuple[float, ...]:
+        return rig_agreement._turned(cameras, (one, other), place)
+
+    assert turned_deg(facing(20.0), facing(130.0)) == pytest.approx((25.0,))
+    assert turned_deg(facing(125.0), facing(-80.0)) == pytest.approx((-20.0,))
+    assert turned_deg(facing(20.0, 0.85), facing(130.0)) == ()
+    assert turned_deg(facing(20.0), facing(130.0, 0.86)) == pytest.approx((25.0,))
+
+
+def test_points_are_joints_of_the_middle_and_middles_of_pairs() -> None:
+    places = tuple((3.0 * n, 100.0 + n**2) for n in range(15))
+    told = msgspec.structs.replace(shown(1), joints_px=places)
+    at = {name: n for n, name in enumerate(JOINT_NAMES)}
+    middles = [
+        ((3.0 * (left + right)) / 2, (200.0 + left**2 + right**2) / 2)
+        for left, right in (
+            (at[f"l_{part}"], at[f"r_{part}"]) for part in ("shoulder", "knee", "ankle")
+        )
+    ]
+    alone = [places[at[name]] for name in ("pelvis", "neck", "head_top")]
+    assert rig_agreement._points(told) == pytest.approx(np.array([*alone, *middles]))
+
+
+def test_the_lower_ankle_is_lower_whichever_sides_a_view_has_exchanged() -> None:
+    legs = standing((0.1, -0.1))
+    legs[POSE_INDEX["l_hip_x"]], legs[POSE_INDEX["l_knee_x"]] = 60.0, -90.0
+    joints_m = np.asarray(joints(BODY, legs))
+    ankles_m = joints_m[[n for n, name in enumerate(JOINT_NAMES) if name.endswith("ankle")], 1]
+    for swaps in (False, True):
+        one = seen(1, 0, joints_m=joints_m).landmarks
+        other = seen(2, 0, joints_m=joints_m, swaps=swaps).landmarks
+        assert one is not None
+        assert other is not None
+        found_m = rig_agreement._lower_ankle_m(RIG.cameras, one, other)
+        assert found_m == pytest.approx(ankles_m.min(), abs=1e-6)
+
+
+def test_joints_gaps_are_those_of_the_sides_that_meet_better() -> None:
+    """An arm is raised: exchanged sight lines miss each other by much more."""
+    joints_m = np.asarray(joints(BODY, standing((0.2, 0.1), r_shoulder_z=100.0)))
+    one, other = (seen(n, 0, joints_m=joints_m).landmarks for n in (1, 2))
+    swapped = seen(2, 0, joints_m=joints_m, swaps=True).landmarks
+    assert one is not None
+    assert other is not None
+    assert swapped is not None
+    for second in (other, swapped):
+        gaps_m = rig_agreement._joint_gaps_m(RIG.cameras, one, second)
+        assert gaps_m == pytest.approx(np.zeros(15), abs=1e-6)
+
+
+def test_an_instant_counts_if_it_is_late_enough_and_both_views_are_sure_of_a_whole_person() -> None:
+    state = rig_agreement.step(State(), RIG, (seen(1, 0), seen(2, 0)))
+    assert (len(state.samples), state.last_s) == (1, 0.0)
+
+    def told(captured_s: float, **changed: object) -> int:
+        pair = [
+            msgspec.structs.replace(
+                seen(n, 0), captured_s=captured_s, **(changed if n == 2 else {})
+            )
+            for n in (1, 2)
+        ]
+        return len(rig_agreement.step(state, RIG, (pair[0], pair[1])).samples)
+
+    assert told(0.149) == 1
+    assert told(0.15) == 2
+    assert told(-0.05) == 2, "a clip that begins anew"
+    assert told(0.3, cut=True) == 1
+    assert told(0.3, landmarks=None) == 1
+    assert told(0.3, landmarks=seen(2, 0, sure=0.59).landmarks) == 1
+    assert told(0.3, landmarks=seen(2, 0, sure=0.61).landmarks) == 2
+
+
+def test_a_sample_is_points_then_joints_then_the_ankle() -> None:
+    one, other = shown(1), shown(2)
+    sample, turned_deg = rig_agreement._sample(RIG, one, other)
+    points = rig_agreement._met(
+        RIG.cameras, rig_agreement._points(one), rig_agreement._points(other)
+    )[0]
+    assert sample[:6] == pytest.approx(points)
+    assert sample[6:21] == pytest.approx(rig_agreement._joint_gaps_m(RIG.cameras, one, other))
+    assert sample[21] == pytest.approx(rig_agreement._lower_ankle_m(RIG.cameras, one, other))
+    assert len(sample) == 22
+    assert np.abs(turned_deg).max() < 5.0
