@@ -3,17 +3,21 @@
 import msgspec
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, LIMBS, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import THESIS_RATIOS, body_vector, thesis_bdp
 from common.body.stick_body import ADULT, ANGLE, THESIS, Stickman, joints_px, standing
-from common.bus.messages import Box, Fit, Report, ViewerNumber
+from common.bus.messages import Box, Fit, Landmarks, Lifting, Report, ViewerNumber
 from common.method import DEFAULT, METHODS
+from common.notes.notes import Orientation
 from common.raster.silhouette_report import pack
 from common.rig.camera import as_matrix, centre, paper_rig, project
+from integrator.proposal import pose_proposal
 from integrator.single import (
     bent_limbs,
+    calm_depth,
     depth_signs,
     lifted_stick,
     lone_proposal,
@@ -27,6 +31,7 @@ WIDTH, HEIGHT, TALL_PX = 160, 120, 80.0
 RIG = paper_rig((WIDTH, HEIGHT), (200.0, 200.0), (4.375, 4.375))
 CAMERA = RIG.cameras[0]
 """Somebody of 1.75 m is 80 pixels tall before it."""
+Numbers = NDArray[np.float64]
 AT = {name: i for i, name in enumerate(JOINT_NAMES)}
 
 
@@ -221,3 +226,161 @@ def test_the_only_camera_of_a_rig_is_its_first_whatever_its_number() -> None:
         (2, alone, (report, None)),
     ):
         assert sight_of(report, n=number)._replace(rig=rig).seen == seen
+
+
+def a_body(score: float) -> Hypothesis:
+    """Somebody who stands, of a score and half of it as the confidence in their orientation."""
+    pose = rest_pose()
+    pose[POSE_INDEX["y"]] = 0.9
+    joints_m = np.asarray(joints(body_vector(thesis_bdp(1.75)), pose))
+    return Hypothesis(joints_m, pose, score, np.ones(15), Lifting("left", score / 2, ()))
+
+
+@pytest.mark.parametrize(
+    ("proposed", "agrees", "lifted", "farther_px", "is_lifted", "asks"),
+    [
+        (0.70, True, 0.99, 0.0, False, False),
+        (0.69, True, 0.80, 0.0, True, True),
+        (0.60, True, 0.6899, 0.0, False, True),
+        (0.60, True, 0.6901, 0.0, True, True),
+        (0.60, True, 0.80, 3.0, False, True),
+        (0.60, True, 0.80, -3.0, True, True),
+        (0.90, False, 0.10, 3.0, True, True),
+    ],
+    ids=["good", "not good", "no better", "better", "but farther", "and nearer", "named otherwise"],
+)
+def test_a_lifted_body_goes_before_a_proposed_one_that_fits_badly(
+    monkeypatch: pytest.MonkeyPatch,
+    proposed: float,
+    agrees: bool,
+    lifted: float,
+    farther_px: float,
+    is_lifted: bool,
+    asks: bool,
+) -> None:
+    """By S and a margin of 0.15, where it is no farther from the landmarks."""
+    report = report_of(ADULT)
+    sight = sight_of(report, printed=False)
+    one = a_body(proposed)
+    shown_px = project(CAMERA, one.joints_m) + np.array([5.0, 0.0])
+    shown = Landmarks(tuple((x, y) for x, y in shown_px.tolist()), (0.5, 0.9, *(0.7,) * 13))
+    sight = sight._replace(report=msgspec.structs.replace(report, landmarks=shown))
+    two = a_body(lifted)._replace(joints_m=one.joints_m - [farther_px / 200.0 * 4.375, 0.0, 0.0])
+    signs = depth_signs.init()._replace(turning=np.full((10, 3), 7.0))
+    depth = calm_depth.step(None, centre(CAMERA), one.joints_m, 0.1)[0]
+    seen = lone_proposal.Proposed(one, agrees, None, Front(0.2), None, depth)  # type: ignore[arg-type]
+    monkeypatch.setattr(lone_proposal, "step", lambda before, given: seen)
+    monkeypatch.setattr(lifted_stick, "step", lambda memory, given: (signs, two))
+    found = single_view.step(None, single_view.begun(sight, None), sight)
+    best = two if is_lifted else one
+    assert found.body is best
+    assert (found.alone.score, found.alone.lifting) == (best.score, best.lifting)
+    assert found.alone.stick == asks
+    assert found.alone.front == Front(0.2)
+    assert found.alone.depth is depth
+    if asks:
+        assert found.alone.signs is signs
+    else:
+        assert found.alone.signs.bearing.confidence == proposed / 2
+        assert found.alone.signs.bearing.orientation == reflection.faces(
+            reflection.yaw_deg(CAMERA, one.joints_m)
+        )
+
+
+def test_how_far_a_body_is_from_what_is_shown_is_weighed_by_how_sure_that_is() -> None:
+    """Worked by hand: 4 px at the sure joints, 10 at one that is less sure."""
+    sight = sight_of(report_of(ADULT), printed=False)
+    body = a_body(0.5)
+    assert single_view._off_px(sight, body) == 0.0
+    shown_px = project(CAMERA, body.joints_m)
+    shown_px += [2.4, -3.2]
+    shown_px[4] += [3.6, -4.8]
+    sure = (1.0,) * 4 + (0.2,) + (0.0,) * 10
+    shown = Landmarks(tuple((x, y) for x, y in shown_px.tolist()), sure)
+    report = msgspec.structs.replace(sight.report, landmarks=shown)
+    off_px = single_view._off_px(sight._replace(report=report), body)
+    assert off_px == pytest.approx((4 * 4.0 + 0.2 * 10.0) / 4.2)
+
+
+def test_what_a_view_begins_with_is_nothing_or_what_was_known_before_it() -> None:
+    sight = sight_of(report_of(ADULT), printed=False, n=2)
+    fresh = single_view.begun(sight, None)
+    assert fresh == single_view.Alone(
+        2, 0.0, Lifting("", 1.0, ()), Front(), fresh.signs, None, stick=False
+    )
+    assert fresh.signs.directions is None
+    joints_m = joints(body_vector(thesis_bdp(1.75)), rest_pose())
+    known = single_view.begun(sight, joints_m)
+    camera = RIG.cameras[1]
+    own_m = (joints_m - centre(camera)) @ np.array(camera.R).T * [1.0, -1.0, -1.0]
+    assert known.signs.directions == pytest.approx(depth_signs.directions_of(own_m))
+    assert known.signs.bearing.confidence == 1.0
+    assert (known.front, known.landmarks, known.lifting) == (None, None, Lifting("", 1.0, ()))
+    remembered = object()
+    other = fresh._replace(front=None, landmarks=remembered)  # type: ignore[arg-type]
+    given = single_view.begun(sight, joints_m, other)
+    assert (given.front, given.landmarks) == (None, remembered)
+
+
+@pytest.mark.parametrize(
+    ("reflects", "known", "lies", "behind", "named", "done_m"),
+    [
+        (True, True, False, True, None, 1100.0),
+        (True, True, False, False, None, 1000.0),
+        (True, True, False, True, "left", 100.0),
+        (True, True, False, False, "left", 0.0),
+        (True, False, False, True, None, 0.0),
+        (False, True, False, True, None, 0.0),
+        (True, True, True, True, None, 0.0),
+    ],
+    ids=["behind", "front", "named behind", "named", "both knew", "no reflection", "lies"],
+)
+def test_a_proposal_is_turned_about_and_shown_otherwise_where_front_is_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+    reflects: bool,
+    known: bool,
+    lies: bool,
+    behind: bool,
+    named: Orientation | None,
+    done_m: float,
+) -> None:
+    """The user's word is not held against what the picture shows."""
+    asked: list[tuple[object, ...]] = []
+
+    def front_of(*given: object) -> tuple[Front, bool]:
+        asked.append(given)
+        return Front(0.3), behind
+
+    def with_landmarks(before: object, sight: Sight, joints_m: Numbers, sure: object) -> object:
+        raised.append(joints_m)
+        return joints_m, np.ones(15), None
+
+    raised: list[Numbers] = []
+    proposed = a_body(0.5).joints_m
+    found = pose_proposal.PoseProposal(
+        proposed[pose_proposal.AT],
+        np.ones(15),
+        pose_proposal.Memory(None, None, 0.0),
+    )
+    up_m = np.array([0.0, 1.0, 0.0])
+    monkeypatch.setattr(pose_proposal, "step", lambda *_: found)
+    monkeypatch.setattr(pose_proposal, "up_of", lambda *_: up_m if lies else None)
+    monkeypatch.setattr(reflection, "front_of", front_of)
+    monkeypatch.setattr(reflection, "seen_from_behind", lambda _, joints_m: joints_m + 100.0 * up_m)
+    monkeypatch.setattr(reflection, "as_shown", lambda _, joints_m, shown: joints_m + 1000.0 * up_m)
+    monkeypatch.setattr(lone_proposal, "_with_landmarks", with_landmarks)
+    sight = sight_of(report_of(ADULT), False, Annotations(orientation=named))
+    sight = sight._replace(
+        method=msgspec.structs.replace(sight.method, reflection=reflects), dt_s=0.2
+    )
+    front = Front(0.4) if known else None
+    told = lone_proposal.step(lone_proposal.Before(None, front, None, None), sight)
+    assert raised[0][0, 1] - proposed[0, 1] == pytest.approx(done_m)
+    is_asked = reflects and known and not lies
+    assert told.front == (Front(0.3) if is_asked else front)
+    if is_asked:
+        before, yaw, shown, word, dt_s = asked[0]
+        assert (before, shown, word, dt_s) == (front, None, named, 0.2)
+        assert yaw == pytest.approx(reflection.yaw_deg(CAMERA, proposed), abs=0.1)
+    else:
+        assert not asked
