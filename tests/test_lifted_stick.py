@@ -3,6 +3,8 @@
 from types import SimpleNamespace
 from typing import Any
 
+import cv2
+import msgspec
 import numpy as np
 import pytest
 from staging import RIG
@@ -43,3 +45,15 @@ def test_as_printed_all_rays_are_met_at_one_depth() -> None:
     """Scaled orthography (T19): joints lie as in the picture, however near they are."""
     across_m = (lifted(True) - centre(CAMERA)) @ np.array(CAMERA.R)[:2].T
     assert across_m == pytest.approx((PIXELS - np.array(CAMERA.K)[:2, 2]) / PX_PER_M)
+
+
+def test_a_lens_that_bends_lines_is_undone_first() -> None:
+    """Pixels by OpenCV's own projection of what stands there."""
+    lens = (-0.25, 0.08, 0.002, -0.001, 0.0)
+    camera = msgspec.structs.replace(CAMERA, distortion=lens)
+    sight: Any = SimpleNamespace(camera=camera, method=SimpleNamespace(stick_lifting=False))
+    stick: Any = SimpleNamespace(joints_m=np.stack([0 * DEPTHS_M, 0 * DEPTHS_M, DEPTHS_M], axis=1))
+    found = in_world(sight, PIXELS, stick, PX_PER_M)
+    own = np.array(camera.R) @ found.T + np.array(camera.t)[:, None]
+    seen = cv2.projectPoints(own.T, np.zeros(3), np.zeros(3), np.array(camera.K), np.array(lens))
+    assert seen[0][:, 0] == pytest.approx(PIXELS, abs=0.05)

@@ -81,3 +81,17 @@ def test_a_limb_is_the_likeliest_of_its_length(seed: int) -> None:
             turned = made[far] - made[near] + rng.normal(0.0, 0.03, 3)
             other = made[near] + turned * length / np.linalg.norm(turned)
             assert apart(made[far]) <= apart(other) + 1e-9
+
+
+def test_at_the_likeliest_place_both_misfits_pull_along_the_limb_alike() -> None:
+    """Lagrange: across the sight the gap is k times the limb, along it 4 k times: a joint is twice
+    as uncertain there."""
+    found = standing()
+    found[0, ELBOW] = (0.45, 1.55, 0.3)
+    made = with_lengths(found, standing(), CAMERA)[0]
+    sight = (found[0, ELBOW] - CAMERA) / np.linalg.norm(found[0, ELBOW] - CAMERA)
+    limb, gap = made[ELBOW] - made[SHOULDER], found[0, ELBOW] - made[ELBOW]
+    k = (gap @ sight) / (limb @ sight) / 4.0
+    across = limb - (limb @ sight) * sight
+    assert np.allclose(gap - (gap @ sight) * sight, k * across, atol=1e-6)
+    assert abs(k) > 0.01

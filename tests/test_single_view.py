@@ -1,5 +1,8 @@
 """One view lifted into the room, held against drawn bodies and the user's word (T19 to T22)."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import msgspec
 import numpy as np
 import pytest
@@ -8,12 +11,21 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, LIMBS, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import THESIS_RATIOS, body_vector, thesis_bdp
-from common.body.stick_body import ADULT, ANGLE, THESIS, Stickman, joints_px, standing
+from common.body.stick_body import (
+    ADULT,
+    ANGLE,
+    SHOULDERS_BELOW,
+    THESIS,
+    Stickman,
+    joints_px,
+    standing,
+)
 from common.bus.messages import Box, Fit, Landmarks, Lifting, Report, ViewerNumber
 from common.method import DEFAULT, METHODS
 from common.notes.notes import Orientation
 from common.raster.silhouette_report import pack
 from common.rig.camera import as_matrix, centre, paper_rig, project
+from integrator.landmarks import landmark_fusion
 from integrator.proposal import pose_proposal
 from integrator.single import (
     bent_limbs,
@@ -25,7 +37,8 @@ from integrator.single import (
     single_view,
 )
 from integrator.single.reflection import Front
-from integrator.single.sight import Annotations, Hypothesis, Sight
+from integrator.single.sight import Annotations, Hypothesis, Sight, posed
+from integrator.single.stick_similarity import stick_similarity
 
 WIDTH, HEIGHT, TALL_PX = 160, 120, 80.0
 RIG = paper_rig((WIDTH, HEIGHT), (200.0, 200.0), (4.375, 4.375))
@@ -384,3 +397,118 @@ def test_a_proposal_is_turned_about_and_shown_otherwise_where_front_is_asked_for
         assert yaw == pytest.approx(reflection.yaw_deg(CAMERA, proposed), abs=0.1)
     else:
         assert not asked
+
+
+@pytest.mark.parametrize("knows_front", [True, False])
+def test_what_the_picture_shows_is_joined_with_a_proposal_that_is_sure_in_the_picture(
+    monkeypatch: pytest.MonkeyPatch, knows_front: bool
+) -> None:
+    """A joint that is 0.2 sure is so in depth; in the picture it is the cube root of that."""
+    asked: list[Any] = []
+    body = a_body(0.5)
+    fused_m = body.joints_m[pose_proposal.AT] + [0.01, 0.0, 0.02]
+    sure = np.linspace(0.3, 0.9, 12)
+
+    def joined(*given: Any) -> Any:
+        asked.append(given)
+        return SimpleNamespace(joints_m=fused_m, confidence=sure, memory="remembered")
+
+    monkeypatch.setattr(landmark_fusion, "step", joined)
+    shown_px = project(CAMERA, body.joints_m).tolist()
+    shown = Landmarks(tuple((x, y) for x, y in shown_px), (0.9,) * 15, 20.0, 0.95)
+    report = msgspec.structs.replace(report_of(ADULT), landmarks=shown)
+    sight = sight_of(report, printed=False)
+    before: Any = lone_proposal.Before(None, Front() if knows_front else None, "kept", None)
+    confidence = np.linspace(0.2, 0.8, 15)
+    joints_m, found, memory = lone_proposal._with_landmarks(
+        before, sight, body.joints_m, confidence
+    )
+    kept, proposed_m, beside, rays, stature_m = asked[0]
+    own = confidence[pose_proposal.AT]
+    assert (kept, memory) == ("kept", "remembered")
+    assert proposed_m == pytest.approx(body.joints_m[pose_proposal.AT])
+    assert beside == pytest.approx(own ** (1 / 3))
+    assert stature_m == pytest.approx(1.75)
+    assert rays.facing_confidence == ((0.0, 0.0) if knows_front else (0.95, 0.0))
+    assert rays.confidence[0].max() == 0.9
+    assert not rays.confidence[1].any()
+    assert found[pose_proposal.AT] == pytest.approx(sure * own ** (2 / 3))
+    assert joints_m[pose_proposal.AT] == pytest.approx(fused_m)
+    nothing = sight_of(report_of(ADULT), printed=False)
+    same_m, same, memory = lone_proposal._with_landmarks(before, nothing, body.joints_m, confidence)
+    assert same_m is body.joints_m
+    assert same is confidence
+    assert (memory, len(asked)) == ("kept", 1)
+
+
+def test_neck_and_crown_are_in_line_with_a_trunk_that_leans() -> None:
+    """Worked by hand: from between hips to between shoulders it is (0.3, 0.4, 0) m."""
+    sight = sight_of(report_of(ADULT), printed=False)
+    places_m = a_body(0.5).joints_m.copy()
+    places_m[AT["l_hip"]], places_m[AT["r_hip"]] = (0.3, 0.8, 0.1), (0.1, 1.0, -0.1)
+    places_m[AT["l_shoulder"]], places_m[AT["r_shoulder"]] = (0.7, 1.2, 0.0), (0.3, 1.4, 0.0)
+    found = lone_proposal._with_trunk(sight, places_m[pose_proposal.AT])
+    assert found[AT["pelvis"]] == pytest.approx([0.2, 0.9, 0.0])
+    up, drop_m = np.array([0.6, 0.8, 0.0]), ADULT.lengths[SHOULDERS_BELOW] * 1.75
+    assert found[AT["neck"]] == pytest.approx([0.5, 1.3, 0.0] + up * drop_m)
+    assert found[AT["head_top"]] == pytest.approx(found[AT["neck"]] + up * 0.155 * 1.75)
+    assert found[pose_proposal.AT] == pytest.approx(places_m[pose_proposal.AT])
+
+
+def test_a_pixel_is_met_at_the_depth_of_a_place() -> None:
+    place_m = np.array([0.3, 1.2, 0.5])
+    found_m = lone_proposal._at_depth(CAMERA, (30.0, 90.0), place_m)
+    forward = np.array(CAMERA.R)[2]
+    assert forward @ (found_m - place_m) == pytest.approx(0.0, abs=1e-9)
+    assert project(CAMERA, found_m[None])[0] == pytest.approx([30.0, 90.0])
+
+
+def test_limits_are_kept_where_the_method_has_them_and_the_user_placed_nothing() -> None:
+    """A knee that bends to the front; as printed there are no limits in space."""
+    turned = rest_pose()
+    turned[POSE_INDEX["l_knee_x"]], turned[POSE_INDEX["l_hip_x"]] = 50.0, 20.0
+    astray_m = np.asarray(joints(body_vector(thesis_bdp(1.75)), turned))
+    report = report_of(ADULT)
+    placed = Annotations(joints_px={"r_wrist": (40.0, 30.0)})
+    for printed, said, limits in (
+        (False, Annotations(), True),
+        (False, placed, False),
+        (True, Annotations(), False),
+        (True, placed, False),
+    ):
+        pose, found_m = posed(sight_of(report, printed, said), astray_m)
+        assert (float(pose[POSE_INDEX["l_knee_x"]]) <= 0.0) is limits
+        assert (found_m is astray_m) is not limits
+
+
+def test_a_lifted_body_is_scored_by_its_fit_as_printed_else_by_its_place_in_the_picture() -> None:
+    report = report_of(ADULT)
+    for printed in (True, False):
+        sight = sight_of(report, printed)
+        _, body = lifted_stick.step(depth_signs.init(), sight)
+        own = 0.8 if printed else stick_similarity(sight, body.joints_m)
+        assert body.score == own
+    assert own != 0.8
+
+
+def test_a_joint_is_as_sure_as_its_fit_what_it_hangs_on_and_its_sign() -> None:
+    """Worked by hand: a hidden left upper arm keeps a quarter, and so its hand; a right shank that
+    leans by 20 degrees has its sign's confidence, one that leans by 15 does not."""
+    report = report_of(ADULT)
+    assert report.fit is not None
+    hidden = tuple(name == "l_upper_arm" for name in LIMBS)
+    fit = msgspec.structs.replace(report.fit, hidden=hidden, score=0.8)
+    tilt_deg = np.zeros(10)
+    tilt_deg[LIMBS.index("r_lower_leg")], tilt_deg[LIMBS.index("l_lower_leg")] = -20.0, 15.0
+    tilt_deg[LIMBS.index("head")] = 30.0
+    nothing = depth_signs.init()
+    choice = depth_signs.Choice(
+        np.ones(10), np.linspace(0.5, 0.95, 10), "left", 1.0, nothing.bearing
+    )
+    lifted: Any = SimpleNamespace(tilt_deg=tilt_deg)
+    found = lifted_stick._confidence(fit, lifted, choice)
+    expected = np.full(15, 0.8)
+    expected[[AT["l_elbow"], AT["l_wrist"]]] = 0.2
+    expected[AT["r_ankle"]] *= choice.confidence[LIMBS.index("r_lower_leg")]
+    expected[AT["head_top"]] *= choice.confidence[LIMBS.index("head")]
+    assert found == pytest.approx(expected)
