@@ -81,3 +81,40 @@ def test_by_what_a_camera_was_turned_since_is_told() -> None:
     none = Shift(0.0, 0.0, 0.0)
     turn = moved_cameras.turn_since(RIG.cameras[1], none, SHIFT)
     assert angle_deg(turn @ TURN.T) == pytest.approx(0.0, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "far_px"),
+    [
+        (Shift(3.0, 1.0, 0.0), Shift(1.5, 1.2, 0.0), 1.5),
+        (Shift(3.0, -1.0, 0.1), Shift(2.5, 1.2, 0.0), 2.2),
+        (Shift(0.1, 0.2, -1.0), Shift(0.0, 0.0, 1.5), 80.0 * np.radians(2.5)),
+    ],
+    ids=["right", "down", "roll"],
+)
+def test_shifts_are_as_far_apart_as_they_differ_most(
+    one: Shift, other: Shift, far_px: float
+) -> None:
+    """A roll at the edge of a small picture, 80 pixels from its middle."""
+    assert moved_cameras.far_px(one, other) == pytest.approx(far_px)
+    assert moved_cameras.far_px(other, one) == pytest.approx(far_px)
+
+
+@pytest.mark.parametrize(("shift_px", "moved"), [(1.0, ()), (1.01, (2,)), (-1.01, (2,))])
+def test_a_camera_has_moved_whose_picture_is_off_by_more_than_a_pixel(
+    shift_px: float, moved: tuple[ViewerNumber, ...]
+) -> None:
+    assert after(MovedCameras(), Shift(0.0, shift_px, 0.0)).moved == moved
+    rig = turned_rig(RIG, after(MovedCameras(), Shift(0.0, shift_px, 0.0)))
+    assert (rig != RIG) is bool(moved)
+
+
+def test_a_rig_that_is_new_as_a_whole_or_of_a_camera_that_stood_is_confirmed() -> None:
+    state = after(MovedCameras(), SHIFT)
+    turned_only = turned_rig(RIG, state)
+    assert told_by(state, None, turned_only).unconfirmed == ()
+    assert told_by(state, None, turned_only).of_rig == state.now
+    assert told_by(MovedCameras(), RIG, turned_only).unconfirmed == ()
+    both = moved_cameras.step(MovedCameras(), Pair(report(1, shift=SHIFT), report(2, shift=SHIFT)))
+    assert told_by(both, RIG, turned_rig(RIG, both)).unconfirmed == (1, 2)
+    assert told_by(both, RIG, turned_only).unconfirmed == (2,)

@@ -57,3 +57,21 @@ def test_a_view_that_says_nothing_keeps_what_it_showed() -> None:
     state = after(walked, walked)
     assert step(state, Pair(None, told(2, block(48), 9 / RATE_HZ)))[0] == state[0]
     assert moves(state) == (True, True)
+
+
+@pytest.mark.parametrize(("changed_px", "moved"), [(240, False), (241, True)])
+def test_motion_is_more_than_fifteen_hundredths_of_the_area(changed_px: int, moved: bool) -> None:
+    """Of 1600 pixels 240."""
+    other = block(40)
+    spare = NOBODY.copy()
+    spare[20:100, 70:74] = True
+    rows, columns = spare.nonzero()
+    other[rows[:changed_px], columns[:changed_px]] = True
+    still = [block(40)] * 8
+    state = step(
+        after(still, still),
+        Pair(
+            report(1, other, captured_s=8 / RATE_HZ, area_px=1600), told(2, block(40), 8 / RATE_HZ)
+        ),
+    )
+    assert moves(state) == (moved, False)
