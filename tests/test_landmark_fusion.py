@@ -325,3 +325,21 @@ def test_a_view_sees_a_profile_by_how_far_the_girdles_point_along_its_sight(
     sine = abs(np.sin(np.radians(yaw_deg)))
     assert found[0] == pytest.approx(sine, abs=0.06)
     assert found[1] == pytest.approx(np.sqrt(1.0 - sine**2), abs=0.06)
+
+
+def test_what_is_remembered_is_each_steps_own() -> None:
+    """Two instants: the second begins with what the first left of each."""
+    joints_m = walking()[AT]
+    seen = rays(walking(), walking())
+    one = fused(joints_m, seen, 0.6)
+    turned = turned_about.step(None, joints_m, seen)
+    assert one.memory.turned == turned
+    misfit = landmark_fusion.proposal_misfit.step(None, joints_m, seen, 1.75)
+    for own, due in zip(one.memory.misfit, misfit, strict=True):
+        assert np.array_equal(own, due)
+    assert one.memory.lengths_m is not None
+    assert one.memory.lengths_m == pytest.approx(
+        landmark_fusion.limb_springs.lengths_m(None, one.joints_m, 1.75)
+    )
+    two = landmark_fusion.step(one.memory, joints_m, np.full(12, 0.6), seen, 1.75)
+    assert two.memory.turned == turned_about.step(one.memory.turned, joints_m, seen)

@@ -4,18 +4,20 @@ They have feet and faces of their own: cylinders look the same from behind.
 """
 
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from staging import HEIGHT, RIG, WIDTH, Stage, Told, exact
+from staging import HEIGHT, RIG, WIDTH, Stage, Told, exact, report
 
 from common.body.body import JOINT_NAMES, POSE_INDEX, Vector
 from common.body.proportions import stature
 from common.bus.message_codec import decode, encode
+from common.bus.messages import Landmarks
 from common.config.settings import Settings
 from common.raster.similarity import Mask
+from integrator.proposal import landmark_look, pose_proposal
 from integrator.proposal.pose_proposal import (
     AT,
     PLATT,
@@ -245,3 +247,20 @@ def test_a_probability_keeps_the_order_and_the_bounds() -> None:
     assert logit == pytest.approx(
         PLATT[0] * np.log(sure[:-1] / (1 - sure[:-1])) + PLATT[1], abs=1e-9
     )
+
+
+def test_where_landmarks_show_no_one_body_the_network_keeps_what_it_remembers() -> None:
+    """No landmarks at all, or views that look apart."""
+    kept: Any = "remembered"
+    bare = report(1), report(2)
+    assert pose_proposal._lifted(kept, bare, RIG, 1.75, 0.1) == (kept, None)
+    assert pose_proposal._lifted(kept, (None, None), RIG, 1.75, 0.1) == (kept, None)
+    places = [(80.0 + n, 60.0 + 2.0 * n) for n in range(15)]
+    here, astray = (
+        Landmarks(tuple((x + right_px, y) for x, y in places), (0.9,) * 15)
+        for right_px in (0.0, 4000.0)
+    )
+    apart = report(1, landmarks=here), report(2, landmarks=astray)
+    first, second = (landmark_look.shown_of(each) for each in apart)
+    assert landmark_look.look((first, second), RIG, 1.75, 0.1) is None
+    assert pose_proposal._lifted(kept, apart, RIG, 1.75, 0.1) == (kept, None)

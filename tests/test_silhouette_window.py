@@ -353,3 +353,23 @@ def test_who_seems_to_stand_too_near_or_too_far_is_looked_for_at_the_bounds() ->
         lens_m = centre(camera)[1]
         due = lens_m * 800.0 / (rows[1] - 240.0) if far_m is None else far_m
         assert flat_m == pytest.approx(max(due, NEAR_M), rel=0.01)
+
+
+@pytest.mark.parametrize("roll_deg", [0.0, 65.0])
+def test_a_camera_that_looks_straight_down_has_its_own_right(roll_deg: float) -> None:
+    """Its picture's right is level; a little of height in it is left out."""
+    roll, tilt = np.radians([roll_deg, 1.0])
+    right = np.array([np.cos(roll), np.sin(tilt), np.sin(roll)])
+    level = right * [1.0, 0.0, 1.0]
+    R = np.stack([right, np.cross([0.0, -1.0, 0.0], right), [0.0, -1.0, 0.0]])
+    above = Camera(
+        "above",
+        ((200.0, 0.0, 80.0), (0.0, 200.0, 60.0), (0.0, 0.0, 1.0)),
+        as_matrix(R),
+        (0.0, 0.0, 0.0),
+    )
+    other = paper_rig((160, 120), (200.0, 200.0), (4.0, 4.0)).cameras[0]
+    found = axes_of(above, other)
+    assert found == pytest.approx(
+        np.stack([level, [0.0, 1.0, 0.0], np.cross(level, [0.0, 1.0, 0.0])])
+    )
