@@ -1,6 +1,8 @@
 """Two reports in, one body out: held against a person who stands, squats, lifts and leaves."""
 
 from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -21,18 +23,20 @@ from staging import (
     standing,
 )
 
-from common.body.body import JOINT_NAMES, POSE_INDEX, Vector
+from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES, POSE_INDEX, Vector
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Guide
 from common.config.settings import Settings
-from common.method import DEFAULT, Mode
+from common.method import DEFAULT, METHODS, Mode
 from common.rig.camera import project
 from integrator import merge, merge_state
+from integrator.frame_numbers import NO_FRAME, FrameTimes
 from integrator.outgoing import LOST_S
 from integrator.pairing import Pair
 from integrator.rig.body_position import scales_at
+from integrator.single.sight import Annotations
 
 LOST = round(15 * LOST_S)
 MODES = pytest.mark.parametrize("mode", ["paper", "default"])
@@ -362,3 +366,113 @@ def test_an_integrator_is_a_value() -> None:
     )
     one, other = merge.step(state, pair), merge.step(state, pair)
     assert one[1:] == other[1:]
+
+
+def instants(period_s: float = 0.1, alone: bool = False) -> merge_state.State:
+    """An integrator that has heard nothing; camera 1 takes ten frames a second."""
+    times = None if alone else FrameTimes(period_s)
+    return merge_state.init(
+        RIG, period_s, Settings(), DEFAULT, merge_state.Start(alone, times=times)
+    )
+
+
+def test_an_instant_counts_on_from_what_each_viewer_reported_last() -> None:
+    """Frames, uprights, times: a viewer that says nothing keeps what it said."""
+    state = instants()._replace(frames=(4, 9), last_s=0.4, number=4, numbered=4)
+    second = report(2, frame=12, captured_s=0.62)
+    first = report(1, frame=6, captured_s=0.6)
+    both, dt_s = merge._at(state, Pair(first, second))
+    assert (both.frames, both.number, both.numbered, both.last_s) == ((6, 12), 6, 6, 0.6)
+    assert dt_s == 0.0, "nobody was there before"
+    found: Any = object()
+    state = state._replace(found=found)
+    later = msgspec.structs.replace(second, clock_s=1.0)
+    own, dt_s = merge._at(state, Pair(first, later))
+    assert (own.last_s, dt_s) == (0.62, pytest.approx(0.22))
+    own, dt_s = merge._at(state, Pair(None, second))
+    assert (own.frames, own.number, own.numbered) == ((4, 12), 6, 6)
+    assert dt_s == pytest.approx(0.22)
+    back, dt_s = merge._at(state._replace(last_s=0.7), Pair(first, None))
+    assert (back.frames, back.last_s, dt_s) == ((6, 9), 0.6, 0.0)
+    lower, _ = merge._at(state._replace(numbered=40), Pair(first, None))
+    assert (lower.number, lower.numbered) == (6, 40)
+
+
+def test_how_a_picture_comes_from_its_file_is_kept_while_a_viewer_is_away() -> None:
+    one: Any = SimpleNamespace(frame=3, captured_s=0.3, clock_s=0.3, upright="turned")
+    before: Any = ("first", "second")
+    state = instants()._replace(uprights=before)
+    assert merge._at(state, Pair(one, None))[0].uprights == ("turned", "second")
+    one.frame = 5
+    assert merge._at(state, Pair(None, one))[0].uprights == ("first", "turned")
+
+
+def test_rows_are_camera_2s_only_where_that_is_alone_in_the_run() -> None:
+    alone = instants(alone=True)
+    second = report(2, frame=12, captured_s=0.6)
+    assert merge._number(alone, Pair(None, second)) == 12
+    assert merge._number(alone, Pair(report(1, frame=7), second)) == 7
+    heard = alone._replace(frames=(3, 11))
+    assert merge._number(heard, Pair(None, second)) == NO_FRAME
+
+
+def test_a_pose_that_is_not_believed_does_not_move_the_smooth_one() -> None:
+    """Unless there is nothing else to go by; and as printed there is none."""
+    pose = standing((0.2, 0.1))
+    posed = merge_state.Posed(pose, ("facade", "flank"))
+    state = instants()._replace(found=posed)
+    raw = pose[list(ANGLES_IN_POSE)]
+    doubted = state._replace(doubted=2)
+    started, angles = merge._smoothed(doubted, 0.1)
+    assert angles == pytest.approx(raw)
+    assert started.smooth.P is not None
+    other = standing((0.2, 0.1), l_hip_x=30.0)
+    moved = started._replace(found=posed._replace(pose=other))
+    _, held = merge._smoothed(moved, 0.1)
+    assert held == pytest.approx(raw, abs=1e-6)
+    _, followed = merge._smoothed(moved._replace(doubted=0), 0.1)
+    at = ANGLE_NAMES.index("l_hip_x")
+    assert 5.0 < followed[at] <= 30.0
+    printed = moved._replace(method=METHODS["paper"])
+    same, angles = merge._smoothed(printed, 0.1)
+    if not printed.method.smoothing:
+        assert same is printed
+        assert angles == pytest.approx(other[list(ANGLES_IN_POSE)])
+
+
+def test_scores_are_those_of_each_views_own_camera_and_silhouette() -> None:
+    """A body that stands where it is drawn; the second view shows it raised."""
+    pose = standing((0.3, -0.2))
+    first, second = silhouettes(pose)
+    raised, _ = silhouettes(standing((0.3, -0.2), r_shoulder_z=90.0))
+    opening = instants().opening._replace(bdp=PERSON)
+    found = merge_state.Posed(pose, ("facade", "flank"))
+    state = instants()._replace(opening=opening, found=found)
+
+    def scores(*masks: Any) -> tuple[float, float]:
+        given = [None if mask is None else report(n + 1, mask) for n, mask in enumerate(masks)]  # type: ignore[arg-type]
+        return merge._scores(state, merge.Instant(RIG, (given[0], given[1]), 0.1, Annotations()))
+
+    assert scores(first, second) == (1.0, 1.0)
+    one, other = scores(raised, second)
+    assert 0.5 < one < 0.95
+    assert other == 1.0
+    assert scores(first, None) == (1.0, 0.0)
+    assert scores(None, second) == (0.0, 1.0)
+    alone: Any = SimpleNamespace(score=0.37)
+    state = state._replace(found=found._replace(alone=alone))
+    assert scores(first, None) == (0.37, 0.0)
+    assert scores(None, second) == (0.0, 0.37)
+
+
+def test_without_anybody_the_body_is_kept_and_its_pose_is_not() -> None:
+    state = instants()._replace(
+        found=merge_state.Posed(standing(), ("facade", "flank")), doubted=3, met=True
+    )
+    state, _ = merge._smoothed(state, 0.1)
+    after = merge._without_pose(state)
+    assert (after.found, after.doubted, after.met) == (None, 0, False)
+    assert after.smooth.P is None
+    assert after.smooth.period_s == state.smooth.period_s
+    assert len(after.smooth.x) == len(state.smooth.x)
+    assert after.opening is state.opening

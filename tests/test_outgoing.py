@@ -1,5 +1,6 @@
 """What is told of an instant: a body whose doubts count, and where the next search starts."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import msgspec
@@ -7,17 +8,20 @@ import numpy as np
 import pytest
 from staging import NOBODY, PAPER, RIG, Stage, exact, report, silhouettes, standing
 
-from common.bus.messages import Agreement, Report
+from common.body.proportions import stature
+from common.bus.messages import Agreement, Lifting, Report
 from common.method import DEFAULT
+from common.rig.camera import project
 from integrator import outgoing
 from integrator.merge_state import State
 from integrator.outgoing import body_of, guide_of, no_detection, weighed
 from integrator.pairing import Pair
 from integrator.rig.body_position import pixels_of, scales_at
-from integrator.rig_gate import rig_agreement
+from integrator.rig_gate import moved_cameras, rig_agreement, silhouette_motion
 from integrator.single.sight import Annotations
 
 SCORES = (0.8, 0.7)
+RAISED_M = np.array([0.0, 0.5, 0.0])
 LOST_FRAMES = 5
 """A third of a second at the 15 frames a second of `state`."""
 FRONT, SIDE = silhouettes(standing())
@@ -218,3 +222,97 @@ def test_where_nobody_is_the_lengths_and_the_facing_are_kept(state: State) -> No
     assert (body.calibration, body.scale_source) == (3, "calibrated")
     assert (guide.frames, guide.status, guide.proposes) == ((11, 12), "empty", True)
     assert guide.measured is state.opening.measured
+
+
+def test_what_else_is_told_of_an_instant_is_what_the_state_knows(state: State) -> None:
+    """Cameras that moved, motion, what one view decided, whose picture is none is at -1."""
+    stands = moved_cameras.MovedCameras(unconfirmed=(2,))
+    lifting = Lifting("left", 0.9, (0.5,) * 10)
+    assert state.found is not None
+    alone: Any = SimpleNamespace(lifting=lifting, stick=False)
+    known = state._replace(stands=stands, found=state.found._replace(alone=alone))
+    body = told(known, Pair(None, seen(2)))
+    assert (body.moved, body.lifting) == ((2,), lifting)
+    assert told(state).lifting is None
+    assert body.confidence == pytest.approx([0.4] * 15), "half of it is left"
+    agreed = rig_agreement.State(told=Agreement(70.0, 0.0, 0.0, 10.0, 0.7))
+    assert told(known._replace(agreement=agreed)).confidence == pytest.approx([0.4] * 15)
+    assert told(known._replace(agreement=agreed)).agreement == agreed.told
+    assert told(known._replace(agreement=agreed), Pair(None, seen(2))).agreement is None
+    half_s = [seen(1, captured_s=at_s) for at_s in (0.0, 0.5)]
+    moved = msgspec.structs.replace(half_s[1], silhouette=report(1, NOBODY).silhouette, area_px=90)
+    motion = silhouette_motion.NOTHING
+    for each in (half_s[0], moved):
+        motion = silhouette_motion.step(motion, Pair(None, msgspec.structs.replace(each, viewer=2)))
+    assert guide_of(state._replace(motion=motion), BOTH, False).moves == (False, True)
+    empty, _ = no_detection(known, Pair(report(1, NOBODY), None))
+    assert empty.moved == (2,)
+    behind = outgoing._pixels(np.array([[np.nan, np.nan], [3.0, 4.0]]))
+    assert behind == ((-1.0, -1.0), (3.0, 4.0))
+
+
+def test_scales_of_a_camera_that_has_the_body_behind_it_are_none() -> None:
+    for bad in (-3.0, float("nan"), float("inf"), 0.0):
+        assert outgoing._or_unseen((bad, 50.0)) == (0.0, 50.0)
+        assert outgoing._or_unseen((60.0, bad)) == (60.0, 0.0)
+
+
+def test_extremities_are_as_sure_as_they_are_seen_and_the_rig_is_believed(
+    state: State, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sure = np.linspace(0.1, 0.7, 7)
+    asked: list[Any] = []
+
+    def seen_ends(ends_m: Any, rig: Any, given: Any, stature_m: float) -> Any:
+        asked.append((rig, given, stature_m))
+        return ends_m + RAISED_M, sure
+
+    ruled = np.array(told(state).extremities_m)
+    monkeypatch.setattr(outgoing, "seen_extremities", seen_ends)
+    stands = moved_cameras.MovedCameras(unconfirmed=(1,))
+    body = told(state._replace(stands=stands))
+    assert body.extremities_confidence == pytest.approx(0.5 * sure)
+    assert np.array(body.extremities_m) == pytest.approx(ruled + RAISED_M)
+    for camera, pixels in zip(RIG.cameras, body.extremities_px, strict=True):
+        assert np.array(pixels) == pytest.approx(project(camera, np.array(body.extremities_m)))
+    assert state.opening.bdp is not None
+    assert asked == [(RIG, BOTH.detections, stature(state.opening.bdp))]
+    doubted = told(state._replace(doubted=1))
+    assert doubted.extremities_confidence == (0.0,) * 7
+    assert np.array(doubted.extremities_m) == pytest.approx(ruled)
+    assert len(asked) == 1
+
+
+def test_only_the_view_that_is_alone_and_cut_says_what_is_outside(state: State) -> None:
+    """Camera 2 alone: what lies left of its picture's border, or right of it."""
+    first_px, second_px = np.full((15, 2), 50.0), np.full((15, 2), 50.0)
+    second_px[3], second_px[4], second_px[5] = (-0.1, 50.0), (160.1, 50.0), (80.0, 120.1)
+    second_px[6], second_px[7], second_px[8] = (0.0, 50.0), (160.0, 120.0), (80.0, -0.1)
+    first_px[9] = (-3.0, 7.0)
+    pixels = first_px, second_px
+    outside = [n in (3, 4, 5, 8) for n in range(15)]
+    assert outgoing._outside(Pair(None, seen(2, cut=True)), pixels).tolist() == outside
+    first_only = outgoing._outside(Pair(seen(1, cut=True), None), pixels)
+    assert first_only.tolist() == [n == 9 for n in range(15)]
+    for whole in (
+        Pair(None, seen(2)),
+        Pair(seen(1, cut=True), seen(2, cut=True)),
+        Pair(report(1, NOBODY), None),
+    ):
+        assert not outgoing._outside(whole, pixels).any()
+
+
+def test_matches_of_a_stick_count_with_those_of_its_viewer() -> None:
+    fit: Any = SimpleNamespace(matches=7)
+    one: Any = SimpleNamespace(matches=30, fit=fit)
+    assert outgoing._matches(one) == 37
+    one.fit = None
+    assert outgoing._matches(one) == 30
+
+
+@pytest.mark.parametrize(("rate_hz", "frames"), [(15.0, 5), (30.0, 10), (10.0, 3), (1.0, 1)])
+def test_a_body_is_lost_after_a_third_of_a_second_at_any_rate(
+    state: State, rate_hz: float, frames: int
+) -> None:
+    smooth = state.smooth._replace(period_s=1.0 / rate_hz)
+    assert outgoing._lost_frames(state._replace(smooth=smooth)) == frames
