@@ -8,7 +8,7 @@ from staging import report, silhouettes, standing
 from common.bus.messages import Landmarks, Report, ViewerNumber
 from common.rig.camera import paper_rig
 from integrator.live_rig import rig_search
-from integrator.live_rig.rig_job import Job, Solved, Trusted, track_of_bytes
+from integrator.live_rig.rig_job import Job, Solved, Stand, Trusted, track_of_bytes
 from integrator.live_rig.rig_search import ASKS_S, State, answered, refusal_of
 from integrator.pairing import Pair
 
@@ -158,3 +158,125 @@ def test_a_moved_camera_is_placed_by_the_person_even_where_views_agree_as_well_b
     assert answered(state, msgspec.structs.replace(GOOD, before=Trusted(11.0, ())))[1]
     refused = msgspec.structs.replace(GOOD, trust=Trusted(80.0, ("apart",)))
     assert not answered(state, refused)[1]
+
+
+@pytest.mark.parametrize(
+    ("before_mm", "now_mm", "asked", "taken", "is_taken"),
+    [
+        (18.0, 12.5, 2, 1, True),
+        (17.4, 12.5, 2, 1, False),
+        (40.0, 27.9, 2, 1, True),
+        (40.0, 28.1, 2, 1, False),
+        (12.5, 12.5, 3, 1, True),
+        (12.4, 12.5, 3, 1, False),
+        (12.5, 12.5, 3, 2, False),
+        (12.5, 12.5, 4, 2, True),
+    ],
+    ids=["gains", "5 mm", "share", "no share", "4 times", "not", "twice", "4 times later"],
+)
+def test_what_a_jump_must_gain(
+    before_mm: float, now_mm: float, asked: int, taken: int, is_taken: bool
+) -> None:
+    """More than 5 mm and to less than 0.7 of it, or nothing where four times as much was seen."""
+    state = rig_search.init(1 / HZ, 1.75)._replace(asked=asked, taken=taken, rig=RIG)
+    solved = msgspec.structs.replace(GOOD, before=Trusted(before_mm, ()), trust=Trusted(now_mm, ()))
+    found, answer = answered(state, solved)
+    assert answer is is_taken
+    assert found.taken == (asked if is_taken else taken)
+
+
+@pytest.mark.parametrize(
+    ("changed", "told"),
+    [
+        ({"gap_mm": 35.0, "turn_error_deg": 15.0}, ""),
+        ({"gap_mm": 35.1}, "both views stay 11 mm apart (gaps)"),
+        ({"turn_error_deg": 15.6}, "camera 2 is known to 16 degrees only"),
+        (
+            {"trust": Trusted(80.4, ("apart", "late", "floor"))},
+            "both views stay 80 mm apart (apart, floor)",
+        ),
+        ({"trust": None}, "too little is seen of anybody"),
+        ({"refusal": "fits no rig", "trust": None}, "fits no rig"),
+    ],
+)
+def test_a_refusal_is_told_from_its_bound_on_with_its_number(
+    changed: dict[str, object], told: str
+) -> None:
+    assert refusal_of(msgspec.structs.replace(GOOD, **changed)) == told
+
+
+def test_why_a_person_told_no_rig_is_said() -> None:
+    state = rig_search.init(1 / HZ, 1.75)._replace(moved_s=2.4)
+    why = rig_search.why_none
+    assert why(state) == "both cameras saw somebody move for 2 s, of 4 needed"
+    assert why(state._replace(refusal="gaps")) == "the person tells none (gaps)"
+    late = "what the person tells was not found in time"
+    assert why(state._replace(refusal="gaps", waits=True)) == late
+
+
+@pytest.mark.parametrize(("late_s", "set_back_s"), [(0.04, 0.04), (0.0399, 0.0), (-0.05, -0.05)])
+def test_view_2_is_set_back_from_six_tenths_of_a_frame_on(late_s: float, set_back_s: float) -> None:
+    solved = msgspec.structs.replace(GOOD, late_s=late_s)
+    assert rig_search.set_back_s(solved, 1 / 15) == set_back_s
+
+
+def test_a_job_says_all_that_is_known_and_a_new_search_keeps_what_stays() -> None:
+    state, _ = moved(ASKS_S[0] - 0.5)
+    stood = Stand(RIG, (b"1", b"2"))
+    state = state._replace(rig=RIG, moved=(2,), stood=stood, late_s=0.03)
+    state, jobs = moved(1.0, state, round((ASKS_S[0] - 0.5) * HZ) + 1)
+    job = jobs[0]
+    assert (job.size_px, job.stature_m, job.period_s) == ((160, 120), 1.75, 1 / HZ)
+    assert (job.rig, job.moved, job.late_s, job.stood) == (RIG, (2,), 0.03, stood)
+    assert job.tracks != (b"", b"")
+    again = rig_search.anew(state, None, (1,), None)
+    assert (again.last_s, again.late_s, again.waits, again.is_stale) == (
+        state.last_s,
+        0.03,
+        True,
+        True,
+    )
+    assert (again.rig, again.moved, again.stood, again.asked) == (None, (1,), None, 0)
+    assert again.rows == ((), ())
+    assert not rig_search.anew(state._replace(waits=False), None).is_stale
+
+
+def test_pictures_of_two_sizes_tell_nothing() -> None:
+    state, _ = moved(0.0)
+    other = msgspec.structs.replace(seen(2, 9, 30.0), width=161)
+    after, _ = rig_search.step(state, Pair(seen(1, 9, 30.0), other))
+    assert (after.rows, after.moved_s) == (state.rows, state.moved_s)
+
+
+def test_who_stops_counts_as_moving_for_a_second_and_then_leaves_a_gap() -> None:
+    """Joints that went 0.04 heights on average have moved; the box is 80 rows high or so."""
+    box = seen(1, 0, 0.0).box
+    assert box is not None
+    tall_px = box.bottom - box.top
+
+    def at(n: int, by_px: float) -> Pair:
+        pair = []
+        for viewer in (1, 2):
+            one = seen(viewer, n, 0.0)  # type: ignore[arg-type]
+            assert one.landmarks is not None
+            places = [(x, y) for x, y in one.landmarks.joints_px]
+            places[3] = (places[3][0] + by_px, places[3][1])
+            shown = msgspec.structs.replace(one.landmarks, joints_px=tuple(places))
+            pair.append(msgspec.structs.replace(one, landmarks=shown))
+        return Pair(pair[0], pair[1])
+
+    state, _ = rig_search.step(rig_search.init(1 / HZ, 1.75), at(0, 0.0))
+    assert state.posed is not None
+    assert state.posed[0] == 0.0
+    # one joint of 15 goes by d: the mean of |x| and |y| about the middle is 28 d / 15 / 30
+    due_px = 0.04 * tall_px / (28.0 / 15.0 / 30.0)
+    for by_px, moves in ((0.97 * due_px, False), (1.03 * due_px, True)):
+        later, _ = rig_search.step(state, at(3, by_px))
+        assert later.posed is not None
+        assert (later.posed[0] > 0.0) is moves
+    within, _ = rig_search.step(state, at(15, 0.0))
+    assert within.moved_s == pytest.approx(2 / HZ)
+    assert not within.gap
+    beyond, _ = rig_search.step(within, at(16, 0.0))
+    assert beyond.moved_s == within.moved_s
+    assert beyond.gap
