@@ -9,6 +9,7 @@ from rich.console import Console
 from staging import PERIOD_S, RIG
 from test_rig_search import GOOD, both
 
+from common.bus.messages import Agreement
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from common.method import METHODS
@@ -22,6 +23,7 @@ from integrator.live_rig.rig_job import Job, Solved, Trusted
 from integrator.live_rig.rig_search import ASKS_S
 from integrator.merge_state import Start, State
 from integrator.pairing import Pair
+from integrator.rig_gate import rig_agreement
 from tritrack.live.free_ports import free_settings
 from tritrack.live.session import live
 from tritrack.replaying import replay_run
@@ -181,3 +183,66 @@ def test_who_trusts_the_calibration_keeps_it_where_a_camera_is_moved(solver: Sol
         assert calibration.changed(state) is state
     assert body.moved == (2,)
     assert not calibration.news
+
+
+def doubted(state: State) -> State:
+    """Both views place joints 90 mm apart by a calibrated rig."""
+    told = Agreement(90.0, 3.0, 4.0, 5.0, 0.05)
+    return state._replace(
+        rig=RIG, scale_source="calibrated", agreement=rig_agreement.State(told=told)
+    )
+
+
+def test_a_rig_that_is_doubted_is_looked_for_once_and_its_end_says_which_stayed(
+    solver: Solver,
+) -> None:
+    state = doubted(begun())
+    with LiveCalibration(state, looks=False, late_s=0.25) as calibration:
+        calibration.heard(both(0))
+        assert not calibration.looking.search.rows[0], "nothing is looked for yet"
+        assert calibration.changed(state) is state
+        assert calibration.looking.looks
+        assert calibration.looking.search.rig == RIG
+        assert calibration.looking.search.late_s == calibration.late_s == 0.25
+        calibration.heard(both(1))
+        begun_once = calibration.looking.search
+        assert begun_once.rows[0]
+        calibration.changed(state)
+        assert calibration.looking.search is begun_once, "the same rig is not doubted twice"
+        assert calibration.looking.doubted == 0
+        again = state._replace(calibration=1)
+        calibration.changed(again)
+        assert calibration.looking.search is begun_once, "it is looked for already"
+        assert calibration.looking.doubted == 1
+    assert calibration.news == (
+        "0.1 s: the rig that is not believable stayed: both cameras saw somebody move for 0 s, "
+        "of 4 needed",
+    )
+
+
+def test_a_rig_that_nobody_doubts_is_let_be_and_nothing_is_said_at_the_end(solver: Solver) -> None:
+    state = begun()._replace(rig=RIG, scale_source="calibrated")
+    closed: list[bool] = []
+    solver.close = lambda: closed.append(True)  # type: ignore[method-assign]
+    with LiveCalibration(state, looks=False) as calibration:
+        for n in range(5):
+            calibration.heard(both(n))
+            assert calibration.changed(state) is state
+    assert closed == [True]
+    assert calibration.news == ()
+    assert not calibration.looking.looks
+    assert calibration.looking.now_s == pytest.approx(4 / 15)
+    assert len(calibration.looking.lately.rows) == 5
+
+
+def test_a_late_view_is_set_back_when_the_rig_that_says_so_is_taken(solver: Solver) -> None:
+    state = begun()
+    with LiveCalibration(state, looks=True) as calibration:
+        for n in range(round(1.1 * ASKS_S[0] / PERIOD_S)):
+            calibration.heard(both(n))
+        solver.said = msgspec.structs.replace(GOOD, late_s=0.2)
+        assert calibration.changed(state).rig == RIG
+        assert calibration.late_s == 0.2
+        assert calibration.looking.stays == ""
+    assert len(calibration.news) == 1
+    assert "camera 2 +200 ms late" in calibration.news[0]

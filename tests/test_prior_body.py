@@ -8,7 +8,7 @@ from staging import PERSON, RIG, report, silhouettes, standing
 
 from common.body.body import Vector
 from common.body.proportions import stature, thesis_bdp
-from integrator.prior_body import prior
+from integrator.prior_body import _crown_m, prior
 
 
 @pytest.mark.parametrize("views", [(0, 1), (0,), (1,)], ids=["both", "1", "2"])
@@ -75,3 +75,28 @@ def _stretched() -> Vector:
     pose = posed(r_shoulder_z=90.0, l_shoulder_z=270.0)
     pose[1] = BODY.r_upper_leg.height + BODY.r_lower_leg.height
     return pose
+
+
+@pytest.mark.parametrize(
+    ("place", "is_known"),
+    [
+        ((1, 40), True),
+        ((158, 40), True),
+        ((80, 1), True),
+        ((0, 40), False),
+        ((159, 40), False),
+        ((80, 0), False),
+    ],
+)
+def test_a_crown_at_the_border_of_a_picture_may_go_on_beyond_it(
+    place: tuple[int, int], is_known: bool
+) -> None:
+    """160 x 120: the highest pixel of view 1 is at a column and row; below it there are more."""
+    column, row = place
+    one, other = np.zeros((120, 160), bool), np.zeros((120, 160), bool)
+    one[row, column] = one[100, 80] = True
+    other[30:100, 70:80] = True
+    other[30, 71:80] = False
+    seen = told(1, one), told(2, other)
+    crown_m = _crown_m(RIG, seen, np.array([0.0, 1.0, 0.0]))
+    assert np.isfinite(crown_m) == is_known
