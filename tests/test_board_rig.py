@@ -12,8 +12,19 @@ from common.rig.camera import centre, project
 from common.rig.rig_file import CalibrationError
 from integrator.board.board import BOARDS, corner_places
 from integrator.board.board_corners import corners_in
-from integrator.board.board_rig import BoardCalibration, calibrated_by_board
-from integrator.board.still_board import Film
+from integrator.board.board_fit import Fit
+from integrator.board.board_floor import Floor
+from integrator.board.board_rig import (
+    BoardCalibration,
+    _late,
+    _refuse_few,
+    _refuse_poor,
+    _resting,
+    _rig,
+    calibrated_by_board,
+)
+from integrator.board.lens_start import Place
+from integrator.board.still_board import Film, Moments
 
 POSTER = BOARDS["a3"]._replace(square_m=0.1)
 LOOKS = 3
@@ -141,3 +152,47 @@ def test_films_of_other_moments_are_told() -> None:
     other = second._replace(time_s=second.time_s + 0.8 * 5)
     with pytest.raises(CalibrationError, match="does not show the moments"):
         calibrated_by_board([first, other], POSTER)
+
+
+def test_the_last_dozen_moments_and_those_of_the_floor_are_kept() -> None:
+    moments = Moments(np.arange(15.0), np.arange(15.0) + 0.5, np.zeros((15, 1, 6, 2)))
+    assert np.flatnonzero(_late(moments, None)).tolist() == list(range(3, 15))
+    assert np.flatnonzero(_late(moments, 1.5)).tolist() == [1, *range(3, 15)]
+    assert np.flatnonzero(_late(moments, 1.0)).tolist() == [1, *range(3, 15)]
+    assert np.flatnonzero(_late(moments, 1.6)).tolist() == list(range(3, 15))
+
+
+def test_the_floor_is_told_by_a_time_at_which_the_board_rests() -> None:
+    moments = Moments(np.arange(7.0), np.arange(7.0) + 0.5, np.zeros((7, 1, 6, 2)))
+    assert _resting(moments, None) is None
+    assert [_resting(moments, at_s) for at_s in (2.0, 2.5, 6.25)] == [2, 2, 6]
+    told = r"at --floor 2\.75: it is from 2\.0, 3\.0, 4\.0, 5\.0, 6\.0 s on, and before"
+    with pytest.raises(CalibrationError, match=told):
+        _resting(moments, 2.75)
+
+
+def test_films_that_show_too_little_or_another_board_are_named() -> None:
+    one = Film("left.avi", (640, 480), np.arange(31.0), np.zeros((31, 6, 2)))
+    _refuse_few(one, 8)
+    with pytest.raises(CalibrationError, match=r"left\.avi .* in 31 of .* at rest 7 times, 8 or"):
+        _refuse_few(one, 7)
+    _refuse_poor(one, 1.5)
+    with pytest.raises(
+        CalibrationError, match=r"in left\.avi miss the board by 1\.6 px: .*--chess"
+    ):
+        _refuse_poor(one, 1.56)
+
+
+def test_a_fitted_lens_stands_in_the_rig_as_it_was_fitted() -> None:
+    """Corners have whole pixels at their middles, a rig has half ones."""
+    still = Place(np.zeros(3), np.zeros(3))
+    lenses = np.array([[600.0, 590.0, 322.0, 238.0, -0.1, 0.02]])
+    fit = Fit(lenses, (still,), (still,), np.ones(1), ())
+    floor = Floor(np.array([0.0, -1.0, 0.0]), np.array([0.2, 1.2, 4.0]), (0,))
+    rig = _rig(fit, floor, (640, 480))
+    (camera,) = rig.cameras
+    assert (rig.width, rig.height, camera.name) == (640, 480, "cam1")
+    K = np.array([[600.0, 0.0, 322.5], [0.0, 590.0, 238.5], [0.0, 0.0, 1.0]])
+    assert np.array(camera.K) == pytest.approx(K)
+    assert camera.distortion[:4] == pytest.approx((-0.1, 0.02, 0.0, 0.0))
+    assert centre(camera) == pytest.approx([-0.2, 1.2, 4.0])

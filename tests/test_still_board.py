@@ -2,7 +2,15 @@
 
 import numpy as np
 
-from integrator.board.still_board import Film, moments_of, rests_of, seen_by, spread_moments
+from integrator.board.still_board import (
+    Film,
+    Moments,
+    Rest,
+    moments_of,
+    rests_of,
+    seen_by,
+    spread_moments,
+)
 
 GRID = np.array([(x, y) for y in range(3) for x in range(4)], float) * 20 + 100
 
@@ -55,3 +63,54 @@ def test_of_many_moments_the_most_different_are_kept() -> None:
     assert len(moments.px) == 6
     kept = spread_moments(moments, 4, needed)
     assert kept.px[:, 0, 0, 0].tolist() == [100.0, 400.0]
+
+
+def test_a_rest_lasts_a_third_of_a_second_and_shows_six_corners_half_of_the_time() -> None:
+    """Three looks, 0.4 s; of two, 0.2 s, none. Corners that three of five looks show are told."""
+    assert len(rests_of(film([(0.0, 3)]))) == 1
+    assert rests_of(film([(0.0, 2)])) == []
+    one = film([(0.0, 5)])
+    one.px[:3, 6:] = np.nan
+    (rest,) = rests_of(one)
+    assert np.isfinite(rest.px[:, 0]).tolist() == [True] * 6 + [False] * 6
+    one.px[:3, 5] = np.nan
+    assert rests_of(one) == []
+
+
+def test_a_board_is_at_rest_within_a_four_hundredth_of_the_width() -> None:
+    """640 px: 1.6 px since it came to rest, as a root mean square over the corners."""
+    for by_px, rests in ((1.59, 1), (1.61, 2)):
+        one = film([(0.0, 8)])
+        one.px[4:] += [by_px, 0.0]
+        assert len(rests_of(one)) == rests
+
+
+def test_a_film_joins_the_rest_with_which_it_shares_most_and_half_of_the_shorter() -> None:
+    def rest(begin_s: float, end_s: float) -> Rest:
+        return Rest(begin_s, end_s, GRID + begin_s)
+
+    first = [rest(0.0, 2.0), rest(2.1, 6.0)]
+    moments = moments_of([first, [rest(1.5, 3.5)]])
+    assert seen_by(moments).tolist() == [[True, False], [True, True]]
+    assert moments.begin_s.tolist() == [0.0, 2.1]
+    assert moments.end_s.tolist() == [2.0, 6.0]
+    assert np.allclose(moments.px[1, 1], GRID + 1.5)
+    for end_s, together in ((1.0, True), (0.98, False)):
+        one = moments_of([[rest(0.0, end_s)], [rest(0.5, 9.0)]])
+        assert len(one.px) == (1 if together else 2)
+    twice = moments_of([[rest(0.0, 8.0)], [rest(1.0, 3.0), rest(4.0, 6.0)]])
+    assert seen_by(twice).tolist() == [[True, True], [False, True]]
+
+
+def test_moments_that_are_needed_are_kept_besides_and_half_are_shared() -> None:
+    px = np.full((6, 2, 12, 2), np.nan)
+    for n, column in enumerate((0.0, 1.0, 2.0, 300.0, 301.0, 400.0)):
+        px[n, 0] = GRID + np.array([column, 0.0])
+    px[:3, 1] = GRID
+    moments = Moments(np.arange(6.0), np.arange(6.0) + 0.5, px)
+    needed = np.array([False, True, False, False, False, False])
+    kept = spread_moments(moments, 4, needed)
+    assert kept.begin_s.tolist() == [0.0, 1.0, 2.0, 3.0, 5.0]
+    few = spread_moments(moments, 2, np.zeros(6, bool))
+    assert few.begin_s.tolist() == [0.0, 3.0]
+    assert few.end_s.tolist() == [0.5, 3.5]
