@@ -12,7 +12,7 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector
 from common.bus.messages import Landmarks
 from common.rig.camera import Camera, project
-from integrator.landmarks import landmark_fusion, turned_about
+from integrator.landmarks import landmark_fusion, limb_springs, proposal_misfit, turned_about
 from integrator.landmarks.exchanged_sides import Exchanged
 from integrator.landmarks.joint_mixture import (
     LEAST,
@@ -334,12 +334,10 @@ def test_what_is_remembered_is_each_steps_own() -> None:
     one = fused(joints_m, seen, 0.6)
     turned = turned_about.step(None, joints_m, seen)
     assert one.memory.turned == turned
-    misfit = landmark_fusion.proposal_misfit.step(None, joints_m, seen, 1.75)
+    misfit = proposal_misfit.step(None, joints_m, seen, 1.75)
     for own, due in zip(one.memory.misfit, misfit, strict=True):
-        assert np.array_equal(own, due)
+        assert np.array_equal(np.asarray(own), np.asarray(due))
     assert one.memory.lengths_m is not None
-    assert one.memory.lengths_m == pytest.approx(
-        landmark_fusion.limb_springs.lengths_m(None, one.joints_m, 1.75)
-    )
+    assert one.memory.lengths_m == pytest.approx(limb_springs.lengths_m(None, one.joints_m, 1.75))
     two = landmark_fusion.step(one.memory, joints_m, np.full(12, 0.6), seen, 1.75)
     assert two.memory.turned == turned_about.step(one.memory.turned, joints_m, seen)

@@ -388,7 +388,8 @@ def test_an_instant_counts_on_from_what_each_viewer_reported_last() -> None:
     state = state._replace(found=found)
     later = msgspec.structs.replace(second, clock_s=1.0)
     own, dt_s = merge._at(state, Pair(first, later))
-    assert (own.last_s, dt_s) == (0.62, pytest.approx(0.22))
+    assert own.last_s == 0.62
+    assert dt_s == pytest.approx(0.22)
     own, dt_s = merge._at(state, Pair(None, second))
     assert (own.frames, own.number, own.numbered) == ((4, 12), 6, 6)
     assert dt_s == pytest.approx(0.22)
@@ -402,9 +403,11 @@ def test_how_a_picture_comes_from_its_file_is_kept_while_a_viewer_is_away() -> N
     one: Any = SimpleNamespace(frame=3, captured_s=0.3, clock_s=0.3, upright="turned")
     before: Any = ("first", "second")
     state = instants()._replace(uprights=before)
-    assert merge._at(state, Pair(one, None))[0].uprights == ("turned", "second")
+    both: Any = merge._at(state, Pair(one, None))[0].uprights
+    assert both == ("turned", "second")
     one.frame = 5
-    assert merge._at(state, Pair(None, one))[0].uprights == ("first", "turned")
+    both = merge._at(state, Pair(None, one))[0].uprights
+    assert both == ("first", "turned")
 
 
 def test_rows_are_camera_2s_only_where_that_is_alone_in_the_run() -> None:

@@ -257,7 +257,7 @@ def test_who_stops_counts_as_moving_for_a_second_and_then_leaves_a_gap() -> None
     def at(n: int, by_px: float) -> Pair:
         pair = []
         for viewer in (1, 2):
-            one = seen(viewer, n, 0.0)  # type: ignore[arg-type]
+            one = seen(viewer, n, 0.0)
             assert one.landmarks is not None
             places = [(x, y) for x, y in one.landmarks.joints_px]
             places[3] = (places[3][0] + by_px, places[3][1])
