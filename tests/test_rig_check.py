@@ -2,18 +2,25 @@
 
 from typing import Any
 
+import msgspec
 import pytest
+from staging import RIG, report
 
-from common.bus.messages import Body
+from common.bus.messages import Body, Box, Landmarks, Report, ViewerNumber
 from common.video.clip_facts import Clip, Meta, View
+from integrator.rig_gate.rig_trust import Trust
 from integrator.selfcalibration.lateness import UNSEEN, Clock
+from tritrack.offline import rig_check
 from tritrack.offline.rig_check import (
     DOUBTED,
+    Witness,
     clock_facts,
+    clock_seen,
     clock_word,
     doubted,
     doubts,
     is_late,
+    trust_facts,
 )
 
 TRUST = {
@@ -106,3 +113,136 @@ def test_bodies_of_a_view_that_is_late_by_nobody_knows_how_much_are_hardly_belie
     assert doubted([body], Clock(1.0, (0.1,))) == [body]
     assert doubted([body], UNSEEN) == [body]
     assert doubted([body], Clock(0.05, (), False)) == [body], "found, and less than a frame"
+
+
+LANDMARKS = Landmarks(tuple((40.0 + 3 * n, 100.0 - 5 * n) for n in range(15)), (0.8,) * 15, 30.0)
+
+
+def seen_at(viewer: ViewerNumber, moment_s: float) -> Report:
+    """A report of somebody upright, at that moment."""
+    box = Box(left=30, right=90, top=10, bottom=110)
+    return report(viewer, captured_s=moment_s, box=box, landmarks=LANDMARKS)
+
+
+def body_with(moved: tuple[ViewerNumber, ...] = ()) -> Body:
+    return Body(frame=0, captured_s=0.0, clock_s=0.0, status="tracking", views="both", moved=moved)
+
+
+def test_what_both_views_see_is_kept_until_a_camera_is_moved() -> None:
+    """View 2 misses the second instant; from the fourth on nothing is kept, moved or no more."""
+    witness = Witness()
+    witness({}, {1: seen_at(1, 0.0), 2: seen_at(2, 0.02)}, body_with())
+    witness({}, {1: seen_at(1, 0.1)}, body_with())
+    witness({}, {1: seen_at(1, 0.2), 2: seen_at(2, 0.22)}, body_with())
+    witness({}, {1: seen_at(1, 0.3), 2: seen_at(2, 0.32)}, body_with((2,)))
+    witness({}, {1: seen_at(1, 0.4), 2: seen_at(2, 0.42)}, body_with())
+    first, second, size_px = witness.sighting(two_views())
+    assert first.times_s.tolist() == [0.0, 0.1, 0.2]
+    assert second.times_s.tolist() == [0.02, 0.22]
+    assert size_px == (160, 120)
+    assert second.joints_px[1].tolist() == [list(place) for place in LANDMARKS.joints_px]
+
+
+def test_of_a_long_run_its_first_frames_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert rig_check.MOST_FRAMES == 3000
+    monkeypatch.setattr(rig_check, "MOST_FRAMES", 3)
+    witness = Witness()
+    for n in range(5):
+        witness({}, {1: seen_at(1, n / 10)} if n else {2: seen_at(2, 0.0)}, body_with())
+    first, second, _ = witness.sighting(two_views())
+    assert first.times_s.tolist() == [0.1, 0.2, 0.3]
+    assert second.times_s.tolist() == [0.0]
+
+
+def test_one_view_has_no_clock_to_be_held_against(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rig_check, "clock_of", lambda sighting: Clock(sighting.size_px[0] / 100))
+    both = two_views()
+    alone = msgspec.structs.replace(both, views=both.views[:1])
+    assert clock_seen(both, Witness()) == Clock(1.6)
+    assert clock_seen(alone, Witness()) == UNSEEN
+
+
+def test_a_clock_is_off_by_frames_that_are_looked_at() -> None:
+    """Every third of 15 a second are 0.2 s apart: three quarters are 0.15 s, and no more."""
+    clip = msgspec.structs.replace(two_views(), every=3)
+    assert is_late(clip, Clock(0.16))
+    assert is_late(clip, Clock(-0.16))
+    assert not is_late(clip, Clock(0.14))
+    fast = msgspec.structs.replace(clip.views[1], fps=90.0)
+    clip = msgspec.structs.replace(clip, views=(clip.views[0], fast))
+    assert not is_late(clip, Clock(0.14)), "the rate is view 1's"
+
+
+class Asked:
+    """Who judges a rig; remembers what it is asked by."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, found: Trust | None) -> None:
+        self.by: list[tuple[Any, ...]] = []
+        self.found = found
+        monkeypatch.setattr("integrator.rig_gate.rig_trust.trust_of", self.trust_of)
+        monkeypatch.setattr("integrator.rig_gate.rig_fault.advice_on", self.advice_on)
+
+    def trust_of(self, *given: Any) -> Trust | None:
+        self.by.append(given)
+        return self.found
+
+    def advice_on(self, *given: Any) -> str:
+        self.by.append(given)
+        return "turn it"
+
+
+def witnessed(*moments_s: float) -> Witness:
+    witness = Witness()
+    for moment_s in moments_s:
+        witness({}, {1: seen_at(1, moment_s), 2: seen_at(2, moment_s)}, body_with())
+    return witness
+
+
+def test_a_rig_is_judged_by_what_was_seen_and_advised_unless_it_is_insisted_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    found = Trust(believed=False, moments=80, odd=("late",), **(TRUST | {"advice": ""}))
+    clip = msgspec.structs.replace(two_views(0.5), rig=RIG, every=2)
+    clock, witness = Clock(0.3), witnessed(0.0, 0.1)
+    asked = Asked(monkeypatch, found)
+    told = trust_facts(clip, witness, clock, insisted=False)
+    assert told == {"trust": {**msgspec.to_builtins(found), "advice": "turn it"}}
+    (rig, sighting, period_s, by), advised = asked.by
+    assert (rig, period_s, by) == (RIG, pytest.approx(2 / 15), clock)
+    assert sighting.second.times_s.tolist() == [0.0, 0.1]
+    assert advised[:1] + advised[2:] == (RIG, period_s, found, clock, 0.5)
+    assert advised[1].first.times_s.tolist() == [0.0, 0.1]
+    asked.by.clear()
+    assert trust_facts(clip, witness, clock, insisted=True) == {"trust": msgspec.to_builtins(found)}
+    assert len(asked.by) == 1
+
+
+def test_a_rig_of_which_too_little_is_seen_is_not_judged(monkeypatch: pytest.MonkeyPatch) -> None:
+    clip, seen = msgspec.structs.replace(two_views(), rig=RIG), witnessed(0.0, 0.1)
+    asked = Asked(monkeypatch, None)
+    alone = msgspec.structs.replace(clip, views=clip.views[:1])
+    for such, witness in ((two_views(), seen), (alone, seen), (clip, witnessed(0.0))):
+        assert trust_facts(such, witness, Clock(0.0), insisted=False) == {}
+    assert asked.by == []
+    assert trust_facts(clip, seen, Clock(0.0), insisted=False) == {}
+    assert len(asked.by) == 1, "no advice on what could not be judged"
+
+
+def test_one_view_tells_nothing_of_a_clock() -> None:
+    both = two_views(0.3)
+    assert clock_facts(msgspec.structs.replace(both, views=both.views[:1]), Clock(0.3), None) == {}
+
+
+def test_times_in_the_summary_are_rounded_to_what_is_known_of_them() -> None:
+    facts = clock_facts(two_views(0.123456), Clock(-0.001, (2.3449, 1.2351), False), None)
+    assert facts == {
+        "clock": {
+            "state": "ambiguous",
+            "applied_s": 0.1235,
+            "may_be_s": [0.0, 1.24, 2.34],
+            "may_be_on_time": False,
+        }
+    }
+    assert str(facts["clock"]["may_be_s"][0]) == "0.0", "not -0.0"
+    unknown = clock_facts(two_views(), UNSEEN, None)["clock"]
+    assert (unknown["state"], unknown["may_be_on_time"]) == ("unknown", True)
