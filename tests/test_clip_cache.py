@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 from spoiling import changed, copied, edit_json
 
+from common.bus.messages import Body
 from common.config.settings import Settings
 from common.video.clip_sources import ClipError
 from tritrack.offline import clip_cache
-from tritrack.offline.clip_cache import key_of, read, write
+from tritrack.offline.clip_cache import key_of, packed, read, write
+from tritrack.offline.lockstep import Tracked
 
 
 @pytest.fixture
@@ -90,3 +92,34 @@ def test_a_pickle_is_not_read(tmp_path: Path) -> None:
         **arrays,
     )
     assert read(tmp_path, "k") is None
+
+
+def test_what_was_kept_is_read_again(tmp_path: Path) -> None:
+    """Three bodies; what recognition does not need is not kept."""
+    bodies = [
+        Body(frame=n, captured_s=n / 15, clock_s=0.0, status="empty", views="none")
+        for n in (2, 3, 5)
+    ]
+    facts = {"clip": "walk", "warnings": ["it is dark"]}
+    tracked = Tracked(None, bodies, facts)  # type: ignore[arg-type]
+    write(tmp_path / "new" / "folder", "key", packed(tracked))
+    again = read(tmp_path / "new" / "folder", "key")
+    assert again is not None
+    assert again.facts == facts
+    assert tuple(again.arrays) == clip_cache.KEPT
+    assert again.arrays["frame"].tolist() == [2, 3, 5]
+    assert again.arrays["time_s"].tolist() == [2 / 15, 3 / 15, 5 / 15]
+    assert again.arrays["joints_m"].shape == (3, 15, 3)
+    assert [*(tmp_path / "new" / "folder").iterdir()] == [tmp_path / "new" / "folder" / "key.npz"]
+
+
+def test_a_key_is_a_file_name_and_a_missing_clip_is_named(own: Settings, tmp_path: Path) -> None:
+    key = key_of(own, "tracker")
+    assert (len(key), set(key) <= set("0123456789abcdef")) == (32, True)
+    gone = Path(own.clip) / "cam1.avi"
+    files = [gone]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(clip_cache, "files_of", lambda _: files)
+        gone.unlink()
+        with pytest.raises(ClipError, match=r"^cannot read .*cam1\.avi: No such file.*; check"):
+            key_of(own, "tracker")
