@@ -1,5 +1,9 @@
 """The table of a live run: who is started in which order, of what, and how one is ended."""
 
+import os
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import pytest
@@ -156,3 +160,136 @@ def test_a_part_whose_zygote_dies_is_a_new_python(monkeypatch: pytest.MonkeyPatc
     ]
     assert given == ["viewer 1"] * 2
     assert begun == [SPAWN, FORK, SPAWN]
+
+
+class End:
+    def __init__(self) -> None:
+        self.closed = False
+
+    def close(self) -> None:
+        self.closed = True
+
+
+class Context:
+    """Starts nothing: what it is asked, and how the supervisor is at that moment."""
+
+    def __init__(self) -> None:
+        self.ours, self.theirs = End(), End()
+        self.asked: dict[str, Any] = {}
+        self.at_start: tuple[dict[str, str], set[Any], list[str]] | None = None
+        self.doors: list[str] = []
+
+    def Pipe(self, duplex: bool) -> tuple[End, End]:
+        assert not duplex
+        return self.ours, self.theirs
+
+    def Process(self, **asked: Any) -> "Context":
+        self.asked = asked
+        return self
+
+    def start(self) -> None:
+        deaf = signal.pthread_sigmask(signal.SIG_BLOCK, ())
+        self.at_start = (dict(os.environ), deaf, [*self.doors])
+        assert not self.theirs.closed
+
+    @contextmanager
+    def adopting(self) -> Iterator[None]:
+        self.doors.append("adopting")
+        yield
+        self.doors.append("adopted")
+
+
+@pytest.mark.parametrize("forked", [True, False])
+@pytest.mark.parametrize("nests", [True, False])
+def test_a_part_is_begun_frugal_and_deaf_and_adopted_where_it_is_forked(
+    monkeypatch: pytest.MonkeyPatch, forked: bool, nests: bool
+) -> None:
+    context: Any = Context()
+    monkeypatch.setattr(process_table, "adopting", context.adopting)
+    monkeypatch.setattr(process_table, "adopted", lambda *of: ("child", of))
+    if forked:
+        monkeypatch.setattr(process_table, "FORK", context)
+    part = Part("viewer 1", viewer_main, ("given",), nests=nests)
+    running = process_table._begun(part, context)
+    assert context.asked == {
+        "name": "viewer 1",
+        "target": process_table._guarded,
+        "args": ("viewer 1", viewer_main, ("given",), context.theirs, forked),
+        "daemon": not nests,
+    }
+    process = ("child", (context, context.ours)) if forked else context
+    assert running == Running(part, process, context.ours)
+    assert (context.theirs.closed, context.ours.closed) == (True, False)
+    environment, deaf, doors = context.at_start
+    assert environment["MALLOC_ARENA_MAX"] == environment["OPENBLAS_NUM_THREADS"] == "1"
+    assert {signal.SIGINT, signal.SIGHUP} <= deaf
+    assert doors == (["adopting"] if forked else [])
+    assert context.doors == (["adopting", "adopted"] if forked else [])
+
+
+def test_what_is_taken_over_is_the_supervisors_own_again_afterwards(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """One who is deaf to a hang-up himself stays so; starting the tracker lifts the block."""
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    monkeypatch.delenv("NUMBA_NUM_THREADS", raising=False)
+    at_start: list[set[Any]] = []
+
+    def ensure_running() -> None:
+        at_start.append(signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT,)))
+
+    monkeypatch.setattr("multiprocessing.resource_tracker.ensure_running", ensure_running)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGHUP,))
+    try:
+        with suppress(OSError), process_table.inherited():
+            deaf = signal.pthread_sigmask(signal.SIG_BLOCK, ())
+            told = {name: os.environ[name] for name in process_table.FRUGAL}
+            os.environ["LEFT_BEHIND"] = "1"
+            raise OSError("no process")
+    finally:
+        after = signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    assert told == {
+        "OMP_NUM_THREADS": "1",
+        "OPENBLAS_NUM_THREADS": "1",
+        "NUMBA_NUM_THREADS": "1",
+        "MALLOC_ARENA_MAX": "1",
+    }
+    assert {signal.SIGINT, signal.SIGHUP} <= at_start[0]
+    assert {signal.SIGINT, signal.SIGHUP} <= deaf
+    assert signal.SIGTERM not in deaf
+    assert (signal.SIGHUP in after, signal.SIGINT in after) == (True, signal.SIGINT in before)
+    assert os.environ["OMP_NUM_THREADS"] == "7"
+    assert "NUMBA_NUM_THREADS" not in os.environ
+    assert "LEFT_BEHIND" not in os.environ
+
+
+@pytest.mark.parametrize("forked", [True, False])
+def test_a_part_runs_under_its_name_hears_its_end_and_says_why_it_fails(
+    monkeypatch: pytest.MonkeyPatch, forked: bool
+) -> None:
+    called: list[Any] = []
+    words: Any = object()
+    for name in ("be_adopted", "be_shown_as", "end_with_parent"):
+        monkeypatch.setattr(process_table, name, lambda *of, name=name: called.append((name, *of)))
+    monkeypatch.setattr(process_table, "confessed", lambda *of: called.append(of) or 7)
+    error = ValueError("no camera 0")
+
+    def main(*arguments: Any) -> None:
+        deaf = signal.pthread_sigmask(signal.SIG_BLOCK, ())
+        called.append((arguments, signal.SIGTERM in deaf))
+        if arguments == ("fails",):
+            raise error
+
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGTERM,))
+    try:
+        process_table._guarded("viewer 1", main, ("a", 2), words, forked)
+        began: list[Any] = [("be_adopted", words)] if forked else []
+        began += [("be_shown_as", "viewer 1"), ("end_with_parent",)]
+        assert called == [*began, (("a", 2), False)]
+        called.clear()
+        with pytest.raises(SystemExit) as ended:
+            process_table._guarded("viewer 1", main, ("fails",), words, forked)
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    assert ended.value.code == 7
+    assert called[-1] == ("viewer 1", error, words)

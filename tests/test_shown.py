@@ -19,8 +19,10 @@ from animator.page.shown import (
     trust_of,
 )
 from animator.scene import Snapshot
-from common.bus.messages import Agreement, Body, Posture, Report
+from common.body.body import ANGLES_IN_POSE
+from common.bus.messages import Agreement, Body, Picture, Posture, Report
 from common.raster.silhouette_report import pack, unpack
+from common.rig.upright import Upright
 
 
 def test_postures_are_as_probable_as_bayes_has_it_with_equal_priors() -> None:
@@ -135,3 +137,53 @@ def test_the_person_is_told_what_is_in_the_way() -> None:
     assert hint(body, refused) == ""
     assert "partly outside" in hint(body, report(cut=True))
     assert "frozen" in hint(body, report(fault="frozen"))
+
+
+def test_each_view_is_told_its_own_numbers_as_exactly_as_they_are_drawn() -> None:
+    """By hand: views with different joints, scores, facings, pictures; camera 2's is mirrored."""
+    whole = snapshot_at(4)
+    assert whole.body is not None
+    pose = tuple(0.04 + n for n in range(len(whole.body.pose)))
+    body = msgspec.structs.replace(
+        whole.body,
+        frame=41,
+        captured_s=1.234567,
+        views="both",
+        score=(0.98765, 0.12345),
+        facing=("flank", "facade"),
+        pose=pose,
+        confidence=tuple(n / 300 for n in range(15)),
+        extremities_confidence=(0.555,) * 7,
+        joints_px=tuple(tuple((v + n + 0.26, v + 10.04) for n in range(15)) for v in (30, 60)),
+        extremities_px=tuple(tuple((v + n + 0.5, v + 5.0) for n in range(7)) for v in (1, 8)),
+    )
+    half = Upright(160, 120, 2, 160, 120)
+    second = msgspec.structs.replace(whole.reports[2], upright=half)
+    picture = Picture(frame=41, captured_s=1.2, clock_s=1.2, viewer=2, jpeg=b"two")
+    shown = msgspec.structs.replace(
+        whole, body=body, reports={1: whole.reports[1], 2: second}, pictures={2: picture}
+    )
+    frame = shown_frame(shown, (), RIG, 3)
+    assert frame is not None
+    assert (frame.frame, frame.time_s, frame.from_views) == (41, 1.2346, "both")
+    assert frame.confidence[:5] == [0.0, 0.0, 0.01, 0.01, 0.01]
+    assert frame.confidence[15:] == pytest.approx([0.555] * 7, abs=0.0051)
+    assert frame.angles == pytest.approx([round(pose[i], 1) for i in ANGLES_IN_POSE])
+    one, two = frame.views
+    assert one is not None
+    assert two is not None
+    assert one.joints[:4] == [30.3, 40.0, 31.3, 40.0]
+    assert one.joints[30:34] == [1.5, 6.0, 2.5, 6.0]
+    assert two.joints[:4] == [round(160 - 60.26, 1), round(120 - 70.04, 1), 98.7, 50.0]
+    assert two.joints[30:32] == [151.5, 107.0]
+    assert (one.score, two.score) == (0.988, 0.123)
+    assert (one.sees, two.sees) == ("side", "front or back")
+    assert (one.jpeg, two.jpeg) == (b"", b"two")
+    assert (len(one.limbs), len(two.limbs)) == (10, 10)
+    assert one.limbs != two.limbs
+    alone = msgspec.structs.replace(shown, body=msgspec.structs.replace(body, pose=()))
+    frame = shown_frame(alone, (), RIG, 3)
+    assert frame is not None
+    assert frame.angles == []
+    assert frame.views[0] is not None
+    assert frame.views[0].sees == ""
