@@ -8,11 +8,13 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
-from meeting import EARLY, saying
+from meeting import EARLY, a_body, saying
+from moving import random_joints
 from osc_reader import read_osc
 from rich.console import Console
 
@@ -20,6 +22,7 @@ from common.bus.bus_keys import KeysError
 from common.bus.messages import Body
 from tritrack import subscribe
 from tritrack.bridges import bridging
+from tritrack.client import WAIT_S
 
 pytest.importorskip("pythonosc", reason="pip install 'tritrack[osc]'")
 
@@ -94,3 +97,45 @@ def test_keys_that_are_missing_are_told_before_a_run_is_waited_for(tmp_path: Pat
             str(tmp_path / "nope"),
         )
     assert heard.getvalue() == ""
+
+
+@pytest.mark.parametrize(
+    ("protocol", "sent", "address"),
+    [("osc", 3, "/tritrack/frame"), ("vmc", 2, "/VMC/Ext/OK"), ("lsl", 3, "")],
+)
+def test_each_body_is_handed_on_in_the_protocol_that_is_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+    protocol: bridging.Protocol,
+    sent: int,
+    address: str,
+) -> None:
+    """Of three bodies the second has no pose, which VMC has no word for."""
+    first, last = (a_body(frame, row) for frame, row in enumerate(random_joints(2)[:2]))
+    empty = Body(frame=1, captured_s=0.1, clock_s=0.1, status="empty", views="none")
+    packets: list[Any] = []
+    asked: list[Any] = []
+    heard = Console(file=io.StringIO(), width=500)
+
+    def subscribed(*given: object, **named: object) -> Iterator[Body]:
+        asked.append((given, named))
+        return iter((first, empty, last))
+
+    def sender(to: str) -> Callable[[bytes], None]:
+        asked.append(to)
+        return packets.append
+
+    monkeypatch.setattr(bridging, "subscribe", subscribed)
+    monkeypatch.setattr(bridging, "osc_sender", sender)
+    monkeypatch.setattr(bridging, "lsl_outlet", lambda: packets.append)
+    found = bridging.bridge(protocol, "tcp/10.0.0.1:7447", "attic", "127.0.0.1:9000", heard)
+    assert (found, len(packets)) == (sent, sent)
+    assert asked[0] == (("tcp/10.0.0.1:7447", "attic"), {"keys": ""})
+    assert isinstance(heard.file, io.StringIO)
+    assert heard.file.getvalue() == (
+        f"waiting for a run at tcp/10.0.0.1:7447 (room attic), at most {WAIT_S:.0f} s\n"
+    )
+    if protocol == "lsl":
+        assert packets == [first, empty, last]
+    else:
+        assert asked[1:] == ["127.0.0.1:9000"]
+        assert all(dict(read_osc(packet)).keys() >= {address} for packet in packets)

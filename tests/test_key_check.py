@@ -123,3 +123,27 @@ def test_a_folder_without_keys_is_named(keys: Path, tmp_path: Path, what: str) -
     (found,) = faults(folder).values()
     assert str(folder) in found.detail
     assert "tritrack keys" in found.cure
+
+
+def test_an_authority_that_is_missing_or_none_is_named_first_and_alone(keys: Path) -> None:
+    path = keys / "ca.pem"
+    path.write_text("no certificate")
+    (found,) = examine_keys(keys)
+    assert (found.what, found.ok) == ("keys: ca.pem", False)
+    assert found.detail == f"{path} holds no certificate or key"
+    path.unlink()
+    (found,) = examine_keys(keys)
+    assert found.detail == f"cannot read {path}: no such file or directory"
+
+
+def test_a_folder_of_the_authority_alone_has_no_parts_keys(keys: Path) -> None:
+    for path in keys.iterdir():
+        if path.name != "ca.pem":
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+    authority, missing = examine_keys(keys)
+    assert (authority.what, authority.ok) == ("keys: ca.pem", True)
+    assert (missing.what, missing.ok, missing.detail) == (
+        "keys",
+        False,
+        f"no part's keys in {keys}",
+    )

@@ -7,6 +7,8 @@ import sys
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from moving import random_joints
 
 from common.bus.messages import Body
 from tritrack import subscribe
+from tritrack.bridges import lsl
 from tritrack.bridges.lsl import CHANNELS, lsl_outlet, sample_of
 from tritrack.bridges.osc import BridgeError
 
@@ -35,6 +38,51 @@ def test_without_the_library_the_cure_is_named(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setitem(sys.modules, "pylsl", None)
     with pytest.raises(BridgeError, match=r"pip install 'tritrack\[lsl\]'"):
         lsl_outlet()
+
+
+class Element:
+    """A part of a stream's description."""
+
+    def __init__(self) -> None:
+        self.values: list[tuple[str, str]] = []
+        self.children: list[tuple[str, Element]] = []
+
+    def append_child(self, name: str) -> "Element":
+        self.children.append((name, Element()))
+        return self.children[-1][1]
+
+    def append_child_value(self, name: str, value: str) -> None:
+        self.values.append((name, value))
+
+
+def test_a_stream_names_its_channels_and_each_sample_is_stamped_with_its_frames_moment(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A body that was taken 2 s ago, at 500 of LSL's clock, was taken at 498."""
+    described, infos, pushed = Element(), list[Any](), list[Any]()
+
+    def info(*told: Any) -> Any:
+        infos.append(told)
+        return SimpleNamespace(desc=lambda: described)
+
+    library = SimpleNamespace(
+        StreamInfo=info,
+        StreamOutlet=lambda _: SimpleNamespace(push_sample=lambda *of: pushed.append(of)),
+        IRREGULAR_RATE=0.0,
+        local_clock=lambda: 500.0,
+    )
+    monkeypatch.setitem(sys.modules, "pylsl", library)
+    body = a_body(0, random_joints(3)[0])
+    monkeypatch.setattr(lsl.time, "monotonic", lambda: body.clock_s + 2.0)
+    lsl_outlet("attic")(body)
+    assert infos == [("attic", "MoCap", 77, 0.0, "float32", "attic-body")]
+    ((name, channels),) = described.children
+    assert (name, len(channels.children)) == ("channels", 77)
+    assert channels.children[1][0] == "channel"
+    assert channels.children[1][1].values == [("label", "pelvis_y_m"), ("unit", "metres")]
+    assert channels.children[45][1].values[1] == ("unit", "probability")
+    assert channels.children[76][1].values[1] == ("unit", "degrees")
+    assert pushed == [(sample_of(body), 498.0)]
 
 
 @pytest.mark.slow

@@ -1,5 +1,7 @@
 """The files of a run that goes on: what was saved comes back, and nothing is left at the end."""
 
+import os
+import zlib
 from pathlib import Path
 from typing import NamedTuple
 
@@ -9,7 +11,13 @@ from common.bus.messages import Body
 from common.config.settings import Settings
 from tritrack.store.journal import Head
 from tritrack.store.past_journal import read_journal
-from tritrack.unfinished.unfinished_run import BODIES, CannotResume, UnfinishedRun, saved_in
+from tritrack.unfinished.unfinished_run import (
+    BODIES,
+    CannotResume,
+    UnfinishedRun,
+    refuse_another,
+    saved_in,
+)
 
 HEAD = Head(settings=Settings(), facts={"clip": "walk"})
 IDENTITY = {"the settings": "1", "cam1.avi": "2"}
@@ -18,6 +26,13 @@ IDENTITY = {"the settings": "1", "cam1.avi": "2"}
 class State(NamedTuple):
     """Of a stage."""
 
+    instants: int
+
+
+class Other(NamedTuple):
+    """Of another stage."""
+
+    guide: str
     instants: int
 
 
@@ -81,3 +96,89 @@ def test_a_run_that_begins_anew_has_one_journal_whole_and_no_state_of_before(
     told = read_journal(tmp_path)
     assert told is not None
     assert [one.frame for one in told.bodies] == [*range(100, 107)]
+
+
+def test_what_changed_is_named_in_the_order_in_which_it_was_begun(tmp_path: Path) -> None:
+    """Files that are new come last."""
+    with pytest.raises(CannotResume) as error:
+        refuse_another(tmp_path, {"b": "1", "a": "2"}, {"c": "3", "a": "4"})
+    assert str(error.value) == (
+        f"{tmp_path} holds a run that cannot go on: since it was begun b, a, c changed; undo "
+        "that, or leave out --resume to begin anew"
+    )
+    refuse_another(tmp_path, IDENTITY, dict(reversed(IDENTITY.items())))
+
+
+def test_a_state_is_due_every_ten_seconds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    times_s = iter((100.0, 109.9, 110.0, 112.0, 112.0, 121.9, 122.0))
+    monkeypatch.setattr("tritrack.unfinished.unfinished_run.time.monotonic", lambda: next(times_s))
+    run = UnfinishedRun(tmp_path, IDENTITY, HEAD)
+    run.messages(BODIES)
+    due = [run.due, run.due, run.due]
+    run.save("instants", State(1))
+    due += [run.due, run.due]
+    run.close()
+    assert due == [False, True, True, False, True]
+
+
+def test_what_an_older_run_left_goes_where_one_begins_anew(tmp_path: Path) -> None:
+    older = UnfinishedRun(tmp_path, IDENTITY, HEAD)
+    older.messages(BODIES).append(body(0))
+    older.messages("heard").append(body(0))
+    older.save("instants", State(1))
+    older.close()
+    UnfinishedRun(tmp_path, IDENTITY, HEAD)
+    assert [*tmp_path.iterdir()] == []
+    assert saved_in(tmp_path, IDENTITY) is None
+
+
+def test_what_was_damaged_is_named_with_the_cure(tmp_path: Path) -> None:
+    run = UnfinishedRun(tmp_path, IDENTITY, HEAD)
+    run.messages("heard").append(body(0))
+    run.save("instants", State(1))
+    run.close()
+    saved = saved_in(tmp_path, IDENTITY)
+    again = UnfinishedRun(tmp_path, IDENTITY, HEAD, saved)
+    state = tmp_path / "unfinished" / "state.bin"
+    with pytest.raises(CannotResume) as error:
+        again.resumed("instants", Other)
+    assert str(error.value).startswith(f"{state}: ")
+    assert str(error.value).endswith(": leave out --resume to begin anew")
+    (tmp_path / "unfinished" / "heard.bin").write_bytes(b"short")
+    with pytest.raises(CannotResume, match=r"heard\.bin .*: leave out --resume to begin anew$"):
+        again.messages("heard")
+    whole = state.read_bytes()
+    state.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]))
+    with pytest.raises(CannotResume) as error:
+        saved_in(tmp_path, IDENTITY)
+    assert str(error.value) == f"{state} was damaged: leave out --resume to begin anew"
+    content = b"no state"
+    state.write_bytes(zlib.crc32(content).to_bytes(4, "little") + content)
+    with pytest.raises(CannotResume, match=r"state\.bin cannot be read \(.*\): leave out"):
+        saved_in(tmp_path, IDENTITY)
+
+
+def test_a_run_folder_with_results_stays_where_what_was_unfinished_goes(tmp_path: Path) -> None:
+    run = UnfinishedRun(tmp_path / "run", IDENTITY, HEAD)
+    run.messages(BODIES).append(body(0))
+    run.messages("heard")
+    (tmp_path / "run" / "poses.npz").write_bytes(b"")
+    run.remove()
+    assert [path.name for path in (tmp_path / "run").iterdir()] == ["poses.npz"]
+
+
+def test_a_state_outlives_a_power_cut_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All of it is handed to the disk, and the disk asked to keep it, before it has its name."""
+    synced: list[int] = []
+    monkeypatch.setattr(os, "fsync", lambda file: synced.append(os.fstat(file).st_size))
+    run = UnfinishedRun(tmp_path, IDENTITY, HEAD)
+    heard = run.messages("heard")
+    heard.append(body(0))
+    run.save("instants", State(1))
+    run.close()
+    folder = tmp_path / "unfinished"
+    sizes = [(folder / name).stat().st_size for name in ("heard.bin", "state.bin")]
+    assert synced == sizes
+    assert min(sizes) > 0

@@ -118,3 +118,17 @@ def test_a_knee_turns_about_left_to_right_alone_and_stays_so_where_the_leg_is_st
 def test_nobody_moves_no_bone() -> None:
     body = Body(frame=0, captured_s=0.0, clock_s=0.0, status="empty", views="none")
     assert step(Measured(), body) == (Measured(), None)
+
+
+def test_a_packet_begins_with_that_all_is_well_its_time_and_a_root_at_rest() -> None:
+    """As the specification's performer says it: loaded, seconds, no turn of the root."""
+    _, packet = step(Measured(), msgspec.structs.replace(a_body(9, random_joints(2)[0])))
+    said = read_osc(packet or b"")
+    assert [address for address, _ in said[:3]] == [
+        "/VMC/Ext/OK",
+        "/VMC/Ext/T",
+        "/VMC/Ext/Root/Pos",
+    ]
+    assert [*said[0][1]] == [1]
+    assert said[1][1][0] == pytest.approx(a_body(9, random_joints(2)[0]).captured_s)
+    assert [*said[2][1]] == ["root", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
