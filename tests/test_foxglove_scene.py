@@ -97,3 +97,28 @@ def test_the_schemas_describe_all_that_is_sent() -> None:
     assert line["points"]["items"]["properties"].keys() == {"x", "y", "z"}
     assert line["color"]["properties"].keys() == {"r", "g", "b", "a"}
     assert line["pose"]["properties"]["orientation"]["properties"].keys() == {"x", "y", "z", "w"}
+
+
+def test_a_schema_names_every_field_that_a_message_has() -> None:
+    """Of each object of a message: its keys are the schema's, but for the lists that stay empty."""
+    empty = {"metadata", "arrows", "cubes", "cylinders", "triangles", "texts", "models"}
+    kinds = {int: "integer", float: "number", str: "string", bool: "boolean"}
+
+    def hold(value: Any, schema: Any) -> None:
+        if isinstance(value, dict):
+            assert schema["type"] == "object"
+            assert value.keys() - empty == schema["properties"].keys()
+            for name in schema["properties"]:
+                hold(value[name], schema["properties"][name])
+        elif isinstance(value, list):
+            assert schema["type"] == "array"
+            for one in value:
+                hold(one, schema["items"])
+        else:
+            assert schema == {"type": kinds[type(value)]}
+
+    told = {name: json.loads(schema) for name, schema in schemas().items()}
+    assert [*told] == [SCENE, NUMBERS]
+    hold(json.loads(scene_of(somebody())), told[SCENE])
+    hold(json.loads(scene_of(body())), told[SCENE])
+    hold(json.loads(numbers_of(somebody())), told[NUMBERS])
