@@ -2,14 +2,18 @@
 
 import time
 from pathlib import Path
-from typing import cast
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
+from common.bus.control_messages import Pulse
+from common.bus.message_codec import encode
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
 from tritrack.forking.zygote import Zygote
-from tritrack.serving.room import AGAIN_S, Room
+from tritrack.live.supervise import PartFailed
+from tritrack.serving.room import AGAIN_S, SITE, Room, site_main
 from tritrack.serving.served_rooms import House
 from tritrack.serving.sites import Site
 
@@ -73,3 +77,82 @@ def test_a_site_that_never_began_is_not_said_to_have_a_run(
     house.become({"hall": site})
     house.become({})
     assert said.pop() == f"hall: stopped; its run is in {tmp_path / 'runs'}"
+
+
+class Part:
+    """What stands for the process of a site: it is looked at, and says what it is told to."""
+
+    def __init__(self, part: Any) -> None:
+        self.part, self.given_up, self.news = part, "", ""
+        self.calls = list[Any]()
+        self.alive = True
+        self.running = SimpleNamespace(process=SimpleNamespace(is_alive=lambda: self.alive))
+
+    def look(self, now_s: float, pulses: Any) -> str:
+        self.calls.append((now_s, {**pulses}))
+        if self.news == "fails":
+            raise PartFailed("hall: no camera 0")
+        return self.news
+
+    def ask(self) -> None:
+        self.calls.append("ask")
+
+    def end(self) -> None:
+        self.calls.append("end")
+
+
+@pytest.fixture
+def parts(monkeypatch: pytest.MonkeyPatch) -> list[Part]:
+    begun: list[Part] = []
+
+    def watched(part: Any) -> Part:
+        begun.append(Part(part))
+        return begun[-1]
+
+    monkeypatch.setattr("tritrack.serving.room.Watched", watched)
+    return begun
+
+
+def test_a_site_is_a_part_that_nests_and_its_pulses_are_its_own_until_it_is_begun_anew(
+    parts: list[Part],
+) -> None:
+    site = Site("hall", Settings(bus=BusSettings(endpoint="auto")), Path("runs"))
+    zygote: Any = object()
+    room = Room(site, zygote)
+    part = parts[0].part
+    own, words = part.arguments
+    assert (part.name, part.main, part.end_s) == ("hall", site_main, 20.0)
+    assert (part.beats, part.nests, part.leads, part.zygote) == (True, True, False, zygote)
+    assert own.settings.bus.endpoint.startswith("tcp/127.0.0.1:"), "chosen"
+    assert (own.name, own.out, room.site) == ("hall", Path("runs"), site)
+    words.send_bytes(encode(Pulse(process="hall", state="ready", frames=3)))
+    words.send_bytes(encode(Pulse(process="hall", state="running", frames=5)))
+    assert room.pulse is None
+    assert room.look(10.0) == ""
+    ((now_s, pulses),) = parts[0].calls
+    assert (now_s, pulses["hall"].frames) == (10.0, 5)
+    assert room.pulse is not None
+    assert (room.pulse.process, room.pulse.frames, room.status.well) == ("hall", 5, True)
+    figures = room.figures.parts[SITE]
+    assert figures.pulse is not None
+    assert (figures.pulse.frames, figures.heard_s, figures.there) == (5, 10.0, True)
+    parts[0].alive, parts[0].news = False, "hall: it is started again in 0.5 s"
+    assert room.look(11.0) == "hall: it is started again in 0.5 s"
+    assert not room.figures.parts[SITE].there
+
+    parts[0].news = "fails"
+    told = room.look(100.0)
+    assert told == (
+        "hall: down: no camera 0; tried anew every 60 s, or at once when its settings change"
+    )
+    assert (room.status.well, room.figures.parts[SITE].there) == (False, False)
+    assert (room.look(159.9), len(parts)) == ("", 1)
+    assert (room.look(160.0), len(parts), room.failure) == ("", 2, "")
+    assert room.pulse is None, "not that of the one before"
+    parts[1].given_up, parts[1].news = "given up", "hall: killed; given up"
+    assert room.look(161.0).startswith("hall: down: killed; given up; tried anew every 60 s")
+    room.ask()
+    room.end()
+    assert parts[1].calls[-2:] == ["ask", "end"]
+    with pytest.raises(OSError, match="closed"):
+        words.send_bytes(b"")

@@ -43,3 +43,46 @@ def test_a_site_that_is_down_says_why_and_one_that_was_not_heard_starts() -> Non
     assert status_of("hall", None, "") == (False, "hall: starting")
     assert site_pulse("hall", {}, 0.0).state == "starting"
     assert not status_of("hall", site_pulse("hall", {}, 0.0), "").well
+
+
+def test_counts_are_summed_and_rates_are_the_integrators() -> None:
+    """Every count has its own numbers: 1 and 10, 2 and 20 and so on."""
+    counts = ("deadline_misses", "dropped", "guide_misses", "hurried", "late", "malformed")
+    names = (*counts, "foreign")
+    hub = Pulse(
+        process="integrator",
+        state="ready",
+        frames=7,
+        fps=14.5,
+        latency_p50_ms=3.5,
+        latency_p99_ms=9.5,
+        memory_mb=100.0,
+        **{name: n for n, name in enumerate(names, 1)},
+    )
+    viewer = Pulse(
+        process="viewer 1",
+        state="given up",
+        frames=900,
+        fps=30.0,
+        latency_p50_ms=50.0,
+        latency_p99_ms=60.0,
+        memory_mb=20.0,
+        **{name: 10 * n for n, name in enumerate(names, 1)},
+    )
+    lame = Pulse(process="metrics", state="restarting")
+    pulses = {"viewer 1": viewer, "integrator": hub, "metrics": lame}
+    pulse = site_pulse("hall", pulses, 3.0)
+    assert [getattr(pulse, name) for name in names] == [11 * n for n in range(1, 8)]
+    assert (pulse.state, pulse.frames, pulse.fps) == ("ready", 7, 14.5)
+    assert (pulse.latency_p50_ms, pulse.latency_p99_ms, pulse.memory_mb) == (3.5, 9.5, 123.0)
+    assert pulse.detail == "viewer 1: given up; metrics: restarting"
+    assert status_of("hall", pulse, "").line == (
+        "hall: ready (viewer 1: given up; metrics: restarting), 14.5 frames a second, "
+        "p99 10 ms, 11 missed, 123 MB"
+    )
+    nobody = site_pulse("hall", {"viewer 1": viewer}, 3.0)
+    assert (nobody.frames, nobody.fps, nobody.latency_p50_ms, nobody.latency_p99_ms) == (0,) * 4
+    ended = Pulse(process="integrator", state="ended")
+    assert site_pulse("hall", {"integrator": ended}, 0.0).state == "ended"
+    assert status_of("hall", ended, "").well
+    assert not status_of("hall", Pulse(process="integrator", state="starting"), "").well
