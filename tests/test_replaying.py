@@ -1,26 +1,31 @@
 """Replay: recorded reports give the same bodies byte for byte, offline and live."""
 
+import io
 import json
 import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
 import pytest
 from local_bus import LocalBus
 from rich.console import Console
+from staging import RIG, report
 
 from common.bus.control_messages import Cameras
 from common.bus.messages import Body, Message, Posture, Report, ViewerNumber
-from common.config.part_settings import PageSettings
+from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
 from tritrack.live.free_ports import free_settings
 from tritrack.live.session import live
 from tritrack.offline.batch import Asked, track_all
-from tritrack.replaying import pairs, replay_run, say
+from tritrack.replaying import _rigs, pairs, replay_on_bus, replay_run, say
 from tritrack.store.other_run import OtherRun, run_of
 from tritrack.store.past_run import open_run
-from tritrack.store.recording import read_recording
+from tritrack.store.recording import Head, Recording, read_recording
 from tritrack.store.runs import write_run
 
 pytest.importorskip("mcap", reason="pip install 'tritrack[mcap]'")
@@ -143,3 +148,117 @@ def test_a_live_run_comes_back_byte_for_byte(clip: Path, tmp_path: Path) -> None
     live(settings, tmp_path / "lived", QUIET, record=True)
     facts = replay_run(tmp_path / "lived", None)
     assert facts["same"] == facts["bodies"] == len(open_run(tmp_path / "lived").poses["frame"])
+
+
+def said_at(viewer: ViewerNumber, frame: int, at_s: float) -> Report:
+    return report(viewer, frame=frame, captured_s=at_s, clock_s=at_s)
+
+
+def body_at(at_s: float, made_of: tuple[int, int], calibration: int = 0) -> Body:
+    return Body(
+        frame=max(made_of),
+        captured_s=at_s,
+        clock_s=at_s,
+        status="empty",
+        views="none",
+        made_of=made_of,
+        calibration=calibration,
+    )
+
+
+def made_up(
+    first: list[Report], second: list[Report], bodies: list[Body], cameras: list[Cameras]
+) -> Recording:
+    """Ten instants a second."""
+    head = Head(
+        name="made up",
+        settings=Settings(room="attic"),
+        period_s=0.1,
+        alone=False,
+        rig=None,
+        body=None,
+    )
+    return Recording(head, (first, second), bodies, [], cameras)
+
+
+def test_a_viewer_that_counts_anew_is_told_apart_by_the_moment() -> None:
+    """Half a period off at most, the last of those that are near; view 2's times are set back by
+    what the rig of that body tells."""
+    first = [said_at(1, 3, 0.3), said_at(1, 3, 5.3), said_at(1, 4, 5.451)]
+    second = [said_at(2, 7, 5.8), said_at(2, 7, 5.3)]
+    late = Cameras(rig=RIG, scale_source="person", calibration=2, late_s=0.5)
+    bodies = [
+        body_at(0.3, (3, -1)),
+        body_at(5.34, (3, -1)),
+        body_at(5.3, (3, 7), calibration=2),
+        body_at(5.3, (3, 7)),
+        body_at(5.4, (4, -1)),
+        body_at(9.0, (-1, -1)),
+        body_at(5.3, (3, 8)),
+    ]
+    found = [*pairs(made_up(first, second, bodies, [late]))]
+    assert [body for body, _ in found] == bodies[:4]
+    assert [pair.first for _, pair in found] == [first[0], first[1], first[1], first[1]]
+    set_back, as_it_was = found[2][1].second, found[3][1].second
+    assert set_back is not None
+    assert (set_back.captured_s, set_back.clock_s) == (pytest.approx(5.3), 5.8)
+    assert as_it_was == second[1]
+
+
+def test_messages_are_said_at_their_pace_with_the_clock_of_now(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Twice as fast: what was said 0.3 s after the first is said after 0.15 s."""
+    waits: list[float] = []
+    monkeypatch.setattr("tritrack.replaying.time.monotonic", lambda: 100.0)
+    monkeypatch.setattr("tritrack.replaying.wait_until", lambda at_s, _: waits.append(at_s))
+    recording = made_up(
+        [said_at(1, 0, 7.0), said_at(1, 1, 7.3)], [said_at(2, 0, 7.1)], [body_at(7.1, (0, 0))], []
+    )
+    bus = InOrder()
+    assert say(recording, bus, 2.0) == 4
+    assert waits == pytest.approx([100.0, 100.05, 100.05, 100.15])
+    assert [type(one).__name__ for one in bus.said] == ["Report", "Report", "Body", "Report"]
+    assert [getattr(one, "clock_s", None) for one in bus.said] == [100.0] * 4
+    assert [getattr(one, "captured_s", None) for one in bus.said] == [7.0, 7.1, 7.1, 7.3]
+    assert say(made_up([], [], [], []), bus, 2.0) == 0
+
+
+def test_a_run_is_said_as_its_integrator_to_those_who_come_in_a_second(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    recording = made_up([said_at(1, 0, 7.0)], [], [body_at(7.0, (0, -1))], [])
+    bus, opened, slept = InOrder(), list[Any](), list[float]()
+    watched = bus.watch_alive()
+
+    @contextmanager
+    def hub(*given: Any) -> Iterator[InOrder]:
+        opened.append(given)
+        yield bus
+
+    monkeypatch.setattr("tritrack.replaying.read_recording", lambda _: recording)
+    monkeypatch.setattr("tritrack.replaying.open_hub", hub)
+    monkeypatch.setattr("tritrack.replaying.time.sleep", slept.append)
+    console = Console(file=io.StringIO(), width=200)
+    settings = BusSettings(endpoint="tcp/127.0.0.1:7447")
+    told = replay_on_bus(tmp_path, settings, 2.0, console)
+    assert told == {"clip": "made up", "said": 2}
+    assert opened == [(settings, "attic")]
+    assert slept == [1.0, 1.0]
+    assert [alive.name for alive in watched.drain()] == ["integrator"]
+    assert isinstance(console.file, io.StringIO)
+    assert console.file.getvalue() == "made up: room attic at tcp/127.0.0.1:7447\n"
+    rig = Cameras(rig=RIG, scale_source="person")
+    bus.publish(rig)
+    assert bus.latest(Cameras, 0.0) == rig, "who comes later asks for it"
+
+
+def test_the_rig_that_was_known_before_is_said_first_unless_the_run_said_it() -> None:
+    empty = made_up([], [], [], [])
+    head = msgspec.structs.replace(empty.head, rig=RIG, scale_source="person")
+    own = Cameras(rig=RIG, scale_source="calibrated", calibration=0)
+    later = Cameras(rig=RIG, scale_source="person", calibration=1)
+    known = empty._replace(head=head, cameras=[later])
+    assert _rigs(known) == [Cameras(rig=RIG, scale_source="person"), later]
+    assert _rigs(known._replace(cameras=[own, later])) == [own, later]
+    assert _rigs(empty._replace(cameras=[later])) == [later]
