@@ -1,10 +1,12 @@
 """The main job as `make demo` shows it."""
 
+import io
 import json
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import pytest
 from rich.console import Console
@@ -13,6 +15,9 @@ pytest.importorskip("websockets", reason="the page is an extra: install tritrack
 
 from visiting import visited
 
+from common.config.settings import Settings
+from common.rig.rig_file import load_rig
+from synth.motion.motions import performance
 from tritrack import demo
 from tritrack.store.other_run import OtherRun
 
@@ -21,6 +26,7 @@ def test_a_demo_that_names_another_posture_has_failed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Exit 0 only on success: it runs the whole system, and it checks what comes out."""
+    monkeypatch.setattr(demo, "made_clip", lambda folder: folder / "clip")
     monkeypatch.setattr(demo, "live", lambda *_: {"posture": "squat"})
     with pytest.raises(demo.DemoFailed, match="performed raise_right_lateral, named squat"):
         demo.run_demo(tmp_path, False, Console(quiet=True))
@@ -73,3 +79,49 @@ def test_the_demo_runs_ends_by_itself_and_leaves_nothing_but_its_run_folder(
         written = {path.name for path in (tmp_path / f"run {n}").iterdir()}
         assert written == {"poses.npz", "summary.json", "posture.json", "log.txt"}
     assert list((tmp_path / "tmp").iterdir()) == []
+
+
+def test_a_demo_runs_its_clip_with_pictures_on_a_page_if_one_is_wanted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[Any] = []
+
+    def live(settings: Settings, out: Path, console: Console) -> dict[str, Any]:
+        assert Path(settings.clip).parent.is_dir()
+        asked.append((settings, out))
+        return {"posture": demo.POSTURE}
+
+    monkeypatch.setattr(demo, "made_clip", lambda folder: folder / "clip")
+    monkeypatch.setattr(demo, "live", live)
+    said = Console(file=io.StringIO(), width=200)
+    for page, wait in ((True, False), (True, True), (False, True)):
+        assert demo.run_demo(tmp_path, page, said, wait) == {"posture": demo.POSTURE}
+    (first, out), (second, _), (third, _) = asked
+    assert (first.pictures, first.page.wait, second.page.wait) == (True, False, True)
+    assert (first.page.port > 0, second.page.port > 0, third.page.port) == (True, True, 0)
+    assert (out, Path(first.clip).parent.exists()) == (tmp_path, False)
+    assert isinstance(said.file, io.StringIO)
+    lines = said.file.getvalue().splitlines()
+    assert lines[:2] == [
+        "making a person who performs raise_right_lateral ...",
+        f"the bus: {first.bus.endpoint}",
+    ]
+
+
+def test_the_demos_clip_is_of_a_person_of_no_training_set_with_its_rig(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Filmed for 14 s, five times the posture, at 320x240."""
+    asked: list[Any] = []
+    monkeypatch.setattr(demo, "write_clip", lambda *given: asked.append(given))
+    clip = demo.made_clip(tmp_path)
+    assert clip == tmp_path / f"s90001_t1_05_{demo.POSTURE}"
+    ((where, someone, motion, filming, take),) = asked
+    assert (where, someone.name, take) == (clip, "s90001", 1)
+    rig = load_rig(tmp_path / "calibration.json")
+    assert (rig.width, rig.height, len(rig.cameras)) == (320, 240, 2)
+    assert (filming.rig.width, filming.seed, filming.room_seed) == (320, 90_001, 90_001)
+    assert (motion.posture, motion.fps) == (demo.POSTURE, 15.0)
+    plain = performance(someone, demo.POSTURE, demo.TAKE)
+    assert len(motion.joints_m) - len(plain.joints_m) > 4 * 15, "again and again"
+    assert len(motion.joints_m) / 15 == pytest.approx(demo.MOTION_S, rel=0.5)
