@@ -99,3 +99,31 @@ def test_numbers_of_a_row_have_two_decimals_and_none_is_minus_nought() -> None:
 def test_one_is_not_many(number: int, said: str) -> None:
     assert counted(number, "body", "bodies") == said
     assert counted(number, "clip") == said.replace("bodies", "clips").replace("body", "clip")
+
+
+def test_names_stand_left_and_numbers_right_in_the_colour_of_their_state() -> None:
+    states = ("running", "ended", "ready", "restarting", "given up", "starting")
+    pulses = {state: Pulse(process=state, state=state) for state in states}  # type: ignore[arg-type]
+    table = table_of([*states, "unheard"], pulses, "run")
+    headings = [column.header for column in table.columns]
+    assert headings == [
+        *("process", "state", "frames", "fps", "missed", "dropped", "p50 ms", "p99 ms", "MB")
+    ]
+    assert [column.justify for column in table.columns] == ["left", "left", *["right"] * 7]
+    assert all(column.no_wrap for column in table.columns)
+    assert [*table.columns[1].cells] == [
+        *("[green]running[/]", "[dim]ended[/]", "[cyan]ready[/]", "[yellow]restarting[/]"),
+        *("[red]given up[/]", "[white]starting[/]", "starting"),
+    ]
+    assert [[*column.cells][-1] for column in table.columns] == [
+        *("unheard", "starting"),
+        *[""] * 7,
+    ]
+
+
+def test_rows_have_their_name_left_and_all_else_right() -> None:
+    table = table_of_rows([{"name": "cam1", "yaw_deg": 1.5, "frames": 3}])
+    assert [column.justify for column in table.columns] == ["left", "right", "right"]
+    assert [[*column.cells] for column in table.columns] == [["cam1"], ["1.50"], ["3"]]
+    assert [column.header for column in table.columns] == ["name", "yaw deg", "frames"]
+    assert table_of_rows([]).columns == []
