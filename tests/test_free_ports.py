@@ -1,6 +1,7 @@
 """Ports of a run: what is held is named before anything starts."""
 
 import socket
+import sys
 from pathlib import Path
 
 import msgspec
@@ -10,6 +11,7 @@ from animator.page.door import PageError
 from common.bus.bus_keys import KeysError
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
+from tritrack.live import free_ports
 from tritrack.live.free_ports import (
     PortHeld,
     free_settings,
@@ -70,3 +72,45 @@ def test_keys_that_are_not_there_are_named_before_anything_starts(tmp_path: Path
     bus = BusSettings(endpoint="tls/127.0.0.1:7447", keys=str(tmp_path))
     with pytest.raises(KeysError, match=r"ca\.pem: no such file"):
         refuse_held_ports(free_settings(Settings(bus=bus, page=PageSettings(port=0))))
+
+
+def test_every_part_of_a_live_run_needs_its_keys_and_who_listens_alone_does_not(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[tuple[str, str]] = []
+    monkeypatch.setattr(
+        free_ports, "refuse_missing", lambda folder, part: asked.append((str(folder), part))
+    )
+    bus = BusSettings(endpoint="tls/127.0.0.1:7447", keys="own")
+    refuse_held_ports(free_settings(Settings(bus=bus, page=PageSettings(port=0))))
+    assert {folder for folder, _ in asked} == {"own"}
+    assert [part for _, part in asked] == [part for part in free_ports.PARTS if part != "client"]
+    assert "integrator" in dict.fromkeys(part for _, part in asked)
+
+
+def test_free_settings_keep_all_but_the_ports_and_are_of_tls_where_there_are_keys() -> None:
+    bus = BusSettings(endpoint="tls/127.0.0.1:7", keys="own", session="mine")
+    given = Settings(bus=bus, page=PageSettings(port=5, wait=False), every=3)
+    found = free_settings(given)
+    assert found.bus.endpoint.startswith("tls/127.0.0.1:")
+    assert (found.bus.session, found.bus.keys, found.every) == ("mine", "own", 3)
+    assert found.page.port > 1024
+    without = free_settings(msgspec.structs.replace(given, page=PageSettings(port=0)))
+    assert without.page == PageSettings(port=0)
+    auto = msgspec.structs.replace(given, bus=msgspec.structs.replace(bus, endpoint="auto"))
+    assert with_free_endpoint(auto).bus.endpoint.startswith("tls/127.0.0.1:")
+
+
+def test_what_a_port_needs_that_is_not_installed_is_named_with_its_cure(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
+    free_ports.refuse_held_metrics("")
+    with pytest.raises(
+        PortHeld, match=r"need prometheus_client: pip install 'tritrack\[metrics\]'"
+    ):
+        free_ports.refuse_held_metrics("127.0.0.1:9")
+    monkeypatch.setitem(sys.modules, "websockets", None)
+    free_ports.refuse_held_page(Settings(page=PageSettings(port=0)))
+    with pytest.raises(PortHeld, match=r"the page needs websockets: pip install 'tritrack\[page\]"):
+        free_ports.refuse_held_page(Settings())

@@ -3,8 +3,11 @@
 import io
 import json
 import re
+import socket
 import threading
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -251,3 +254,88 @@ def test_the_token_of_a_page_beyond_this_machine_is_told_to_the_person_alone(
     assert f":{page.port}".encode() in told["log.txt"]
     assert [name for name, content in told.items() if token.encode() in content] == []
     assert token not in repr(json.loads(told["summary.json"]))
+
+
+class Page:
+    """The page's process: it is there for some looks, and hears what it is told."""
+
+    def __init__(self, part: Any) -> None:
+        self.part, self.calls, self.looks = part, list[Any](), 0
+        self.running = SimpleNamespace(process=self)
+
+    def join(self, within_s: float) -> None:
+        self.calls.append(within_s)
+
+    def is_alive(self) -> bool:
+        self.looks -= 1
+        return self.looks >= 0
+
+    def end(self) -> None:
+        self.calls.append("end")
+
+
+def test_a_page_is_told_the_end_and_waited_for_while_it_is_looked_at(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Its process is begun with the desk; where it has closed already nobody waits."""
+    monkeypatch.setattr("tritrack.live.page_desk.Watched", Page)
+    settings, context = Settings(page=PageSettings(port=9)), ProcessContext(True)
+    zygote: Any = object()
+    desk = PageDesk(settings, tmp_path, "a run", context, zygote)
+    page: Any = desk.watched
+    assert desk.parts == [page.part]
+    own, beside, title, ending, _ = page.part.arguments
+    assert (own, beside, title, page.part.zygote) == (settings, context, "a run", zygote)
+    waited: list[float] = []
+    stop = SimpleNamespace(wait=lambda seconds: bool(waited.append(seconds)))
+    said: list[int] = []
+    page.looks = 3
+    desk.end({"clip": "walk"}, stop, lambda: said.append(1))  # type: ignore[arg-type]
+    assert ending.recv() == {"clip": "walk", "out": str(tmp_path)}
+    assert (page.calls, waited, said) == ([2.0], [0.1, 0.1], [1])
+    page.looks = 0
+    desk.end({}, stop, lambda: pytest.fail("it has closed"))  # type: ignore[arg-type]
+    assert ending.recv() == {"out": str(tmp_path)}
+    page.looks, stopped = 9, SimpleNamespace(wait=lambda _: True)
+    desk.end({}, stopped, lambda: None)  # type: ignore[arg-type]
+    assert page.looks == 7, "Ctrl-C ends the wait"
+    ending.close()
+    page.calls.clear()
+    desk.end({}, stop, lambda: pytest.fail("it has gone"))  # type: ignore[arg-type]
+    assert page.calls == []
+    desk.close()
+    assert page.calls == ["end"]
+
+
+def test_a_page_has_an_address_once_it_answers(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr("tritrack.live.page_desk.Watched", Page)
+    port = free_port()
+    desk = PageDesk(Settings(page=PageSettings(port=port)), tmp_path, "a run", ProcessContext(True))
+    assert desk.address == ""
+    with socket.socket() as door:
+        door.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        door.bind(("127.0.0.1", port))
+        door.listen()
+        assert desk.address.startswith(f"http://127.0.0.1:{port}")
+
+
+def test_who_may_be_lost_is_one_that_was_followed_just_before(tmp_path: Path) -> None:
+    """Fifteen seconds after the one before, and no sooner; each body is looked at once."""
+    sitting = Sitting(tmp_path, Settings(page=PageSettings(port=0, save_lost=True)))
+
+    def body_at(at_s: float, status: Status) -> None:
+        body = Body(frame=int(at_s), captured_s=at_s, clock_s=at_s, status=status, views="none")
+        sitting.heard.bodies.add([body])
+        sitting.desk.serve(sitting.heard, sitting.stop)
+        sitting.desk.serve(sitting.heard, sitting.stop)
+
+    told = list[int]()
+    for at_s, status in (
+        *((1.0, "measuring"), (2.0, "lost"), (3.0, "predicted"), (4.0, "lost"), (5.0, "lost")),
+        *((18.9, "tracking"), (19.0, "lost"), (19.05, "tracking"), (19.1, "lost")),
+    ):
+        body_at(at_s, status)  # type: ignore[arg-type]
+        told.append(len(sitting.answers.drain()))
+    assert told == [0, 0, 0, 1, 0, 0, 0, 0, 1]

@@ -11,7 +11,7 @@ from tritrack.live.admission import LiveRefused
 from tritrack.live.page_desk import SAVED
 from tritrack.live.run_folder import KEPT, new_journal, new_log
 from tritrack.store.journal import has_journal
-from tritrack.store.past_journal import LOG
+from tritrack.store.past_journal import LOG, read_journal
 
 CLIP = Clip("room", (View(1, 0, (160, 120), (160, 120), 15.0, 0),), 1, None, Meta())
 
@@ -59,3 +59,21 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     (tmp_path / SAVED).write_text("no folder")
     with pytest.raises(LiveRefused, match="cannot be put aside"):
         new_journal(tmp_path, CLIP, Settings(), [])
+
+
+def test_a_recording_that_was_torn_goes_aside_with_its_run(tmp_path: Path) -> None:
+    """A whole one is written over, as the run's other results are."""
+    cut_short(tmp_path, [])
+    for name in (".recording.abc.mcap", "recording.mcap"):
+        (tmp_path / name).write_text(name)
+    notes: list[str] = []
+    journal = new_journal(tmp_path, CLIP, Settings(), notes)
+    (aside,) = (tmp_path / SAVED).iterdir()
+    assert (aside / ".recording.abc.mcap").read_text() == ".recording.abc.mcap"
+    assert not (tmp_path / ".recording.abc.mcap").exists()
+    assert (tmp_path / "recording.mcap").exists()
+    journal.keep([Body(frame=0, captured_s=0.0, clock_s=0.0, status="empty", views="none")])
+    journal.close()
+    told = read_journal(tmp_path)
+    assert told is not None
+    assert told.head.facts["clip"] == "room"

@@ -115,6 +115,7 @@ def test_each_further_start_waits_twice_as_long_and_then_it_is_given_up(
     told = sleeper.look(now_s, pulses)
     assert told == "viewer 2: killed by signal 9; after 5 new starts it is given up"
     assert pulses["viewer 2"].state == "given up"
+    assert sleeper.look(now_s + 100.0, pulses) == "", "it is told once"
     with pytest.raises(PartFailed, match="viewer 2: killed by signal 9; after 5 new starts"):
         sleeper.refuse_failure()
 
