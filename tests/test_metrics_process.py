@@ -3,9 +3,10 @@
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import psutil
@@ -13,11 +14,17 @@ import pytest
 
 pytest.importorskip("prometheus_client", reason="pip install 'tritrack[metrics]'")
 
+from local_bus import LocalBus
 from metrics_reader import Samples, read
 from rich.console import Console
+from show_page import RIG
 from spoiling import copied, edit_json, refilmed
 from test_metrics_server import asked, free_address
 
+from common.bus.control_messages import Cameras, Pulse
+from common.bus.inbox import Alive
+from common.bus.messages import Body, Posture
+from common.bus.process import READY_S, ProcessContext
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
@@ -25,8 +32,7 @@ from tritrack.commands.live_commands import metrics
 from tritrack.live import session
 from tritrack.live.free_ports import free_settings
 from tritrack.live.session import live
-
-pytestmark = pytest.mark.slow
+from tritrack.outside.metrics_process import Desk, main, run
 
 PATIENCE_S = 180.0
 PARTS = {"integrator", "recognizer", "viewer 1", "viewer 2", "metrics"}
@@ -82,6 +88,7 @@ class Outsider(threading.Thread):
         return self._samples().value("tritrack_restarts_total", part=self._victim)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("victim", ["viewer 2", "integrator"])
 def test_who_was_killed_is_named_and_all_is_well_when_it_is_back(
     clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, victim: str
@@ -129,3 +136,129 @@ def test_settings_without_an_address_have_no_metrics_to_serve(tmp_path: Path) ->
     (tmp_path / "room.toml").write_text("clip = 'walk'")
     with pytest.raises(SettingsError, match=r"room\.toml has no metrics: add metrics = "):
         metrics(tmp_path / "room.toml")
+
+
+BODY = Body(frame=9, captured_s=0.6, clock_s=99.9, status="tracking", views="both")
+PULSE = Pulse(process="viewer 1", state="running", frames=9)
+
+
+@pytest.fixture
+def at_100_s(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tritrack.outside.metrics_process.time.monotonic", lambda: 100.0)
+
+
+@pytest.mark.usefixtures("at_100_s")
+def test_a_desk_tells_figures_of_its_room_and_whether_what_is_needed_is_there() -> None:
+    desk = Desk(["viewer 1"], "hall")
+    well, lines = desk.health()
+    assert (well, len(lines)) == (False, 1)
+    assert lines[0].startswith("viewer 1: not heard yet")
+    for told in (Alive("viewer 1", True), PULSE, BODY):
+        desk.take_in(told)
+    assert desk.health() == (True, ["hall: well"])
+    samples = [each for family in desk.metrics() for each in family.samples]
+    assert {each.labels["room"] for each in samples} == {"hall"}
+    latency = [each for each in samples if each.name == "tritrack_latency_seconds_sum"]
+    assert [each.value for each in latency] == [pytest.approx(0.1)]
+
+
+@pytest.mark.usefixtures("at_100_s")
+def test_what_comes_is_taken_in_until_it_shall_end() -> None:
+    """What waits may be nothing for a moment."""
+    desk, stop = Desk([], "hall"), threading.Event()
+    asked: list[float] = []
+
+    class Box:
+        def take(self, within_s: float) -> Body | None:
+            asked.append(within_s)
+            if len(asked) == 3:
+                stop.set()
+            return None if len(asked) == 2 else BODY
+
+    desk.hear(Box(), stop)  # type: ignore[arg-type]
+    assert asked == [0.5] * 3
+    bodies = [
+        each.value
+        for family in desk.metrics()
+        for each in family.samples
+        if each.name == "tritrack_bodies_total"
+    ]
+    assert bodies == [2]
+
+
+def test_all_that_a_run_says_is_heard_and_the_process_tells_that_it_lives(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Also the rig that was said before it came, and who came before it."""
+    bus, desk, stop = LocalBus("hall"), Desk(["viewer 1"], "hall"), threading.Event()
+    rig = Cameras(rig=RIG, scale_source="person", late_s=0.25)
+    bus.keep(Cameras)
+    bus.publish(rig)
+    bus.announce("viewer 1")
+    pulses = bus.subscribe(Pulse)
+    monkeypatch.setattr("tritrack.outside.metrics_process.HEAR_S", 0.01)
+    monkeypatch.setattr("tritrack.outside.metrics_process.BEAT_S", 0.02)
+    running = threading.Thread(target=run, args=(desk, bus, stop))
+    running.start()
+    beats: list[Pulse] = []
+
+    def heard(state: str) -> bool:
+        beats.extend(one for one in pulses.drain() if one.process == "metrics")
+        return any(one.state == state for one in beats)
+
+    until(lambda: heard("running"))
+    for told in (PULSE, BODY, Posture(frame=9, captured_s=0.6, clock_s=99.9, name="")):
+        bus.publish(told)
+
+    def figures() -> dict[str, float]:
+        return {each.name: each.value for one in desk.metrics() for each in one.samples}
+
+    names = ("tritrack_bodies_total", "tritrack_up", "tritrack_view_offset_seconds")
+    until(lambda: {*names} <= figures().keys() and desk.health()[0])
+    stop.set()
+    running.join(10)
+    assert not running.is_alive()
+    assert heard("ended")
+    assert [beats[0].state, beats[-1].state] == ["ready", "ended"]
+    assert figures()["tritrack_view_offset_seconds"] == 0.25
+
+
+def test_metrics_are_served_of_the_settings_room_by_a_process_that_stands_back(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[Any] = []
+    bus, stop = LocalBus("hall"), threading.Event()
+    place = "tritrack.outside.metrics_process"
+
+    @contextmanager
+    def opened(name: str, given: tuple[Any, ...], inside: Any) -> Iterator[Any]:
+        asked.append((name, given))
+        yield inside
+        asked.append(f"{name} is closed")
+
+    context = ProcessContext()
+    monkeypatch.setattr(f"{place}.process", lambda *given: opened("process", given, stop))
+    monkeypatch.setattr(f"{place}.served", lambda *given: opened("served", given, None))
+    monkeypatch.setattr(f"{place}.open_client", lambda *given: opened("client", given, bus))
+    monkeypatch.setattr(f"{place}.os.nice", asked.append)
+    monkeypatch.setattr(f"{place}.run", lambda *given: asked.append(given[1:]))
+    watched = bus.watch_alive()
+    settings = Settings(room="hall", metrics="127.0.0.1:9464")
+    main(settings, ["viewer 1"], context)
+    (_, (name, own)), by, (_, (address, figures, health)), (_, client) = asked[:4]
+    assert (name, own, by, address) == ("metrics", context, 10, "127.0.0.1:9464")
+    assert client == (settings.bus, "hall", READY_S, "metrics", stop)
+    assert health()[1][0].startswith("viewer 1: not heard yet")
+    assert {each.labels.get("room") for one in figures() for each in one.samples} <= {"hall"}
+    assert asked[4:] == [
+        (bus, stop),
+        *("client is closed", "served is closed", "process is closed"),
+    ]
+    assert [alive.name for alive in watched.drain()] == ["metrics"]
+
+
+def until(seen: Callable[[], bool]) -> None:
+    until_s = time.monotonic() + 20.0
+    while not seen():
+        assert time.monotonic() < until_s
+        time.sleep(0.01)
