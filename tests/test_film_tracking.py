@@ -16,6 +16,7 @@ from common.config.part_settings import SilhouetteSettings
 from common.config.settings import Settings
 from common.method import METHODS
 from common.notes.notes import Note, Notes
+from common.rig.camera import PAPER_ROTATIONS
 from common.video.clip_facts import Clip, Meta, View
 from common.video.decoding import Ending
 from tritrack.offline import film_tracking
@@ -95,7 +96,7 @@ class Passes:
         self.camera: Any = RIG.cameras[1]
         self.sources: Any = {2: SimpleNamespace(odd=["a landmark is odd"])}
         ticks = itertools.count(10.0)
-        monkeypatch.setattr(film_tracking.time, "perf_counter", lambda: next(ticks))
+        monkeypatch.setattr("tritrack.offline.film_tracking.time.perf_counter", lambda: next(ticks))
         for name in ("silhouettes_of", "bodies_of", "outside_sources"):
             monkeypatch.setattr(film_tracking, name, getattr(self, name))
 
@@ -229,7 +230,7 @@ def test_poses_that_mostly_do_not_fit_are_doubtful() -> None:
 
 def test_a_film_without_a_frame_has_the_papers_first_camera() -> None:
     nothing = Followed([], [], 0.1, None, None, None, {})
-    assert nothing.turn.tolist() == np.array(film_tracking.PAPER_ROTATIONS[0]).tolist()
+    assert nothing.turn.tolist() == [list(row) for row in PAPER_ROTATIONS[0]]
     assert nothing._replace(camera=RIG.cameras[1]).turn.tolist() == [
         list(row) for row in RIG.cameras[1].R
     ]

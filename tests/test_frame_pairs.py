@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 import pytest
 
+from common.bus.messages import ViewerNumber
 from common.config.settings import Settings
 from common.video.clips import open_clip
 from common.video.decoding import ALL, Decoded, Ending, Size, Source, Wanted
@@ -111,7 +112,7 @@ class Asked(Quick):
 def test_each_view_goes_on_from_its_own_frame(clip: Path) -> None:
     """Every second frame is looked at; view 1 goes on from 4, view 2 from its first."""
     opened = open_clip(Settings(clip=str(clip), every=2))
-    readers = {1: Asked(7), 2: Asked(6)}
+    readers: dict[ViewerNumber, Asked] = {1: Asked(7), 2: Asked(6)}
     found = [
         {n: one.index for n, one in now.items()} for now in instants(opened, readers, {}, {1: 4})
     ]
@@ -138,7 +139,7 @@ class Person:
 
 def test_landmarks_are_asked_of_the_source_of_their_view(clip: Path) -> None:
     opened, source = open_clip(Settings(clip=str(clip))), Person()
-    readers = {1: Asked(2), 2: Asked(3)}
+    readers: dict[ViewerNumber, Asked] = {1: Asked(2), 2: Asked(3)}
     assert len([*instants(opened, readers, {2: source})]) == 3  # type: ignore[dict-item]
     assert source.asked == [0, 1, 2]
     assert readers[2].wanted[0][2].large == (640, 480)

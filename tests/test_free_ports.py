@@ -8,7 +8,7 @@ import msgspec
 import pytest
 
 from animator.page.door import PageError
-from common.bus.bus_keys import KeysError
+from common.bus.bus_keys import PARTS, KeysError
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
 from tritrack.live import free_ports
@@ -84,7 +84,7 @@ def test_every_part_of_a_live_run_needs_its_keys_and_who_listens_alone_does_not(
     bus = BusSettings(endpoint="tls/127.0.0.1:7447", keys="own")
     refuse_held_ports(free_settings(Settings(bus=bus, page=PageSettings(port=0))))
     assert {folder for folder, _ in asked} == {"own"}
-    assert [part for _, part in asked] == [part for part in free_ports.PARTS if part != "client"]
+    assert [part for _, part in asked] == [part for part in PARTS if part != "client"]
     assert "integrator" in dict.fromkeys(part for _, part in asked)
 
 

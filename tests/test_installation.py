@@ -16,6 +16,7 @@ from rich.console import Console
 from spoiling import film_of
 
 import tritrack.__main__ as door
+from common.packages import PACKAGES, ROOT
 from tritrack.doctor import installation as doctor
 from tritrack.doctor.installation import Finding, examine, table_of
 
@@ -197,7 +198,7 @@ def test_a_package_of_another_that_stands_in_place_of_ours_is_named(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     assert doctor._own_names()[1:3] == (True, "all from one place")
-    places = {name: str(doctor.ROOT / name / "__init__.py") for name in doctor.PACKAGES}
+    places = {name: str(ROOT / name / "__init__.py") for name in PACKAGES}
     places["viewer"] = str(tmp_path / "viewer.py")
     monkeypatch.setattr(
         doctor, "import_module", lambda name: SimpleNamespace(__file__=places[name])

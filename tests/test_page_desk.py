@@ -287,7 +287,7 @@ def test_a_page_is_told_the_end_and_waited_for_while_it_is_looked_at(
     own, beside, title, ending, _ = page.part.arguments
     assert (own, beside, title, page.part.zygote) == (settings, context, "a run", zygote)
     waited: list[float] = []
-    stop = SimpleNamespace(wait=lambda seconds: bool(waited.append(seconds)))
+    stop = SimpleNamespace(wait=waited.append)
     said: list[int] = []
     page.looks = 3
     desk.end({"clip": "walk"}, stop, lambda: said.append(1))  # type: ignore[arg-type]

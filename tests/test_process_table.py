@@ -220,7 +220,7 @@ def test_a_part_is_begun_frugal_and_deaf_and_adopted_where_it_is_forked(
         "args": ("viewer 1", viewer_main, ("given",), context.theirs, forked),
         "daemon": not nests,
     }
-    process = ("child", (context, context.ours)) if forked else context
+    process: Any = ("child", (context, context.ours)) if forked else context
     assert running == Running(part, process, context.ours)
     assert (context.theirs.closed, context.ours.closed) == (True, False)
     environment, deaf, doors = context.at_start
@@ -275,7 +275,12 @@ def test_a_part_runs_under_its_name_hears_its_end_and_says_why_it_fails(
     words: Any = object()
     for name in ("be_adopted", "be_shown_as", "end_with_parent"):
         monkeypatch.setattr(process_table, name, lambda *of, name=name: called.append((name, *of)))
-    monkeypatch.setattr(process_table, "confessed", lambda *of: called.append(of) or 7)
+
+    def confessed(*of: Any) -> int:
+        called.append(of)
+        return 7
+
+    monkeypatch.setattr(process_table, "confessed", confessed)
     error = ValueError("no camera 0")
 
     def main(*arguments: Any) -> None:

@@ -23,7 +23,7 @@ from tritrack.offline.rig_check import (
     trust_facts,
 )
 
-TRUST = {
+TRUST: dict[str, Any] = {
     "apart_mm": 61.4,
     "apart_px": 2.6,
     "soles_mm": -80.2,
@@ -201,7 +201,7 @@ def witnessed(*moments_s: float) -> Witness:
 def test_a_rig_is_judged_by_what_was_seen_and_advised_unless_it_is_insisted_on(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    found = Trust(believed=False, moments=80, odd=("late",), **(TRUST | {"advice": ""}))
+    found = Trust(believed=False, moments=80, odd=("late",), **{**TRUST, "advice": ""})
     clip = msgspec.structs.replace(two_views(0.5), rig=RIG, every=2)
     clock, witness = Clock(0.3), witnessed(0.0, 0.1)
     asked = Asked(monkeypatch, found)

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 from staging import report
 
-from common.bus.messages import Box, Landmarks, Report, Shift, ViewerNumber
+from common.bus.messages import Box, Landmarks, Report, ViewerNumber
 from common.config.part_settings import BodySettings
 from common.config.settings import Settings
 from common.method import METHODS, Method
 from common.rig.camera import paper_rig
+from common.rig.picture_shift import Shift
 from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip, Meta, View
 from integrator.selfcalibration.lateness import Clock

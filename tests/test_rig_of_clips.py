@@ -37,7 +37,7 @@ class Clips:
         self.open_sources = 0
         for name in ("open_clip", "outside_sources", "sighting_of", "clock_of"):
             monkeypatch.setattr(rig_of_clips, name, getattr(self, name))
-        monkeypatch.setattr(rig_of_clips.config_file, "load", self.load)
+        monkeypatch.setattr("tritrack.offline.rig_of_clips.config_file.load", self.load)
         monkeypatch.setattr(rig_of_clips, "calibrated_by_person", self.calibrated)
 
     @property

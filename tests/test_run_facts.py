@@ -2,6 +2,7 @@
 
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import msgspec
 import pytest
@@ -84,7 +85,8 @@ def test_a_run_is_of_its_films_by_their_whole_paths_and_of_cameras_by_number() -
 def test_frames_are_lost_that_neither_memory_nor_the_journal_has(
     of_journal: int, of_memory: int, lost: int
 ) -> None:
-    heard = nothing_heard()._replace(journal=SimpleNamespace(let_go=of_journal))
+    journal: Any = SimpleNamespace(let_go=of_journal)
+    heard = nothing_heard()._replace(journal=journal)
     heard.bodies.let_go = of_memory
     note_lost(heard)
     told = [f"the first {lost} frames of a long run are not in poses.npz: write shorter runs, or "]

@@ -48,7 +48,7 @@ class Told:
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.said, self.lamented = list[str](), list[str]()
         monkeypatch.setattr(served_rooms, "Room", Hall)
-        monkeypatch.setattr(served_rooms.time, "monotonic", lambda: 41.0)
+        monkeypatch.setattr("tritrack.serving.served_rooms.time.monotonic", lambda: 41.0)
         zygote: Any = "zygote"
         self.house = House(zygote, self.said.append, self.lamented.append)
         CALLS.clear()

@@ -1,5 +1,7 @@
 """How a site is doing: many pulses as one, and one line."""
 
+from typing import Any
+
 from common.bus.control_messages import Pulse
 from tritrack.serving.site_status import site_pulse, status_of
 
@@ -49,6 +51,8 @@ def test_counts_are_summed_and_rates_are_the_integrators() -> None:
     """Every count has its own numbers: 1 and 10, 2 and 20 and so on."""
     counts = ("deadline_misses", "dropped", "guide_misses", "hurried", "late", "malformed")
     names = (*counts, "foreign")
+    ones: dict[str, Any] = {name: n for n, name in enumerate(names, 1)}
+    tens: dict[str, Any] = {name: 10 * n for n, name in enumerate(names, 1)}
     hub = Pulse(
         process="integrator",
         state="ready",
@@ -57,7 +61,7 @@ def test_counts_are_summed_and_rates_are_the_integrators() -> None:
         latency_p50_ms=3.5,
         latency_p99_ms=9.5,
         memory_mb=100.0,
-        **{name: n for n, name in enumerate(names, 1)},
+        **ones,
     )
     viewer = Pulse(
         process="viewer 1",
@@ -67,7 +71,7 @@ def test_counts_are_summed_and_rates_are_the_integrators() -> None:
         latency_p50_ms=50.0,
         latency_p99_ms=60.0,
         memory_mb=20.0,
-        **{name: 10 * n for n, name in enumerate(names, 1)},
+        **tens,
     )
     lame = Pulse(process="metrics", state="restarting")
     pulses = {"viewer 1": viewer, "integrator": hub, "metrics": lame}
