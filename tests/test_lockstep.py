@@ -3,22 +3,38 @@
 import json
 import os
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 from rich.console import Console
 from spoiling import Film, copied, cut_off, edit_json, refilmed
+from staging import PERIOD_S, RIG
 
+from common.bus.messages import Body
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
+from common.method import METHODS
+from common.video.clip_facts import Act, Clip, Meta, View
+from common.video.clip_sources import ClipError
+from common.video.decoding import Ending
+from integrator import diagnostics, merge_state
+from integrator.selfcalibration.lateness import Clock
 from synth.write import ClipSet, write_set
+from tritrack.offline import lockstep
 from tritrack.offline.batch import Asked, track_all
 from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.offline.performance import Watch
+from tritrack.offline.performance import Performance, Prepared, Watch
+from tritrack.offline.rig_check import Witness
+from tritrack.offline.rig_from_person import Looked
 from tritrack.overrides import overridden
 from tritrack.store.pose_arrays import poses
+from tritrack.store.runs import NOBODY_SEEN
+from tritrack.unfinished.work import Course, InMemory
 
 QUIET = Console(quiet=True)
 
@@ -174,3 +190,193 @@ def test_an_offset_that_is_given_is_used_and_not_looked_for(squats: Path, tmp_pa
         "may_be_on_time": True,
     }
     assert told["settings"]["offset_s"] == -0.4
+
+
+VIEWS = (
+    View(1, "a.avi", (320, 240), (160, 120), 15.0, 60),
+    View(2, "b.avi", (320, 240), (160, 120), 15.0, 50, late_s=0.125),
+)
+PAIR = Clip("pair", VIEWS, 1, None, Meta("anna", "squat", acts=(Act("kick", 3, 9),)), ("short",))
+
+
+def ready_made(clip: Clip = PAIR) -> Prepared:
+    """A clip of which view 2 was cut off."""
+    state = merge_state.init(RIG, PERIOD_S, Settings(), METHODS["default"])
+    endings = {1: Ending(60), 2: Ending(20, 1)}
+    reels: Any = {view.number: SimpleNamespace(ending=endings[view.number]) for view in clip.views}
+    return Prepared(clip, reels, {}, state, ["nothing moves"], 2.34567)
+
+
+def performed_so(*bodies: Body) -> Performance:
+    state = merge_state.init(RIG, PERIOD_S, Settings(), METHODS["default"])
+    state = state._replace(scale_source="person")
+    seconds = {"viewers": 3.00004, "integrator": 1.0, "following": 4.0}
+    noticed = diagnostics.State()
+    return Performance(bodies, state, noticed, ("a new rig",), seconds)
+
+
+def seen_body(frame: int = 0) -> Body:
+    moment: dict[str, Any] = {"frame": frame, "captured_s": 0.0, "clock_s": 0.0}
+    return Body(
+        status="tracking", views="both", joints_m=((0.0, 0.0, 0.0),), confidence=(0.8,), **moment
+    )
+
+
+def test_a_summary_tells_the_clip_its_times_and_all_that_was_odd() -> None:
+    """Two bodies in 4 s of following; what a source and the rig told comes last."""
+    source: Any = SimpleNamespace(odd=["a landmark is odd"])
+    done = performed_so(seen_body(0), seen_body(1))
+    facts = lockstep._facts(ready_made(), done, {1: source})
+    assert facts["seconds"] == {
+        "preparation": 2.3457,
+        "viewers": 3.0,
+        "integrator": 1.0,
+        "following": 4.0,
+        "all": 6.3457,
+    }
+    assert (facts["clip"], facts["performer"], facts["posture_meant"]) == ("pair", "anna", "squat")
+    assert [*facts["acts"]] == [{"name": "kick", "first": 3, "last": 9}]
+    assert facts["unread"] == {"b.avi": {"read": 20, "of": 50}}
+    assert (facts["frames_a_second"], facts["scale_source"]) == (0.5, "person")
+    first, second, cut_off, odd, *further = facts["warnings"]
+    assert (first, second, odd) == ("short", "nothing moves", "a landmark is odd")
+    assert cut_off.startswith("b.avi was cut off or is damaged: 20 of 50 frames")
+    assert further[-1] == "a new rig"
+    plain = msgspec.structs.replace(PAIR, meta=Meta())
+    empty = msgspec.structs.replace(seen_body(), joints_m=(), status="empty")
+    facts = lockstep._facts(ready_made(plain), performed_so(empty), {})
+    assert "acts" not in facts
+    assert NOBODY_SEEN in facts["warnings"]
+
+
+class Told:
+    """What is asked when all was followed."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.asked: list[Any] = []
+        monkeypatch.setattr(lockstep, "trust_facts", self.trust)
+
+    def trust(self, clip: Clip, witness: Any, clock: Clock, *, insisted: bool) -> dict[str, Any]:
+        self.asked.append((clip, witness, clock, insisted))
+        return {}
+
+
+def job_of(settings: Settings, **more: Any) -> Any:
+    given = {"sources": {}, "watch": None, "course": Course(), **more}
+    return lockstep._Job(settings, METHODS["default"], None, **given)  # type: ignore[arg-type]
+
+
+def test_what_is_told_of_the_clock_is_of_the_clip_as_it_was_followed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Which clock set the times is told; by the one that is left bodies are doubted, unless the
+    user said how late view 2 is."""
+    told, witness = Told(monkeypatch), Witness()
+    done = lockstep._Followed(ready_made(), performed_so(seen_body()), witness)
+    found, left = Clock(0.125), Clock(0.5, (1.0,), False)
+    result = lockstep._told(Looked(PAIR, clock=found), job_of(Settings()), done, left)
+    assert result.clip == PAIR
+    assert result.facts["clock"]["state"] == "found"
+    assert result.facts["clock"]["applied_s"] == 0.125
+    assert told.asked == [(PAIR, witness, left, False)]
+    assert [body.confidence for body in result.bodies] == [pytest.approx((0.05 * 0.8,))]
+    result = lockstep._told(Looked(PAIR), job_of(Settings()), done, left)
+    assert result.facts["clock"]["state"] == "ambiguous"
+    insists = Settings(offset_s=0.125, trust_calibration=True)
+    result = lockstep._told(Looked(PAIR), job_of(insists), done, left)
+    assert result.facts["clock"]["state"] == "given"
+    assert [body.confidence for body in result.bodies] == [(0.8,)]
+    assert told.asked[-1][-1] is True
+
+
+def test_a_run_that_was_being_tracked_again_goes_on_with_that_clock() -> None:
+    """It was left with 0.5 s set back, of which the files tell 0.125."""
+    looked = Looked(PAIR)
+    left: Any = SimpleNamespace(late_s=0.5)
+    again = lockstep._as_left(looked, Course(work=Left(left)))
+    assert [view.late_s for view in again.clip.views] == [0.0, 0.5]
+    assert again.clock == Clock(0.375)
+    assert lockstep._as_left(looked, Course(work=Left(None))) == looked
+    same: Any = SimpleNamespace(late_s=0.125)
+    assert lockstep._as_left(looked, Course(work=Left(same))) == looked
+
+
+class Left(InMemory):
+    """What a run left in its second half."""
+
+    def __init__(self, going: Any) -> None:
+        self.going, self.restarts = going, 0
+
+    def resumed(self, stage: str, _kind: type[Any]) -> Any:
+        assert stage == "instants"
+        return self.going
+
+    def restart(self) -> None:
+        self.restarts += 1
+
+
+@pytest.mark.parametrize(
+    ("by_files", "given_s", "late_s", "times"),
+    [
+        (True, None, 0.4, 2),
+        (True, None, 0.01, 1),
+        (True, 0.0, 0.4, 1),
+        (False, None, 0.4, 1),
+    ],
+    ids=["is late", "is on time", "its offset is given", "the first pass told it"],
+)
+def test_a_clip_is_followed_again_where_its_clock_is_found_to_be_off(
+    monkeypatch: pytest.MonkeyPatch,
+    by_files: bool,
+    given_s: float | None,
+    late_s: float,
+    times: int,
+) -> None:
+    """With its times set back by that, from nothing that was kept or watched."""
+    followed: list[float] = []
+    begun: list[int] = []
+    clock, work = Clock(late_s), Left(None)
+    looked = Looked(PAIR, clock=None if by_files else Clock(0.0))
+
+    def follow(looked: Looked, *_: object) -> Any:
+        followed.append(looked.clip.views[1].late_s)
+        return lockstep._Followed(ready_made(), performed_so(), Witness())
+
+    monkeypatch.setattr(lockstep, "open_clip", lambda *_: PAIR)
+    monkeypatch.setattr(lockstep, "outside_sources", lambda *_: nullcontext({}))
+    monkeypatch.setattr(lockstep, "by_person", lambda *_: looked)
+    monkeypatch.setattr(lockstep, "_followed", follow)
+    monkeypatch.setattr(lockstep, "clock_seen", lambda *_: clock)
+    monkeypatch.setattr(lockstep, "_told", lambda looked, *_: looked)
+    decoders: Any = SimpleNamespace(of={1: None, 2: None})
+    watch = Watch(lambda *_: None, lambda: begun.append(1))
+    told: Any = track_clip(
+        Settings(offset_s=given_s), decoders, watch=watch, course=Course(work=work)
+    )
+    assert followed == [0.125, pytest.approx(0.125 + late_s)][:times]
+    assert (work.restarts, len(begun)) == (times - 1, times - 1)
+    assert told.clip.views[1].late_s == followed[-1]
+
+
+def test_the_thesis_refuses_two_views_and_one_camera_is_followed_in_two_passes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    clips = {2: PAIR, 1: msgspec.structs.replace(PAIR, views=PAIR.views[:1])}
+    passes: list[Any] = []
+    count = 2
+    monkeypatch.setattr(lockstep, "open_clip", lambda *_: clips[count])
+    monkeypatch.setattr(lockstep, "_in_two_passes", lambda *given: passes.append(given[2]))
+    decoders: Any = SimpleNamespace(of={1: None})
+    with pytest.raises(ClipError, match=r"^pair: the thesis's mode is for one camera: add --views"):
+        track_clip(Settings(mode="thesis"), decoders)
+    assert passes == []
+    count = 1
+    rig = msgspec.structs.replace(RIG, cameras=RIG.cameras[:1])
+    calibrated = msgspec.structs.replace(clips[1], rig=rig)
+    track_clip(Settings(mode="thesis"), decoders)
+    track_clip(Settings(), decoders)
+    track_clip(Settings(mode="paper"), decoders, method=METHODS["default"])
+    assert passes == [METHODS["thesis"], METHODS["default"], METHODS["default"]]
+    clips[1] = calibrated
+    track_clip(Settings(mode="thesis"), decoders)
+    assert len(passes) == 4, "whatever it knows of its camera"
