@@ -1,5 +1,8 @@
 """Every instant of a clip: whatever the mode, its state is kept and goes on to the same bodies."""
 
+import sys
+import threading
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -196,3 +199,16 @@ def test_all_that_is_remembered_is_in_every_state_that_is_saved(
     assert later.seen.moved
     assert done.seconds["following"] > spent_s[2]
     assert done.noticed.seen == (0, 0)
+
+
+def test_views_side_by_side_take_short_turns_and_only_meanwhile() -> None:
+    """A fifth of a millisecond; also where what is done fails, turns are as long as before."""
+    before_s = sys.getswitchinterval()
+    meanwhile_s = list[float]()
+    with suppress(ValueError), performance._side_by_side(2) as pool:
+        meanwhile_s.append(sys.getswitchinterval())
+        meet = threading.Barrier(2)
+        assert len([*pool.map(lambda _: meet.wait(20.0), range(2))]) == 2
+        raise ValueError
+    assert meanwhile_s == [pytest.approx(0.0002)]
+    assert sys.getswitchinterval() == before_s
