@@ -54,6 +54,20 @@ def told(page: LivePage, count: int) -> list[dict[str, Any]]:
         return [json.loads(browser.recv(timeout=10)) for _ in range(count)]
 
 
+@pytest.mark.parametrize("commands", [True, False])
+def test_a_page_greets_with_its_title_and_the_millisecond_in_which_it_began(
+    commands: bool,
+) -> None:
+    """Another millisecond is another run: a browser takes no more than 53 bits for a number."""
+    before_ms = time.time() * 1e3
+    page = LivePage("a run", free_port(), commands)
+    after_ms = time.time() * 1e3
+    (hello,) = told(page, 1)
+    page.close()
+    assert (hello["kind"], hello["title"], hello["commands"]) == ("hello", "a run", commands)
+    assert before_ms - 1 <= hello["run"] <= after_ms
+
+
 def test_who_comes_late_is_told_the_run_so_far_and_its_end_last(page: LivePage) -> None:
     page.show(snapshot_at(0))  # no cameras yet: nothing could be drawn
     page.set_rig(RIG)
