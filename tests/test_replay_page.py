@@ -1,20 +1,32 @@
 """A recorded run on the live page: what a browser is told of it, and that it is played there."""
 
+import io
 from collections.abc import Iterator
+from contextlib import nullcontext
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
+from rich.console import Console
 
 pytest.importorskip("mcap", reason="pip install 'tritrack[mcap]'")
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
 from browser import open_tab
+from staging import RIG
 from test_live import CHROMIUM, SIZES, SOFT, Looking, told
 from test_page_server import free_port
-from test_replaying import run
+from test_replaying import body_at, made_up, run, said_at
 
 from animator.page.live import LivePage
+from animator.scene import Snapshot
+from common.bus.control_messages import Cameras
+from common.bus.messages import Performance, Posture
+from common.rig.camera import Rig
+from tritrack import replay_page
 from tritrack.replay_page import show
 from tritrack.store.past_run import open_run
 from tritrack.store.recording import read_recording
@@ -72,3 +84,92 @@ def test_a_browser_plays_it_from_its_begin_to_its_end(run: Path, page: LivePage)
         assert looking.until(f"document.body.dataset.frame !== '{last}'")
         looking.key(" ", 32)
         assert looking.until(f"document.body.dataset.frame === '{last}'"), "it does not play"
+
+
+class Shown:
+    """A page that keeps what it is told."""
+
+    def __init__(self) -> None:
+        self.said: list[Any] = []
+
+    def set_rig(self, rig: Rig) -> None:
+        self.said.append(rig)
+
+    def show(self, snapshot: Snapshot, events: tuple[Performance, ...]) -> None:
+        seen = sorted(snapshot.reports)
+        told = (snapshot.body and snapshot.body.captured_s, seen, snapshot.performed)
+        self.said.append((*told, snapshot.posture and snapshot.posture.name, events))
+
+
+def test_each_body_is_shown_in_its_own_rig_with_what_was_performed_until_then() -> None:
+    """The second rig is told once, with the first body that it tells of; where none is known the
+    page draws no room."""
+    first = msgspec.structs.replace(RIG, width=320)
+    second = msgspec.structs.replace(RIG, width=640)
+    squat = Performance(name="squat", onset=0, end=1, onset_s=0.0, end_s=0.1, posterior=0.9)
+
+    def posture(at_s: float, event: Performance | None) -> Posture:
+        return Posture(frame=0, captured_s=at_s, clock_s=at_s, name="kick", event=event)
+
+    recording = made_up(
+        [said_at(1, 0, 0.0), said_at(1, 3, 0.3)],
+        [said_at(2, 1, 0.1), said_at(2, 3, 0.3)],
+        [
+            *(body_at(0.0, (0, -1)), body_at(0.1, (-1, 1)), body_at(0.2, (-1, -1), calibration=1)),
+            *(body_at(0.3, (3, 3), calibration=1), body_at(0.4, (9, 9), calibration=1)),
+        ],
+        [Cameras(rig=second, scale_source="person", calibration=1)],
+    )
+    recording = recording._replace(postures=[posture(0.1, squat), posture(0.3, None)])
+    page = Shown()
+    assert show(page, recording) == 5  # type: ignore[arg-type]
+    shown: list[Any] = [
+        (0.0, [1], "", None, ()),
+        (0.1, [2], "squat", "kick", (squat,)),
+        second,
+        (0.2, [], "squat", None, ()),
+        (0.3, [1, 2], "squat", "kick", ()),
+        (0.4, [], "squat", None, ()),
+    ]
+    assert page.said == shown
+    page = Shown()
+    known = recording._replace(head=msgspec.structs.replace(recording.head, rig=first))
+    show(page, known)  # type: ignore[arg-type]
+    assert page.said == [first, *shown]
+
+
+def test_a_recording_is_played_until_ctrl_c_and_its_page_closed(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    asked: list[Any] = []
+    page = SimpleNamespace(
+        address="http://127.0.0.1:9",
+        end=lambda facts: asked.append(("end", facts)),
+        close=lambda: asked.append("close"),
+    )
+    stop = SimpleNamespace(wait=lambda: asked.append("wait"))
+
+    def opened(*given: Any, **more: Any) -> Any:
+        asked.append((given, more))
+        return page
+
+    place = "tritrack.replay_page"
+    recording = made_up([], [], [], [])
+    monkeypatch.setattr(f"{place}.read_recording", lambda _: recording)
+    monkeypatch.setattr(
+        f"{place}.open_run", lambda folder: SimpleNamespace(summary={"of": folder.name})
+    )
+    monkeypatch.setattr(f"{place}.process", lambda *_: nullcontext(stop))
+    monkeypatch.setattr(f"{place}.LivePage", opened)
+    monkeypatch.setattr(f"{place}.show", lambda *_: 7)
+    said = Console(file=io.StringIO(), width=200)
+    told = replay_page.replay_on_page(tmp_path / "walk", 9, said)
+    assert told == {"clip": "made up", "shown": 7}
+    assert asked == [
+        (("made up", 9), {"commands": False, "most_bytes": 160_000_000}),
+        ("end", {"of": "walk", "out": str(tmp_path / "walk")}),
+        "wait",
+        "close",
+    ]
+    assert isinstance(said.file, io.StringIO)
+    assert said.file.getvalue() == "the page is at http://127.0.0.1:9; Ctrl-C ends it\n"
