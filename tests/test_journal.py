@@ -119,6 +119,7 @@ def test_a_full_disk_is_told_once_and_what_comes_when_it_has_room_is_kept(
     with monkeypatch.context() as patched:
         patched.setattr(os, "pwrite", full)
         one.keep([body(1)])
+        assert len(one.odd) == 1, "it is told at once"
         one.keep([body(2)])
     one.keep([body(3)])
     assert frames_in(tmp_path) == [0, 3]

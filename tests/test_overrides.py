@@ -17,6 +17,18 @@ def test_what_is_not_named_stays_as_the_settings_say() -> None:
     assert (named.mode, named.size, named.landmarks) == ("default", "320x240", "mediapipe")
 
 
+@pytest.mark.parametrize(
+    ("own_s", "named_s", "found_s"),
+    [(0.25, None, 0.25), (0.25, 0.0, 0.0), (None, -0.5, -0.5), (None, None, None)],
+)
+def test_an_offset_that_is_named_goes_before_that_of_the_settings(
+    own_s: float | None, named_s: float | None, found_s: float | None
+) -> None:
+    """Also none at all: it is not looked for then."""
+    found = overridden(Settings(offset_s=own_s), None, None, None, named_s)
+    assert found.offset_s == found_s
+
+
 def test_what_no_run_could_mean_is_refused() -> None:
     with pytest.raises(SettingsError, match="landmarks must be own, none, mediapipe or a folder"):
         overridden(Settings(), None, None, "")

@@ -62,3 +62,11 @@ def test_all_parts_are_put_aside(tmp_path: Path) -> None:
     assert put_aside(tmp_path, tmp_path / "saved" / "aside")
     assert parts_of(tmp_path) == []
     assert len(open_run(tmp_path / "saved" / "aside").poses["frame"]) == 100
+
+
+def test_a_posture_of_another_version_makes_the_journal_one_of_that_version(tmp_path: Path) -> None:
+    """It is found before anything is read, not while results are written."""
+    journal_of(tmp_path, 2, 4000).close()
+    with (tmp_path / NAME).open("ab") as file:
+        file.write(framed(b"p", msgspec.msgpack.encode({"of": "a later version"})))
+    assert read_journal(tmp_path) is None

@@ -12,7 +12,7 @@ import pytest
 from staging import report
 
 from common.bus.messages import Box, Landmarks, Report, ViewerNumber
-from common.config.part_settings import BodySettings
+from common.config.part_settings import BodySettings, SilhouetteSettings
 from common.config.settings import Settings
 from common.method import METHODS, Method
 from common.rig.camera import paper_rig
@@ -188,12 +188,16 @@ class Pass:
         self.moved_at = moved_at
         self.inits: list[tuple[Any, ...]] = []
         self.looked: list[tuple[int, int]] = []
-        told = [Opening("bg1", "", None), Opening("bg2", "", LANDMARKS)]  # type: ignore[arg-type]
+        self.told = [Opening("bg1", "", None), Opening("bg2", "", LANDMARKS)]  # type: ignore[arg-type]
         frames = [{n: Shown(at) for n in (1, 2) if at or n == 1} for at in range(instants)]
-        monkeypatch.setattr(rig_from_person, "openings", lambda *_: told)
+        monkeypatch.setattr(rig_from_person, "openings", self.openings)
         monkeypatch.setattr(rig_from_person, "instants", lambda *_: iter(frames))
         monkeypatch.setattr("viewer.track.init", self.init)
         monkeypatch.setattr("viewer.track.look", self.look)
+
+    def openings(self, clip: Clip, settings: SilhouetteSettings, readers: object) -> list[Opening]:
+        assert (clip, settings, readers) == (two_views(), SilhouetteSettings(), {})
+        return self.told
 
     def init(self, setup: Setup, background: Any, somebody: Any) -> tuple[ViewerNumber, int]:
         self.inits.append((setup, background, somebody))

@@ -39,6 +39,13 @@ class Clips:
             monkeypatch.setattr(rig_of_clips, name, getattr(self, name))
         monkeypatch.setattr("tritrack.offline.rig_of_clips.config_file.load", self.load)
         monkeypatch.setattr(rig_of_clips, "calibrated_by_person", self.calibrated)
+        monkeypatch.setattr(rig_of_clips, "Decoder", self.decoder)
+
+    @contextmanager
+    def decoder(self) -> Iterator[Any]:
+        self.decoders.append(1)
+        yield object()
+        self.decoders.append(-1)
 
     @property
     def paths(self) -> list[Path]:
@@ -84,6 +91,7 @@ def test_every_clip_is_seen_by_its_own_films_and_clock(monkeypatch: pytest.Monke
     assert (found.rig.width, found.rig.height) == (320, 240)
     assert [camera.K[0][0] for camera in found.rig.cameras] == [400.0, 420.0]
     assert clips.open_sources == 0
+    assert clips.decoders == [1, 1, -1, -1], "one a view, and all are closed"
     assert len({tuple(one.items()) for one in clips.read}) == 1, "the decoders are kept"
     assert clips.read[0].keys() == {1, 2}
     assert len(set(clips.read[0].values())) == 2, "a decoder each"

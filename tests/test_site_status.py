@@ -90,3 +90,8 @@ def test_counts_are_summed_and_rates_are_the_integrators() -> None:
     assert site_pulse("hall", {"integrator": ended}, 0.0).state == "ended"
     assert status_of("hall", ended, "").well
     assert not status_of("hall", Pulse(process="integrator", state="starting"), "").well
+
+
+def test_what_is_lame_is_told_as_far_as_a_message_has_room() -> None:
+    many = {f"part {n}": Pulse(process=f"part {n}", state="given up") for n in range(99)}
+    assert len(site_pulse("hall", many, 0.0).detail) == 400
