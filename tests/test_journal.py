@@ -152,3 +152,27 @@ def test_a_journal_goes_with_its_run_and_one_of_a_run_cut_short_is_put_aside(
     assert not put_aside(tmp_path, tmp_path / "saved_too")
     two.remove()
     assert not (tmp_path / NAME).exists()
+
+
+def test_a_record_that_the_disk_takes_piece_by_piece_is_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written = os.pwrite
+    monkeypatch.setattr(os, "pwrite", lambda file, data, at: written(file, data[:7], at))
+    one = Journal(tmp_path, HEAD)
+    one.keep([body(0), body(1)])
+    one.keep([body(2)])
+    assert frames_in(tmp_path) == [0, 1, 2]
+
+
+def test_what_was_written_outlives_a_power_cut_every_five_seconds(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    synced, now_s = list[float](), [100.0]
+    monkeypatch.setattr("tritrack.store.journal.time.monotonic", lambda: now_s[0])
+    monkeypatch.setattr(os, "fsync", lambda _: synced.append(now_s[0]))
+    one = Journal(tmp_path, HEAD)
+    assert (tmp_path / NAME).stat().st_size > 0, "its head is there before the first body"
+    for now_s[0] in (104.9, 105.1, 106.0, 110.0, 110.3):
+        one.keep([body(0)])
+    assert synced == [105.1, 110.3]
