@@ -1,5 +1,6 @@
 """What FFmpeg complains of and OpenCV does not tell: fields, damage, a lost end."""
 
+import os
 import struct
 import threading
 from collections.abc import Iterator
@@ -19,6 +20,7 @@ from common.method import DEFAULT
 from common.video.clip_facts import View, shortfall, unread_facts
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
+from common.video.complaints import MOST_BYTES, Complaints
 from common.video.decoding import Decoder, Ending, Image
 from tritrack.live.screen import warnings_of
 from viewer import __main__ as viewer
@@ -65,6 +67,34 @@ def read(path: Path, decoder: Decoder) -> tuple[View, list[Image]]:
     settings = Settings(camera_1=CameraSettings(source=str(path)))
     view = open_clip(settings, decoder).views[0]
     return view, [frame.picture for frame in decoder.frames(str(path), view.size)]
+
+
+def test_what_goes_to_standard_error_is_taken_once_and_goes_nowhere_else(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Also of who says more than a pipe holds: neither waits for the other."""
+    monkeypatch.setenv("OPENCV_FFMPEG_LOGLEVEL", "32")
+    monkeypatch.setenv("OPENCV_FFMPEG_DEBUG", "1")
+    kept = os.dup(2)
+    try:
+        complaints = Complaints()
+        before = complaints.taken()
+        os.write(2, b"one, ")
+        os.write(2, b"two")
+        os.write(2, bytes(2 * MOST_BYTES))
+        with pytest.raises(BlockingIOError):
+            os.write(2, b"more")
+        taken = complaints.taken(), complaints.taken(), complaints.taken()
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(complaints._heard)
+    assert before == b""
+    assert taken[0][:10] == b"one, two\0\0"
+    assert len(taken[0]) <= MOST_BYTES
+    assert taken[2] == b""
+    assert capfd.readouterr() == ("", "")
+    assert not {"OPENCV_FFMPEG_LOGLEVEL", "OPENCV_FFMPEG_DEBUG"} & {*os.environ}
 
 
 def test_a_video_of_fields_is_refused_with_the_cure(tmp_path: Path, decoder: Decoder) -> None:

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import sys
 import threading
 from pathlib import Path
@@ -38,6 +39,67 @@ def looks(video: str, folder: str) -> None:
 
 def test_who_was_not_forked_forks_nobody() -> None:
     assert not can_fork()
+
+
+ANSWERS = """
+import os, signal, sys
+def main():
+    print("no answer"); sys.stderr.write("nor this"); sys.stdout.flush(); sys.stderr.flush()
+    deaf = signal.SIGTERM in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    facts = [*sys.argv[:1], *sys.argv[2:], input(), os.getpgrp() == os.getpid(), deaf]
+    facts.append(open("/proc/self/comm").read().strip())
+    os.write(int(sys.argv[1]), repr(facts).encode())
+    if "wait" in sys.argv:
+        import time; time.sleep(60)
+    sys.exit(7)
+"""
+STARTER = """
+import multiprocessing, os, signal, subprocess, sys
+from common.video import forked_child
+forked_child.FORK = multiprocessing.get_context("fork")
+signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGTERM,))
+asked, ask = os.pipe()
+heard, answer = os.pipe()
+os.write(ask, b"a line")
+os.close(ask)
+before = len(os.listdir("/proc/self/fd"))
+child = forked_child.ForkedChild("answering.part", asked, answer, sys.argv[1:])
+os.close(answer)
+pid = child._process.pid
+said = os.read(heard, 4096).decode()
+if "wait" in sys.argv:
+    try:
+        child.wait(0.05)
+    except subprocess.TimeoutExpired as late:
+        print(late.cmd == str(child.pid), late.timeout)
+    child.kill()
+code = child.wait()
+child._process.close()
+after = len(os.listdir("/proc/self/fd"))
+print(said, code, pid == child.pid, after - before)
+"""
+"""Forks itself, as a zygote would: it has no threads."""
+
+
+@pytest.mark.parametrize(
+    ("told", "late", "code"), [(("x", "y"), "", 7), (("x", "wait"), "True 0.05\n", -9)]
+)
+def test_a_forked_module_hears_answers_and_dies_as_one_that_was_started(
+    tmp_path: Path, told: tuple[str, str], late: str, code: int
+) -> None:
+    """It is silent, leads a group of its own, and can be ended by SIGTERM though its parent is deaf
+    to it; its starter has but its own ends of the pipes, one of which it closed."""
+    (tmp_path / "answering").mkdir()
+    (tmp_path / "answering" / "part.py").write_text(ANSWERS)
+    done = subprocess.run(
+        [sys.executable, "-c", STARTER, *told],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONPATH": f"{Path(__file__).parents[1]}{os.pathsep}{tmp_path}"},
+    )
+    said = ["answering.part", *told, "a line", True, False, "part"]
+    assert (done.stdout, done.stderr) == (f"{late}{said} {code} True -1\n", "")
 
 
 @pytest.mark.slow
