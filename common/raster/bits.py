@@ -47,6 +47,11 @@ def count_both(one: Any, other: Any) -> int:
     return total
 
 
+def blank(size: tuple[int, int]) -> Bits:
+    """Packed rows of an empty picture of (width, height) pixels."""
+    return np.zeros((size[1], (size[0] + 63) // 64), np.uint64)
+
+
 def pack_words(mask: Mask) -> Bits:
     """A mask (H, W) as rows of 64-pixel words, (H, ceil(W / 64))."""
     packed = np.packbits(mask, axis=1, bitorder="little")

@@ -16,7 +16,7 @@ from common.body.body import LIMBS, Vector, rest_pose
 from common.body.kinematics import ALL_LIMBS, FRAME, place_limbs
 from common.body.proportions import ARMS, PER_ELLIPTIC, PER_ROUND, body_vector, thesis_bdp
 from common.compiled import compiled
-from common.raster.bits import count, count_both, unpack_words
+from common.raster.bits import blank, count, count_both, unpack_words
 from common.raster.row_spans import PRIMITIVE, draw, spans
 from common.raster.similarity import Mask
 from common.rig.camera import Camera
@@ -195,10 +195,9 @@ def view_of(camera: Camera, depth_m: float = 0.0) -> Vector:
 
 def draw_body(body: Vector, pose: Vector, view: Vector, size: tuple[int, int]) -> Mask:
     """The picture of the body: a mask (H, W) of its ten cylinders."""
-    width, height = size
-    bits = np.zeros((height, (width + 63) // 64), np.uint64)
-    draw_limbs(body, pose, view, ALL_LIMBS, width, bits)
-    return unpack_words(bits, width)
+    bits = blank(size)
+    draw_limbs(body, pose, view, ALL_LIMBS, size[0], bits)
+    return unpack_words(bits, size[0])
 
 
 def warm() -> float:

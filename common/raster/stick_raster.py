@@ -8,7 +8,7 @@ import numpy as np
 from common.body.body import Vector
 from common.body.stick_body import BREADTH, GIRTH, STATURE, Stickman, place_segments
 from common.compiled import compiled
-from common.raster.bits import Bits, count, count_both, unpack_words
+from common.raster.bits import blank, count, count_both, unpack_words
 from common.raster.kernel import THINNEST, score
 from common.raster.row_spans import PRIMITIVE, draw, gain, spans, undraw
 from common.raster.similarity import Mask
@@ -120,8 +120,3 @@ def draw_stick(
     place_segments(man.lengths, pose, ends)
     draw_segments(ends, pose, man.parts, man.depth, which, width, bits)
     return unpack_words(bits, width)
-
-
-def blank(size: tuple[int, int]) -> Bits:
-    """Packed rows of an empty picture of (width, height) pixels."""
-    return np.zeros((size[1], (size[0] + 63) // 64), np.uint64)
