@@ -15,10 +15,10 @@ import pytest
 from common.config.part_settings import CameraSettings, SilhouetteSettings
 from common.config.settings import Settings
 from common.rig.camera import paper_rig, project
-from common.video.clip_facts import Clip, View, shortfall
+from common.video.clip_facts import Act, Clip, Meta, View, shortfall
 from common.video.clip_sources import ClipError
-from common.video.clips import open_clip
-from common.video.decoding import Decoder, Ending
+from common.video.clips import find_calibration, meta_of, open_clip, probed
+from common.video.decoding import Decoder, Ending, Source, Undecodable, VideoInfo
 
 SIZE = (320, 240)
 
@@ -439,6 +439,153 @@ def test_a_video_that_ended_early_is_told() -> None:
     assert shortfall(view, Ending(40, damaged=1)) == (
         "cam1.avi was cut off or is damaged: 40 of 69 frames could be read; copy or record it again"
     )
+
+
+class Facts:
+    """A decoder that knows what each source is, and keeps which were asked for."""
+
+    def __init__(self, **known: VideoInfo) -> None:
+        self.known, self.asked = known, list[Source]()
+
+    def probe(self, source: Source) -> VideoInfo:
+        self.asked.append(source)
+        return self.known[Path(str(source)).stem]
+
+    def close(self) -> None:
+        self.asked.append("closed")
+
+    def __enter__(self) -> "Facts":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def clip_of_facts(folder: Path, facts: Any, **more: Any) -> Clip:
+    folder.mkdir(exist_ok=True)
+    for number in (1, 2):
+        (folder / f"cam{number}.mkv").write_bytes(b"%d" % number)
+    return open_clip(Settings(clip=str(folder), **more), facts)
+
+
+def test_a_decoder_of_its_own_is_closed_and_one_that_was_given_is_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    info = VideoInfo(320, 240, 15.0, 12)
+    own, given = Facts(cam1=info, cam2=info), Facts(cam1=info, cam2=info)
+    monkeypatch.setattr("common.video.clips.Decoder", lambda: own)
+    clip_of_facts(tmp_path, given)
+    assert ([str(one)[-8:] for one in given.asked], own.asked) == (["cam1.mkv", "cam2.mkv"], [])
+    clip_of_facts(tmp_path, None)
+    assert [str(one)[-8:] for one in own.asked] == ["cam1.mkv", "cam2.mkv", "closed"]
+
+
+def test_a_file_and_a_camera_are_what_they_say_or_what_is_told_of_them(tmp_path: Path) -> None:
+    """Rate: the settings' word, the meta file's, the file's own; a camera's own, or the paper's."""
+    facts = Facts(cam1=VideoInfo(640, 480, 20.0, 9), **{"3": VideoInfo(320, 240, 0.0, 7)})
+    camera = CameraSettings(device=3)
+    tell(tmp_path, fps=25, capture_s={"cam2": [0.0, 0.5]})
+    first, second = clip_of_facts(tmp_path, facts, camera_2=camera, offset_s=0.5, fps=24.0).views
+    assert (first.fps, first.frames, first.size, first.late_s) == (24.0, 9, (160, 120), 0.0)
+    assert (second.fps, second.frames, second.source_size) == (15.0, 0, (320, 240))
+    assert (second.late_s, second.capture_s) == (0.5, ())
+    first, _ = clip_of_facts(tmp_path, facts, camera_2=camera, size="64x64").views
+    assert (first.fps, first.size) == (25.0, (64, 48))
+    tell(tmp_path, capture_s={"cam1": [0.0, 0.5]})
+    facts.known["3"] = VideoInfo(320, 240, 30.0, 0)
+    first, second = clip_of_facts(tmp_path, facts, camera_2=camera).views
+    assert (first.fps, first.capture_s, second.fps) == (20.0, (0.0, 0.5), 30.0)
+
+
+def test_a_video_without_a_rate_is_refused_unless_it_is_told(tmp_path: Path) -> None:
+    facts: Any = Facts(cam1=VideoInfo(640, 480, 0.0, 9), cam2=VideoInfo(640, 480, 15.0, 9))
+    with pytest.raises(ClipError, match=r"cam1\.mkv has no frame rate: set fps in a meta\.json"):
+        clip_of_facts(tmp_path, facts)
+    assert [view.fps for view in clip_of_facts(tmp_path, facts, fps=12.0).views] == [12.0, 12.0]
+
+
+@pytest.mark.parametrize(
+    ("width", "refused"), [(325, False), (327, True), (315, False), (313, True)]
+)
+def test_a_background_may_differ_by_two_hundredths_in_its_shape(
+    tmp_path: Path, width: int, refused: bool
+) -> None:
+    """Half as large as the video: 4 to 3 within 2 %."""
+    facts: Any = Facts(
+        cam1=VideoInfo(640, 480, 15.0, 9),
+        cam2=VideoInfo(640, 480, 15.0, 9),
+        plate=VideoInfo(width, 240, 0.0, 1),
+    )
+    (tmp_path / "plate.png").write_bytes(b"p")
+    camera = CameraSettings(background=str(tmp_path / "plate.png"))
+    if refused:
+        said = rf"plate\.png has {width}x240 pixels, .*cam1\.mkv 640x480: take an empty frame"
+        with pytest.raises(ClipError, match=said):
+            clip_of_facts(tmp_path, facts, camera_1=camera)
+    else:
+        assert clip_of_facts(tmp_path, facts, camera_1=camera).views[0].background
+
+
+def test_an_avi_that_does_not_begin_as_one_is_refused_though_pictures_are_found_in_it(
+    tmp_path: Path,
+) -> None:
+    facts: Any = Facts(a=VideoInfo(64, 48, 15.0, 9), **{"7": VideoInfo(64, 48, 0.0, 0)})
+    for name, content in (("a.avi", b"RIFF1234"), ("a.mkv", b"any"), ("a.AVI", b"RIFF")):
+        (tmp_path / name).write_bytes(content)
+        assert probed(str(tmp_path / name), facts).frames == 9
+    (tmp_path / "a.avi").write_bytes(b"movi1234")
+    with pytest.raises(ClipError, match=r"a\.avi is no AVI from its first byte on: copy or record"):
+        probed(str(tmp_path / "a.avi"), facts)
+    assert probed(7, facts).width == 64
+
+
+def test_what_a_decoder_says_of_a_source_is_the_refusal(tmp_path: Path) -> None:
+    class Refusing(Facts):
+        def probe(self, source: Source) -> VideoInfo:
+            raise Undecodable(f"{source} gives no picture")
+
+    refusing: Any = Refusing()
+    with pytest.raises(ClipError, match=r"^5 gives no picture$"):
+        probed(5, refusing)
+
+
+def test_the_calibration_is_the_one_named_else_the_clips_else_the_one_above_it(
+    tmp_path: Path,
+) -> None:
+    clip = tmp_path / "walk"
+    clip.mkdir()
+    assert find_calibration(Settings(), clip) is None
+    above, own = tmp_path / "calibration.json", clip / "calibration.json"
+    above.touch()
+    assert find_calibration(Settings(), clip) == above
+    own.touch()
+    assert find_calibration(Settings(), clip) == own
+    assert find_calibration(Settings(calibration="c.json"), clip) == Path("c.json")
+
+
+def test_what_stands_beside_a_clip_is_told_without_its_videos(tmp_path: Path) -> None:
+    for number in (1, 2):
+        (tmp_path / f"cam{number}.avi").touch()
+    assert meta_of(Settings(clip=str(tmp_path))) == Meta()
+    tell(tmp_path, performer="r07", acts=[{"name": "squat", "first": 3, "last": 9}])
+    told = meta_of(Settings(clip=str(tmp_path)))
+    assert (told.performer, told.acts) == ("r07", (Act("squat", 3, 9),))
+
+
+def test_a_clip_is_named_after_its_folder_or_its_first_video(
+    folder: Path, decoder: Decoder
+) -> None:
+    camera = CameraSettings(source=str(folder / "cam2.avi"))
+    assert open_clip(Settings(camera_2=camera), decoder).name == "cam2"
+    assert open_clip(Settings(clip=str(folder), every=2), decoder).every == 2
+
+
+def test_the_only_camera_of_a_calibration_is_the_only_views(folder: Path, decoder: Decoder) -> None:
+    calibrate(folder / "calibration.json", names=("only",))
+    (folder / "cam1.avi").unlink()
+    rig = open_clip(Settings(clip=str(folder)), decoder, (2,)).rig
+    assert rig is not None
+    assert [camera.name for camera in rig.cameras] == ["only"]
 
 
 def test_the_development_clips_open_with_truth_and_gaps(data_dir: Path, decoder: Decoder) -> None:

@@ -160,3 +160,28 @@ def test_filmed_people_have_the_times_of_their_pictures(data_dir: Path) -> None:
         assert capture.grab()
         assert capture.get(cv2.CAP_PROP_POS_MSEC) / 1e3 == pytest.approx(moment)
     assert not capture.grab()
+
+
+@pytest.mark.parametrize(
+    ("claimed", "frames"), [(4, 4), (3, 4), (8, 4), (10, 10)], ids=["right", "few", "guess", "cut"]
+)
+def test_a_film_has_the_frames_of_its_packets_unless_it_was_cut_off(
+    claimed: int, frames: int
+) -> None:
+    """Four packets, the last at 0.4 s, the longest gap 0.25 s: eight frames of ten a second may be
+    a guess from its 0.8 s, as 0.4 s may pass behind the last; ten are not."""
+    told = timed(VideoInfo(64, 48, 10.0, claimed, (0.0, 0.1, 0.35, 0.4)))
+    assert told.frames == frames
+    assert told.fps == pytest.approx(10.0)  # of gaps of 0.1, 0.25 and 0.05
+
+
+def test_a_film_is_steady_when_no_frame_is_farther_than_two_milliseconds_from_its_place() -> None:
+    for off_s, steady in ((0.0019, True), (-0.0019, True), (0.0021, False), (-0.0021, False)):
+        told = timed(info_of(0.0, 0.1, 0.2 + off_s, 0.3))
+        assert (told.shown_s == ()) is steady
+        assert told.fps == (10.0 if steady else pytest.approx(10.0))
+
+
+def test_a_film_that_names_no_rate_has_that_of_its_usual_gap() -> None:
+    told = timed(VideoInfo(64, 48, 0.0, 0, (0.0, 0.25, 0.5, 0.75)))
+    assert (told.fps, told.frames, told.shown_s) == (4.0, 4, (0.0, 0.25, 0.5, 0.75))
