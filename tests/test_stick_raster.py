@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from stick_posing import SIZE, drawn, stick_pose
 
+from common.body.body import Vector
 from common.body.stick_body import (
     ADULT,
     ANGLE,
@@ -85,7 +86,7 @@ def test_drawing_leaves_what_was_there() -> None:
     assert np.array_equal(bits, before)
 
 
-def ends_of(part: list[float], breadth: float = 1.0) -> list[tuple[list[float], list[list[float]]]]:
+def ends_of(part: list[float], breadth: float = 1.0) -> list[tuple[Vector, Vector]]:
     """Middle (px) and square of the half axes (px^2) of both ends of a drawn part: segment 3 goes
     from (10, 20) to (40, 60), segment 0 from (5, 9) to (5, 109) and segment 1 along a row.
     """
@@ -94,27 +95,23 @@ def ends_of(part: list[float], breadth: float = 1.0) -> list[tuple[list[float], 
     pose[[STATURE, BREADTH, GIRTH]] = 200.0, breadth, 1.5
     _primitive(ends, np.array(part), pose, widening(breadth, 0.6), p)
     shape = np.array([[p[7], p[6]], [0.0, 1.0]])
-    return [
-        ((shape @ p[at : at + 2]).tolist(), (p[at + 2] ** 2 * shape @ shape.T).tolist())
-        for at in (0, 3)
-    ]
+    return [(shape @ p[at : at + 2], p[at + 2] ** 2 * shape @ shape.T) for at in (0, 3)]
 
 
 def test_a_round_part_of_a_limb_has_two_discs_at_its_shares_as_thick_as_its_clothes() -> None:
     """By hand: a tenth and nine tenths of the way; 200 px * 0.03 and 0.02, times 1.5."""
-    assert ends_of([3, 0.1, 0.9, 0.03, 0.02, ROUND]) == [
-        (pytest.approx([13.0, 24.0]), [[pytest.approx(81.0), 0.0], [0.0, pytest.approx(81.0)]]),
-        (pytest.approx([37.0, 56.0]), [[pytest.approx(36.0), 0.0], [0.0, pytest.approx(36.0)]]),
-    ]
+    (near, one), (far, other) = ends_of([3, 0.1, 0.9, 0.03, 0.02, ROUND])
+    assert np.array([near, far]) == pytest.approx(np.array([[13.0, 24.0], [37.0, 56.0]]))
+    assert np.array([one, other]) == pytest.approx(np.array([81.0 * np.eye(2), 36.0 * np.eye(2)]))
 
 
 def test_a_flat_part_ends_in_lines_across_it() -> None:
     """3-4-5: a line of half length 9 px along (-0.8, 0.6), and one of 6."""
     (near, one), (far, other) = ends_of([3, 0.1, 0.9, 0.03, 0.02, FLAT])
-    assert (near, far) == (pytest.approx([13.0, 24.0]), pytest.approx([37.0, 56.0]))
+    assert np.array([near, far]) == pytest.approx(np.array([[13.0, 24.0], [37.0, 56.0]]))
     for square, half_px in ((one, 9.0), (other, 6.0)):
         line = half_px**2 * np.outer([-0.8, 0.6], [-0.8, 0.6])
-        assert np.array(square) == pytest.approx(line, abs=2e-6 * half_px**2)
+        assert square == pytest.approx(line, abs=2e-6 * half_px**2)
 
 
 @pytest.mark.parametrize("breadth", [1.0, 0.25])
@@ -123,7 +120,7 @@ def test_the_trunk_narrows_as_it_turns_and_wears_no_sleeves(breadth: float) -> N
     wide = math.sqrt(breadth**2 + 0.36 * (1 - breadth**2))
     for kind, times in ((FLAT_WIDE, wide), (FLAT, 1.0), (ROUND_WIDE, wide), (ROUND, 1.0)):
         (near, square), (far, _) = ends_of([0, 0.06, 0.66, 0.09, 0.1, kind], breadth)
-        assert (near, far) == (pytest.approx([5.0, 15.0]), pytest.approx([5.0, 75.0]))
+        assert np.array([near, far]) == pytest.approx(np.array([[5.0, 15.0], [5.0, 75.0]]))
         thick = 1.0 if kind in (ROUND, ROUND_WIDE) else 1e-3
         half_px = np.sqrt(np.diag(square))
         assert half_px == pytest.approx([18 * times, thick * 18 * times], rel=1e-3)
