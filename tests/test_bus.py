@@ -1,20 +1,25 @@
 """The bus, live over real sessions on the loopback and local in one process."""
 
+import json
 import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple, cast
 
 import msgspec
 import pytest
 import zenoh
 from local_bus import LocalBus
 
-from common.bus.bus import Bus, BusError, open_client, open_hub
+from common.bus import bus as bus_module
+from common.bus.bus import Bus, BusError, Stopped, open_client, open_hub, unanswered
+from common.bus.bus_access import access_of
 from common.bus.control_messages import ClockAnswer, ClockQuestion, Pulse
 from common.bus.inbox import BOUND, Alive, Inbox
 from common.bus.mailbox import Mailbox
@@ -470,3 +475,138 @@ def test_a_session_that_does_not_close_in_time_is_no_failure(
     monkeypatch.setattr(zenoh, "open", lambda _: Stuck())
     with open_hub(BusSettings(endpoint), ROOM):
         pass
+
+
+def told_to_zenoh(
+    settings: BusSettings, part: str, monkeypatch: pytest.MonkeyPatch
+) -> dict[str, Any]:
+    """What a session is opened with."""
+    own: dict[str, Any] = {}
+
+    class Config:
+        def insert_json5(self, name: str, text: str) -> None:
+            own[name] = json.loads(text)
+
+    ask: Any = bus_module._config
+    with monkeypatch.context() as patched:
+        patched.setattr(zenoh, "Config", Config)
+        ask(settings, part, ROOM)
+    return own
+
+
+def test_a_session_meets_the_others_at_the_endpoint_and_nowhere_else(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    place = BusSettings("tcp/127.0.0.1:7999")
+    hub, client = (told_to_zenoh(place, part, monkeypatch) for part in ("integrator", "viewer1"))
+    ours = {
+        "connect/retry": {
+            "period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2,
+        },
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": False,
+        "scouting/delay": 0,
+        "transport/shared_memory/enabled": False,
+        "transport/link/tx/lease": 4000,
+        "transport/link/tx/queue/size/interactive_high": 16,
+        "transport/link/tx/queue/congestion_control/drop/wait_before_drop": 10_000,
+        "transport/link/rx/max_message_size": 1_065_536,
+        "transport/unicast/open_timeout": 3000,
+    }  # fmt: skip
+    where = {"listen/endpoints": ["tcp/127.0.0.1:7999"], "connect/endpoints": []}
+    assert hub == {**ours, **where, "mode": "router"}
+    turned = {"listen/endpoints": [], "connect/endpoints": ["tcp/127.0.0.1:7999"]}
+    assert client == {**ours, **turned, "mode": "client"}
+
+
+def test_with_keys_each_part_shows_its_own_and_the_hub_alone_has_rules(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("ca.pem", "integrator.pem", "integrator.key", "viewer2.pem", "viewer2.key"):
+        (tmp_path / name).touch()
+    place = BusSettings("tls/127.0.0.1:7999", keys=str(tmp_path))
+    hub, client = (told_to_zenoh(place, part, monkeypatch) for part in ("integrator", "viewer2"))
+    assert hub["transport/link/tls"]["listen_certificate"] == str(tmp_path / "integrator.pem")
+    assert client["transport/link/tls"]["connect_private_key"] == str(tmp_path / "viewer2.key")
+    assert hub["access_control"] == access_of(ROOM)
+    assert "access_control" not in client
+
+
+def unreachable(monkeypatch: pytest.MonkeyPatch, tries: int = 10**9) -> list[float]:
+    """No hub before so many tries; the moments of all tries, by a clock that waiting moves on."""
+    now_s, tried_s = [50.0], list[float]()
+
+    def opened(_: object) -> str:
+        tried_s.append(round(now_s[0], 3))
+        if len(tried_s) < tries:
+            raise zenoh.ZError("Unable to connect at /somewhere")
+        return "a session"
+
+    def waits(_: object, timeout: float) -> bool:
+        now_s[0] += timeout
+        return False
+
+    monkeypatch.setattr(zenoh, "open", opened)
+    monkeypatch.setattr(time, "monotonic", lambda: now_s[0])
+    monkeypatch.setattr(threading.Event, "wait", waits)
+    return tried_s
+
+
+def test_the_hub_is_tried_each_tenth_of_a_second_until_time_is_up(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    tried_s, place, reach = unreachable(monkeypatch), BusSettings(), cast(Any, bus_module._reach)
+    assert reach(place, "client", ROOM, 50.35, threading.Event()) is None
+    assert tried_s == [50.0, 50.1, 50.2, 50.3]
+
+
+def test_a_hub_that_comes_is_met_and_who_is_stopped_does_not_wait(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    tried_s, place, reach = unreachable(monkeypatch, 3), BusSettings(), cast(Any, bus_module._reach)
+    assert reach(place, "client", ROOM, 60.0, threading.Event()) == "a session"
+    assert tried_s == [50.0, 50.1, 50.2]
+    stop = threading.Event()
+    stop.set()
+    with pytest.raises(Stopped):
+        reach(place, "client", ROOM, 60.0, stop)
+    assert len(tried_s) == 3
+
+
+def test_a_hub_that_does_not_answer_is_named_with_how_long_and_the_keys_if_there_are_any() -> None:
+    place = "tcp/127.0.0.1:7447"
+    cure = "start the integrator first, or set [bus] endpoint to where it listens"
+    assert str(unanswered(BusSettings(), 2.5)) == f"nobody answers at {place} after 2.5 s: {cure}"
+    keyed = BusSettings("tls/127.0.0.1:7447", keys="here")
+    assert str(unanswered(keyed, 60.0)) == (
+        f"nobody answers at tls/127.0.0.1:7447 after 60 s: {cure}, or look at the keys: "
+        "tritrack doctor --keys here"
+    )
+
+
+def test_a_session_is_closed_after_what_was_declared_of_it_also_where_that_fails(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    done: list[str] = []
+
+    class Session:
+        def close(self) -> None:
+            done.append("session")
+
+    class Failing:
+        def __init__(self, _session: object, room: str, run: str) -> None:
+            assert (room, run) == (ROOM, "word")
+
+        def close(self) -> None:
+            done.append("bus")
+            raise RuntimeError
+
+    monkeypatch.setattr(zenoh, "open", lambda _: Session())
+    monkeypatch.setattr(bus_module, "LiveBus", Failing)
+    for door in (
+        open_hub(BusSettings(session="word"), ROOM),
+        open_client(BusSettings(session="word"), ROOM, 1.0),
+    ):
+        with pytest.raises(RuntimeError), door:
+            pass
+    assert done == ["bus", "session"] * 2

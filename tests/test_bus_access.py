@@ -15,7 +15,8 @@ from test_message_codec import BODY, REPORT, SAID
 pytest.importorskip("cryptography", reason="keys are an extra: install tritrack[keys]")
 
 from common.bus.bus import Bus, open_client, open_hub
-from common.bus.bus_keys import Part
+from common.bus.bus_access import access_of
+from common.bus.bus_keys import PARTS, Part
 from common.bus.control_messages import ClockAnswer, ClockQuestion, Ended, Pulse
 from common.bus.inbox import Alive, Inbox
 from common.bus.message_codec import TOPICS, encode, key_of
@@ -184,3 +185,56 @@ def test_a_part_announces_itself_under_its_own_name_alone(hall: Hall) -> None:
                 speaker.announce(name)
         time.sleep(LATE_S)
         assert watcher.drain() == [Alive("viewer 1", alive=True)]
+
+
+def test_what_the_hub_is_told_names_each_part_with_its_own_keys_alone() -> None:
+    told = access_of("hall")
+    assert (told["enabled"], told["default_permission"]) == (True, "deny")
+    rules = {rule["id"]: rule for rule in told["rules"]}
+    assert len(rules) == len(told["rules"])
+    assert {rule["permission"] for rule in rules.values()} == {"allow"}
+    said = {
+        part: {key.removeprefix("tritrack/hall/") for key in rules[f"{part} says"]["key_exprs"]}
+        for part in HEARD
+        if HEARD[part]
+    }
+    names = {"viewer1": "viewer 1", "viewer2": "viewer 2"}
+    for part, keys in said.items():
+        alive = set() if part == "supervisor" else {f"alive/{names.get(part, part)}"}
+        assert keys == HEARD[part] | alive
+        assert rules[f"{part} says"]["flows"] == ["ingress"]
+        assert rules[f"{part} says"]["messages"] == ["put", "liveliness_token"]
+    asking = {name for name in rules if name.endswith(" asks")}
+    assert asking == {"viewer1 asks", "viewer2 asks", "recognizer asks"}
+    for name in asking:
+        assert rules[name]["key_exprs"] == ["tritrack/hall/clock"]
+        assert (rules[name]["flows"], rules[name]["messages"]) == (["ingress"], ["query"])
+
+
+def test_all_parts_hear_everything_and_may_ask_for_the_newest_guide_and_cameras() -> None:
+    told = access_of("hall")
+    is_told, hears, asks = told["rules"][:3]
+    assert is_told["key_exprs"] == hears["key_exprs"] == ["tritrack/hall/**"]
+    assert asks["key_exprs"] == ["tritrack/hall/body/guide", "tritrack/hall/cameras"]
+    assert [rule["flows"] for rule in (is_told, hears, asks)] == [
+        ["egress"],
+        ["ingress"],
+        ["ingress"],
+    ]
+    assert asks["messages"] == ["query"]
+    assert hears["messages"] == [
+        "declare_subscriber",
+        "declare_liveliness_subscriber",
+        "liveliness_query",
+    ]
+    assert {"put", "reply", "delete", "query", *hears["messages"]} < {*is_told["messages"]}
+    subjects = {one["id"]: one["cert_common_names"] for one in told["subjects"]}
+    assert {*subjects["all"]} == {*PARTS} - {"integrator"}
+    whose = {policy["subjects"][0]: policy["rules"] for policy in told["policies"]}
+    assert whose.pop("all") == [rule["id"] for rule in (is_told, hears, asks)]
+    assert {part: subjects[part] for part in whose} == {part: [part] for part in whose}
+    assert "client" not in whose
+    for part, own in whose.items():
+        assert own
+        assert all(rule.startswith(f"{part} ") for rule in own)
+    assert sum(map(len, whose.values())) == len(told["rules"]) - 3

@@ -14,7 +14,7 @@ from moving import random_joints
 pytest.importorskip("cryptography", reason="keys are an extra: install tritrack[keys]")
 
 from common.bus.bus import BusError, open_client, open_hub
-from common.bus.bus_keys import HUB, PARTS, KeysError, Part, refuse_missing
+from common.bus.bus_keys import HUB, PARTS, KeysError, Part, refuse_missing, tls_of
 from common.bus.inbox import Alive
 from common.bus.messages import Body
 from common.config.part_settings import BusSettings
@@ -153,3 +153,21 @@ def test_a_plain_bus_is_as_before() -> None:
             came = heard.take(0.1)
     assert came is not None
     assert came.frame == 3
+
+
+@pytest.mark.parametrize(("part", "side"), [("integrator", "listen"), ("viewer2", "connect")])
+def test_each_side_shows_its_own_certificate_and_checks_the_others(
+    tmp_path: Path, part: Part, side: str
+) -> None:
+    for name in ("ca.pem", f"{part}.pem", f"{part}.key"):
+        (tmp_path / name).touch()
+    assert tls_of(tmp_path, part) == {
+        "root_ca_certificate": str(tmp_path / "ca.pem"),
+        f"{side}_certificate": str(tmp_path / f"{part}.pem"),
+        f"{side}_private_key": str(tmp_path / f"{part}.key"),
+        "enable_mtls": True,
+        "verify_name_on_connect": True,
+    }
+    (tmp_path / f"{part}.key").unlink()
+    with pytest.raises(KeysError, match=rf"{part}\.key: no such file or directory; copy it from"):
+        tls_of(tmp_path, part)

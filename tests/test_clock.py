@@ -10,8 +10,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from common.bus.bus import Bus
-from common.bus.clock import HISTORY, Exchange, Offset, followed, init, step
-from common.bus.control_messages import ClockAnswer
+from common.bus.clock import (
+    ASK_S,
+    EXCHANGES,
+    HISTORY,
+    Exchange,
+    Offset,
+    asked,
+    exchanged,
+    followed,
+    init,
+    step,
+)
+from common.bus.control_messages import ClockAnswer, ClockQuestion
 
 delays = st.floats(0.0, 5.0)
 
@@ -96,3 +107,68 @@ def test_a_clock_that_drifts_is_followed_while_a_run_goes_on() -> None:
     room.away.clear()
     time.sleep(0.02)
     assert len(told) == known, "the thread is over"
+
+
+class Room:
+    """A room 100 s ahead that answers so many questions, each after its own way there and back."""
+
+    def __init__(self, *trips_s: tuple[float, float]) -> None:
+        self.now_s, self.trips_s = 10.0, [*trips_s]
+        self.asked: list[tuple[object, object, float]] = []
+
+    def ask(self, question: object, kind: object, timeout_s: float) -> ClockAnswer | None:
+        self.asked.append((question, kind, timeout_s))
+        if not self.trips_s:
+            return None
+        there_s, back_s = self.trips_s.pop(0)
+        self.now_s += there_s
+        answer = ClockAnswer(now_s=self.now_s + 100.0, start_s=7.0)
+        self.now_s += back_s
+        return answer
+
+
+def in_room(*trips_s: tuple[float, float], monkeypatch: pytest.MonkeyPatch) -> Any:
+    room = Room(*trips_s)
+    monkeypatch.setattr("time.monotonic", lambda: room.now_s)
+    return room
+
+
+def test_an_exchange_is_when_it_was_asked_what_was_said_and_when_it_came(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    room, question = in_room((1.0, 3.0), monkeypatch=monkeypatch), ClockQuestion(viewer=2)
+    answer = ClockAnswer(now_s=111.0, start_s=7.0)
+    assert exchanged(room, question) == (Exchange(10.0, 111.0, 14.0), answer)
+    assert room.asked == [(question, ClockAnswer, ASK_S)]
+    assert exchanged(room, question) is None
+
+
+def test_the_quickest_of_five_answers_is_believed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By hand: 0.1 s there and 0.3 back err by 0.1; a sixth would be better and is not asked."""
+    trips_s = [(1.0, 2.0), (0.1, 0.3), (4.0, 0.0), (0.5, 0.5), (2.0, 2.0), (0.0, 0.0)]
+    room = in_room(*trips_s, monkeypatch=monkeypatch)
+    got = asked(room)
+    assert (got.offset_s, got.error_s) == pytest.approx((99.9, 0.2))
+    assert len(room.asked) == EXCHANGES == 5
+
+
+def test_where_no_one_answers_any_more_the_answers_so_far_hold(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    room = in_room((1.0, 2.0), (3.0, 2.0), monkeypatch=monkeypatch)
+    assert asked(room) == Offset(99.5, 1.5)
+    assert len(room.asked) == 3
+    assert asked(room) == Offset(0.0, 0.0)
+    assert len(room.asked) == 4
+
+
+def test_a_clock_is_told_from_the_fifth_answer_on() -> None:
+    """Before that a slow link would tell what it does not know; who is silent in between is not
+    counted."""
+    for answers, tells in ((4, 0), (5, 1), (6, 2)):
+        room, told = Room(*[(0.25, 0.25)] * answers), list[float]()
+        with followed(cast(Bus, room), told.append, again_s=0.001):
+            until_s = time.monotonic() + 5.0
+            while len(room.asked) < answers + 2 and time.monotonic() < until_s:
+                time.sleep(0.001)
+        assert len(told) == tells

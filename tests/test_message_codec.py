@@ -30,6 +30,7 @@ from common.bus.message_codec import (
     encode,
     key_of,
     pattern_of,
+    refuse_size,
 )
 from common.bus.messages import (
     PROTOCOL,
@@ -434,3 +435,92 @@ def test_a_silhouette_of_the_papers_size_has_2400_bytes() -> None:
         REPORT, width=160, height=120, silhouette=packed, fit=None, landmarks=None
     )
     assert len(encode(report)) < 3500
+
+
+@pytest.mark.parametrize(
+    ("message", "field", "value", "says"),
+    [
+        (
+            REPORT,
+            "measure",
+            msgspec.structs.replace(MEASURE, height_px=0.0),
+            "without height or de",
+        ),
+        (
+            REPORT,
+            "measure",
+            msgspec.structs.replace(MEASURE, depth_px=0.0),
+            "without height or dep",
+        ),
+        (BODY, "extremities_m", ((0.0, 0.0, 0.0),) * 6, "extremities_m has 6 entries, not 7"),
+        (BODY, "extremities_px", (((0.0, 0.0),) * 7,) * 3, "extremities_px has 3 entries, not 2"),
+        (BODY, "extremities_px", (((0.0, 0.0),) * 6,), "extremities_px has no 7 places in a came"),
+        (BODY, "extremities_confidence", (0.5,) * 8, "extremities_confidence has 8 entries, not"),
+        (BODY, "moved", (1, 2, 1), "moved has 3 entries, not 2"),
+        (GUIDE, "pose", (1.0,) * 24 + (1.1e9,), r"pose holds 1100000000\.0, at most 1e\+09 is t"),
+        (BODY, "joints_m", ((0.0, -1.1e9, 0.0),) * 15, r"joints_m holds -1100000000\.0, at most"),
+        (REPORT, "angles_deg", {"r_shoulder_x": 2e9}, r"angles_deg holds 2000000000\.0"),
+        (REPORT, "shift", Shift(0.0, 2e9, 0.0), r"shift holds 2000000000\.0"),
+    ],
+)
+def test_what_no_body_has_is_refused_and_named(
+    message: Message, field: str, value: object, says: str
+) -> None:
+    with pytest.raises(MalformedMessage, match=says):
+        decode(encode(msgspec.structs.replace(message, **{field: value})), type(message))
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "says"),
+    [
+        ("joints_px", ((1.0, 2.0),) * 14, "joints_px has 14 entries, not 15"),
+        ("confidence", (0.5,) * 16, "confidence has 16 entries, not 15"),
+        ("extremities_px", ((1.0, 2.0),) * 6, "extremities_px has no 7 entries"),
+        ("extremities_confidence", (0.5,) * 8, "extremities_confidence has no 7 entries"),
+        ("extremities_px", (), "extremities without their confidence"),
+        ("extremities_confidence", (0.5,) * 6 + (1.01,), "confidences beyond 0 to 1"),
+        ("confidence", (-0.01,) + (0.5,) * 14, "confidences beyond 0 to 1"),
+        ("second_px", ((1.0, 2.0),) * 14, "second_px has no 15 entries"),
+        ("second_confidence", (0.5,) * 16, "second_confidence has no 15 entries"),
+        ("second_confidence", (), "second places without their confidence"),
+        ("second_confidence", (-0.01,) * 15, "confidences beyond 0 to 1"),
+        ("facing_confidence", 1.01, "confidences beyond 0 to 1"),
+        ("facing_deg", -180.5, "landmarks that face -180.5 degrees"),
+    ],
+)
+def test_landmarks_are_refused_with_what_is_wrong(field: str, value: object, says: str) -> None:
+    found = msgspec.structs.replace(LANDMARKS, **{field: value})
+    with pytest.raises(MalformedMessage, match=says):
+        decode(encode(msgspec.structs.replace(REPORT, landmarks=found)), Report)
+
+
+AT_THE_EDGE = {
+    "a box of the whole picture": {"box": Box(left=0, right=12, top=0, bottom=2)},
+    "a box of one pixel": {"box": Box(left=12, right=12, top=0, bottom=0)},
+    "the turned picture": {"upright": LIES},
+    "the least measure": {"measure": msgspec.structs.replace(MEASURE, depth_px=1e-9)},
+    "thirty years": {"captured_s": 1e9, "clock_s": -1e9},
+    "a large sum": {"thresholds_px": (6e8, 6e8)},
+    "facing away": {"landmarks": msgspec.structs.replace(LANDMARKS, facing_deg=180.0)},
+    "the other way round": {"landmarks": msgspec.structs.replace(LANDMARKS, facing_deg=-180.0)},
+    "surely": {
+        "landmarks": msgspec.structs.replace(
+            LANDMARKS, facing_confidence=1.0, second_confidence=(1.0,) * 15
+        )
+    },
+    "a lying stick body": {
+        "fit": msgspec.structs.replace(FIT, breadth=0.0, score=1.0, stature_px=1e-9)
+    },
+}
+
+
+@pytest.mark.parametrize("change", AT_THE_EDGE.values(), ids=AT_THE_EDGE.keys())
+def test_what_a_viewer_just_may_say_is_let_through(change: dict[str, Any]) -> None:
+    report = msgspec.structs.replace(REPORT, **change)
+    assert decode(encode(report), Report) == report
+
+
+def test_a_message_of_just_a_megabyte_is_looked_at() -> None:
+    refuse_size(MAX_BYTES)
+    with pytest.raises(MalformedMessage, match=r"^1000001 bytes, at most 1000000 are taken$"):
+        refuse_size(MAX_BYTES + 1)

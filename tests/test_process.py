@@ -2,18 +2,21 @@
 
 import logging
 import os
+import re
 import signal
 import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import cv2
+import psutil
 import pytest
 from local_bus import LocalBus
 
-from common.bus.bus import open_client
+from common.bus.bus import Stopped, open_client
 from common.bus.control_messages import Pulse
-from common.bus.process import BEAT_S, Heart, ProcessContext, process, start_log
+from common.bus.process import BEAT_S, Heart, ProcessContext, logged, process, start_log
 from common.bus.rate import Pace
 from common.config.part_settings import BusSettings
 
@@ -100,3 +103,82 @@ def test_a_heart_beats_once_a_second_and_at_every_change(monkeypatch: pytest.Mon
     assert (pulses[1].process, pulses[1].dropped) == ("viewer 1", 2)
     assert pulses[1].memory_mb > 10
     assert BEAT_S == 1.0
+
+
+def test_a_heart_tells_what_its_pace_counts_and_hurries_where_there_is_news(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Ten frames of 0.1 s that are done 10, 20, 30 ms after they were due, the last 300."""
+    now_s = [100.0]
+    monkeypatch.setattr("time.monotonic", lambda: now_s[0])
+    bus, pace = LocalBus(), Pace(0.1)
+    heard = bus.subscribe(Pulse)
+    for n in range(10):
+        pace.done(0.1 * n, 0.1 * n + (0.3 if n == 9 else 0.01 * (n + 1)))
+    heart = Heart(bus, "viewer 2", pace)
+    heart.beat("running")
+    now_s[0] += 0.5
+    heart.beat("running", "not yet")
+    heart.hurry()
+    heart.beat("running", "now", malformed=3)
+    first, second = heard.drain()
+    assert (first.frames, first.deadline_misses, first.detail) == (10, 1, "")
+    assert (first.latency_p50_ms, first.latency_p99_ms) == pytest.approx((50.0, 300.0))
+    assert first.fps == pytest.approx(9 / 1.19)
+    assert (second.detail, second.malformed) == ("now", 3)
+
+
+def test_a_thread_has_no_memory_of_its_own_and_a_process_has_megabytes() -> None:
+    bus = LocalBus()
+    heard, heart = bus.subscribe(Pulse), Heart(bus, "metrics", Pace(1.0))
+    heart.beat("ready")
+    thread = threading.Thread(target=heart.beat, args=("ended",))
+    thread.start()
+    thread.join()
+    own, none = (pulse.memory_mb for pulse in heard.drain())
+    rss = psutil.Process().memory_info().rss
+    assert own == pytest.approx(rss / 1e6, rel=0.1)
+    assert none == 0.0
+
+
+def test_a_part_within_its_supervisors_process_leaves_signals_and_log_alone(tmp_path: Path) -> None:
+    stop, log = threading.Event(), tmp_path / "log.txt"
+    signals = signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGINT)
+    cv2.setNumThreads(2)
+    with process("metrics", ProcessContext(log=log, stop=stop)) as own:
+        assert own is stop
+        assert cv2.getNumThreads() == 1
+        assert (signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGINT)) == signals
+        raise Stopped
+    assert not log.exists()
+
+
+def test_who_is_stopped_leaves_in_order_and_a_fault_is_not_swallowed() -> None:
+    with process("viewer 1", ProcessContext()):
+        raise Stopped
+    for context in (ProcessContext(), ProcessContext(stop=threading.Event())):
+        with pytest.raises(RuntimeError), process("viewer 1", context):
+            raise RuntimeError
+
+
+def test_a_line_of_the_log_has_its_time_its_process_and_its_level(tmp_path: Path) -> None:
+    start_log("viewer 1", tmp_path / "log.txt", "WARNING")
+    logging.getLogger("x").info("not wanted")
+    logging.getLogger("x").error("broken")
+    (line,) = (tmp_path / "log.txt").read_text().splitlines()
+    assert re.fullmatch(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} viewer 1    ERROR   broken", line)
+
+
+def test_what_the_supervisor_logs_goes_to_the_runs_log_alone_while_it_runs(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    path, own = tmp_path / "log.txt", logging.getLogger("tritrack")
+    with logged("supervisor", path):
+        own.warning("within")
+        logging.getLogger("tritrack.live").warning("deeper")
+    own.warning("after")
+    lines = path.read_text().splitlines()
+    assert [line.split(" supervisor  WARNING ")[1] for line in lines] == ["within", "deeper"]
+    assert caplog.messages == ["after"]
+    assert own.propagate
+    assert not own.handlers
