@@ -107,3 +107,66 @@ def test_cameras_that_look_one_way_or_at_each_other_are_told(apart_deg: float, s
     told = nearly_one_view(msgspec.structs.replace(GOOD, cameras=(first, other)))
     assert said in told
     assert bool(told) == bool(said)
+
+
+def placed(*centres_m: tuple[float, float, float]) -> Rig:
+    """The paper's rig with its cameras elsewhere."""
+    cameras = tuple(
+        msgspec.structs.replace(camera, t=as_row(-np.array(camera.R) @ place))
+        for camera, place in zip(GOOD.cameras, centres_m, strict=True)
+    )
+    return msgspec.structs.replace(GOOD, cameras=cameras)
+
+
+@pytest.mark.parametrize(
+    ("second_m", "said"),
+    [
+        ((2.0, 1.04, 3.0), "both cameras stand at one place; calibrate again"),
+        ((2.0, 1.06, 3.0), ""),
+        ((2.0, 1.0, 62.9), ""),
+        ((2.0, 1.0, -57.9), "the cameras are 61 m apart: is t in millimetres"),
+        ((2.0, -0.99, 8.0), ""),
+        ((2.0, -1.01, 8.0), r"cam2 stands 1\.0 m below the floor, y = 0; calibrate"),
+    ],
+)
+def test_cameras_stand_apart_and_over_the_floor(
+    second_m: tuple[float, float, float], said: str
+) -> None:
+    """Five centimetres, sixty metres, one metre down."""
+    rig = placed((2.0, 1.0, 3.0), second_m)
+    if said:
+        with pytest.raises(CalibrationError, match=rf"^here: {said}"):
+            refuse_absurd(rig, "here")
+    else:
+        refuse_absurd(rig, "here")
+
+
+@pytest.mark.parametrize("row", [0, 1])
+@pytest.mark.parametrize(
+    ("share", "well"), [(0.0, False), (0.01, True), (0.99, True), (1.0, False)]
+)
+def test_the_middle_of_a_lens_lies_within_its_picture(row: int, share: float, well: bool) -> None:
+    K = np.array(GOOD.cameras[1].K)
+    K[row, 2] = share * (160, 120)[row]
+    second = msgspec.structs.replace(GOOD.cameras[1], K=as_matrix(K))
+    rig = msgspec.structs.replace(GOOD, cameras=(GOOD.cameras[0], second))
+    if well:
+        refuse_absurd(rig, "here")
+    else:
+        place = rf"\({K[0, 2]:.0f}, {K[1, 2]:.0f}\), outside its 160x120"
+        with pytest.raises(CalibrationError, match=rf"^here: cam2 has its middle at {place}"):
+            refuse_absurd(rig, "here")
+
+
+@pytest.mark.parametrize(
+    ("apart_deg", "odd"), [(29.0, True), (31.0, False), (149.0, False), (151.0, True)]
+)
+def test_thirty_degrees_apart_are_two_views(apart_deg: float, odd: bool) -> None:
+    first = GOOD.cameras[0]
+    a = math.radians(apart_deg)
+    turn = np.array([[math.cos(a), 0, math.sin(a)], [0, 1, 0], [-math.sin(a), 0, math.cos(a)]])
+    other = msgspec.structs.replace(first, R=as_matrix(np.array(first.R) @ turn))
+    said = nearly_one_view(msgspec.structs.replace(GOOD, cameras=(first, other)))
+    assert said.startswith(f"the cameras look {apart_deg:.0f} degrees apart: " if odd else "")
+    assert bool(said) == odd
+    assert nearly_one_view(msgspec.structs.replace(GOOD, cameras=(first,))) == ""

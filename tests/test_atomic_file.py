@@ -1,12 +1,13 @@
 """Files that take another's place: whole ones, of ordinary files alone."""
 
+import errno
 import os
 import stat
 from pathlib import Path
 
 import pytest
 
-from common.atomic_file import FileRefused, replacing
+from common.atomic_file import FileRefused, refuse_special, refuse_to_replace, replacing, unwritten
 
 
 def test_a_file_takes_the_place_of_one_when_all_is_written(tmp_path: Path) -> None:
@@ -44,3 +45,47 @@ def test_no_file_takes_the_place_of_what_is_no_ordinary_file(tmp_path: Path) -> 
             new.write_text("")
     assert stat.S_ISFIFO(pipe.stat().st_mode)
     assert sorted(tmp_path.iterdir()) == [tmp_path / "linked", pipe]
+
+
+def test_what_is_there_is_lost_only_where_it_may_be(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    refuse_to_replace(path, replace=False)
+    path.touch()
+    refuse_to_replace(path, replace=True)
+    with pytest.raises(FileRefused, match=rf"^{path} is there already: name another --out, or add"):
+        refuse_to_replace(path, replace=False)
+    with pytest.raises(FileRefused, match="name another --clip, or add --force"):
+        refuse_to_replace(path, False, "--clip")
+
+
+def test_a_file_a_folder_and_nothing_are_ordinary(tmp_path: Path) -> None:
+    (tmp_path / "a").touch()
+    for name in (".", "a", "b"):
+        refuse_special(tmp_path / name)
+
+
+def test_what_is_not_whole_yet_is_hidden_beside_it_with_its_ending(tmp_path: Path) -> None:
+    """Two that write at once do not meet."""
+    path = tmp_path / "a.tar.gz"
+    with replacing(path) as one, replacing(path) as other:
+        assert one != other
+        assert {new.parent for new in (one, other)} == {tmp_path}
+        assert all(new.name.startswith(".a.tar.") and new.suffix == ".gz" for new in (one, other))
+        assert len(one.name) == len(".a.tar..gz") + 16
+        assert not path.exists()
+        one.write_text("one")
+        other.write_text("other")
+    assert path.read_text() == "one"
+
+
+@pytest.mark.parametrize(
+    ("number", "said"),
+    [
+        (errno.ENOSPC, "cannot write a/b: No space left on device; free some space or go away"),
+        (errno.EDQUOT, "cannot write a/b: Disk quota exceeded; free some space or go away"),
+        (errno.EACCES, "cannot write a/b: Permission denied; go away"),
+    ],
+)
+def test_space_is_a_cure_where_space_is_what_lacks(number: int, said: str) -> None:
+    assert unwritten(Path("a/b"), OSError(number, os.strerror(number)), "go away") == said
+    assert unwritten(Path("a"), OSError("odd"), "go away") == "cannot write a: odd; go away"

@@ -260,3 +260,36 @@ def test_rays_of_many_pixels_are_those_of_each() -> None:
         pixels = np.random.default_rng(4).uniform(0.0, 320.0, (9, 2))
         each = [ray(camera, (float(u), float(v))) for u, v in pixels]
         assert rays(camera, pixels) == pytest.approx(np.array(each), abs=1e-12)
+
+
+@pytest.mark.parametrize(("width", "well"), [(314, True), (313, False), (326, True), (327, False)])
+def test_pictures_may_differ_by_two_hundredths_in_their_shape(width: int, well: bool) -> None:
+    """Of 320x240; each way is scaled by itself."""
+    if not well:
+        with pytest.raises(
+            CalibrationError, match=f"^it is for 320x240 pictures, .* {width}x240: "
+        ):
+            fitted(rig_of_size(), (width, 240), "it")
+        return
+    rig = fitted(rig_of_size(), (2 * width, 480), "it")
+    assert (rig.width, rig.height) == (2 * width, 480)
+    for camera, focal_px in zip(rig.cameras, (401.0, 380.0), strict=True):
+        across = width / 160
+        due = ((focal_px * across, 0, 160 * across), (0, 2 * focal_px, 240), (0, 0, 1))
+        assert np.array(camera.K) == pytest.approx(np.array(due))
+
+
+@pytest.mark.parametrize("change", ["turned", "aside 1", "aside 2", "three", "one"])
+def test_a_rig_that_nearly_stands_as_the_papers_is_none(change: str) -> None:
+    rig = rig_of_size()
+    one, two = rig.cameras
+    slight = np.eye(3) + 1e-5 * np.array([[0.0, 0, 1], [0, 0, 0], [-1, 0, 0]])
+    cameras = {
+        "turned": (one, msgspec.structs.replace(two, R=as_matrix(slight @ np.array(two.R)))),
+        "aside 1": (msgspec.structs.replace(one, t=(1e-5, *one.t[1:])), two),
+        "aside 2": (one, msgspec.structs.replace(two, t=(1e-5, *two.t[1:]))),
+        "three": (one, two, two),
+        "one": (one,),
+    }[change]
+    assert as_paper_rig(rig) == (401.0, 380.0, 4.5, 4.0)
+    assert as_paper_rig(msgspec.structs.replace(rig, cameras=cameras)) is None

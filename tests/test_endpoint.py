@@ -4,7 +4,7 @@ import socket
 
 import pytest
 
-from common.endpoint import is_endpoint, is_exposed, is_host, is_loopback
+from common.endpoint import address_of, is_endpoint, is_exposed, is_host, is_loopback
 
 
 @pytest.mark.parametrize(
@@ -68,3 +68,25 @@ def test_what_cannot_be_looked_up_is_no_host(host: str) -> None:
     assert not is_host(host)
     with pytest.raises((UnicodeError, ValueError, OSError)):
         socket.getaddrinfo(host, 80)
+
+
+def test_an_address_is_a_host_and_a_port() -> None:
+    assert address_of("127.0.0.1:9464") == ("127.0.0.1", 9464)
+    assert address_of("[::1]:65535") == ("[::1]", 65535)
+    assert address_of("rig.local:1") == ("rig.local", 1)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "9464", ":9464", "a:", "a:0", "a:65536", "a:-1", "a b:1", "a:x"]
+)
+def test_what_is_no_address_is_refused_as_it_was_written(text: str) -> None:
+    with pytest.raises(ValueError, match=f"^metrics must look like 127.0.0.1:9464, got {text!r}$"):
+        address_of(text)
+
+
+def test_a_port_may_be_the_last_and_a_part_of_a_name_63_letters() -> None:
+    assert is_endpoint("tcp/a:65535")
+    assert is_endpoint("tcp/a:1")
+    assert is_host("a" * 63)
+    assert not is_host("a\u200bb")
+    assert not is_endpoint("tcp/a..b:7447")

@@ -47,3 +47,20 @@ def test_objects_are_not_read(tmp_path: Path) -> None:
 def test_a_missing_file_is_told_apart(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         read_arrays(tmp_path / "gone.npz", 10_000)
+
+
+def test_a_file_may_be_as_large_as_is_taken_and_lies_in_a_folder_that_is_made(
+    tmp_path: Path,
+) -> None:
+    """By hand: an array's head of 128 bytes, and twelve numbers of eight."""
+    path = tmp_path / "deep" / "n.npz"
+    write_arrays(path, {"a": NUMBERS["a"]})
+    assert read_arrays(path, 224)["a"].shape == (3, 4)
+    with pytest.raises(DamagedFile, match=r"^224 bytes unpacked, at most 223 are taken$"):
+        read_arrays(path, 223)
+
+
+def test_a_reason_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "n.npz").write_text("no archive")
+    with pytest.raises(DamagedFile, match=r"^File is not a zip file$"):
+        read_arrays(tmp_path / "n.npz", 10_000)
