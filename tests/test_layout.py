@@ -54,6 +54,7 @@ SYSTEM = {
     "system_wheel": "the wheel, installed beside files of the same names",
     "system_namespaces": "a room on four simulated hosts: their clocks, slow, lossy and cut cables",
     "system_seeds": "what a seed makes of people, motions, rigs, rooms and pictures",
+    "system_puppet": "bodies of the Anny model where it is not installed: a puppet of its bones",
     "system_naming": "from a clip to the name of its posture",
 }
 """Tests of more than one module; every other file of tests bears its module's name."""

@@ -143,3 +143,8 @@ def test_notes_that_repeat_what_holds_are_left_out_and_those_that_follow_stay() 
         Note(7, None, {"head": "toward"}, {"l_wrist": (1.0, 2.0)}),
         Note(20, "right"),
     )
+
+
+def test_what_is_given_back_though_no_one_took_it_is_no_note() -> None:
+    given_back = Note(3, "auto", {"torso": "auto"}, {"l_wrist": "auto"})
+    assert noted(Notes(), given_back) == Notes()

@@ -46,7 +46,7 @@ def _update(table: Any, note: Note) -> None:
     elif table.get("orientation") != note.orientation:
         table["orientation"] = note.orientation
     for name, values in (("depth", note.depth), ("joints_px", note.joints_px)):
-        said = {key: value if value == "auto" else _plain(value) for key, value in values.items()}
+        said = {key: _plain(value) for key, value in values.items()}
         if not said:
             table.pop(name, None)
             continue
