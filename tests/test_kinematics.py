@@ -8,8 +8,16 @@ from hypothesis import strategies as st
 from posing import BODY, posed
 from scipy.spatial.transform import Rotation
 
-from common.body.body import JOINT_NAMES, LIMBS, POSE_INDEX, Elliptic, Vector, rest_pose
-from common.body.kinematics import joints, limb_frames, segments
+from common.body.body import (
+    JOINT_NAMES,
+    LIMBS,
+    POSE_INDEX,
+    Elliptic,
+    Vector,
+    body_of_lengths,
+    rest_pose,
+)
+from common.body.kinematics import FRAME, joints, limb_frames, place_limbs, segments
 from common.body.proportions import body_vector, thesis_bdp
 
 degrees = st.floats(-360.0, 360.0)
@@ -154,3 +162,49 @@ def test_landmarks_of_a_limb_keep_their_distances_while_it_is_straight(pose: Vec
     assert np.linalg.norm(np.cross(upper, lower)) == pytest.approx(0.0, abs=1e-12)
     ratio = np.linalg.norm(lower) / np.linalg.norm(upper)
     assert ratio == pytest.approx(0.146 / 0.186, abs=0.01)  # forearm over upper arm, adults
+
+
+@given(poses)
+def test_joints_of_a_bent_body_lie_so_far_along_its_own_limbs(pose: Vector) -> None:
+    """A body whose sides differ: each joint's way from the limb's beginning, walked by hand."""
+    body = body_vector(body_of_lengths([0.2 + 0.01 * n for n in range(26)]))
+    ends, frames = segments(body, pose), limb_frames(body, pose)
+    turn = frames[0, 3:].reshape(3, 3)
+    places = dict(zip(JOINT_NAMES, joints(body, pose), strict=True))
+    assert places["pelvis"] == pytest.approx(pose[:3] + body[37] * turn[:, 1])
+    assert places["neck"] == pytest.approx(ends[0, 1])
+    assert places["head_top"] == pytest.approx(ends[1, 1])
+
+    def walked(limb: str, way_m: float) -> Vector:
+        for part in (f"{limb[0]}_upper{limb[1:]}", f"{limb[0]}_lower{limb[1:]}"):
+            start, end = ends[LIMBS.index(part)]
+            length_m = float(np.linalg.norm(end - start))
+            if way_m <= length_m or "lower" in part:
+                break
+            way_m -= length_m
+        return np.asarray(start + way_m * (end - start) / length_m)
+
+    for k, (side, sign) in enumerate((("r", 1.0), ("l", -1.0))):
+        inwards = sign * body[38] * turn[:, 0]
+        shoulder, hip = (ends[LIMBS.index(f"{side}_upper_{part}"), 0] for part in ("arm", "leg"))
+        assert places[f"{side}_shoulder"] == pytest.approx(shoulder + inwards)
+        assert places[f"{side}_hip"] == pytest.approx(hip + body[37] * turn[:, 1])
+        for name, at, limb, off in (
+            ("elbow", 29, "arm", inwards),
+            ("wrist", 31, "arm", inwards),
+            ("knee", 33, "leg", 0.0),
+            ("ankle", 35, "leg", 0.0),
+        ):
+            due = walked(f"{side}_{limb}", body[at + k]) + off
+            assert places[f"{side}_{name}"] == pytest.approx(due, abs=1e-9)
+
+
+def test_limbs_that_are_not_asked_for_are_left_alone_and_a_lower_one_has_its_upper() -> None:
+    frames = np.full((10, FRAME), 7.0)
+    pose = posed(r_shoulder_z=40.0, l_knee_x=-30.0, torso_y=20.0)
+    place_limbs(BODY, pose, 1 << LIMBS.index("l_lower_leg"), frames)
+    placed = [name for name, frame in zip(LIMBS, frames, strict=True) if (frame != 7.0).any()]
+    assert placed == ["torso", "l_upper_leg", "l_lower_leg"]
+    whole = limb_frames(BODY, pose)
+    for name in placed:
+        assert frames[LIMBS.index(name)] == pytest.approx(whole[LIMBS.index(name)])

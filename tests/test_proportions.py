@@ -2,6 +2,7 @@
 
 import pytest
 
+from common.body.body import body_of_lengths
 from common.body.proportions import (
     THESIS_DIAMETERS,
     THESIS_RATIOS,
@@ -40,3 +41,31 @@ def test_shoulders_and_hips_are_where_the_paper_puts_them() -> None:
     assert body[26] == pytest.approx(radius)
     assert body[27] == pytest.approx(bdp.torso.height - 0.45 * radius)
     assert body[28] + bdp.r_upper_leg.long_radius == pytest.approx(radius)
+
+
+def test_joints_of_a_body_whose_sides_differ_lie_by_each_sides_own_lengths() -> None:
+    """Hip 0.530, knee 0.285 and ankle 0.039 statures over the sole, shoulders 0.20 apart; elbow and
+    wrist at their shares of the arm from the trunk's axis of the shoulder."""
+    bdp = body_of_lengths([0.01 * n + 0.2 for n in range(26)])
+    body = body_vector(bdp)
+    tall = stature(bdp)
+    assert tall == pytest.approx(
+        bdp.head.height + bdp.torso.height + bdp.r_upper_leg.height + bdp.r_lower_leg.height
+    )
+    radius = bdp.torso.long_radius
+    inset = radius - 0.1 * tall
+    assert body[38] == pytest.approx(inset)
+    assert body[26:29] == pytest.approx(
+        [radius, bdp.torso.height - 0.45 * radius, radius - bdp.r_upper_leg.long_radius]
+    )
+    leg = bdp.r_upper_leg.height + bdp.r_lower_leg.height
+    assert body[37] == pytest.approx(0.530 * tall - leg)
+    legs = [leg, bdp.l_upper_leg.height + bdp.l_lower_leg.height]
+    assert body[33:35] == pytest.approx([own - 0.285 * tall for own in legs])
+    assert body[35:37] == pytest.approx([own - 0.039 * tall for own in legs])
+    arms = [
+        bdp.r_upper_arm.height + bdp.r_lower_arm.height,
+        bdp.l_upper_arm.height + bdp.l_lower_arm.height,
+    ]
+    assert body[29:31] == pytest.approx([0.186 / 0.415 * (inset + own) for own in arms])
+    assert body[31:33] == pytest.approx([0.332 / 0.415 * (inset + own) for own in arms])

@@ -66,3 +66,43 @@ def test_joints_lead_back_to_the_pose_that_has_them(man: object) -> None:
     pose[BREADTH] = 0.7
     pose[ANGLE + 7], pose[ANGLE + 9], pose[RATIO + 9] = 10.0, 80.0, 0.5
     assert pose_of(man, joints_px(man, pose), 100.0) == pytest.approx(pose)
+
+
+def test_a_body_that_leans_has_its_parts_along_and_across_its_trunk() -> None:
+    """By complex numbers, rows down: e^(-ia) is the direction of an angle a."""
+
+    def turn(deg: float) -> complex:
+        return complex(np.exp(-1j * np.radians(deg)))
+
+    rng = np.random.default_rng(3)
+    pose = np.ones(25)
+    pose[[0, 1, 2, 3]] = 50.0, 80.0, 120.0, 0.6
+    pose[ANGLE:RATIO], pose[RATIO : RATIO + 10] = rng.uniform(0, 360, 10), rng.uniform(0.3, 1, 10)
+    size, lengths = 120.0, ADULT.lengths
+    trunk, across = turn(pose[ANGLE]), turn(pose[ANGLE] - 90.0)
+    pelvis = 50.0 + 80.0j
+    reach = [lengths[i] * size * pose[RATIO + i] * turn(pose[ANGLE + i]) for i in range(10)]
+    neck = pelvis + reach[0]
+    due = {"pelvis": pelvis, "neck": neck, "head_top": neck + reach[1]}
+    base = neck - lengths[11] * size * pose[RATIO] * trunk
+    for side, sign, k in (("r", -1.0, 0), ("l", 1.0, 1)):
+        shoulder = base + sign * lengths[10] * size * 0.6 * across
+        hip = pelvis + sign * lengths[12] * size * 0.6 * across
+        due |= {f"{side}_shoulder": shoulder, f"{side}_hip": hip}
+        due |= {f"{side}_elbow": shoulder + reach[6 + k], f"{side}_knee": hip + reach[2 + k]}
+        due[f"{side}_wrist"] = due[f"{side}_elbow"] + reach[8 + k]
+        due[f"{side}_ankle"] = due[f"{side}_knee"] + reach[4 + k]
+    found = joints_px(ADULT, pose)
+    for name, at in AT.items():
+        assert found[at] == pytest.approx([due[name].real, due[name].imag]), name
+
+
+def test_a_limb_that_is_longer_than_it_can_be_shows_all_of_its_length() -> None:
+    pose = standing(50.0, 60.0, 100.0)
+    joints = joints_px(ADULT, pose)
+    joints[AT["l_wrist"]] += [0.0, 9.0]
+    joints[[AT["l_shoulder"], AT["r_shoulder"]]] += [[30.0, 0.0], [-30.0, 0.0]]
+    found = pose_of(ADULT, joints, 100.0)
+    assert (found[RATIO + 9], found[BREADTH]) == (1.0, 1.0)
+    joints[[AT["l_shoulder"], AT["r_shoulder"]]] = [[53.0, 40.0], [50.0, 44.0]]
+    assert pose_of(ADULT, joints, 100.0)[BREADTH] == pytest.approx(5.0 / (2 * 9.8))
