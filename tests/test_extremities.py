@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from common.body.body import JOINT_NAMES
-from common.body.extremities import ALL_JOINT_NAMES, EXTREMITY_NAMES, extremities
+from common.body.extremities import ALL_JOINT_NAMES, EXTREMITY_NAMES, _flat, extremities
 
 STANDING = {
     "pelvis": (0.0, 0.93, 0.0),
@@ -85,3 +85,33 @@ def test_many_poses_at_once_are_each_as_alone_and_none_stays_none() -> None:
 def test_the_15_joints_come_first() -> None:
     assert ALL_JOINT_NAMES[:15] == JOINT_NAMES
     assert len(ALL_JOINT_NAMES) == 22
+
+
+@pytest.mark.parametrize("ankle", [0.045, 0.06, 0.09])
+@pytest.mark.parametrize("way_deg", [-70.0, 70.0])
+def test_a_foot_that_would_pass_through_the_floor_stands_on_its_toe_or_its_heel(
+    ankle: float, way_deg: float
+) -> None:
+    """By its triangle, in statures: 0.029 under the ankle, toe 0.11552 ahead, heel 0.03648 behind;
+    what bears is 0.010 high."""
+    way = np.radians(way_deg)
+    ahead = np.array([0.6 * np.cos(way), np.sin(way), -0.8 * np.cos(way)])
+    found = _flat(ahead, np.array(ankle))
+    pitch = np.arcsin(found[1])
+    assert found[[0, 2]] == pytest.approx(np.cos(pitch) * np.array([0.6, -0.8]))
+    reach = 0.11552 if way_deg < 0 else -0.03648
+    least = 0.03 if way_deg < 0 else 0.0
+    height = ankle - 0.029 * np.cos(pitch) + reach * np.sin(pitch)
+    if height > 0.010 + 1e-9:
+        assert np.degrees(pitch) == pytest.approx(way_deg)  # it is not as low as that
+    else:
+        assert height == pytest.approx(0.010)
+        assert abs(pitch) > least
+
+
+def test_a_foot_that_is_high_enough_points_anywhere() -> None:
+    for way_deg, ankle in ((-80.0, 0.2), (80.0, 0.2), (-5.0, 0.06), (5.0, 0.06), (0.0, 0.039)):
+        ahead = np.array([0.0, np.sin(np.radians(way_deg)), np.cos(np.radians(way_deg))])
+        assert _flat(ahead, np.array(ankle)) == pytest.approx(ahead)
+    level = np.array([0.0, np.sin(-0.3), np.cos(-0.3)])
+    assert _flat(level, np.array(0.03)) == pytest.approx([0.0, 0.0, 1.0])

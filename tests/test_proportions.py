@@ -27,6 +27,7 @@ def test_the_thesis_widths_are_diameters() -> None:
     assert 2 * bdp.head.long_radius == pytest.approx(20.0)
     assert 2 * bdp.r_upper_arm.radius == 2 * bdp.l_lower_arm.radius == pytest.approx(10.0)
     assert 2 * bdp.r_lower_leg.long_radius == pytest.approx(20.0)
+    assert thesis_bdp(1.75).torso.long_radius == pytest.approx(0.2)
     assert set(THESIS_DIAMETERS) == set(THESIS_RATIOS) - {"stature"}
 
 

@@ -1,7 +1,7 @@
 """Bodies of the Anny model where it is not installed: what is made of a puppet of its bones."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -28,7 +28,10 @@ from synth.motion.footing import posed
 from synth.person.people import Look, person
 from synth.person.rings import MATERIAL
 from synth.person.skeleton import ANGLES, BONE_INDEX, HEAD_FORWARD, JOINTS, bone_frames
+from synth.person.wardrobe import dressed
 from synth.picture.picture_examples import PICTURES
+from synth.picture.render import palette
+from synth.picture.silhouette_examples import PEOPLE
 
 Use = Callable[[Anatomy], None]
 PLAIN = person(2).look._replace(
@@ -360,13 +363,20 @@ def test_cloth_is_off_the_skin_by_its_looseness_where_it_sags(
 
 
 @pytest.fixture
-def plain_cloth(monkeypatch: pytest.MonkeyPatch, use: Use) -> Figure:
-    """A body all of whose choices are made by hand: it is bald and has no face."""
+def plain_cloth(monkeypatch: pytest.MonkeyPatch, use: Use) -> Iterator[Figure]:
+    """A body all of whose choices are made by hand; hair and face are asked for, no more."""
     known, figure = puppet()
     use(known)
-    monkeypatch.setattr(cloth, "grow_hair", lambda *_: None)
-    monkeypatch.setattr(cloth, "paint_face", lambda *_: None)
-    return figure
+    asked: list[Any] = []
+    monkeypatch.setattr(cloth, "grow_hair", lambda *told: asked.append(told))
+    monkeypatch.setattr(cloth, "paint_face", lambda *told: asked.append(told))
+    yield figure
+    (body, head, cut, wear, off_m, _), (same, painted) = asked
+    assert body is same is figure
+    assert head == pytest.approx(limb_regions.regions(figure).head)
+    assert cut == "short"
+    assert painted is wear
+    assert off_m.shape == wear.shape == head.shape
 
 
 @pytest.mark.parametrize(
@@ -468,6 +478,8 @@ def test_short_hair_ends_at_the_neck_the_ear_the_temple_and_the_brow() -> None:
     assert hair == [True, False] * 5
     assert chance.asked == [(0.004, 0.03), (0.8, 0.9)]
     assert off_m[hair] == pytest.approx(0.017 * 1.15)
+    assert grown(figure, "short", 0.5, 0.5, 0.5, head=0.55)[0] == hair  # half of it is a head
+    assert grown(figure, "short", 0.5, 0.5, 0.5, head=0.45)[0] == [False] * 10
     assert off_m[~np.array(hair)] == pytest.approx(0.0)
 
 
@@ -597,6 +609,12 @@ def test_a_puppet_that_stands_straight_has_its_spine_above_its_pelvis(use: Use) 
             body.places_m[0, BONES.index(f"{name}.{side}")] for name in ("lowerleg01", "foot")
         )
         assert (ankle - knee)[[0, 2]] == pytest.approx(0.0, abs=1e-6)
+        at = {
+            name: figure.heads_m[f"{name}.{side}"] for name in ("upperarm01", "lowerarm01", "wrist")
+        }
+        hinge = np.cross(at["wrist"] - at["lowerarm01"], at["lowerarm01"] - at["upperarm01"])
+        hinge = body.turns[0, BONES.index(f"upperarm02.{side}")] @ hinge / np.linalg.norm(hinge)
+        assert hinge[0] > 0.98  # elbows bend ahead
         tip, knuckle = (
             body.places_m[0, BONES.index(f"finger3-{joint}.{side}")] for joint in (3, 1)
         )
@@ -606,6 +624,22 @@ def test_a_puppet_that_stands_straight_has_its_spine_above_its_pelvis(use: Use) 
         )
         assert toes[0] == pytest.approx(0.0, abs=1e-6)
         assert toes[2] > 0.1
+
+
+def test_palms_face_the_body_and_by_30_degrees_elsewhere(use: Use) -> None:
+    """Of arms that hang the index finger is ahead of the little one."""
+    known, figure = puppet()
+    use(known)
+    body = retarget.retargeted(
+        figure, person(3).measures, np.zeros((900, len(ANGLES))), np.random.default_rng(3)
+    )
+    for side in "LR":
+        index, little = (
+            body.places_m[:, BONES.index(f"finger{finger}-1.{side}")] for finger in (2, 5)
+        )
+        off_deg = np.degrees(np.arctan2((index - little)[:, 0], (index - little)[:, 2]))
+        assert off_deg.mean() == pytest.approx(0.0, abs=4.0)
+        assert off_deg.std() == pytest.approx(30.0, abs=3.0)
 
 
 def test_bones_turn_by_their_shares_of_the_way(use: Use) -> None:
@@ -656,7 +690,11 @@ def test_examples_of_a_puppet_are_one_persons_and_look_as_they_say(
     monkeypatch.setattr(anny_examples, "anny_figure", lambda _: figure)
     monkeypatch.setattr(anny_examples, "pictured", pictured)
     examples = [*anny_examples.anny_examples(4)]
-    count = PICTURES
+    count, rng = PICTURES, np.random.default_rng([4, 83])
+    someone = dressed(person(int(rng.integers(*PEOPLE))), rng)
+    for material in ("shirt", "hair", "skin"):
+        due = palette(someone.look)[MATERIAL[material]]
+        assert shown[0].colours[MATERIAL[material]] == pytest.approx(due)
     assert (len(shown), examples) == (count, [1, *range(3, count + 1)])
     for one in shown:
         vertices, joints, front, stature_m = one[0], one[-3], one[-2], one[-1]
