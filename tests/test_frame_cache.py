@@ -110,3 +110,24 @@ def test_who_waits_is_told_which_share_of_the_due_frames_has_come() -> None:
     assert [got.index for got in told.frames("a.avi", SIZE)] == list(range(10))
     assert heard == [0.25, 0.5, 0.75, *[1.0] * 7]
     assert told.ending == Ending(10)
+
+
+def test_a_turned_reading_is_kept_for_readings_turned_as_much() -> None:
+    decoder = Counting()
+    reel = Reel(decoder)
+    for quarters, readings in ((1, 1), (1, 1), (0, 2), (0, 2), (1, 3)):
+        turned = Wanted(quarters=quarters)
+        assert len(list(reel.frames("a.avi", SIZE, turned))) == 10
+        assert decoder.readings == readings
+    assert [got.index for got in reel.frames("a.avi", SIZE, Wanted(2, 3, quarters=1))] == [4, 6, 8]
+    assert decoder.readings == 3
+
+
+def test_a_share_is_of_one_frame_at_least() -> None:
+    heard: list[float] = []
+    assert len(list(Told(Counting(), 0, heard.append).frames("a.avi", SIZE))) == 10
+    assert heard == [1.0] * 10
+    thirds: list[float] = []
+    told = Told(Counting(), 12, thirds.append)
+    assert [got.index for got in told.frames("a.avi", SIZE, Wanted(4))] == [0, 4, 8]
+    assert thirds == [1 / 12, 5 / 12, 9 / 12]

@@ -64,3 +64,34 @@ def test_times_that_are_rounded_make_no_other_rate() -> None:
     phone = msgspec.structs.replace(view(1, 1 / 0.033), capture_s=times_s, frames=len(times_s))
     steady = view(2, 30.0)
     assert at_one_rate((phone, steady), 1) == (phone, steady)
+
+
+def test_the_slower_keeps_its_frames_and_the_faster_its_times_with_what_it_is_late() -> None:
+    """By hand: 10 and 25 a second for 0.4 s, the faster 0.01 s late."""
+    slow, fast = view(1, 10.0, 0.4), view(2, 25.0, 0.4, late_s=0.01)
+    same, thin = at_one_rate((slow, fast), 1)
+    assert same == slow
+    assert (thin.fps, thin.late_s, thin.frames, thin.number) == (10.0, 0.01, 10, 2)
+    assert thin.capture_s == pytest.approx([0.04 * n for n in range(10)])
+    # of the slower at 0, 0.1, 0.2, 0.3; of the faster, set back, at -0.01, 0.03, 0.07, ...
+    assert thin.picked == (0, 3, 5, 8)
+
+
+def test_a_frame_that_is_farther_than_half_a_period_from_all_others_is_met_by_none() -> None:
+    slow, fast = view(1, 10.0, 1.0), view(2, 20.0, 0.5)
+    assert at_one_rate((slow, fast), 1)[1].picked == (0, 2, 4, 6, 8)
+    early = msgspec.structs.replace(fast, late_s=-0.17)  # at 0.17, 0.22, 0.27, ...
+    assert at_one_rate((slow, early), 1)[1].picked == (1, 3, 5, 7, 9)
+
+
+@pytest.mark.parametrize(("ratio", "varies", "thinned"), [
+    (1.009, False, False), (1.011, False, True), (1.049, True, False), (1.051, True, True),
+])  # fmt: skip
+def test_a_hundredth_is_another_rate_and_a_twentieth_where_times_are_rounded(
+    ratio: float, varies: bool, thinned: bool
+) -> None:
+    slow, fast = view(1, 20.0), view(2, 20.0 * ratio)
+    if varies:
+        times_s = tuple(n / 20.0 for n in range(slow.frames))
+        slow = msgspec.structs.replace(slow, capture_s=times_s)
+    assert bool(at_one_rate((slow, fast), 1)[1].picked) == thinned

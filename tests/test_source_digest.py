@@ -1,14 +1,15 @@
 """Digests of the sources: what changes them, and what does not."""
 
+import hashlib
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from common import source_digest
 from common.packages import PACKAGES, ROOT
-from common.source_digest import digest_of, module_digest, source_of
+from common.source_digest import Source, digest_of, module_digest, source_of
 
 
 @pytest.fixture
@@ -116,3 +117,39 @@ def test_a_digest_follows_imports_of_imports(monkeypatch: pytest.MonkeyPatch) ->
 def test_a_module_without_a_source_is_refused() -> None:
     with pytest.raises(FileNotFoundError, match=r"common\.nowhere"):
         module_digest("common.nowhere")
+
+
+def test_a_digest_is_of_every_module_that_is_reached_once_and_in_the_order_of_names(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """b -> a -> c -> b, and another that none of them imports."""
+    known = {
+        "b": Source(b"2", ("a",)),
+        "a": Source(b"1", ("c",)),
+        "c": Source(b"3", ("b",)),
+        "d": Source(b"4", ("b",)),
+    }
+    monkeypatch.setattr(source_digest, "source_of", known.__getitem__)
+    due = hashlib.sha256()
+    for name in "abc":
+        for part in (name.encode(), known[name].digest):
+            due.update(len(part).to_bytes(8, "little") + part)
+    assert module_digest.__wrapped__("b") == due.hexdigest()[:16]
+
+
+def test_a_digest_does_not_ask_in_which_order_a_disk_has_its_files(
+    sources: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("attic", "cellar"):
+        (sources / "viewer" / name).mkdir()
+        for file in ("one.py", "two.py"):
+            (sources / "viewer" / name / file).write_text(f"PLACE = '{name}'\n")
+    before, walk = digest_of(sources), os.walk
+
+    def backwards(top: Path) -> Iterator[tuple[str, list[str], list[str]]]:
+        for folder, folders, files in walk(top):
+            folders.sort(reverse=True)
+            yield folder, folders, sorted(files, reverse=True)
+
+    monkeypatch.setattr(os, "walk", backwards)
+    assert digest_of(sources) == before
