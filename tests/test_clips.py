@@ -497,6 +497,18 @@ def test_a_file_and_a_camera_are_what_they_say_or_what_is_told_of_them(tmp_path:
     assert (first.fps, first.capture_s, second.fps) == (20.0, (0.0, 0.5), 30.0)
 
 
+@pytest.mark.parametrize("told", [1, 2])
+def test_lengths_that_differ_are_no_news_where_one_views_times_are_told(
+    tmp_path: Path, told: int
+) -> None:
+    facts = Facts(cam1=VideoInfo(640, 480, 15.0, 3), cam2=VideoInfo(640, 480, 15.0, 4))
+    assert clip_of_facts(tmp_path, facts).warnings == (
+        "the views differ in length: 3 and 4 frames",
+    )
+    tell(tmp_path, capture_s={f"cam{told}": [n / 15 for n in range(2 + told)]})
+    assert clip_of_facts(tmp_path, facts).warnings == ()
+
+
 def test_a_video_without_a_rate_is_refused_unless_it_is_told(tmp_path: Path) -> None:
     facts: Any = Facts(cam1=VideoInfo(640, 480, 0.0, 9), cam2=VideoInfo(640, 480, 15.0, 9))
     with pytest.raises(ClipError, match=r"cam1\.mkv has no frame rate: set fps in a meta\.json"):

@@ -185,3 +185,10 @@ def test_a_film_is_steady_when_no_frame_is_farther_than_two_milliseconds_from_it
 def test_a_film_that_names_no_rate_has_that_of_its_usual_gap() -> None:
     told = timed(VideoInfo(64, 48, 0.0, 0, (0.0, 0.25, 0.5, 0.75)))
     assert (told.fps, told.frames, told.shown_s) == (4.0, 4, (0.0, 0.25, 0.5, 0.75))
+
+
+@pytest.mark.parametrize(("claimed", "frames"), [(11, 8), (13, 13)])
+def test_behind_the_last_frame_two_of_the_longest_gaps_may_pass(claimed: int, frames: int) -> None:
+    """The last of eight packets at 0.8 s, the longest gap 0.2 s: 1.1 s may be guessed, 1.3 not."""
+    shown_s = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 0.8)
+    assert timed(VideoInfo(64, 48, 10.0, claimed, shown_s)).frames == frames
