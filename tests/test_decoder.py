@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import cv2
 import numpy as np
@@ -225,6 +225,15 @@ def test_of_each_hundredth_frame_that_is_passed_over_the_asker_hears(
     assert end[1] == 305
 
 
+def test_a_sign_of_life_does_not_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    taken = [Grabbed(0, 0.0, picture_of(0)), Grabbed(100, 1.0, None)]
+    monkeypatch.setattr(decoder, "opened", lambda *_: OpenFilm(1.0, 2, iter(taken)))
+    answers, words = Answers(), cast(Any, Words())
+    decoder.serve(request(sizes=[(8, 6)]), answers, words)
+    parts = [HEADER.size + len(payload) for *_, payload in answers.parted()]
+    assert answers.flushed == [sum(parts[:2]), sum(parts[:3])]
+
+
 def test_what_comes_before_the_first_picture_is_passed_over(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -318,12 +327,15 @@ def test_a_refusal_is_an_answer_and_the_next_source_is_served(
 ) -> None:
     """The main job, without a child: two requests, the first of which is refused."""
     read, write = os.pipe()
+    os.set_blocking(read, False)
     done: list[Any] = []
+    came: list[bytes] = []
 
     def serve(asked: dict[str, Any], answers: Any, _: object) -> None:
         done.append(asked)
         if asked["source"] == "bad":
             raise Refused("bad is bad: mend it")
+        came.append(os.read(read, 1 << 12))  # what was answered before does not wait
         say(answers, INFO, None, b"good")
 
     with os.fdopen(read, "rb") as heard, open(os.devnull, encoding="utf-8") as nothing:
@@ -337,7 +349,7 @@ def test_a_refusal_is_an_answer_and_the_next_source_is_served(
         monkeypatch.setattr("cv2.setNumThreads", done.append)
         decoder.main()
         answers = Answers()
-        answers.write(os.read(heard.fileno(), 1 << 12))
+        answers.write(came[0] + os.read(heard.fileno(), 1 << 12))
         assert done == [nothing.fileno(), 1, {"source": "bad"}, {"source": "good"}]
     assert [*answers.parted()] == [
         (REFUSED, 0, 0.0, b"bad is bad: mend it"),

@@ -22,7 +22,14 @@ from synth.person import portrait, rings, skeleton, tailor
 from synth.person.mesh import body_mesh
 from synth.person.people import measure_vector, person, take_style
 from synth.person.wardrobe import dressed
-from synth.picture import backdrops, picture_examples, raster, silhouette_examples, textures
+from synth.picture import (
+    backdrops,
+    composites,
+    picture_examples,
+    raster,
+    silhouette_examples,
+    textures,
+)
 from synth.picture.composites import composite
 from synth.picture.example_poses import poses_deg
 from synth.picture.exposure import blurred, default_rig, exposures
@@ -157,6 +164,25 @@ def pictures() -> list[Any]:
     return [given, mixed]
 
 
+def truths() -> list[Any]:
+    """What pictures say of themselves, which is lost among their pixels: places, facings, sizes."""
+    given = [one for seed in range(2) for one in picture_examples.picture_examples(seed)]
+    rng = np.random.default_rng(15)
+    mixed = [composite(one, lambda: given[0], lambda: BARE, rng) for one in given]
+    return [
+        [part for part in one if np.size(part) < 1000 and part is not None]
+        for one in (*given, *mixed)
+    ]
+
+
+def ragged() -> list[Any]:
+    """Outlines as networks are shown them, in all ways in which they are spoilt."""
+    rng = np.random.default_rng(16)
+    whole = np.zeros((picture_examples.SIDE_PX, picture_examples.SIDE_PX), np.uint8)
+    whole[10:90, 30:60] = 1
+    return [composites._told(whole, rng) for _ in range(150)]
+
+
 def landmarks() -> list[Any]:
     """Of a walk before two cameras, in all ways in which they may be mistaken."""
     from common.body.body import JOINT_NAMES
@@ -179,6 +205,8 @@ def posed_anyhow() -> list[Any]:
     return [poses_deg(person(seed), 20, rng) for seed in range(6)]
 
 
+BARE = np.full((backdrops.SIDE_PX, backdrops.SIDE_PX, 3), 90, np.uint8)
+"""A backdrop that costs nothing."""
 SCENES = (0, 1, 3, 4, 5, 7, 8)
 """Backdrops: one of a room, the others heaped."""
 
@@ -218,6 +246,8 @@ MADE: dict[str, tuple[Callable[[], Any], float, tuple[float, float, float]]] = {
     "outlines": (outlines, DRAWN, (0.179516377, 3.5939525, 0.0742107292)),
     "pictures": (pictures, DRAWN, (127.878745, 74.4646827, 10.8702198)),
     "taught": (taught, DRAWN, (34.3506187, 69.21771, 8.98508423)),
+    "truths": (truths, DRAWN, (70.3042309, 33.0772283, 24.8680518)),
+    "ragged": (ragged, DRAWN, (93.4871581, 86.3516704, 1.91500244)),
     "landmarks": (landmarks, SMOOTH, (66.5828403987, 36.1427016792, 17.3950898554)),
 }
 

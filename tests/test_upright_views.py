@@ -3,16 +3,19 @@
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 from lying_cameras import filmed_lying
 
 from common.config.settings import Settings
-from common.rig.camera import Rig, project
+from common.rig.camera import Camera, Rig, as_matrix, as_row, paper_rig, project
 from common.rig.rig_file import load_rig
+from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.upright_views import filed_rig
+from common.video.upright_views import filed_rig, upright_views
 from tritrack.offline.lockstep import Decoders, Tracked, track_clip
 from tritrack.store.pose_arrays import poses
 
@@ -75,3 +78,47 @@ def test_a_clip_of_lying_cameras_has_upright_pictures(clip: Path, tmp_path: Path
     points = np.random.default_rng(1).uniform(-0.7, 1.2, (20, 3))
     for one, other in zip(again.cameras, told.cameras, strict=True):
         assert project(one, points) == pytest.approx(project(other, points) / 2, abs=1e-6)
+
+
+def lying_rig() -> tuple[Rig, tuple[View, View]]:
+    """Two cameras of 160x120, the first of which is rolled by a quarter turn to the left."""
+    rig = paper_rig((160, 120), (200.0, 200.0), (4.0, 4.5))
+    one, two = rig.cameras
+    turn = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    rolled = Camera(
+        one.name, one.K, as_matrix(turn @ np.array(one.R)), as_row(turn @ np.array(one.t))
+    )
+    views = (
+        View(1, "a.avi", (640, 480), (160, 120), 15.0, 9),
+        View(2, "b.avi", (640, 480), (160, 120), 15.0, 9),
+    )
+    return msgspec.structs.replace(rig, cameras=(rolled, two)), views
+
+
+def test_of_a_lying_and_a_standing_camera_one_alone_is_turned_and_comes_back() -> None:
+    filed, views = lying_rig()
+    rig, worked = upright_views(filed, views)
+    assert [view.size for view in worked] == [(120, 160), (160, 120)]
+    assert [view.quarters % 2 for view in worked] == [1, 0]
+    assert worked[1] == views[1]
+    assert (rig.width, rig.height) == (120, 160)
+    assert rig.cameras[1] == filed.cameras[1]
+    foot, crown = project(rig.cameras[0], np.array([[0.0, 0.2, 0.0], [0.0, 1.8, 0.0]]))
+    assert crown[0] == pytest.approx(foot[0])
+    assert foot[1] - crown[1] == pytest.approx(80.0)
+    clip = Clip("walk", worked, 1, rig, Meta())
+    again = filed_rig(clip)
+    assert again is not None
+    assert (again.width, again.height) == (160, 120)
+    points = np.random.default_rng(1).uniform(-0.7, 1.2, (20, 3))
+    for one, other in zip(again.cameras, filed.cameras, strict=True):
+        assert project(one, points) == pytest.approx(project(other, points), abs=1e-6)
+    assert filed_rig(msgspec.structs.replace(clip, rig=None)) is None
+
+
+def test_a_lens_that_cannot_be_turned_is_refused_as_a_clip() -> None:
+    filed, views = lying_rig()
+    bent = msgspec.structs.replace(filed.cameras[0], distortion=(0.0,) * 12 + (0.01, 0.0))
+    rig = msgspec.structs.replace(filed, cameras=(bent, filed.cameras[1]))
+    with pytest.raises(ClipError, match="camera cam1 is rolled by more than 45 degrees"):
+        upright_views(rig, views)
