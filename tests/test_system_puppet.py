@@ -640,6 +640,9 @@ def test_palms_face_the_body_and_by_30_degrees_elsewhere(use: Use) -> None:
         off_deg = np.degrees(np.arctan2((index - little)[:, 0], (index - little)[:, 2]))
         assert off_deg.mean() == pytest.approx(0.0, abs=4.0)
         assert off_deg.std() == pytest.approx(30.0, abs=3.0)
+        tip, knuckle = (body.places_m[:, BONES.index(f"finger3-{n}.{side}"), 0] for n in (3, 1))
+        inwards = -1.0 if side == "L" else 1.0
+        assert np.median(inwards * (tip - knuckle)) > 0.01  # curled
 
 
 def test_bones_turn_by_their_shares_of_the_way(use: Use) -> None:
