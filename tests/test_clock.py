@@ -171,4 +171,5 @@ def test_a_clock_is_told_from_the_fifth_answer_on() -> None:
             until_s = time.monotonic() + 5.0
             while len(room.asked) < answers + 2 and time.monotonic() < until_s:
                 time.sleep(0.001)
+        assert "the room's clock" not in [thread.name for thread in threading.enumerate()]
         assert len(told) == tells

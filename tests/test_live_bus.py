@@ -141,7 +141,9 @@ def test_each_key_has_one_publisher_and_its_own_numbers_before_the_runs_word() -
     ]
 
 
-def test_a_message_of_this_run_is_heard_and_counted_and_one_of_another_is_not() -> None:
+def test_a_message_of_this_run_is_heard_and_counted_and_one_of_another_is_not(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
     session = Session()
     bus = LiveBus(session, ROOM, "ours")
     inbox = bus.subscribe(Body)
@@ -159,6 +161,10 @@ def test_a_message_of_this_run_is_heard_and_counted_and_one_of_another_is_not() 
     assert [inbox.take(SOON_S), inbox.take(SOON_S)] == [BODY, BODY]
     assert (inbox.foreign, inbox.malformed, inbox.dropped) == (2, 1, 2)
     bus.close()
+    assert caplog.messages == [
+        f"{key}: dropped a message of another session: b'theirs'",
+        f"{key}: dropped a message from {key}: 1000001 bytes, at most 1000000 are taken",
+    ]
 
 
 def test_who_has_no_word_hears_all_and_counts_what_bears_a_number() -> None:

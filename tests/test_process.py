@@ -182,3 +182,4 @@ def test_what_the_supervisor_logs_goes_to_the_runs_log_alone_while_it_runs(
     assert caplog.messages == ["after"]
     assert own.propagate
     assert not own.handlers
+    assert str(path) not in [file.path for file in psutil.Process().open_files()]
