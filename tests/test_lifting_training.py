@@ -2,14 +2,18 @@
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from drawn_pool import pool_here
+from numpy_torch import numpy_torch
 from rich.console import Console
 
 from integrator.proposal import lifting_network
 from integrator.proposal.landmark_look import INPUTS, Look
-from integrator.proposal.network_weights import LiftingNetwork
+from integrator.proposal.network_weights import LiftingNetwork, load, shipped_lifting
+from tritrack.training import lifting_training
 from tritrack.training.lifting_examples import LiftingExample, lifting_examples
 from tritrack.training.lifting_training import learnt, train_lifting
 from tritrack.training.torch_network import Round
@@ -75,3 +79,68 @@ def test_what_is_learnt_beats_the_mean_pose() -> None:
     mean = np.concatenate([placed(each.due) for each in taught]).mean(axis=0)
     at_once = [np.broadcast_to(mean, (len(each.due), 36)) for each in new]
     assert missed([said(network, each) for each in new]) < 0.75 * missed(at_once)
+
+
+def shown_by(instants: int, stature_m: float = 1.6) -> LiftingExample:
+    rng = np.random.default_rng(instants)
+    inputs = rng.normal(0, 1, (instants, INPUTS)).astype(np.float32)
+    return LiftingExample(inputs, rng.normal(0, 1, (instants, 39)).astype(np.float32), stature_m)
+
+
+def drawing(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """Performances of 7 and 8 instants, and of 9, instead of drawn ones; notes what is taught."""
+    taught: list[Any] = []
+    asked = pool_here(monkeypatch)
+    made = {20: [shown_by(7), shown_by(8)], 21: [], 22: [shown_by(9)]}
+    monkeypatch.setattr(lifting_training, "torch_or_refuse", lambda: None)
+    monkeypatch.setattr(lifting_training, "PERFORMANCES", 3)
+    monkeypatch.setattr(lifting_training, "lifting_examples", made.__getitem__)
+
+    def learning(shown: list[LiftingExample], seed: int, console: Console) -> Any:
+        taught.append((asked, [len(each.due) for each in shown], seed, console))
+        return shipped_lifting()
+
+    monkeypatch.setattr(lifting_training, "learnt", learning)
+    return taught
+
+
+def test_each_performance_has_a_seed_of_its_own_and_too_short_ones_teach_nothing(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    taught, out = drawing(monkeypatch), tmp_path / "lifting.npz"
+    assert train_lifting(out, 20, QUIET) == {"model": str(out), "instants": 17}
+    assert taught == [([20, 21, 22], [8, 9], 20, QUIET)]
+    assert (load(out, LiftingNetwork).fc3 == shipped_lifting().fc3).all()
+
+
+def test_a_file_that_cannot_be_written_is_named(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    taught = drawing(monkeypatch)
+    with pytest.raises(TrainingError, match=f"^cannot write {tmp_path}: Is a directory"):
+        train_lifting(tmp_path, 20, QUIET)
+    out = tmp_path / "no" / "file.npz"
+    with pytest.raises(TrainingError, match=f"^cannot write {out}: there is no folder {out.parent}"):
+        train_lifting(out, 20, QUIET)
+    assert len(taught) == 1
+
+
+def test_what_is_learnt_starts_with_what_is_usually_due(monkeypatch: pytest.MonkeyPatch) -> None:
+    seeds: list[int] = []
+    torch, noted = numpy_torch(manual_seed=seeds.append), list[Any]()
+    monkeypatch.setattr(lifting_training, "torch_or_refuse", lambda: torch)
+    monkeypatch.setattr(lifting_training, "UNITS", (5, 4, 3))
+    monkeypatch.setattr(lifting_training.torch_network, "learn", lambda *given: noted.append(given))
+    shown, rounds = [shown_by(2, 1.7), shown_by(3)], [Round(1, 0.1, 2)]
+    network = learnt(shown, 8, QUIET, rounds)
+    assert network.fc1.shape == (INPUTS, 5)
+    assert network.fc3.shape == (5 + 4, 3)
+    usual = np.concatenate([shown[0].due, shown[1].due]).mean(axis=0)
+    assert network.out_bias[:39] == pytest.approx(usual)
+    ((given_torch, _, examples, given_rounds, seed, console),) = noted
+    assert (given_torch, given_rounds, seed, console, seeds) == (torch, rounds, 8, QUIET, [8])
+    inputs, due, real, stature_m = examples[0]
+    assert inputs == pytest.approx(shown[0].inputs)
+    assert due == pytest.approx(shown[0].due)
+    assert real.tolist() == [1.0, 1.0]
+    assert stature_m == pytest.approx([1.7, 1.7])
