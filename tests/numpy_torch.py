@@ -1,11 +1,15 @@
 """As much of PyTorch on NumPy arrays as the tests of training need where PyTorch is not installed:
 forward passes, and optimisers that only write down what they are asked for."""
 
-from contextlib import nullcontext
-from types import SimpleNamespace
-from typing import Any
+import importlib.util
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from types import ModuleType, SimpleNamespace
+from typing import Any, ClassVar
 
 import numpy as np
+import pytest
 
 
 class Tensor(np.ndarray):
@@ -40,8 +44,20 @@ class Tensor(np.ndarray):
         assert axis == -1
         return self.reshape(*self.shape[:-1], *sizes)
 
+    def flatten(self, start: int) -> Any:  # type: ignore[override]
+        return self.reshape(*self.shape[:start], -1)
+
+    def norm(self, dim: int) -> Any:
+        return np.linalg.norm(self, axis=dim).view(Tensor)
+
+    def clamp(self, min: Any = None, max: Any = None) -> Any:
+        return np.clip(self, min, max)
+
+    def log(self) -> Any:
+        return np.log(self)
+
     def unbind(self, axis: int) -> list[Any]:
-        return [self.take(at, axis) for at in range(self.shape[axis])]
+        return [part.view(Tensor) for part in np.moveaxis(self, axis, 0)]
 
     def split(self, size: int, axis: int) -> list[Any]:
         return np.split(self, range(size, self.shape[axis], size), axis)
@@ -95,11 +111,17 @@ def padded(parts: Any, batch_first: bool) -> Any:
     )
 
 
-def binary_cross_entropy(logits: Any, due: Any, reduction: str) -> Any:
-    """As PyTorch's of logits, not summed."""
-    assert reduction == "none"
+def binary_cross_entropy(logits: Any, due: Any, reduction: str = "mean") -> Any:
+    """As PyTorch's of logits."""
     share = 1.0 / (1.0 + np.exp(-logits.astype(float)))
-    return -(due * np.log(share) + (1 - due) * np.log(1 - share))
+    each = -(due * np.log(share) + (1 - due) * np.log(1 - share))
+    return each if reduction == "none" else each.mean()
+
+
+def softmax(values: Any, axis: int) -> Any:
+    """As `torch.softmax`."""
+    share = np.exp(values - values.max(axis, keepdims=True))
+    return share / share.sum(axis, keepdims=True)
 
 
 def numpy_torch(**parts: Any) -> Any:
@@ -117,12 +139,56 @@ def numpy_torch(**parts: Any) -> Any:
         no_grad=nullcontext,
         autocast=lambda kind, dtype: nullcontext(),
         bfloat16=None,
-        from_numpy=tensor,
+        from_numpy=lambda values: np.asarray(values).view(Tensor),
         relu=lambda x: np.maximum(x, 0),
         sigmoid=lambda x: 1 / (1 + np.exp(-x)),
         tanh=np.tanh,
+        cos=np.cos,
+        atan2=np.arctan2,
+        arange=np.arange,
+        tensor=tensor,
+        softmax=softmax,
+        log_softmax=lambda values, axis: np.log(softmax(values, axis)),
         zeros_like=np.zeros_like,
-        cat=lambda parts, axis: np.concatenate(parts, axis),
+        cat=np.concatenate,
         stack=lambda parts, axis=0: np.stack(parts, axis).view(Tensor),
         **parts,
     )
+
+
+class _Anything(ModuleType):
+    """A module in which any name is a class of its own."""
+
+    __path__: ClassVar[list[str]] = []
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        found = type(name, (), {})
+        setattr(self, name, found)
+        return found
+
+
+@contextmanager
+def importable(*extra: str) -> Iterator[None]:
+    """Modules of the extra `train` can be imported, so that what they do without it can be tested;
+    where it is not installed, only whoever imported them here has them afterwards.
+
+    Args:
+        extra: Beside PyTorch: `onnx`.
+    """
+    names = ("torch", "torch.nn", "torch.nn.functional", *extra)
+    missing = [name for name in names if importlib.util.find_spec(name.split(".")[0]) is None]
+    before = set(sys.modules)
+    with pytest.MonkeyPatch.context() as patch:
+        for name in missing:
+            patch.setitem(sys.modules, name, _Anything(name))
+            parent, _, own = name.rpartition(".")
+            if parent:
+                setattr(sys.modules[parent], own, sys.modules[name])
+        yield
+        for name in set(sys.modules) - before if missing else ():
+            if name.startswith("tritrack."):
+                parent, _, own = name.rpartition(".")
+                vars(sys.modules.get(parent, ModuleType("gone"))).pop(own, None)
+                del sys.modules[name]

@@ -37,7 +37,11 @@ def instants(views: list[ShownJoints], draws: Draws) -> list[Any]:
     """Number, what each view shows by its `facing_deg`, and the time since."""
     given: Any = draws
     return [
-        (i, *(None if view is None else view.facing_deg for view in both), round(since_s / INSTANT_S))
+        (
+            i,
+            *(None if view is None else view.facing_deg for view in both),
+            round(since_s / INSTANT_S),
+        )
         for i, both, since_s in module._instants(views, given)
     ]
 
@@ -79,11 +83,11 @@ def test_what_is_known_of_a_camera_is_wrong_in_its_length_and_its_pitch() -> Non
         draws: Any = Draws(normal=[2.0, -1.5])
         found = module._as_known(true, guessed, draws)
         focal_px = 300.0 * np.exp(2.0 * times)
-        assert found.K == (
+        assert (
             (pytest.approx(focal_px), 0.0, 150.0),
             (0.0, pytest.approx(focal_px), 110.0),
             (0.0, 0.0, 1.0),
-        )
+        ) == found.K
         assert centre(found) == pytest.approx(centre(true))
         c, s = np.cos(np.radians(-1.5 * pitch_deg)), np.sin(np.radians(-1.5 * pitch_deg))
         by_hand = np.array([[1, 0, 0], [0, c, -s], [0, s, c]]) @ np.array(LEVEL)
@@ -154,7 +158,12 @@ def test_a_quarter_of_lone_cameras_is_guessed_and_an_unmeasured_stature_is_more_
 
 @pytest.mark.parametrize(
     ("middle_m", "z", "kept"),
-    [((0.0, 0.9, 1.19), 0.0, 2), ((0.0, 0.91, 1.21), 0.0, 1), (None, 0.0, 0), ((0, 0, 3.0), 3.2, 0)],
+    [
+        ((0.0, 0.9, 1.19), 0.0, 2),
+        ((0.0, 0.91, 1.21), 0.0, 1),
+        (None, 0.0, 0),
+        ((0, 0, 3.0), 3.2, 0),
+    ],
 )
 def test_nothing_is_learnt_of_who_is_not_found_lies_astray_or_comes_too_near(
     monkeypatch: pytest.MonkeyPatch, middle_m: Any, z: float, kept: int

@@ -120,7 +120,9 @@ def test_a_file_that_cannot_be_written_is_named(
     with pytest.raises(TrainingError, match=f"^cannot write {tmp_path}: Is a directory"):
         train_lifting(tmp_path, 20, QUIET)
     out = tmp_path / "no" / "file.npz"
-    with pytest.raises(TrainingError, match=f"^cannot write {out}: there is no folder {out.parent}"):
+    with pytest.raises(
+        TrainingError, match=f"^cannot write {out}: there is no folder {out.parent}"
+    ):
         train_lifting(out, 20, QUIET)
     assert len(taught) == 1
 

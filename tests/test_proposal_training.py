@@ -187,7 +187,9 @@ def test_a_file_that_cannot_be_written_is_named(
         train_proposals(tmp_path, 20, QUIET)
     assert len(taught) == 1
     out = tmp_path / "no" / "file.npz"
-    with pytest.raises(TrainingError, match=f"^cannot write {out}: there is no folder {out.parent}"):
+    with pytest.raises(
+        TrainingError, match=f"^cannot write {out}: there is no folder {out.parent}"
+    ):
         train_proposals(out, 20, QUIET)
     assert len(taught) == 1
 

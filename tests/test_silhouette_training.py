@@ -12,7 +12,6 @@ from rich.console import Console
 
 from synth.motion.motions import EMPTY, MOTION, POSTURES, performance
 from synth.person.people import person
-
 from tritrack.training import silhouette_training
 from tritrack.training.silhouette_training import (
     Examples,
@@ -172,7 +171,7 @@ def test_one_of_three_frames_is_learnt_from_and_colours_of_all_that_show_a_perso
         noted.append((state, mask, int(frame[0, 0, 0]), first is guessed))
         return state[0] + 1, "colours"
 
-    monkeypatch.setattr(silhouette_training, "learn", lambda frames: len(frames))
+    monkeypatch.setattr(silhouette_training, "learn", len)
     monkeypatch.setattr(fake, "init", lambda model, *_: (0, model))
     monkeypatch.setattr(fake, "in_light_of", lambda state, _: (state[0], "lit"))
     monkeypatch.setattr(fake, "guess", lambda state, _, near_px: guessed)

@@ -13,7 +13,7 @@ from integrator.proposal.landmark_look import INPUTS
 from integrator.proposal.network_weights import JOINTS, LiftingNetwork
 from integrator.proposal.pose_network import recurrent_step
 from tritrack.training import torch_network
-from tritrack.training.torch_network import Round, learn, layers_of, loss, parts_of
+from tritrack.training.torch_network import Round, layers_of, learn, loss, parts_of
 
 UNITS = (20, 6, 9)
 DUE = 39
@@ -136,7 +136,7 @@ class Optimiser:
     def _step(self) -> None:
         self.notes.append("step")
         for weight in self.weights:
-            weight += 1.0
+            weight[...] = weight + 1.0
 
     def torch(self) -> Any:
         scheduler = SimpleNamespace(OneCycleLR=self.OneCycleLR)
