@@ -4,16 +4,19 @@ import numpy as np
 import pytest
 from acting import perform
 
+from recognizer import evaluation
 from recognizer.evaluation import (
     Outcome,
     Recording,
     confusion,
     folds,
+    named_by,
     recognise,
     table,
     wilson,
 )
 from recognizer.postures import POSTURES
+from recognizer.training.learning import Sizes, train
 
 NAMES = tuple(POSTURES)
 PRINTED = (22, 21, 23, 21, 24, 20, 23, 24, 22, 22, 23, 24, 21, 22, 20)
@@ -92,3 +95,65 @@ def test_leaving_one_out_never_learns_from_the_one_tested() -> None:
     for one in outcomes:
         if one.truth in swapped:
             assert one.named == swapped[one.truth]
+
+
+def test_the_table_says_of_each_posture_what_it_was_mistaken_for() -> None:
+    """The first by chance has as many rights as the second has mistakes; a user's own has no
+    movement."""
+    names = ("squat", "kick_left_side", "my own bow")
+    counts = np.array([[10, 2, 0, 1], [0, 3, 0, 0], [4, 0, 5, 0]])
+    low, high = wilson(18, 25)
+    assert table(counts, names).splitlines() == [
+        "posture         movement     correct  mistaken for",
+        f"squat           {POSTURES['squat']:11}   10/13   kick_left_side 2, nothing 1",
+        f"kick_left_side  {POSTURES['kick_left_side']:11}    3/3",
+        "my own bow                     5/9    squat 4",
+        f"all: 18/25 = 72.0% (95 % interval {low:.1%} to {high:.1%})",
+    ]
+
+
+def test_margin_and_fit_are_of_a_frame_and_of_the_best_other(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Five frames of which one has no pose: scores are shared among four."""
+    model = train({name: [perform(name, 0)] * 3 for name in ("squat", "kick_left_side")})
+    monkeypatch.setattr(
+        evaluation, "scored", lambda *_: {"squat": -8.0, "kick_left_side": -4.0, "bow": -20.0}
+    )
+    rows = perform("squat", 1)[:5].copy()
+    rows[2] = np.nan
+    own, theirs = (Recording("ann", name, rows, "clip") for name in ("squat", "wave"))
+    (one, other) = named_by(model, [own, theirs])
+    assert one == Outcome("squat", "kick_left_side", "ann", "clip", -1.0, -1.0, -1.0, True)
+    assert other[:4] == ("wave", "kick_left_side", "ann", "clip")
+    assert np.isnan(other.margin)
+    assert (other.fit, other.fit_of_others, other.known) == (-1.0, -1.0, False)
+    empty = own._replace(rows=np.full((3, 20), np.nan))
+    (nothing,) = named_by(model, [empty])
+    assert (nothing.named, nothing.known) == ("", True)
+    assert np.isnan([nothing.margin, nothing.fit, nothing.fit_of_others]).all()
+
+
+def test_who_is_learnt_from_is_on_the_models_card_and_in_no_test(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    noted = []
+
+    def training(sequences: object, *given: object) -> str:
+        noted.append((sequences, *given))
+        return "model"
+
+    monkeypatch.setattr(evaluation, "train", training)
+    monkeypatch.setattr(evaluation, "named_by", lambda model, tested: (model, tested))
+    rows = [np.full((2, 20), n) for n in range(3)]
+    learnt = [
+        Recording("eve", "squat", rows[0]),
+        Recording("bob", "wave", rows[1]),
+        Recording("bob", "squat", rows[2]),
+    ]
+    tested = [Recording("ann", "squat", rows[0])]
+    sizes = Sizes(3, 16)
+    assert recognise(learnt, tested, "paper", "left-right", 7, sizes) == ("model", tested)
+    ((sequences, *given),) = noted
+    assert sequences == {"squat": [rows[0], rows[2]], "wave": [rows[1]]}
+    assert given == ["paper", "left-right", 7, ["bob", "eve"], sizes]

@@ -11,6 +11,7 @@ from acting import perform, performances
 from hypothesis import given
 from hypothesis import strategies as st
 
+from recognizer import model_file
 from recognizer.model_file import ModelError, load, save
 from recognizer.postures import POSTURES, PostureModel, Recognizer, log_likelihoods
 from recognizer.training.learning import train
@@ -192,3 +193,93 @@ def test_a_place_that_cannot_be_written_is_named(model: PostureModel, tmp_path: 
     (tmp_path / "no folder").write_text("")
     with pytest.raises(ModelError, match="cannot write the model"):
         save(model, tmp_path / "no folder" / "postures.npz")
+
+
+def test_why_a_file_cannot_be_read_is_said_in_the_systems_words_or_its_own(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    gone = tmp_path / "gone.npz"
+    assert refusal(gone).startswith(f"cannot read the model {gone}: No such file or directory; ")
+
+    def odd(*_: object) -> None:
+        raise OSError("the disk is odd")
+
+    monkeypatch.setattr(model_file, "read_arrays", odd)
+    assert refusal(gone).startswith(f"cannot read the model {gone}: the disk is odd; ")
+
+
+def test_a_fault_without_words_is_named_by_its_kind_and_one_of_many_lines_by_its_first(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    for fault, said in (
+        (RecursionError(), "RecursionError"),
+        (ValueError("one\ntwo"), "one"),
+    ):
+
+        def broken(*_: object, fault: Exception = fault) -> None:
+            raise fault
+
+        monkeypatch.setattr(model_file, "read_arrays", broken)
+        path = tmp_path / "odd.npz"
+        assert refusal(path).startswith(f"no usable posture model in {path}: {said}; ")
+
+
+def changed(saved_of: dict[Recognizer, Path], of: Recognizer, target: Path, **parts: Any) -> str:
+    """The refusal of a model some of whose arrays are made other ones."""
+    held = parts_of(saved_of[of])
+    for name, change in parts.items():
+        held[name] = change(held[name].copy())
+    np.savez(target, **held)
+    return refusal(target)
+
+
+def first(value: float) -> Any:
+    """A change of an array's first number."""
+
+    def change(array: np.ndarray) -> np.ndarray:
+        array.flat[0] = value
+        return array
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("of", "name", "change", "said"),
+    [
+        ("default", "mean", lambda a: a.astype(np.float32), "mean is float32"),
+        ("default", "mean", lambda a: a[:-1], "mean is float64"),
+        ("default", "mean", first(np.inf), "mean holds a number that is not finite"),
+        ("default", "start", lambda a: a + 1e-8, "the rows of start are no probabilities"),
+        ("default", "transition", first(-0.1), "the rows of transition are no probabilities"),
+        ("default", "variance", first(0.0), "variance holds a number that is not positive"),
+        ("default", "rest_variance", first(-1.0), "variance holds a number that is not positive"),
+        ("paper", "codebook", first(np.nan), "codebook holds a number that is not finite"),
+    ],
+)
+def test_an_array_that_no_model_has_is_named(
+    saved_of: dict[Recognizer, Path],
+    tmp_path: Path,
+    of: Recognizer,
+    name: str,
+    change: Any,
+    said: str,
+) -> None:
+    assert said in changed(saved_of, of, tmp_path / "false.npz", **{name: change})
+
+
+def test_a_symbol_is_never_impossible(saved_of: dict[Recognizer, Path], tmp_path: Path) -> None:
+    def moved(emission: np.ndarray) -> np.ndarray:
+        row = emission[0, 0]
+        row[1] += row[0]
+        row[0] = 0.0
+        return emission
+
+    text = changed(saved_of, "paper", tmp_path / "never.npz", emission=moved)
+    assert "emission calls a symbol impossible" in text
+
+
+def test_probabilities_may_be_rounded(saved_of: dict[Recognizer, Path], tmp_path: Path) -> None:
+    held = parts_of(saved_of["default"])
+    held["start"] = held["start"] + 1e-11
+    np.savez(tmp_path / "rounded.npz", **held)
+    load(tmp_path / "rounded.npz")

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recognizer.model_rate import PERIOD_S, at_model_rate, counts
+from recognizer.model_rate import PERIOD_S, State, at_model_rate, counts, step
 
 
 def test_a_camera_of_the_papers_rate_is_taken_frame_by_frame() -> None:
@@ -32,3 +32,40 @@ def test_ten_seconds_of_any_camera_are_as_many_frames(hz: float) -> None:
 def test_a_gap_or_a_clip_that_begins_again_is_no_slow_camera() -> None:
     assert counts([0.0, PERIOD_S, 5.0, 5.0 + PERIOD_S]).tolist() == [1, 1, 1, 1]
     assert counts([8.0, 8.0 + PERIOD_S, 0.0, PERIOD_S]).tolist() == [1, 1, 1, 1]
+
+
+@pytest.mark.parametrize(
+    ("late", "frames", "due_in"),
+    [
+        (-1.51, 1, -0.51),
+        (-1.49, 0, 0.0),
+        (-0.41, 0, 0.0),
+        (-0.39, 1, 1.0),
+        (0.59, 1, 1.0),
+        (0.61, 2, 2.0),
+        (2.59, 3, 3.0),
+        (3.59, 4, 4.0),
+        (3.61, 1, 4.61),
+        (3.99, 1, 4.99),
+    ],
+)
+def test_a_frame_stands_for_those_that_were_due_by_then(
+    late: float, frames: int, due_in: float
+) -> None:
+    """In periods after the one that is due: what comes 0.4 early is on time, 4 are not skipped, and
+    what was due 1.5 later is of a clip that began again."""
+    due_s = 7.0
+    state, count = step(State(due_s), due_s + late * PERIOD_S)
+    assert count == frames
+    assert state.due_s == pytest.approx(due_s + due_in * PERIOD_S)
+
+
+def test_the_first_frame_is_due_whenever_it_comes() -> None:
+    state, count = step(State(), 3.2)
+    assert (count, state.due_s) == (1, pytest.approx(3.2 + PERIOD_S))
+
+
+def test_rows_are_repeated_as_often_as_their_frames_count() -> None:
+    rows = np.arange(60.0).reshape(3, 20)
+    found = at_model_rate([0.0, 2 * PERIOD_S, 2.4 * PERIOD_S], rows)
+    assert found.tolist() == rows[[0, 1, 1]].tolist()

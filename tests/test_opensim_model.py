@@ -139,3 +139,56 @@ def test_markers_stand_where_bones_start_and_end() -> None:
         assert joint in (bone.starts, bone.ends)
         tip_m = skeleton.tips_m[bones[body]] if joint == bone.ends else np.zeros(3)
         assert place_m == pytest.approx(tip_m.tolist(), abs=1e-8)
+
+
+def turned(axis: np.ndarray, angle: float) -> np.ndarray:
+    """Rodrigues's formula."""
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross)
+
+
+def vector(parent: ElementTree.Element, path: str) -> np.ndarray:
+    return np.array([float(each) for each in str(parent.findtext(path)).split()])
+
+
+def markers_of(model: ElementTree.Element, said: dict[str, float]) -> dict[str, np.ndarray]:
+    """Where a model's markers are, read as OpenSim's documentation has it: a joint's frame, then
+    its translations, then its turns one after the other, each about the axes turned so far."""
+    at = {"/ground": (np.eye(3), np.zeros(3))}
+    for joint in model.iter("CustomJoint"):
+        start = next(
+            each for each in joint.iter("PhysicalOffsetFrame") if each.get("name") == "from"
+        )
+        turn, place = at[str(start.findtext("socket_parent"))]
+        place = place + turn @ vector(start, "translation")
+        for axis, angle in zip(np.eye(3), vector(start, "orientation"), strict=True):
+            turn = turn @ turned(axis, angle)
+        moved = np.zeros(3)
+        own = np.eye(3)
+        for axis in joint.iter("TransformAxis"):
+            value = said.get(str(axis.findtext("coordinates")), 0.0)
+            if str(axis.get("name")).startswith("r"):
+                own = own @ turned(vector(axis, "axis"), np.radians(value))
+            else:
+                moved += value * vector(axis, "axis")
+        at[f"/bodyset/{joint.get('name')}"] = (turn @ own, place + turn @ moved)
+    found = {}
+    for marker in model.iter("Marker"):
+        turn, place = at[str(marker.findtext("socket_parent_frame"))]
+        found[str(marker.get("name"))] = place + turn @ vector(marker, "location")
+    return found
+
+
+def test_the_motion_moves_the_model_through_the_joints(tmp_path: Path) -> None:
+    expected = written(tmp_path)
+    model = ElementTree.parse(tmp_path / "body.osim").getroot()
+    lines = (tmp_path / "body.mot").read_text().splitlines()
+    head = lines.index("endheader") + 1
+    names = lines[head].split("\t")
+    assert f"nColumns={len(names)}" in lines[:head]
+    for row in (0, 20, 39):
+        values = [float(value) for value in lines[head + 1 + row].split("\t")]
+        markers = markers_of(model, dict(zip(names, values, strict=True)))
+        for n, joint in enumerate(JOINT_NAMES):
+            assert markers[joint] == pytest.approx(expected[row, n], abs=1e-3)

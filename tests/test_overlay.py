@@ -3,7 +3,16 @@
 import numpy as np
 import pytest
 
-from animator.overlay import BELOW_M, LEAST_HEIGHT_PX, TALL_M, draw_stick, overlay, side_view
+from animator.overlay import (
+    BELOW_M,
+    LEAST_HEIGHT_PX,
+    SEEN,
+    TALL_M,
+    TINT,
+    draw_stick,
+    overlay,
+    side_view,
+)
 from animator.scene import LEFT, RIGHT
 from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
@@ -137,3 +146,59 @@ def test_from_the_side_the_body_stands_in_the_middle_and_limbs_have_their_breadt
     assert np.ptp(columns) + 1 == pytest.approx(2 * 0.05 * tall_px + 3, abs=4)
     hand = where(view, LEFT)
     assert hand[:, 0].min() < view.shape[1] / 2 - 0.4 * px
+
+
+def test_the_breadth_of_limbs_follows_the_height_of_the_joints_half_a_metre_at_least() -> None:
+    """Joints within 0.4 m of height are drawn as those of a body of half a metre."""
+    broad = []
+    for tall_m in (0.4, 0.5, 1.0):
+        joints_m = np.tile([0.0, 1.0, 0.0], (15, 1))
+        joints_m[JOINT_NAMES.index("head_top")] = (0.0, 1.0 + tall_m / 2, 0.0)
+        joints_m[JOINT_NAMES.index("l_ankle")] = (0.0, 1.0 - tall_m / 2, 0.0)
+        view = side_view(joints_m, SURE, 960)
+        changed = (view != side_view(NOBODY_M, SURE, 960)).any(axis=2)
+        row = round(960 * (1 - BELOW_M / TALL_M) - 960 / TALL_M * 0.9)
+        broad.append(int(changed[row].sum()))
+    assert abs(broad[0] - broad[1]) <= 1
+    assert broad[2] > 1.5 * broad[1]
+
+
+def test_from_the_side_what_is_nearest_to_the_viewer_is_drawn_last() -> None:
+    """The viewer stands at the right of the camera's picture: +x hides -x, whichever side it is."""
+    joints_m = body()
+    assert joints_m[JOINT_NAMES.index("l_knee"), 0] > joints_m[JOINT_NAMES.index("r_knee"), 0]
+    mirrored = joints_m * (-1.0, 1.0, 1.0)
+    for given, seen, hidden in ((joints_m, LEFT, RIGHT), (mirrored, RIGHT, LEFT)):
+        view = side_view(given, SURE, 480)
+        assert len(where(view, seen)) > 20 * len(where(view, hidden))
+
+
+def test_a_stroke_takes_the_sureness_of_its_far_end() -> None:
+    image = np.full((240, 320, 3), 90, np.uint8)
+    joints_px = np.tile([20.0, 20.0], (15, 1))
+    elbow, wrist = (JOINT_NAMES.index(f"l_{name}") for name in ("elbow", "wrist"))
+    joints_px[elbow], joints_px[wrist] = (100.0, 200.0), (200.0, 200.0)
+    for unsure, pale in ((elbow, False), (wrist, True)):
+        confidence = SURE.copy()
+        confidence[unsure] = 0.0
+        drawn = image.copy()
+        draw_stick(drawn, joints_px, confidence)
+        painted = drawn[196:204, 140:160].reshape(-1, 3).astype(int)
+        nearest = np.abs(painted - np.array(LEFT[::-1])).max(axis=1).min()
+        assert bool(nearest > 30) is pale
+
+
+def test_the_tint_covers_the_silhouette_and_its_contour_is_opaque() -> None:
+    """Rows 20 to 39 and columns 30 to 49 of 60 x 80, in 360 x 480: 6 times as large."""
+    mask = np.zeros((60, 80), bool)
+    mask[20:40, 30:50] = True
+    left = overlay(GREY, mask, NOBODY_PX, NOBODY_M, SURE)[:, :480]
+    changed = (left != 90).any(axis=2)
+    rows, columns = np.flatnonzero(changed.any(axis=1)), np.flatnonzero(changed.any(axis=0))
+    assert (rows[0], rows[-1], columns[0], columns[-1]) == pytest.approx(
+        (120, 239, 180, 299), abs=1
+    )
+    assert changed[121:238, 181:298].all()
+    inside, border = left[180, 240].astype(int), left[120, 240].astype(int)
+    assert inside == pytest.approx(90 + TINT * (np.array(SEEN) - 90), abs=1)
+    assert border == pytest.approx(np.array(SEEN), abs=20), "softened at its edge"

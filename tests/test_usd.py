@@ -9,8 +9,9 @@ from clients import answer_of
 from moving import random_joints
 
 from animator.bvh import steady
+from animator.exchange.sticks import sticks_of
 from animator.exchange.usd import usd_bytes
-from animator.skeleton.bones import BONES, joints_of
+from animator.skeleton.bones import BONES, joints_of, rest_origins_m
 from common.body.body import JOINT_NAMES
 
 pytest.importorskip("pxr", reason="pip install 'tritrack[usd]'")
@@ -98,3 +99,55 @@ def test_blender_opens_it_as_a_skinned_armature(path: Path) -> None:
         for bone in skeleton.bones:
             x, y, z = expected[JOINT_NAMES.index(bone.starts)]
             assert heads[bone.name] == pytest.approx([x, -z, y], abs=1e-3)
+
+
+def test_the_figure_is_of_triangles_bound_to_one_bone_each(path: Path) -> None:
+    from pxr import Usd, UsdGeom, UsdSkel
+
+    skeleton, _ = made(path)
+    sticks = sticks_of(skeleton)
+    stage = Usd.Stage.Open(str(path))
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/Body/Sticks"))
+    assert list(mesh.GetFaceVertexCountsAttr().Get()) == [3] * len(sticks.faces)
+    assert list(mesh.GetFaceVertexIndicesAttr().Get()) == sticks.faces.ravel().tolist()
+    assert np.array(mesh.GetPointsAttr().Get()) == pytest.approx(sticks.places_m)
+    assert mesh.GetSubdivisionSchemeAttr().Get() == "none"
+    low, high = np.array(mesh.GetExtentAttr().Get())
+    assert low == pytest.approx(sticks.places_m.min(axis=0))
+    assert high == pytest.approx(sticks.places_m.max(axis=0))
+    (colour,) = mesh.GetDisplayColorAttr().Get()
+    assert tuple(colour) == pytest.approx((0.55, 0.6, 0.65))
+    binding = UsdSkel.BindingAPI(mesh.GetPrim())
+    indices, weights = binding.GetJointIndicesPrimvar(), binding.GetJointWeightsPrimvar()
+    assert list(indices.Get()) == sticks.bones.tolist()
+    assert list(weights.Get()) == [1.0] * len(sticks.bones)
+    assert (indices.GetElementSize(), weights.GetElementSize()) == (1, 1)
+
+
+def test_the_skeleton_at_rest_is_ours(path: Path) -> None:
+    """Rest transforms are told in a parent's axes, bind transforms in the world's; row vectors."""
+    from pxr import Usd, UsdSkel
+
+    skeleton, _ = made(path)
+    stage = Usd.Stage.Open(str(path))
+    bones = UsdSkel.Skeleton(stage.GetPrimAtPath("/Body/Skeleton"))
+    rest = np.array(bones.GetRestTransformsAttr().Get())
+    bind = np.array(bones.GetBindTransformsAttr().Get())
+    for i, bone in enumerate(skeleton.bones):
+        above = bind[bone.parent, 3, :3] if bone.parent >= 0 else np.zeros(3)
+        assert bind[i, 3, :3] - above == pytest.approx(rest[i, 3, :3], abs=1e-6)
+        for found in (rest[i], bind[i]):
+            assert (found[:3, :3] == np.eye(3)).all()
+            assert found[:, 3].tolist() == [0, 0, 0, 1]
+    assert bind[:, 3, :3] == pytest.approx(rest_origins_m(skeleton), abs=1e-6)
+    joints = list(bones.GetJointsAttr().Get())
+    for path_of, bone in zip(joints, skeleton.bones, strict=True):
+        *above_it, own = path_of.split("/")
+        assert own == bone.name
+        assert "/".join(above_it) == (joints[bone.parent] if bone.parent >= 0 else "")
+
+
+@pytest.mark.parametrize(("ending", "begins"), [(".usda", b"#usda"), (".usdc", b"PXR-USDC")])
+def test_the_ending_tells_the_form(ending: str, begins: bytes) -> None:
+    skeleton, motion, steps = steady(random_joints(3), np.arange(40) / 15)
+    assert usd_bytes(skeleton, motion, steps.step_s, ending).startswith(begins)
