@@ -15,6 +15,7 @@ from common.npz_file import Arrays
 from tritrack.accuracy.accuracy import (
     INDEX,
     JOINTS,
+    LOST_MM,
     aligned,
     compare,
     inner_deg,
@@ -192,3 +193,38 @@ def test_the_yardstick_says_the_same(
         assert told[name] == pytest.approx(due[name], abs=0.0000501)
     each = {name: off["mean"] for name, off in per_joint(ours).items()}
     assert each == pytest.approx(due["abs_mm_per_joint"], abs=0.0501)
+
+
+def test_each_figure_takes_away_what_its_name_says() -> None:
+    """A body of 0.9 times the size that stands 0.4 m aside: each joint is off by the shift and a
+    tenth of its distance from where all shrinks to; seen from the hips by the tenth alone; aligned
+    by nothing. The reverse alignment would count the larger body's millimetres."""
+    rng = np.random.default_rng(4)
+    wobble = rng.normal(0.0, 0.02, PERSON.shape)
+    true = PERSON[None] + (1.0, 0.0, 2.0)
+    hips = true[0, [INDEX["l_hip"], INDEX["r_hip"]]].mean(axis=0)
+    told = 0.9 * (true - hips) + hips + (0.4, 0.0, 0.0)
+    arrays = truth_of([True])
+    one = compare(poses_of([0], told), {**arrays, "joints3d": true})
+    figures = summary([one])
+    from_hips = np.linalg.norm(true[0] - hips, axis=1)
+    assert figures["root_mm"]["mean"] == pytest.approx(100 * from_hips.mean())
+    assert figures["pa_mm"]["mean"] == pytest.approx(0.0, abs=1e-6)
+    rough = compare(poses_of([0], told + 0.9 * wobble), {**arrays, "joints3d": true})
+    q, p = true[0] - true[0].mean(axis=0), told[0] + 0.9 * wobble
+    p = p - p.mean(axis=0)
+    turn, _ = Rotation.align_vectors(q, p)
+    scale = (q * turn.apply(p)).sum() / (p * p).sum()
+    due = np.linalg.norm(scale * turn.apply(p) - q, axis=1)
+    assert summary([rough])["pa_mm"]["mean"] == pytest.approx(1e3 * due.mean(), rel=1e-6)
+
+
+def test_a_frame_is_lost_where_a_joint_is_beyond_the_limit_or_there_is_no_pose() -> None:
+    """Of five frames due: one 10 mm within the limit, one 10 mm beyond, one without a pose."""
+    limit_m = LOST_MM / 1e3
+    off_m = (0.0, limit_m - 0.01, limit_m + 0.01)
+    frames = np.stack([shifted("l_wrist", each) for each in off_m])
+    told = summary([compare(poses_of([0, 1, 3], frames), truth_of([True] * 5 + [False]))])
+    assert (told["frames"], told["coverage"], told["lost"]) == (5, pytest.approx(0.6), 3 / 5)
+    assert told["clips"] == 1
+    assert told["ghost"] == 0.0

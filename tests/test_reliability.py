@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tritrack.accuracy.reliability import auc, gap, reliability, roc
+from tritrack.accuracy.accuracy import JOINTS, Compared
+from tritrack.accuracy.reliability import auc, gap, reliability, roc, trust
 
 said_and_came = st.lists(
     st.tuples(st.integers(0, 20).map(lambda n: n / 20), st.booleans()), min_size=1, max_size=60
@@ -74,3 +75,41 @@ def test_every_joint_is_in_one_bin(given_: tuple[np.ndarray, np.ndarray]) -> Non
     assert sum(one["count"] for one in bins) == given_[0].size
     kept = sum(one["count"] * one["near"] for one in bins if one["count"])
     assert kept == pytest.approx(given_[1].sum())
+
+
+def compared(off_mm: list[list[float]], confidence: list[list[float]]) -> Compared:
+    n, joints = len(off_mm), len(JOINTS)
+    true_m, off_m = np.zeros((n, joints, 3)), np.zeros((n, joints, 3))
+    off_m[:, :, 1] = 900.0
+    off_m[:, : len(off_mm[0]), 1] = 1e-3 * np.array(off_mm)
+    sure = np.full((n, joints), 0.05)
+    sure[:, : len(confidence[0])] = confidence
+    return Compared(np.arange(n), np.arange(n), off_m, true_m, sure, n, 0, 0)
+
+
+def test_trust_is_in_joints_nearer_than_five_centimetres_of_all_clips() -> None:
+    """Of three frames the first two joints count by hand; the other ten are far and unsure."""
+    clips = [
+        compared([[49.0, 51.0], [10.0, 70.0]], [[0.95, 0.15], [0.65, 0.75]]),
+        compared([[60.0, 20.0]], [[0.75, 0.85]]),
+    ]
+    told = trust(clips)
+    assert told["near_mm"] == 50.0
+    assert told["near"] == pytest.approx(3 / 36)
+    assert told["auc"][JOINTS[0]] == pytest.approx(1 / 2)
+    assert told["auc"][JOINTS[1]] == pytest.approx(1.0)
+    assert np.isnan(told["auc"][JOINTS[2]])
+    assert told["auc"]["all"] == pytest.approx((33 + 33 + 31) / (3 * 33))
+    counts = {i: one["count"] for i, one in enumerate(told["bins"]) if one["count"]}
+    assert counts == {0: 30, 1: 1, 6: 1, 7: 2, 8: 1, 9: 1}
+    assert told["gap"] == pytest.approx(0.75)
+    for i, one in enumerate(told["bins"]):
+        assert (one["from"], one["to"]) == pytest.approx((i / 10, (i + 1) / 10))
+
+
+def test_the_curve_of_joints_that_are_all_near_or_all_far_is_an_edge() -> None:
+    sure = np.array([0.9, 0.2])
+    far, found = roc(sure, np.array([True, True]))
+    assert (far.tolist(), found.tolist()) == ([0, 0, 0], [0, 0.5, 1])
+    far, found = roc(sure, np.array([False, False]))
+    assert (far.tolist(), found.tolist()) == ([0, 0.5, 1], [0, 0, 0])

@@ -220,3 +220,75 @@ def test_a_run_of_a_camera_wants_a_film_of_it(
     monkeypatch.setattr(retouching, "open_clip", lambda *_: live)
     with pytest.raises(RetouchError, match="is of a camera: name a film of it with --video"):
         retouch(run, None, None, 8080, QUIET)
+
+
+def settings_of(tmp_path: Path, settings: dict[str, Any], video: Path | None) -> Settings:
+    run = run_of(tmp_path / "run", tmp_path / "gone.avi")
+    (run / "summary.json").write_text(json.dumps({"settings": settings}))
+    return retouching._settings_of(open_run(run), video)
+
+
+def test_the_video_that_is_named_takes_the_place_of_what_the_run_was_of(tmp_path: Path) -> None:
+    """The rest of its camera stays, a device of this host does not; a clip is not read any more."""
+    camera = {"device": 2, "calibrated_as": "left", "background": "room.png"}
+    found = settings_of(tmp_path, {"size": "80x60", "camera_1": camera}, Path("moved.avi"))
+    assert found.camera_1 == CameraSettings("moved.avi", -1, "room.png", "left")
+    assert (found.size, found.clip) == ("80x60", "")
+    found = settings_of(tmp_path, {"clip": "some/clip"}, Path("moved.avi"))
+    assert (found.camera_1, found.clip) == (CameraSettings("moved.avi"), "")
+    found = settings_of(tmp_path, {"clip": "some/clip"}, None)
+    assert (found.camera_1, found.clip) == (None, "some/clip")
+
+
+def test_the_turn_to_the_camera_is_the_calibrations_the_assumed_one_or_level(
+    tmp_path: Path,
+) -> None:
+    film(tmp_path / "dance.avi")
+    run = run_of(tmp_path / "run", tmp_path / "dance.avi")
+    clip = open_clip(Settings(camera_1=CameraSettings(str(tmp_path / "dance.avi"))), None, (1,))
+    level = retouching._turn_of(open_run(run), msgspec.structs.replace(clip, rig=None))
+    assert level == retouching.PAPER_ROTATIONS[0]
+    turn = [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]
+    K = [[1.0, 0, 0], [0, 1.0, 0], [0, 0, 1.0]]
+    camera = {"name": "cam1", "K": K, "R": turn, "t": [0, 0, 4.0]}
+    (run / "summary.json").write_text(json.dumps({"camera": camera}))
+    assumed = retouching._turn_of(open_run(run), msgspec.structs.replace(clip, rig=None))
+    assert [list(row) for row in assumed] == turn
+    cameras = (SimpleNamespace(R="calibrated"), SimpleNamespace(R="other"))
+    rig: Any = SimpleNamespace(cameras=cameras)
+    calibrated: Any = retouching._turn_of(open_run(run), SimpleNamespace(rig=rig))  # type: ignore[arg-type]
+    assert calibrated == "calibrated"
+
+
+def test_a_row_without_a_picture_shows_the_one_before_it_or_black(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The video has frames 0 to 3 of 0, 60, 120 and 180 grey; rows beyond it keep the last."""
+    film(tmp_path / "dance.avi")
+    clip = open_clip(Settings(camera_1=CameraSettings(str(tmp_path / "dance.avi"))), None, (1,))
+
+    def shown(*frames: int) -> list[float]:
+        take: Any = SimpleNamespace(frame=np.array(frames))
+        pictures = retouching._pictures(clip, take, QUIET)
+        return [float(retouching._decoded(jpeg).mean()) for jpeg in pictures]
+
+    assert shown(1, 3, 7, 9) == pytest.approx([60, 180, 180, 180], abs=3)
+    assert shown(8, 2) == pytest.approx([0, 120], abs=3)
+    monkeypatch.setattr(retouching, "MOST_PICTURES", 2)
+    assert len(shown(0, 1)) == 2
+    with pytest.raises(RetouchError, match=r"^3 frames are too many .* of at most 2 frames each$"):
+        shown(0, 1, 2)
+
+
+def test_only_a_run_of_a_video_by_single_is_fitted_again(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    run = open_run(run_of(tmp_path / "run", tmp_path / "gone.avi"))
+    for told, fitted in (
+        (None, False),
+        (SimpleNamespace(command="track", footage=["a.mp4"]), False),
+        (SimpleNamespace(command="single", footage=["a.mp4"]), True),
+        (SimpleNamespace(command="single", footage=["a.mp4", "masks.npz"]), False),
+    ):
+        monkeypatch.setattr(retouching, "run_told", lambda _, told=told: told)
+        assert retouching.fitted_by_single(run) is fitted

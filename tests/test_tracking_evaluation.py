@@ -7,7 +7,7 @@ from contextlib import redirect_stdout
 from html.parser import HTMLParser
 from io import StringIO
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import cv2
 import numpy as np
@@ -15,7 +15,10 @@ import pytest
 from rich.console import Console
 
 import tritrack.__main__ as door
+from common.config.settings import Settings
+from tritrack.accuracy import tracking_evaluation
 from tritrack.accuracy.accuracy import compare, summary
+from tritrack.accuracy.silhouette_iou import Overlap
 from tritrack.accuracy.tracking_evaluation import EvaluationError, evaluate_tracking
 from tritrack.accuracy.worst_frames import TRACKED, TRUE
 from tritrack.offline.batch import Asked, track_all
@@ -203,3 +206,91 @@ def test_the_command_prints_the_headline(written: Path) -> None:
     assert told["abs_mm"] == report["all"]["abs_mm"]
     assert told["confidence_auc"] == report["confidence"]["auc"]["all"]
     assert told["silhouettes_iou"] == report["silhouettes"]["mean"]
+
+
+def case_of(performer: str, posture: str = "squat") -> Any:
+    settings = Settings(mode="default", size="80x60")
+    return tracking_evaluation.Case(settings, performer, posture, None, cast(Any, performer), {})
+
+
+def test_silhouettes_are_meant_over_views_then_clips_then_performers() -> None:
+    """Two clips of ann, one of bob, one without masks; of 8 empty frames 2 got a silhouette."""
+    cases = {
+        name: case_of(who) for name, who in zip("cabd", ("ann", "ann", "bob", "eve"), strict=True)
+    }
+    found = {
+        "c": {
+            "cam1": Overlap(np.array([0.5, 0.7]), 3, 1),
+            "cam2": Overlap(np.array([0.8]), 1, 0),
+        },
+        "a": {"cam2": Overlap(np.array([0.9]), 2, 1)},
+        "b": {"cam1": Overlap(np.array([0.4, 0.2, 0.6]), 2, 0)},
+        "d": {},
+    }
+    told = tracking_evaluation._silhouettes(cases, found)
+    assert told["per_clip"] == {
+        "c": pytest.approx({"cam1": 0.6, "cam2": 0.8, "both": 0.7}),
+        "a": pytest.approx({"cam2": 0.9, "both": 0.9}),
+        "b": pytest.approx({"cam1": 0.4, "both": 0.4}),
+    }
+    assert told["per_performer"] == pytest.approx({"ann": 0.8, "bob": 0.4})
+    assert list(told["per_performer"]) == ["ann", "bob"]
+    assert (told["mean"], told["worst"]) == pytest.approx((2 / 3, 0.4))
+    assert told["ghost"] == pytest.approx(2 / 8)
+
+
+def test_silhouettes_of_clips_without_masks_or_without_empty_frames_have_no_figure() -> None:
+    told = tracking_evaluation._silhouettes({"d": case_of("eve")}, {"d": {}})
+    assert np.isnan([told["mean"], told["worst"], told["ghost"]]).all()
+    full = {"d": {"cam1": Overlap(np.array([0.4]), 0, 0)}}
+    told = tracking_evaluation._silhouettes({"d": case_of("eve")}, full)
+    assert np.isnan(told["ghost"])
+    assert told["mean"] == 0.4
+
+
+def test_clips_are_grouped_by_what_is_asked_in_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tracking_evaluation, "summary", lambda group: {"of": group})
+    cases = {"x": case_of("bob"), "y": case_of("ann", "kick"), "z": case_of("bob", "kick")}
+    told = tracking_evaluation._grouped(cases, lambda one: one.performer)
+    assert list(told.items()) == [("ann", {"of": ["ann"]}), ("bob", {"of": ["bob", "bob"]})]
+    told = tracking_evaluation._grouped(cases, lambda one: one.posture)
+    assert list(told) == ["kick", "squat"]
+
+
+def folder(path: Path, *files: str) -> Path:
+    path.mkdir(parents=True)
+    for name in files:
+        (path / name).write_text("")
+    return path
+
+
+def test_runs_that_stand_are_read_and_clips_that_have_none_are_tracked(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    noted: list[Any] = []
+    monkeypatch.setattr(tracking_evaluation, "track_all", lambda *given: noted.append(given))
+    clips = [folder(tmp_path / "clips" / name, "truth.npz") for name in "abc"]
+    bare = folder(tmp_path / "clips" / "bare")
+    alone = folder(tmp_path / "elsewhere" / "d", "poses.npz")
+    given = folder(tmp_path / "elsewhere" / "b", "poses.npz")
+    runs = tmp_path / "runs"
+    for name in "ab":
+        folder(runs / name, "poses.npz")
+    console = Console(file=StringIO(), width=400)
+    paths = [clips[2], bare, clips[0], given, alone, clips[1]]
+    found = tracking_evaluation._runs_of(paths, tmp_path / "out", runs, "paper", "80x60", console)
+    assert list(found.items()) == [
+        ("a", (runs / "a", clips[0])),
+        ("b", (given, clips[1])),
+        ("c", (runs / "c", clips[2])),
+        ("d", (alone, None)),
+    ]
+    assert noted == [([clips[2]], runs, Asked("paper", "80x60", force=True), console)]
+    assert f"{bare} has no truth.npz: left out" in cast(StringIO, console.file).getvalue()
+    noted.clear()
+    fresh = tracking_evaluation._runs_of(clips, tmp_path / "out", None, None, None, console)
+    assert [run for run, _ in fresh.values()] == [tmp_path / "out" / "runs" / n for n in "abc"]
+    assert noted == [(clips, tmp_path / "out" / "runs", Asked(None, None, force=True), console)]
+    noted.clear()
+    tracking_evaluation._runs_of([given], tmp_path / "out", None, None, None, console)
+    assert not noted
