@@ -131,3 +131,46 @@ def test_the_line_tells_what_was_given_and_what_could_help() -> None:
     told = line_of(facts_of(ledger(take, Notes(note=(Note(0, "left"),)))))
     assert told.startswith("inputs: 1 given, 0 more could help (all by hand: ")
     assert "thesis" not in told
+
+
+def test_the_facts_put_every_count_where_its_name_says() -> None:
+    made = Ledger(90, 3, Count(1, 2, 3), Count(4, 5, 7), Count(11, 13, 17))
+    assert facts_of(made) == {
+        "inputs": {"orientation": 1, "depth": 2, "joints": 3, "all": 6},
+        "inputs_that_could_help": {"orientation": 4, "depth": 5, "joints": 7, "all": 16},
+        "this_video_by_hand": 3 * 14 + 13,
+        "this_video_the_thesis_way": 41,
+        "thesis": {
+            "walking": {"frames": 82, "by_hand": 290, "all": 60},
+            "dancing": {"frames": 200, "by_hand": 506, "all": 59},
+        },
+    }
+    assert line_of(facts_of(made)) == "inputs: 6 given, 16 more could help (all by hand: 55)"
+
+
+def test_the_thesis_asks_for_each_turn_each_direction_and_each_hidden_joint() -> None:
+    """A turn at frame 6 of 12; an arm forwards in frames 3 to 8; a wrist hidden in 10. Frames
+    without a pose ask for nothing: the first three of another orientation have none."""
+    lifted = rest_pose()
+    lifted[POSE_INDEX["l_shoulder_x"]] = 60.0
+    orientation = np.array(["left"] * 3 + ["forward_left"] * 3 + ["right"] * 6)
+    take = sure(12, orientation=orientation)
+    take.joints_m[3:9] = joints(body_vector(thesis_bdp(1.7)), lifted)
+    take.joints_m[:3] = np.nan
+    take.confidence[10, JOINT_NAMES.index("r_wrist")] = 0.1
+    made = ledger(take, Notes())
+    assert made.thesis == Count(orientation=2, depth=2, joints=1)
+    assert made.frames == 12
+
+
+def test_a_place_that_is_moved_is_another_input_and_silence_holds_what_was_said() -> None:
+    notes = Notes(
+        note=(
+            Note(0, None, {"l_lower_arm": "toward"}, {"l_wrist": (1.0, 2.0)}),
+            Note(3, "right", {"l_lower_arm": "toward"}, {"l_wrist": (1.0, 3.0)}),
+            Note(4, None),
+            Note(5, "right"),
+            Note(6, "left"),
+        )
+    )
+    assert given_inputs(notes) == Count(orientation=2, depth=1, joints=2)

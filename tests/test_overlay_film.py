@@ -1,11 +1,16 @@
 """The overlay's film lasts as long as the one that was followed, whatever that one's rate does;
 the body beside it stands as it stood."""
 
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
 from common.rig.camera import Camera, Matrix
 from tritrack.offline.film_tracking import Followed
+from tritrack.single import overlay_film
 from tritrack.single.overlay_film import STANDS_S, shown_times
 
 
@@ -50,3 +55,100 @@ def test_who_stands_upright_before_a_camera_that_looks_down_or_up_is_drawn_uprig
     film = Followed([], [], 1 / 15, camera, None, None, {})
     shown = film.to_camera(np.array([(0.0, 0.0, 0.0), (0.0, 1.7, 0.0), towards]))
     assert shown == pytest.approx(np.array([(0, 0, 0), (0, 1.7, 0), (0, 0, 1)]), abs=1e-12)
+
+
+def body_of(frame: int, **parts: Any) -> Any:
+    given = {"joints_m": (), "joints_px": (), "confidence": (), "status": "empty"}
+    return SimpleNamespace(**{**given, "frame": frame, "captured_s": 0.5 * frame, **parts})
+
+
+def report_of(captured_s: float) -> Any:
+    return SimpleNamespace(captured_s=captured_s, width=160, upright=None)
+
+
+def drawing(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """What each frame is drawn from."""
+    noted: list[Any] = []
+    monkeypatch.setattr(overlay_film, "overlay", lambda *given: noted.append(given) or given[0])
+    monkeypatch.setattr(overlay_film, "unpack", lambda report: f"silhouette {report.captured_s}")
+    monkeypatch.setattr(
+        overlay_film, "as_worked_on", lambda joints_px, _: joints_px + np.array([1.0, 2.0])
+    )
+    return noted
+
+
+def test_joints_are_drawn_in_the_pictures_own_pixels_and_the_caption_tells_the_frame(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A picture of four times the width that was worked at."""
+    noted = drawing(monkeypatch)
+    found: Any = SimpleNamespace(to_camera=lambda joints_m: 10 * joints_m)
+    joints_px, joints_m = np.arange(30.0).reshape(15, 2), np.arange(45.0).reshape(15, 3)
+    body = body_of(
+        7,
+        joints_px=(joints_px.tolist(), None),
+        joints_m=joints_m.tolist(),
+        confidence=[0.25] * 5 + [0.75] * 10,
+        status="tracking",
+    )
+    picture = np.zeros((480, 640, 3), np.uint8)
+    overlay_film._drawn(found, report_of(0.5), body, picture)
+    overlay_film._drawn(found, report_of(0.6), body_of(8), picture)
+    (_, silhouette, px, m, confidence, caption), (_, _, no_px, no_m, no_sure, other) = noted
+    assert silhouette == "silhouette 0.5"
+    assert px == pytest.approx(4 * (joints_px + np.array([1.0, 2.0])))
+    assert m == pytest.approx(10 * joints_m)
+    assert confidence.tolist() == list(body.confidence)
+    assert caption == "7  3.50 s  tracking  0.58"
+    assert np.isnan(no_px).all()
+    assert no_px.shape == (15, 2)
+    assert np.isnan(no_m).all()
+    assert no_m.shape == (15, 3)
+    assert no_sure.tolist() == [0.0] * 15
+    assert other == "8  4.00 s  empty"
+
+
+@pytest.mark.parametrize(
+    ("times_s", "rate_hz", "shown"),
+    [([0.0, 0.1, 0.2, 0.5], 10.0, "aabbccd"), ([2.0], 1 / 0.3, "a")],
+)
+def test_the_film_shows_each_picture_as_long_as_it_stood_and_says_how_far_it_is(
+    monkeypatch: pytest.MonkeyPatch, times_s: list[float], rate_hz: float, shown: str
+) -> None:
+    """The usual gap is that of the film; of one picture the clip's own period is."""
+    told: list[float] = []
+    pictures = "abcd"[: len(times_s)]
+    monkeypatch.setattr(overlay_film, "overlaid", lambda found, decoder: iter(pictures))
+    monkeypatch.setattr(
+        overlay_film, "shown_times", lambda time_s, _: [2] * (len(time_s) - 1) + [1]
+    )
+    monkeypatch.setattr(
+        overlay_film, "write_film", lambda path, drawn, rate: (path, [*drawn], rate)
+    )
+    found: Any = SimpleNamespace(reports=[report_of(each) for each in times_s], period_s=0.3)
+    decoder: Any = None
+    written: Any = overlay_film.write_overlay(found, Path("out"), decoder, told.append)
+    path, drawn, rate = written
+    assert (path, "".join(drawn), rate) == (Path("out"), shown, pytest.approx(rate_hz))
+    assert told == [(n + 1) / len(times_s) for n in range(len(times_s))]
+
+
+def test_masks_are_drawn_on_paper_and_clips_on_their_own_frames_upright(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    of_masks: Any = SimpleNamespace(clip=None, size=(40, 30), reports=[1, 2, 3])
+    asked: list[Any] = []
+
+    def frames(*given: Any) -> Any:
+        asked.append(given)
+        return iter([SimpleNamespace(picture=n) for n in range(2)])
+
+    decoder: Any = SimpleNamespace(frames=frames)
+    papers = list(overlay_film._pictures(of_masks, decoder))
+    assert [paper.shape for paper in papers] == [(30, 40, 3)] * 3
+    assert all((paper == 255).all() for paper in papers)
+    view = SimpleNamespace(source="a.mp4", upright_source=(720, 1280), quarters=3)
+    of_clip: Any = SimpleNamespace(clip=SimpleNamespace(views=(view, None), every=2))
+    assert list(overlay_film._pictures(of_clip, decoder)) == [0, 1]
+    size = overlay_film.working_size((720, 1280), overlay_film.SHOWN)
+    assert asked == [("a.mp4", size, overlay_film.Wanted(2, quarters=3))]

@@ -3,6 +3,7 @@
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import cv2
 import msgspec
@@ -11,13 +12,24 @@ import pytest
 from rich.console import Console
 from spoiling import film_of, write_film, write_uneven
 
+from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import save_notes
 from common.rig.camera import Camera, project
 from tritrack.faults import Unfollowed, refuse_unfollowed
 from tritrack.offline.batch import Asked, track_all
-from tritrack.single.single import UNUSABLE, Given, line_of, name_of, single_all
+from tritrack.single import single
+from tritrack.single.single import (
+    UNUSABLE,
+    Given,
+    Job,
+    job_of,
+    line_of,
+    mean_confidence,
+    name_of,
+    single_all,
+)
 from tritrack.store.clip_paths import ClipsFailed
 
 QUIET = Console(quiet=True)
@@ -249,3 +261,96 @@ def test_the_effort_is_told_as_the_camera_sees_it(video: Path, clip: Path, tmp_p
         assert facts["scale_source"] == "calibrated"
         efforts.append(facts["effort"])
     assert efforts[0] == efforts[1]
+
+
+def test_a_background_and_notes_that_are_named_take_the_place_of_those_beside(
+    tmp_path: Path,
+) -> None:
+    path, other = tmp_path / "dance.avi", tmp_path / "mine.toml"
+    path.write_bytes(b"")
+    beside, mine = Notes(note=(Note(1, "left"),)), Notes(note=(Note(2, "right"),))
+    assert job_of(path, Given(), SMALL).notes == Notes()
+    save_notes(tmp_path / "notes.toml", beside)
+    save_notes(other, mine)
+    job = job_of(path, Given(), SMALL)
+    assert (job.notes, job.path, job.masks) == (beside, path, None)
+    assert job.settings.camera_1 == CameraSettings(source=str(path))
+    assert job.settings.size == "160x120"
+    given = Given(notes=other, background=tmp_path / "room.png", landmarks="none")
+    job = job_of(path, given, SMALL)
+    assert job.notes == mine
+    assert job.settings.landmarks == "none"
+    assert job.settings.camera_1 == CameraSettings(str(path), -1, str(tmp_path / "room.png"))
+
+
+def test_a_clip_folder_has_the_notes_of_its_first_camera_and_may_have_no_camera_settings(
+    tmp_path: Path,
+) -> None:
+    folder = tmp_path / "clip"
+    folder.mkdir()
+    (folder / "cam1.avi").write_bytes(b"")
+    save_notes(folder / "notes.toml", Notes(note=(Note(3, "left"),)))
+    job = job_of(folder, Given(background=Path("room.png")), SMALL)
+    assert job.notes.note[0].frame == 3
+    assert job.settings.camera_1 == CameraSettings(background="room.png")
+    assert job.settings.clip == str(folder)
+
+
+def test_masks_have_no_notes_but_those_that_are_named(tmp_path: Path) -> None:
+    slow, fast = np.ones((2, 8, 9), np.bool_), np.ones((3, 8, 9), np.bool_)
+    np.savez(tmp_path / "walks.npz", slow=slow, fast=fast)
+    save_notes(tmp_path / "notes.toml", Notes(note=(Note(1, "left"),)))
+    path = Path(f"{tmp_path / 'walks.npz'}#fast")
+    job = job_of(path, Given(), SMALL)
+    assert job.masks is not None
+    assert (job.notes, len(job.masks.reports), job.settings) == (Notes(), 3, SMALL)
+    named = job_of(path, Given(notes=tmp_path / "notes.toml"), SMALL)
+    assert named.notes.note[0].frame == 1
+    assert [name_of(each) for each in (path, tmp_path / "walks.npz")] == ["fast", "walks"]
+
+
+def test_confidence_is_the_mean_over_frames_that_have_a_pose() -> None:
+    joints_m = np.zeros((3, 15, 3))
+    joints_m[1, 4, 2] = np.nan
+    confidence = np.repeat([[0.5], [0.9], [0.75]], 15, axis=1)
+    assert mean_confidence({"joints_m": joints_m, "confidence": confidence}) == 0.625
+    assert mean_confidence({"joints_m": joints_m[1:2], "confidence": confidence[1:2]}) == 0.0
+
+
+def test_the_line_says_what_share_has_a_pose_even_of_no_frames() -> None:
+    facts = {"frames": 0, "frames_with_pose": 0, "confidence": 0.0}
+    facts |= {"overlay": "o.mp4", "overlay_codec": "mp4v"}  # type: ignore[dict-item]
+    assert line_of("a", facts) == (
+        "a: a pose in 0 of 0 frames (0%), mean confidence 0.00; open o.mp4 (mp4v)"
+    )
+    more = facts | {"frames": 8, "frames_with_pose": 6, "believed": 0.25, "confidence": 0.876}
+    assert line_of("a", more) == (
+        "a: a pose in 6 of 8 frames (75%), believed in 25%, mean confidence 0.88; open o.mp4 (mp4v)"
+    )
+
+
+def test_two_videos_of_one_name_are_not_written_over_each_other(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of three the second is left out and the third followed."""
+    console = Console(width=400, stderr=True)
+    followed: list[str] = []
+
+    def kept(job: Job, wanted: Any, *_: Any) -> Any:
+        followed.append(str(job.path))
+        assert wanted.folder == tmp_path / "out" / name_of(job.path)
+        return {"frames": 2, "frames_with_pose": 1, "confidence": 0.5} | dict.fromkeys(
+            ("overlay", "overlay_codec"), "x"
+        )
+
+    paths = [tmp_path / "a" / "one.avi", tmp_path / "b" / "one.avi", tmp_path / "c" / "two.avi"]
+    for path in paths:
+        path.parent.mkdir()
+        path.write_bytes(b"")
+    monkeypatch.setattr(single, "_kept", kept)
+    with pytest.raises(ClipsFailed, match="1 of 3 videos could not be followed"):
+        single_all(paths, tmp_path / "out", Given(), SMALL, console)
+    assert followed == [str(paths[0]), str(paths[2])]
+    said = capsys.readouterr().err
+    assert f"{paths[1]} would be written to {tmp_path / 'out' / 'one'} too: rename it" in said
+    assert "one: a pose in 1 of 2 frames (50%)" in said
