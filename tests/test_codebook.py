@@ -5,7 +5,8 @@ import pytest
 from acting import performances
 
 from recognizer.codebook import SYMBOLS, WEIGHTS, fit, symbols
-from recognizer.features import features
+from recognizer.features import FEATURE_NAMES, features
+from recognizer.learning_error import LearningError
 
 
 @pytest.fixture(scope="module")
@@ -50,3 +51,21 @@ def test_too_few_poses_are_refused_with_the_cure(seen: np.ndarray) -> None:
 
 def test_no_feature_gives_no_symbol(seen: np.ndarray) -> None:
     assert symbols(fit(seen), seen[:0]).shape == (0,)
+
+
+def test_a_hip_counts_three_times_an_arm_and_ties_go_to_the_lower_number() -> None:
+    words = np.zeros((3, 16))
+    hip, elbow = FEATURE_NAMES.index("r_hip_up"), FEATURE_NAMES.index("l_elbow_sin")
+    words[1, hip], words[2, elbow] = 3.0, 1.0
+    vectors = np.zeros((4, 16))
+    vectors[1, hip] = 0.51
+    vectors[2, hip], vectors[2, elbow] = 0.5, 0.4
+    vectors[3, elbow] = 0.51
+    assert symbols(words, vectors).tolist() == [0, 1, 0, 2]
+
+
+def test_fewer_poses_than_symbols_are_counted() -> None:
+    vectors = np.tile(np.eye(16)[:5], (20, 1))
+    with pytest.raises(LearningError, match="5 different poses are too few for 6 symbols: give"):
+        fit(vectors, count=6)
+    assert fit(vectors, count=5).shape == (5, 16)

@@ -173,3 +173,15 @@ def test_travel_is_seen_from_the_body_wherever_it_faces(yaw_deg: float) -> None:
 def test_where_somebody_stands_is_no_feature() -> None:
     here, there = (np.tile(row(rest_pose(), root), (6, 1)) for root in ((0, 1, 0), (3, 2, -4)))
     assert bearings(here).tolist() == bearings(there).tolist()
+
+
+def test_travel_counts_twice_a_direction_to_the_side_up_and_ahead() -> None:
+    """Over 5 frames: 0.1 leg lengths along +x, 0.2 up, 0.3 along +z; the body faces 90 degrees
+    about the vertical, towards +x: what was along +z is to its other side."""
+    pose = rest_pose()
+    steps = np.array([0.02, 0.04, 0.06])
+    ahead = bearings(np.stack([row(pose, tuple(i * steps)) for i in range(7)]))[-1, -3:]
+    assert ahead == pytest.approx([0.2, 0.4, 0.6])
+    pose[YAW] = 90.0
+    turned = bearings(np.stack([row(pose, tuple(i * steps)) for i in range(7)]))[-1, -3:]
+    assert turned == pytest.approx([-0.6, 0.4, 0.2])

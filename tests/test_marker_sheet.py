@@ -1,6 +1,8 @@
 """Line markers on the page: the same answer as the typed command's, and what it is told by."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -14,6 +16,7 @@ from animator.marking.sheet import Kind, Mark, Sheet, Solved
 from common.rig.rig_file import CalibrationError
 from integrator.rig.calibration import read_points, run_markers
 from integrator.rig.markers import Markers
+from tritrack.marking import marker_sheet
 from tritrack.marking.marker_sheet import (
     marker_method,
     markers_of,
@@ -123,3 +126,50 @@ def test_whatever_is_clicked_is_solved_or_told(
     for seen in solved.cameras:
         assert seen.known or seen.text
     assert msgspec.json.decode(msgspec.json.encode(solved), type=Solved) == solved
+
+
+def test_an_aim_is_told_by_the_side_it_errs_to() -> None:
+    aims: list[Any] = [
+        SimpleNamespace(yaw_deg=yaw, pitch_deg=pitch, roll_deg=roll, skew_deg=0.256)
+        for yaw, pitch, roll in ((1.234, -0.5, 2.0), (-1.234, 0.5, -2.0))
+    ]
+    assert [dict(marker_sheet._facts(aim)) for aim in aims] == [
+        {
+            "yaw": "1.23° too far right",
+            "pitch": "0.50° too far down",
+            "roll": "2.00° clockwise",
+            "markers off square": "0.26°",
+        },
+        {
+            "yaw": "1.23° too far left",
+            "pitch": "0.50° too far up",
+            "roll": "2.00° counterclockwise",
+            "markers off square": "0.26°",
+        },
+    ]
+
+
+def test_a_line_is_drawn_from_border_to_border() -> None:
+    """x = 10 + y / 2 from the top to the bottom of 640 x 480; y = 40 - x / 4 from side to side."""
+    steep, flat = np.array([1.0, -0.5, -10.0]), np.array([0.5, 2.0, -80.0])
+    assert marker_sheet._ends(steep, 480, 1) == ((10.0, 0.0), (250.0, 480.0))
+    assert marker_sheet._ends(flat, 640, 0) == ((0.0, 40.0), (640.0, -120.0))
+    assert marker_sheet._ends(np.array([0.0, 1.0, -5.0]), 480, 1) is None
+    assert marker_sheet._ends(np.array([1.0, 0.0, -5.0]), 640, 0) is None
+
+
+def test_cameras_are_drawn_four_metres_off_whatever_their_distance() -> None:
+    aim: Any = SimpleNamespace(yaw_deg=2.5)
+    assert marker_sheet._place(1, aim) == (0.0, 4.0, -87.5, 40.0)
+    assert marker_sheet._place(2, aim) == (-4.0, 0.0, 2.5, 40.0)
+
+
+def test_points_are_numbered_marker_by_marker_and_the_worst_names_its_camera() -> None:
+    solved = solve_markers(moved(clicked_markers(), 5, 1, (0.0, 3.0)), SIZE, BOTH)
+    assert solved.names[0] == "floor marker, point 1"
+    assert solved.names[3:6] == (
+        "floor marker, point 4",
+        "wall marker, point 1",
+        "wall marker, point 2",
+    )
+    assert solved.worst == "wall marker, point 2 in camera 2"

@@ -3,6 +3,7 @@
 The pictures are drawn by a rig that is known, so that what the page finds can be held against it.
 """
 
+import io
 import json
 import os
 import re
@@ -14,6 +15,7 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import msgspec
@@ -45,14 +47,24 @@ from websockets.sync.client import connect
 from websockets.sync.connection import Connection
 
 from animator.marking.marking_page import MarkingPage
-from animator.marking.sheet import Marked, Seen, Sheet, Shown, Solved
+from animator.marking.sheet import (
+    Hello,
+    Marked,
+    Pictures,
+    Save,
+    Seen,
+    Sheet,
+    Shown,
+    Solved,
+)
 from common.bus.messages import Pixel
+from common.config.part_settings import PageSettings
 from common.rig.camera import as_paper_rig
 from common.rig.rig_file import CalibrationError, load_rig
 from integrator.rig.calibration import read_points, run_markers, run_poles
 from integrator.rig.poles import Poles
 from tritrack.marking import marking
-from tritrack.marking.marker_sheet import markers_of, markers_text
+from tritrack.marking.marker_sheet import marker_method, markers_of, markers_text
 from tritrack.marking.marking import (
     HEAD,
     Asked,
@@ -151,6 +163,128 @@ def test_poles_want_both_cameras(tmp_path: Path) -> None:
     (clip / "cam2.avi").unlink()
     with pytest.raises(CalibrationError, match="has one view"):
         mark_poles(Asked(clip, tmp_path / "poles.toml", free_port()), tmp_path / "out.json", QUIET)
+
+
+class Wishing:
+    """A page on which browsers wish something; what it is asked to show and to tell."""
+
+    def __init__(self, *wishes: Any) -> None:
+        self.wishes = list(wishes)
+        self.shown: list[Shown] = []
+        self.told: list[tuple[str, bool]] = []
+        self.closed = False
+
+    def next_wish(self) -> Any:
+        return self.wishes.pop(0) if self.wishes else None
+
+    def show(self, shown: Shown) -> None:
+        self.shown.append(shown)
+
+    def tell(self, text: str, well: bool) -> None:
+        self.told.append((text, well))
+
+    def close(self) -> None:
+        self.closed = True
+
+
+def hello_of(method: MarkingMethod, writes: str = "out.json") -> Hello:
+    pictures = tuple(Pictures(n, f"cam{n}", ("one",), (0,), runs=False) for n in (1, 2))
+    return Hello("room", 0, method.name, SIZE, pictures, method.numbers, method.hints, writes)
+
+
+def test_wishes_are_done_in_their_order_and_a_calibration_is_of_what_was_shown_before_it(
+    tmp_path: Path,
+) -> None:
+    method = pole_method(SIZE, None, tmp_path / "out.json")
+    first, second = clicked_poles(), moved(clicked_poles(), 0, 0, (1.0, 0.0))
+    page: Any = Wishing(Marked(first, "ann", 1), Save(), Marked(second, "bob", 2))
+    kept = KeptPoints(tmp_path / "poles.toml", HEAD)
+    nothing = Shown(method.start, "", 0, method.solve(method.start), "", True)
+    shown, saved = marking._hear(page, method, hello_of(method), nothing, kept)
+    assert [each.sheet for each in page.shown] == [first, second]
+    assert (shown.sheet, shown.by, shown.count) == (second, "bob", 2)
+    assert saved == first
+    assert page.told == [("written to out.json", True)]
+    assert (tmp_path / "out.json").exists()
+    assert sheet_of_poles(read_points(kept.path, Poles)).marks == second.marks
+    again, none = marking._hear(page, method, hello_of(method), shown, kept)
+    assert (again, none) == (shown, None)
+
+
+def test_a_wish_that_cannot_be_done_is_told_and_what_was_shown_stays(tmp_path: Path) -> None:
+    method = marker_method(SIZE, None, (1, 2))
+    nothing = Shown(method.start, "", 0, method.solve(method.start), "", True)
+    kept = KeptPoints(tmp_path / "markers.toml", HEAD)
+    outside = moved(clicked_markers(), 2, 0, (5000.0, 0.0))
+    for wish, says in (
+        (Marked(outside, "ann", 1), "point 3 is outside the picture"),
+        (Save(), "markers tell no whole calibration: there is nothing to save but points"),
+    ):
+        page: Any = Wishing(wish)
+        shown, saved = marking._hear(page, method, hello_of(method, ""), nothing, kept)
+        ((text, well),) = page.told
+        assert says in text
+        assert not well
+        assert (shown, saved, page.shown) == (nothing, None, [])
+
+
+@pytest.mark.parametrize("port", [None, 4321])
+def test_the_page_is_served_until_it_is_stopped_and_its_result_is_of_the_newest_points(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, port: int | None
+) -> None:
+    method = pole_method(SIZE, None, tmp_path / "out.json")
+    album = Album(SIZE, {n: Film((b"one", b"two"), (0, 7)) for n in (1, 2)})
+    newest = moved(clicked_poles(), 0, 0, (1.0, 0.0))
+    page: Any = Wishing(Marked(clicked_poles(), "ann", 1), Save(), Marked(newest, "ann", 2))
+    opened_with: list[Any] = []
+    waits = iter([False, False, True])
+
+    def opening(*given: Any) -> Any:
+        opened_with.append(given)
+        return page
+
+    stop = SimpleNamespace(wait=lambda seconds: next(waits))
+    monkeypatch.setattr(marking, "MarkingPage", opening)
+    monkeypatch.setattr(marking, "process", lambda name, _: nullcontext(stop))
+    console = Console(record=True, width=200, file=io.StringIO())
+    asked = Asked(tmp_path / "room", tmp_path / "poles.toml", port)
+    settings = PageSettings(port=8123)
+    result = marking._serve(method, album, asked, settings, "out.json", console)
+    ((hello, jpeg, at, _),) = opened_with
+    assert (hello.title, hello.size, hello.writes) == ("room", SIZE, "out.json")
+    assert (hello.method, hello.numbers, hello.pictures) == (
+        "poles",
+        method.numbers,
+        album.pictures,
+    )
+    assert jpeg(2, 1) == b"two"
+    assert at == (port or 8123)
+    assert f":{port or 8123}" in console.export_text()
+    assert page.shown[0].sheet == method.start
+    assert page.closed
+    assert (result.saved, result.newest) == (clicked_poles(), newest)
+    assert len(result.rows) == 2
+
+
+def test_a_page_without_enough_points_has_no_rows_and_one_whose_camera_fails_is_closed(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    method = pole_method(SIZE, None, tmp_path / "out.json")
+    page: Any = Wishing()
+    waits = [False, True]
+    stop = SimpleNamespace(wait=lambda _: waits.pop(0))
+    monkeypatch.setattr(marking, "MarkingPage", lambda *_: page)
+    monkeypatch.setattr(marking, "process", lambda *_: nullcontext(stop))
+    asked = Asked(tmp_path / "room", tmp_path / "poles.toml", 1)
+    album = Album(SIZE, {n: Film((), ()) for n in (1, 2)})
+    result = marking._serve(method, album, asked, PageSettings(), "out.json", QUIET)
+    assert (result.rows, result.saved, result.newest) == ((), None, method.start)
+    waits[:] = [False, True]
+    page.closed = False
+    broken: Any = SimpleNamespace(size=SIZE, pictures=(), jpeg=None, refuse_fault=lambda: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        marking._serve(method, broken, asked, PageSettings(), "out.json", QUIET)
+    assert page.closed
 
 
 class Command(NamedTuple):

@@ -1,19 +1,23 @@
 """Poles on the page: the same answer as the typed command's, from the file that the page keeps."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import msgspec
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pole_room import DISTANCES_M, FOCALS_PX, POLE_M, RIG, SIZE, tops_px
-from test_suspect_point import clicked_poles
+from test_suspect_point import clicked_poles, moved
 
 from animator.marking.sheet import Mark, Sheet, Solved
 from common.rig.camera import project
 from common.rig.rig_file import CalibrationError, load_rig
 from integrator.rig.calibration import read_points, run_poles
 from integrator.rig.poles import Poles
+from tritrack.marking import pole_sheet
 from tritrack.marking.pole_sheet import (
     NUMBERS,
     START_M,
@@ -122,3 +126,47 @@ def test_whatever_is_clicked_is_solved_or_told(
     for seen in solved.cameras:
         assert seen.known or seen.text
     assert msgspec.json.decode(msgspec.json.encode(solved), type=Solved) == solved
+
+
+def test_cameras_are_drawn_as_wide_as_they_see_and_poles_where_they_stand() -> None:
+    plan = solve_poles(clicked_poles(), SIZE).plan
+    assert plan is not None
+    widths = [2 * np.degrees(np.arctan2(SIZE[0] / 2, focal_px)) for focal_px in FOCALS_PX]
+    assert [camera[3] for camera in plan.cameras] == pytest.approx(widths, abs=1e-3)
+    due = [(*(mark.at_m or ()), n) for n, mark in enumerate(clicked_poles().marks)]
+    assert list(plan.marks) == due
+
+
+def test_a_top_beside_where_it_should_be_is_off_by_its_distance_from_there() -> None:
+    sheet = moved(clicked_poles(), 2, 1, (3.0, -4.0))
+    seen = solve_poles(sheet, SIZE).cameras[1]
+    for mark, expected, off_px in zip(sheet.marks, seen.expected_px, seen.off_px, strict=True):
+        top = mark.px[1]
+        assert top is not None
+        assert expected is not None
+        assert off_px == pytest.approx(np.hypot(top[0] - expected[0], top[1] - expected[1]))
+    assert max(off for off in seen.off_px if off is not None) > 1.0
+
+
+def test_what_is_known_of_a_camera_is_told_with_its_units() -> None:
+    known: Any = SimpleNamespace(
+        focal_px=612.34,
+        focal_sd_px=1.25,
+        distance_m=4.1234,
+        distance_sd_m=0.0156,
+        height_m=1.2,
+        off_centre_px=-3.42,
+        misfit_px=0.567,
+    )
+    assert pole_sheet._facts(known) == (
+        ("focal length", "612.3 ± 1.2 px"),
+        ("distance", "4.123 ± 0.016 m"),
+        ("height", "1.200 m"),
+        ("axis off centre", "-3.4 px"),
+        ("misfit", "0.57 px"),
+    )
+
+
+def test_poles_are_lettered_and_numbered_after_the_alphabet() -> None:
+    names = [pole_sheet._name(n, Mark("pole", at_m=(0.5, -1.25))) for n in (0, 25, 26, 40)]
+    assert names == [f"pole {name} at x 0.5, z -1.25 m" for name in ("A", "Z", "27", "41")]

@@ -4,19 +4,32 @@ import shutil
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import cv2
 import msgspec
 import pytest
 from local_bus import LocalBus
 
+from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, POSE_NAMES
 from common.bus.control_messages import ClockAnswer, ClockQuestion, Pulse
 from common.bus.inbox import Inbox
 from common.bus.messages import Body, Posture
 from common.bus.rate import Pace
 from common.config.settings import Settings
-from recognizer import events
-from recognizer.__main__ import SHIPPED, init, model_of, run, step, words
+from recognizer import __main__ as recognizer_process
+from recognizer import events, spotting
+from recognizer.__main__ import (
+    SHIPPED,
+    finish,
+    init,
+    model_of,
+    row_of,
+    run,
+    step,
+    warm_up,
+    words,
+)
 from recognizer.events import Doing
 from recognizer.model_file import ModelError, load
 from recognizer.performance_judge import Event
@@ -203,3 +216,96 @@ def test_a_model_that_does_not_know_the_clips_posture_is_refused_by_name(tmp_pat
     own = msgspec.structs.replace(Settings().recognizer, model=str(copy))
     with pytest.raises(ModelError, match=r"mine\.npz"):
         model_of(Settings(recognizer=own), "handstand")
+
+
+def moving(frame: int, captured_s: float, status: Any = "tracking") -> Body:
+    """A body that is followed; its right hip, knee and ankle make a leg of 0.8 m."""
+    joints_m = [[0.0, 0.0, 0.0] for _ in JOINT_NAMES]
+    for name, place in {"pelvis": (0.8, 1.2, 0.4), "r_knee": (0, -0.5, 0)}.items():
+        joints_m[JOINT_NAMES.index(name)] = [float(each) for each in place]
+    joints_m[JOINT_NAMES.index("r_ankle")] = [0.0, -0.5, 0.3]
+    return msgspec.structs.replace(
+        a_body(frame),
+        captured_s=captured_s,
+        status=status,
+        pose=tuple(float(n) for n in range(len(POSE_NAMES))),
+        joints_m=tuple(tuple(place) for place in joints_m),
+    )
+
+
+def test_a_row_is_of_who_moves_its_angles_and_its_place_in_leg_lengths() -> None:
+    found = row_of(moving(0, 0.0))
+    assert found is not None
+    assert found[:17].tolist() == [float(n) for n in ANGLES_IN_POSE]
+    assert found[17:] == pytest.approx([1.0, 1.5, 0.5])
+    assert row_of(moving(0, 0.0, "predicted")) is not None
+    for status in ("empty", "opening", "lost"):
+        assert row_of(moving(0, 0.0, status)) is None
+    assert row_of(msgspec.structs.replace(moving(0, 0.0), pose=())) is None
+
+
+def counting(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """What the window of judgements is given, frame by frame; it judges the last three."""
+    given: list[Any] = []
+    spotting_step = spotting.step
+
+    def step(state: spotting.State, row: Any) -> Any:
+        given.append(row)
+        state, judged = spotting_step(state, row)
+        last = state.next_frame - 1
+        return state, judged._replace(name="squat", first=max(0, last - 2), last=last)
+
+    monkeypatch.setattr(spotting, "step", step)
+    return given
+
+
+def test_a_gap_of_more_than_a_second_ends_what_was_going_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Then as many frames without a pose are told as end a motion; the clip goes on from there."""
+    for gap_s, missed in ((0.99, 0), (1.01, spotting.MISSED_FRAMES)):
+        given = counting(monkeypatch)
+        state = init(load(SHIPPED), 40)
+        state, _ = step(state, moving(3, 0.0))
+        state, posture = step(state, moving(9, gap_s))
+        assert sum(row is None for row in given) == missed
+        assert posture.frame == 9
+        monkeypatch.undo()
+
+
+def test_segments_are_told_in_the_frames_of_the_stream_as_far_back_as_is_kept(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A camera of 7.5 frames a second: each body stands for two of the models' frames, of which
+    three are kept here."""
+    counting(monkeypatch)
+    monkeypatch.setattr(recognizer_process, "REACH_FRAMES", 3)
+    state = init(load(SHIPPED), 40)
+    segments = []
+    for n in range(4):
+        state, posture = step(state, moving(100 + n, n / 7.5))
+        segments.append(posture.segment)
+        assert len(state.frames) == min(3, 2 * n + 1)
+    assert segments == [(100, 100), (100, 101), (101, 102), (102, 103)]
+    assert recognizer_process._at(state, 0) == (102, pytest.approx(2 / 7.5))
+    assert state.frames[-1] == (103, pytest.approx(3 / 7.5))
+
+
+def test_the_papers_model_says_what_its_window_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    counting(monkeypatch)
+    state, posture = step(init(model_of(Settings(mode="paper")), 40), moving(5, 0.2))
+    assert (posture.name, posture.doing, posture.event) == ("squat", "squat", None)
+    assert finish(state, posture) is None
+    state, posture = step(init(load(SHIPPED), 40), moving(5, 0.2))
+    assert (posture.name, posture.doing) == ("squat", "")
+
+
+def test_what_a_step_runs_is_loaded_by_turning_bodies_long_enough_to_be_named(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    given, network = counting(monkeypatch), list[Any]()
+    monkeypatch.setattr(events, "step", lambda state, row: (network.append(row) or state, None))
+    warm_up(load(SHIPPED), 40)
+    assert len(given) == len(network) == spotting.NAMED_FROM_FRAMES + 2
+    assert [float(row[0]) for row in given[:3]] == [0.0, 9.0, 18.0]
+    assert all((row == row[0]).all() for row in network)
