@@ -1,6 +1,7 @@
 """Performances found in a stream that nobody cuts."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,9 +10,9 @@ from acting import perform, performances, standing
 from recognizer import events
 from recognizer.events import finish, init, step
 from recognizer.features import bearings
-from recognizer.path_network import CHANGE, ENTER, EXIT, LAST, PathNetwork, advance
+from recognizer.path_network import CHANGE, COUNT, ENTER, EXIT, LAST, ONSET, PathNetwork, advance
 from recognizer.performance_judge import Event
-from recognizer.postures import DensityModel
+from recognizer.postures import STATES, DensityModel
 from recognizer.training.learning import extended, train
 
 SHOWN = ("squat", "walk_toward", "raise_right_lateral", "kick_right_forward")
@@ -280,3 +281,132 @@ def test_what_a_frame_shows_is_its_vector_and_how_fast_limbs_turn(
         change = every[at] - every[max(at - events.SPEED_FRAMES, 0)]
         change[-3:] = 2.0 * every[at, -3:]
         assert speed == pytest.approx(np.linalg.norm(change))
+
+
+def scripted(model: DensityModel, best: int, **parts: Any) -> events.State:
+    """A state whose best path ends in a state of the network."""
+    state = events.init(model)
+    score = np.full(len(state.score), -5.0)
+    score[best] = 0.0
+    return replace(state, score=score, **parts)
+
+
+STAND, UNKNOWN = -2, -1
+SQUAT = Event("squat", 20, 29, 0.75, 2)
+
+
+@pytest.mark.parametrize(
+    ("now", "judged", "told"), [(31, -1, 0), (32, -1, 1), (40, 29, 1), (40, 30, 0)]
+)
+def test_a_performance_is_judged_once_two_frames_after_its_end(
+    model: DensityModel, monkeypatch: pytest.MonkeyPatch, now: int, judged: int, told: int
+) -> None:
+    """It began in frame 20 and ended in frame 30."""
+    calls: list[int] = []
+    over = np.full((len(events.init(model).score), LAST + 1), -1)
+    over[STAND, [ONSET, LAST]] = 20, 30
+
+    def judging(state: events.State, given: np.ndarray) -> Any:
+        calls.append(int(given[LAST]))
+        return (SQUAT,), SQUAT
+
+    monkeypatch.setattr(events, "_further", lambda state, new, now: state)
+    monkeypatch.setattr(events, "_judged", judging)
+    state = scripted(model, STAND, over=over, next_frame=now, judged=judged)
+    after, doing = events.step(state, standing(1)[0])
+    assert calls == [30] * told
+    assert (doing.event, doing.name, doing.times) == (SQUAT if told else None, "", 0)
+    assert (after.judged, after.told) == ((30, (SQUAT,)) if told else (judged, ()))
+    assert after.next_frame == now + 1
+
+
+def test_what_is_under_way_is_named_and_counted_with_its_parts_before(
+    model: DensityModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of the second posture, begun 9 frames after the last event of its name, and 10 after."""
+    monkeypatch.setattr(events, "_further", lambda state, new, now: state)
+    name = model.names[1]
+    part = Event(name, 20, 29, 0.75, 2)
+    for onset, times in ((38, 5), (39, 3)):
+        record = np.zeros((len(events.init(model).score), LAST), np.int64)
+        record[STATES + 2, [ONSET, COUNT]] = onset, 3
+        state = scripted(model, STATES + 2, record=record, told=(part,), next_frame=44)
+        assert events.step(state, standing(1)[0])[1] == (name, times, None)
+    other = replace(state, told=(part._replace(name=model.names[0]),))
+    assert events.step(other, standing(1)[0])[1].times == 3
+
+
+def test_the_end_judges_what_is_under_way_to_the_last_frame_or_what_was_not_told(
+    model: DensityModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(events, "_judged", lambda state, over: ((), over.tolist()))
+    size = len(events.init(model).score)
+    record, over = np.zeros((size, LAST), np.int64), np.full((size, LAST + 1), -1)
+    record[3, ONSET], over[UNKNOWN, [ONSET, LAST]] = 17, (5, 12)
+    frames = tuple(range(10, 26))
+    cut: Any = events.finish(scripted(model, 3, record=record, over=over, frames=frames))
+    assert (cut[ONSET], cut[LAST]) == (17, 25)
+    state = scripted(model, UNKNOWN, record=record, over=over, frames=frames, judged=11)
+    untold: Any = events.finish(state)
+    assert (untold[ONSET], untold[LAST]) == (5, 12)
+    assert events.finish(replace(state, judged=12)) is None
+
+
+def judged(
+    model: DensityModel,
+    monkeypatch: pytest.MonkeyPatch,
+    event: Event | None,
+    told: tuple[Event, ...] = (),
+    before: int = -1,
+) -> Any:
+    """What becomes of a performance from frame 40 to 52 of which the last ten frames are kept."""
+    rows = np.arange(12.0)[:, None] * np.ones(20)
+    seen: list[list[float]] = []
+
+    def judging(_: Any, __: Any, rows: np.ndarray) -> Event | None:
+        seen.append(rows[:, 0].tolist())
+        return event
+
+    monkeypatch.setattr(events, "event_of", judging)
+    over = np.full(LAST + 1, -1)
+    over[[ONSET, LAST]] = 40, 52
+    frames = tuple(range(43, 55))
+    state = scripted(model, STAND, told=told, rows=rows, frames=frames, judged=before)
+    found = events._judged(state, over)
+    assert seen == [[float(n) for n in range(10)]]
+    return found
+
+
+def test_a_performance_that_goes_on_takes_the_place_of_its_parts(
+    model: DensityModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It began with the first, was gone through as often as both, and is as sure as the least."""
+    now = Event("squat", 40, 52, 0.9, 3)
+    close, far = Event("squat", 20, 31, 0.75, 2), Event("squat", 20, 30, 0.75, 2)
+    assert judged(model, monkeypatch, now, (close,)) == (
+        (close, now),
+        Event("squat", 20, 52, 0.75, 5),
+    )
+    assert judged(model, monkeypatch, now, (far,)) == ((now,), now)
+    other = close._replace(name="bow")
+    assert judged(model, monkeypatch, now, (other,)) == ((now,), now)
+    within = Event("squat", 40, 45, 0.6, 1)
+    assert judged(model, monkeypatch, now, (close, within)) == (
+        (close, now),
+        Event("squat", 20, 52, 0.75, 5),
+    )
+    later = now._replace(first=44)
+    assert judged(model, monkeypatch, now, (within._replace(first=44),)) == ((later,), later)
+
+
+def test_what_is_no_performance_or_overlaps_another_is_not_told(
+    model: DensityModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The parts so far are kept only where it is no later than what was judged."""
+    told = (Event("bow", 30, 40, 0.8, 1),)
+    now = Event("squat", 40, 52, 0.9, 3)
+    assert judged(model, monkeypatch, None, told, before=39) == ((), None)
+    assert judged(model, monkeypatch, None, told, before=40) == (told, None)
+    assert judged(model, monkeypatch, now, told, before=40) == (told, None)
+    apart = (told[0]._replace(last=39),)
+    assert judged(model, monkeypatch, now, apart) == ((now,), now)
