@@ -13,6 +13,7 @@ from test_retouch import filmed, free_port
 from test_take import ARM
 
 from animator.retouching.controls import Controls
+from animator.retouching.panel import ACCENT, piece, spoken
 from animator.retouching.viser_door import close_server, open_server
 from common.body.body import JOINT_NAMES
 from common.notes.notes import Note, Notes
@@ -122,3 +123,76 @@ def test_the_slider_goes_from_the_first_frame_to_the_last(page: Heard) -> None:
     (slider,) = gui.sliders
     first, last = int(take.frame[0]), int(take.frame[-1])
     assert (slider["min"], slider["max"], slider["initial_value"]) == (first, last, first)
+
+
+class Widget:
+    """A part of the panel that a browser can change: what it listens to is kept."""
+
+    def __init__(self, value: Any = None, options: tuple[str, ...] = ()) -> None:
+        self.value, self.options, self.content = value, options, ""
+        self.heard: Any = None
+
+    def on_update(self, heard: Any) -> None:
+        self.heard = heard
+
+
+class Kept(Gui):
+    """The same, with its lists and texts."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.lists: dict[str, Widget] = {}
+        self.slider = Widget()
+        self.texts: list[str] = []
+        self.themes: list[dict[str, Any]] = []
+        self.widths: list[Any] = []
+        self.main_panel = SimpleNamespace(
+            dock_right=lambda: self.widths.append("right"), set_width=self.widths.append
+        )
+
+    def add_slider(self, _name: str, **given: Any) -> Any:
+        super().add_slider(_name, **given)
+        return self.slider
+
+    def add_dropdown(self, name: str, options: tuple[str, ...]) -> Any:
+        return self.lists.setdefault(name, Widget(options[0], tuple(options)))
+
+    def add_html(self, text: str) -> Any:
+        self.texts.append(text)
+        return Widget()
+
+    def configure_theme(self, **given: Any) -> None:
+        self.themes.append(given)
+
+
+def test_what_is_chosen_in_a_list_or_on_the_slider_is_said_for_what_it_is(page: Heard) -> None:
+    gui = Kept()
+    Controls(gui, filmed(), page)  # type: ignore[arg-type]
+    gui.slider.value = 6
+    gui.lists["faces"].value = "backward_left"
+    gui.lists["joint"].value = gui.lists["joint"].options[JOINT_NAMES.index("l_knee")]
+    limb = gui.lists[spoken("r_upper_leg")]
+    limb.value = "toward"
+    for widget in (gui.slider, gui.lists["faces"], gui.lists["joint"], limb):
+        widget.heard(SimpleNamespace(client=None))
+    assert page.said == []
+    for widget in (gui.slider, gui.lists["faces"], gui.lists["joint"], limb):
+        widget.heard(BROWSER)
+    assert page.said == [
+        ("go_to_frame", (6,)),
+        ("face", ("backward_left",)),
+        ("pick", (JOINT_NAMES.index("l_knee"),)),
+        ("lean", ("r_upper_leg", "toward")),
+    ]
+
+
+def test_the_panel_is_docked_at_the_right_and_has_its_help_and_its_keys(page: Heard) -> None:
+    gui = Kept()
+    Controls(gui, filmed(), page)  # type: ignore[arg-type]
+    assert gui.widths == ["right", 340]
+    (theme,) = gui.themes
+    assert (theme["show_logo"], theme["show_share_button"]) == (False, False)
+    assert theme["brand_color"] == ACCENT
+    assert gui.texts[:2] == ["", ""]
+    assert piece("retouch_help.html", {}) in gui.texts
+    assert any("key" in text.lower() for text in gui.texts[3:])

@@ -168,3 +168,22 @@ def test_a_click_tells_the_segment_that_was_hit(room: Room) -> None:
     for index in (None, len(LIMBS), len(LIMBS) - 1, 0):
         room.easel._hit(SimpleNamespace(instance_index=index))
     assert room.told == [(len(LIMBS) - 1,), (0,)]
+
+
+def test_the_room_is_lit_from_the_front_and_its_camera_looks_at_the_middle_of_all(
+    room: Room,
+) -> None:
+    scene, camera = room.server.scene, room.server.initial_camera
+    assert scene.set_up_direction.call_args.args == ("+y",)
+    assert scene.world_axes.visible is False
+    assert camera.fov == FOV_RAD
+    across_m = 4.0 + 2 * GAP_M
+    assert camera.look_at == pytest.approx([across_m / 2, 1.0, 0.0])
+    tall_m = max(1.2 * TALL_M, 1.1 * across_m / ASPECT)
+    assert camera.position == pytest.approx([across_m / 2, 1.0, tall_m / 2 / math.tan(FOV_RAD / 2)])
+    assert scene.configure_default_lights.call_args.kwargs == {"enabled": False}
+    assert scene.configure_environment_map.call_args.args == (None,)
+    sky, sun = scene.add_light_hemisphere.call_args, scene.add_light_directional.call_args
+    assert sky.kwargs == {"ground_color": (170, 178, 188), "intensity": 1.0}
+    assert sun.kwargs == {"intensity": 0.9, "position": (1.0, 4.0, 5.0)}
+    assert room.server.on_client_connect.call_args.args == (room.easel._stand_back,)

@@ -22,6 +22,7 @@ from animator.scene import Snapshot
 from common.body.body import ANGLES_IN_POSE
 from common.bus.messages import Agreement, Body, Picture, Posture, Report
 from common.raster.silhouette_report import pack, unpack
+from common.rig.camera import centre
 from common.rig.upright import Upright
 
 
@@ -187,3 +188,101 @@ def test_each_view_is_told_its_own_numbers_as_exactly_as_they_are_drawn() -> Non
     assert frame.angles == []
     assert frame.views[0] is not None
     assert frame.views[0].sees == ""
+
+
+def test_numbers_are_rounded_to_what_can_be_seen() -> None:
+    """Confidence to hundredths, angles to tenths, times to tenths of a millisecond."""
+    snapshot = snapshot_at(4)
+    body = snapshot.body
+    assert body is not None
+    odd = msgspec.structs.replace(
+        body,
+        captured_s=1.23456789,
+        confidence=tuple(0.12345 + i / 100 for i in range(15)),
+        extremities_confidence=(0.98765,) * 7,
+        pose=tuple(place + 0.1234 for place in body.pose),
+        score=(0.87654, 0.12345),
+    )
+    frame = shown_frame(msgspec.structs.replace(snapshot, body=odd), (), RIG, 0)
+    assert frame is not None
+    assert frame.time_s == 1.2346
+    assert frame.confidence == pytest.approx(
+        [round(value, 2) for value in (*odd.confidence, *odd.extremities_confidence)], abs=1e-9
+    )
+    assert frame.angles == pytest.approx([round(odd.pose[i], 1) for i in ANGLES_IN_POSE], abs=1e-9)
+    assert [view and view.score for view in frame.views] == [0.877, 0.123]
+
+
+def test_the_likeliest_six_rivals_are_told_the_best_first_to_a_hundredth_of_a_percent() -> None:
+    logs = {f"posture {n}": math.log(1.0 + 0.37 * ((5 * n) % 9)) for n in range(9)}
+    posture = Posture(
+        frame=9, captured_s=0.6, clock_s=0.6, name="squat", doing="squat", log_likelihoods=logs
+    )
+    told = shown_posture(posture)
+    assert told is not None
+    total = sum(math.exp(value) for value in logs.values())
+    shares = {name: math.exp(value) / total for name, value in logs.items()}
+    best = sorted(shares, key=lambda name: -shares[name])[:6]
+    assert told.rivals == [(name, round(shares[name], 4)) for name in best]
+
+
+def test_a_view_shows_limbs_where_there_is_a_body_and_nothing_where_it_was_not_heard() -> None:
+    snapshot = snapshot_at(4)
+    frame = shown_frame(snapshot, (), RIG, 0)
+    assert frame is not None
+    assert [view and len(view.limbs) for view in frame.views] == [10, 10]
+    second = msgspec.structs.replace(snapshot, reports={2: snapshot.reports[2]})
+    alone = shown_frame(second, (), RIG, 0)
+    assert alone is not None
+    assert alone.views[0] is None
+    assert alone.views[1] == frame.views[1]
+    body = snapshot.body
+    assert body is not None
+    bare = msgspec.structs.replace(body, pose=())
+    without = shown_frame(msgspec.structs.replace(snapshot, body=bare), (), RIG, 0)
+    assert without is not None
+    assert [view and (view.limbs, view.sees) for view in without.views] == [([], "")] * 2
+    assert (without.solids, without.angles) == ([], [])
+
+
+def test_each_view_has_its_own_joints_score_side_and_picture() -> None:
+    snapshot = snapshot_at(4)
+    body = snapshot.body
+    assert body is not None
+    pictures = {
+        n: Picture(frame=0, captured_s=0.0, clock_s=0.0, viewer=n, jpeg=bytes([n])) for n in (1, 2)
+    }
+    frame = shown_frame(msgspec.structs.replace(snapshot, pictures=pictures), (), RIG, 0)
+    assert frame is not None
+    for own, view in enumerate(frame.views):
+        assert view is not None
+        assert view.size == (RIG.width, RIG.height)
+        assert view.jpeg == bytes([own + 1])
+        assert view.score == round(body.score[own], 3)
+        assert view.joints[:30] == pytest.approx(np.array(body.joints_px[own]).ravel(), abs=0.051)
+        assert view.sees == {"facade": "front or back", "flank": "side"}[body.facing[own]]
+
+
+def test_a_camera_is_drawn_as_a_pyramid_of_what_it_sees_one_metre_before_it() -> None:
+    """Its corners are those of the picture: the rays through them, from upper left on."""
+    for camera, drawn in zip(RIG.cameras, shown_room(RIG).cameras, strict=True):
+        eye, *corners = (np.array(each) for each in drawn)
+        assert eye == pytest.approx(centre(camera), abs=1e-4)
+        in_camera = (np.array(corners) - eye) @ np.array(camera.R).T
+        assert in_camera[:, 2] == pytest.approx(1.0, abs=1e-3)
+        half = np.array([RIG.width / 2 / camera.K[0][0], RIG.height / 2 / camera.K[1][1]])
+        signs = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+        assert in_camera[:, :2] == pytest.approx(signs * half, abs=1e-3)
+
+
+def test_an_outline_of_two_pixels_is_none() -> None:
+    mask = np.zeros((12, 16), np.bool_)
+    mask[2, 3:5] = True
+    mask[6:11, 4:12] = True
+    report = msgspec.structs.replace(
+        snapshot_at(4).reports[1], width=16, height=12, silhouette=pack(mask)
+    )
+    (only,) = outline_of(report)
+    corners = np.array(only).reshape(-1, 2)
+    assert corners.min(axis=0).tolist() == [4.5, 6.5]
+    assert corners.max(axis=0).tolist() == [11.5, 10.5]
