@@ -3,7 +3,16 @@
 import numpy as np
 import pytest
 
-from animator.take import Take, doubts_at, leaned, next_doubtful, take_of, with_notes
+from animator.take import (
+    Take,
+    depth_of,
+    doubts_at,
+    hidden_of,
+    leaned,
+    next_doubtful,
+    take_of,
+    with_notes,
+)
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
@@ -141,3 +150,49 @@ def test_what_hangs_on_a_segment_moves_with_it() -> None:
     away = leaned(bent, {"torso": "away"})
     elbow, neck = JOINT_NAMES.index("l_elbow"), JOINT_NAMES.index("neck")
     assert away[elbow, 2] - away[neck, 2] == pytest.approx(bent[elbow, 2] - bent[neck, 2])
+
+
+@pytest.mark.parametrize(("confidence", "asked"), [(0.69, True), (0.71, False)])
+def test_seven_tenths_are_sure_enough(confidence: float, asked: bool) -> None:
+    seen = take()
+    seen.orientation_confidence[3] = seen.depth_confidence[3, ARM] = confidence
+    kinds = [doubt.kind for doubt in doubts_at(seen, 3, Notes())]
+    assert kinds == (["orientation", "depth"] if asked else [])
+
+
+def test_a_joint_is_hidden_that_keeps_less_than_three_tenths_of_the_one_before_it() -> None:
+    near = int(LIMB_ENDS[LIMBS.index("l_lower_arm"), 0])
+    confidence = np.full((2, 15), 0.8)
+    confidence[:, near] = 0.5
+    confidence[:, WRIST] = 0.149, 0.151
+    hidden = hidden_of(confidence)
+    assert np.argwhere(hidden).tolist() == [[0, LIMBS.index("l_lower_arm")]]
+
+
+@pytest.mark.parametrize(("lean_deg", "sign"), [(14.0, 0.0), (16.0, 1.0), (-16.0, -1.0)])
+def test_fifteen_degrees_out_of_the_picture_are_a_lean(lean_deg: float, sign: float) -> None:
+    joints_m = np.zeros((1, 15, 3))
+    near, far = LIMB_ENDS[ARM]
+    joints_m[0, far] = joints_m[0, near] + (
+        0.3 * np.cos(np.radians(lean_deg)),
+        0.0,
+        0.3 * np.sin(np.radians(lean_deg)),
+    )
+    assert depth_of(joints_m)[0, ARM] == sign
+
+
+def test_a_run_is_told_as_its_camera_sees_it() -> None:
+    """A camera on +x that looks along -x: its right is -z, what comes nearer goes along +x."""
+    poses = {
+        "frame": np.arange(1),
+        "joints_px": np.arange(60.0).reshape(1, 2, 15, 2),
+        "joints_m": np.tile([1.0, 2.0, 3.0], (1, 15, 1)),
+        "confidence": np.ones((1, 15)),
+    }
+    turn = ((0.0, 0.0, -1.0), (0.0, -1.0, 0.0), (-1.0, 0.0, 0.0))
+    seen = take_of(poses, 3.0, turn)
+    assert seen.joints_m[0, 4].tolist() == [-3.0, 2.0, 1.0]
+    assert seen.joints_px[0, 4].tolist() == [24.0, 27.0], "camera 1's"
+    assert seen.orientation.tolist() == [""]
+    assert (seen.orientation_confidence == 1).all()
+    assert seen.depth_confidence.tolist() == [[1.0] * len(LIMBS)]
