@@ -247,3 +247,19 @@ def test_a_foot_that_slips_off_for_as_long_as_it_may_has_not_stepped(
     assert found == (ends if steps else [(0, 40)])
     low[16] = False
     assert _bridged(ends, ankle_m, low, time_s) == ends, "it was lifted"
+
+
+@pytest.mark.parametrize("rows", [0, 1])
+def test_a_run_of_one_row_is_left_as_it_is(rows: int) -> None:
+    joints_m = np.random.default_rng(1).normal(0, 1, (rows, 22, 3))
+    run = planted(joints_m, np.arange(rows) / 15)
+    assert run.joints_m.tolist() == joints_m.tolist()
+    assert run.held.tolist() == [[0.0, 0.0]] * rows
+
+
+def test_two_rows_are_enough_for_a_foot_to_stand_or_not() -> None:
+    """A foot that stands for as long as these rows stands still in both: their median is kept."""
+    joints_m = np.tile(np.random.default_rng(1).normal(0, 1, (22, 3)), (2, 1, 1))
+    run = planted(joints_m, np.array([0.0, 5.0]))
+    assert run.joints_m == pytest.approx(joints_m)
+    assert run.held.shape == (2, 2)

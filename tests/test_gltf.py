@@ -1,5 +1,6 @@
 """glTF, opened by readers that are not ours: the skeleton stands where ours does."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -151,3 +152,26 @@ def test_frames_are_as_far_apart_as_said_and_arrays_are_what_their_entries_say()
         target = file.bufferViews[accessor.bufferView].target
         assert target == ({True: 34963, False: 34962}[number == figure.indices]
                           if number in drawn else None)  # fmt: skip
+
+
+def test_the_scene_begins_at_the_hips_and_at_the_mesh_and_the_skin_at_its_bones() -> None:
+    skeleton, motion, steps = steady(random_joints(3), np.arange(40) / 15)
+    content = gltf_content(gltf_bytes(skeleton, motion, steps.step_s))
+    hips, mesh = (content["nodes"][n] for n in content["scenes"][content["scene"]]["nodes"])
+    assert hips["name"] == "Hips"
+    assert (mesh["mesh"], mesh["skin"]) == (0, 0)
+    (skin,) = content["skins"]
+    assert skin["joints"] == list(range(len(skeleton.bones)))
+    assert content["asset"]["version"] == "2.0"
+    (material,) = content["materials"]
+    assert material["pbrMetallicRoughness"] == {
+        "baseColorFactor": [0.55, 0.6, 0.65, 1.0],
+        "metallicFactor": 0.0,
+    }
+
+
+def gltf_content(glb: bytes) -> dict[str, Any]:
+    """The JSON chunk, after a head of 12 bytes and its own of 8."""
+    length = int.from_bytes(glb[12:16], "little")
+    content: dict[str, Any] = json.loads(glb[20 : 20 + length])
+    return content

@@ -9,6 +9,7 @@ from show_page import ANKLE_M, snapshot_at
 from animator.hands_and_feet import FOOT_THICK, HAND_THICK, hands_and_feet
 from animator.scene import LEFT, UNSURE, Figure, Shapes, limb_shapes
 from common.body.body import LIMBS
+from common.body.extremities import ALL_JOINT_NAMES
 from common.body.kinematics import segments
 from common.body.proportions import body_vector
 from common.bus.messages import Body
@@ -75,3 +76,18 @@ def test_a_hand_and_a_foot_are_as_thick_as_their_lengths_say() -> None:
     assert wide[2:] / half[2:] == pytest.approx([FOOT_THICK] * 2)
     assert (half > 0.05).all()
     assert (half < 0.2).all()
+
+
+def test_a_hand_reaches_beyond_its_knuckle_and_a_foot_begins_above_its_heel() -> None:
+    body = standing()
+    places = dict(
+        zip(ALL_JOINT_NAMES, np.array((*body.joints_m, *body.extremities_m)), strict=True)
+    )
+    shapes, _ = drawn(body)
+    lengths = 2 * shapes.scales[:, 1]
+    for row, side in ((0, "r"), (1, "l")):
+        knuckle = places[f"{side}_knuckle"] - places[f"{side}_wrist"]
+        assert lengths[row] == pytest.approx(1.7 * np.linalg.norm(knuckle))
+        above_heel = (places[f"{side}_ankle"] + places[f"{side}_heel"]) / 2
+        foot = places[f"{side}_toe"] - above_heel
+        assert lengths[2 + row] == pytest.approx(np.linalg.norm(foot))

@@ -62,3 +62,20 @@ def test_a_taught_model_is_saved_as_any_other(known: PostureModel, tmp_path: Pat
 def test_takes_in_which_nobody_moved_teach_nothing(known: PostureModel) -> None:
     with pytest.raises(ValueError, match="wave: none of 3 sequences has 5 frames with a pose"):
         extended(known, {"wave": [np.full((40, 20), np.nan)] * 3})
+
+
+def test_the_card_counts_what_was_usable_posture_by_posture() -> None:
+    """A sequence of five frames with a pose is learnt from, one of four is not."""
+    whole = perform("squat", 0)
+    gaps = np.full((3, 20), np.nan)
+    five, four = (np.concatenate([gaps, whole[:n], gaps]) for n in (5, 4))
+    given = {"squat": [whole, five, four], "kick_left_side": takes("kick_left_side", 2)}
+    model = train(given, performers=["bob", "ann"], seed=3)
+    card = model.card
+    assert model.names == ("squat", "kick_left_side")
+    assert card.sequences == {"squat": 2, "kick_left_side": 2}
+    assert card.frames == len(whole) + 5 + sum(len(one) for one in given["kick_left_side"])
+    assert (card.performers, card.seed) == (("bob", "ann"), 3)
+    assert (card.recognizer, card.topology) == ("default", "ergodic")
+    with pytest.raises(ValueError, match="bow: none of 2 sequences has 5 frames with a pose;"):
+        train({"bow": [four, four]})

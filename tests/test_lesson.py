@@ -1,13 +1,16 @@
 """A posture that few takes teach: known again, told apart, and nothing else changed."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from acting import perform
 
 from recognizer.learning_error import LearningError
 from recognizer.postures import PostureModel, name
+from recognizer.training import lesson as lessons
 from recognizer.training.learning import train
-from recognizer.training.lesson import taught
+from recognizer.training.lesson import Lesson, taught
 
 KNOWN = ("squat", "raise_right_lateral", "walk_toward")
 NEW = "kick_left_side"
@@ -72,3 +75,73 @@ def test_a_take_without_motion_is_named(known: PostureModel) -> None:
     takes = [perform(NEW, 0), np.full((30, 20), np.nan), perform(NEW, 1)]
     with pytest.raises(LearningError, match="take 2 has fewer than 5 frames"):
         taught(known, NEW, takes)
+
+
+def judged(monkeypatch: pytest.MonkeyPatch, known: PostureModel, *margins: float) -> Lesson:
+    """Takes of 10 frames, of which the last two have no pose, by so many nats a frame likelier or
+    less likely than the walk; the squat is less likely still. Each is judged by all the others."""
+    learnt: list[list[float]] = []
+
+    def extending(
+        model: object, given: dict[str, list[np.ndarray]], performers: object = ()
+    ) -> Any:
+        learnt.append([float(rows[0, 0]) for rows in given["bow"]])
+        return ("model", performers)
+
+    def scoring(model: object, seen: np.ndarray) -> dict[str, float]:
+        assert len(seen) == 8
+        own = 8 * margins[int(seen[0, 0])]
+        return {"squat": -60.0, "bow": own - 40.0, "walk_toward": -40.0}
+
+    monkeypatch.setattr(lessons, "extended", extending)
+    monkeypatch.setattr(lessons, "scored", scoring)
+    takes = [np.full((10, 20), float(n)) for n in range(len(margins))]
+    for rows in takes:
+        rows[8:] = np.nan
+    lesson = taught(known, "bow", takes, ["ann"])
+    numbers = [float(n) for n in range(len(margins))]
+    assert learnt == [*([n for n in numbers if n != k] for k in numbers), numbers]
+    return lesson
+
+
+def test_a_margin_is_of_a_frame_over_the_likeliest_other(
+    monkeypatch: pytest.MonkeyPatch, known: PostureModel
+) -> None:
+    lesson = judged(monkeypatch, known, 0.5, 1.25, -0.25, 0.01)
+    assert [take.margin for take in lesson.takes] == pytest.approx([0.5, 1.25, -0.25, 0.01])
+    assert {take.rival for take in lesson.takes} == {"walk_toward"}
+    assert lesson.mistaken == (2,)
+    assert lesson.model == ("model", ["ann"])  # type: ignore[comparison-overlap]
+
+
+@pytest.mark.parametrize(
+    ("margins", "refused"),
+    [
+        ((1.0, 0.0, 1.0), ""),
+        ((1.0, 0.0, -1.0), "2, 3 of 3"),
+        ((1.0, 0.0, -1.0, 0.1), ""),
+        ((-0.5, 0.0, -1.0, 0.1), "1, 2, 3 of 4"),
+    ],
+)
+def test_takes_are_refused_of_which_more_than_half_are_mistaken(
+    monkeypatch: pytest.MonkeyPatch,
+    known: PostureModel,
+    margins: tuple[float, ...],
+    refused: str,
+) -> None:
+    if not refused:
+        judged(monkeypatch, known, *margins)
+        return
+    with pytest.raises(LearningError, match=f"takes {refused} are not .* likelier walk_toward; "):
+        judged(monkeypatch, known, *margins)
+
+
+def test_a_take_must_have_as_many_frames_as_a_model_has_states(known: PostureModel) -> None:
+    whole = perform(NEW, 0)
+    for frames, well in ((4, False), (5, True)):
+        takes = [whole, perform(NEW, 1), np.concatenate([whole[:frames], np.full((9, 20), np.nan)])]
+        if well:
+            assert len(taught(known, NEW, takes).takes) == 3
+        else:
+            with pytest.raises(LearningError, match="take 3 has fewer than 5 frames of motion"):
+                taught(known, NEW, takes)
