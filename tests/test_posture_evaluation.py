@@ -218,3 +218,59 @@ def test_a_fault_of_ours_is_not_dressed_as_a_users_mistake(
     with pytest.raises(ValueError, match="axis 1") as met:
         evaluate(tmp_path, EACH_IN_TURN)
     assert code_of(met.value) == 1
+
+
+def test_who_is_learnt_from_and_who_is_tested_are_told_apart(
+    people: list[Recording], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(posture_evaluation, "spread_of", len)
+    told = posture_evaluation._people(people, Plan("ann:bob,cas"))
+    assert told == {
+        "learnt from": {"performers": ["ann"], "clips": 3, "styles": 3},
+        "tested": {"performers": ["bob", "cas"], "clips": 6, "styles": 6},
+    }
+    everybody = {"tested": {"performers": ["ann", "bob", "cas"], "clips": 9, "styles": 9}}
+    assert posture_evaluation._people(people, Plan(EACH_IN_TURN)) == everybody
+    model = tmp_path / "model.npz"
+    assert posture_evaluation._people(people, Plan("ann:bob", model=model)) == everybody
+
+
+def test_a_result_says_how_long_learning_took_and_what_each_of_the_test_set_in_turn_gives(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    clock = iter([100.0, 102.351])
+    monkeypatch.setattr(posture_evaluation.time, "perf_counter", lambda: next(clock))
+    monkeypatch.setattr(posture_evaluation, "jobs_of", lambda *given: [given])
+    groups = {"headline": ["a"], "within test": ["b"]}
+    monkeypatch.setattr(
+        posture_evaluation, "judged", lambda jobs, _: {**groups, "within test": ["b", *jobs]}
+    )
+    monkeypatch.setattr(
+        posture_evaluation, "result_of", lambda outcomes, least: {"of": outcomes, "least": least}
+    )
+    found = posture_evaluation._result(["given"], "paper", None, Plan("a:b"), QUIET)  # type: ignore[list-item]
+    assert found == {
+        "of": ["a"],
+        "least": -3.2,
+        "within_test": {"of": ["b", (["given"], "a:b", "paper")], "least": -3.2},
+        "learning_s": 2.35,
+    }
+
+
+def test_a_sweep_has_a_row_for_each_number_of_symbols_and_a_column_for_states(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    groups = {
+        f"{symbols} symbols, {states} states": (symbols, states)
+        for symbols in (16, 32, 64, 128, 256)
+        for states in range(3, 9)
+    }
+    monkeypatch.setattr(posture_evaluation, "sweep_of", lambda given, split: [given, split])
+    monkeypatch.setattr(posture_evaluation, "judged", lambda jobs, _: groups)
+    monkeypatch.setattr(posture_evaluation, "share", lambda group: group)
+    told = posture_evaluation._swept([], Plan("a:b"), QUIET)
+    assert list(told["symbols"]) == [16, 32, 64, 128, 256]
+    assert list(told["states"]) == [3, 4, 5, 6, 7, 8]
+    assert told["shares"] == [
+        [(symbols, states) for states in range(3, 9)] for symbols in (16, 32, 64, 128, 256)
+    ]

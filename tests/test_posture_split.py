@@ -5,8 +5,10 @@ from acting import perform
 from rich.console import Console
 
 from recognizer.evaluation import Recording
+from recognizer.learning_error import LearningError
 from tritrack.postures import posture_split
 from tritrack.postures.posture_split import EACH_IN_TURN, Job, jobs_of, judged, sweep_of
+from tritrack.training.training import TrainingError
 
 QUIET = Console(quiet=True)
 
@@ -67,3 +69,38 @@ def test_the_sweep_meets_the_papers_sizes(monkeypatch: pytest.MonkeyPatch) -> No
     small = [job for job in jobs if (job.sizes.symbols, job.sizes.states) == (16, 3)]
     assert len(judged(small, QUIET)[small[0].group]) == 3
     assert posture_split.swept(16, 3) == small[0].group
+
+
+def test_performers_are_named_by_patterns_with_blanks_between_them() -> None:
+    learnt, tested = posture_split.parts_of(of("a1", "a2", "b1", "c"), "a? , c:b*") or ([], [])
+    assert {one.performer for one in learnt} == {"a1", "a2", "c"}
+    assert {one.performer for one in tested} == {"b1"}
+    for split in ("a1", "a1:", ":b1", "a1:zoe", "a1,b1"):
+        with pytest.raises(TrainingError, match=f"the split '{split}' must be leave-one-performer"):
+            posture_split.parts_of(of("a1", "b1"), split)
+    with pytest.raises(TrainingError, match="one performer alone: nobody is left to learn from"):
+        posture_split.parts_of(of("a1"), EACH_IN_TURN)
+    assert posture_split.parts_of(of("a1", "a2"), EACH_IN_TURN) is None
+
+
+def test_each_fold_of_a_sweep_is_answered_in_each_size() -> None:
+    jobs = list(sweep_of(of("a", "b"), EACH_IN_TURN))
+    assert len(jobs) == 2 * 5 * 6
+    assert {job.recognizer for job in jobs} == {"paper"}
+    assert jobs[0].group == "16 symbols, 3 states"
+    assert (jobs[0].sizes.symbols, jobs[0].sizes.states) == (16, 3)
+    assert people(jobs[0]) == ({"b"}, {"a"})
+    assert people(jobs[-1]) == ({"a"}, {"b"})
+
+
+def test_a_split_that_tests_no_posture_that_others_show_is_refused_as_a_whole() -> None:
+    squat, arm, wave = of("a")
+    shared = [squat, arm, wave._replace(performer="b"), squat._replace(performer="b")]
+    posture_split.refuse_in_vain(shared, EACH_IN_TURN)
+    posture_split.refuse_in_vain(shared, "a:b")
+    with pytest.raises(TrainingError, match="none of the postures that are tested is shown by"):
+        posture_split.refuse_in_vain(shared[:3], "a:b")
+    both = [*shared, arm._replace(performer="c"), wave._replace(performer="c")]
+    posture_split.refuse_in_vain(both, EACH_IN_TURN)
+    with pytest.raises(LearningError, match="a: in training and in test"):
+        posture_split.refuse_in_vain(shared, "a,b:a")
