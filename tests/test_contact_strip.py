@@ -66,7 +66,7 @@ def chosen(monkeypatch: pytest.MonkeyPatch, statuses: list[str], window: int) ->
         return np.full((3, 4, 3), (10 * number, 20, 30), np.uint8)
 
     monkeypatch.setattr(module, "overridden", lambda *_: settings)
-    monkeypatch.setattr(module.config_file, "load", lambda path: path)
+    monkeypatch.setattr("common.config.config_file.load", lambda path: path)
     monkeypatch.setattr(module, "both_cameras", lambda clip: "rig")
     monkeypatch.setattr(module, "Watch", lambda each, anew: SimpleNamespace(each=each, anew=anew))
     monkeypatch.setattr(module, "track_clip", track)
@@ -112,5 +112,6 @@ def test_a_view_without_a_frame_is_black_and_limbs_are_drawn_where_a_rig_is_know
     alone: Any = ({1: frame}, {1: report}, "body")
     assert not module._shown(alone, 2, rig).any()
     module._shown(both, 1, None)
-    module._shown(({1: frame}, {1: report}, None), 1, rig)  # type: ignore[arg-type]
+    nobody: Any = ({1: frame}, {1: report}, None)
+    module._shown(nobody, 1, rig)
     assert len(drawn) == 1

@@ -167,7 +167,7 @@ class Kept(Gui):
 
 def test_what_is_chosen_in_a_list_or_on_the_slider_is_said_for_what_it_is(page: Heard) -> None:
     gui = Kept()
-    Controls(gui, filmed(), page)  # type: ignore[arg-type]
+    Controls(gui, filmed(), page)
     gui.slider.value = 6
     gui.lists["faces"].value = "backward_left"
     gui.lists["joint"].value = gui.lists["joint"].options[JOINT_NAMES.index("l_knee")]
@@ -188,7 +188,7 @@ def test_what_is_chosen_in_a_list_or_on_the_slider_is_said_for_what_it_is(page: 
 
 def test_the_panel_is_docked_at_the_right_and_has_its_help_and_its_keys(page: Heard) -> None:
     gui = Kept()
-    Controls(gui, filmed(), page)  # type: ignore[arg-type]
+    Controls(gui, filmed(), page)
     assert gui.widths == ["right", 340]
     (theme,) = gui.themes
     assert (theme["show_logo"], theme["show_share_button"]) == (False, False)

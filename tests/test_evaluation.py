@@ -1,5 +1,7 @@
 """The evaluation, held against the paper's table 2 and the interval that belongs to it."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from acting import perform
@@ -153,7 +155,8 @@ def test_who_is_learnt_from_is_on_the_models_card_and_in_no_test(
     ]
     tested = [Recording("ann", "squat", rows[0])]
     sizes = Sizes(3, 16)
-    assert recognise(learnt, tested, "paper", "left-right", 7, sizes) == ("model", tested)
+    named: Any = recognise(learnt, tested, "paper", "left-right", 7, sizes)
+    assert named == ("model", tested)
     ((sequences, *given),) = noted
     assert sequences == {"squat": [rows[0], rows[2]], "wave": [rows[1]]}
     assert given == ["paper", "left-right", 7, ["bob", "eve"], sizes]

@@ -75,7 +75,8 @@ def test_the_shipped_network_is_judged_on_the_same_as_the_taught_one(
     training: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     looked = [training.Looked(Path(f"learnt{n}"), Path(f"held{n}")) for n in range(2)]
-    plan, noted = training.Plan(batches=7), list[Any]()
+    noted: Any = []
+    plan = training.Plan(batches=7)
     people = [Path("own"), Path("anny"), Path("held_back")]
     offs = {"shipped": (0.06, 0.05), "mean": (0.04, 0.051)}
 

@@ -293,7 +293,7 @@ def test_joints_are_off_by_shares_of_the_stature_and_unknown_where_not_in_the_pi
     monkeypatch.setattr(loss, "peaks", lambda _: tensor(found_px))
     monkeypatch.setattr(loss, "_halved", numpy_torch().no_grad)
     monkeypatch.setattr(loss, "planes_of", lambda shown: shown)
-    modes = list[str]()
+    modes: Any = []
 
     def judged(_: Any) -> Any:
         modes.append("asked")

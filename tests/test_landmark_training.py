@@ -178,7 +178,8 @@ def test_a_fresh_start_is_of_pictures_that_no_batch_shows(
         def paces(self) -> str:
             return "paces"
 
-    network, started = Network(), list[Any]()
+    network: Any = Network()
+    started: Any = []
     library = numpy_torch(manual_seed=seeds.append, channels_last="last")
     monkeypatch.setattr(untrained, "torch", library)
     monkeypatch.setattr(untrained, "composed", lambda wanted: wanted)
@@ -211,7 +212,8 @@ def test_a_batch_follows_from_its_wish(untrained: Any, monkeypatch: pytest.Monke
 def test_a_training_says_what_it_wrote_and_how_good_that_is(
     untrained: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    noted, folders = list[Any](), [Path("own"), Path("anny"), Path("held_back")]
+    noted: Any = []
+    folders = [Path("own"), Path("anny"), Path("held_back")]
     work = SimpleNamespace(mean="mean", network="network", batch=30)
     monkeypatch.setattr(untrained, "_drawn", lambda *given: noted.append(given) or folders)
     monkeypatch.setattr(untrained, "_learnt", lambda *given: noted.append(given) or work)
@@ -246,7 +248,7 @@ def test_joints_that_are_not_seen_are_not_counted_as_right(
 ) -> None:
     off = np.array([[0.05, 0.0999, np.nan], [0.1, 0.3, 0.01]])
     monkeypatch.setattr(untrained, "composed", lambda wanted: wanted)
-    shown = list[Any]()
+    shown: Any = []
     monkeypatch.setattr(
         untrained.landmark_loss, "joints_off", lambda *given: shown.append(given) or off
     )

@@ -81,7 +81,7 @@ def test_what_is_known_of_a_camera_is_wrong_in_its_length_and_its_pitch() -> Non
     true = camera()
     for guessed, times, pitch_deg in ((False, 0.01, 0.3), (True, 0.12, 3.0)):
         draws: Any = Draws(normal=[2.0, -1.5])
-        found = module._as_known(true, guessed, draws)
+        found: Any = module._as_known(true, guessed, draws)
         focal_px = 300.0 * np.exp(2.0 * times)
         assert (
             (pytest.approx(focal_px), 0.0, 150.0),
@@ -208,7 +208,8 @@ def test_half_move_as_they_like_and_who_does_not_fall_keeps_a_place(
     for chance, manner in ((0.49, AT_LARGE), (0.5, ORDINARY)):
         noted = moving(monkeypatch)
         draws: Any = Draws(random=[chance, 0.15], uniform=[np.array([0.3, -0.2])])
-        assert module._performed(SOMEONE, draws) == "posed"
+        found: Any = module._performed(SOMEONE, draws)
+        assert found == "posed"
         place, angles = [0.3, -0.2], [[0, 1, 2], [3, 4, 5], [6, 7, 8], [9, 10, 11]]
         assert noted == [manner, (SOMEONE.measures, angles, place, [place] * 4)]
         assert ("uniform", -0.6, 0.6, 2) in draws.asked
@@ -247,7 +248,7 @@ def test_a_performance_is_shown_to_one_camera_and_to_two_unless_nothing_is_learn
     monkeypatch.setattr(module, "rig_about", about)
     monkeypatch.setattr(module, "_seen", seeing_it)
     (found,) = module.lifting_examples(5)
-    assert found.due == [1]  # type: ignore[comparison-overlap]
+    assert found.due == [1]
     assert noted[0] == pytest.approx(joints_m[:, module.PICK[0]].mean(axis=0))
     assert [given[1:] for given in noted[1:]] == [(RIG, 1.7, True), (RIG, 1.7, False)]
     assert (noted[1][0] == joints_m[:, module.PICK]).all()

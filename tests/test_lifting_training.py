@@ -13,7 +13,7 @@ from rich.console import Console
 from integrator.proposal import lifting_network
 from integrator.proposal.landmark_look import INPUTS, Look
 from integrator.proposal.network_weights import LiftingNetwork, load, shipped_lifting
-from tritrack.training import lifting_training
+from tritrack.training import lifting_training, torch_network
 from tritrack.training.lifting_examples import LiftingExample, lifting_examples
 from tritrack.training.lifting_training import learnt, train_lifting
 from tritrack.training.torch_network import Round
@@ -132,7 +132,7 @@ def test_what_is_learnt_starts_with_what_is_usually_due(monkeypatch: pytest.Monk
     torch, noted = numpy_torch(manual_seed=seeds.append), list[Any]()
     monkeypatch.setattr(lifting_training, "torch_or_refuse", lambda: torch)
     monkeypatch.setattr(lifting_training, "UNITS", (5, 4, 3))
-    monkeypatch.setattr(lifting_training.torch_network, "learn", lambda *given: noted.append(given))
+    monkeypatch.setattr(torch_network, "learn", lambda *given: noted.append(given))
     shown, rounds = [shown_by(2, 1.7), shown_by(3)], [Round(1, 0.1, 2)]
     network = learnt(shown, 8, QUIET, rounds)
     assert network.fc1.shape == (INPUTS, 5)

@@ -162,8 +162,8 @@ def markers_of(model: ElementTree.Element, said: dict[str, float]) -> dict[str, 
         )
         turn, place = at[str(start.findtext("socket_parent"))]
         place = place + turn @ vector(start, "translation")
-        for axis, angle in zip(np.eye(3), vector(start, "orientation"), strict=True):
-            turn = turn @ turned(axis, angle)
+        for about, angle in zip(np.eye(3), vector(start, "orientation"), strict=True):
+            turn = turn @ turned(about, angle)
         moved = np.zeros(3)
         own = np.eye(3)
         for axis in joint.iter("TransformAxis"):

@@ -8,7 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from animator.overlay import SHOWN
+from common.config.picture_size import working_size
 from common.rig.camera import Camera, Matrix
+from common.video.decoding import Wanted
 from tritrack.offline.film_tracking import Followed
 from tritrack.single import overlay_film
 from tritrack.single.overlay_film import STANDS_S, shown_times
@@ -66,9 +69,9 @@ def report_of(captured_s: float) -> Any:
     return SimpleNamespace(captured_s=captured_s, width=160, upright=None)
 
 
-def drawing(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+def drawing(monkeypatch: pytest.MonkeyPatch) -> Any:
     """What each frame is drawn from."""
-    noted: list[Any] = []
+    noted: Any = []
     monkeypatch.setattr(overlay_film, "overlay", lambda *given: noted.append(given) or given[0])
     monkeypatch.setattr(overlay_film, "unpack", lambda report: f"silhouette {report.captured_s}")
     monkeypatch.setattr(
@@ -150,5 +153,5 @@ def test_masks_are_drawn_on_paper_and_clips_on_their_own_frames_upright(
     view = SimpleNamespace(source="a.mp4", upright_source=(720, 1280), quarters=3)
     of_clip: Any = SimpleNamespace(clip=SimpleNamespace(views=(view, None), every=2))
     assert list(overlay_film._pictures(of_clip, decoder)) == [0, 1]
-    size = overlay_film.working_size((720, 1280), overlay_film.SHOWN)
-    assert asked == [("a.mp4", size, overlay_film.Wanted(2, quarters=3))]
+    size = working_size((720, 1280), SHOWN)
+    assert asked == [("a.mp4", size, Wanted(2, quarters=3))]

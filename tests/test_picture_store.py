@@ -31,7 +31,8 @@ def example(seed: int) -> PictureExample:
 
 
 def same(one: PictureExample, other: PictureExample) -> bool:
-    return all(np.allclose(a, b) for a, b in zip(one, other, strict=True))
+    names = PictureExample._fields
+    return all(np.allclose(getattr(one, name), getattr(other, name)) for name in names)
 
 
 class Last:

@@ -15,7 +15,7 @@ from integrator.proposal import network_weights, pose_network
 from integrator.proposal.network_weights import to_bfloat16
 from integrator.proposal.silhouette_window import BESIDE, Look
 from synth.picture.silhouette_examples import AT_LARGE, ORDINARY, silhouette_examples
-from tritrack.training import proposal_examples, proposal_training
+from tritrack.training import proposal_examples, proposal_training, torch_network
 from tritrack.training.proposal_examples import Example, example, example_of
 from tritrack.training.proposal_training import learnt, train_proposals
 from tritrack.training.torch_network import Round
@@ -136,9 +136,7 @@ def test_what_is_learnt_is_of_the_size_asked_for_and_knows_the_mean_window(
     noted: list[Any] = []
     monkeypatch.setattr(proposal_training, "torch_or_refuse", lambda: torch)
     monkeypatch.setattr(proposal_training, "UNITS", (5, 4, 3))
-    monkeypatch.setattr(
-        proposal_training.torch_network, "learn", lambda *given: noted.append(given)
-    )
+    monkeypatch.setattr(torch_network, "learn", lambda *given: noted.append(given))
     shown, rounds = [shown_by(1, 9), shown_by(2, 12)], [Round(1, 0.1, 2)]
     network = learnt(shown, 8, QUIET, rounds)
     mean, components = proposal_training._components(shown)

@@ -210,7 +210,7 @@ def test_the_process_says_each_twentieth_of_its_four_steps_and_how_it_ended(
 
     said: Any = Pipe()
     monkeypatch.setattr(refitting, "follow", following)
-    monkeypatch.setattr(refitting.signal, "signal", lambda *_: None)
+    monkeypatch.setattr("signal.signal", lambda *_: None)
     settings = settings_of(Path("a.avi"))
     refitting._fit(Path("out"), settings, SAID, said)
     ((job, folder, quiet),) = jobs

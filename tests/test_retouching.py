@@ -28,6 +28,7 @@ from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import load_notes, save_notes
+from common.rig.camera import PAPER_ROTATIONS
 from common.video.clips import open_clip
 from tritrack.single import retouching
 from tritrack.single.retouching import RetouchError, how_to_go_on, retouch
@@ -247,7 +248,7 @@ def test_the_turn_to_the_camera_is_the_calibrations_the_assumed_one_or_level(
     run = run_of(tmp_path / "run", tmp_path / "dance.avi")
     clip = open_clip(Settings(camera_1=CameraSettings(str(tmp_path / "dance.avi"))), None, (1,))
     level = retouching._turn_of(open_run(run), msgspec.structs.replace(clip, rig=None))
-    assert level == retouching.PAPER_ROTATIONS[0]
+    assert level == PAPER_ROTATIONS[0]
     turn = [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]
     K = [[1.0, 0, 0], [0, 1.0, 0], [0, 0, 1.0]]
     camera = {"name": "cam1", "K": K, "R": turn, "t": [0, 0, 4.0]}

@@ -165,17 +165,18 @@ def test_one_of_three_frames_is_learnt_from_and_colours_of_all_that_show_a_perso
         places=places, features=np.arange(8.0).reshape(4, 2), mask="its own mask"
     )
     noted: list[Any] = []
-    fake: Any = silhouette_training.silhouette
 
     def learning(state: Any, mask: Any, frame: Any, first: Any) -> Any:
         noted.append((state, mask, int(frame[0, 0, 0]), first is guessed))
         return state[0] + 1, "colours"
 
     monkeypatch.setattr(silhouette_training, "learn", len)
-    monkeypatch.setattr(fake, "init", lambda model, *_: (0, model))
-    monkeypatch.setattr(fake, "in_light_of", lambda state, _: (state[0], "lit"))
-    monkeypatch.setattr(fake, "guess", lambda state, _, near_px: guessed)
-    monkeypatch.setattr(fake, "learn_colours", learning)
+    monkeypatch.setattr("viewer.silhouette.silhouette.init", lambda model, *_: (0, model))
+    monkeypatch.setattr(
+        "viewer.silhouette.silhouette.in_light_of", lambda state, _: (state[0], "lit")
+    )
+    monkeypatch.setattr("viewer.silhouette.silhouette.guess", lambda state, _, near_px: guessed)
+    monkeypatch.setattr("viewer.silhouette.silhouette.learn_colours", learning)
     frames = [np.full((4, 5, 3), n, np.uint8) for n in range(8)]
     masks = [np.zeros((4, 5), np.bool_) for _ in range(8)]
     for n in (3, 4, 6):

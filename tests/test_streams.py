@@ -107,9 +107,9 @@ def test_an_event_is_told_when_it_was_first_told_as_it_was_last_told(
         seen.append(float(row[0]))
         return state + 1, Doing(said.get(state))
 
-    monkeypatch.setattr(streams.events, "init", lambda model: 0)
-    monkeypatch.setattr(streams.events, "step", step)
-    monkeypatch.setattr(streams.events, "finish", lambda state: last if state == 7 else None)
+    monkeypatch.setattr("recognizer.events.init", lambda model: 0)
+    monkeypatch.setattr("recognizer.events.step", step)
+    monkeypatch.setattr("recognizer.events.finish", lambda state: last if state == 7 else None)
     rows = np.arange(7.0)[:, None]
     assert streams.spotted(None, rows) == [(longer, 2), (last, 6)]  # type: ignore[arg-type]
     assert seen == rows[:, 0].tolist()

@@ -287,8 +287,8 @@ def test_segments_are_told_in_the_frames_of_the_stream_as_far_back_as_is_kept(
         segments.append(posture.segment)
         assert len(state.frames) == min(3, 2 * n + 1)
     assert segments == [(100, 100), (100, 101), (101, 102), (102, 103)]
-    assert recognizer_process._at(state, 0) == (102, pytest.approx(2 / 7.5))
-    assert state.frames[-1] == (103, pytest.approx(3 / 7.5))
+    assert recognizer_process._at(state, 0) == pytest.approx((102, 2 / 7.5))
+    assert state.frames[-1] == pytest.approx((103, 3 / 7.5))
 
 
 def test_the_papers_model_says_what_its_window_says(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -303,7 +303,8 @@ def test_the_papers_model_says_what_its_window_says(monkeypatch: pytest.MonkeyPa
 def test_what_a_step_runs_is_loaded_by_turning_bodies_long_enough_to_be_named(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    given, network = counting(monkeypatch), list[Any]()
+    given = counting(monkeypatch)
+    network: Any = []
     monkeypatch.setattr(events, "step", lambda state, row: (network.append(row) or state, None))
     warm_up(load(SHIPPED), 40)
     assert len(given) == len(network) == spotting.NAMED_FROM_FRAMES + 2

@@ -173,8 +173,9 @@ def test_pictures_are_numbered_from_the_worst_on(
         WorstFrame("b", 1, 9, 30.0, "l_hip", 40.0),
         WorstFrame("a", 0, 2, 20.0, "l_knee", 25.0),
     ]
-    by_clip: list[Any] = [{"a": f"{kind} of a", "b": f"{kind} of b"} for kind in "xyz"]
-    told = worst_frames.draw(frames, *by_clip, tmp_path, "decoders")  # type: ignore[arg-type]
+    clips, truths, settings = ({"a": f"{kind} of a", "b": f"{kind} of b"} for kind in "xyz")
+    given: Any = (frames, clips, truths, settings, tmp_path, "decoders")
+    told = worst_frames.draw(*given)
     assert [each["picture"] for each in told] == ["worst_01.png", "worst_02.png"]
     assert told[0] == {**frames[0]._asdict(), "picture": "worst_01.png"}
     assert noted == [
