@@ -410,3 +410,13 @@ def test_what_is_no_performance_or_overlaps_another_is_not_told(
     assert judged(model, monkeypatch, now, told, before=40) == (told, None)
     apart = (told[0]._replace(last=39),)
     assert judged(model, monkeypatch, now, apart) == ((now,), now)
+
+
+def test_frames_go_on_to_be_counted_where_nobody_is_seen(model: DensityModel) -> None:
+    """Also past the frame from which on everything begins anew, and a pose begins the count."""
+    state = replace(events.init(model), next_frame=70)
+    for missed in range(1, 40):
+        state, doing = events.step(state, None)
+        assert (state.next_frame, state.missed, doing) == (70 + missed, missed, events.NOTHING)
+    state, _ = events.step(state, standing(1)[0])
+    assert (state.next_frame, state.missed, state.frames) == (110, 0, (109,))

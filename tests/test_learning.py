@@ -79,3 +79,11 @@ def test_the_card_counts_what_was_usable_posture_by_posture() -> None:
     assert (card.recognizer, card.topology) == ("default", "ergodic")
     with pytest.raises(ValueError, match="bow: none of 2 sequences has 5 frames with a pose;"):
         train({"bow": [four, four]})
+
+
+def test_frames_of_what_was_known_and_of_what_is_new_are_counted_together(
+    known: PostureModel,
+) -> None:
+    new = takes("squat", 3)
+    model = extended(known, {"squat": new})
+    assert model.card.frames == known.card.frames + sum(map(len, new))

@@ -283,3 +283,16 @@ def test_probabilities_may_be_rounded(saved_of: dict[Recognizer, Path], tmp_path
     held["start"] = held["start"] + 1e-11
     np.savez(tmp_path / "rounded.npz", **held)
     load(tmp_path / "rounded.npz")
+
+
+@pytest.mark.parametrize(("off", "well"), [(0.9e-9, True), (1.1e-9, False)])
+def test_probabilities_sum_to_one_within_a_billionth(
+    saved_of: dict[Recognizer, Path], tmp_path: Path, off: float, well: bool
+) -> None:
+    held = parts_of(saved_of["default"])
+    held["start"][0, 0] += off
+    np.savez(tmp_path / "off.npz", **held)
+    if well:
+        load(tmp_path / "off.npz")
+    else:
+        assert "the rows of start are no probabilities" in refusal(tmp_path / "off.npz")

@@ -239,7 +239,7 @@ def test_a_result_says_how_long_learning_took_and_what_each_of_the_test_set_in_t
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     clock = iter([100.0, 102.351])
-    monkeypatch.setattr(posture_evaluation.time, "perf_counter", lambda: next(clock))
+    monkeypatch.setattr("time.perf_counter", lambda: next(clock, 999.0))
     monkeypatch.setattr(posture_evaluation, "jobs_of", lambda *given: [given])
     groups = {"headline": ["a"], "within test": ["b"]}
     monkeypatch.setattr(
