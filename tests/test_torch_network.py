@@ -149,7 +149,9 @@ def watched(monkeypatch: pytest.MonkeyPatch, optimiser: Optimiser) -> list[list[
     """Which examples each step is shown."""
     shown: list[list[int]] = []
 
-    def noted(_: Any, __: Any, examples: list[Any]) -> Any:
+    def noted(library: Any, parts: list[Any], examples: list[Any]) -> Any:
+        assert library.optim
+        assert all(isinstance(part, Linear) for part in parts)
         shown.append(examples)
         return SimpleNamespace(backward=lambda: optimiser.notes.append("slope"))
 
