@@ -33,14 +33,14 @@ from mutations import ODD, damaged, strange
 from rich.console import Console
 
 import recognizer.__main__ as recogniser
+from calibration.foreign.imported_rig import imported_rig
+from calibration.foreign.toml_rig import toml_text
 from common.config.config_file import load
 from common.config.settings import Settings
 from common.notes.notes_file import load_notes
 from common.rig.rig_file import load_rig
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from integrator.foreign_rigs.imported_rig import imported_rig
-from integrator.foreign_rigs.toml_rig import toml_text
 from recognizer import model_file
 from tritrack.exporting import export_run
 from tritrack.faults import MENDABLE, code_of

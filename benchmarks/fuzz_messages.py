@@ -41,6 +41,7 @@ from common.bus.control_messages import (
 )
 from common.bus.message_codec import TOPICS, MalformedMessage, decode, encode
 from common.bus.messages import Body, Guide, Message, Picture, Report
+from common.bus.pair import Pair
 from common.config.config_file import load
 from common.method import METHODS
 from common.rig.camera import Rig
@@ -49,7 +50,6 @@ from common.video.frame_cache import Reel
 from integrator import commands, diagnostics, merge, merge_state, pairing
 from integrator.frame_numbers import frame_times
 from integrator.merge_state import Start
-from integrator.pairing import Pair
 from integrator.single.sight import Annotations
 from tritrack.live.table import table_of_rows
 from tritrack.offline.frame_pairs import openings

@@ -18,13 +18,13 @@ import msgspec
 import numpy as np
 from wild_rigs import AT, Film, random_pair, seen
 
+from calibration.tracks.joint_tracks import JointTrack, Sighting
+from calibration.tracks.lateness import clock_of
 from common.config import config_file
 from common.method import METHODS
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reader, Reel
-from integrator.selfcalibration.joint_tracks import JointTrack, Sighting
-from integrator.selfcalibration.lateness import clock_of
 from synth.motion.motions import performance
 from synth.person.people import person
 from tritrack.offline.rig_from_person import sighting_of

@@ -19,6 +19,7 @@ from threadpoolctl import threadpool_limits
 
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Body, Guide, Report
+from common.bus.pair import Pair
 from common.config.part_settings import BodySettings
 from common.config.settings import Settings
 from common.method import METHODS
@@ -28,7 +29,6 @@ from integrator.live_rig import rig_search
 from integrator.live_rig.rig_change import set_back, with_rig
 from integrator.live_rig.rig_job import Solved, solved
 from integrator.merge_state import Start
-from integrator.pairing import Pair
 from tritrack.offline.frame_pairs import instants, openings
 from tritrack.offline.lockstep import Decoders, track_clip
 from viewer import track

@@ -25,6 +25,7 @@ from threadpoolctl import threadpool_limits
 
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.bus.pair import Pair
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from common.method import METHODS
@@ -34,7 +35,6 @@ from common.video.clips import open_clip
 from common.video.decoding import Decoder, Image
 from integrator import merge, merge_state
 from integrator.merge_state import Start
-from integrator.pairing import Pair
 from recognizer import __main__ as recognizer_process
 from synth.write import ClipSet, write_set
 from tritrack.live.free_ports import free_settings

@@ -17,16 +17,16 @@ from typing import Final
 import msgspec
 import numpy as np
 
+from calibration.gate.rig_fault import advice_on, exchanged_rig
+from calibration.gate.rig_trust import trust_of
+from calibration.tracks.joint_tracks import Sighting
+from calibration.tracks.rig_guess import rotation
 from common.body.body import Vector
 from common.config.part_settings import BodySettings
 from common.config.settings import Settings
 from common.method import METHODS
 from common.rig.camera import Camera, Rig, as_matrix, as_row, centre
 from common.video.clips import open_clip
-from integrator.rig_gate.rig_fault import advice_on, exchanged_rig
-from integrator.rig_gate.rig_trust import trust_of
-from integrator.selfcalibration.joint_tracks import Sighting
-from integrator.selfcalibration.rig_guess import rotation
 from tritrack.offline.lockstep import Decoders
 from tritrack.offline.rig_from_person import sighting_of
 from viewer.landmarks.landmark_sources import outside_sources

@@ -20,11 +20,11 @@ from threadpoolctl import threadpool_limits
 
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Body, Guide, Report
+from common.bus.pair import Pair
 from common.config.settings import Settings
 from common.settled import settle
 from common.video.clips import open_clip
 from integrator import merge
-from integrator.pairing import Pair
 from recognizer import __main__ as recognizer_process
 from tritrack.live.table import table_of_rows
 from viewer import track

@@ -13,14 +13,14 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.gate.known_rig import guess_of
+from calibration.person.person_calibration import calibrated_by_person
+from calibration.person.rig_quality import PersonCalibration
+from calibration.tracks.joint_tracks import JointTrack, Sighting
+from calibration.tracks.rig_guess import PLACE, rotation
 from common.body.body import JOINT_NAMES, OTHER_SIDE, Vector
 from common.rig.camera import Camera, Rig, as_matrix, as_row, centre, project
 from common.rig.rig_file import CalibrationError
-from integrator.rig_gate.known_rig import guess_of
-from integrator.selfcalibration.joint_tracks import JointTrack, Sighting
-from integrator.selfcalibration.person_calibration import calibrated_by_person
-from integrator.selfcalibration.rig_guess import PLACE, rotation
-from integrator.selfcalibration.rig_quality import PersonCalibration
 from synth.motion.motions import POSTURES, Motion, performance
 from synth.person.people import Person, person
 from synth.person.skeleton import JOINTS

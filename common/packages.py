@@ -1,4 +1,4 @@
-"""Our packages by the names that they have here: seven in a checkout, one in the wheel."""
+"""Our packages by the names that they have here: eight in a checkout, one in the wheel."""
 
 from pathlib import Path
 from typing import Final
@@ -6,7 +6,10 @@ from typing import Final
 PACKAGES: Final = (
     ("tritrack",)
     if __name__.startswith("tritrack.")
-    else ("animator", "common", "integrator", "recognizer", "synth", "tritrack", "viewer")
+    else (
+        *("animator", "calibration", "common", "integrator", "recognizer"),
+        *("synth", "tritrack", "viewer"),
+    )
 )
 """Names at the top that are ours: `hatch_build.py` moves all of them below one."""
 ROOT: Final = Path(__file__).resolve().parents[__name__.count(".")]

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from common.body.body import OTHER_SIDE
 from common.bus.messages import Landmarks, Report
+from common.bus.pair import Pair
 from common.rig.camera import Camera, Rig, project
-from integrator.pairing import Pair
 from integrator.single.reflection import yaw_deg
 
 LOST_SCORE: Final = 0.35

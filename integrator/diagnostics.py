@@ -3,8 +3,8 @@
 from typing import Final, NamedTuple
 
 from common.bus.messages import CameraFault, Report
+from common.bus.pair import Pair
 from integrator import merge_state
-from integrator.pairing import Pair
 
 DOUBTED: Final = 0.5
 """Of a rig by which no more than this is left of the joints' confidence something is said."""

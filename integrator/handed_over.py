@@ -6,6 +6,7 @@ from typing import Final
 
 import msgspec
 
+from calibration.gate.moved_cameras import AS_IT_WAS, MovedCameras
 from common.atomic_file import replacing
 from common.body.body import Bdp
 from common.bus.control_messages import Ended
@@ -14,7 +15,6 @@ from common.rig.camera import Rig
 from common.rig.picture_shift import Shift
 from integrator.merge_state import State
 from integrator.opening_posture import Opening
-from integrator.rig_gate.moved_cameras import AS_IT_WAS, MovedCameras
 
 NAME: Final = "integrator.msgpack"
 LEAVE_S: Final = 1.0

@@ -8,6 +8,7 @@ from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Landmarks, Report, ViewerNumber
+from common.bus.pair import Pair
 from common.config.settings import Settings
 from common.method import METHODS
 from common.raster.kernel import draw_body, view_of
@@ -15,7 +16,6 @@ from common.raster.silhouette_report import pack, silhouette_report, unpack
 from common.rig.camera import Rig, paper_rig, project
 from integrator import merge, merge_state
 from integrator.fit import visual_hull
-from integrator.pairing import Pair
 
 VIEWERS: Final[tuple[ViewerNumber, ...]] = (1, 2)
 

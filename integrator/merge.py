@@ -2,11 +2,13 @@
 
 from typing import NamedTuple
 
+from calibration.gate import moved_cameras, rig_agreement, silhouette_motion
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, Vector
 from common.body.kinematics import ALL_LIMBS
 from common.body.proportions import body_vector
 from common.body.stick_body import ADULT, THESIS
 from common.bus.messages import Body, Guide, Report
+from common.bus.pair import Pair, Seen
 from common.raster.bits import count
 from common.raster.kernel import match, view_of
 from common.raster.silhouette_report import words_of
@@ -16,14 +18,12 @@ from integrator.fit import proposed_pose, shape_fit
 from integrator.fit.proposed_pose import ProposedPose
 from integrator.frame_numbers import NO_FRAME, frame_at
 from integrator.merge_state import Posed, State
-from integrator.pairing import Pair, Seen
 from integrator.paper import fused_pose
 from integrator.pose import joint_limits, smoothing
 from integrator.rig.assumed_rig import assumed_rig
 from integrator.rig.body_position import facing_of
 from integrator.rig.tilted_camera import assumed_rig_of_one
 from integrator.rig.undistortion import undistorted_pair, undistorted_rig
-from integrator.rig_gate import moved_cameras, rig_agreement, silhouette_motion
 from integrator.single import single_view
 from integrator.single.sight import Annotations, Sight
 

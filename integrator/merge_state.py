@@ -5,6 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.gate import rig_agreement, silhouette_motion
+from calibration.gate.moved_cameras import MovedCameras
 from common.body.body import ANGLE_NAMES, Vector
 from common.bus.messages import Facing, ScaleSource
 from common.config.settings import Settings
@@ -16,8 +18,6 @@ from integrator.landmarks import landmark_fusion
 from integrator.opening_posture import Opening
 from integrator.pose import smoothing
 from integrator.proposal.pose_proposal import Memory
-from integrator.rig_gate import rig_agreement, silhouette_motion
-from integrator.rig_gate.moved_cameras import MovedCameras
 from integrator.single.single_view import Alone
 
 

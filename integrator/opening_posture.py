@@ -8,9 +8,9 @@ import numpy as np
 from common.body.body import Bdp, Vector, body_of_lengths
 from common.body.proportions import thesis_bdp
 from common.bus.messages import Measure, Report
+from common.bus.pair import Seen
 from common.method import Method
 from common.rig.camera import Rig
-from integrator.pairing import Seen
 from integrator.prior_body import prior
 from integrator.rig.body_position import scales_at, sees_flank, upright_place_of
 

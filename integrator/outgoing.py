@@ -7,20 +7,20 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.gate import silhouette_motion
 from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, Vector, rest_pose
 from common.body.extremities import extremities
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
 from common.bus.messages import Agreement, Body, Guide, Pixel, Point, Report, Status, Views
+from common.bus.pair import Pair, Seen
 from common.rig.camera import project
 from common.rig.upright_camera import as_filed
 from integrator.belief import is_believed
 from integrator.landmarks.extremity_sight import seen_extremities
 from integrator.merge_state import State
-from integrator.pairing import Pair, Seen
 from integrator.rig.body_position import pixels_of, scales_since
 from integrator.rig.undistortion import undistorted_rig
-from integrator.rig_gate import silhouette_motion
 from integrator.single.sight import Annotations
 
 LOST_S: Final = 1.0 / 3.0

@@ -3,6 +3,7 @@
 from typing import Final, NamedTuple, Protocol, TypeVar
 
 from common.bus.messages import Report, ViewerNumber
+from common.bus.pair import Pair
 
 QUEUE: Final = 128
 """How many reports of one viewer wait for the other: eight seconds at 15 frames a second, after
@@ -12,8 +13,6 @@ NEVER_S: Final = float("-inf")
 
 
 Item = TypeVar("Item")
-Seen = tuple[Report | None, Report | None]
-"""Reports of viewer 1 and viewer 2 in which there is somebody."""
 
 
 class Taken(Protocol):
@@ -26,24 +25,6 @@ class Taken(Protocol):
     @property
     def next_s(self) -> float | None:
         """When its camera takes the next, at the earliest; None: that is not known."""
-
-
-class Pair(NamedTuple):
-    """What the viewers report of one instant; None where a viewer does not."""
-
-    first: Report | None
-    second: Report | None
-
-    @property
-    def newest(self) -> Report:
-        """The report whose frame was taken last; of a pair one at least is there."""
-        return max((r for r in self if r is not None), key=lambda report: report.clock_s)
-
-    @property
-    def detections(self) -> Seen:
-        """The reports in which somebody is seen."""
-        first, second = (None if r is None or r.box is None else r for r in self)
-        return first, second
 
 
 class State(NamedTuple):

@@ -7,9 +7,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.board.board import Board, black_cells
 from common.body.body import Vector
 from common.rig.camera import Camera, arrays_of, as_matrix, as_row, project, ray
-from integrator.board.board import Board, black_cells
 
 TEXELS = 40
 """Of a square's side, in the board's picture."""

@@ -11,6 +11,7 @@ from posing import posed
 from common.body.body import Bdp, Vector
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body, Box, Guide, Report, ViewerNumber
+from common.bus.pair import Pair
 from common.config.settings import Settings
 from common.method import METHODS, Method
 from common.raster.kernel import draw_body, view_of
@@ -20,7 +21,6 @@ from common.rig.camera import Rig, paper_rig
 from common.video.decoding import Image
 from integrator import merge, merge_state
 from integrator.merge_state import Start
-from integrator.pairing import Pair
 from viewer import track
 from viewer.capture import CapturedFrame
 from viewer.silhouette.silhouette import Seen

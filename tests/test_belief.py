@@ -8,9 +8,9 @@ from staging import RIG, standing
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Box, Landmarks, Report
+from common.bus.pair import Pair
 from common.rig.camera import project
 from integrator.belief import ASTRAY, FACES, _astray, _is_turned_about, is_believed
-from integrator.pairing import Pair
 from integrator.single.reflection import yaw_deg
 
 BODY = np.asarray(joints(body_vector(thesis_bdp(1.75)), standing()))

@@ -4,8 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from common.rig.rig_file import CalibrationError
-from integrator.board.board import (
+from calibration.board.board import (
     BOARDS,
     SHEETS_MM,
     Board,
@@ -15,6 +14,7 @@ from integrator.board.board import (
     chessboard,
     corner_places,
 )
+from common.rig.rig_file import CalibrationError
 
 
 @pytest.mark.parametrize("paper", ["a4", "a3"])

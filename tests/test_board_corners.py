@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from filmed_board import Pose, Studio, facing, middle_of
 
+from calibration.board.board import BOARDS, Board, corner_places
+from calibration.board.board_corners import corners_in
 from common.body.body import Vector
 from common.rig.camera import Camera, project
-from integrator.board.board import BOARDS, Board, corner_places
-from integrator.board.board_corners import corners_in
 
 SIZE = (640, 480)
 AHEAD = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from integrator.board.board_coverage import CELLS, TINT, coverage_picture, covered
+from calibration.board.board_coverage import CELLS, TINT, coverage_picture, covered
 
 NAN = float("nan")
 

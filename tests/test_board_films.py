@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from rich.progress import Progress
 
+from calibration.board.board import BOARDS, Board, chessboard
 from common.rig.rig_file import CalibrationError
 from common.video.decoding import Decoded, Size, VideoInfo, Wanted
-from integrator.board.board import BOARDS, Board, chessboard
 from tritrack.offline import board_films
 from tritrack.offline.board_films import Looked, looked_through
 

@@ -4,9 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from common.body.body import Vector
-from integrator.board.board import BOARDS, corner_places
-from integrator.board.board_fit import (
+from calibration.board.board import BOARDS, corner_places
+from calibration.board.board_fit import (
     Sight,
     Start,
     _Layout,
@@ -17,7 +16,8 @@ from integrator.board.board_fit import (
     start_of,
     weighed,
 )
-from integrator.board.lens_start import Lens, Place, chained
+from calibration.board.lens_start import Lens, Place, chained
+from common.body.body import Vector
 
 SIZE = (640, 480)
 PLACES = corner_places(BOARDS["a3"]._replace(square_m=0.1))

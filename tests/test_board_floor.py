@@ -4,11 +4,11 @@ import cv2
 import numpy as np
 import pytest
 
+from calibration.board.board import BOARDS, corner_places
+from calibration.board.board_floor import Floor, floor_of, world_cameras
+from calibration.board.lens_start import Place
 from common.body.body import Vector
 from common.rig.rig_file import CalibrationError
-from integrator.board.board import BOARDS, corner_places
-from integrator.board.board_floor import Floor, floor_of, world_cameras
-from integrator.board.lens_start import Place
 
 PLACES = corner_places(BOARDS["a3"]._replace(square_m=0.1))
 CAMERA_UP = np.array([0.0, -1.0, 0.0])

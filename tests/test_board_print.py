@@ -8,10 +8,10 @@ import cv2
 import numpy as np
 import pytest
 
+from calibration.board.board import BOARDS, SHEETS_MM, Paper
+from calibration.board.board_corners import corners_in
+from calibration.board.board_print import print_board
 from common.rig.rig_file import CalibrationError
-from integrator.board.board import BOARDS, SHEETS_MM, Paper
-from integrator.board.board_corners import corners_in
-from integrator.board.board_print import print_board
 
 POINTS_A_MM = 72 / 25.4
 DOTS_A_MM = 4

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from integrator.board.board_fit import Fit, Sight
-from integrator.board.board_floor import Floor
-from integrator.board.board_quality import miss_px_of, quality_of
-from integrator.board.lens_start import Place
-from integrator.board.still_board import Moments
+from calibration.board.board_fit import Fit, Sight
+from calibration.board.board_floor import Floor
+from calibration.board.board_quality import miss_px_of, quality_of
+from calibration.board.lens_start import Place
+from calibration.board.still_board import Moments
 
 SIZE = (96, 48)
 STILL = Place(np.zeros(3), np.zeros(3))

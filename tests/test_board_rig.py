@@ -7,14 +7,11 @@ import numpy as np
 import pytest
 from filmed_board import FilmedRig, middle_of, pictures_of, random_rig
 
-from common.body.body import Vector
-from common.rig.camera import centre, project
-from common.rig.rig_file import CalibrationError
-from integrator.board.board import BOARDS, corner_places
-from integrator.board.board_corners import corners_in
-from integrator.board.board_fit import Fit
-from integrator.board.board_floor import Floor
-from integrator.board.board_rig import (
+from calibration.board.board import BOARDS, corner_places
+from calibration.board.board_corners import corners_in
+from calibration.board.board_fit import Fit
+from calibration.board.board_floor import Floor
+from calibration.board.board_rig import (
     BoardCalibration,
     _late,
     _refuse_few,
@@ -23,8 +20,11 @@ from integrator.board.board_rig import (
     _rig,
     calibrated_by_board,
 )
-from integrator.board.lens_start import Place
-from integrator.board.still_board import Film, Moments
+from calibration.board.lens_start import Place
+from calibration.board.still_board import Film, Moments
+from common.body.body import Vector
+from common.rig.camera import centre, project
+from common.rig.rig_file import CalibrationError
 
 POSTER = BOARDS["a3"]._replace(square_m=0.1)
 LOOKS = 3

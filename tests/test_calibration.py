@@ -5,11 +5,11 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from calibration.paper.calibration import run_markers, run_poles
+from calibration.paper.poles import Quality
 from common.atomic_file import FileRefused
 from common.rig.camera import as_paper_rig
 from common.rig.rig_file import CalibrationError, load_rig
-from integrator.rig.calibration import run_markers, run_poles
-from integrator.rig.poles import Quality
 
 CONFIGS = Path(__file__).parents[1] / "configs"
 

@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from integrator.board.board import BOARDS
-from integrator.board.corner_alignment import CELL_PX, _aligned, _inside, _print, _spans_px
+from calibration.board.board import BOARDS
+from calibration.board.corner_alignment import CELL_PX, _aligned, _inside, _print, _spans_px
 
 ONTO = np.array([[40.0, 0.0, 10.0], [0.0, 24.0, 6.0], [0.0, 0.0, 1.0]])
 """Squares of 40 x 24 px; the board's top left is at (10, 6)."""

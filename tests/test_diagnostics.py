@@ -3,15 +3,15 @@
 import msgspec
 import pytest
 
+from calibration.gate import rig_agreement
 from common.bus.messages import Agreement, Box, Report, ScaleSource
+from common.bus.pair import Pair
 from common.config.part_settings import BodySettings
 from common.config.settings import Settings
 from common.method import DEFAULT
 from common.rig.camera import paper_rig
 from integrator import diagnostics, merge_state
 from integrator.diagnostics import DOUBTED
-from integrator.pairing import Pair
-from integrator.rig_gate import rig_agreement
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
 

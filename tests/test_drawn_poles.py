@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from test_poles import CROWD, SIZE, room, seen
 
+from calibration.paper.drawn_poles import drawn_poles
+from calibration.paper.poles import Pole, Poles, camera_by_poles
 from common.rig.camera import project
-from integrator.rig.drawn_poles import drawn_poles
-from integrator.rig.poles import Pole, Poles, camera_by_poles
 
 
 @pytest.mark.parametrize("number", [1, 2])

@@ -3,11 +3,11 @@
 import msgspec
 import pytest
 
+from calibration.paper.markers import Markers
 from common.config.explained import explained
 from common.config.settings import Settings
 from common.notes.notes import Notes
 from common.rig.camera import Rig
-from integrator.rig.markers import Markers
 from tritrack.serving.sites import SitesFile
 
 MARKERS = "width = 3\nheight = 4\n[[cameras]]\nname = 'a'\n"

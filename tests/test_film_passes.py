@@ -16,6 +16,7 @@ from staging import RIG
 from common.body.body import JOINT_NAMES
 from common.body.proportions import thesis_bdp
 from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.bus.pair import Pair
 from common.config.part_settings import BodySettings
 from common.config.settings import Settings
 from common.method import METHODS, Method, Mode
@@ -24,7 +25,6 @@ from common.raster.silhouette_report import silhouette_report
 from common.rig.camera import Camera, Rig
 from common.video.clip_facts import Clip, Meta, View
 from common.video.clip_sources import ClipError
-from integrator.pairing import Pair
 from tritrack.offline import film_passes
 from tritrack.offline.film_passes import (
     CUTTING,

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from integrator.selfcalibration.film_worth import LEAST, measured_worth
-from integrator.selfcalibration.rig_residuals import Explained
-from integrator.selfcalibration.sight_lines import Meeting, Numbers
+from calibration.person.film_worth import LEAST, measured_worth
+from calibration.person.rig_residuals import Explained
+from calibration.tracks.sight_lines import Meeting, Numbers
 
 
 def film_of(gaps: Numbers) -> Explained:

@@ -4,9 +4,9 @@ import msgspec
 import numpy as np
 import pytest
 
+from calibration.foreign.foreign_camera import axes_with_y_up, our_rig, with_z_up
 from common.rig.camera import paper_rig
 from common.rig.rig_file import CalibrationError
-from integrator.foreign_rigs.foreign_camera import axes_with_y_up, our_rig, with_z_up
 
 RIG = paper_rig((320, 240), (400.0, 410.0), (4.0, 4.2))
 

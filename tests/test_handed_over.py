@@ -4,6 +4,7 @@ from pathlib import Path
 
 import msgspec
 
+from calibration.gate.moved_cameras import AS_IT_WAS, MovedCameras
 from common.body.proportions import thesis_bdp
 from common.bus.control_messages import Ended
 from common.config.settings import Settings
@@ -13,7 +14,6 @@ from common.rig.picture_shift import Shift
 from integrator import merge_state
 from integrator.handed_over import NAME, Estate
 from integrator.opening_posture import Opening
-from integrator.rig_gate.moved_cameras import AS_IT_WAS, MovedCameras
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
 FRESH = merge_state.init(None, 1 / 15, Settings(), METHODS["default"])

@@ -7,11 +7,11 @@ import cv2
 import numpy as np
 import pytest
 
+from calibration.foreign.imported_rig import imported_rig
+from calibration.foreign.toml_rig import TomlKind, toml_text
+from calibration.tracks.rig_guess import rotation
 from common.rig.camera import Camera, Rig, as_matrix, as_row, centre, project
 from common.rig.rig_file import CalibrationError
-from integrator.foreign_rigs.imported_rig import imported_rig
-from integrator.foreign_rigs.toml_rig import TomlKind, toml_text
-from integrator.selfcalibration.rig_guess import rotation
 
 BENT = (-0.05, 0.14, 0.0006, 0.0007)
 

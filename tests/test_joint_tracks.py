@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 from staging import report, silhouettes, standing
 
-from common.body.body import JOINT_NAMES
-from common.bus.messages import Landmarks
-from integrator.selfcalibration.joint_tracks import (
+from calibration.tracks.joint_tracks import (
     JOINTS,
     MOST_FRAMES,
     JointTrack,
@@ -20,6 +18,8 @@ from integrator.selfcalibration.joint_tracks import (
     track_of,
     useful_times,
 )
+from common.body.body import JOINT_NAMES
+from common.bus.messages import Landmarks
 
 
 def moving(frames: int, sure: float = 0.9) -> JointTrack:

@@ -7,10 +7,10 @@ import msgspec
 import numpy as np
 import pytest
 
+from calibration.gate.known_rig import as_ideal, guess_of
+from calibration.tracks.joint_tracks import JointTrack, Sighting
+from calibration.tracks.rig_guess import RIG, pinholes, rig_of
 from common.rig.camera import Rig, as_matrix, as_row, paper_rig
-from integrator.rig_gate.known_rig import as_ideal, guess_of
-from integrator.selfcalibration.joint_tracks import JointTrack, Sighting
-from integrator.selfcalibration.rig_guess import RIG, pinholes, rig_of
 
 GUESS = np.array([5.3, 5.6, -0.1, 0.07, 1.3, -1.1, 0.12, -0.05, -3.2, 1.6, -2.4])
 """Focal lengths of 200 and 270 px; every other number is another, too."""

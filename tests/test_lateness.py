@@ -7,8 +7,8 @@ import pytest
 from test_person_calibration import PAPER, filmed_by_the_papers_rig
 from wild_rigs import AT, Film, seen
 
-from integrator.selfcalibration.joint_tracks import JointTrack, Sighting
-from integrator.selfcalibration.lateness import LEAST_SHARED, UNSEEN, clock_of
+from calibration.tracks.joint_tracks import JointTrack, Sighting
+from calibration.tracks.lateness import LEAST_SHARED, UNSEEN, clock_of
 from synth.motion.motions import performance
 from synth.person.people import person
 

@@ -4,9 +4,9 @@ import cv2
 import numpy as np
 import pytest
 
+from calibration.board.board import BOARDS, corner_places
+from calibration.board.lens_start import Lens, Place, between, chained, lens_of, undone
 from common.body.body import Vector
-from integrator.board.board import BOARDS, corner_places
-from integrator.board.lens_start import Lens, Place, between, chained, lens_of, undone
 
 SIZE = (640, 480)
 PLACES = corner_places(BOARDS["a3"]._replace(square_m=0.1))

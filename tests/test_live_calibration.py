@@ -9,7 +9,9 @@ from rich.console import Console
 from staging import PERIOD_S, RIG
 from test_rig_search import GOOD, both
 
+from calibration.gate import rig_agreement
 from common.bus.messages import Agreement
+from common.bus.pair import Pair
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from common.method import METHODS
@@ -22,8 +24,6 @@ from integrator.live_rig.live_calibration import LiveCalibration, is_by_person
 from integrator.live_rig.rig_job import Job, Solved, Trusted
 from integrator.live_rig.rig_search import ASKS_S
 from integrator.merge_state import Start, State
-from integrator.pairing import Pair
-from integrator.rig_gate import rig_agreement
 from tritrack.live.free_ports import free_settings
 from tritrack.live.session import live
 from tritrack.replaying import replay_run

@@ -15,6 +15,7 @@ from rich.console import Console
 from spoiling import Film, copied, cut_off, edit_json, refilmed
 from staging import PERIOD_S, RIG
 
+from calibration.tracks.lateness import Clock
 from common.bus.messages import Body
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
@@ -23,7 +24,6 @@ from common.video.clip_facts import Act, Clip, Meta, View
 from common.video.clip_sources import ClipError
 from common.video.decoding import Ending
 from integrator import diagnostics, merge_state
-from integrator.selfcalibration.lateness import Clock
 from synth.write import ClipSet, write_set
 from tritrack.offline import lockstep
 from tritrack.offline.batch import Asked, track_all

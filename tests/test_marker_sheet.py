@@ -13,9 +13,9 @@ from pole_room import SIZE
 from test_suspect_point import clicked_markers, moved
 
 from animator.marking.sheet import Kind, Mark, Sheet, Solved
+from calibration.paper.calibration import read_points, run_markers
+from calibration.paper.markers import Markers
 from common.rig.rig_file import CalibrationError
-from integrator.rig.calibration import read_points, run_markers
-from integrator.rig.markers import Markers
 from tritrack.marking import marker_sheet
 from tritrack.marking.marker_sheet import (
     marker_method,

@@ -57,12 +57,12 @@ from animator.marking.sheet import (
     Shown,
     Solved,
 )
+from calibration.paper.calibration import read_points, run_markers, run_poles
+from calibration.paper.poles import Poles
 from common.bus.messages import Pixel
 from common.config.part_settings import PageSettings
 from common.rig.camera import as_paper_rig
 from common.rig.rig_file import CalibrationError, load_rig
-from integrator.rig.calibration import read_points, run_markers, run_poles
-from integrator.rig.poles import Poles
 from tritrack.marking import marking
 from tritrack.marking.marker_sheet import marker_method, markers_of, markers_text
 from tritrack.marking.marking import (

@@ -28,13 +28,13 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Guide
+from common.bus.pair import Pair
 from common.config.settings import Settings
 from common.method import DEFAULT, METHODS, Mode
 from common.rig.camera import project
 from integrator import merge, merge_state
 from integrator.frame_numbers import NO_FRAME, FrameTimes
 from integrator.outgoing import LOST_S
-from integrator.pairing import Pair
 from integrator.rig.body_position import scales_at
 from integrator.single.sight import Annotations
 

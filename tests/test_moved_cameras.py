@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 from staging import RIG, report
 
-from common.bus.messages import ViewerNumber
-from common.rig.camera import arrays_of, project
-from common.rig.picture_shift import Shift
-from common.rig.turned_camera import angle_deg, shift_of, turned
-from integrator.pairing import Pair
-from integrator.rig_gate import moved_cameras
-from integrator.rig_gate.moved_cameras import (
+from calibration.gate import moved_cameras
+from calibration.gate.moved_cameras import (
     MOVED_LEFT,
     UNCONFIRMED_LEFT,
     MovedCameras,
     told_by,
     turned_rig,
 )
+from common.bus.messages import ViewerNumber
+from common.bus.pair import Pair
+from common.rig.camera import arrays_of, project
+from common.rig.picture_shift import Shift
+from common.rig.turned_camera import angle_deg, shift_of, turned
 
 TURN = np.asarray(cv2.Rodrigues(np.radians([1.0, 3.0, 0.5]))[0])
 SHIFT = shift_of(TURN, arrays_of(RIG.cameras[1]).focal_px)

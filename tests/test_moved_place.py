@@ -7,12 +7,8 @@ import numpy as np
 import pytest
 from staging import RIG, standing
 
-from common.body.kinematics import joints
-from common.body.proportions import body_vector, thesis_bdp
-from common.bus.messages import ViewerNumber
-from common.rig.camera import Rig, as_matrix, as_row, centre, project
-from integrator.rig_gate.known_rig import guess_of
-from integrator.rig_gate.moved_place import (
+from calibration.gate.known_rig import guess_of
+from calibration.gate.moved_place import (
     PLACES,
     Person,
     Stood,
@@ -21,13 +17,17 @@ from integrator.rig_gate.moved_place import (
     _of_person,
     placed,
 )
-from integrator.selfcalibration import person_prior as prior
-from integrator.selfcalibration import rig_guess
-from integrator.selfcalibration.joint_tracks import JointTrack, Sighting
-from integrator.selfcalibration.rig_evidence import Evidence
-from integrator.selfcalibration.rig_fit import Fit
-from integrator.selfcalibration.rig_guess import LATE, PLACE, Pinhole, pinholes, rotation
-from integrator.selfcalibration.rig_starts import known_of
+from calibration.person.rig_evidence import Evidence
+from calibration.person.rig_fit import Fit
+from calibration.person.rig_starts import known_of
+from calibration.tracks import person_prior as prior
+from calibration.tracks import rig_guess
+from calibration.tracks.joint_tracks import JointTrack, Sighting
+from calibration.tracks.rig_guess import LATE, PLACE, Pinhole, pinholes, rotation
+from common.body.kinematics import joints
+from common.body.proportions import body_vector, thesis_bdp
+from common.bus.messages import ViewerNumber
+from common.rig.camera import Rig, as_matrix, as_row, centre, project
 
 WALL_M = 6.0
 """What a picture is turned by shows a step aside too."""
@@ -176,7 +176,7 @@ def test_what_is_free_of_moved_cameras_and_how_sure_their_yaw_is(
             np.diag(1.0 / sigmas),
         )
 
-    monkeypatch.setattr("integrator.rig_gate.moved_place._fitted", fit)
+    monkeypatch.setattr("calibration.gate.moved_place._fitted", fit)
     found = placed(RIG, seen_by(RIG), (1, 2) if both else (2,), 0.05)
     assert found is not None
     ahead = ("pitch_1", "roll_1") if both else ()
@@ -212,6 +212,6 @@ def test_the_background_is_half_as_far_again_as_the_person(
         walls_m.append(wall_m)
         return np.zeros(3)
 
-    monkeypatch.setattr("integrator.rig_gate.moved_place._backdrop", backdrop)
+    monkeypatch.setattr("calibration.gate.moved_place._backdrop", backdrop)
     assert placed(RIG, seen_by(RIG), (2,), 0.0) is not None
     assert walls_m[0] == pytest.approx(1.5 * 4.0, abs=0.3)

@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 import pytest
 
+from calibration.foreign.imported_rig import imported_rig
 from common.rig.camera import project
 from common.rig.rig_file import CalibrationError
-from integrator.foreign_rigs.imported_rig import imported_rig
 
 K = np.array([[600.0, 0.0, 310.0], [0.0, 602.0, 245.0], [0.0, 0.0, 1.0]])
 BENT = np.array([[-0.2, 0.06, 0.001, -0.002, 0.01]])

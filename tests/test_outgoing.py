@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from staging import NOBODY, PAPER, RIG, Stage, exact, report, silhouettes, standing
 
+from calibration.gate import moved_cameras, rig_agreement, silhouette_motion
 from common.body.proportions import stature
 from common.bus.messages import Agreement, Lifting, Report
+from common.bus.pair import Pair
 from common.method import DEFAULT
 from common.rig.camera import project
 from integrator import outgoing
 from integrator.merge_state import State
 from integrator.outgoing import body_of, guide_of, no_detection, weighed
-from integrator.pairing import Pair
 from integrator.rig.body_position import pixels_of, scales_at
-from integrator.rig_gate import moved_cameras, rig_agreement, silhouette_motion
 from integrator.single.sight import Annotations
 
 SCORES = (0.8, 0.7)

@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 from common.bus import clock
 from common.bus.clock import Exchange
 from common.bus.messages import Report, ViewerNumber
+from common.bus.pair import Pair
 from integrator.hearing.subscriber import OVERDUE_PERIODS
-from integrator.pairing import QUEUE, Pair, State, away, begin, end, init, overdue, step
+from integrator.pairing import QUEUE, State, away, begin, end, init, overdue, step
 
 PERIOD_S = 1 / 15
 

@@ -12,11 +12,11 @@ from spoiling import copied, refilmed
 from staging import PERIOD_S, RIG, report
 
 from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.bus.pair import Pair
 from common.config.settings import Settings
 from common.method import DEFAULT, Mode
 from common.video.clip_facts import Clip, Meta, View
 from integrator import merge_state
-from integrator.pairing import Pair
 from tritrack.offline import performance
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.offline.performance import STAGE, Going, Prepared, Watch, performed

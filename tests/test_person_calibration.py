@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from wild_rigs import Trial, filmed, missed, trial
 
+from calibration.person.person_calibration import calibrated_by_person
+from calibration.tracks.joint_tracks import JOINTS, JointTrack, Sighting
 from common.rig.camera import paper_rig
 from common.rig.rig_file import CalibrationError, check_rig
-from integrator.selfcalibration.joint_tracks import JOINTS, JointTrack, Sighting
-from integrator.selfcalibration.person_calibration import calibrated_by_person
 from synth.motion.motions import performance
 from synth.person.people import person
 

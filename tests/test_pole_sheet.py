@@ -13,10 +13,10 @@ from pole_room import DISTANCES_M, FOCALS_PX, POLE_M, RIG, SIZE, tops_px
 from test_suspect_point import clicked_poles, moved
 
 from animator.marking.sheet import Mark, Sheet, Solved
+from calibration.paper.calibration import read_points, run_poles
+from calibration.paper.poles import Poles
 from common.rig.camera import project
 from common.rig.rig_file import CalibrationError, load_rig
-from integrator.rig.calibration import read_points, run_poles
-from integrator.rig.poles import Poles
 from tritrack.marking import pole_sheet
 from tritrack.marking.pole_sheet import (
     NUMBERS,

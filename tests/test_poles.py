@@ -8,9 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import least_squares
 
-from common.rig.camera import Rig, as_paper_rig, paper_rig, project
-from common.rig.rig_file import CalibrationError
-from integrator.rig.poles import (
+from calibration.paper.poles import (
     READING_SD_PX,
     TAPE_SD_M,
     Pole,
@@ -19,6 +17,8 @@ from integrator.rig.poles import (
     camera_by_poles,
     poles,
 )
+from common.rig.camera import Rig, as_paper_rig, paper_rig, project
+from common.rig.rig_file import CalibrationError
 
 SIZE = (160, 120)
 CORNERS = ((0.0, 0.0), (0.0, 1.0), (1.0, 0.0))

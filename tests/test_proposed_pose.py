@@ -12,11 +12,11 @@ from common.body.body import JOINT_NAMES, POSE_INDEX, Vector
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
 from common.bus.messages import Landmarks, Report, ViewerNumber
+from common.bus.pair import Seen
 from common.method import DEFAULT
 from common.rig.camera import Camera, project
 from integrator.fit import proposed_pose
 from integrator.fit.proposed_pose import Before, Instant
-from integrator.pairing import Seen
 from integrator.pose.inverse_kinematics import trunk_of
 from integrator.proposal import lifting_network, pose_network, pose_proposal
 from integrator.proposal.lifting_network import Lifted

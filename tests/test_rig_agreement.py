@@ -7,13 +7,8 @@ import numpy as np
 import pytest
 from staging import RIG, report, standing
 
-from common.body.body import JOINT_NAMES, OTHER_SIDE, POSE_INDEX
-from common.body.kinematics import joints
-from common.body.proportions import body_vector, thesis_bdp
-from common.bus.messages import Agreement, Landmarks, Report, ViewerNumber
-from common.rig.camera import Rig, as_matrix, as_row, centre, project
-from integrator.rig_gate import rig_agreement
-from integrator.rig_gate.rig_agreement import (
+from calibration.gate import rig_agreement
+from calibration.gate.rig_agreement import (
     FARTHEST_M,
     FEWEST,
     LEAST,
@@ -21,7 +16,12 @@ from integrator.rig_gate.rig_agreement import (
     State,
     motion_m,
 )
-from integrator.rig_gate.rig_fault import exchanged_rig
+from calibration.gate.rig_fault import exchanged_rig
+from common.body.body import JOINT_NAMES, OTHER_SIDE, POSE_INDEX
+from common.body.kinematics import joints
+from common.body.proportions import body_vector, thesis_bdp
+from common.bus.messages import Agreement, Landmarks, Report, ViewerNumber
+from common.rig.camera import Rig, as_matrix, as_row, centre, project
 
 BODY = body_vector(thesis_bdp(1.75))
 

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from calibration.person.rig_certainty import covariance_of, turn_error_deg, unsure_of
+from calibration.person.rig_fit import Fit
+from calibration.tracks.rig_guess import LATE, PLACE
 from common.body.body import Vector
-from integrator.selfcalibration.rig_certainty import covariance_of, turn_error_deg, unsure_of
-from integrator.selfcalibration.rig_fit import Fit
-from integrator.selfcalibration.rig_guess import LATE, PLACE
 
 GUESS = np.zeros(LATE + 1)
 GUESS[: PLACE["yaw_2"] + 1] = (5.0, 5.2, -0.2, 0.03, 1.4, 1.2)

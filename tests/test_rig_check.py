@@ -6,10 +6,10 @@ import msgspec
 import pytest
 from staging import RIG, report
 
+from calibration.gate.rig_trust import Trust
+from calibration.tracks.lateness import UNSEEN, Clock
 from common.bus.messages import Body, Box, Landmarks, Report, ViewerNumber
 from common.video.clip_facts import Clip, Meta, View
-from integrator.rig_gate.rig_trust import Trust
-from integrator.selfcalibration.lateness import UNSEEN, Clock
 from tritrack.offline import rig_check
 from tritrack.offline.rig_check import (
     DOUBTED,
@@ -179,8 +179,8 @@ class Asked:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, found: Trust | None) -> None:
         self.by: list[tuple[Any, ...]] = []
         self.found = found
-        monkeypatch.setattr("integrator.rig_gate.rig_trust.trust_of", self.trust_of)
-        monkeypatch.setattr("integrator.rig_gate.rig_fault.advice_on", self.advice_on)
+        monkeypatch.setattr("calibration.gate.rig_trust.trust_of", self.trust_of)
+        monkeypatch.setattr("calibration.gate.rig_fault.advice_on", self.advice_on)
 
     def trust_of(self, *given: Any) -> Trust | None:
         self.by.append(given)

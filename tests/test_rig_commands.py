@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from typed import Called, instead, typed
 
+from calibration.board.board_quality import CameraQuality
+from calibration.paper.calibration import write_rig
+from calibration.tracks.lateness import Clock
 from common.atomic_file import FileRefused
 from common.rig.camera import paper_rig
 from common.rig.rig_file import load_rig
-from integrator.board.board_quality import CameraQuality
-from integrator.rig.calibration import write_rig
-from integrator.selfcalibration.lateness import Clock
 from tritrack.commands.rig_commands import calibrate_app
 from tritrack.marking.marking import Asked, Result
 from tritrack.offline.rig_of_boards import Shown
@@ -40,7 +40,7 @@ def quality(**more: Any) -> Any:
 def by_clips(monkeypatch: pytest.MonkeyPatch) -> Called:
     instead(monkeypatch, "common.video.clip_sources.refuse_no_footage")
     instead(monkeypatch, "common.config.config_file.load")
-    instead(monkeypatch, "integrator.rig.calibration.write_rig")
+    instead(monkeypatch, "calibration.paper.calibration.write_rig")
     place = "tritrack.offline.rig_of_clips.calibrated_by_clips"
     return instead(monkeypatch, place, FoundByClips(RIG, quality(), CLOCKS))
 
@@ -77,7 +77,7 @@ def test_a_calibration_that_is_there_is_replaced_only_by_force(
 def test_a_board_is_printed_or_looked_for_as_it_was_measured(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    printed = instead(monkeypatch, "integrator.board.board_print.print_board")
+    printed = instead(monkeypatch, "calibration.board.board_print.print_board")
     readable = instead(monkeypatch, "common.video.clips.refuse_unreadable")
     found = SimpleNamespace(cameras=CAMERAS, reprojection_px=0.123, shared_rests=1, floor_s=7.04)
     place = "tritrack.offline.rig_of_boards.calibrate_by_videos"
@@ -109,7 +109,7 @@ def test_a_board_is_printed_or_looked_for_as_it_was_measured(
 def test_nothing_is_printed_or_calibrated_over_what_is_there(
     monkeypatch: pytest.MonkeyPatch, here: Path
 ) -> None:
-    printed = instead(monkeypatch, "integrator.board.board_print.print_board")
+    printed = instead(monkeypatch, "calibration.board.board_print.print_board")
     done = instead(monkeypatch, "tritrack.offline.rig_of_boards.calibrate_by_videos")
     instead(monkeypatch, "common.video.clips.refuse_unreadable")
     for name in ("b.pdf", "calibration.json"):
@@ -132,7 +132,7 @@ ROWS = [Row("cam7")]
 def test_markers_are_read_from_a_file_or_clicked_on_a_page(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    read = instead(monkeypatch, "integrator.rig.calibration.run_markers", ROWS)
+    read = instead(monkeypatch, "calibration.paper.calibration.run_markers", ROWS)
     paged = instead(monkeypatch, "tritrack.marking.marking.mark_markers", Result(ROWS, None, None))  # type: ignore[arg-type]
     assert "cam7" in typed(calibrate_app, "markers", "m.toml", "--json").output
     assert (read.last, paged.given) == ((Path("m.toml"),), [])
@@ -161,7 +161,7 @@ def test_of_poles_on_a_page_is_said_what_became_of_the_calibration(
 
 
 def test_poles_of_a_file_are_solved_at_once(monkeypatch: pytest.MonkeyPatch, here: Path) -> None:
-    place = "integrator.rig.calibration.run_poles"
+    place = "calibration.paper.calibration.run_poles"
     solved = instead(monkeypatch, place, SimpleNamespace(cameras=ROWS))
     said = typed(calibrate_app, "poles", "p.toml", "--out", "r.json", "--force")
     assert solved.last == (Path("p.toml"), Path("r.json"), True)
@@ -191,7 +191,7 @@ def test_a_rig_goes_to_another_program_and_comes_back(here: Path) -> None:
 def test_what_is_found_is_written_and_what_shows_nothing_is_refused_before(
     by_clips: Called, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    written = instead(monkeypatch, "integrator.rig.calibration.write_rig")
+    written = instead(monkeypatch, "calibration.paper.calibration.write_rig")
     looked = instead(monkeypatch, "common.video.clip_sources.refuse_no_footage")
     typed(calibrate_app, "person", "a", "b", "--out", "r.json")
     rig, quality_told, _ = by_clips.answer
@@ -211,7 +211,7 @@ def test_what_a_command_lacks_is_said_before_it_begins(
     monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...], needs: tuple[str, ...]
 ) -> None:
     lacks = instead(monkeypatch, "tritrack.commands.rig_commands.refuse_without")
-    instead(monkeypatch, "integrator.board.board_print.print_board")
+    instead(monkeypatch, "calibration.board.board_print.print_board")
     for name in ("mark_markers", "mark_poles"):
         result = Result((), None, None)  # type: ignore[arg-type]
         instead(monkeypatch, f"tritrack.marking.marking.{name}", result)

@@ -3,11 +3,8 @@
 import numpy as np
 import pytest
 
-from common.body.body import JOINT_NAMES
-from integrator.selfcalibration import person_prior as prior
-from integrator.selfcalibration import rig_evidence
-from integrator.selfcalibration.joint_tracks import JointTrack, Sighting
-from integrator.selfcalibration.rig_evidence import (
+from calibration.person import rig_evidence
+from calibration.person.rig_evidence import (
     ClipEvidence,
     Evidence,
     exchanged,
@@ -15,7 +12,10 @@ from integrator.selfcalibration.rig_evidence import (
     own_moments,
     sigma_px,
 )
-from integrator.selfcalibration.rig_starts import known_of
+from calibration.person.rig_starts import known_of
+from calibration.tracks import person_prior as prior
+from calibration.tracks.joint_tracks import JointTrack, Sighting
+from common.body.body import JOINT_NAMES
 
 AT = {name: n for n, name in enumerate(JOINT_NAMES)}
 KNOWN = known_of(320, 1.75, 1)

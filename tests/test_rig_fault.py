@@ -8,11 +8,11 @@ import pytest
 from test_person_calibration import PAPER
 from test_rig_trust import PERIOD_S, SHOWN
 
-from integrator.rig_gate import rig_fault
-from integrator.rig_gate.rig_fault import AGAIN, FREED, advice_on
-from integrator.rig_gate.rig_trust import Trust
-from integrator.selfcalibration.lateness import Clock
-from integrator.selfcalibration.rig_guess import LATE, PLACE
+from calibration.gate import rig_fault
+from calibration.gate.rig_fault import AGAIN, FREED, advice_on
+from calibration.gate.rig_trust import Trust
+from calibration.tracks.lateness import Clock
+from calibration.tracks.rig_guess import LATE, PLACE
 
 
 def doubted(*odd: str, late_frames: float = 0.0) -> Trust:

@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 from staging import report
 
+from calibration.person.rig_quality import PersonCalibration, Quality
+from calibration.tracks.lateness import Clock
 from common.bus.messages import Box, Landmarks, Report, ViewerNumber
 from common.config.part_settings import BodySettings, SilhouetteSettings
 from common.config.settings import Settings
@@ -19,8 +21,6 @@ from common.rig.camera import paper_rig
 from common.rig.picture_shift import Shift
 from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip, Meta, View
-from integrator.selfcalibration.lateness import Clock
-from integrator.selfcalibration.rig_quality import PersonCalibration, Quality
 from tritrack.offline import rig_from_person
 from tritrack.offline.lockstep import Decoders, track_clip
 from tritrack.offline.rig_from_person import (
@@ -81,7 +81,7 @@ class Looks:
         self.asked: list[tuple[Any, ...]] = []
         monkeypatch.setattr(rig_from_person, "sighting_of", lambda *_: self.sighting)
         monkeypatch.setattr(rig_from_person, "clock_of", self.clock_of)
-        place = "integrator.selfcalibration.person_calibration.calibrated_by_person"
+        place = "calibration.person.person_calibration.calibrated_by_person"
         monkeypatch.setattr(place, self.calibrated)
 
     def clock_of(self, sighting: object) -> Clock:

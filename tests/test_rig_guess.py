@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from calibration.tracks.person_prior import SHARES
+from calibration.tracks.rig_guess import FOCALS, RIG, pinholes, rig_of, rotation
 from common.rig.camera import PAPER_ROTATIONS, paper_rig
-from integrator.selfcalibration.person_prior import SHARES
-from integrator.selfcalibration.rig_guess import FOCALS, RIG, pinholes, rig_of, rotation
 
 
 def test_the_papers_rig_is_a_vector_whose_second_camera_is_turned_to_the_right() -> None:

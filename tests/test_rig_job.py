@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from staging import RIG
 
+from calibration.gate import moved_place, rig_trust
+from calibration.person import person_calibration
+from calibration.tracks.joint_tracks import JOINTS, Row
 from common.rig.camera import paper_rig
 from common.rig.rig_file import CalibrationError
 from integrator.live_rig.rig_job import Job, Stand, packed, solved, track_of_bytes
-from integrator.rig_gate import moved_place, rig_trust
-from integrator.selfcalibration import person_calibration
-from integrator.selfcalibration.joint_tracks import JOINTS, Row
 
 FOUND = paper_rig((160, 120), (210.0, 190.0), (3.0, 5.0))
 

@@ -10,12 +10,12 @@ import pytest
 from filmed_board import FilmedRig, pictures_of, random_rig
 from rich.console import Console
 
+from calibration.board.board import BOARDS, Board
+from calibration.board.board_quality import CameraQuality, Quality
+from calibration.board.board_rig import BoardCalibration
+from calibration.board.still_board import Film, Moments
 from common.rig.camera import centre, paper_rig
 from common.rig.rig_file import CalibrationError, load_rig
-from integrator.board.board import BOARDS, Board
-from integrator.board.board_quality import CameraQuality, Quality
-from integrator.board.board_rig import BoardCalibration
-from integrator.board.still_board import Film, Moments
 from tritrack.offline import rig_of_boards
 from tritrack.offline.board_films import Looked
 from tritrack.offline.rig_of_boards import Shown, calibrate_by_videos

@@ -8,12 +8,12 @@ from typing import Any
 import msgspec
 import pytest
 
+from calibration.person.rig_quality import PersonCalibration, Quality
+from calibration.tracks.lateness import Clock
 from common.config.settings import Settings
 from common.rig.camera import paper_rig
 from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip, Meta, View
-from integrator.selfcalibration.lateness import Clock
-from integrator.selfcalibration.rig_quality import PersonCalibration, Quality
 from tritrack.offline import rig_of_clips
 from tritrack.offline.rig_from_person import ON_TIME
 from tritrack.offline.rig_of_clips import Given, calibrated_by_clips

@@ -5,12 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from common.body.body import OTHER_SIDE
-from integrator.selfcalibration import person_prior as prior
-from integrator.selfcalibration.joint_tracks import JointTrack
-from integrator.selfcalibration.rig_evidence import ClipEvidence, Evidence, Known
-from integrator.selfcalibration.rig_guess import BODY, LATE, PLACE, Pinhole, pinholes
-from integrator.selfcalibration.rig_residuals import (
+from calibration.person.rig_evidence import ClipEvidence, Evidence, Known
+from calibration.person.rig_residuals import (
     ALL_WAYS,
     BEHIND,
     UPRIGHT_DEG,
@@ -27,8 +23,12 @@ from integrator.selfcalibration.rig_residuals import (
     softened,
     standing_misfits,
 )
-from integrator.selfcalibration.rig_starts import known_of
-from integrator.selfcalibration.sight_lines import Meeting, Numbers
+from calibration.person.rig_starts import known_of
+from calibration.tracks import person_prior as prior
+from calibration.tracks.joint_tracks import JointTrack
+from calibration.tracks.rig_guess import BODY, LATE, PLACE, Pinhole, pinholes
+from calibration.tracks.sight_lines import Meeting, Numbers
+from common.body.body import OTHER_SIDE
 
 
 def standing(headings_deg: Numbers, lean_deg: float) -> Explained:

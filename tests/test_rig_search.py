@@ -6,11 +6,11 @@ import pytest
 from staging import report, silhouettes, standing
 
 from common.bus.messages import Landmarks, Report, ViewerNumber
+from common.bus.pair import Pair
 from common.rig.camera import paper_rig
 from integrator.live_rig import rig_search
 from integrator.live_rig.rig_job import Job, Solved, Stand, Trusted, track_of_bytes
 from integrator.live_rig.rig_search import ASKS_S, State, answered, refusal_of
-from integrator.pairing import Pair
 
 HZ = 15
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.0, 4.0))

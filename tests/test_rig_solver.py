@@ -8,11 +8,11 @@ import pytest
 from threadpoolctl import threadpool_limits
 from wild_rigs import Trial, filmed
 
+from calibration.tracks.joint_tracks import JointTrack
 from common.rig.camera import paper_rig
 from integrator.live_rig import rig_solver
 from integrator.live_rig.rig_job import Job, Solved, packed, solved, track_of_bytes
 from integrator.live_rig.rig_solver import RigSolver
-from integrator.selfcalibration.joint_tracks import JointTrack
 from synth.motion.motions import performance
 from synth.person.people import person
 

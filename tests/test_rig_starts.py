@@ -5,17 +5,17 @@ import math
 import numpy as np
 import pytest
 
-from integrator.selfcalibration import person_prior as prior
-from integrator.selfcalibration.joint_tracks import JointTrack
-from integrator.selfcalibration.rig_evidence import ClipEvidence, Evidence
-from integrator.selfcalibration.rig_guess import BODY, LATE, PLACE, pinholes
-from integrator.selfcalibration.rig_starts import (
+from calibration.person.rig_evidence import ClipEvidence, Evidence
+from calibration.person.rig_starts import (
     FOCAL_SHARE,
     MIDDLE_SHARE,
     YAWS_DEG,
     known_of,
     level_starts,
 )
+from calibration.tracks import person_prior as prior
+from calibration.tracks.joint_tracks import JointTrack
+from calibration.tracks.rig_guess import BODY, LATE, PLACE, pinholes
 
 SIZE = (320, 240)
 STATURE_M = 1.8

@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 from test_person_calibration import PAPER, filmed_by_the_papers_rig
 
-from common.body.body import JOINT_NAMES
-from common.rig.camera import Rig, as_matrix, as_row, centre
-from integrator.rig_gate.known_rig import guess_of
-from integrator.rig_gate.rig_fault import advice_on, exchanged_rig
-from integrator.rig_gate.rig_trust import (
+from calibration.gate.known_rig import guess_of
+from calibration.gate.rig_fault import advice_on, exchanged_rig
+from calibration.gate.rig_trust import (
     Trust,
     _odd,
     _stature_m,
@@ -23,15 +21,17 @@ from integrator.rig_gate.rig_trust import (
     trust_of,
     with_lateness,
 )
-from integrator.selfcalibration import person_prior as prior
-from integrator.selfcalibration.joint_tracks import JointTrack
-from integrator.selfcalibration.lateness import Clock
-from integrator.selfcalibration.rig_evidence import ClipEvidence, Evidence
-from integrator.selfcalibration.rig_fit import Fit
-from integrator.selfcalibration.rig_guess import LATE, RIG, pinholes, rotation
-from integrator.selfcalibration.rig_residuals import Explained
-from integrator.selfcalibration.rig_starts import known_of
-from integrator.selfcalibration.sight_lines import Meeting
+from calibration.person.rig_evidence import ClipEvidence, Evidence
+from calibration.person.rig_fit import Fit
+from calibration.person.rig_residuals import Explained
+from calibration.person.rig_starts import known_of
+from calibration.tracks import person_prior as prior
+from calibration.tracks.joint_tracks import JointTrack
+from calibration.tracks.lateness import Clock
+from calibration.tracks.rig_guess import LATE, RIG, pinholes, rotation
+from calibration.tracks.sight_lines import Meeting
+from common.body.body import JOINT_NAMES
+from common.rig.camera import Rig, as_matrix, as_row, centre
 
 PERIOD_S = 1 / 15
 POSTURE = "raise_both_forward_up"
@@ -257,7 +257,7 @@ def test_the_times_as_they_are_are_tried_too_where_the_clock_is_not_sure(
         assert free.tolist() == [n == LATE for n in range(len(start))]
         return Fit(start, 5.0 - start[LATE], (), np.zeros((1, 1)))
 
-    monkeypatch.setattr("integrator.rig_gate.rig_trust.fitted", fit)
+    monkeypatch.setattr("calibration.gate.rig_trust.fitted", fit)
     case = case_of(PAPER, SHOWN, Clock(0.0))
     assert case is not None
     found = with_lateness(case._replace(clock=clock))

@@ -5,9 +5,9 @@ import pytest
 from staging import RIG, report, silhouettes, standing
 
 from common.bus.messages import Landmarks, Report, ViewerNumber
+from common.bus.pair import Pair
 from integrator.live_rig.rig_job import track_of_bytes
 from integrator.live_rig.seen_lately import State, stand_before, step
-from integrator.pairing import Pair
 
 MASKS = silhouettes(standing())
 

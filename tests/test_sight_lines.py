@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from integrator.selfcalibration.rig_guess import Pinhole, rotation
-from integrator.selfcalibration.sight_lines import Meeting, directions, meeting
+from calibration.tracks.rig_guess import Pinhole, rotation
+from calibration.tracks.sight_lines import Meeting, directions, meeting
 
 CAMERAS = (
     Pinhole(200.0, rotation(0.0, 0.1, 0.02), np.array([0.0, 1.0, 4.0])),

@@ -5,10 +5,10 @@ import math
 import pytest
 from staging import NOBODY, report
 
+from calibration.gate.silhouette_motion import NOTHING, State, moves, step
 from common.bus.messages import Report, ViewerNumber
+from common.bus.pair import Pair
 from common.raster.similarity import Mask
-from integrator.pairing import Pair
-from integrator.rig_gate.silhouette_motion import NOTHING, State, moves, step
 
 RATE_HZ = 15.0
 

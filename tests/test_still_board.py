@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from integrator.board.still_board import (
+from calibration.board.still_board import (
     Film,
     Moments,
     Rest,

@@ -20,10 +20,10 @@ import typer
 from spoiling import REFUSED, WORKED_WITH, copied, cut_off, damage, edit_json, refilmed
 
 import tritrack.__main__ as door
+from calibration.foreign.toml_rig import toml_text
 from common.config.settings import Settings
 from common.rig.camera import paper_rig
 from common.rig.rig_file import load_rig
-from integrator.foreign_rigs.toml_rig import toml_text
 from tritrack.live import session
 from tritrack.store.other_run import run_of
 from tritrack.store.past_run import open_run

@@ -6,10 +6,10 @@ import pytest
 from rolling import BODY, ROLLED, on_one_leg, outlines, told
 
 from common.bus.messages import Report
+from common.bus.pair import Pair
 from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask, similarity
 from common.rig.camera import project
-from integrator.pairing import Pair
 from integrator.proposal import pose_proposal
 from integrator.rig.undistortion import (
     undistorted,

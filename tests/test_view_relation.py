@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from wild_rigs import random_pair
 
+from calibration.tracks.view_relation import relation_of, terms_of
 from common.rig.camera import project
-from integrator.rig.view_relation import relation_of, terms_of
 
 
 def seen(seed: int, moved_m: float = 0.0) -> tuple[np.ndarray, np.ndarray]:

@@ -8,12 +8,12 @@ import numpy as np
 from posing import posed
 from rolling import ROLLED, on_one_leg, outlines, told
 
+from common.bus.pair import Pair
 from common.raster.kernel import view_of
 from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
 from common.rig.camera import centre, project
 from integrator.fit import visual_hull
-from integrator.pairing import Pair
 
 REHEARSED = """
 from common.config.settings import Settings

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from integrator.selfcalibration.rig_guess import Pinhole, rotation
-from integrator.selfcalibration.world_axes import origin_of
+from calibration.person.world_axes import origin_of
+from calibration.tracks.rig_guess import Pinhole, rotation
 
 
 def pair(second_at: tuple[float, float], yaw_deg: float) -> tuple[Pinhole, Pinhole]:

@@ -8,9 +8,9 @@ from rich.console import Console
 from animator.page.live import LivePage
 from animator.scene import Snapshot
 from common.bus.messages import Report
+from common.bus.pair import Pair
 from common.bus.process import ProcessContext, process
 from common.rig.camera import Rig
-from integrator.pairing import Pair
 from tritrack.replaying import pairs
 from tritrack.store.past_run import open_run
 from tritrack.store.recording import Recording, read_recording

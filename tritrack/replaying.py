@@ -14,13 +14,13 @@ from common.bus.bus import Bus, open_hub
 from common.bus.control_messages import Cameras
 from common.bus.message_codec import encode
 from common.bus.messages import Body, Message, Moment, Report
+from common.bus.pair import Pair
 from common.bus.rate import wait_until
 from common.config.part_settings import BusSettings
 from common.method import METHODS
 from integrator import merge, merge_state, opening_posture
 from integrator.live_rig.rig_change import set_back, with_rig
 from integrator.merge_state import Start
-from integrator.pairing import Pair
 from tritrack.store.other_run import refuse_other, run_of
 from tritrack.store.recording import Recording, read_recording
 from tritrack.store.runs import write_run

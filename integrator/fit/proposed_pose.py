@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 from common.body.body import Bdp, Vector, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
+from common.bus.pair import Pair, Seen
 from common.method import Method
 from common.rig.camera import Rig
 from integrator.fit import visual_hull
 from integrator.fit.silhouette_pair import poorest
 from integrator.landmarks import landmark_fusion
 from integrator.landmarks.landmark_rays import rays_of
-from integrator.pairing import Pair, Seen
 from integrator.prior_body import prior
 from integrator.proposal import pose_proposal
 from integrator.proposal.pose_proposal import Memory, PoseProposal

@@ -16,12 +16,12 @@ from common.body.proportions import (
     stature,
     thesis_bdp,
 )
+from common.bus.pair import Seen
 from common.compiled import compiled
 from common.raster.kernel import match
 from common.rig.camera import Rig
 from integrator.fit.silhouette_pair import silhouettes_of
 from integrator.opening_posture import Opening, Sample
-from integrator.pairing import Seen
 
 GROUPS: Final[tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]] = (
     (("torso",), ("long_radius",)),

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 from common.body.body import Vector
 from common.body.kinematics import ALL_LIMBS
 from common.bus.messages import Report
+from common.bus.pair import Seen
 from common.compiled import compiled
 from common.raster.bits import Bits, count
 from common.raster.kernel import draw_limbs, match, match_over, view_of
 from common.raster.silhouette_report import words_of
 from common.rig.camera import Rig
-from integrator.pairing import Seen
 
 
 class Silhouettes(NamedTuple):

@@ -10,12 +10,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from common.bus.pair import Pair
 from common.compiled import compiled
 from common.raster.kernel import NEAREST_M, seen_at, view_of
 from common.raster.silhouette_report import unpack, with_silhouette
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig, project, px_per_m
-from integrator.pairing import Pair
 from integrator.rig.body_position import triangulate
 from integrator.rig.undistortion import undistorted
 

@@ -8,11 +8,11 @@ from common.bus.bus import Bus
 from common.bus.control_messages import ClockQuestion, Command, Ended
 from common.bus.inbox import Alive
 from common.bus.messages import Report, ViewerNumber
+from common.bus.pair import Pair
 from integrator import pairing, presence
 from integrator.hearing import link_lag
 from integrator.hearing.run_start import Starter
 from integrator.live_rig.rig_change import set_back
-from integrator.pairing import Pair
 
 HEAR_S: Final = 0.02
 LOOK_S: Final = 0.5

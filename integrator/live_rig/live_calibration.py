@@ -2,6 +2,8 @@
 
 from typing import Final, NamedTuple, Protocol
 
+from calibration.gate.moved_cameras import turned_rig
+from common.bus.pair import Pair
 from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip
@@ -10,8 +12,6 @@ from integrator.live_rig import rig_change, rig_search, seen_lately
 from integrator.live_rig.rig_job import Job, Solved
 from integrator.live_rig.rig_solver import RigSolver
 from integrator.merge_state import State
-from integrator.pairing import Pair
-from integrator.rig_gate.moved_cameras import turned_rig
 
 BELIEVED_BY_NONE: Final = "the rig that is not believable stayed"
 

@@ -2,6 +2,7 @@
 
 import msgspec
 
+from calibration.gate import moved_cameras, rig_agreement
 from common.body.body import ANGLE_NAMES
 from common.bus.messages import Report, ViewerNumber
 from common.rig.camera import Rig
@@ -10,7 +11,6 @@ from integrator import opening_posture
 from integrator.live_rig.rig_job import Solved
 from integrator.merge_state import State
 from integrator.pose import smoothing
-from integrator.rig_gate import moved_cameras, rig_agreement
 
 
 def with_rig(state: State, rig: Rig) -> State:

@@ -6,10 +6,10 @@ from typing import Final
 import msgspec
 import numpy as np
 
+from calibration.tracks.joint_tracks import JOINTS, JointTrack, Row, Sighting
 from common.bus.messages import ViewerNumber
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError
-from integrator.selfcalibration.joint_tracks import JOINTS, JointTrack, Row, Sighting
 
 NUMBERS: Final = 1 + 2 * JOINTS + JOINTS + 2
 """Of a row: time, places, confidence, facing and its confidence."""
@@ -45,7 +45,7 @@ class Job(msgspec.Struct, frozen=True):
 
 
 class Trusted(msgspec.Struct, frozen=True):
-    """How far a rig is believable, by what was seen: see `integrator/rig_gate/rig_trust.py`."""
+    """How far a rig is believable, by what was seen: see `calibration/gate/rig_trust.py`."""
 
     apart_mm: float
     odd: tuple[str, ...]
@@ -85,7 +85,7 @@ def track_of_bytes(told: bytes) -> JointTrack:
 
 def solved(job: Job) -> Solved:
     """The rig that a job asks for: seconds of work."""
-    from integrator.selfcalibration.person_calibration import calibrated_by_person
+    from calibration.person.person_calibration import calibrated_by_person
 
     first, second = (track_of_bytes(told) for told in job.tracks)
     sighting = Sighting(first, second, job.size_px)
@@ -107,7 +107,7 @@ def solved(job: Job) -> Solved:
 
 def _placed(job: Job, rig: Rig, sighting: Sighting) -> Solved:
     """The rig with the cameras that were moved where the person has them."""
-    from integrator.rig_gate.moved_place import Stood, placed
+    from calibration.gate.moved_place import Stood, placed
 
     stood = None
     if job.stood is not None:
@@ -127,7 +127,7 @@ def _placed(job: Job, rig: Rig, sighting: Sighting) -> Solved:
 
 
 def _trusted(rig: Rig, sighting: Sighting, period_s: float) -> Trusted | None:
-    from integrator.rig_gate.rig_trust import trust_of
+    from calibration.gate.rig_trust import trust_of
 
     trust = trust_of(rig, sighting, period_s)
     return None if trust is None else Trusted(trust.apart_mm, trust.odd)

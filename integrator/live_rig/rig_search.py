@@ -6,18 +6,18 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.messages import Report, ViewerNumber
-from common.rig.camera import Rig
-from integrator.live_rig.rig_job import Job, Solved, Stand, Trusted, packed
-from integrator.pairing import Pair
-from integrator.selfcalibration.joint_tracks import (
+from calibration.tracks.joint_tracks import (
     JOINTS,
     LEAST_SURE,
     Row,
     is_upright,
     row_of,
 )
-from integrator.selfcalibration.lateness import LEAST_LATE
+from calibration.tracks.lateness import LEAST_LATE
+from common.bus.messages import Report, ViewerNumber
+from common.bus.pair import Pair
+from common.rig.camera import Rig
+from integrator.live_rig.rig_job import Job, Solved, Stand, Trusted, packed
 
 ASKS_S: Final = (4.0, 8.0, 16.0, 32.0)
 """After so many seconds of motion that both views see a rig is asked for: as often, no oftener."""

@@ -8,9 +8,9 @@ from typing import Final
 
 import msgspec
 
+from calibration.tracks.lateness import LEAST_LATE
 from common.video.child_process import Broken, Child
 from integrator.live_rig.rig_job import LENGTH, Job, Solved, solved
-from integrator.selfcalibration.lateness import LEAST_LATE
 
 MODULE: Final = f"{__package__}.rig_child"
 STALL_S: Final = 120.0

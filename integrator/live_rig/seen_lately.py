@@ -2,10 +2,10 @@
 
 from typing import Final, NamedTuple
 
+from calibration.tracks.joint_tracks import LEAST_SURE, row_of
+from common.bus.pair import Pair
 from common.rig.camera import Rig
 from integrator.live_rig.rig_job import Stand, packed
-from integrator.pairing import Pair
-from integrator.selfcalibration.joint_tracks import LEAST_SURE, row_of
 
 KEPT_S: Final = 8.0
 """So long is kept what was seen."""

@@ -3,10 +3,10 @@
 from common.body.body import POSE_INDEX, YAW_DEG, Vector, rest_pose
 from common.body.proportions import LOWER_LEG_HEIGHT, UPPER_LEG_HEIGHT, body_vector
 from common.bus.messages import Facing
+from common.bus.pair import Seen
 from common.rig.camera import Rig
 from integrator.fit.silhouette_pair import silhouettes_of
 from integrator.merge_state import Posed, State
-from integrator.pairing import Seen
 from integrator.paper.arbiter import Sight, arbitrate
 from integrator.paper.fusion import fused
 from integrator.paper.silhouette_vote import settled, votes_of

@@ -7,11 +7,11 @@ import numpy as np
 
 from common.body.body import POSE_INDEX, Vector
 from common.bus.messages import Facing, Pixel, Report
+from common.bus.pair import Seen
 from common.compiled import compiled
 from common.raster.kernel import NEAREST_M
 from common.raster.silhouette_report import unpack
 from common.rig.camera import Camera, PaperRig, Rig, as_paper_rig, centre, project, px_per_m, ray
-from integrator.pairing import Seen
 
 Roots = tuple[Pixel | None, Pixel | None]
 

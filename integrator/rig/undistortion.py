@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bus.messages import Landmarks, Pixel, Report
+from common.bus.pair import Pair
 from common.raster.silhouette_report import box_of, is_cut, pack, unpack
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig
-from integrator.pairing import Pair
 
 
 def undistorted_rig(rig: Rig) -> Rig:

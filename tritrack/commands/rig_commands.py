@@ -52,9 +52,9 @@ def person(
 
     Example: tritrack calibrate person clips/*/ --stature 1.82 --out clips/calibration.json
     """
+    from calibration.paper.calibration import write_rig
     from common.config import config_file
     from common.video.clip_sources import refuse_no_footage
-    from integrator.rig.calibration import write_rig
     from tritrack.offline.rig_of_clips import Given, calibrated_by_clips
 
     for path in clips:
@@ -116,8 +116,8 @@ def board(
 
     Example: tritrack calibrate board cam1.mp4 cam2.mp4 --out clips/calibration.json
     """
+    from calibration.board.board_print import print_board
     from common.video.clips import refuse_unreadable
-    from integrator.board.board_print import print_board
     from tritrack.offline.rig_of_boards import Shown
 
     if print_ is None and not videos:
@@ -165,7 +165,7 @@ def markers(
 
     Example: tritrack calibrate markers markers.toml --page clips/empty
     """
-    from integrator.rig.calibration import run_markers
+    from calibration.paper.calibration import run_markers
 
     if page is None:
         tell_rows(run_markers(measured), json_wanted)
@@ -194,7 +194,7 @@ def poles(
 
     Example: tritrack calibrate poles poles.toml --page clips/poles --out clips/calibration.json
     """
-    from integrator.rig.calibration import run_poles
+    from calibration.paper.calibration import run_poles
 
     if page is None:
         tell_rows(run_poles(measured, out, force).cameras, json_wanted)
@@ -250,8 +250,8 @@ def import_(
     Example: tritrack calibrate import Calib.toml --camera cam01 --camera cam04
     --out clips/calibration.json
     """
-    from integrator.foreign_rigs.imported_rig import imported_rig
-    from integrator.rig.calibration import write_rig
+    from calibration.foreign.imported_rig import imported_rig
+    from calibration.paper.calibration import write_rig
 
     rig = imported_rig(theirs, tuple(camera or ()), up)
     refuse_to_replace(out, force)
@@ -276,9 +276,9 @@ def export_(
 
     Example: tritrack calibrate export calibration.json --to pose2sim --out Calib.toml
     """
+    from calibration.foreign.toml_rig import toml_text
+    from calibration.paper.calibration import write_text
     from common.rig.rig_file import load_rig
-    from integrator.foreign_rigs.toml_rig import toml_text
-    from integrator.rig.calibration import write_text
 
     text = toml_text(load_rig(ours), to)
     refuse_to_replace(out, force)

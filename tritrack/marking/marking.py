@@ -10,13 +10,13 @@ from rich.console import Console
 from animator.marking.marking_page import MarkingPage
 from animator.marking.sheet import Hello, Marked, Save, Sheet, SheetError, Shown, refuse_sheet
 from animator.page.door import entrance_of, invitation_of
+from calibration.paper.calibration import read_points, write_text
+from calibration.paper.markers import Markers
+from calibration.paper.poles import Poles
 from common.bus.process import ProcessContext, process
 from common.config import config_file
 from common.config.part_settings import PageSettings
 from common.rig.rig_file import CalibrationError
-from integrator.rig.calibration import read_points, write_text
-from integrator.rig.markers import Markers
-from integrator.rig.poles import Poles
 from tritrack.marking.marker_sheet import marker_method
 from tritrack.marking.marking_method import MarkingMethod
 from tritrack.marking.pole_sheet import pole_method

@@ -10,12 +10,9 @@ import msgspec
 import numpy as np
 
 from animator.marking.sheet import Mark, Number, Plan, Seen, Sheet, Size, Solved
-from common.body.body import Vector
-from common.bus.messages import Pixel
-from common.rig.rig_file import CalibrationError
-from integrator.rig.calibration import write_rig
-from integrator.rig.drawn_poles import drawn_poles
-from integrator.rig.poles import (
+from calibration.paper.calibration import write_rig
+from calibration.paper.drawn_poles import drawn_poles
+from calibration.paper.poles import (
     CameraQuality,
     Pole,
     Poles,
@@ -23,6 +20,9 @@ from integrator.rig.poles import (
     poles,
     refuse_other_units,
 )
+from common.body.body import Vector
+from common.bus.messages import Pixel
+from common.rig.rig_file import CalibrationError
 from tritrack.marking.marking_method import MarkingMethod, toml_number, toml_pixels
 from tritrack.marking.suspect_point import suspect_point
 

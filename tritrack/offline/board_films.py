@@ -6,12 +6,12 @@ from typing import Final, NamedTuple
 import numpy as np
 from rich.progress import Progress
 
+from calibration.board.board import BOARDS, Board
+from calibration.board.board_corners import corners_in
+from calibration.board.still_board import Film
 from common.rig.rig_file import CalibrationError
 from common.video.decoding import Decoded, Decoder, Image, Size, VideoInfo, Wanted
 from common.video.frame_times import timed
-from integrator.board.board import BOARDS, Board
-from integrator.board.board_corners import corners_in
-from integrator.board.still_board import Film
 from tritrack.terminal import Tell, by_share
 
 LOOKS_HZ: Final = 5.0

@@ -13,8 +13,10 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.tracks.joint_tracks import is_upright
 from common.body.proportions import thesis_bdp
 from common.bus.messages import Body, Guide, Report, ScaleSource, ViewerNumber
+from common.bus.pair import Pair
 from common.config.settings import Settings
 from common.method import Method
 from common.notes.notes import Notes, held
@@ -28,9 +30,7 @@ from common.video.frame_cache import Reader
 from integrator import merge, merge_state
 from integrator.merge_state import Start, State
 from integrator.opening_posture import Opening
-from integrator.pairing import Pair
 from integrator.rig.tilted_camera import LEVEL, TILTS_DEG, camera_of_sights
-from integrator.selfcalibration.joint_tracks import is_upright
 from integrator.single.sight import Annotations
 from tritrack.offline.film_smoothing import calmed
 from tritrack.offline.frame_pairs import share_of

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple, get_args
 
 import msgspec
 
+from calibration.tracks.lateness import Clock
 from common.body.body import Bdp
 from common.bus.messages import Body, ScaleSource, ViewerNumber
 from common.config.settings import Settings
@@ -26,7 +27,6 @@ from common.video.frame_cache import Reel
 from integrator import diagnostics, merge_state, opening_posture
 from integrator.frame_numbers import frame_times
 from integrator.merge_state import Start
-from integrator.selfcalibration.lateness import Clock
 from tritrack.moved_facts import moved_facts
 from tritrack.offline.film_tracking import Film, Heard, follow_clip, unseen
 from tritrack.offline.frame_pairs import openings

@@ -9,12 +9,12 @@ from itertools import repeat
 from typing import Final, NamedTuple
 
 from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.bus.pair import Pair
 from common.video.clip_facts import Clip
 from common.video.frame_cache import Reel
 from integrator import diagnostics, merge, merge_state
 from integrator.live_rig.live_calibration import LiveCalibration, Looking
 from integrator.live_rig.rig_solver import SolverAtOnce
-from integrator.pairing import Pair
 from tritrack.offline.frame_pairs import instants, share_of
 from tritrack.offline.rig_check import Seen, Witness
 from tritrack.unfinished.unfinished_run import BODIES

@@ -5,10 +5,10 @@ from typing import Any, Final, NamedTuple
 
 import msgspec
 
+from calibration.tracks.joint_tracks import Row, Sighting, row_of, track_of_rows
+from calibration.tracks.lateness import UNSEEN, Clock, clock_of
 from common.bus.messages import Body, Report, ViewerNumber
 from common.video.clip_facts import Clip
-from integrator.selfcalibration.joint_tracks import Row, Sighting, row_of, track_of_rows
-from integrator.selfcalibration.lateness import UNSEEN, Clock, clock_of
 from viewer.capture import CapturedFrame
 
 MOST_LATE_FRAMES: Final = 0.75
@@ -72,8 +72,8 @@ def trust_facts(clip: Clip, witness: Witness, clock: Clock, *, insisted: bool) -
         clock: Of view 2, as the clip has it.
         insisted: The user trusts the calibration: nothing is advised.
     """
-    from integrator.rig_gate.rig_fault import advice_on
-    from integrator.rig_gate.rig_trust import trust_of
+    from calibration.gate.rig_fault import advice_on
+    from calibration.gate.rig_trust import trust_of
 
     sighting = witness.sighting(clip)
     if clip.rig is None or len(clip.views) < 2 or len(sighting.second.times_s) < 2:

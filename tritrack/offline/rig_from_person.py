@@ -5,6 +5,9 @@ from typing import Any, Final, NamedTuple
 
 import msgspec
 
+from calibration.person.rig_quality import PersonCalibration
+from calibration.tracks.joint_tracks import Sighting, track_of
+from calibration.tracks.lateness import LEAST_LATE, Clock, clock_of
 from common.bus.messages import Report, ViewerNumber
 from common.config.settings import Settings
 from common.method import Method
@@ -12,9 +15,6 @@ from common.rig.absurd_rig import nearly_one_view
 from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip, set_back
 from common.video.frame_cache import Reader
-from integrator.selfcalibration.joint_tracks import Sighting, track_of
-from integrator.selfcalibration.lateness import LEAST_LATE, Clock, clock_of
-from integrator.selfcalibration.rig_quality import PersonCalibration
 from tritrack.offline.frame_pairs import instants, openings
 from viewer import track
 from viewer.landmarks.landmark_sources import Sources
@@ -81,7 +81,7 @@ def by_person(
     It is left as it is where it has one, where the method asks for no landmarks, where too little
     of anybody is seen, and where the views' pictures differ in size.
     """
-    from integrator.selfcalibration.person_calibration import calibrated_by_person
+    from calibration.person.person_calibration import calibrated_by_person
 
     of_files = all(view.frames for view in clip.views)
     of_one_size = len({view.size for view in clip.views}) == 1

@@ -7,13 +7,13 @@ from typing import Final, NamedTuple
 import cv2
 from rich.console import Console
 
+from calibration.board.board import BOARDS, Board, chessboard
+from calibration.board.board_coverage import coverage_picture, covered
+from calibration.board.board_quality import Quality
+from calibration.board.board_rig import calibrated_by_board
+from calibration.paper.calibration import write_rig
 from common.atomic_file import replacing
 from common.rig.rig_file import CalibrationError
-from integrator.board.board import BOARDS, Board, chessboard
-from integrator.board.board_coverage import coverage_picture, covered
-from integrator.board.board_quality import Quality
-from integrator.board.board_rig import calibrated_by_board
-from integrator.rig.calibration import write_rig
 from tritrack.offline.board_films import looked_through
 from tritrack.terminal import bar, warn
 

@@ -5,6 +5,9 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
+from calibration.person.person_calibration import calibrated_by_person
+from calibration.person.rig_quality import Quality
+from calibration.tracks.lateness import Clock, clock_of
 from common.config import config_file
 from common.config.part_settings import BodySettings
 from common.method import METHODS
@@ -13,9 +16,6 @@ from common.rig.rig_file import CalibrationError, fitted
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reader, Reel
-from integrator.selfcalibration.lateness import Clock, clock_of
-from integrator.selfcalibration.person_calibration import calibrated_by_person
-from integrator.selfcalibration.rig_quality import Quality
 from tritrack.offline.rig_from_person import ON_TIME, sighting_of
 from viewer.landmarks.landmark_sources import outside_sources
 

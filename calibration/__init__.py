@@ -1,0 +1,1 @@
+"""Where the cameras are, and whether that can be believed."""

@@ -1,0 +1,210 @@
+"""How well both views agree by a rig, instant by instant, and how far its joints are believed."""
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.tracks.joint_tracks import is_upright
+from calibration.tracks.person_prior import ANKLE_SHARE
+from common.body.body import JOINT_NAMES, OTHER_SIDE, Vector
+from common.bus.messages import Agreement, Landmarks, Report
+from common.bus.pair import Seen
+from common.rig.camera import Camera, Rig, arrays_of, rays
+
+SAMPLES, APART_S = 40, 0.15
+"""So many instants tell, so far apart: the last six seconds."""
+FEWEST: Final = 8
+"""Fewer tell nothing."""
+FEWEST_FACINGS: Final = 5
+SURE: Final = 0.6
+"""Landmarks of a view that are less sure on average tell nothing of an instant."""
+SURE_FACING: Final = 0.85
+USUAL_M: Final = 1.75
+"""Stature of somebody whose ankles are this high: people differ by a centimetre there."""
+NARROW: Final = 0.05
+"""Squared sine of the angle between sight lines that are nearly one."""
+STANDS: Final = 0.4
+"""Share of the time in which the lower ankle is lower: that foot is on the floor."""
+APART_MM: Final = (60.0, 80.0)
+SOLES_MM: Final = ((-45.0, -75.0), (60.0, 95.0))
+FACING_DEG: Final = (45.0, 75.0)
+MOTION_MM: Final = (40.0, 60.0)
+"""What is as usual for a good rig, and what no good one has: between them belief falls. The right
+rig has views of r01 and r04 31 mm apart at most, facings 5 degrees apart; the views of other
+people, whom the network sees less well, are up to 56 mm apart. Soles of r01, r04 and 16 made-up
+people in free motion are -29 to 4 mm high, in the last second alone -42 to 47; high heels lift
+ankles by 5 cm more. Two pictures of one camera have facings as far apart as the rig has cameras.
+Motions of r01, r04 and made-up people are 30 mm apart at most, of different takes 60 mostly."""
+SUDDEN: Final = 0.2
+"""What is left of the belief in a rig that is contradicted in the last second alone."""
+LEAST: Final = 0.05
+"""Share of the confidence that is left to a rig that nobody believes."""
+
+SURE_JOINT: Final = 0.7
+"""Joints of which a view is less sure tell nothing of the motion."""
+FARTHEST_M: Final = 0.2
+"""What is farther off counts so much: a joint that a view takes for another says nothing more."""
+
+_SHOULDERS, _KNEES, _ANKLES = (
+    [n for n, name in enumerate(JOINT_NAMES) if name.endswith(part)]
+    for part in ("shoulder", "knee", "ankle")
+)
+_MIDDLE: Final = [[n] for n, name in enumerate(JOINT_NAMES) if "_" not in name or "top" in name]
+POINTS: Final = (*_MIDDLE, _SHOULDERS, _KNEES, _ANKLES)
+"""Joints, and middles of pairs: they are the same where a view exchanges sides."""
+
+
+class State(NamedTuple):
+    """What the last seconds showed."""
+
+    samples: tuple[Vector, ...] = ()
+    """Of each instant, metres: the gaps of POINTS, those of the joints (NaN where a view is not
+    sure), and the lower ankle's height."""
+    facings_deg: tuple[float, ...] = ()
+    """By how much view 1 had the person turned against view 2, whenever both were sure."""
+    last_s: float = -math.inf
+    """When the last of them was taken."""
+    told: Agreement | None = None
+
+
+def step(state: State, rig: Rig, seen: Seen) -> State:
+    """One instant more.
+
+    Args:
+        state: What was seen before by the same rig.
+        rig: Two cameras without distortion.
+        seen: Both views' reports.
+    """
+    first, second = seen
+    if first is None or second is None or not (_is_sure(first) and _is_sure(second)):
+        return state
+    if 0.0 <= first.captured_s - state.last_s < APART_S:
+        return state
+    assert first.landmarks is not None
+    assert second.landmarks is not None
+    sample, turned = _sample(rig, first.landmarks, second.landmarks)
+    samples = (*state.samples, sample)[-SAMPLES:]
+    facings = (*state.facings_deg, *turned)[-SAMPLES:]
+    told = agreement_of(np.array(samples), facings) if len(samples) >= FEWEST else None
+    if told is not None and told.believed > SUDDEN:
+        last = agreement_of(np.array(samples[-FEWEST:]), facings[-FEWEST:])
+        if last.believed <= SUDDEN:  # what was before tells nothing of how it is now
+            samples, facings, told = samples[-FEWEST:], facings[-FEWEST:], last
+    return State(samples, facings, first.captured_s, told)
+
+
+def agreement_of(samples: NDArray[np.float64], facings_deg: tuple[float, ...]) -> Agreement:
+    """What instants (n, points + 15 + 1) say together: of places errors that change are left out,
+    of the motion those that do not."""
+    apart_m = np.sqrt(np.mean(np.median(samples[:, : len(POINTS)], axis=0) ** 2))
+    apart_mm = 1e3 * float(apart_m)
+    motion_mm = 1e3 * motion_m(samples[:, len(POINTS) : -1], FEWEST)
+    soles_mm = 1e3 * (float(np.quantile(samples[:, -1], STANDS)) - ANKLE_SHARE * USUAL_M)
+    enough = len(facings_deg) >= FEWEST_FACINGS
+    facing_deg = float(np.median(np.abs(facings_deg))) if enough else 0.0
+    believed = min(
+        _left(apart_mm, *APART_MM),
+        _left(soles_mm, *SOLES_MM[1]),
+        _left(-soles_mm, *(-limit for limit in SOLES_MM[0])),
+        _left(facing_deg, *FACING_DEG),
+        _left(motion_mm, *MOTION_MM),
+    )
+    return Agreement(apart_mm, soles_mm, facing_deg, motion_mm, believed)
+
+
+def motion_m(gaps_m: NDArray[np.float64], fewest: int) -> float:
+    """How far views disagree how joints move, metres, by the gaps between their sight lines.
+
+    Args:
+        gaps_m: (n, joints) with their sign; NaN where a view is not sure.
+        fewest: Instants that must show a joint.
+
+    Returns:
+        The root mean square of each joint's gaps about their median, over the joints that enough
+        instants show.
+    """
+    seen = gaps_m[:, np.isfinite(gaps_m).sum(axis=0) >= fewest]
+    if not seen.size:
+        return 0.0
+    off_m = np.clip(seen - np.nanmedian(seen, axis=0), -FARTHEST_M, FARTHEST_M)
+    return float(np.sqrt(np.mean(np.nanmean(off_m**2, axis=0))))
+
+
+def _left(value: float, usual: float, never: float) -> float:
+    """Share of the confidence that is left."""
+    return float(np.interp(value, (usual, never), (1.0, LEAST)))
+
+
+def _is_sure(report: Report) -> bool:
+    seen = report.landmarks
+    if seen is None or report.cut or not is_upright(seen):
+        return False
+    return float(np.mean(seen.confidence)) >= SURE
+
+
+def _sample(rig: Rig, first: Landmarks, second: Landmarks) -> tuple[Vector, tuple[float, ...]]:
+    """(points + 15 + 1,) of an instant, and by how much the facings differ, where both are sure."""
+    cameras = rig.cameras
+    gaps_m, places_m = _met(cameras, _points(first), _points(second))
+    lower_m = _lower_ankle_m(cameras, first, second)
+    sample = np.array([*gaps_m, *_joint_gaps_m(cameras, first, second), lower_m])
+    return sample, _turned(cameras, (first, second), places_m[0])
+
+
+def _lower_ankle_m(cameras: tuple[Camera, ...], first: Landmarks, second: Landmarks) -> float:
+    """Height of the lower ankle, sides exchanged in a view where sight lines meet better so."""
+    one, other = (np.array(each.joints_px)[_ANKLES] for each in (first, second))
+    tried = [_met(cameras, one, given) for given in (other, other[::-1])]
+    _, places_m = min(tried, key=lambda met: float(np.abs(met[0]).sum()))
+    return float(places_m[:, 1].min())
+
+
+def _met(
+    cameras: tuple[Camera, ...], one_px: NDArray[np.float64], other_px: NDArray[np.float64]
+) -> tuple[Vector, NDArray[np.float64]]:
+    """How far sight lines of points (n, 2) miss each other, (n,), and where they are nearest."""
+    one, other = rays(cameras[0], one_px), rays(cameras[1], other_px)
+    start = arrays_of(cameras[0]).centre
+    base = arrays_of(cameras[1]).centre - start
+    normal = np.cross(one, other)
+    sine_2 = np.maximum((normal**2).sum(axis=1), NARROW)
+    gaps_m: Vector = normal @ base / np.sqrt(sine_2)
+    cosine = (one * other).sum(axis=1)
+    far = (one @ base - cosine * (other @ base)) / sine_2
+    half = 0.5 * gaps_m[:, None] * normal / np.sqrt(sine_2)[:, None]
+    return gaps_m, start + far[:, None] * one + half
+
+
+def _points(seen: Landmarks) -> NDArray[np.float64]:
+    """(points, 2) px, of POINTS."""
+    joints_px = np.array(seen.joints_px)
+    return np.stack([joints_px[point].mean(axis=0) for point in POINTS])
+
+
+def _joint_gaps_m(cameras: tuple[Camera, ...], first: Landmarks, second: Landmarks) -> Vector:
+    """(15,) how far sight lines of the joints miss each other, sides exchanged in a view where they
+    meet better so; NaN where a view is not sure."""
+    one, other = (np.array(each.joints_px) for each in (first, second))
+    tried = []
+    for order in (slice(None), OTHER_SIDE):
+        sure = np.minimum(first.confidence, np.array(second.confidence)[order]) >= SURE_JOINT
+        tried.append(np.where(sure, _met(cameras, one, other[order])[0], np.nan))
+    as_is, exchanged = tried
+    both = np.isfinite(as_is) & np.isfinite(exchanged)
+    is_better = np.abs(exchanged[both]).sum() < np.abs(as_is[both]).sum()
+    return exchanged if is_better else as_is
+
+
+def _turned(
+    cameras: tuple[Camera, ...], seen: tuple[Landmarks, Landmarks], place_m: Vector
+) -> tuple[float, ...]:
+    """By how much view 1 has the person turned against view 2, degrees; () where unsure."""
+    if min(each.facing_confidence for each in seen) <= SURE_FACING:
+        return ()
+    yaws = []
+    for camera, each in zip(cameras, seen, strict=True):
+        to = arrays_of(camera).centre - place_m
+        yaws.append(math.degrees(math.atan2(to[0], to[2])) + each.facing_deg)
+    return ((yaws[0] - yaws[1] + 180.0) % 360.0 - 180.0,)

@@ -1,0 +1,55 @@
+"""Does the person move? What each view's silhouette shows of the last half second."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from common.bus.messages import MOTION_S, Report
+from common.bus.pair import Pair
+
+MOVED: Final = 0.15
+"""Pixels that became the person's or ceased to be, as a share of the silhouette, where somebody
+moves: 0.05 at least in 95 % of the half seconds of dev's motions, 0.34 in the middle."""
+
+
+class Shown(NamedTuple):
+    """One silhouette."""
+
+    captured_s: float
+    silhouette: bytes
+    area_px: int
+
+
+State = tuple[tuple[Shown, ...], tuple[Shown, ...]]
+"""The silhouettes of each view, oldest first: the last MOTION_S, and one that is older."""
+NOTHING: Final[State] = ((), ())
+
+
+def step(state: State, pair: Pair) -> State:
+    """One instant more; a view without a person shows no motion."""
+    first, second = (_with(own, report) for own, report in zip(state, pair, strict=True))
+    return first, second
+
+
+def _with(own: tuple[Shown, ...], report: Report | None) -> tuple[Shown, ...]:
+    if report is None:
+        return own
+    if report.box is None:
+        return ()
+    own = (*own, Shown(report.captured_s, report.silhouette, report.area_px))
+    old = [n for n, shown in enumerate(own) if report.captured_s - shown.captured_s >= MOTION_S]
+    return own[old[-1] :] if old else own
+
+
+def moves(state: State) -> tuple[bool, bool]:
+    """Whether the person has moved in each view within MOTION_S; False where that is not known."""
+    first, second = (_moves(own) for own in state)
+    return first, second
+
+
+def _moves(own: tuple[Shown, ...]) -> bool:
+    if not own or own[-1].captured_s - own[0].captured_s < MOTION_S:
+        return False
+    before, now = (np.frombuffer(each.silhouette, np.uint8) for each in (own[0], own[-1]))
+    changed_px = int(np.unpackbits(before ^ now).sum()) if len(before) == len(now) else 0
+    return changed_px > MOVED * own[-1].area_px

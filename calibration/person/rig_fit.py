@@ -1,0 +1,117 @@
+"""The rig, the person's lengths and the latenesses that explain best what both views saw."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from calibration.person.rig_evidence import Evidence, Sides, own_moments
+from calibration.person.rig_residuals import UNSEEN, Explained, explained, misfits
+from calibration.tracks import person_prior as prior
+from calibration.tracks.rig_guess import LATE
+from calibration.tracks.sight_lines import Numbers
+from common.body.body import Vector
+
+EXCHANGE_COST: Final = 0.5
+"""By how much (log likelihood) exchanged sides must explain a part better."""
+
+NEAR_FRAMES: Final = np.arange(-3, 4) / 4
+"""Steps from a clock to better ones, frames. Landmarks err less between frames than at them, so
+what is made small has a hump at each whole frame that a fit does not cross by itself."""
+
+
+ANYWHERE: Final = 10.0
+"""Sigmas from what is believed of a clock at which better ones are looked for."""
+
+
+class Fit(NamedTuple):
+    """What was found."""
+
+    guess: Vector
+    cost: float
+    sides: tuple[Sides, ...]
+    jacobian: Numbers
+    """(misfits, free)"""
+
+
+def fitted(start: Vector, evidence: Evidence, free: Sides, rounds: int, steps: int) -> Fit:
+    """The best guess near a start.
+
+    Args:
+        start: A guess.
+        evidence: What it is held against.
+        free: (guess,) which of its numbers may change.
+        rounds: How often it is asked which view has exchanged sides.
+        steps: Of the fit in each round.
+    """
+    guess = start.copy()
+
+    def with_free(values: Vector) -> Vector:
+        whole = guess.copy()
+        whole[free] = values
+        return whole
+
+    for _ in range(rounds):
+        sides = sides_of(guess, evidence)
+        found = least_squares(
+            lambda values, at=sides: misfits(with_free(values), evidence, at),
+            guess[free],
+            x_scale="jac",
+            max_nfev=steps,
+            ftol=1e-5,
+            xtol=1e-6,
+        )
+        guess = with_free(found.x)
+    return Fit(guess, float(found.cost), sides, found.jac)
+
+
+def on_time(guess: Vector, evidence: Evidence) -> Vector:
+    """The guess with view 2 of each clip as late as lets its sight lines meet best."""
+    found = guess.copy()
+    for n, clip in enumerate(evidence.clips):
+        period_s = float(np.median(np.diff(clip.second.times_s)))
+        believed_s, sigma_s = evidence.known.mean[LATE + n], evidence.known.sigma[LATE + n]
+        anywhere = np.arange(-ANYWHERE * sigma_s, ANYWHERE * sigma_s + period_s, period_s)
+        tried = [
+            *(believed_s + anywhere).tolist(),
+            *(guess[LATE + n] + period_s * NEAR_FRAMES).tolist(),
+        ]
+        costs, share = [], own_moments(clip) / len(clip.first.times_s)
+        for late_s in tried:
+            found[LATE + n] = late_s
+            believed = 2.0 * np.log1p(((late_s - believed_s) / sigma_s) ** 2 / 2.0)
+            costs.append(2.0 * share * _apart(found, evidence, n) + believed)
+        found[LATE + n] = tried[int(np.argmin(costs))]
+    return found
+
+
+def _apart(guess: Vector, evidence: Evidence, number: int) -> float:
+    """How badly a clip is explained, each part with its sides as they fit better."""
+    whole = [np.full((len(evidence.clips[number].first.times_s), 3), other) for other in (0, 1)]
+    both = [explained(guess, evidence, number, sides.astype(bool)) for sides in whole]
+    return float(np.minimum(*(_costs(one) for one in both)).sum())
+
+
+def sides_of(guess: Vector, evidence: Evidence) -> tuple[Sides, ...]:
+    """Of each clip, where one view must have the sides of a part the other way round."""
+    found = []
+    for n, clip in enumerate(evidence.clips):
+        costs = []
+        for other in (False, True):
+            sides = np.full((len(clip.first.times_s), 3), other)
+            costs.append(_costs(explained(guess, evidence, n, sides)))
+        found.append((costs[1] + EXCHANGE_COST < costs[0]) & (np.arange(3) != prior.TRUNK))
+    return tuple(found)
+
+
+def _costs(one: Explained) -> NDArray[np.float64]:
+    """(n, 3) how badly each part is explained."""
+    unseen = np.log1p(UNSEEN**2 / 2)
+    gaps = np.where(one.used, np.where(one.met.before, np.log1p(one.met.gap**2 / 2), 5.0), unseen)
+    lengths = np.where(one.lengths_used, np.log1p(one.lengths**2 / 2), unseen)
+    costs = np.zeros((len(gaps), 3))
+    for part in range(3):
+        costs[:, part] = gaps[:, part == prior.PART_OF_JOINT].sum(axis=1)
+        costs[:, part] += lengths[:, part == prior.PART_OF_SEGMENT].sum(axis=1)
+    return costs

@@ -1,0 +1,234 @@
+"""By how much view 2 is late, from what both views show of the person, whatever the cameras are.
+
+At one instant both views of a point are bound by one relation (`view_relation.py`).
+It is fitted for each lateness that leaves the clips enough in common; the one that explains most is
+the likeliest. By its relation it is asked which others explain what they pair nearly as well.
+"""
+
+from typing import Final, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.tracks import person_prior as prior
+from calibration.tracks.joint_tracks import (
+    LEAST_SURE,
+    JointTrack,
+    Sighting,
+    at_times,
+    height_px,
+    smoothed,
+)
+from calibration.tracks.sight_lines import Numbers
+from calibration.tracks.view_relation import relation_of, terms_of
+from common.body.body import OTHER_SIDE, Vector
+
+MOMENTS: Final = 120
+"""So many of view 1, evenly spread, are looked at."""
+LEAST_SHARED: Final = 12
+"""So many of them both views must have: what fewer show fits anything."""
+STEP_S: Final = 0.07
+"""Latenesses that are tried at first are so far apart, or a frame."""
+FINE_FRAMES: Final = np.arange(-6, 7) / 4
+"""Then around the likeliest."""
+ERR: Final = 0.022
+"""By what landmarks miss the relation, heights of the person."""
+SURE: Final = 0.12
+"""Landmarks less sure than this are left out."""
+EXCHANGE_COST: Final = 0.5
+"""By how much exchanged sides must explain a part better."""
+ROUNDS: Final = 3
+"""In each it is asked anew whose sides are exchanged, and what is far off weighs less."""
+SHARED_S: Final = 2.0
+"""A clock that leaves less in common is not told."""
+AS_GOOD, SURE_AS_GOOD = 1.2, 1.4
+"""What misses by less, in misses of the likeliest, may as well be so: by the second where landmarks
+err much and that would change the times, and for the times as they are ..."""
+CLEAR: Final = 0.2
+"""Landmarks err little where the likeliest misses by no more: by 0.06 to 0.15 in walks of r01 and
+r04, by 0.3 and more in made-up ones."""
+AS_MUCH: Final = 1.0 / 3.0
+"""... where it explains such a share of the moments, at least. All three: walks of r01 and r04 with
+offsets of -3 to 3 s, and made-up ones (seeds from 2000 on)."""
+ONE_S, WIDE_S = 0.25, 0.45
+"""Latenesses that differ by less are one, for nobody steps faster; by the second where all between
+them are as good: who moves slowly shows time less exactly."""
+LEAST_LATE: Final = 0.6
+"""Share of a frame by which view 2 must be late before its clock is set."""
+_IN_PART: Final = np.eye(3)[prior.PART_OF_JOINT]
+
+
+class Clock(NamedTuple):
+    """How late view 2 is: what view 1 shows at t, view 2 shows at t + late_s of its own times."""
+
+    late_s: float
+    """Likeliest."""
+    rivals_s: tuple[float, ...] | None = ()
+    """What explains as much: a gait repeats itself, and who stands shows no time. None: nothing is
+    known of it."""
+    may_be_on_time: bool = True
+    """Nothing speaks against the times as they are."""
+
+    @property
+    def state(self) -> Literal["found", "ambiguous", "unknown"]:
+        """In a word: found, ambiguous, or that nothing is known."""
+        return "unknown" if self.rivals_s is None else "ambiguous" if self.rivals_s else "found"
+
+    @property
+    def is_found(self) -> bool:
+        """No other lateness explains as much."""
+        return self.rivals_s == ()
+
+
+UNSEEN: Final = Clock(0.0, None)
+"""Where both views show too little of anybody."""
+
+
+class _Fit(NamedTuple):
+    """What a lateness makes of the moments."""
+
+    late_s: float
+    costs: Vector
+    """(moments,) how far landmarks miss the relation that fits best; 0 where not both show any."""
+    weights: Vector
+    """(moments,) of these landmarks."""
+
+    @property
+    def miss(self) -> float:
+        """Of a landmark, on average."""
+        return float(self.costs.sum() / self.weights.sum())
+
+    @property
+    def moments(self) -> int:
+        """That both views have."""
+        return int(np.count_nonzero(self.weights))
+
+
+class _Paired(NamedTuple):
+    """What both views show at the moments that they have in common."""
+
+    terms: Numbers
+    """(2, n, 15, 8): sides as they are, and exchanged in view 2."""
+    weights: Numbers
+    """(2, n, 15)"""
+
+
+def clock_of(sighting: Sighting) -> Clock:
+    """How late view 2 is, as far as both views show it."""
+    views = _prepared(sighting)
+    fits = _fits(views, _tried(*views)) if views else []
+    if not views or not fits:
+        return UNSEEN
+    usual = float(np.median([fit.miss for fit in fits]))
+    best = max(fits, key=lambda fit: fit.weights.sum() * (usual - fit.miss))
+    period_s = float(np.median(np.diff(views[1].times_s)))
+    near = _fits(views, (best.late_s + period_s * FINE_FRAMES).tolist())
+    finest = min(near, key=lambda fit: fit.miss)
+    apart_s = float(np.median(np.diff(views[0].times_s)))
+    if finest.moments * apart_s < SHARED_S:
+        return UNSEEN
+    on_time = any(fit.late_s == 0.0 and _ratio(fit, finest) <= SURE_AS_GOOD for fit in fits)
+    is_sure = finest.miss <= CLEAR or abs(finest.late_s) <= period_s
+    rivals_s = _rivals(finest, fits, AS_GOOD if is_sure else SURE_AS_GOOD)
+    if rivals_s and on_time and min(map(abs, (finest.late_s, *rivals_s))) > ONE_S:
+        rivals_s = (*rivals_s, 0.0)
+    return Clock(finest.late_s, rivals_s, on_time)
+
+
+def _prepared(sighting: Sighting) -> tuple[JointTrack, JointTrack] | None:
+    """View 1 at the moments that are looked at, and view 2, in heights about their middles."""
+    sure = np.flatnonzero(sighting.first.confidence.mean(axis=1) >= LEAST_SURE)
+    if len(sure) < LEAST_SHARED or len(sighting.second.times_s) < LEAST_SHARED:
+        return None
+    units = height_px(sighting.first), height_px(sighting.second)
+    if not all(units):
+        return None
+    picked = np.linspace(0, len(sure) - 1, min(MOMENTS, len(sure))).astype(int)
+    first, second = (
+        _in_heights(smoothed(track), unit)
+        for track, unit in zip((sighting.first, sighting.second), units, strict=True)
+    )
+    return JointTrack(*(part[sure[picked]] for part in first)), second
+
+
+def _in_heights(track: JointTrack, unit_px: float) -> JointTrack:
+    middle_px = track.joints_px[track.confidence >= SURE].mean(axis=0)
+    return track._replace(joints_px=(track.joints_px - middle_px) / unit_px)
+
+
+def _tried(first: JointTrack, second: JointTrack) -> list[float]:
+    """All latenesses that may leave enough in common; 0 is among them."""
+    step_s = max(STEP_S, float(np.median(np.diff(second.times_s))))
+    low = int((second.times_s[0] - first.times_s[-1]) / step_s)
+    high = int((second.times_s[-1] - first.times_s[0]) / step_s)
+    return (step_s * np.arange(low, high + 1)).tolist()
+
+
+def _paired(
+    first: JointTrack, second: JointTrack, late_s: float
+) -> tuple[NDArray[np.bool_], _Paired]:
+    """Which moments both views have, and what they show there."""
+    there = at_times(second, first.times_s + late_s)
+    both = there.confidence.mean(axis=1) >= LEAST_SURE
+    places, sure = there.joints_px[both], there.confidence[both]
+    ways = [(places, sure), (places[:, OTHER_SIDE], sure[:, OTHER_SIDE])]
+    weights = np.stack([np.minimum(first.confidence[both], other) for _, other in ways])
+    return both, _Paired(
+        np.stack([terms_of(first.joints_px[both], other) for other, _ in ways]),
+        np.where(weights >= SURE, weights, 0.0),
+    )
+
+
+def _fits(views: tuple[JointTrack, JointTrack], tried: list[float]) -> list[_Fit]:
+    """Of those latenesses that leave enough in common."""
+    return [fit for late_s in tried if (fit := _fitted(*views, late_s))]
+
+
+def _fitted(first: JointTrack, second: JointTrack, late_s: float) -> _Fit | None:
+    both, paired = _paired(first, second, late_s)
+    if both.sum() < LEAST_SHARED or not paired.weights[0].any():
+        return None
+    sides = np.zeros(paired.terms.shape[1:3], np.bool_)
+    trust = np.ones(sides.shape)
+    for _ in range(ROUNDS):
+        weights = np.where(sides, paired.weights[1], paired.weights[0])
+        terms = np.where(sides[..., None], paired.terms[1], paired.terms[0])
+        relation = relation_of(terms.reshape(-1, terms.shape[-1]), (trust * weights).ravel())
+        off = (relation.off(paired.terms) / ERR) ** 2 / 2.0
+        sides = _sides(paired.weights * np.log1p(off))
+        trust = 1.0 / (1.0 + np.where(sides, off[1], off[0]))
+    costs, weights = np.zeros((2, len(both)))
+    each = np.where(sides, paired.weights[1], paired.weights[0])
+    costs[both] = (each * np.log1p(np.where(sides, off[1], off[0]))).sum(axis=1)
+    weights[both] = each.sum(axis=1)
+    return _Fit(late_s, costs, weights)
+
+
+def _sides(costs: Numbers) -> NDArray[np.bool_]:
+    """(n, 15) whose sides are exchanged, by what landmarks cost either way (2, n, 15)."""
+    as_is, other = costs @ _IN_PART
+    exchanged = (other + EXCHANGE_COST < as_is) & (np.arange(3) != prior.TRUNK)
+    return exchanged[:, prior.PART_OF_JOINT]
+
+
+def _rivals(best: _Fit, fits: list[_Fit], as_good: float) -> tuple[float, ...]:
+    """One of each stretch of latenesses that are as good as the best, by what both pair."""
+    ratios = np.array([_ratio(fit, best) for fit in fits])
+    late_s = np.array([fit.late_s for fit in fits])
+    enough = np.array([fit.moments >= AS_MUCH * best.moments for fit in fits])
+    close, off_s = enough & (ratios <= as_good), np.abs(late_s - best.late_s)
+    stretches = np.split(np.arange(len(fits)), np.flatnonzero(np.diff(close)) + 1)
+    rivals = []
+    for each in (each for each in stretches if close[each[0]]):
+        far = each[off_s[each] > (WIDE_S if off_s[each].min() < ONE_S / 2 else ONE_S)]
+        rivals += [far[np.argmin(ratios[far])]] if len(far) else []
+    return tuple(late_s[rivals].tolist())
+
+
+def _ratio(fit: _Fit, best: _Fit) -> float:
+    """How much more one misses than the best, at moments that both have where these are enough."""
+    both = (fit.weights > 0) & (best.weights > 0)
+    if both.sum() < LEAST_SHARED:
+        return fit.miss / best.miss
+    one, other = (each.costs[both].sum() / each.weights[both].sum() for each in (fit, best))
+    return float(one / max(other, 1e-9))
