@@ -26,7 +26,7 @@ from common.bus.messages import Body
 from common.config.settings import Settings
 from common.rig.camera import arrays_of
 from common.rig.rig_file import load_rig
-from tritrack.offline.lockstep import Decoders, track_clip
+from runtime.offline.lockstep import Decoders, track_clip
 
 SOON_S: Final = 2.0
 """Asked: by then it is noticed."""

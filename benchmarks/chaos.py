@@ -27,10 +27,10 @@ from common.bus.messages import Body
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
 from common.video.clips import open_clip
+from runtime.live.free_ports import free_settings
+from runtime.live.table import table_of_rows
+from runtime.store.past_run import PastRunError, open_run
 from tritrack import demo
-from tritrack.live.free_ports import free_settings
-from tritrack.live.table import table_of_rows
-from tritrack.store.past_run import PastRunError, open_run
 
 HARM_S: Final = 4.0
 """After the first body: the person is measured then."""

@@ -25,16 +25,16 @@ from rich.console import Console
 
 from common.config.settings import Settings
 from common.rig.camera import Rig, project
+from runtime.live.table import table_of_rows
+from runtime.offline.lockstep import Decoders, Tracked, track_clip
+from runtime.store.pose_arrays import poses
+from runtime.store.runs import believed
 from synth.motion.motions import EMPTY, POSTURES, Motion, performance
 from synth.person.people import Colour, Look, Person, person
 from synth.picture.exposure import default_rig
 from synth.picture.render import room_of
 from synth.write import Filming, write_clip, write_rig
 from tritrack.accuracy.accuracy import compare
-from tritrack.live.table import table_of_rows
-from tritrack.offline.lockstep import Decoders, Tracked, track_clip
-from tritrack.store.pose_arrays import poses
-from tritrack.store.runs import believed
 
 LOST_MM: Final = 60.0
 NO_POSE_MM: Final = 500.0

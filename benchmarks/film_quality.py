@@ -21,8 +21,8 @@ from rich.console import Console
 from scipy.signal import find_peaks
 
 from common.body.body import JOINT_NAMES, LIMB_ENDS
-from tritrack.live.table import table_of_rows
-from tritrack.store.past_run import open_run
+from runtime.live.table import table_of_rows
+from runtime.store.past_run import open_run
 
 Floats = NDArray[np.float64]
 

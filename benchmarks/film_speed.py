@@ -21,7 +21,7 @@ from typing import Any
 
 from rich.console import Console
 
-from tritrack.live.table import table_of_rows
+from runtime.live.table import table_of_rows
 
 ONE_CORE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
 

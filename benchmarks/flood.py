@@ -20,11 +20,11 @@ from common.bus.live_bus import NUMBER_BYTES
 from common.bus.message_codec import MAX_BYTES
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
+from runtime.live.free_ports import free_settings
+from runtime.live.session import live
+from runtime.live.table import table_of_rows
+from runtime.store.past_run import open_run
 from tritrack import demo
-from tritrack.live.free_ports import free_settings
-from tritrack.live.session import live
-from tritrack.live.table import table_of_rows
-from tritrack.store.past_run import open_run
 
 HZ: Final = 15.0
 WORD: Final = "overheard"

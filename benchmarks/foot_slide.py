@@ -19,8 +19,8 @@ from animator.skeleton.foot_contact import SIDES, stances
 from animator.skeleton.planted_feet import planted
 from common.body.body import JOINT_NAMES
 from common.body.extremities import ALL_JOINT_NAMES
-from tritrack.store.joint_arrays import all_joints_m
-from tritrack.store.past_run import open_run
+from runtime.store.joint_arrays import all_joints_m
+from runtime.store.past_run import open_run
 
 Floats = NDArray[np.float64]
 

@@ -22,7 +22,7 @@ from viewer import track
 PERFORMER_SEED = 90_001
 """Whom the clip shows: a person of no training set."""
 POSTURE = "raise_right_lateral"
-OFFLINE = ("tritrack.offline.lockstep", "tritrack.offline")
+OFFLINE = ("runtime.offline.lockstep", "runtime.offline")
 """Where the lock-step run lies now, and where it lay in version 0.1.0."""
 
 

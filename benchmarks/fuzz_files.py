@@ -42,14 +42,14 @@ from common.rig.rig_file import load_rig
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from recognizer import model_file
+from runtime.faults import MENDABLE, code_of
+from runtime.live.table import table_of_rows
+from runtime.offline.batch import Asked, track_all
+from runtime.store.journal import Head, Journal
+from runtime.store.past_run import open_run
+from runtime.store.recording import read_recording
 from tritrack.exporting import export_run
-from tritrack.faults import MENDABLE, code_of
-from tritrack.live.table import table_of_rows
-from tritrack.offline.batch import Asked, track_all
 from tritrack.single.mask_file import read_masks
-from tritrack.store.journal import Head, Journal
-from tritrack.store.past_run import open_run
-from tritrack.store.recording import read_recording
 from viewer.landmarks.keypoint_files import people_of
 
 WORDS = ("refused", "read", "harm")

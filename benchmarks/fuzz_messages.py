@@ -51,10 +51,10 @@ from integrator import commands, diagnostics, merge, merge_state, pairing
 from integrator.frame_numbers import frame_times
 from integrator.merge_state import Start
 from integrator.single.sight import Annotations
-from tritrack.live.table import table_of_rows
-from tritrack.offline.frame_pairs import openings
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.offline.performance import Watch
+from runtime.live.table import table_of_rows
+from runtime.offline.frame_pairs import openings
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.offline.performance import Watch
 from viewer import track
 
 WORDS = ("refused", "taken", "handed on", "harm")

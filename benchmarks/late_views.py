@@ -25,9 +25,9 @@ from common.method import METHODS
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reader, Reel
+from runtime.offline.rig_from_person import sighting_of
 from synth.motion.motions import performance
 from synth.person.people import person
-from tritrack.offline.rig_from_person import sighting_of
 from viewer.landmarks.landmark_sources import outside_sources
 
 OFFSETS_S: Final = np.arange(-6, 7) / 2

@@ -29,8 +29,8 @@ from integrator.live_rig import rig_search
 from integrator.live_rig.rig_change import set_back, with_rig
 from integrator.live_rig.rig_job import Solved, solved
 from integrator.merge_state import Start
-from tritrack.offline.frame_pairs import instants, openings
-from tritrack.offline.lockstep import Decoders, track_clip
+from runtime.offline.frame_pairs import instants, openings
+from runtime.offline.lockstep import Decoders, track_clip
 from viewer import track
 from viewer.landmarks.landmark_sources import outside_sources
 

@@ -32,9 +32,9 @@ from common.raster.similarity import Mask
 from common.rig.camera import Rig
 from common.video.clip_facts import both_cameras
 from integrator.rig.undistortion import undistorted
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.offline.performance import Watch
-from tritrack.store.runs import write_run
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.offline.performance import Watch
+from runtime.store.runs import write_run
 from viewer.capture import CapturedFrame
 
 PAIRS: Final = (("cam01", "cam04"), ("cam03", "cam04"), ("cam02", "cam03"))

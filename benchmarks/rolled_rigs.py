@@ -21,12 +21,12 @@ from common.bus.messages import ViewerNumber
 from common.config.picture_size import size_of
 from common.config.settings import Settings
 from common.rig.camera import Camera, Rig, as_matrix, as_row
+from runtime.offline.lockstep import Decoders, Tracked, track_clip
+from runtime.store.pose_arrays import poses
 from synth.motion.motions import POSTURES, Motion, performance
 from synth.person.people import Person, person
 from synth.picture.exposure import default_rig
 from synth.write import FPS, Filming, write_clip, write_rig
-from tritrack.offline.lockstep import Decoders, Tracked, track_clip
-from tritrack.store.pose_arrays import poses
 
 SCORED: Final = [
     f"{side}_{name}"

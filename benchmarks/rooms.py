@@ -26,8 +26,8 @@ from prometheus_client.parser import text_string_to_metric_families
 from rich.console import Console
 
 from common.config.picture_size import size_of
+from runtime.live.table import table_of_rows
 from synth.write import ClipSet, write_set
-from tritrack.live.table import table_of_rows
 
 SETTLE_S: Final = 5.0
 """After the last room runs: what comes late from the starts is over then."""

@@ -36,10 +36,10 @@ from common.video.decoding import Decoder, Image
 from integrator import merge, merge_state
 from integrator.merge_state import Start
 from recognizer import __main__ as recognizer_process
+from runtime.live.free_ports import free_settings
+from runtime.live.launch import Heard
+from runtime.live.session import live
 from synth.write import ClipSet, write_set
-from tritrack.live.free_ports import free_settings
-from tritrack.live.launch import Heard
-from tritrack.live.session import live
 from viewer import track
 from viewer.capture import CapturedFrame
 from viewer.room.background_source import opening_of_view

@@ -27,8 +27,8 @@ from common.config.settings import Settings
 from common.method import METHODS
 from common.rig.camera import Camera, Rig, as_matrix, as_row, centre
 from common.video.clips import open_clip
-from tritrack.offline.lockstep import Decoders
-from tritrack.offline.rig_from_person import sighting_of
+from runtime.offline.lockstep import Decoders
+from runtime.offline.rig_from_person import sighting_of
 from viewer.landmarks.landmark_sources import outside_sources
 
 Spoiled = Callable[[Camera], Camera]

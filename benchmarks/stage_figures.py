@@ -26,11 +26,11 @@ from common.video.decoding import Image
 from recognizer.__main__ import SHIPPED, step
 from recognizer.__main__ import init as recognizer_init
 from recognizer.model_file import load
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.offline.performance import Watch
+from runtime.store.joint_arrays import all_joints_m
+from runtime.store.pose_arrays import poses
 from synth.write import ClipSet, write_set
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.offline.performance import Watch
-from tritrack.store.joint_arrays import all_joints_m
-from tritrack.store.pose_arrays import poses
 
 POSTURE: Final = "kick_right_forward"
 SIZE: Final = (320, 240)

@@ -26,7 +26,7 @@ from common.settled import settle
 from common.video.clips import open_clip
 from integrator import merge
 from recognizer import __main__ as recognizer_process
-from tritrack.live.table import table_of_rows
+from runtime.live.table import table_of_rows
 from viewer import track
 from viewer.capture import CapturedFrame
 

@@ -47,7 +47,7 @@ def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def keys(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A bus's keys, for two days."""
-    from tritrack.keys.authority import make_keys
+    from runtime.keys.authority import make_keys
 
     folder = tmp_path_factory.mktemp("keys")
     make_keys(folder, [], 2)

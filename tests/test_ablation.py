@@ -10,8 +10,8 @@ import pytest
 
 from common.config.settings import Settings
 from common.method import DEFAULT, PAPER, THESIS, Method, Mode
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.store.pose_arrays import poses
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.store.pose_arrays import poses
 
 
 @pytest.fixture(scope="module")

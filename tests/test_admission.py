@@ -12,8 +12,8 @@ from common.config.part_settings import BusSettings, CameraSettings
 from common.config.settings import Settings
 from common.rig.camera import paper_rig
 from common.video.clip_facts import Clip, Meta, View
-from tritrack.live import admission
-from tritrack.live.admission import LiveRefused, admitted, opened
+from runtime.live import admission
+from runtime.live.admission import LiveRefused, admitted, opened
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.0, 4.0))
 CAMERAS = Settings(camera_1=CameraSettings(device=0))
@@ -23,8 +23,8 @@ CAMERAS = Settings(camera_1=CameraSettings(device=0))
 def test_what_is_left_open_is_chosen_and_said_after_all_was_looked_at(
     monkeypatch: pytest.MonkeyPatch, record: bool
 ) -> None:
-    library = instead(monkeypatch, "tritrack.live.admission.refuse_without_library")
-    held = instead(monkeypatch, "tritrack.live.admission.refuse_held_ports")
+    library = instead(monkeypatch, "runtime.live.admission.refuse_without_library")
+    held = instead(monkeypatch, "runtime.live.admission.refuse_held_ports")
     console = Console(record=True, width=200, file=io.StringIO())
     asked = msgspec.structs.replace(CAMERAS, bus=BusSettings(endpoint="auto"))
     found = admitted(asked, record, console)
@@ -38,7 +38,7 @@ def test_what_is_left_open_is_chosen_and_said_after_all_was_looked_at(
 
 
 def test_the_theses_mode_is_no_live_runs(monkeypatch: pytest.MonkeyPatch) -> None:
-    held = instead(monkeypatch, "tritrack.live.admission.refuse_held_ports")
+    held = instead(monkeypatch, "runtime.live.admission.refuse_held_ports")
     with pytest.raises(LiveRefused, match="tritrack single VIDEO --mode thesis"):
         admitted(msgspec.structs.replace(CAMERAS, mode="thesis"), False, Console(quiet=True))
     assert not held.given
@@ -54,7 +54,7 @@ def test_a_clip_gets_a_camera_for_each_viewer_and_the_lengths_that_are_known(
     meta = msgspec.structs.replace(Meta(), posture="squat", posture_id=posture_id)
     instead(monkeypatch, "common.video.clips.open_clip", Clip("own", (view,), 1, rig, meta))
     lengths: Any = object()
-    instead(monkeypatch, "tritrack.offline.lockstep.measured_before", lengths)
+    instead(monkeypatch, "runtime.offline.lockstep.measured_before", lengths)
     model = instead(monkeypatch, "recognizer.__main__.model_of")
     source = instead(monkeypatch, "viewer.landmarks.landmark_sources.refuse_landmarks")
     clip = opened(CAMERAS, "")

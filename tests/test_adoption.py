@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
-from tritrack.forking import adoption
-from tritrack.forking.adoption import Adopted, adopted, adopting
+from runtime.forking import adoption
+from runtime.forking.adoption import Adopted, adopted, adopting
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="parts are adopted on Linux alone")
 SPAWN = get_context("spawn")
@@ -109,7 +109,7 @@ def test_who_goes_on_as_a_child_of_its_grandparent_is_a_process_of_its_own() -> 
     has another parent."""
     code = (
         "import os, sys; sys.path.insert(0, sys.argv[1])\n"
-        "from tritrack.forking.adoption import be_adopted\n"
+        "from runtime.forking.adoption import be_adopted\n"
         "class Words:\n"
         "    def send(self, pid): print(os.getpid(), pid, flush=True)\n"
         "first = os.getpid()\n"

@@ -10,9 +10,9 @@ import pytest
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
+from runtime.store.runs import RunError
 from tritrack.single import animation_files
 from tritrack.single.animation_files import FLAG, NAMES, marked, write_files
-from tritrack.store.runs import RunError
 from viewer.background.background import learn
 
 FRAMES = 14

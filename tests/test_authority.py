@@ -10,7 +10,7 @@ import pytest
 pytest.importorskip("cryptography", reason="keys are an extra: install tritrack[keys]")
 
 from common.bus.bus_keys import PARTS, KeysError
-from tritrack.keys.authority import make_keys
+from runtime.keys.authority import make_keys
 
 
 def openssl(*words: str | Path) -> subprocess.CompletedProcess[str]:

@@ -18,14 +18,14 @@ from common.config.settings import Settings
 from common.video.clip_facts import Clip, Meta, View
 from common.video.decoding import Undecodable
 from integrator.frame_numbers import FrameTimes
+from runtime.offline import batch
+from runtime.offline.batch import Asked, head_of, track_all
+from runtime.offline.lockstep import Decoders, Tracked, track_clip
+from runtime.store.clip_paths import ClipsFailed
+from runtime.store.other_run import OtherRun
+from runtime.store.recording import read_recording
+from runtime.unfinished.work import Course
 from tritrack.commands.clip_commands import line_of_runs
-from tritrack.offline import batch
-from tritrack.offline.batch import Asked, head_of, track_all
-from tritrack.offline.lockstep import Decoders, Tracked, track_clip
-from tritrack.store.clip_paths import ClipsFailed
-from tritrack.store.other_run import OtherRun
-from tritrack.store.recording import read_recording
-from tritrack.unfinished.work import Course
 
 VIEWS: tuple[tuple[ViewerNumber, ...], ...] = ((1, 2), (1,))
 

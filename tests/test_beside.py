@@ -10,10 +10,10 @@ import pytest
 
 from common.bus.process import ProcessContext, process
 from common.video.clip_sources import ClipError
-from tritrack.faults import code_of
-from tritrack.live.beside import KILLED
-from tritrack.live.process_table import Part, last_words
-from tritrack.live.supervise import PartFailed, Watched, watched
+from runtime.faults import code_of
+from runtime.live.beside import KILLED
+from runtime.live.process_table import Part, last_words
+from runtime.live.supervise import PartFailed, Watched, watched
 
 PATIENCE_S = 20.0
 
@@ -72,7 +72,7 @@ def test_one_that_fails_says_why_as_a_process_would() -> None:
 def test_one_that_hangs_is_killed_with_its_process() -> None:
     """No thread can be ended from outside: whoever serves the room starts it again."""
     script = (
-        "import time; from tritrack.live.process_table import Part, end, started\n"
+        "import time; from runtime.live.process_table import Part, end, started\n"
         "end(started(Part('deaf', time.sleep, (60.0,), beside=True, end_s=0.2)))"
     )
     done = subprocess.run([sys.executable, "-c", script], timeout=PATIENCE_S, check=False)

@@ -10,8 +10,8 @@ from rich.progress import Progress
 from calibration.board.board import BOARDS, Board, chessboard
 from common.rig.rig_file import CalibrationError
 from common.video.decoding import Decoded, Size, VideoInfo, Wanted
-from tritrack.offline import board_films
-from tritrack.offline.board_films import Looked, looked_through
+from runtime.offline import board_films
+from runtime.offline.board_films import Looked, looked_through
 
 A4, A3 = BOARDS["a4"], BOARDS["a3"]
 Corners = dict[int, tuple[Board, tuple[float, float]]]

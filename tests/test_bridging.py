@@ -20,9 +20,9 @@ from rich.console import Console
 
 from common.bus.bus_keys import KeysError
 from common.bus.messages import Body
+from runtime.bridges import bridging
+from runtime.client import WAIT_S
 from tritrack import subscribe
-from tritrack.bridges import bridging
-from tritrack.client import WAIT_S
 
 pytest.importorskip("pythonosc", reason="pip install 'tritrack[osc]'")
 

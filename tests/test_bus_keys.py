@@ -18,8 +18,8 @@ from common.bus.bus_keys import HUB, PARTS, KeysError, Part, refuse_missing, tls
 from common.bus.inbox import Alive
 from common.bus.messages import Body
 from common.config.part_settings import BusSettings
+from runtime.keys.authority import make_keys
 from tritrack import subscribe
-from tritrack.keys.authority import make_keys
 
 ROOM = "room"
 SOON_S = 5.0

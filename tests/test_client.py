@@ -14,8 +14,8 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 from common.bus.bus import BusError
 from common.bus.messages import Body
+from runtime.offline import lockstep
 from tritrack import subscribe, track
-from tritrack.offline import lockstep
 
 EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"
 

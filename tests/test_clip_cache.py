@@ -12,9 +12,9 @@ from spoiling import changed, copied, edit_json
 from common.bus.messages import Body
 from common.config.settings import Settings
 from common.video.clip_sources import ClipError
-from tritrack.offline import clip_cache
-from tritrack.offline.clip_cache import key_of, packed, read, write
-from tritrack.offline.lockstep import Tracked
+from runtime.offline import clip_cache
+from runtime.offline.clip_cache import key_of, packed, read, write
+from runtime.offline.lockstep import Tracked
 
 
 @pytest.fixture

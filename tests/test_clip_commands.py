@@ -9,6 +9,7 @@ from typed import instead, typed
 
 from common.config.part_settings import BusSettings
 from common.config.settings import Settings
+from runtime.faults import Unfollowed
 from synth.write import ClipSet
 from tritrack.commands.clip_commands import (
     export,
@@ -19,7 +20,6 @@ from tritrack.commands.clip_commands import (
     synth,
     track,
 )
-from tritrack.faults import Unfollowed
 
 FACTS = {"clips": {"dance": {"believed": 0.9, "frames": 30, "seen": 30}}}
 
@@ -30,7 +30,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_all_that_is_typed_for_tracking_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    done = instead(monkeypatch, "tritrack.offline.batch.track_all", FACTS)
+    done = instead(monkeypatch, "runtime.offline.batch.track_all", FACTS)
     refused = instead(monkeypatch, "tritrack.commands.clip_commands.refuse_unfollowed")
     words = ["a", "b", "--out", "new", "--mode", "thesis", "--views", "2", "--size", "160x120"]
     words += ["--landmarks", "none", "--trust-calibration", "--record", "--resume", "--force"]
@@ -56,7 +56,7 @@ def test_all_that_is_typed_for_tracking_is_asked_for(monkeypatch: pytest.MonkeyP
 
 def test_a_body_that_is_hardly_believed_is_no_success(monkeypatch: pytest.MonkeyPatch) -> None:
     facts = {"clips": {"dance": {"believed": 0.1, "warnings": []}}}
-    instead(monkeypatch, "tritrack.offline.batch.track_all", facts)
+    instead(monkeypatch, "runtime.offline.batch.track_all", facts)
     instead(monkeypatch, "tritrack.single.single.single_all", facts)
     for command in (track, single):
         with pytest.raises(Unfollowed):

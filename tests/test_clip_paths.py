@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from tritrack.store.clip_paths import ClipsFailed, run_names, without_plain_files
+from runtime.store.clip_paths import ClipsFailed, run_names, without_plain_files
 
 
 def console() -> Console:

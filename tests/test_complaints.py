@@ -22,7 +22,7 @@ from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.complaints import MOST_BYTES, Complaints
 from common.video.decoding import Decoder, Ending, Image
-from tritrack.live.screen import warnings_of
+from runtime.live.screen import warnings_of
 from viewer import __main__ as viewer
 from viewer import track
 from viewer.background.background import learn

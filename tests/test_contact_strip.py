@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from tritrack.offline.lockstep import Decoders
+from runtime.offline.lockstep import Decoders
 from tritrack.postures import contact_strip as module
 from tritrack.postures.contact_strip import SHOWN, WIDTH_PX, contact_strip
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from tritrack.offline.batch import Asked, track_all
-from tritrack.store.cores import ClusterError, made, spread
+from runtime.offline.batch import Asked, track_all
+from runtime.store.cores import ClusterError, made, spread
 from tritrack.training.recordings import recordings
 
 QUIET = Console(quiet=True)
@@ -61,7 +61,7 @@ def test_a_dask_cluster_of_two_tracks_clips_to_the_same_bits(clip: Path, tmp_pat
 
 @pytest.mark.slow
 def test_a_cluster_that_does_not_answer_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tritrack.store.cores.CONNECT_S", 1)
+    monkeypatch.setattr("runtime.store.cores.CONNECT_S", 1)
     with (
         pytest.raises(ClusterError, match=r"no Dask scheduler answers at 'tcp://127.0.0.1:9'"),
         spread("tcp://127.0.0.1:9"),

@@ -17,9 +17,9 @@ from visiting import visited
 
 from common.config.settings import Settings
 from common.rig.rig_file import load_rig
+from runtime.store.other_run import OtherRun
 from synth.motion.motions import performance
 from tritrack import demo
-from tritrack.store.other_run import OtherRun
 
 
 def test_a_demo_that_names_another_posture_has_failed(

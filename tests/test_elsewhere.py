@@ -11,7 +11,7 @@ from common.config.settings import Settings
 from common.rig.rig_file import load_rig
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
-from tritrack.live.elsewhere import two_camera_clip
+from runtime.live.elsewhere import two_camera_clip
 
 NOWHERE, NEITHER = CameraSettings(device=63), CameraSettings(device=62)
 

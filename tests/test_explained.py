@@ -8,7 +8,7 @@ from common.config.explained import explained
 from common.config.settings import Settings
 from common.notes.notes import Notes
 from common.rig.camera import Rig
-from tritrack.serving.sites import SitesFile
+from runtime.serving.sites import SitesFile
 
 MARKERS = "width = 3\nheight = 4\n[[cameras]]\nname = 'a'\n"
 

@@ -14,12 +14,12 @@ from common.body.body import JOINT_NAMES, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body
+from runtime.store import past_run
+from runtime.store.past_run import PastRunError, open_run
+from runtime.store.pose_arrays import poses
+from runtime.store.run_exports import OWN_NAMES, Format
 from tritrack.commands.clip_commands import line_of_gaps
 from tritrack.exporting import ExportError, export_run
-from tritrack.store import past_run
-from tritrack.store.past_run import PastRunError, open_run
-from tritrack.store.pose_arrays import poses
-from tritrack.store.run_exports import OWN_NAMES, Format
 
 LIBRARIES: dict[Format, tuple[str, str, str]] = {
     "usd": ("pxr", "usd-core", "usd"),

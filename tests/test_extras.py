@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 import tritrack.__main__ as door
+from runtime.faults import MENDABLE, code_of
 from tritrack.extras import ExtraMissing, refuse_without
-from tritrack.faults import MENDABLE, code_of
 
 
 def test_what_is_missing_is_named_with_the_extra_that_brings_it() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from common.config.settings_error import SettingsError
-from tritrack.faults import Fault, Unfollowed, code_of, refuse_unfollowed, told
+from runtime.faults import Fault, Unfollowed, code_of, refuse_unfollowed, told
 
 
 @pytest.mark.parametrize(

@@ -25,8 +25,8 @@ from common.raster.silhouette_report import silhouette_report
 from common.rig.camera import Camera, Rig
 from common.video.clip_facts import Clip, Meta, View
 from common.video.clip_sources import ClipError
-from tritrack.offline import film_passes
-from tritrack.offline.film_passes import (
+from runtime.offline import film_passes
+from runtime.offline.film_passes import (
     CUTTING,
     POSING,
     REPORTS,
@@ -38,8 +38,8 @@ from tritrack.offline.film_passes import (
     bodies_of,
     silhouettes_of,
 )
-from tritrack.unfinished.unfinished_run import BODIES
-from tritrack.unfinished.work import Course
+from runtime.unfinished.unfinished_run import BODIES
+from runtime.unfinished.work import Course
 from viewer.capture import CapturedFrame
 from viewer.room.background_source import FilmBackground
 from viewer.track import Setup
@@ -191,7 +191,7 @@ def looks(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     monkeypatch.setattr(film_passes, "recorded", frames)
     monkeypatch.setattr("viewer.track.look", look)
     monkeypatch.setattr("viewer.track.init", init)
-    monkeypatch.setattr("tritrack.offline.film_passes.time.perf_counter", lambda: next(ticks))
+    monkeypatch.setattr("runtime.offline.film_passes.time.perf_counter", lambda: next(ticks))
     return asked
 
 
@@ -255,7 +255,7 @@ class Poses:
         monkeypatch.setattr(film_passes, "_begun", lambda *_: ("viewer", self.state))
         monkeypatch.setattr(film_passes, "_posed", self.posed)
         monkeypatch.setattr(film_passes, "calmed", self.calm)
-        monkeypatch.setattr("tritrack.offline.film_passes.time.perf_counter", lambda: next(ticks))
+        monkeypatch.setattr("runtime.offline.film_passes.time.perf_counter", lambda: next(ticks))
 
     def posed(self, at: Posing, report: Report, _: FilmFacts) -> tuple[Posing, Any]:
         return at._replace(guide=report.frame), f"body {report.frame}"  # type: ignore[arg-type]

@@ -19,8 +19,8 @@ from common.notes.notes import Note, Notes
 from common.rig.camera import PAPER_ROTATIONS
 from common.video.clip_facts import Clip, Meta, View
 from common.video.decoding import Ending
-from tritrack.offline import film_tracking
-from tritrack.offline.film_passes import (
+from runtime.offline import film_tracking
+from runtime.offline.film_passes import (
     CUTTING,
     POSING,
     REPORTS,
@@ -30,7 +30,7 @@ from tritrack.offline.film_passes import (
     Lifted,
     Posing,
 )
-from tritrack.offline.film_tracking import (
+from runtime.offline.film_tracking import (
     Film,
     Followed,
     Heard,
@@ -39,8 +39,8 @@ from tritrack.offline.film_tracking import (
     follow_masks,
     unseen,
 )
-from tritrack.store.runs import NOBODY_SEEN
-from tritrack.unfinished.work import Course
+from runtime.store.runs import NOBODY_SEEN
+from runtime.unfinished.work import Course
 from viewer.room.background_source import FilmBackground
 
 VIEW = View(2, "a.mp4", (640, 480), (160, 120), 30.0, 60)
@@ -96,7 +96,7 @@ class Passes:
         self.camera: Any = RIG.cameras[1]
         self.sources: Any = {2: SimpleNamespace(odd=["a landmark is odd"])}
         ticks = itertools.count(10.0)
-        monkeypatch.setattr("tritrack.offline.film_tracking.time.perf_counter", lambda: next(ticks))
+        monkeypatch.setattr("runtime.offline.film_tracking.time.perf_counter", lambda: next(ticks))
         for name in ("silhouettes_of", "bodies_of", "outside_sources"):
             monkeypatch.setattr(film_tracking, name, getattr(self, name))
 

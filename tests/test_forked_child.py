@@ -13,8 +13,8 @@ from test_parent_death import SOON_S, ended_within, sleeps, written
 
 from common.video.decoding import Decoder, DecoderDied
 from common.video.forked_child import can_fork
-from tritrack.forking.zygote import SPAWN, Zygote
-from tritrack.live.process_table import Part, end, inherited, started
+from runtime.forking.zygote import SPAWN, Zygote
+from runtime.live.process_table import Part, end, inherited, started
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="parts are forked on Linux alone")
 

@@ -8,7 +8,7 @@ import pytest
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES, LIMB_ENDS
 from common.body.extremities import ALL_JOINT_NAMES, EXTREMITY_LINES, EXTREMITY_NAMES
 from common.bus.messages import Body
-from tritrack.store.foxglove_scene import NUMBERS, SCENE, numbers_of, scene_of, schemas
+from runtime.store.foxglove_scene import NUMBERS, SCENE, numbers_of, scene_of, schemas
 
 JOINTS_M = tuple((0.1 * n, 1.0 + n, -2.0 * n) for n in range(len(JOINT_NAMES)))
 ENDS_M = tuple((5.0 + n, 0.0, 0.5) for n in range(len(EXTREMITY_NAMES)))

@@ -12,7 +12,7 @@ from common.bus.messages import ViewerNumber
 from common.config.settings import Settings
 from common.video.clips import open_clip
 from common.video.decoding import ALL, Decoded, Ending, Size, Source, Wanted
-from tritrack.offline.frame_pairs import instants, openings, share_of
+from runtime.offline.frame_pairs import instants, openings, share_of
 from viewer.capture import CapturedFrame
 
 SLOW_S = 0.3

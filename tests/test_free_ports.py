@@ -11,8 +11,8 @@ from animator.page.door import PageError
 from common.bus.bus_keys import PARTS, KeysError
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
-from tritrack.live import free_ports
-from tritrack.live.free_ports import (
+from runtime.live import free_ports
+from runtime.live.free_ports import (
     PortHeld,
     free_settings,
     own_session,

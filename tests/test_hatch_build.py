@@ -56,7 +56,7 @@ def test_an_import_of_ours_names_the_namespace(source: str, new: str) -> None:
 @pytest.mark.parametrize(
     "source",
     [
-        "from tritrack.live import session",
+        "from runtime.live import session",
         "from commons import x",
         "from . import common",
         "from numpy import viewer",

@@ -7,8 +7,8 @@ import pytest
 from common.bus.control_messages import Pulse
 from common.bus.inbox import Alive
 from common.bus.messages import Body
-from tritrack.outside.health import ailments
-from tritrack.outside.run_figures import RunFigures, Told, step
+from runtime.outside.health import ailments
+from runtime.outside.run_figures import RunFigures, Told, step
 
 NEEDED = ("integrator", "viewer 1")
 START_S = 100.0

@@ -4,7 +4,7 @@ import numpy as np
 
 from common.body.body import JOINT_NAMES
 from common.body.extremities import ALL_JOINT_NAMES
-from tritrack.store.joint_arrays import all_joints_m, on_disk, parted
+from runtime.store.joint_arrays import all_joints_m, on_disk, parted
 
 N = 4
 

@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 
 from common.bus.messages import Body, Posture
 from common.config.settings import Settings
-from tritrack.store.journal import MOST_BODIES, NAME, Head, Journal, parts_of
-from tritrack.store.past_journal import LOG, put_aside, read_journal
-from tritrack.store.past_run import open_run
-from tritrack.store.pose_arrays import poses
-from tritrack.store.runs import write_run
+from runtime.store.journal import MOST_BODIES, NAME, Head, Journal, parts_of
+from runtime.store.past_journal import LOG, put_aside, read_journal
+from runtime.store.past_run import open_run
+from runtime.store.pose_arrays import poses
+from runtime.store.runs import write_run
 
 HEAD = Head(settings=Settings(clip="clips/walk"), facts={"clip": "walk"})
 
@@ -169,7 +169,7 @@ def test_what_was_written_outlives_a_power_cut_every_five_seconds(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     synced, now_s = list[float](), [100.0]
-    monkeypatch.setattr("tritrack.store.journal.time.monotonic", lambda: now_s[0])
+    monkeypatch.setattr("runtime.store.journal.time.monotonic", lambda: now_s[0])
     monkeypatch.setattr(os, "fsync", lambda _: synced.append(now_s[0]))
     one = Journal(tmp_path, HEAD)
     assert (tmp_path / NAME).stat().st_size > 0, "its head is there before the first body"

@@ -10,9 +10,9 @@ import pytest
 
 pytest.importorskip("cryptography", reason="keys are an extra: install tritrack[keys]")
 
+from runtime.keys.authority import make_keys
 from tritrack.doctor.installation import Finding
-from tritrack.keys.authority import make_keys
-from tritrack.keys.key_check import examine_keys
+from tritrack.doctor.key_check import examine_keys
 
 DAYS = 30
 

@@ -10,9 +10,9 @@ import pytest
 pytest.importorskip("cryptography", reason="keys are an extra: install tritrack[keys]")
 
 import tritrack.__main__ as door
+from runtime.keys.authority import make_keys
 from tritrack.commands import key_commands
 from tritrack.commands.key_commands import examined_keys
-from tritrack.keys.authority import make_keys
 
 
 @pytest.fixture
@@ -68,7 +68,7 @@ def test_without_the_library_both_say_how_to_install_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for name in ("authority", "key_check"):
-        monkeypatch.setitem(sys.modules, f"tritrack.keys.{name}", None)
+        monkeypatch.setitem(sys.modules, f"runtime.keys.{name}", None)
     assert code_of(monkeypatch, "keys", tmp_path / "keys") == 2
     assert key_commands.INSTALL in capsys.readouterr().err
     (found,) = examined_keys(tmp_path)

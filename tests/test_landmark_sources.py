@@ -18,7 +18,7 @@ from common.method import DEFAULT
 from common.video.clip_facts import View
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from tritrack.offline.frame_pairs import instants
+from runtime.offline.frame_pairs import instants
 from viewer import __main__ as viewer
 from viewer import track
 from viewer.background.background import learn

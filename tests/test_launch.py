@@ -19,14 +19,14 @@ from common.bus.messages import Body, ViewerNumber
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
-from tritrack.live.free_ports import PortHeld, free_settings
-from tritrack.live.launch import Heard, nothing_heard, run
-from tritrack.live.process_table import Part
-from tritrack.live.session import live
-from tritrack.live.supervise import PartFailed
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.store.joint_arrays import on_disk
-from tritrack.store.pose_arrays import poses
+from runtime.live.free_ports import PortHeld, free_settings
+from runtime.live.launch import Heard, nothing_heard, run
+from runtime.live.process_table import Part
+from runtime.live.session import live
+from runtime.live.supervise import PartFailed
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.store.joint_arrays import on_disk
+from runtime.store.pose_arrays import poses
 
 QUIET = Console(quiet=True)
 
@@ -118,7 +118,7 @@ def test_a_live_run_equals_an_offline_one(slow_clip: Path, lived: Lived) -> None
 def test_a_live_run_with_keys_gives_the_same_bodies(slow_clip: Path, tmp_path: Path) -> None:
     """As one without, which equals an offline one: each part may say all that it has to."""
     pytest.importorskip("cryptography", reason="keys are an extra: install tritrack[keys]")
-    from tritrack.keys.authority import make_keys
+    from runtime.keys.authority import make_keys
 
     make_keys(tmp_path / "keys", [], 2)
     bus = BusSettings(endpoint="tls/127.0.0.1:7447", keys=str(tmp_path / "keys"))

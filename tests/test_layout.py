@@ -18,7 +18,8 @@ BELOW = {
     "calibration": {"common"},
     **{name: {"common"} for name in STEPS},
     "integrator": {"calibration", "common"},
-    "tritrack": {*STEPS, "integrator", "calibration", "common"},
+    "runtime": {*STEPS, "integrator", "calibration", "common"},
+    "tritrack": {*STEPS, "integrator", "calibration", "common", "runtime"},
 }
 """Which of our packages each may import."""
 HEAVY = (
@@ -150,7 +151,7 @@ def test_newer_pythons_are_tried_with_tests_that_are_there() -> None:
     ("module", "heavy"),
     [
         ("tritrack.__main__", {*HEAVY, "filterpy", "numba", "cv2", "scipy"}),
-        ("tritrack.offline.lockstep", set(HEAVY)),
+        ("runtime.offline.lockstep", set(HEAVY)),
         ("viewer.__main__", {*HEAVY, "filterpy"} - {"zenoh"}),
         ("recognizer.__main__", {*HEAVY, "filterpy"} - {"zenoh"}),
     ],

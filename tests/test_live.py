@@ -34,7 +34,7 @@ from common.bus.control_messages import Answer
 from common.bus.messages import Performance
 from common.bus.process import ProcessContext
 from common.config.settings import Settings
-from tritrack.live.free_ports import free_settings
+from runtime.live.free_ports import free_settings
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 SOFT = ("--disable-gpu",)

@@ -24,8 +24,8 @@ from integrator.live_rig.live_calibration import LiveCalibration, is_by_person
 from integrator.live_rig.rig_job import Job, Solved, Trusted
 from integrator.live_rig.rig_search import ASKS_S
 from integrator.merge_state import Start, State
-from tritrack.live.free_ports import free_settings
-from tritrack.live.session import live
+from runtime.live.free_ports import free_settings
+from runtime.live.session import live
 from tritrack.replaying import replay_run
 
 

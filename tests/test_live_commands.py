@@ -12,6 +12,9 @@ from common.config.settings import Settings
 from common.config.settings_error import SettingsError
 from common.video.clip_facts import Clip, Meta, View
 from common.video.clip_sources import ClipError
+from runtime.live.admission import LiveRefused
+from runtime.store.other_run import OtherRun, run_of
+from runtime.store.runs import write_run
 from tritrack.commands import live_commands
 from tritrack.commands.live_commands import (
     animate,
@@ -25,9 +28,6 @@ from tritrack.commands.live_commands import (
     view,
     waiting,
 )
-from tritrack.live.admission import LiveRefused
-from tritrack.store.other_run import OtherRun, run_of
-from tritrack.store.runs import write_run
 
 CAMERAS = Settings(camera_1=CameraSettings(device=0), camera_2=CameraSettings(device=1))
 VIEWS = tuple(View(n, n, (160, 120), (160, 120), 30.0, 0) for n in (1, 2))
@@ -50,7 +50,7 @@ def given(monkeypatch: pytest.MonkeyPatch) -> Called:
 
 @pytest.fixture
 def ran(monkeypatch: pytest.MonkeyPatch) -> Called:
-    return instead(monkeypatch, "tritrack.live.session.live", {"posture": "squat"})
+    return instead(monkeypatch, "runtime.live.session.live", {"posture": "squat"})
 
 
 def test_a_live_run_is_that_of_its_settings_and_what_is_typed(given: Called, ran: Called) -> None:
@@ -110,13 +110,13 @@ def test_each_process_of_a_rig_over_hosts_gets_the_settings_of_its_file(
             "integrator": "integrator.__main__.main",
             "recognizer": "recognizer.__main__.main",
             "animator": "animator.__main__.main",
-            "metrics": "tritrack.outside.metrics_process.main",
+            "metrics": "runtime.outside.metrics_process.main",
         }.items()
     }
-    instead(monkeypatch, "tritrack.live.elsewhere.two_camera_clip", CLIP)
+    instead(monkeypatch, "runtime.live.elsewhere.two_camera_clip", CLIP)
     measured: Any = object()
-    instead(monkeypatch, "tritrack.offline.lockstep.measured_before", measured)
-    held = instead(monkeypatch, "tritrack.live.free_ports.refuse_held_page")
+    instead(monkeypatch, "runtime.offline.lockstep.measured_before", measured)
+    held = instead(monkeypatch, "runtime.live.free_ports.refuse_held_page")
     typed(view, "gym.toml", "--viewer", 2)
     typed(integrate, "gym.toml")
     typed(recognize, "gym.toml")
@@ -131,7 +131,7 @@ def test_each_process_of_a_rig_over_hosts_gets_the_settings_of_its_file(
     with pytest.raises(SettingsError, match=r'gym\.toml has no metrics: add metrics = "127'):
         typed(metrics, "gym.toml")
     given.answer = msgspec.structs.replace(CAMERAS, metrics="127.0.0.1:9")
-    free = instead(monkeypatch, "tritrack.live.free_ports.refuse_held_metrics")
+    free = instead(monkeypatch, "runtime.live.free_ports.refuse_held_metrics")
     typed(metrics, "gym.toml")
     assert free.last == ("127.0.0.1:9",)
     names = ("integrator", "recognizer", "viewer 1", "viewer 2")
@@ -144,7 +144,7 @@ def test_each_process_of_a_rig_over_hosts_gets_the_settings_of_its_file(
 
 
 def test_sites_are_served_from_their_file(monkeypatch: pytest.MonkeyPatch) -> None:
-    served = instead(monkeypatch, "tritrack.serving.serve.serve")
+    served = instead(monkeypatch, "runtime.serving.serve.serve")
     typed(serve, "sites.toml")
     assert served.last[0] == Path("sites.toml")
 
@@ -169,7 +169,7 @@ def test_a_run_waits_for_its_page_where_both_say_so(own: bool, asked: bool) -> N
 def test_poses_are_sent_where_the_protocol_is_heard(
     monkeypatch: pytest.MonkeyPatch, protocol: str, words: list[str], to: str
 ) -> None:
-    sent = instead(monkeypatch, "tritrack.bridges.bridging.bridge", 1)
+    sent = instead(monkeypatch, "runtime.bridges.bridging.bridge", 1)
     more = ["--endpoint", "tcp/h:7", "--room", "gym", "--keys", "k"]
     said = typed(bridge, protocol, *words, *more)
     assert (*sent.last[:4], sent.last[5]) == (protocol, "tcp/h:7", "gym", to, "k")

@@ -14,11 +14,11 @@ from recognizer.model_file import load, save
 from recognizer.postures import Recognizer
 from recognizer.training.learning import train
 from recognizer.training.lesson import taught
+from runtime.live.launch import nothing_heard
 from synth.motion.streaming import streamed
 from synth.person.people import person
 from synth.picture.exposure import default_rig
 from synth.write import FPS, Filming, write_clip, write_rig
-from tritrack.live.launch import nothing_heard
 from tritrack.training import live_teaching
 from tritrack.training.coach import Said
 from tritrack.training.live_teaching import MOST_TAKES, Teaching, teach_live

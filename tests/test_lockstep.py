@@ -24,17 +24,17 @@ from common.video.clip_facts import Act, Clip, Meta, View
 from common.video.clip_sources import ClipError
 from common.video.decoding import Ending
 from integrator import diagnostics, merge_state
+from runtime.offline import lockstep
+from runtime.offline.batch import Asked, track_all
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.offline.performance import Performance, Prepared, Watch
+from runtime.offline.rig_check import Witness
+from runtime.offline.rig_from_person import Looked
+from runtime.overrides import overridden
+from runtime.store.pose_arrays import poses
+from runtime.store.runs import NOBODY_SEEN
+from runtime.unfinished.work import Course, InMemory
 from synth.write import ClipSet, write_set
-from tritrack.offline import lockstep
-from tritrack.offline.batch import Asked, track_all
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.offline.performance import Performance, Prepared, Watch
-from tritrack.offline.rig_check import Witness
-from tritrack.offline.rig_from_person import Looked
-from tritrack.overrides import overridden
-from tritrack.store.pose_arrays import poses
-from tritrack.store.runs import NOBODY_SEEN
-from tritrack.unfinished.work import Course, InMemory
 
 QUIET = Console(quiet=True)
 

@@ -16,9 +16,9 @@ from meeting import a_body, saying
 from moving import random_joints
 
 from common.bus.messages import Body
+from runtime.bridges.lsl import CHANNELS, lsl_outlet, sample_of
+from runtime.bridges.osc import BridgeError
 from tritrack import subscribe
-from tritrack.bridges.lsl import CHANNELS, lsl_outlet, sample_of
-from tritrack.bridges.osc import BridgeError
 
 MOST_ADDED_S = 0.005
 
@@ -72,7 +72,7 @@ def test_a_stream_names_its_channels_and_each_sample_is_stamped_with_its_frames_
     )
     monkeypatch.setitem(sys.modules, "pylsl", library)
     body = a_body(0, random_joints(3)[0])
-    monkeypatch.setattr("tritrack.bridges.lsl.time.monotonic", lambda: body.clock_s + 2.0)
+    monkeypatch.setattr("runtime.bridges.lsl.time.monotonic", lambda: body.clock_s + 2.0)
     lsl_outlet("attic")(body)
     assert infos == [("attic", "MoCap", 77, 0.0, "float32", "attic-body")]
     ((name, channels),) = described.children

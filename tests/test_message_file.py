@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from common.bus.messages import Body, Report
-from tritrack.unfinished.message_file import MessageFile, Place, Torn
+from runtime.unfinished.message_file import MessageFile, Place, Torn
 
 
 def body(frame: int) -> Body:

@@ -18,8 +18,8 @@ from common.bus.message_codec import TOPICS, encode
 from common.bus.messages import Message
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
-from tritrack.live.free_ports import free_settings
-from tritrack.live.session import live
+from runtime.live.free_ports import free_settings
+from runtime.live.session import live
 
 DOCS = Path(__file__).parents[1] / "docs" / "messages.schema.json"
 

@@ -15,8 +15,8 @@ from show_page import RIG
 from common.bus.control_messages import Cameras, Pulse
 from common.bus.inbox import Alive
 from common.bus.messages import Agreement, Body, Posture
-from tritrack.outside.metrics import families
-from tritrack.outside.run_figures import RunFigures, Told, step
+from runtime.outside.metrics import families
+from runtime.outside.run_figures import RunFigures, Told, step
 
 PULSE = Pulse(
     process="viewer 1",

@@ -28,11 +28,11 @@ from common.bus.process import READY_S, ProcessContext
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
+from runtime.live import session
+from runtime.live.free_ports import free_settings
+from runtime.live.session import live
+from runtime.outside.metrics_process import Desk, main, run
 from tritrack.commands.live_commands import metrics
-from tritrack.live import session
-from tritrack.live.free_ports import free_settings
-from tritrack.live.session import live
-from tritrack.outside.metrics_process import Desk, main, run
 
 PATIENCE_S = 180.0
 PARTS = {"integrator", "recognizer", "viewer 1", "viewer 2", "metrics"}
@@ -144,7 +144,7 @@ PULSE = Pulse(process="viewer 1", state="running", frames=9)
 
 @pytest.fixture
 def at_100_s(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tritrack.outside.metrics_process.time.monotonic", lambda: 100.0)
+    monkeypatch.setattr("runtime.outside.metrics_process.time.monotonic", lambda: 100.0)
 
 
 @pytest.mark.usefixtures("at_100_s")
@@ -196,8 +196,8 @@ def test_all_that_a_run_says_is_heard_and_the_process_tells_that_it_lives(
     bus.publish(rig)
     bus.announce("viewer 1")
     pulses = bus.subscribe(Pulse)
-    monkeypatch.setattr("tritrack.outside.metrics_process.HEAR_S", 0.01)
-    monkeypatch.setattr("tritrack.outside.metrics_process.BEAT_S", 0.02)
+    monkeypatch.setattr("runtime.outside.metrics_process.HEAR_S", 0.01)
+    monkeypatch.setattr("runtime.outside.metrics_process.BEAT_S", 0.02)
     running = threading.Thread(target=run, args=(desk, bus, stop))
     running.start()
     beats: list[Pulse] = []
@@ -228,7 +228,7 @@ def test_metrics_are_served_of_the_settings_room_by_a_process_that_stands_back(
 ) -> None:
     asked: list[Any] = []
     bus, stop = LocalBus("hall"), threading.Event()
-    place = "tritrack.outside.metrics_process"
+    place = "runtime.outside.metrics_process"
 
     @contextmanager
     def opened(name: str, given: tuple[Any, ...], inside: Any) -> Iterator[Any]:

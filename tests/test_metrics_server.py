@@ -11,7 +11,7 @@ pytest.importorskip("prometheus_client", reason="pip install 'tritrack[metrics]'
 from metrics_reader import read
 from prometheus_client.core import GaugeMetricFamily
 
-from tritrack.outside.metrics_server import served
+from runtime.outside.metrics_server import served
 
 
 def free_address() -> str:

@@ -4,7 +4,7 @@ import msgspec
 from test_message_codec import BODY
 
 from common.bus.messages import Body, ViewerNumber
-from tritrack.moved_facts import Moves, facts_of_moves, moved_facts, step
+from runtime.moved_facts import Moves, facts_of_moves, moved_facts, step
 
 
 def body(at_s: float, *moved: ViewerNumber) -> Body:

@@ -10,8 +10,8 @@ from common.config import config_file
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
 from common.video.clip_sources import ClipError
-from tritrack.offline.lockstep import Decoders, measured_before, track_clip
-from tritrack.offline.opening_clip import body_of
+from runtime.offline.lockstep import Decoders, measured_before, track_clip
+from runtime.offline.opening_clip import body_of
 
 PERSON = thesis_bdp(1.62)
 

@@ -12,7 +12,7 @@ from osc_reader import read_osc
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES
 from common.bus.messages import Body
-from tritrack.bridges.osc import BridgeError, osc_packet, osc_sender
+from runtime.bridges.osc import BridgeError, osc_packet, osc_sender
 
 pytest.importorskip("pythonosc", reason="pip install 'tritrack[osc]'")
 

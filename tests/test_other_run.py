@@ -8,10 +8,10 @@ from rich.console import Console
 from spoiling import copied, refilmed
 
 from common.config.settings import Settings
-from tritrack.offline.batch import Asked, track_all
+from runtime.offline.batch import Asked, track_all
+from runtime.store.other_run import OtherRun, refuse_other, run_of, run_told
+from runtime.store.runs import write_run
 from tritrack.single.single import Given, single_all
-from tritrack.store.other_run import OtherRun, refuse_other, run_of, run_told
-from tritrack.store.runs import write_run
 
 TRACKED = run_of("track", ["day1/dance.mp4"])
 

@@ -12,7 +12,7 @@ from animator.overlay import SHOWN
 from common.config.picture_size import working_size
 from common.rig.camera import Camera, Matrix
 from common.video.decoding import Wanted
-from tritrack.offline.film_tracking import Followed
+from runtime.offline.film_tracking import Followed
 from tritrack.single import overlay_film
 from tritrack.single.overlay_film import STANDS_S, shown_times
 

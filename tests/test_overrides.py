@@ -6,8 +6,8 @@ import pytest
 
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
+from runtime.overrides import overridden
 from tritrack.commands.clip_commands import single, track
-from tritrack.overrides import overridden
 
 
 def test_what_is_not_named_stays_as_the_settings_say() -> None:

@@ -21,13 +21,13 @@ from common.bus.messages import Body, Posture, Status
 from common.bus.process import ProcessContext
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
-from tritrack.live.free_ports import free_settings
-from tritrack.live.launch import nothing_heard
-from tritrack.live.page_desk import LAST_S, SAVED, PageDesk
-from tritrack.live.recorded import MessageLog
-from tritrack.live.session import live
-from tritrack.store.journal import Head, Journal
-from tritrack.store.past_run import open_run
+from runtime.live.free_ports import free_settings
+from runtime.live.launch import nothing_heard
+from runtime.live.page_desk import LAST_S, SAVED, PageDesk
+from runtime.live.recorded import MessageLog
+from runtime.live.session import live
+from runtime.store.journal import Head, Journal
+from runtime.store.past_run import open_run
 
 RATE_HZ = 15
 NO_PAGE = Settings(page=PageSettings(port=0))
@@ -278,7 +278,7 @@ def test_a_page_is_told_the_end_and_waited_for_while_it_is_looked_at(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """Its process is begun with the desk; where it has closed already nobody waits."""
-    monkeypatch.setattr("tritrack.live.page_desk.Watched", Page)
+    monkeypatch.setattr("runtime.live.page_desk.Watched", Page)
     settings, context = Settings(page=PageSettings(port=9)), ProcessContext(True)
     zygote: Any = object()
     desk = PageDesk(settings, tmp_path, "a run", context, zygote)
@@ -310,7 +310,7 @@ def test_a_page_is_told_the_end_and_waited_for_while_it_is_looked_at(
 def test_a_page_has_an_address_once_it_answers(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("tritrack.live.page_desk.Watched", Page)
+    monkeypatch.setattr("runtime.live.page_desk.Watched", Page)
     port = free_port()
     desk = PageDesk(Settings(page=PageSettings(port=port)), tmp_path, "a run", ProcessContext(True))
     assert desk.address == ""

@@ -13,7 +13,7 @@ import psutil
 import pytest
 
 from common.parent_death import end_with_parent
-from tritrack.live.process_table import Part, end, started
+from runtime.live.process_table import Part, end, started
 
 SOON_S = 2.0
 PR_GET_PDEATHSIG = 2
@@ -24,7 +24,7 @@ PARENT = """
 import sys, time
 from pathlib import Path
 from test_parent_death import sleeps
-from tritrack.live.process_table import Part, started
+from runtime.live.process_table import Part, started
 if __name__ == "__main__":
     child = started(Part("viewer 1", sleeps, (sys.argv[1],)))
     time.sleep(600)

@@ -7,9 +7,9 @@ import msgspec
 
 from common.bus.messages import Body
 from common.config.settings import Settings
-from tritrack.store.journal import HEAD, NAME, Head, Journal, framed, parts_of
-from tritrack.store.past_journal import Journalled, put_aside, read_journal
-from tritrack.store.past_run import open_run
+from runtime.store.journal import HEAD, NAME, Head, Journal, framed, parts_of
+from runtime.store.past_journal import Journalled, put_aside, read_journal
+from runtime.store.past_run import open_run
 
 SETTINGS = Head(settings=Settings(clip="clips/walk"), facts={"clip": "walk"})
 

@@ -14,9 +14,9 @@ from common.bus.control_messages import Cameras
 from common.bus.messages import Body, Posture
 from common.config.settings import Settings
 from common.rig.camera import paper_rig
-from tritrack.store.journal import Head, Journal
-from tritrack.store.past_run import CUT_SHORT, PastRunError, is_run, open_run
-from tritrack.store.runs import write_run
+from runtime.store.journal import Head, Journal
+from runtime.store.past_run import CUT_SHORT, PastRunError, is_run, open_run
+from runtime.store.runs import write_run
 
 RIG = paper_rig((320, 240), (400.0, 400.0), (4.0, 4.0))
 

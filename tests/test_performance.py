@@ -17,12 +17,12 @@ from common.config.settings import Settings
 from common.method import DEFAULT, Mode
 from common.video.clip_facts import Clip, Meta, View
 from integrator import merge_state
-from tritrack.offline import performance
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.offline.performance import STAGE, Going, Prepared, Watch, performed
-from tritrack.offline.rig_check import Witness
-from tritrack.unfinished.state_codec import packed, unpacked
-from tritrack.unfinished.work import Course, Kept
+from runtime.offline import performance
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.offline.performance import STAGE, Going, Prepared, Watch, performed
+from runtime.offline.rig_check import Witness
+from runtime.unfinished.state_codec import packed, unpacked
+from runtime.unfinished.work import Course, Kept
 from viewer.capture import CapturedFrame
 
 VIEWS: tuple[ViewerNumber, ...] = (1, 2)

@@ -9,10 +9,10 @@ import pytest
 
 from common.bus.messages import Body, Lifting
 from common.config.settings import Settings
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.store import pose_arrays
-from tritrack.store.joint_arrays import on_disk
-from tritrack.store.pose_arrays import mapped_poses, poses
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.store import pose_arrays
+from runtime.store.joint_arrays import on_disk
+from runtime.store.pose_arrays import mapped_poses, poses
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,7 @@ from recognizer.evaluation import Recording
 from recognizer.learning_error import LearningError
 from recognizer.model_file import save
 from recognizer.training.learning import train
-from tritrack.faults import code_of
+from runtime.faults import code_of
 from tritrack.postures import posture_evaluation
 from tritrack.postures.posture_evaluation import Plan, evaluate_postures
 from tritrack.postures.posture_split import EACH_IN_TURN

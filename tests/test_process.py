@@ -175,7 +175,7 @@ def test_what_the_supervisor_logs_goes_to_the_runs_log_alone_while_it_runs(
     path, own = tmp_path / "log.txt", logging.getLogger("tritrack")
     with logged("supervisor", path):
         own.warning("within")
-        logging.getLogger("tritrack.live").warning("deeper")
+        logging.getLogger("runtime.live").warning("deeper")
     own.warning("after")
     lines = path.read_text().splitlines()
     assert [line.split(" supervisor  WARNING ")[1] for line in lines] == ["within", "deeper"]

@@ -11,9 +11,9 @@ import pytest
 from common.bus.process import ProcessContext
 from common.config.settings import Settings
 from common.video.clip_facts import Clip, Meta, View
-from tritrack.forking.zygote import FORK, SPAWN
-from tritrack.live import process_table
-from tritrack.live.process_table import (
+from runtime.forking.zygote import FORK, SPAWN
+from runtime.live import process_table
+from runtime.live.process_table import (
     END_S,
     Part,
     Running,

@@ -8,14 +8,14 @@ import pytest
 from common.bus.control_messages import Pulse
 from common.bus.messages import Body, Posture
 from common.config.settings import Settings
-from tritrack.live.launch import nothing_heard
-from tritrack.live.recorded import MessageLog, SoFar, WholeRun
-from tritrack.live.run_facts import note_lost, note_unseen
-from tritrack.store import journal
-from tritrack.store.journal import Head, Journal
-from tritrack.store.past_journal import Journalled
-from tritrack.store.past_run import open_run
-from tritrack.store.runs import NOBODY_SEEN, write_run
+from runtime.live.launch import nothing_heard
+from runtime.live.recorded import MessageLog, SoFar, WholeRun
+from runtime.live.run_facts import note_lost, note_unseen
+from runtime.store import journal
+from runtime.store.journal import Head, Journal
+from runtime.store.past_journal import Journalled
+from runtime.store.past_run import open_run
+from runtime.store.runs import NOBODY_SEEN, write_run
 
 
 def test_no_more_than_the_bound_is_kept_and_what_gave_way_is_counted() -> None:
@@ -107,5 +107,5 @@ def test_a_performance_is_named_by_the_last_window_that_had_a_name() -> None:
 def test_what_is_told_so_far_reads_no_body_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """So that a supervisor of an hours-long run stands still for none of its answers."""
     told = SoFar([body(0), body(1)])
-    monkeypatch.setattr("tritrack.live.recorded.decode", lambda *_: pytest.fail("read again"))
+    monkeypatch.setattr("runtime.live.recorded.decode", lambda *_: pytest.fail("read again"))
     assert (told.moves, told.posture) == ((), "")

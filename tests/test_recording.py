@@ -18,9 +18,9 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body, Posture, Report
 from common.config.settings import Settings
-from tritrack.store.foxglove_scene import SCENE, time_of
-from tritrack.store.recording import Head, RecordingError, read_recording, recording_to
-from tritrack.store.runs import RunError
+from runtime.store.foxglove_scene import SCENE, time_of
+from runtime.store.recording import Head, RecordingError, read_recording, recording_to
+from runtime.store.runs import RunError
 
 mcap_reader = pytest.importorskip("mcap.reader", reason="pip install 'tritrack[mcap]'")
 

@@ -11,14 +11,14 @@ from rich.console import Console
 from spoiling import copied, edit_json
 
 from recognizer.evaluation import Recording
+from runtime.offline import clip_cache
+from runtime.offline.batch import Asked, track_all
+from runtime.store.clip_paths import ClipsFailed
+from runtime.store.runs import RunError
 from synth.write import ClipSet
 from tritrack.commands.options import CACHE
 from tritrack.making import make_clips
-from tritrack.offline import clip_cache
-from tritrack.offline.batch import Asked, track_all
 from tritrack.postures.posture_evaluation import Plan
-from tritrack.store.clip_paths import ClipsFailed
-from tritrack.store.runs import RunError
 from tritrack.training import recordings as stage
 from tritrack.training.recordings import RecordingError, announced, recordings
 

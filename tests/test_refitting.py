@@ -18,11 +18,11 @@ from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import save_notes
+from runtime.store.runs import RunError
 from tritrack.exporting import export_run
 from tritrack.single import refitting
 from tritrack.single.refitting import Said, refit
 from tritrack.single.single import Given, single_all
-from tritrack.store.runs import RunError
 
 QUIET = Console(quiet=True)
 SAID = Notes(note=(Note(10, orientation="backward_left"),))

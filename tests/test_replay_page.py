@@ -26,10 +26,10 @@ from animator.scene import Snapshot
 from common.bus.control_messages import Cameras
 from common.bus.messages import Performance, Posture
 from common.rig.camera import Rig
+from runtime.store.past_run import open_run
+from runtime.store.recording import read_recording
 from tritrack import replay_page
 from tritrack.replay_page import show
-from tritrack.store.past_run import open_run
-from tritrack.store.recording import read_recording
 
 __all__ = ["run"]
 

@@ -19,14 +19,14 @@ from common.bus.control_messages import Cameras
 from common.bus.messages import Body, Message, Posture, Report, ViewerNumber
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
-from tritrack.live.free_ports import free_settings
-from tritrack.live.session import live
-from tritrack.offline.batch import Asked, track_all
+from runtime.live.free_ports import free_settings
+from runtime.live.session import live
+from runtime.offline.batch import Asked, track_all
+from runtime.store.other_run import OtherRun, run_of
+from runtime.store.past_run import open_run
+from runtime.store.recording import Head, Recording, read_recording
+from runtime.store.runs import write_run
 from tritrack.replaying import _rigs, pairs, replay_on_bus, replay_run, say
-from tritrack.store.other_run import OtherRun, run_of
-from tritrack.store.past_run import open_run
-from tritrack.store.recording import Head, Recording, read_recording
-from tritrack.store.runs import write_run
 
 pytest.importorskip("mcap", reason="pip install 'tritrack[mcap]'")
 

@@ -14,13 +14,13 @@ import pytest
 from rich.console import Console
 from spoiling import changed, copied, film_of, refilmed
 
-from tritrack.offline.batch import Asked, track_all
-from tritrack.store.past_run import CUT_SHORT, open_run
-from tritrack.unfinished import unfinished_run
-from tritrack.unfinished.resuming import MADE_OF
+from runtime.offline.batch import Asked, track_all
+from runtime.store.past_run import CUT_SHORT, open_run
+from runtime.unfinished import unfinished_run
+from runtime.unfinished.resuming import MADE_OF
 
 PROGRAM = (
-    "from tritrack.unfinished import unfinished_run; unfinished_run.SAVES_S = 0.1; "
+    "from runtime.unfinished import unfinished_run; unfinished_run.SAVES_S = 0.1; "
     "from tritrack.__main__ import main; main()"
 )
 """The command, which saves its state more often."""
@@ -148,7 +148,7 @@ def test_a_run_of_something_else_is_refused_in_a_line_and_left_as_it_is(
 ) -> None:
     import shutil
 
-    from tritrack.unfinished.unfinished_run import CannotResume
+    from runtime.unfinished.unfinished_run import CannotResume
 
     harm, given, word = REFUSALS[name]
     clip = shutil.copytree(long_clip, tmp_path / "walk")

@@ -30,9 +30,9 @@ from common.notes.notes import Note, Notes
 from common.notes.notes_file import load_notes, save_notes
 from common.rig.camera import PAPER_ROTATIONS
 from common.video.clips import open_clip
+from runtime.store.past_run import open_run
 from tritrack.single import retouching
 from tritrack.single.retouching import RetouchError, how_to_go_on, retouch
-from tritrack.store.past_run import open_run
 
 QUIET = Console(quiet=True)
 

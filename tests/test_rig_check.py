@@ -10,8 +10,8 @@ from calibration.gate.rig_trust import Trust
 from calibration.tracks.lateness import UNSEEN, Clock
 from common.bus.messages import Body, Box, Landmarks, Report, ViewerNumber
 from common.video.clip_facts import Clip, Meta, View
-from tritrack.offline import rig_check
-from tritrack.offline.rig_check import (
+from runtime.offline import rig_check
+from runtime.offline.rig_check import (
     DOUBTED,
     Witness,
     clock_facts,

@@ -15,10 +15,10 @@ from calibration.tracks.lateness import Clock
 from common.atomic_file import FileRefused
 from common.rig.camera import paper_rig
 from common.rig.rig_file import load_rig
+from runtime.offline.rig_of_boards import Shown
+from runtime.offline.rig_of_clips import FoundByClips, Given
 from tritrack.commands.rig_commands import calibrate_app
 from tritrack.marking.marking import Asked, Result
-from tritrack.offline.rig_of_boards import Shown
-from tritrack.offline.rig_of_clips import FoundByClips, Given
 
 RIG = paper_rig((320, 240), (400.0, 400.0), (4.0, 4.0))
 CLOCKS = (Clock(0.0), Clock(-0.15, (1.2,)))
@@ -41,7 +41,7 @@ def by_clips(monkeypatch: pytest.MonkeyPatch) -> Called:
     instead(monkeypatch, "common.video.clip_sources.refuse_no_footage")
     instead(monkeypatch, "common.config.config_file.load")
     instead(monkeypatch, "calibration.paper.calibration.write_rig")
-    place = "tritrack.offline.rig_of_clips.calibrated_by_clips"
+    place = "runtime.offline.rig_of_clips.calibrated_by_clips"
     return instead(monkeypatch, place, FoundByClips(RIG, quality(), CLOCKS))
 
 
@@ -80,7 +80,7 @@ def test_a_board_is_printed_or_looked_for_as_it_was_measured(
     printed = instead(monkeypatch, "calibration.board.board_print.print_board")
     readable = instead(monkeypatch, "common.video.clips.refuse_unreadable")
     found = SimpleNamespace(cameras=CAMERAS, reprojection_px=0.123, shared_rests=1, floor_s=7.04)
-    place = "tritrack.offline.rig_of_boards.calibrate_by_videos"
+    place = "runtime.offline.rig_of_boards.calibrate_by_videos"
     done = instead(monkeypatch, place, (found, Path("seen.png")))
     said = typed(calibrate_app, "board", "--print", "b.pdf", "--paper", "a4")
     assert printed.last == (Path("b.pdf"), "a4")
@@ -110,7 +110,7 @@ def test_nothing_is_printed_or_calibrated_over_what_is_there(
     monkeypatch: pytest.MonkeyPatch, here: Path
 ) -> None:
     printed = instead(monkeypatch, "calibration.board.board_print.print_board")
-    done = instead(monkeypatch, "tritrack.offline.rig_of_boards.calibrate_by_videos")
+    done = instead(monkeypatch, "runtime.offline.rig_of_boards.calibrate_by_videos")
     instead(monkeypatch, "common.video.clips.refuse_unreadable")
     for name in ("b.pdf", "calibration.json"):
         (here / name).write_text("mine")

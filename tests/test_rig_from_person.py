@@ -21,9 +21,9 @@ from common.rig.camera import paper_rig
 from common.rig.picture_shift import Shift
 from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip, Meta, View
-from tritrack.offline import rig_from_person
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.offline.rig_from_person import (
+from runtime.offline import rig_from_person
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.offline.rig_from_person import (
     ON_TIME,
     Looked,
     by_person,
@@ -31,7 +31,7 @@ from tritrack.offline.rig_from_person import (
     on_time,
     sighting_of,
 )
-from tritrack.store.pose_arrays import poses
+from runtime.store.pose_arrays import poses
 from viewer.room.background_source import Opening
 from viewer.track import Setup
 

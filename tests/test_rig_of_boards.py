@@ -16,9 +16,9 @@ from calibration.board.board_rig import BoardCalibration
 from calibration.board.still_board import Film, Moments
 from common.rig.camera import centre, paper_rig
 from common.rig.rig_file import CalibrationError, load_rig
-from tritrack.offline import rig_of_boards
-from tritrack.offline.board_films import Looked
-from tritrack.offline.rig_of_boards import Shown, calibrate_by_videos
+from runtime.offline import rig_of_boards
+from runtime.offline.board_films import Looked
+from runtime.offline.rig_of_boards import Shown, calibrate_by_videos
 
 QUIET = Console(quiet=True)
 

@@ -14,9 +14,9 @@ from common.config.settings import Settings
 from common.rig.camera import paper_rig
 from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip, Meta, View
-from tritrack.offline import rig_of_clips
-from tritrack.offline.rig_from_person import ON_TIME
-from tritrack.offline.rig_of_clips import Given, calibrated_by_clips
+from runtime.offline import rig_of_clips
+from runtime.offline.rig_from_person import ON_TIME
+from runtime.offline.rig_of_clips import Given, calibrated_by_clips
 
 RIG = paper_rig((160, 120), (200.0, 210.0), (4.0, 4.0))
 QUALITY = Quality((), 1.75, 40, 12.0, 1.0, (0.5,), (0.1,))
@@ -37,7 +37,7 @@ class Clips:
         self.open_sources = 0
         for name in ("open_clip", "outside_sources", "sighting_of", "clock_of"):
             monkeypatch.setattr(rig_of_clips, name, getattr(self, name))
-        monkeypatch.setattr("tritrack.offline.rig_of_clips.config_file.load", self.load)
+        monkeypatch.setattr("runtime.offline.rig_of_clips.config_file.load", self.load)
         monkeypatch.setattr(rig_of_clips, "calibrated_by_person", self.calibrated)
         monkeypatch.setattr(rig_of_clips, "Decoder", self.decoder)
 

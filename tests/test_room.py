@@ -11,11 +11,11 @@ from common.bus.control_messages import Pulse
 from common.bus.message_codec import encode
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
-from tritrack.forking.zygote import Zygote
-from tritrack.live.supervise import PartFailed
-from tritrack.serving.room import AGAIN_S, SITE, Room, site_main
-from tritrack.serving.served_rooms import House
-from tritrack.serving.sites import Site
+from runtime.forking.zygote import Zygote
+from runtime.live.supervise import PartFailed
+from runtime.serving.room import AGAIN_S, SITE, Room, site_main
+from runtime.serving.served_rooms import House
+from runtime.serving.sites import Site
 
 PATIENCE_S = 60.0
 
@@ -65,7 +65,7 @@ class Stopped:
 def test_a_site_that_never_began_is_not_said_to_have_a_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tritrack.serving.served_rooms.Room", Stopped)
+    monkeypatch.setattr("runtime.serving.served_rooms.Room", Stopped)
     (tmp_path / "configs").mkdir()
     said: list[str] = []
     house = House(cast(Zygote, None), said.append, said.append)
@@ -109,7 +109,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> list[Part]:
         begun.append(Part(part))
         return begun[-1]
 
-    monkeypatch.setattr("tritrack.serving.room.Watched", watched)
+    monkeypatch.setattr("runtime.serving.room.Watched", watched)
     return begun
 
 

@@ -13,9 +13,9 @@ from animator.exchange.marker_files import forward_x
 from animator.skeleton.bones import BONES, OF_JOINTS
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Body
+from runtime.store.pose_arrays import poses
+from runtime.store.run_exports import Format
 from tritrack.exporting import export_run
-from tritrack.store.pose_arrays import poses
-from tritrack.store.run_exports import Format
 
 GAPS: Final = {
     "start": [0, 1, 2],

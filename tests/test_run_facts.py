@@ -11,9 +11,9 @@ from staging import RIG
 from common.bus.control_messages import Cameras, Pulse
 from common.bus.messages import Body, Posture
 from common.video.clip_facts import Clip, Meta, View
-from tritrack.live.launch import nothing_heard
-from tritrack.live.recorded import SoFar
-from tritrack.live.run_facts import facts_of, facts_of_clip, note_lost
+from runtime.live.launch import nothing_heard
+from runtime.live.recorded import SoFar
+from runtime.live.run_facts import facts_of, facts_of_clip, note_lost
 
 CLIP = Clip(
     "room",

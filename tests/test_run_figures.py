@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from common.bus.control_messages import Pulse
 from common.bus.inbox import Alive
 from common.bus.messages import Body, Posture, Status
-from tritrack.outside.run_figures import BUCKETS_S, RunFigures, Told, step
+from runtime.outside.run_figures import BUCKETS_S, RunFigures, Told, step
 
 
 def body(clock_s: float, status: Status = "tracking") -> Body:

@@ -7,11 +7,11 @@ import pytest
 from common.bus.messages import Body
 from common.config.settings import Settings
 from common.video.clip_facts import Clip, Meta, View
-from tritrack.live.admission import LiveRefused
-from tritrack.live.page_desk import SAVED
-from tritrack.live.run_folder import KEPT, new_journal, new_log
-from tritrack.store.journal import has_journal
-from tritrack.store.past_journal import LOG, read_journal
+from runtime.live.admission import LiveRefused
+from runtime.live.page_desk import SAVED
+from runtime.live.run_folder import KEPT, new_journal, new_log
+from runtime.store.journal import has_journal
+from runtime.store.past_journal import LOG, read_journal
 
 CLIP = Clip("room", (View(1, 0, (160, 120), (160, 120), 15.0, 0),), 1, None, Meta())
 

@@ -10,8 +10,8 @@ from spoiling import changed, copied
 
 from common.config.settings import Settings
 from common.packages import ROOT
-from tritrack.unfinished import run_identity
-from tritrack.unfinished.run_identity import differing, identity_of, tracker_id
+from runtime.unfinished import run_identity
+from runtime.unfinished.run_identity import differing, identity_of, tracker_id
 
 
 def test_a_run_is_another_where_its_settings_or_a_file_are(clip: Path, tmp_path: Path) -> None:

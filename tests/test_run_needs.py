@@ -10,9 +10,9 @@ import pytest
 
 from common.config.part_settings import BusSettings, CameraSettings, PageSettings
 from common.config.settings import Settings
+from runtime.live.free_ports import free_settings
 from tritrack.doctor.installation import Finding, refused
 from tritrack.doctor.run_needs import examine_run
-from tritrack.live.free_ports import free_settings
 
 
 def found(settings: Settings, out: Path) -> dict[str, Finding]:

@@ -13,11 +13,11 @@ from common.body.body import ANGLE_NAMES, JOINT_NAMES
 from common.body.extremities import EXTREMITY_NAMES
 from common.bus.messages import Body, Performance, Posture
 from common.config.settings import Settings
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.store.joint_arrays import on_disk
-from tritrack.store.pose_arrays import poses
-from tritrack.store.run_exports import EXPORTS
-from tritrack.store.runs import (
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.store.joint_arrays import on_disk
+from runtime.store.pose_arrays import poses
+from runtime.store.run_exports import EXPORTS
+from runtime.store.runs import (
     RunError,
     believed,
     summary_of,
@@ -25,7 +25,7 @@ from tritrack.store.runs import (
     write_postures,
     write_run,
 )
-from tritrack.terminal import json_text
+from runtime.terminal import json_text
 
 N = 69
 CONTRACT = {

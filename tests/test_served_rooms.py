@@ -7,11 +7,11 @@ import pytest
 
 from common.bus.control_messages import Pulse
 from common.config.settings import Settings
-from tritrack.outside.run_figures import RunFigures, step
-from tritrack.serving import served_rooms
-from tritrack.serving.served_rooms import House
-from tritrack.serving.site_status import status_of
-from tritrack.serving.sites import Site
+from runtime.outside.run_figures import RunFigures, step
+from runtime.serving import served_rooms
+from runtime.serving.served_rooms import House
+from runtime.serving.site_status import status_of
+from runtime.serving.sites import Site
 
 CALLS: list[tuple[str, str]] = []
 
@@ -48,7 +48,7 @@ class Told:
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.said, self.lamented = list[str](), list[str]()
         monkeypatch.setattr(served_rooms, "Room", Hall)
-        monkeypatch.setattr("tritrack.serving.served_rooms.time.monotonic", lambda: 41.0)
+        monkeypatch.setattr("runtime.serving.served_rooms.time.monotonic", lambda: 41.0)
         zygote: Any = "zygote"
         self.house = House(zygote, self.said.append, self.lamented.append)
         CALLS.clear()

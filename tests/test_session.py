@@ -20,13 +20,13 @@ from common.bus.control_messages import Pulse
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from common.video.clip_sources import ClipError
-from tritrack.live.admission import LiveRefused
-from tritrack.live.free_ports import free_settings, refuse_held_ports
-from tritrack.live.screen import warnings_of
-from tritrack.live.session import live
-from tritrack.store.journal import Head, Journal
-from tritrack.store.past_journal import read_journal
-from tritrack.store.past_run import open_run
+from runtime.live.admission import LiveRefused
+from runtime.live.free_ports import free_settings, refuse_held_ports
+from runtime.live.screen import warnings_of
+from runtime.live.session import live
+from runtime.store.journal import Head, Journal
+from runtime.store.past_journal import read_journal
+from runtime.store.past_run import open_run
 
 
 def settings_of(clip: Path) -> Settings:

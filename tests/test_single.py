@@ -17,8 +17,9 @@ from common.config.settings import Settings
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import save_notes
 from common.rig.camera import Camera, project
-from tritrack.faults import Unfollowed, refuse_unfollowed
-from tritrack.offline.batch import Asked, track_all
+from runtime.faults import Unfollowed, refuse_unfollowed
+from runtime.offline.batch import Asked, track_all
+from runtime.store.clip_paths import ClipsFailed
 from tritrack.single import single
 from tritrack.single.single import (
     UNUSABLE,
@@ -30,7 +31,6 @@ from tritrack.single.single import (
     name_of,
     single_all,
 )
-from tritrack.store.clip_paths import ClipsFailed
 
 QUIET = Console(quiet=True)
 SMALL = Settings(size="160x120")

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from common.config.settings import Settings
-from tritrack.serving.site_changes import changes
-from tritrack.serving.sites import Site
+from runtime.serving.site_changes import changes
+from runtime.serving.sites import Site
 
 NAMES = st.sampled_from(["hall", "lobby", "annex", "stage"])
 SETTINGS = st.builds(Settings, every=st.integers(1, 3))

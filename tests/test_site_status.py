@@ -3,7 +3,7 @@
 from typing import Any
 
 from common.bus.control_messages import Pulse
-from tritrack.serving.site_status import site_pulse, status_of
+from runtime.serving.site_status import site_pulse, status_of
 
 HUB = Pulse(
     process="integrator",

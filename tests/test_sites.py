@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from common.config.settings_error import SettingsError
-from tritrack.serving.serve import SitesWatch
-from tritrack.serving.sites import files_of, load_sites
+from runtime.serving.serve import SitesWatch
+from runtime.serving.sites import files_of, load_sites
 
 INLINE = """
 [[site]]

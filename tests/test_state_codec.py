@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
-from tritrack.unfinished.state_codec import UnreadableState, packed, unpacked
+from runtime.unfinished.state_codec import UnreadableState, packed, unpacked
 
 
 class Inner(msgspec.Struct, frozen=True):

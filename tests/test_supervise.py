@@ -10,9 +10,9 @@ import pytest
 
 from common.bus.control_messages import Pulse
 from common.video.clip_sources import ClipError
-from tritrack.faults import code_of
-from tritrack.live.process_table import Part
-from tritrack.live.supervise import BACK_OFF_S, TRIES, PartBroke, PartFailed, Watched, watched
+from runtime.faults import code_of
+from runtime.live.process_table import Part
+from runtime.live.supervise import BACK_OFF_S, TRIES, PartBroke, PartFailed, Watched, watched
 
 PATIENCE_S = 60.0
 

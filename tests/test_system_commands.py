@@ -24,10 +24,10 @@ from calibration.foreign.toml_rig import toml_text
 from common.config.settings import Settings
 from common.rig.camera import paper_rig
 from common.rig.rig_file import load_rig
-from tritrack.live import session
-from tritrack.store.other_run import run_of
-from tritrack.store.past_run import open_run
-from tritrack.store.runs import write_run
+from runtime.live import session
+from runtime.store.other_run import run_of
+from runtime.store.past_run import open_run
+from runtime.store.runs import write_run
 
 
 class Ended(NamedTuple):

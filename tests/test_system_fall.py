@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from common.config.settings import Settings
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.store.pose_arrays import poses
 from synth.motion.falling import FALLS_S, RISES_S
 from synth.motion.motions import MOTION
 from synth.write import FPS, ClipSet, write_set
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.store.pose_arrays import poses
 
 LIES_MM, STANDS_MM = 170.0, 60.0
 """Eight such people lay 84 mm off on average and stood 38; who was looked at as if they stood

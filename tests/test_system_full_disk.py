@@ -14,14 +14,14 @@ from rich.console import Console
 from common.bus.messages import Body
 from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
-from tritrack.offline.batch import Asked, track_all
+from runtime.offline.batch import Asked, track_all
+from runtime.store.past_journal import read_journal
+from runtime.store.past_run import CUT_SHORT, open_run
+from runtime.store.runs import RunError
+from runtime.unfinished import unfinished_run
+from runtime.unfinished.resuming import Wanted, resumable
+from runtime.unfinished.unfinished_run import BODIES, FOLDER, STATE, UnfinishedRun
 from tritrack.single.single import Given, single_all
-from tritrack.store.past_journal import read_journal
-from tritrack.store.past_run import CUT_SHORT, open_run
-from tritrack.store.runs import RunError
-from tritrack.unfinished import unfinished_run
-from tritrack.unfinished.resuming import Wanted, resumable
-from tritrack.unfinished.unfinished_run import BODIES, FOLDER, STATE, UnfinishedRun
 
 NEVER_S, OFTEN_S = 1e9, 0.2
 """How often the state is saved."""
@@ -101,7 +101,7 @@ def test_what_was_tracked_stays_where_no_state_was_saved_yet(
 ) -> None:
     """Whatever came whole onto the disk can be read."""
     monkeypatch.setattr(unfinished_run, "SAVES_S", NEVER_S)
-    monkeypatch.setattr("tritrack.unfinished.message_file.AT_ONCE", 4096)
+    monkeypatch.setattr("runtime.unfinished.message_file.AT_ONCE", 4096)
     disk.room_bytes = 60_000
     said = what_was_said(run, clip, disk)
     assert f"{clip.name}: what is done is kept, but its state did not fit: --resume" in said

@@ -26,14 +26,14 @@ from common.bus.control_messages import Pulse
 from common.bus.messages import Body, Views
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
-from tritrack.live import session
-from tritrack.live.free_ports import free_settings
-from tritrack.live.process_table import Part, live_parts
-from tritrack.live.session import live
-from tritrack.live.supervise import PartFailed
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.store.joint_arrays import on_disk
-from tritrack.store.pose_arrays import poses
+from runtime.live import session
+from runtime.live.free_ports import free_settings
+from runtime.live.process_table import Part, live_parts
+from runtime.live.session import live
+from runtime.live.supervise import PartFailed
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.store.joint_arrays import on_disk
+from runtime.store.pose_arrays import poses
 from viewer.frozen_picture import FROZEN_AFTER
 
 pytestmark = pytest.mark.slow
@@ -508,7 +508,7 @@ def test_a_clip_that_ends_early_leaves_the_other_view(short_clip: Path, tmp_path
 def test_what_is_given_up_fails_the_run_after_the_other_view_was_tracked_to_its_end(
     short_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tritrack.live.supervise.TRIES", 0)
+    monkeypatch.setattr("runtime.live.supervise.TRIES", 0)
 
     def harm(witness: Witness) -> None:
         witness.until_tracked()

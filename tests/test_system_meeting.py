@@ -27,8 +27,8 @@ from common.video.decoding import DecoderDied
 from integrator import __main__ as integrator
 from integrator import merge_state
 from integrator.hearing import run_start
-from tritrack.live.free_ports import free_settings
-from tritrack.live.launch import Subscriber, nothing_heard
+from runtime.live.free_ports import free_settings
+from runtime.live.launch import Subscriber, nothing_heard
 from viewer import __main__ as viewer
 from viewer import track
 from viewer.background.background import learn

@@ -21,7 +21,7 @@ from hosts import Cable, Hosts, Unsimulated, hosts_of
 from spoiling import copied, refilmed
 
 from common.config.settings import Settings
-from tritrack.offline.lockstep import Decoders, track_clip
+from runtime.offline.lockstep import Decoders, track_clip
 
 PARTS: Final = {
     "integrator": ("integrate",),

@@ -33,8 +33,8 @@ from recognizer.__main__ import (
 from recognizer.events import Doing
 from recognizer.model_file import ModelError, load
 from recognizer.performance_judge import Event
-from tritrack.live.recorded import SoFar
-from tritrack.offline.lockstep import Decoders, track_clip
+from runtime.live.recorded import SoFar
+from runtime.offline.lockstep import Decoders, track_clip
 
 
 def tracked(clip: Path) -> list[Body]:

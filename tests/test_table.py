@@ -7,8 +7,8 @@ import pytest
 from rich.console import Console
 
 from common.bus.control_messages import Pulse
-from tritrack.live.table import table_of, table_of_rows
-from tritrack.terminal import bar, complain, counted, json_text, warn
+from runtime.live.table import table_of, table_of_rows
+from runtime.terminal import bar, complain, counted, json_text, warn
 
 
 def printed(thing: object, width: int = 80) -> list[str]:

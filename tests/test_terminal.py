@@ -2,7 +2,7 @@
 
 from rich.console import Console
 
-from tritrack.terminal import bar, by_pass, by_share
+from runtime.terminal import bar, by_pass, by_share
 
 
 def test_a_bar_moves_with_the_frames_of_the_one_video_that_there_is() -> None:

@@ -9,9 +9,9 @@ import pytest
 
 from common.bus.messages import Body
 from common.config.settings import Settings
-from tritrack.store.journal import Head
-from tritrack.store.past_journal import read_journal
-from tritrack.unfinished.unfinished_run import (
+from runtime.store.journal import Head
+from runtime.store.past_journal import read_journal
+from runtime.unfinished.unfinished_run import (
     BODIES,
     CannotResume,
     UnfinishedRun,
@@ -111,7 +111,7 @@ def test_what_changed_is_named_in_the_order_in_which_it_was_begun(tmp_path: Path
 
 def test_a_state_is_due_every_ten_seconds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     times_s = iter((100.0, 109.9, 110.0, 112.0, 112.0, 121.9, 122.0))
-    monkeypatch.setattr("tritrack.unfinished.unfinished_run.time.monotonic", lambda: next(times_s))
+    monkeypatch.setattr("runtime.unfinished.unfinished_run.time.monotonic", lambda: next(times_s))
     run = UnfinishedRun(tmp_path, IDENTITY, HEAD)
     run.messages(BODIES)
     due = [run.due, run.due, run.due]

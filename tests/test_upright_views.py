@@ -16,8 +16,8 @@ from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.upright_views import filed_rig, upright_views
-from tritrack.offline.lockstep import Decoders, Tracked, track_clip
-from tritrack.store.pose_arrays import poses
+from runtime.offline.lockstep import Decoders, Tracked, track_clip
+from runtime.store.pose_arrays import poses
 
 
 def tracked(clip: Path, views: tuple[Any, ...] = (1, 2), **settings: Any) -> Tracked:

@@ -13,7 +13,7 @@ from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
 from common.body.extremities import extremities
 from common.body.kinematics import joints
 from common.bus.messages import Body
-from tritrack.bridges.vmc import MEASURED, Measured, step
+from runtime.bridges.vmc import MEASURED, Measured, step
 
 pytest.importorskip("pythonosc", reason="pip install 'tritrack[osc]'")
 

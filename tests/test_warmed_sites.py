@@ -7,8 +7,8 @@ import pytest
 
 LOOK = """
 import os, sys
-from tritrack.serving import warmed_sites
-wanted = {"tritrack.live.session", "tritrack.offline.lockstep", "viewer.track", "integrator.merge"}
+from runtime.serving import warmed_sites
+wanted = {"runtime.live.session", "runtime.offline.lockstep", "viewer.track", "integrator.merge"}
 print(sorted(wanted - set(sys.modules)), len(os.listdir("/proc/self/task")))
 """
 

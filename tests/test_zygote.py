@@ -14,9 +14,9 @@ import psutil
 import pytest
 from test_parent_death import PATIENCE_S, SOON_S, ended_within, sleeps, written
 
-from tritrack.forking.zygote import SPAWN, Zygote
-from tritrack.live.process_table import Part, end, inherited, started
-from tritrack.live.supervise import PartFailed, watched
+from runtime.forking.zygote import SPAWN, Zygote
+from runtime.live.process_table import Part, end, inherited, started
+from runtime.live.supervise import PartFailed, watched
 
 pytestmark = [
     pytest.mark.slow,
@@ -26,8 +26,8 @@ pytestmark = [
 PARENT = """
 import sys, threading, time
 from test_parent_death import sleeps
-from tritrack.live.process_table import Part, inherited, started
-from tritrack.forking.zygote import Zygote
+from runtime.live.process_table import Part, inherited, started
+from runtime.forking.zygote import Zygote
 if __name__ == "__main__":
     zygote = Zygote(inherited)
     zygote.wait(threading.Event(), lambda: None)
@@ -38,8 +38,8 @@ if __name__ == "__main__":
 
 WITHOUT = """
 import threading
-from tritrack.live.process_table import inherited
-from tritrack.forking.zygote import SPAWN, Zygote
+from runtime.live.process_table import inherited
+from runtime.forking.zygote import SPAWN, Zygote
 if __name__ == "__main__":
     zygote = Zygote(inherited)
     zygote.wait(threading.Event(), lambda: None)
@@ -51,8 +51,8 @@ LOADING = """
 import sys, time
 from multiprocessing import forkserver
 from pathlib import Path
-from tritrack.live.process_table import inherited
-from tritrack.forking.zygote import Zygote
+from runtime.live.process_table import inherited
+from runtime.forking.zygote import Zygote
 if __name__ == "__main__":
     zygote = Zygote(inherited)
     Path(sys.argv[1]).write_text(str(forkserver._forkserver._forkserver_pid))
@@ -269,8 +269,8 @@ def test_a_zygote_that_is_asked_to_end_with_all_of_a_service_stays_for_its_forks
 @pytest.mark.live
 def test_a_run_that_is_stopped_does_not_wait_for_it() -> None:
     code = (
-        "import threading, time; from tritrack.live.process_table import inherited; "
-        "from tritrack.forking.zygote import Zygote; stop = threading.Event(); stop.set(); "
+        "import threading, time; from runtime.live.process_table import inherited; "
+        "from runtime.forking.zygote import Zygote; stop = threading.Event(); stop.set(); "
         "began = time.monotonic(); Zygote(inherited).wait(stop, print); "
         "assert time.monotonic() - began < 0.5"
     )
@@ -281,8 +281,8 @@ def test_a_file_of_the_working_directory_is_not_taken_for_a_library(tmp_path: Pa
     (tmp_path / "numpy.py").write_text("raise SystemExit('a stranger')")
     code = (
         "import sys; sys.path = [path for path in sys.path if path]\n"
-        "import threading; from tritrack.live.process_table import inherited\n"
-        "from tritrack.forking.zygote import SPAWN, Zygote\n"
+        "import threading; from runtime.live.process_table import inherited\n"
+        "from runtime.forking.zygote import SPAWN, Zygote\n"
         "if __name__ == '__main__':\n"
         "    one = Zygote(inherited); one.wait(threading.Event(), lambda: None)\n"
         "    assert one.context is not SPAWN\n"

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tritrack.client import (
+    from runtime.client import (
         ANGLE_NAMES,
         JOINT_NAMES,
         POSE_INDEX,
@@ -32,6 +32,6 @@ def __getattr__(name: str) -> Any:
     """What programs import, loaded when it is asked for: a command must heed signals before."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from tritrack import client
+    from runtime import client
 
     return getattr(client, name)

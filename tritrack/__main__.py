@@ -18,6 +18,8 @@ from typing import Annotated, Final, Literal
 
 import typer
 
+from runtime.faults import code_of, told
+from runtime.terminal import complain, json_text
 from tritrack.commands.clip_commands import export, replay, retouch, single, synth, track
 from tritrack.commands.command_output import JsonWanted, console, results
 from tritrack.commands.key_commands import examined_keys, keys
@@ -35,8 +37,6 @@ from tritrack.commands.live_commands import (
 from tritrack.commands.model_commands import evaluate_app, teach, train
 from tritrack.commands.options import Out
 from tritrack.commands.rig_commands import calibrate_app
-from tritrack.faults import code_of, told
-from tritrack.terminal import complain, json_text
 
 app = typer.Typer(
     name="tritrack",

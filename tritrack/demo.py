@@ -9,13 +9,13 @@ from rich.console import Console
 
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
+from runtime.live.free_ports import free_settings
+from runtime.live.session import live
+from runtime.store.other_run import refuse_other, run_of, run_told
 from synth.motion.motions import performance
 from synth.person.people import person
 from synth.picture.exposure import default_rig
 from synth.write import Filming, clip_name, write_clip, write_rig
-from tritrack.live.free_ports import free_settings
-from tritrack.live.session import live
-from tritrack.store.other_run import refuse_other, run_of, run_told
 
 PERFORMER_SEED: Final = 90_001
 """Of a person that no model was trained on: the one in the package knows persons 1200 to 1211."""

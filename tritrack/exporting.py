@@ -12,9 +12,9 @@ from animator.exchange import LibraryMissing
 from common.atomic_file import refuse_to_replace, replacing, unwritten
 from common.body.body import ANGLE_NAMES, JOINT_NAMES
 from common.body.extremities import EXTREMITY_NAMES
-from tritrack.store.joint_arrays import all_joints_m
-from tritrack.store.past_run import PastRun, open_run
-from tritrack.store.run_exports import OWN_NAMES, Format
+from runtime.store.joint_arrays import all_joints_m
+from runtime.store.past_run import PastRun, open_run
+from runtime.store.run_exports import OWN_NAMES, Format
 
 Scale = Literal["m", "cm"]
 ENDINGS: Final[dict[Format, tuple[str, ...]]] = {

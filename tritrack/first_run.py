@@ -27,9 +27,9 @@ def compile_all() -> None:
 
 def _run_all() -> None:
     from common.config.settings import Settings
+    from runtime.forking.parts_warmup import warm_up
+    from runtime.offline.lockstep import Decoders, track_clip
     from tritrack.demo import made_clip
-    from tritrack.forking.parts_warmup import warm_up
-    from tritrack.offline.lockstep import Decoders, track_clip
 
     with tempfile.TemporaryDirectory(prefix="tritrack-first-") as folder, Decoders() as decoders:
         settings = Settings(clip=str(made_clip(Path(folder))))

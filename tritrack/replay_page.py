@@ -11,9 +11,9 @@ from common.bus.messages import Report
 from common.bus.pair import Pair
 from common.bus.process import ProcessContext, process
 from common.rig.camera import Rig
+from runtime.store.past_run import open_run
+from runtime.store.recording import Recording, read_recording
 from tritrack.replaying import pairs
-from tritrack.store.past_run import open_run
-from tritrack.store.recording import Recording, read_recording
 
 MOST_BYTES: Final = 160_000_000
 """Of the frames that the page keeps for a browser: some ten minutes, as many as a browser does."""

@@ -21,9 +21,9 @@ from common.method import METHODS
 from integrator import merge, merge_state, opening_posture
 from integrator.live_rig.rig_change import set_back, with_rig
 from integrator.merge_state import Start
-from tritrack.store.other_run import refuse_other, run_of
-from tritrack.store.recording import Recording, read_recording
-from tritrack.store.runs import write_run
+from runtime.store.other_run import refuse_other, run_of
+from runtime.store.recording import Recording, read_recording
+from runtime.store.runs import write_run
 
 LISTEN_S: Final = 1.0
 """Time for those who wait for the bus to come, before the first message."""

@@ -1,6 +1,6 @@
 """A child process that is forked of what this one was forked of: it begins loaded, and shares that.
 
-Where this process is a part of a run, its zygote (`tritrack/forking/zygote.py`) is there to fork
+Where this process is a part of a run, its zygote (`runtime/forking/zygote.py`) is there to fork
 others too: a process with threads must not fork itself.
 """
 

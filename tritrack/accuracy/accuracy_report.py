@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from common.templates import rendered
-from tritrack.terminal import counted
+from runtime.terminal import counted
 
 
 def headline(report: Mapping[str, Any]) -> dict[str, Any]:

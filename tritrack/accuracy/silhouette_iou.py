@@ -13,7 +13,7 @@ from common.npz_file import Arrays
 from common.raster.similarity import Mask
 from common.video.clip_facts import View
 from common.video.clips import open_clip
-from tritrack.offline.lockstep import Decoders
+from runtime.offline.lockstep import Decoders
 from viewer.capture import recorded
 from viewer.room.background_source import opening_of_view
 from viewer.silhouette import silhouette

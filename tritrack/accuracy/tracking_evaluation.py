@@ -14,15 +14,15 @@ from common.config import config_file
 from common.config.settings import Settings
 from common.method import Mode
 from common.npz_file import Arrays, DamagedFile, read_arrays
+from runtime.offline.batch import Asked, track_all
+from runtime.offline.lockstep import Decoders
+from runtime.store.clip_paths import run_names, without_plain_files
+from runtime.terminal import bar, json_text, warn
 from tritrack.accuracy import accuracy_plots, accuracy_report, worst_frames
 from tritrack.accuracy.accuracy import Compared, Mismatch, compare, per_joint, summary
 from tritrack.accuracy.limb_lengths import length_errors
 from tritrack.accuracy.reliability import trust
 from tritrack.accuracy.silhouette_iou import Overlap, overlaps
-from tritrack.offline.batch import Asked, track_all
-from tritrack.offline.lockstep import Decoders
-from tritrack.store.clip_paths import run_names, without_plain_files
-from tritrack.terminal import bar, json_text, warn
 
 MAX_BYTES: Final = 1 << 30
 """No run and no truth is larger."""

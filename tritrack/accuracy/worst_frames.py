@@ -15,8 +15,8 @@ from common.rig.camera import project
 from common.video.clip_facts import View, both_cameras
 from common.video.clips import open_clip
 from common.video.decoding import Image
+from runtime.offline.lockstep import Decoders
 from tritrack.accuracy.accuracy import INDEX, JOINTS, Compared
-from tritrack.offline.lockstep import Decoders
 from viewer.capture import recorded
 
 MOST: Final = 10

@@ -25,14 +25,14 @@ from common.packages import ROOT
 from common.source_digest import digest_of
 from common.video.clips import open_clip
 from integrator import integrator_warmup
+from runtime.live.free_ports import free_settings
+from runtime.live.session import live
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.store.runs import VERSIONS_OF, write_run
 from synth.write import ClipSet, write_set
 from tritrack.bench.bench_figure import Measured, least_s
 from tritrack.bench.bench_scenes import by_opencv, match_all, match_placed, model_pairs, scene
 from tritrack.bench.single_bench import FOLLOWED, figures
-from tritrack.live.free_ports import free_settings
-from tritrack.live.session import live
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.store.runs import VERSIONS_OF, write_run
 from viewer import track, viewer_warmup
 from viewer.background.background import learn
 from viewer.capture import recorded

@@ -11,9 +11,9 @@ from common.method import METHODS, Mode
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reel
+from runtime.offline.film_passes import FilmFacts, bodies_of, silhouettes_of
+from runtime.offline.film_tracking import Film, follow_clip
 from tritrack.bench.bench_figure import Measured, least_s
-from tritrack.offline.film_passes import FilmFacts, bodies_of, silhouettes_of
-from tritrack.offline.film_tracking import Film, follow_clip
 from viewer.room.background_source import background_of_film
 
 ALONE: Final = (1,)

@@ -9,6 +9,9 @@ import typer
 from common.bus.messages import ViewerNumber
 from common.config.part_settings import BusSettings
 from common.config.settings import Settings
+from runtime.faults import refuse_unfollowed
+from runtime.store.run_exports import OWN_NAMES, Format
+from runtime.terminal import counted, json_text
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import (
     MODES,
@@ -26,9 +29,6 @@ from tritrack.commands.options import (
     writable_file,
 )
 from tritrack.exporting import Scale, export_run
-from tritrack.faults import refuse_unfollowed
-from tritrack.store.run_exports import OWN_NAMES, Format
-from tritrack.terminal import counted, json_text
 
 VIEWERS: Final[dict[str, tuple[ViewerNumber, ...]]] = {"12": (1, 2), "1": (1,), "2": (2,)}
 
@@ -68,7 +68,7 @@ def track(
 
     Example: tritrack track clips/*/ --mode paper --out runs
     """
-    from tritrack.offline.batch import Asked, track_all
+    from runtime.offline.batch import Asked, track_all
 
     seen = mode, size, landmarks, VIEWERS[views], trust_calibration
     asked = Asked(*seen, record, resume, force, offset)
@@ -153,7 +153,7 @@ def single(
 
     Example: tritrack single dance.mp4 --out runs
     """
-    from tritrack.overrides import overridden
+    from runtime.overrides import overridden
     from tritrack.single.single import Given, single_all
 
     given = Given(notes, background, resume, force, landmarks)

@@ -7,7 +7,7 @@ import msgspec
 import typer
 from rich.console import Console
 
-from tritrack.terminal import json_text
+from runtime.terminal import json_text
 
 console = Console(stderr=True)
 results = Console()
@@ -29,6 +29,6 @@ def tell_rows(rows: Sequence[msgspec.Struct], json_wanted: bool) -> None:
     if json_wanted:
         print(json_text(facts))
     else:
-        from tritrack.live.table import table_of_rows
+        from runtime.live.table import table_of_rows
 
         results.print(table_of_rows(facts))

@@ -29,7 +29,7 @@ def keys(
     Example: tritrack keys keys --host rig.local --host 192.168.1.5
     """
     try:
-        from tritrack.keys.authority import make_keys
+        from runtime.keys.authority import make_keys
     except ImportError as error:
         raise KeysError(f"no keys without {error.name}: {INSTALL}") from error
     written = make_keys(folder, host or (), days, force=force)
@@ -41,7 +41,7 @@ def keys(
 def examined_keys(folder: Path) -> list[Finding]:
     """What the doctor finds of keys."""
     try:
-        from tritrack.keys.key_check import examine_keys
+        from tritrack.doctor.key_check import examine_keys
     except ImportError as error:
         return [Finding("keys", False, f"cannot be read without {error.name}", INSTALL)]
     return examine_keys(folder)

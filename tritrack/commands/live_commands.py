@@ -11,11 +11,11 @@ from common.config import config_file
 from common.config.part_settings import BusSettings
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
+from runtime.overrides import overridden
+from runtime.terminal import counted
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import Force, LandmarkSource, ModeName, Offset, Out, Record, Size
 from tritrack.extras import refuse_without
-from tritrack.overrides import overridden
-from tritrack.terminal import counted
 
 Wait = Annotated[
     bool, typer.Option(help="A clip begins when the page is opened, or half a minute later.")
@@ -67,7 +67,7 @@ def live(
     Example: tritrack live configs/live.toml --out runs/monday
     """
     from common.video.clip_sources import refuse_no_footage
-    from tritrack.live.session import live as run_live
+    from runtime.live.session import live as run_live
 
     own = config_file.load(settings_file)
     refuse_no_footage(own, settings_file)
@@ -83,7 +83,7 @@ def live(
 def _refuse_other_than_last(out: Path, settings: Settings) -> None:
     """See that no other run is lost but the last one, and say so of that."""
     from common.video.clip_sources import footage_of
-    from tritrack.store.other_run import other_than, refuse_other, run_of
+    from runtime.store.other_run import other_than, refuse_other, run_of
 
     now = run_of("live", [view.source for view in footage_of(settings)])
     if out != LAST:
@@ -104,7 +104,7 @@ def serve(
 
     Example: tritrack serve configs/sites.toml
     """
-    from tritrack.serving.serve import serve as serve_sites
+    from runtime.serving.serve import serve as serve_sites
 
     serve_sites(sites_file, console)
 
@@ -131,8 +131,8 @@ def integrate(settings_file: ConfigPath) -> None:
     Example: tritrack integrate configs/live.toml
     """
     from integrator.__main__ import main as integrator_main
-    from tritrack.live.elsewhere import two_camera_clip
-    from tritrack.offline.lockstep import measured_before
+    from runtime.live.elsewhere import two_camera_clip
+    from runtime.offline.lockstep import measured_before
 
     settings = live_settings(settings_file)
     clip = two_camera_clip(settings)
@@ -145,7 +145,7 @@ def recognize(settings_file: ConfigPath) -> None:
     Example: tritrack recognize configs/live.toml
     """
     from recognizer.__main__ import main as recognizer_main
-    from tritrack.live.elsewhere import two_camera_clip
+    from runtime.live.elsewhere import two_camera_clip
 
     settings = live_settings(settings_file)
     clip = two_camera_clip(settings)
@@ -159,15 +159,15 @@ def metrics(settings_file: ConfigPath) -> None:
 
     Example: tritrack metrics configs/live.toml
     """
-    from tritrack.live.elsewhere import two_camera_clip
-    from tritrack.live.free_ports import refuse_held_metrics
-    from tritrack.live.process_table import names_of
+    from runtime.live.elsewhere import two_camera_clip
+    from runtime.live.free_ports import refuse_held_metrics
+    from runtime.live.process_table import names_of
 
     settings = live_settings(settings_file)
     if not settings.metrics:
         raise SettingsError(f'{settings_file} has no metrics: add metrics = "127.0.0.1:9464"')
     refuse_held_metrics(settings.metrics)
-    from tritrack.outside.metrics_process import main as metrics_main
+    from runtime.outside.metrics_process import main as metrics_main
 
     metrics_main(settings, names_of(two_camera_clip(settings)))
 
@@ -178,7 +178,7 @@ def animate(settings_file: ConfigPath) -> None:
     Example: tritrack animate configs/live.toml
     """
     from animator.__main__ import main as animator_main
-    from tritrack.live.free_ports import refuse_held_page
+    from runtime.live.free_ports import refuse_held_page
 
     settings = live_settings(settings_file)
     refuse_held_page(settings)
@@ -207,7 +207,7 @@ def bridge(
 
     Example: tritrack bridge vmc --to 127.0.0.1:39539
     """
-    from tritrack.bridges.bridging import bridge as run_bridge
+    from runtime.bridges.bridging import bridge as run_bridge
 
     there = to or ("127.0.0.1:39539" if protocol == "vmc" else "127.0.0.1:9000")
     sent = run_bridge(protocol, endpoint, room, there, console, keys)
@@ -216,7 +216,7 @@ def bridge(
 
 def live_settings(path: Path) -> Settings:
     """The settings of a process of a live run."""
-    from tritrack.live.admission import refuse_mode
+    from runtime.live.admission import refuse_mode
 
     settings = config_file.load(path)
     refuse_mode(settings)

@@ -7,6 +7,7 @@ import typer
 
 from common.atomic_file import refuse_to_replace
 from common.config import config_file
+from runtime.terminal import counted
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import (
     CACHE,
@@ -22,7 +23,6 @@ from tritrack.commands.options import (
 )
 from tritrack.extras import refuse_without
 from tritrack.landmark_lessons import work_of
-from tritrack.terminal import counted
 
 LEARN: Final = ("learn", "sklearn")
 """The extra of what learns models, and what it brings."""

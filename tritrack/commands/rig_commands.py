@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Annotated, Final, Literal
 import typer
 
 from common.atomic_file import refuse_to_replace
+from runtime.terminal import counted
 from tritrack.commands.command_output import JsonWanted, console, tell_rows
 from tritrack.commands.options import Forced, fov_given, square_given, stature_given, writable_file
 from tritrack.extras import refuse_without
-from tritrack.terminal import counted
 
 if TYPE_CHECKING:
-    from tritrack.offline.rig_of_boards import Shown
+    from runtime.offline.rig_of_boards import Shown
 
 calibrate_app = typer.Typer(
     help="Find where the cameras are: by person, board or poles.",
@@ -55,7 +55,7 @@ def person(
     from calibration.paper.calibration import write_rig
     from common.config import config_file
     from common.video.clip_sources import refuse_no_footage
-    from tritrack.offline.rig_of_clips import Given, calibrated_by_clips
+    from runtime.offline.rig_of_clips import Given, calibrated_by_clips
 
     for path in clips:
         refuse_no_footage(config_file.load(path), path)
@@ -118,7 +118,7 @@ def board(
     """
     from calibration.board.board_print import print_board
     from common.video.clips import refuse_unreadable
-    from tritrack.offline.rig_of_boards import Shown
+    from runtime.offline.rig_of_boards import Shown
 
     if print_ is None and not videos:
         raise typer.BadParameter("name the video of each camera, or --print board.pdf")
@@ -136,7 +136,7 @@ def board(
 
 def _calibrate(videos: list[Path], shown: "Shown", out: Path, json_wanted: bool) -> None:
     """Calibrate by films of the board, and tell how well they agree."""
-    from tritrack.offline.rig_of_boards import calibrate_by_videos
+    from runtime.offline.rig_of_boards import calibrate_by_videos
 
     quality, drawn = calibrate_by_videos(videos, shown, out, console)
     tell_rows(quality.cameras, json_wanted)

@@ -8,8 +8,8 @@ from typing import Final
 
 from common.config.settings import Settings
 from common.video.clips import open_clip
+from runtime.live.free_ports import refuse_held_endpoint, refuse_held_metrics, refuse_held_page
 from tritrack.doctor.installation import Finding, refused
-from tritrack.live.free_ports import refuse_held_endpoint, refuse_held_metrics, refuse_held_page
 
 LEAST_BYTES: Final = 1 << 30
 """An hour of both outlines at 320x240, 9.6 kB each, fifteen times a second, recorded: as much."""

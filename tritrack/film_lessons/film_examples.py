@@ -15,9 +15,9 @@ from common.method import DEFAULT
 from common.raster.similarity import Mask
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, Image
+from runtime.terminal import Tell
 from synth.picture.picture_examples import FRAME, FRAMED, SIDE_PX, PictureExample
 from tritrack.landmark_lessons.picture_store import is_drawn, store
-from tritrack.terminal import Tell
 from tritrack.training.training import TrainingError
 from viewer import track
 from viewer.capture import recorded

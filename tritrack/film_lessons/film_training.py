@@ -11,6 +11,7 @@ import numpy as np
 import torch
 from rich.console import Console
 
+from runtime.terminal import bar
 from synth.picture.composites import Composite, composite
 from tritrack.film_lessons.film_examples import Looked, looked_through
 from tritrack.landmark_lessons import landmark_loss, work_of
@@ -25,7 +26,6 @@ from tritrack.landmark_lessons.landmark_learning import (
     resumed,
 )
 from tritrack.landmark_lessons.picture_store import Backdrops, Part, PictureStore, draw
-from tritrack.terminal import bar
 from tritrack.training.training import TrainingError
 from viewer.landmarks.landmark_looks import SHIPPED
 

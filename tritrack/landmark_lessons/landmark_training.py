@@ -10,6 +10,7 @@ import numpy as np
 import torch
 from rich.console import Console
 
+from runtime.terminal import bar
 from synth.picture.composites import Composite, composite
 from tritrack.landmark_lessons import landmark_loss, work_of
 from tritrack.landmark_lessons.landmark_file import write_network
@@ -23,7 +24,6 @@ from tritrack.landmark_lessons.landmark_learning import (
 )
 from tritrack.landmark_lessons.photographed_start import photographed_start
 from tritrack.landmark_lessons.picture_store import Backdrops, Part, PictureStore, draw
-from tritrack.terminal import bar
 from tritrack.training.training import TrainingError
 
 PEOPLE, ANNY_PEOPLE, PART = 7_200, 5_100, 300

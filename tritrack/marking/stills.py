@@ -26,7 +26,7 @@ from common.video.decoding import (
     Source,
     Wanted,
 )
-from tritrack.terminal import bar
+from runtime.terminal import bar
 
 MOST_STILLS: Final = 100
 """Of each film, evenly spread: markers stand still, and a pole that is carried about rests."""

@@ -14,9 +14,9 @@ from common.method import Mode
 from common.rig.camera import Rig
 from common.video.clip_facts import both_cameras
 from recognizer.__main__ import MOVING
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.offline.performance import Watch
-from tritrack.overrides import overridden
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.offline.performance import Watch
+from runtime.overrides import overridden
 from viewer.capture import CapturedFrame
 from viewer.jpeg import jpeg_of
 

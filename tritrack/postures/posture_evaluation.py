@@ -10,6 +10,8 @@ from rich.console import Console
 from common.method import Mode
 from recognizer.evaluation import Outcome, Recording, named_by, refuse_who_was_learnt_from
 from recognizer.postures import LEAST_FIT, PostureModel, Recognizer
+from runtime.store.cores import spread
+from runtime.terminal import json_text
 from tritrack.postures.posture_page import page_of
 from tritrack.postures.posture_pictures import draw_confusion, draw_worst
 from tritrack.postures.posture_report import result_of, share
@@ -25,8 +27,6 @@ from tritrack.postures.posture_split import (
     swept,
 )
 from tritrack.postures.style_spread import spread_of
-from tritrack.store.cores import spread
-from tritrack.terminal import json_text
 from tritrack.training.recordings import announced, recordings
 from tritrack.training.training import TrainingError, model_named
 

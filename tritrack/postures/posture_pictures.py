@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 
 from common.method import Mode
-from tritrack.offline.lockstep import Decoders
+from runtime.offline.lockstep import Decoders
 from tritrack.postures.contact_strip import contact_strip
 
 DPI: Final = 110

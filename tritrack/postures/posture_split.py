@@ -16,8 +16,8 @@ from recognizer.evaluation import (
 )
 from recognizer.postures import Recognizer
 from recognizer.training.learning import Sizes
-from tritrack.store.cores import made
-from tritrack.terminal import bar
+from runtime.store.cores import made
+from runtime.terminal import bar
 from tritrack.training.training import TrainingError
 
 EACH_IN_TURN: Final = "leave-one-performer-out"

@@ -21,12 +21,12 @@ from recognizer.model_file import load
 from recognizer.model_rate import PERIOD_S, counts
 from recognizer.postures import DensityModel
 from recognizer.training.streams import Act, Found, Stream, found, joined
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.overrides import overridden
-from tritrack.store.clip_paths import without_plain_files
-from tritrack.store.past_run import PastRunError, is_run, open_run
-from tritrack.store.pose_arrays import poses
-from tritrack.terminal import bar, json_text
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.overrides import overridden
+from runtime.store.clip_paths import without_plain_files
+from runtime.store.past_run import PastRunError, is_run, open_run
+from runtime.store.pose_arrays import poses
+from runtime.terminal import bar, json_text
 from tritrack.training.training import TrainingError
 
 SEED: Final = 0

@@ -14,10 +14,10 @@ from animator.inbetween import at, between, key_frames
 from animator.skeleton.bones import joints_of
 from common.atomic_file import replacing
 from common.body.body import JOINT_NAMES
+from runtime.store.joint_arrays import all_joints_m
+from runtime.store.runs import unwritable
+from runtime.terminal import json_text
 from tritrack.single.angle_plot import angle_plot
-from tritrack.store.joint_arrays import all_joints_m
-from tritrack.store.runs import unwritable
-from tritrack.terminal import json_text
 from viewer.background.background import Background
 
 NAMES: Final = (

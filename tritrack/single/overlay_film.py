@@ -15,8 +15,8 @@ from common.config.picture_size import working_size
 from common.raster.silhouette_report import unpack
 from common.rig.upright_camera import as_worked_on
 from common.video.decoding import Decoder, Wanted
-from tritrack.offline.film_tracking import Followed
-from tritrack.terminal import Tell
+from runtime.offline.film_tracking import Followed
+from runtime.terminal import Tell
 
 STANDS_S: Final = 5.0
 """No picture stands for longer in the overlay, however long none was taken."""

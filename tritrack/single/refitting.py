@@ -17,13 +17,13 @@ from animator.film import FilmError
 from animator.retouching.fitting import FitError
 from common.config.settings import Settings
 from common.notes.notes import Notes
+from runtime.store.run_exports import EXPORTS
+from runtime.store.runs import RunError
+from runtime.terminal import Tell
+from runtime.unfinished.resuming import Begun
+from runtime.unfinished.work import InMemory
 from tritrack.single.animation_files import NAMES
 from tritrack.single.single import PASSES, UNUSABLE, Job, follow
-from tritrack.store.run_exports import EXPORTS
-from tritrack.store.runs import RunError
-from tritrack.terminal import Tell
-from tritrack.unfinished.resuming import Begun
-from tritrack.unfinished.work import InMemory
 
 HEARD_S: Final = 0.2
 END_S: Final = 5.0

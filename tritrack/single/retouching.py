@@ -25,12 +25,12 @@ from common.video.clip_facts import Clip
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
+from runtime.store.other_run import run_told
+from runtime.store.past_run import PastRun, open_run
+from runtime.terminal import bar, say
 from tritrack.single.ledger import facts_of, ledger
 from tritrack.single.mask_file import is_mask_file
 from tritrack.single.refitting import refit
-from tritrack.store.other_run import run_told
-from tritrack.store.past_run import PastRun, open_run
-from tritrack.terminal import bar, say
 
 MOST_PICTURES: Final = 20_000
 """They are kept in memory, some 40 kB each."""

@@ -20,21 +20,21 @@ from common.video.clip_sources import ClipError, footage_of, refuse_no_footage
 from common.video.clips import open_clip
 from common.video.decoding import Decoder, DecoderDied, Undecodable
 from common.video.frame_cache import Reel, Told
-from tritrack.offline.film_tracking import Film, Followed, Heard, follow_clip, follow_masks
-from tritrack.overrides import overridden
+from runtime.offline.film_tracking import Film, Followed, Heard, follow_clip, follow_masks
+from runtime.overrides import overridden
+from runtime.store.clip_paths import ClipsFailed
+from runtime.store.other_run import OtherRun, RunOf, refuse_other, run_of
+from runtime.store.pose_arrays import mapped_poses
+from runtime.store.runs import believed, write_run
+from runtime.terminal import Tell, bar, by_pass, complain, say, warn
+from runtime.unfinished.message_file import writing
+from runtime.unfinished.resuming import Begun, Wanted, done_before, resumable
+from runtime.unfinished.unfinished_run import CannotResume
+from runtime.unfinished.work import InMemory, Work
 from tritrack.single.animation_files import write_files
 from tritrack.single.ledger import facts_of, ledger
 from tritrack.single.mask_file import MaskFileError, MaskSequence, is_mask_file, read_masks
 from tritrack.single.overlay_film import write_overlay
-from tritrack.store.clip_paths import ClipsFailed
-from tritrack.store.other_run import OtherRun, RunOf, refuse_other, run_of
-from tritrack.store.pose_arrays import mapped_poses
-from tritrack.store.runs import believed, write_run
-from tritrack.terminal import Tell, bar, by_pass, complain, say, warn
-from tritrack.unfinished.message_file import writing
-from tritrack.unfinished.resuming import Begun, Wanted, done_before, resumable
-from tritrack.unfinished.unfinished_run import CannotResume
-from tritrack.unfinished.work import InMemory, Work
 from viewer.room.background_source import LOOKED_AT, background_of_film
 
 PASSES: Final = ("learning the room", "cutting out", "posing", "drawing")

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from integrator.proposal.landmark_look import INPUTS
 from integrator.proposal.network_weights import LiftingNetwork, save
-from tritrack.terminal import bar
+from runtime.terminal import bar
 from tritrack.training import torch_network
 from tritrack.training.lifting_examples import LiftingExample, lifting_examples
 from tritrack.training.torch_network import Round, torch_or_refuse

@@ -15,9 +15,9 @@ from recognizer.features import Rows, rows
 from recognizer.learning_error import LearningError
 from recognizer.postures import PostureModel
 from recognizer.training.lesson import LEAST_TAKES, Lesson, taught
-from tritrack.live.launch import Heard
-from tritrack.live.session import live
-from tritrack.store.pose_arrays import poses
+from runtime.live.launch import Heard
+from runtime.live.session import live
+from runtime.store.pose_arrays import poses
 from tritrack.training import coach
 from tritrack.training.coach import STAND, Said, State, look_at
 from tritrack.training.teaching import kept, model_to_teach

@@ -12,8 +12,8 @@ from rich.console import Console
 from integrator.proposal.network_weights import PoseNetwork, save, to_bfloat16
 from integrator.proposal.pose_network import SEES
 from integrator.proposal.silhouette_window import BESIDE, CELLS, Floats
+from runtime.terminal import bar
 from synth.picture.silhouette_examples import AT_LARGE, ORDINARY
-from tritrack.terminal import bar
 from tritrack.training import torch_network
 from tritrack.training.proposal_examples import Example, example_of
 from tritrack.training.torch_network import Round, torch_or_refuse

@@ -20,16 +20,16 @@ from recognizer.evaluation import Recording
 from recognizer.features import ROW_NAMES, rows
 from recognizer.model_rate import at_model_rate
 from recognizer.spotting import motion_of
-from tritrack.offline import clip_cache
-from tritrack.offline.clip_cache import CachedRun
-from tritrack.offline.lockstep import Decoders, track_clip
-from tritrack.overrides import overridden
-from tritrack.store.clip_paths import ClipsFailed, without_plain_files
-from tritrack.store.cores import made
-from tritrack.store.past_run import PastRunError, is_run, open_run
-from tritrack.store.runs import RunError
-from tritrack.terminal import bar, complain, warn
-from tritrack.unfinished.run_identity import tracker_id
+from runtime.offline import clip_cache
+from runtime.offline.clip_cache import CachedRun
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.overrides import overridden
+from runtime.store.clip_paths import ClipsFailed, without_plain_files
+from runtime.store.cores import made
+from runtime.store.past_run import PastRunError, is_run, open_run
+from runtime.store.runs import RunError
+from runtime.terminal import bar, complain, warn
+from runtime.unfinished.run_identity import tracker_id
 
 BATCH: Final = 8
 """Clips that share a pair of decoders, whose start takes as long as a clip or two; as many are

@@ -14,12 +14,12 @@ from common.config.part_settings import SilhouetteSettings
 from common.method import DEFAULT
 from common.raster.similarity import Mask
 from common.video.decoding import Image
+from runtime.terminal import bar
 from synth.motion.motions import EMPTY, POSTURES, Motion, performance
 from synth.person.people import Colour, Person, person
 from synth.picture.exposure import default_rig
 from synth.picture.render import render, room_of
 from synth.picture.synth_room import Room
-from tritrack.terminal import bar
 from tritrack.training.training import TrainingError
 from viewer.background.background import learn
 from viewer.background.image_stack import Floats

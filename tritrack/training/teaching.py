@@ -11,8 +11,8 @@ from rich.console import Console
 from recognizer.model_file import ModelError, load, save
 from recognizer.postures import PostureModel
 from recognizer.training.lesson import LEAST_TAKES, Lesson, taught
-from tritrack.store.cores import spread
-from tritrack.terminal import counted
+from runtime.store.cores import spread
+from runtime.terminal import counted
 from tritrack.training.recordings import recordings
 from tritrack.training.training import Plan, TrainingError, model_named
 

@@ -9,7 +9,7 @@ from rich.progress import Progress
 
 from integrator.proposal.network_weights import JOINTS, to_bfloat16
 from integrator.proposal.silhouette_window import Floats
-from tritrack.terminal import bar
+from runtime.terminal import bar
 from tritrack.training.training import TrainingError
 
 CONFIDENCE_SHARE: Final = 0.01

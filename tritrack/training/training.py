@@ -13,8 +13,8 @@ from recognizer.model_file import load, save
 from recognizer.postures import PostureModel, Recognizer
 from recognizer.training.learning import train
 from recognizer.training.lesson import LEAST_TAKES
-from tritrack.store.cores import spread
-from tritrack.terminal import warn
+from runtime.store.cores import spread
+from runtime.terminal import warn
 from tritrack.training.recordings import recordings
 
 SHIPPED_MODELS: Final[dict[Recognizer, Path]] = {"default": SHIPPED, "paper": SHIPPED_PAPER}

@@ -1,0 +1,1 @@
+"""The steps at work: lock-step and live processes, run folders, sites, metrics, keys, bridges."""

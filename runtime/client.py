@@ -1,0 +1,152 @@
+"""tritrack in one's own program: bodies of a clip, or of a live run as they come."""
+
+import asyncio
+import time
+from collections.abc import AsyncIterator, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, Generic, TypeVar, overload
+
+from common.body.body import ANGLE_NAMES, JOINT_NAMES, POSE_INDEX
+from common.bus.messages import Body, Message, Posture, Report, ViewerNumber
+from common.config.config_file import load
+from common.config.part_settings import BusSettings
+from common.config.settings import Settings
+
+if TYPE_CHECKING:
+    from common.bus.bus import Bus
+
+__all__ = [
+    "ANGLE_NAMES",
+    "JOINT_NAMES",
+    "POSE_INDEX",
+    "Body",
+    "Posture",
+    "Report",
+    "Subscription",
+    "subscribe",
+    "track",
+]
+
+Said = TypeVar("Said", bound=Message)
+
+ENDPOINT: Final = BusSettings().endpoint
+ROOM: Final = Settings().room
+WAIT_S: Final = 60.0
+LOOK_S: Final = 0.2
+"""How often is asked whether the run is over while nothing is said."""
+HUB: Final = "integrator"
+
+
+def track(source: str | Path, views: tuple[ViewerNumber, ...] = (1, 2)) -> list[Body]:
+    """Track a recorded clip: the bodies that `tritrack track` writes, one a frame.
+
+    Args:
+        source: A clip folder (cam1.*, cam2.*), or a settings file (TOML).
+        views: The cameras to use.
+
+    Numpy's products take one thread meanwhile: two would wait for each other at every frame.
+
+    Raises:
+        SettingsError, ClipError, DecoderDied: When the clip cannot be used; the text says why.
+    """
+    from threadpoolctl import threadpool_limits
+
+    from runtime.offline.lockstep import Decoders, track_clip
+
+    with threadpool_limits(1), Decoders() as decoders:
+        return list(track_clip(load(Path(source)), decoders, views).bodies)
+
+
+@overload
+def subscribe(
+    endpoint: str = ENDPOINT, room: str = ROOM, *, wait_s: float = WAIT_S, keys: str = ""
+) -> "Subscription[Body]": ...
+@overload
+def subscribe(
+    endpoint: str = ENDPOINT,
+    room: str = ROOM,
+    *,
+    kind: type[Said],
+    wait_s: float = WAIT_S,
+    keys: str = "",
+) -> "Subscription[Said]": ...
+def subscribe(
+    endpoint: str = ENDPOINT,
+    room: str = ROOM,
+    *,
+    kind: type = Body,
+    wait_s: float = WAIT_S,
+    keys: str = "",
+) -> "Subscription":  # type: ignore[type-arg]
+    """What a live run says, for `for` and `async for`, until the run is over.
+
+    Args:
+        endpoint: Where the integrator listens, `[bus] endpoint` of the run's settings.
+        room: `room` of the run's settings.
+        kind: Which message: Body, Posture or Report.
+        wait_s: How long to wait for the run to begin.
+        keys: Folder with ca.pem, client.pem and client.key, where the run has keys; the endpoint is
+            tls/HOST:PORT then.
+
+    Raises:
+        SettingsError: When only one of keys and endpoint is of TLS.
+    """
+    bus = BusSettings(endpoint=endpoint, keys=keys, open_to_all=True)
+    return Subscription(kind, bus, room, wait_s)
+
+
+class Subscription(Generic[Said]):
+    """A live run's messages of one kind; each loop over it listens anew from then on.
+
+    A loop that is slower than the run loses the oldest of 256 messages that wait, never the newest.
+    It ends when the integrator does. It raises BusError when nobody answers in time.
+    """
+
+    def __init__(self, kind: type[Said], bus: BusSettings, room: str, wait_s: float) -> None:
+        """See `subscribe`."""
+        self._kind, self._bus, self._room, self._wait_s = kind, bus, room, wait_s
+
+    def __iter__(self) -> Iterator[Said]:
+        """Listen from now on."""
+        with ExitStack() as doors:
+            ears = self._listen(doors)
+            while (message := ears.take()) is not None or not ears.over:
+                if message is not None:
+                    yield message
+
+    async def __aiter__(self) -> AsyncIterator[Said]:
+        """Listen from now on; the event loop is not held up."""
+        with ExitStack() as doors:
+            ears = await asyncio.to_thread(self._listen, doors)
+            while (message := await asyncio.to_thread(ears.take)) is not None or not ears.over:
+                if message is not None:
+                    yield message
+
+    def _listen(self, doors: ExitStack) -> "_Ears[Said]":
+        from common.bus.bus import open_client
+
+        bus = doors.enter_context(open_client(self._bus, self._room, self._wait_s))
+        return _Ears(bus, self._kind, time.monotonic() + self._wait_s)
+
+
+class _Ears(Generic[Said]):
+    """An open subscription, and whether its run is over."""
+
+    def __init__(self, bus: "Bus", kind: type[Said], give_up_s: float) -> None:
+        self._inbox, self._alive = bus.subscribe(kind), bus.watch_alive()
+        self._give_up_s = give_up_s
+        self._there = False
+
+    def take(self) -> Said | None:
+        """The next message; None where none comes for a moment."""
+        return self._inbox.take(LOOK_S)
+
+    @property
+    def over(self) -> bool:
+        """Whether the integrator went, or never came."""
+        for alive in self._alive.drain():
+            if alive.name == HUB:
+                self._there = alive.alive
+                self._give_up_s = 0.0
+        return not self._there and time.monotonic() > self._give_up_s

@@ -1,0 +1,89 @@
+"""What a live run is refused for, before any of its processes starts."""
+
+from typing import Final
+
+import msgspec
+from rich.console import Console
+
+from common.config.settings import Settings
+from common.method import METHODS
+from common.video.clip_facts import Clip, both_cameras
+from runtime.live.free_ports import own_session, refuse_held_ports, with_free_endpoint
+from runtime.store.recording import refuse_without_library
+
+NO_POSTURE: Final = -1
+"""posture_id of a clip that shows none of the postures: free motion, a test of the tracker."""
+
+
+class LiveRefused(ValueError):
+    """A live run that cannot begin; the text says why and what to do."""
+
+
+def admitted(settings: Settings, record: bool, console: Console) -> Settings:
+    """Settings that can be worked with, with the endpoint and the session that they leave open.
+
+    Args:
+        settings: Of the run.
+        record: It is to be recorded.
+        console: Is told of an endpoint that was chosen.
+
+    Raises:
+        LiveRefused, RecordingError, PortHeld, PageError, KeysError: When they cannot be.
+    """
+    refuse_mode(settings)
+    if record:
+        refuse_without_library()
+    found = with_free_endpoint(settings)
+    refuse_held_ports(found)
+    if found != settings:
+        console.print(f"the bus: {found.bus.endpoint}", highlight=False)
+    return own_session(found)
+
+
+def opened(settings: Settings, name: str) -> Clip:
+    """The clip of a run that will not fail for what can be known before.
+
+    Its imports take a second, in which the page is opened.
+
+    Args:
+        settings: Of the run.
+        name: Of the run; the clip's when empty.
+
+    Raises:
+        ClipError, ModelError, SettingsError: When a process would fail.
+    """
+    from common.video.clips import open_clip
+    from runtime.offline.lockstep import measured_before
+
+    clip = open_clip(settings)
+    clip = msgspec.structs.replace(
+        clip,
+        name=name or clip.name,
+        rig=both_cameras(clip),
+        body=measured_before(settings),
+    )
+    _refuse_what_would_fail(settings, clip)
+    return clip
+
+
+def _refuse_what_would_fail(settings: Settings, clip: Clip) -> None:
+    """Say before any process starts what one of them would fail on."""
+    from recognizer.__main__ import model_of
+    from viewer.landmarks.landmark_sources import refuse_landmarks
+
+    meant = "" if clip.meta.posture_id == NO_POSTURE else clip.meta.posture
+    model_of(settings, meant)
+    refuse_landmarks(settings, clip.views)
+
+
+def refuse_mode(settings: Settings) -> None:
+    """Say that the thesis's mode has no processes.
+
+    Raises:
+        LiveRefused: When it is asked for.
+    """
+    if METHODS[settings.mode].stick_lifting:
+        raise LiveRefused(
+            "the thesis's mode is not for live runs: set mode = 'default' or 'paper', or follow "
+            "a recorded video with: tritrack single VIDEO --mode thesis"
+        )

@@ -1,0 +1,216 @@
+"""A live run: its processes started, listened to, supervised, and ended in order."""
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from typing import Any, Final, NamedTuple
+
+from common.bus.bus import Bus, BusError, open_client, unanswered
+from common.bus.control_messages import Cameras, Pulse
+from common.bus.inbox import Inbox
+from common.bus.messages import Body, Message, Posture, Report
+from common.bus.process import READY_S
+from common.config.settings import Settings
+from runtime.live.page_desk import PageDesk
+from runtime.live.process_table import Part
+from runtime.live.recorded import MessageLog, SoFar
+from runtime.live.supervise import Watched, watched
+from runtime.store.journal import Journal
+from runtime.store.recording import Keep
+
+LOOK_S: Final = 0.1
+TRY_S: Final = 0.3
+"""How long each try to reach the integrator lasts."""
+LAST_WORDS_S: Final = 0.4
+"""What was said last is on its way for no longer than this."""
+
+log = logging.getLogger(__name__)
+
+
+class Heard(NamedTuple):
+    """What a run said, as its supervisor heard it."""
+
+    bodies: MessageLog[Body]
+    postures: MessageLog[Posture]
+    pulses: dict[str, Pulse]
+    cameras: list[Cameras]
+    notes: list[str]
+    """What the supervisor says itself: which part died, and what becomes of it."""
+    so_far: SoFar
+    keep: Keep | None = None
+    """Takes every report, body, posture and rig, where the run is recorded."""
+    journal: Journal | None = None
+    """Takes every body, posture and rig at once."""
+
+
+def nothing_heard() -> Heard:
+    """Of a run that begins."""
+    return Heard(MessageLog(Body), MessageLog(Posture), {}, [], [], SoFar())
+
+
+def run(
+    parts: Sequence[Part],
+    settings: Settings,
+    stop: threading.Event,
+    show: Callable[[Heard], None],
+    heard: Heard,
+    desk: PageDesk | None = None,
+) -> None:
+    """Start the parts, listen to them, and end them all when the run is over or stopped.
+
+    A part that dies is started again; the run goes on without a viewer that was given up, as long
+    as another one lives.
+
+    Args:
+        parts: In the order of their start; they are stopped in the reverse order.
+        settings: Of the run.
+        stop: Ends the run early.
+        show: Called ten times a second with what was heard so far.
+        heard: Filled as the run goes, so that a failure loses nothing that was said.
+        desk: Of the page, which runs already and goes on when the run is over.
+
+    Raises:
+        PartFailed: When a process fails of itself before it has worked at all, or was given up;
+            the others are stopped first.
+        BusError: When the integrator cannot be reached.
+    """
+    with ExitStack() as doors:
+        hub = doors.enter_context(watched(parts[0]))
+
+        def look_at_hub() -> None:
+            _look_after([hub], heard)
+            hub.refuse_failure()
+            show(heard)
+
+        bus = doors.enter_context(_client(settings, stop, look_at_hub))
+        if bus is None:
+            return
+        listening = Subscriber(bus, heard)
+        crew = [hub, *(doors.enter_context(watched(part)) for part in parts[1:])]
+        page = [] if desk is None or desk.watched is None else [desk.watched]
+        if desk is not None:
+            desk.listen(bus)
+        try:
+            while not stop.wait(LOOK_S) and not _over(crew):
+                listening.catch_up()
+                _look_after([*crew, *page], heard)
+                show(heard)
+                if desk is not None:
+                    desk.serve(heard, stop)
+            time.sleep(LAST_WORDS_S)
+        finally:
+            listening.catch_up()
+            if desk is not None:
+                desk.leave(heard)
+            heard.notes.extend(filter(None, [one.end() for one in reversed(crew)]))
+            listening.catch_up()
+            if listening.dropped:
+                heard.notes.append(
+                    f"{listening.dropped} poses or postures were lost on the way to the run folder"
+                )
+            show(heard)
+        if not stop.is_set():
+            for one in crew:
+                one.refuse_failure()
+
+
+def _look_after(crew: Sequence[Watched], heard: Heard) -> None:
+    """Start again what died, and say so; all that is said comes by way of the integrator."""
+    hub = next(one for one in crew if one.part.name == "integrator")
+    for one in crew:
+        told = one.look(time.monotonic(), heard.pulses, reached=one is hub or hub.speaks)
+        if told:
+            log.warning(told)
+            heard.notes.append(told)
+
+
+def _over(crew: Sequence[Watched]) -> bool:
+    """Whether every viewer has ended or was given up, or a part that all need was given up."""
+    leads = [one for one in crew if one.part.leads]
+    needed = any(one.given_up for one in crew if not (one.part.leads or one.part.spare))
+    return needed or all(one.done or one.given_up for one in leads)
+
+
+class Subscriber:
+    """Gathers what is said into a Heard."""
+
+    def __init__(self, bus: Bus, heard: Heard) -> None:
+        """Listen from now on; the cameras may have been told before."""
+        self._heard, self._keep = heard, heard.keep
+        self._bodies = bus.subscribe(Body)
+        self._postures = bus.subscribe(Posture)
+        self._pulses = bus.subscribe(Pulse)
+        self._cameras = bus.subscribe(Cameras)
+        told = bus.latest(Cameras, LAST_WORDS_S)
+        heard.cameras.extend([] if told is None else [told])
+        if heard.journal is not None:
+            heard.journal.keep(heard.cameras)
+        self._reports = [bus.subscribe(Report)] if heard.keep is not None else []
+
+    @property
+    def dropped(self) -> int:
+        """How many reports, bodies and postures never came here."""
+        boxes: tuple[Inbox[Any], ...] = (self._bodies, self._postures, *self._reports)
+        return sum(box.dropped for box in boxes)
+
+    def catch_up(self) -> None:
+        """Take in all that was said since."""
+        said: list[list[Any]] = [box.drain() for box in self._reports]
+        bodies, postures, cameras = (
+            self._bodies.drain(),
+            self._postures.drain(),
+            self._cameras.drain(),
+        )
+        self._heard.bodies.add(bodies)
+        self._heard.postures.add(postures)
+        self._heard.cameras.extend(cameras)
+        self._heard.so_far.take(bodies, postures)
+        if self._heard.journal is not None:
+            self._heard.journal.keep([*cameras, *bodies, *postures])
+            self._note(self._heard.journal.odd)
+        self._record([each for some in [*said, cameras, bodies, postures] for each in some])
+        for pulse in self._pulses.drain():
+            self._heard.pulses[pulse.process] = pulse
+
+    def _record(self, messages: list[Message]) -> None:
+        """Keep these for a replay, as long as the disk takes them: the run goes on without."""
+        if self._keep is None:
+            return
+        try:
+            for message in messages:
+                self._keep(message)
+        except OSError as error:
+            self._keep = None
+            self._note([f"the recording ends here: it cannot be written ({error.strerror})"])
+
+    def _note(self, lines: list[str]) -> None:
+        """Tell what is new among these."""
+        self._heard.notes.extend(line for line in lines if line not in self._heard.notes)
+
+
+@contextmanager
+def _client(
+    settings: Settings, stop: threading.Event, look: Callable[[], None]
+) -> Iterator[Bus | None]:
+    """The supervisor's own place on the bus, as soon as the hub's process has opened it.
+
+    None when the run was stopped before that; `look` is called between two tries.
+
+    Raises:
+        BusError: When it does not open.
+    """
+    until_s = time.monotonic() + READY_S
+    bus: Bus | None = None
+    with ExitStack() as door:
+        while bus is None and not stop.is_set():
+            look()
+            try:
+                bus = door.enter_context(
+                    open_client(settings.bus, settings.room, TRY_S, "supervisor")
+                )
+            except BusError as error:
+                if time.monotonic() > until_s:
+                    raise unanswered(settings.bus, READY_S) from error
+        yield bus

@@ -1,0 +1,78 @@
+"""What the summary of a live run tells."""
+
+from typing import Any
+
+import msgspec
+
+from common.video.clip_facts import Clip
+from runtime.live.launch import Heard
+from runtime.live.recorded import SoFar
+from runtime.live.screen import warnings_of
+from runtime.moved_facts import facts_of_moves
+from runtime.store.other_run import run_of
+from runtime.store.runs import NOBODY_SEEN
+
+
+def facts_of(heard: Heard, clip: Clip, seconds: float, so_far: SoFar) -> dict[str, Any]:
+    """What the summary tells of a run, so far.
+
+    Args:
+        heard: What its parts said.
+        clip: What they looked at.
+        seconds: For how long.
+        so_far: Of the bodies and postures that the summary is of: all, or those of a part.
+    """
+    source = heard.cameras[-1].scale_source if heard.cameras else None
+    warnings = [*clip.warnings, *warnings_of(heard.pulses), *heard.notes]
+    return {
+        **facts_of_clip(clip),
+        "seconds": {"all": round(seconds, 3)},
+        "scale_source": source,
+        **_calibration(heard),
+        **facts_of_moves(so_far.moves),
+        "posture": so_far.posture,
+        "warnings": list(dict.fromkeys(warnings)),
+        "processes": {
+            name: {
+                key: round(value, 3) if isinstance(value, float) else value
+                for key, value in msgspec.to_builtins(pulse).items()
+                if key not in ("protocol", "process", "detail")
+            }
+            for name, pulse in sorted(heard.pulses.items())
+        },
+    }
+
+
+def note_lost(heard: Heard) -> None:
+    """Say how many of the first frames of a very long run are in no file."""
+    given_up = 0 if heard.journal is None else heard.journal.let_go
+    lost = min(given_up, heard.bodies.let_go)
+    if lost:
+        heard.notes.append(
+            f"the first {lost} frames of a long run are not in poses.npz: write shorter runs, "
+            "or follow recordings with: tritrack track"
+        )
+
+
+def note_unseen(heard: Heard) -> None:
+    """Say so where frames came, and none of them shows anybody."""
+    if heard.so_far.instants and not heard.so_far.with_somebody:
+        heard.notes.append(NOBODY_SEEN)
+
+
+def facts_of_clip(clip: Clip) -> dict[str, Any]:
+    """Of what the run is, and who performs what, as the clip says itself."""
+    return {
+        "clip": clip.name,
+        "performer": clip.meta.performer,
+        "posture_meant": clip.meta.posture,
+        **run_of("live", [view.source for view in clip.views]).facts,
+    }
+
+
+def _calibration(heard: Heard) -> dict[str, Any]:
+    """The rig that the person told, in the form of a calibration.json."""
+    told = heard.cameras[-1] if heard.cameras else None
+    if told is None or told.scale_source != "person":
+        return {}
+    return {"calibration": {**msgspec.to_builtins(told.rig), "late_s": told.late_s}}

@@ -1,0 +1,205 @@
+"""A live run from its settings to its run folder."""
+
+import json
+import shutil
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from types import FrameType
+from typing import Any, Final, NamedTuple
+
+from rich.console import Console
+
+from common.bus.messages import Body, Posture
+from common.bus.process import ProcessContext, logged, start_log
+from common.config.settings import Settings
+from common.settled import settle
+from common.video.clip_facts import Clip
+from runtime.forking.zygote import Zygote
+from runtime.live.admission import admitted, opened
+from runtime.live.launch import Heard, nothing_heard, run
+from runtime.live.page_desk import PageDesk
+from runtime.live.process_table import inherited, live_parts
+from runtime.live.recorded import SoFar, WholeRun
+from runtime.live.run_facts import facts_of, note_lost, note_unseen
+from runtime.live.run_folder import KEPT, new_journal, new_log
+from runtime.live.screen import Screen
+from runtime.store.past_journal import Journalled
+from runtime.store.recording import Keep
+from runtime.store.runs import write_postures, write_run
+
+PLAYS: Final = "the run is over; the page plays it as long as it is open (Ctrl-C ends)"
+THREAD: Final = "%(threadName)s"
+"""What the log calls a part that is a thread."""
+
+
+def live(
+    settings: Settings,
+    out: Path,
+    console: Console,
+    name: str = "",
+    record: bool = False,
+    tell: Callable[[Heard], bool | None] = lambda _: None,
+    together: bool = False,
+) -> dict[str, Any]:
+    """Run the processes on a clip or on cameras until it ends or Ctrl-C; write the run folder.
+
+    SIGTERM ends it too, and SIGHUP, which a terminal says that is closed.
+
+    Args:
+        settings: Of the run.
+        out: The run folder; nothing is written elsewhere.
+        console: Shows the live table, each warning once, and the page's address.
+        name: Of the run; the clip's when empty.
+        record: Keep what the viewers report, so that it can be replayed.
+        tell: Called ten times a second too, with what was heard so far; True ends the run.
+        together: All parts but the page are threads of this process, which logs as one.
+
+    Returns:
+        What the run's summary tells.
+
+    Raises:
+        ClipError, ModelError, PageError, PortHeld, SettingsError, LiveRefused: When something
+            cannot be worked with; no process was started.
+        PartFailed, BusError, RunError: When something failed; what was tracked until then is
+            written first.
+    """
+    settings = admitted(settings, record, console)
+    new = not out.exists()
+    began, heard = time.monotonic(), nothing_heard()
+    title = name or Path(settings.clip).name or "tritrack"
+    with _stopped_by_signals(console) as stop, ExitStack() as doors:
+        log = new_log(out)
+        zygote = Zygote(inherited)
+        desk = PageDesk(settings, out, title, ProcessContext(True, log), zygote)
+        doors.callback(desk.close)
+        clip = _opened_or_nothing(settings, name, out, new=new)
+        screen = Screen(clip, settings, console, lambda: desk.address)
+
+        def facts(so_far: SoFar) -> dict[str, Any]:
+            return facts_of(heard, clip, time.monotonic() - began, so_far)
+
+        desk.facts = facts
+        journal = new_journal(out, clip, settings, heard.notes)
+        heard = heard._replace(journal=journal)
+        try:
+            _follow(
+                _Prepared(settings, clip, out, log, zygote, desk, screen, record, together),
+                stop,
+                heard,
+                tell,
+            )
+        finally:
+            note_lost(heard)
+            told = facts(heard.so_far)
+            bodies = WholeRun(heard.bodies, Journalled(out, Body))
+            write_run(out, bodies, settings, told)
+            postures = WholeRun(heard.postures, Journalled(out, Posture))
+            write_postures(out, postures, told["posture"])
+            journal.remove()
+        _show_end(desk, {**told, **_counts(out)}, stop, console)
+    return told
+
+
+class _Prepared(NamedTuple):
+    """All that a run is of, before its processes start."""
+
+    settings: Settings
+    clip: Clip
+    out: Path
+    log: Path
+    zygote: Zygote
+    desk: PageDesk
+    screen: Screen
+    record: bool
+    together: bool
+
+
+def _follow(
+    run_of: _Prepared, stop: threading.Event, heard: Heard, tell: Callable[[Heard], bool | None]
+) -> None:
+    """Run the processes until the clip ends or `stop` is set."""
+    settings, clip, out, log, zygote, desk, screen, record, together = run_of
+    with ExitStack() as doors:
+        kept = doors.enter_context(TemporaryDirectory(prefix=KEPT, dir=out))
+        context = ProcessContext(True, log, Path(kept))
+        parts = live_parts(settings, clip, context, zygote, together)
+        show = doors.enter_context(screen.shown([part.name for part in (*parts, *desk.parts)]))
+        doors.enter_context(logged("supervisor", log))
+        if together:
+            start_log(THREAD, log)
+        keep = doors.enter_context(_kept(out, clip, settings, record))
+
+        def look(heard: Heard) -> None:
+            show(heard)
+            if tell(heard):
+                stop.set()
+
+        heard = heard._replace(keep=keep)
+        settle()
+        zygote.wait(stop, lambda: look(heard))
+        run(parts, settings, stop, look, heard, desk)
+        note_unseen(heard)
+        show(heard)
+
+
+def _kept(
+    out: Path, clip: Clip, settings: Settings, record: bool
+) -> AbstractContextManager[Keep | None]:
+    """What takes each message of a run that is recorded."""
+    if not record:
+        return nullcontext()
+    from integrator.live_rig.live_calibration import is_by_person
+    from runtime.offline.batch import head_of
+    from runtime.store.recording import recording_to
+
+    return recording_to(out, head_of(clip, settings, by_person=is_by_person(clip, settings)))
+
+
+def _counts(out: Path) -> dict[str, int]:
+    """How many frames were written, and how many with a pose: the page may have shown fewer."""
+    summary = json.loads((out / "summary.json").read_text())
+    return {name: summary[name] for name in ("frames", "frames_with_pose")}
+
+
+def _show_end(
+    desk: PageDesk, facts: dict[str, Any], stop: threading.Event, console: Console
+) -> None:
+    """Let the page play the run for who looks at it, unless Ctrl-C ended all."""
+    if desk.stopped:
+        stop.clear()
+    if not stop.is_set():
+        desk.end(facts, stop, lambda: console.print(PLAYS))
+
+
+def _opened_or_nothing(settings: Settings, name: str, out: Path, *, new: bool) -> Clip:
+    """The clip of a run; where it is refused, a folder that was made for the run goes again."""
+    try:
+        return opened(settings, name)
+    except BaseException:
+        if new:
+            shutil.rmtree(out, ignore_errors=True)
+        raise
+
+
+@contextmanager
+def _stopped_by_signals(console: Console) -> Iterator[threading.Event]:
+    stop = threading.Event()
+
+    def end(number: int, _frame: FrameType | None) -> None:
+        console.quiet |= number == signal.SIGHUP  # each word to a closed terminal would fail
+        stop.set()
+
+    heeded = [signal.SIGINT, signal.SIGTERM]
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as under nohup
+        heeded.append(signal.SIGHUP)
+    before = {number: signal.signal(number, end) for number in heeded}
+    try:
+        yield stop
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,0 +1,180 @@
+"""Clip after clip tracked in lock-step, a run folder for each."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import msgspec
+from rich.console import Console
+
+from common.bus.messages import Body, Report, ScaleSource, ViewerNumber
+from common.config import config_file
+from common.config.settings import Settings
+from common.config.settings_error import SettingsError
+from common.method import Mode
+from common.video.clip_facts import Clip, both_cameras
+from common.video.clip_sources import ClipError, footage_of, refuse_no_footage
+from common.video.decoding import DecoderDied, Undecodable
+from integrator.frame_numbers import frame_times
+from runtime.offline.lockstep import Decoders, Tracked, measured_before, track_clip
+from runtime.offline.performance import Watch
+from runtime.offline.rig_check import clock_word
+from runtime.overrides import overridden
+from runtime.store.clip_paths import ClipsFailed, run_names, without_plain_files
+from runtime.store.other_run import OtherRun, RunOf, refuse_other, run_of
+from runtime.store.recording import Head, recording_to, refuse_without_library
+from runtime.store.runs import believed, write_run
+from runtime.terminal import Tell, bar, by_share, complain, say, warn
+from runtime.unfinished.resuming import Wanted, done_before, resumable
+from runtime.unfinished.unfinished_run import CannotResume
+from runtime.unfinished.work import Course, Kept
+
+KEPT_AS_IT_IS: Final = (CannotResume, OtherRun)
+"""What keeps one clip's run folder from being written."""
+
+
+class Asked(NamedTuple):
+    """What the user says of all clips; None leaves what their settings say."""
+
+    mode: Mode | None = None
+    size: str | None = None
+    landmarks: str | None = None
+    """Where joints of the pictures come from."""
+    views: tuple[ViewerNumber, ...] = (1, 2)
+    """The cameras to use."""
+    trusted: bool = False
+    """A calibration is trusted even where it seems wrong."""
+    record: bool = False
+    """Keep what the viewers report, so that it can be replayed."""
+    resume: bool = False
+    """Go on with what was cut short, and leave out what is done."""
+    force: bool = False
+    """Write over the runs of other clips."""
+    offset_s: float | None = None
+    """How late camera 2 is."""
+
+
+def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) -> dict[str, Any]:
+    """Track clip after clip and write a run folder for each.
+
+    Of several, one that cannot be used is said and left out; the others are tracked.
+
+    Args:
+        paths: Clip folders and settings files; other plain files are said and left out.
+        out: Gets a folder for each, named after the clip or the settings file.
+        given: What the user says of all of them.
+        console: For progress, warnings and errors.
+
+    Raises:
+        SettingsError, ClipError, DecoderDied, Undecodable, CannotResume: When the only clip cannot
+            be used.
+        ClipsFailed: When there is nothing to track, when two runs would have one folder, and at
+            the end when any clip could not be used.
+        RunError: When a run folder cannot be written.
+    """
+    runs = run_names(without_plain_files(paths, console))
+    if given.record:
+        refuse_without_library()
+    done: dict[str, Any] = {}
+    with Decoders() as decoders, bar(console) as progress:
+        for (name, path), tell in by_share(progress, [*runs.items()], "tracking"):
+            try:
+                own = config_file.load(path)
+                refuse_no_footage(own, path)
+                settings = overridden(own, given.mode, given.size, given.landmarks, given.offset_s)
+                if given.trusted:
+                    settings = msgspec.structs.replace(settings, trust_calibration=True)
+                told = {"the views": given.views, "what is recorded": given.record}
+                wanted = Wanted(out / name, settings, told, given.resume)
+                if not given.force:
+                    refuse_other(wanted.folder, _run_of(settings))
+                done[name] = done_before(wanted, console) or _tracked(
+                    wanted, given, decoders, tell, console
+                )
+            except (SettingsError, ClipError, DecoderDied, Undecodable, *KEPT_AS_IT_IS) as error:
+                if len(runs) == 1:
+                    raise
+                complain(console, str(error))
+    if len(done) < len(runs):
+        raise ClipsFailed(f"{len(runs) - len(done)} of {len(runs)} clips could not be tracked")
+    return {"clips": done}
+
+
+def _tracked(
+    wanted: Wanted, given: Asked, decoders: Decoders, tell: Tell, console: Console
+) -> dict[str, Any]:
+    """Track a clip and write its run; what the summary tells of it."""
+    folder, settings = wanted.folder, wanted.settings
+    with resumable(wanted, console) as (work, made_of):
+        heard = work.messages("heard") if given.record else None
+        course, watch = Course(tell, work), None if heard is None else _recorder(heard)
+        tracked = track_clip(settings, decoders, given.views, watch=watch, course=course)
+        for warning in tracked.facts["warnings"]:
+            warn(console, f"{folder.name}: {warning}")
+        if word := clock_word(tracked.facts):
+            say(console, f"{folder.name}: {word}")
+        named = {"clip": folder.name, "believed": believed(tracked.bodies)}
+        facts = {**tracked.facts, **named, **_run_of(settings).facts, **made_of}
+        write_run(folder, tracked.bodies, settings, facts)
+        if heard is not None:
+            _write_recording(folder, tracked, settings, heard, console)
+    return facts
+
+
+def _run_of(settings: Settings) -> RunOf:
+    return run_of("track", [view.source for view in footage_of(settings)])
+
+
+def head_of(
+    clip: Clip,
+    settings: Settings,
+    scale_source: ScaleSource | None = None,
+    *,
+    by_person: bool = False,
+) -> Head:
+    """What a recording of a clip begins with.
+
+    Args:
+        clip: With the rig that is known before the first frame.
+        settings: Of the run.
+        scale_source: Where that rig is from; None: it is calibrated, if there is one.
+        by_person: The person tells the rig while the run goes on.
+    """
+    return Head(
+        name=clip.name,
+        settings=settings,
+        period_s=clip.every / clip.views[0].fps,
+        alone=len(clip.views) == 1,
+        rig=both_cameras(clip),
+        body=clip.body,
+        times=frame_times(clip),
+        scale_source=scale_source,
+        by_person=by_person,
+    )
+
+
+def _recorder(heard: Kept) -> Watch:
+    """Gathers what is said of every instant, in the order in which it is said."""
+
+    def each(_frames: object, reports: dict[int, Report], body: Body) -> None:
+        for message in (*reports.values(), body):
+            heard.append(message)
+
+    return Watch(each, heard.clear)
+
+
+def _write_recording(
+    folder: Path, tracked: Tracked, settings: Settings, heard: Kept, console: Console
+) -> None:
+    clip = tracked.clip
+    if not heard:
+        warn(
+            console,
+            f"{clip.name}: nothing was recorded: one camera without a calibration is followed in "
+            "passes over the whole film; follow it again instead",
+        )
+        return
+    measured = msgspec.structs.replace(clip, body=measured_before(settings))
+    with recording_to(folder, head_of(measured, settings, tracked.facts["scale_source"])) as keep:
+        for message in heard:
+            keep(message)

@@ -1,0 +1,244 @@
+"""The two passes over one camera's film: its silhouettes, then its bodies.
+
+What the thesis learns from all of a film, the background (3.1.2) and the scale (3.1.5), is known
+before the first body; from there on the steps are those of a live run.
+"""
+
+import time
+from collections.abc import Sequence
+from itertools import islice
+from typing import Final, NamedTuple
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.tracks.joint_tracks import is_upright
+from common.body.proportions import thesis_bdp
+from common.bus.messages import Body, Guide, Report, ScaleSource, ViewerNumber
+from common.bus.pair import Pair
+from common.config.settings import Settings
+from common.method import Method
+from common.notes.notes import Notes, held
+from common.raster.silhouette_report import unpack
+from common.rig.camera import Camera, Rig
+from common.rig.upright_camera import as_worked_on
+from common.video.clip_facts import Clip
+from common.video.clip_sources import ClipError
+from common.video.decoding import Ending
+from common.video.frame_cache import Reader
+from integrator import merge, merge_state
+from integrator.merge_state import Start, State
+from integrator.opening_posture import Opening
+from integrator.rig.tilted_camera import LEVEL, TILTS_DEG, camera_of_sights
+from integrator.single.sight import Annotations
+from runtime.offline.film_smoothing import calmed
+from runtime.offline.frame_pairs import share_of
+from runtime.unfinished.unfinished_run import BODIES
+from runtime.unfinished.work import Course
+from viewer import track
+from viewer.background.background import learn
+from viewer.capture import recorded
+from viewer.landmarks.outside_source import OutsideSource
+from viewer.room.background_source import FilmBackground
+from viewer.stick.standing_height import standing_of, standing_rows
+
+CUTTING, POSING = "silhouettes", "poses"
+"""The passes, by the names under which they are resumed."""
+REPORTS, CALM = "reports", "calm"
+MOST_COVERED: Final = 0.5
+"""Share of the picture that no person covers in most frames; a camera that moves does."""
+
+
+class FilmFacts(NamedTuple):
+    """What both passes need to know of a film."""
+
+    settings: Settings
+    method: Method
+    """What is done beyond the print."""
+    number: ViewerNumber
+    period_s: float
+    camera: Camera | None
+    """Calibrated, at the working size; None: one is assumed."""
+    notes: Notes = Notes()
+    scale: float = 1.0
+    """Pixels of the working picture in one of the video."""
+
+
+class Cutting(NamedTuple):
+    """Where the first pass is."""
+
+    viewer: track.State
+    start: int = 0
+    """The next frame."""
+    spent_s: float = 0.0
+
+
+class FirstPass(NamedTuple):
+    """What the first pass tells of itself."""
+
+    odd: tuple[str, ...] = ()
+    """What was odd about the film."""
+    spent_s: float = 0.0
+    ending: Ending = Ending()
+    """How far it could be read."""
+
+
+class Lifted(NamedTuple):
+    """What the second pass gives."""
+
+    bodies: Sequence[Body]
+    camera: Camera | None
+    """By which they are lifted; None where there is no frame."""
+
+
+class Stand(NamedTuple):
+    """How somebody stood in a frame."""
+
+    rows: tuple[float, float]
+    """As `standing_rows` tells it."""
+    whole: bool
+    upright: bool
+
+
+class Posing(NamedTuple):
+    """Where the second pass is."""
+
+    viewer: track.State
+    integrator: State
+    first: FirstPass
+    guide: Guide | None = None
+    spent_s: float = 0.0
+
+
+def silhouettes_of(
+    clip: Clip,
+    background: FilmBackground,
+    film: FilmFacts,
+    reader: Reader,
+    source: OutsideSource | None = None,
+    course: Course = Course(),
+) -> Sequence[Report]:
+    """The first pass: the silhouette and the landmarks of every frame, from where it was left.
+
+    Raises:
+        ClipError: When its camera moves.
+        DecoderDied: When the video broke the decoder.
+    """
+    view, work, began = clip.views[0], course.work, time.perf_counter()
+    at = work.resumed(CUTTING, Cutting) or Cutting(
+        track.init(_setup(film), background.background, patches=background.patches)
+    )
+    before_s, reports = at.spent_s, work.messages(REPORTS)
+    for frame in recorded(view, clip.every, reader, source, at.start):
+        viewer, report, _ = track.look(at.viewer, frame, None)
+        reports.append(report)
+        at = Cutting(viewer, frame.index + 1, before_s + time.perf_counter() - began)
+        course.tell(share_of(clip, {view.number: frame}))
+        if work.due:
+            work.save(CUTTING, at)
+    _refuse_a_moving_camera(reports, str(view.source))
+    return reports
+
+
+def bodies_of(
+    reports: Sequence[Report],
+    film: FilmFacts,
+    course: Course = Course(),
+    first: FirstPass = FirstPass(),
+) -> Lifted:
+    """The second pass: the viewer tells more of each silhouette, the integrator lifts it.
+
+    Args:
+        reports: What the first pass gave.
+        film: Of the film.
+        course: Is told how far it is, and keeps the bodies.
+        first: Is kept with where it was left.
+    """
+    work, began = course.work, time.perf_counter()
+    bodies = work.messages(BODIES)
+    if not reports:
+        return Lifted(bodies, None)
+    at = work.resumed(POSING, Posing) or Posing(*_begun(reports, film), first)
+    before_s = at.spent_s
+    for report in islice(reports, len(bodies), None):
+        at, body = _posed(at, report, film)
+        bodies.append(body)
+        course.tell(len(bodies) / len(reports))
+        if work.due:
+            work.save(POSING, at._replace(spent_s=before_s + time.perf_counter() - began))
+    rig = at.integrator.rig
+    assert rig is not None
+    if film.method.film_smoothing:
+        kept, uprights = work.messages(CALM), at.integrator.uprights
+        return Lifted(calmed(bodies, rig, film.notes, kept, uprights), rig.cameras[0])
+    return Lifted(bodies, rig.cameras[0])
+
+
+def _posed(at: Posing, report: Report, film: FilmFacts) -> tuple[Posing, Body]:
+    """One frame of the second pass."""
+    annotations, guide = _annotations(film, report), at.guide
+    if guide is not None and annotations.orientation is not None:
+        guide = msgspec.structs.replace(guide, stick=True)
+    viewer, full = track.describe(at.viewer, report, unpack(report), guide)
+    pair = Pair(full, None) if film.number == 1 else Pair(None, full)
+    state, body, guide = merge.step(at.integrator, pair, annotations)
+    return at._replace(viewer=viewer, integrator=state, guide=guide), body
+
+
+def _begun(reports: Sequence[Report], film: FilmFacts) -> tuple[track.State, State]:
+    """A viewer and an integrator that know what the first pass tells of the scale (T20)."""
+    settings, camera = film.settings, film.camera
+    size = (reports[0].width, reports[0].height)
+    stands = [_stand_of(report) for report in reports if report.box is not None]
+    standing = standing_of([one.rows for one in stands], [one.whole for one in stands])
+    nothing = np.zeros((size[1], size[0], 3), np.uint8)
+    viewer = track.init(_setup(film), learn([nothing]), standing=standing)
+    stature_m, opening = settings.body.stature_m, Opening()
+    if camera is None:
+        tilts_deg = LEVEL if film.method.stick_lifting else TILTS_DEG
+        camera = camera_of_sights(size, _sights(stands, size), stature_m, tilts_deg)
+        opening = Opening(bdp=thesis_bdp(stature_m))
+    rig = Rig(*size, (camera, camera))
+    source: ScaleSource = "assumed" if film.camera is None else "calibrated"
+    state = merge_state.init(
+        rig, film.period_s, settings, film.method, Start(True, source, opening)
+    )
+    return viewer, state
+
+
+def _stand_of(report: Report) -> Stand:
+    """A film's reports are many: each is let go of again."""
+    shown = report.landmarks
+    upright = shown is not None and is_upright(shown)
+    return Stand(standing_rows(unpack(report)), not report.cut, upright)
+
+
+def _sights(stands: Sequence[Stand], size: tuple[int, int]) -> NDArray[np.float64]:
+    """Rows of those silhouettes by which a camera is told, (n, 2): the whole ones of somebody
+    upright, or whatever there is."""
+    whole = [one for one in stands if one.whole] or stands
+    upright = [one for one in whole if one.upright] or whole
+    return np.array([one.rows for one in upright] or [(0.0, float(size[1]))])
+
+
+def _setup(film: FilmFacts) -> track.Setup:
+    return track.Setup(film.number, film.camera, film.settings, film.method, alone=True)
+
+
+def _annotations(film: FilmFacts, report: Report) -> Annotations:
+    """What the user says of a frame, in the pixels of its report."""
+    note = held(film.notes, report.frame)
+    filed = film.scale * np.array([*note.joints_px.values()]).reshape(-1, 2)
+    places = as_worked_on(filed, report.upright).tolist()
+    placed = {name: (u, v) for name, (u, v) in zip(note.joints_px, places, strict=True)}
+    return Annotations(note.orientation, note.depth, placed)
+
+
+def _refuse_a_moving_camera(reports: Sequence[Report], source: str) -> None:
+    areas = [report.area_px / (report.width * report.height) for report in reports if report.box]
+    if areas and np.median(areas) > MOST_COVERED:
+        raise ClipError(
+            f"{source}: most of the picture changes, so its camera moves or its light does: only "
+            "videos of a camera that stands still can be tracked"
+        )

@@ -1,0 +1,247 @@
+"""The same steps as live, in one process and in lock-step: deterministic, as fast as it goes."""
+
+import time
+from collections.abc import Sequence
+from contextlib import ExitStack
+from typing import Any, NamedTuple, get_args
+
+import msgspec
+
+from calibration.tracks.lateness import Clock
+from common.body.body import Bdp
+from common.bus.messages import Body, ScaleSource, ViewerNumber
+from common.config.settings import Settings
+from common.method import METHODS, Method
+from common.video.clip_facts import (
+    Clip,
+    both_cameras,
+    set_back,
+    shortfall,
+    unread_facts,
+    uprights_of,
+)
+from common.video.clip_sources import ClipError
+from common.video.clips import open_clip
+from common.video.decoding import Decoder
+from common.video.frame_cache import Reel
+from integrator import diagnostics, merge_state, opening_posture
+from integrator.frame_numbers import frame_times
+from integrator.merge_state import Start
+from runtime.moved_facts import moved_facts
+from runtime.offline.film_tracking import Film, Heard, follow_clip, unseen
+from runtime.offline.frame_pairs import openings
+from runtime.offline.opening_clip import body_of
+from runtime.offline.performance import (
+    STAGE,
+    Going,
+    Performance,
+    Prepared,
+    Watch,
+    performed,
+)
+from runtime.offline.rig_check import (
+    Witness,
+    clock_facts,
+    clock_seen,
+    doubted,
+    doubts,
+    is_late,
+    trust_facts,
+)
+from runtime.offline.rig_from_person import Looked, by_person, calibration_facts
+from runtime.unfinished.work import Course
+from viewer import track
+from viewer.landmarks.landmark_sources import Sources, oddities, outside_sources
+from viewer.room.background_source import FilmBackground, opening_of_view
+
+
+class Tracked(NamedTuple):
+    """What tracking a clip gave."""
+
+    clip: Clip
+    bodies: Sequence[Body]
+    facts: dict[str, Any]
+    """For the summary: seconds of each stage, scale_source, warnings."""
+
+
+class Decoders:
+    """One decoder a view, kept over many clips: a child's start costs more than a clip."""
+
+    def __init__(self) -> None:
+        """None started yet."""
+        self._doors = ExitStack()
+        self.of: dict[ViewerNumber, Decoder] = {
+            number: self._doors.enter_context(Decoder()) for number in get_args(ViewerNumber)
+        }
+
+    def __enter__(self) -> "Decoders":
+        """Nothing to do before the first clip."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End the children."""
+        self._doors.close()
+
+
+class _Job(NamedTuple):
+    """What is asked of a clip."""
+
+    settings: Settings
+    method: Method
+    decoders: Decoders
+    sources: Sources
+    watch: Watch | None
+    course: Course
+
+
+class _Followed(NamedTuple):
+    """A clip that was followed."""
+
+    ready: Prepared
+    done: Performance
+    witness: Witness
+
+
+def track_clip(
+    settings: Settings,
+    decoders: Decoders,
+    views: tuple[ViewerNumber, ...] = (1, 2),
+    watch: Watch | None = None,
+    method: Method | None = None,
+    course: Course = Course(),
+) -> Tracked:
+    """Track one clip from its videos to its bodies; `watch` is shown every instant.
+
+    Args:
+        settings: Of the run.
+        decoders: Read the videos.
+        views: The cameras to use.
+        watch: Is shown every instant of a clip whose scale is known before.
+        method: Instead of that of the settings' mode.
+        course: Is told how much of the clip is over, and keeps what it gives.
+
+    Raises:
+        ClipError: When the clip cannot be used.
+        DecoderDied: When a video broke the decoder.
+        SettingsError: When the source of landmarks cannot be used.
+    """
+    began = time.perf_counter()
+    clip = open_clip(settings, decoders.of[1], views)
+    method = method or METHODS[settings.mode]
+    alone = len(clip.views) == 1
+    if method.stick_lifting and not alone:
+        raise ClipError(f"{clip.name}: the thesis's mode is for one camera: add --views 1")
+    if alone and (method.stick_lifting or (method.proposals and clip.rig is None)):
+        return _in_two_passes(clip, settings, method, decoders, course)
+    with outside_sources(settings, clip.views) as sources:
+        job = _Job(settings, method, decoders, sources, watch, course)
+        looked = _as_left(by_person(clip, settings, method, decoders.of, sources), course)
+        followed = _followed(looked, job, began)
+        clock = clock_seen(looked.clip, followed.witness)
+        if looked.clock is None and settings.offset_s is None and is_late(looked.clip, clock):
+            looked = looked._replace(clip=set_back(looked.clip, clock.late_s), clock=clock)
+            _begin_anew(job)
+            followed = _followed(looked, job, began)
+            clock = clock_seen(looked.clip, followed.witness)
+        return _told(looked, job, followed, clock)
+
+
+def _as_left(looked: Looked, course: Course) -> Looked:
+    """With the clock by which a run that was cut short was being tracked again."""
+    left = course.work.resumed(STAGE, Going)
+    late_s = left.late_s - looked.clip.views[-1].late_s if left else 0.0
+    if not late_s:
+        return looked
+    return looked._replace(clip=set_back(looked.clip, late_s), clock=Clock(late_s))
+
+
+def _begin_anew(job: _Job) -> None:
+    job.course.work.restart()
+    if job.watch:
+        job.watch.begin()
+
+
+def _followed(looked: Looked, job: _Job, began: float) -> _Followed:
+    """All instants of a clip."""
+    ready, witness = _prepared(looked, job.settings, job.method, job.decoders, began), Witness()
+    done = performed(ready, job.sources, witness, job.watch, job.course)
+    return _Followed(ready, done, witness)
+
+
+def _told(looked: Looked, job: _Job, followed: _Followed, clock: Clock) -> Tracked:
+    """What tracking gave, with what is known of the rig and of the clock as it is set now."""
+    clip, settings, (ready, done, witness) = looked.clip, job.settings, followed
+    trust = trust_facts(clip, witness, clock, insisted=settings.trust_calibration)
+    facts = _facts(ready, done, job.sources) | calibration_facts(looked) | trust
+    facts |= moved_facts(done.bodies) | clock_facts(clip, looked.clock or clock, settings.offset_s)
+    facts["warnings"] += doubts(facts)
+    given = settings.offset_s is not None
+    return Tracked(clip, done.bodies if given else doubted(done.bodies, clock), facts)
+
+
+def _in_two_passes(
+    clip: Clip, settings: Settings, method: Method, decoders: Decoders, course: Course
+) -> Tracked:
+    """One camera whose scale all of the clip must tell, or that is followed as the thesis does."""
+    view = clip.views[0]
+    reel = Reel(decoders.of[view.number], due=view.frames)
+    opening = opening_of_view(view, settings.silhouette, reel)
+    film = Film(clip, FilmBackground(opening.background, [], opening.odd))
+    heard = Heard(course.tell, work=course.work)
+    followed = follow_clip(film, settings, method, reel, heard)
+    return Tracked(clip, followed.bodies, followed.facts)
+
+
+def _prepared(
+    looked: Looked, settings: Settings, method: Method, decoders: Decoders, began: float
+) -> Prepared:
+    """Viewers that know their backgrounds and an integrator that knows the rig."""
+    clip, odd = looked.clip, [looked.warning] if looked.warning else []
+    rig, alone = both_cameras(clip), len(clip.views) == 1
+    known = body_of(settings, lambda own: track_clip(own, decoders).bodies)
+    reels = {view.number: Reel(decoders.of[view.number], due=view.frames) for view in clip.views}
+    viewers: dict[ViewerNumber, track.State] = {}
+    learnt = openings(clip, settings.silhouette, reels)
+    for view, opens in zip(clip.views, learnt, strict=True):
+        odd += [opens.odd] if opens.odd else []
+        camera = None if rig is None else rig.cameras[view.number - 1]
+        setup = track.Setup(view.number, camera, settings, method, alone)
+        viewers[view.number] = track.init(setup, opens.background, somebody=opens.somebody)
+    period_s = clip.every / clip.views[0].fps
+    opening = opening_posture.init(known)
+    source: ScaleSource | None = "person" if looked.found else None
+    start = Start(alone, source, opening, frame_times(clip), uprights=uprights_of(clip))
+    integrator = merge_state.init(rig, period_s, settings, method, start)
+    return Prepared(clip, reels, viewers, integrator, odd, time.perf_counter() - began)
+
+
+def _facts(ready: Prepared, done: Performance, sources: Sources) -> dict[str, Any]:
+    """For the summary: what was tracked, how long it took, what was odd."""
+    clip, acts = ready.clip, ready.clip.meta.acts
+    endings = [(view, ready.reels[view.number].ending) for view in clip.views]
+    cut_off = (shortfall(view, ending) for view, ending in endings)
+    seen_odd = (*cut_off, unseen(done.bodies), *oddities(sources))
+    odd = [*clip.warnings, *ready.odd, *filter(None, seen_odd)]
+    followed_s = done.seconds["following"]
+    seconds = {"preparation": ready.seconds, **done.seconds, "all": ready.seconds + followed_s}
+    return {
+        "clip": clip.name,
+        "performer": clip.meta.performer,
+        "posture_meant": clip.meta.posture,
+        **({"acts": msgspec.to_builtins(acts)} if acts else {}),
+        **unread_facts(endings),
+        "seconds": {name: round(value, 4) for name, value in seconds.items()},
+        "frames_a_second": round(len(done.bodies) / followed_s, 1),
+        "scale_source": done.integrator.scale_source,
+        "warnings": [*odd, *diagnostics.warnings(done.noticed, done.integrator), *done.news],
+    }
+
+
+def measured_before(settings: Settings) -> Bdp | None:
+    """The person's body as the opening clip that the settings name tells it, if they name one.
+
+    Raises:
+        SettingsError, ClipError, DecoderDied: As `body_of` and `track_clip` do.
+    """
+    with Decoders() as decoders:
+        return body_of(settings, lambda own: track_clip(own, decoders).bodies)

@@ -1,0 +1,184 @@
+"""Every instant of a clip: its viewers and the integrator in lock-step, from first to last."""
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager
+from itertools import repeat
+from typing import Final, NamedTuple
+
+from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.bus.pair import Pair
+from common.video.clip_facts import Clip
+from common.video.frame_cache import Reel
+from integrator import diagnostics, merge, merge_state
+from integrator.live_rig.live_calibration import LiveCalibration, Looking
+from integrator.live_rig.rig_solver import SolverAtOnce
+from runtime.offline.frame_pairs import instants, share_of
+from runtime.offline.rig_check import Seen, Witness
+from runtime.unfinished.unfinished_run import BODIES
+from runtime.unfinished.work import Course
+from viewer import track
+from viewer.capture import CapturedFrame
+from viewer.landmarks.landmark_sources import Sources
+
+STAGE: Final = "instants"
+TURNS_S: Final = 0.0002
+"""How long a thread that has computed waits for its turn to be interpreted: by Python's own 5 ms
+two viewers side by side would be no faster than one after the other."""
+
+Each = Callable[[dict[ViewerNumber, CapturedFrame], dict[int, Report], Body], object]
+"""Looks at the frames of an instant, the reports on them and the body they gave."""
+
+
+class Watch(NamedTuple):
+    """Looks at a clip while it is followed."""
+
+    each: Each
+    begin: Callable[[], object] = lambda: None
+    """Forgets what it saw: the clip is followed from its first instant on again."""
+
+
+class Prepared(NamedTuple):
+    """A clip that can be followed."""
+
+    clip: Clip
+    reels: dict[ViewerNumber, Reel]
+    viewers: dict[ViewerNumber, track.State]
+    integrator: merge_state.State
+    odd: list[str]
+    """What is odd about its backgrounds."""
+    seconds: float
+    """What that took."""
+
+
+class Going(NamedTuple):
+    """All that is remembered from one instant to the next."""
+
+    viewers: dict[ViewerNumber, track.State]
+    integrator: merge_state.State
+    calibration: Looking
+    witness: Seen
+    noticed: diagnostics.State
+    guide: Guide | None
+    starts: dict[ViewerNumber, int]
+    """The next frame of each view that has given one."""
+    spent: dict[str, float]
+    """Seconds of each stage."""
+    late_s: float = 0.0
+    """By how much the times of view 2 are set back."""
+
+
+class Performance(NamedTuple):
+    """What following a clip gave."""
+
+    bodies: Sequence[Body]
+    integrator: merge_state.State
+    noticed: diagnostics.State
+    news: tuple[str, ...]
+    """What became of the rig."""
+    seconds: dict[str, float]
+    """Of each stage."""
+
+
+def performed(
+    ready: Prepared, sources: Sources, witness: Witness, watch: Watch | None, course: Course
+) -> Performance:
+    """Follow a clip, from where it was left; the views of an instant side by side.
+
+    Args:
+        ready: The clip.
+        sources: Of landmarks.
+        witness: Sees every instant.
+        watch: Likewise, where there is one.
+        course: Is told how far it is, and keeps the bodies.
+    """
+    clip, work = ready.clip, course.work
+    calibration = LiveCalibration(ready.integrator, looks=False, solver=SolverAtOnce())
+    going = work.resumed(STAGE, Going) or _begun(ready, calibration, witness)
+    calibration.looking, witness.seen = going.calibration, going.witness
+    bodies = work.messages(BODIES)
+    before_s, began = going.spent["following"], time.perf_counter()
+    with _side_by_side(len(clip.views)) as pool:
+        for frames in instants(clip, ready.reels, sources, going.starts):
+            going, reports, body = _stepped(going, frames, calibration, pool)
+            bodies.append(body)
+            witness(frames, reports, body)
+            if watch:
+                watch.each(frames, reports, body)
+            course.tell(share_of(clip, frames))
+            if work.due:
+                now_s = before_s + time.perf_counter() - began
+                work.save(STAGE, _saved(going, calibration, witness, now_s))
+    going = _saved(going, calibration, witness, before_s + time.perf_counter() - began)
+    return Performance(bodies, going.integrator, going.noticed, calibration.news, going.spent)
+
+
+@contextmanager
+def _side_by_side(count: int) -> Iterator[Executor]:
+    """Threads that take short turns."""
+    turns_s = sys.getswitchinterval()
+    sys.setswitchinterval(TURNS_S)
+    try:
+        with ThreadPoolExecutor(count) as pool:
+            yield pool
+    finally:
+        sys.setswitchinterval(turns_s)
+
+
+def _begun(ready: Prepared, calibration: LiveCalibration, witness: Witness) -> Going:
+    return Going(
+        ready.viewers,
+        ready.integrator,
+        calibration.looking,
+        witness.seen,
+        noticed=diagnostics.State(),
+        guide=None,
+        starts={},
+        spent={"viewers": 0.0, "integrator": 0.0, "following": 0.0},
+        late_s=ready.clip.views[-1].late_s,
+    )
+
+
+def _stepped(
+    going: Going,
+    frames: dict[ViewerNumber, CapturedFrame],
+    calibration: LiveCalibration,
+    pool: Executor,
+) -> tuple[Going, dict[int, Report], Body]:
+    """One instant more."""
+    start = time.perf_counter()
+    before, guides = [going.viewers[number] for number in frames], repeat(going.guide)
+    seen = dict(zip(frames, pool.map(track.step, before, frames.values(), guides), strict=True))
+    viewers = going.viewers | {number: state for number, (state, _) in seen.items()}
+    reports: dict[int, Report] = {number: report for number, (_, report) in seen.items()}
+    starts = going.starts | {number: frame.index + 1 for number, frame in frames.items()}
+    middle = time.perf_counter()
+    pair = Pair(reports.get(1), reports.get(2))
+    state, body, guide = merge.step(going.integrator, pair)
+    calibration.heard(pair)
+    state = calibration.changed(state)
+    spent = dict(going.spent)
+    spent["viewers"] += middle - start
+    spent["integrator"] += time.perf_counter() - middle
+    going = going._replace(
+        viewers=viewers,
+        integrator=state,
+        noticed=diagnostics.step(going.noticed, pair),
+        guide=guide,
+        starts=starts,
+        spent=spent,
+    )
+    return going, reports, body
+
+
+def _saved(
+    going: Going, calibration: LiveCalibration, witness: Witness, following_s: float
+) -> Going:
+    """With what is remembered elsewhere."""
+    return going._replace(
+        calibration=calibration.looking,
+        witness=witness.seen,
+        spent={**going.spent, "following": following_s},
+    )

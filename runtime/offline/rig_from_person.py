@@ -1,0 +1,121 @@
+"""A first pass over clips without a calibration: their cameras, by the person who moves there."""
+
+from collections.abc import Mapping
+from typing import Any, Final, NamedTuple
+
+import msgspec
+
+from calibration.person.rig_quality import PersonCalibration
+from calibration.tracks.joint_tracks import Sighting, track_of
+from calibration.tracks.lateness import LEAST_LATE, Clock, clock_of
+from common.bus.messages import Report, ViewerNumber
+from common.config.settings import Settings
+from common.method import Method
+from common.rig.absurd_rig import nearly_one_view
+from common.rig.rig_file import CalibrationError
+from common.video.clip_facts import Clip, set_back
+from common.video.frame_cache import Reader
+from runtime.offline.frame_pairs import instants, openings
+from viewer import track
+from viewer.landmarks.landmark_sources import Sources
+
+ON_TIME: Final = Clock(0.0)
+"""Where the user says how late view 2 is, it is on time by that."""
+MOST_FRAMES: Final = 3_000
+"""So much of a clip is looked at."""
+
+
+class Looked(NamedTuple):
+    """What the first pass gave."""
+
+    clip: Clip
+    """With the rig, where one was found, and with the clock of view 2 set right."""
+    found: PersonCalibration | None = None
+    warning: str = ""
+    clock: Clock | None = None
+    """Of view 2, by its own times; None where it was not asked for."""
+
+
+def sighting_of(
+    clip: Clip,
+    settings: Settings,
+    method: Method,
+    readers: Mapping[ViewerNumber, Reader],
+    sources: Sources,
+) -> Sighting:
+    """What both views see of the person in a clip without a rig, until a camera is moved.
+
+    Raises:
+        DecoderDied: When a video broke the decoder.
+    """
+    learnt = openings(clip, settings.silhouette, readers)
+    viewers = {
+        view.number: track.init(
+            track.Setup(view.number, None, settings, method),
+            opening.background,
+            somebody=opening.somebody,
+        )
+        for view, opening in zip(clip.views, learnt, strict=True)
+    }
+    reports: dict[ViewerNumber, list[Report]] = {view.number: [] for view in clip.views}
+    for n, frames in enumerate(instants(clip, readers, sources)):
+        for number, frame in frames.items():
+            viewers[number], report, _ = track.look(viewers[number], frame, None)
+            reports[number].append(report)
+        is_moved = any(own[-1].shift is not None for own in reports.values() if own)
+        if n + 1 == MOST_FRAMES or is_moved:
+            break
+    first, second = (track_of(reports[number]) for number in (1, 2))
+    return Sighting(first, second, clip.views[0].size)
+
+
+def by_person(
+    clip: Clip,
+    settings: Settings,
+    method: Method,
+    readers: Mapping[ViewerNumber, Reader],
+    sources: Sources,
+) -> Looked:
+    """A recorded clip of two views that has no rig with the one that the person in it tells.
+
+    It is left as it is where it has one, where the method asks for no landmarks, where too little
+    of anybody is seen, and where the views' pictures differ in size.
+    """
+    from calibration.person.person_calibration import calibrated_by_person
+
+    of_files = all(view.frames for view in clip.views)
+    of_one_size = len({view.size for view in clip.views}) == 1
+    if clip.rig is not None or len(clip.views) < 2 or not (of_files and of_one_size):
+        return Looked(clip)
+    if not (method.landmarks and method.proposals):
+        return Looked(clip)
+    sighting = sighting_of(clip, settings, method, readers, sources)
+    clock = clock_of(sighting) if settings.offset_s is None else ON_TIME
+    try:
+        found = calibrated_by_person((sighting,), settings.body.stature_m, clocks=(clock,))
+    except CalibrationError as error:
+        told = f"not calibrated by the person: {error}"
+        return Looked(on_time(clip, clock, clock.late_s), None, told, clock)
+    clip = on_time(msgspec.structs.replace(clip, rig=found.rig), clock, found.late_s[0])
+    return Looked(clip, found, nearly_one_view(found.rig), clock)
+
+
+def on_time(clip: Clip, clock: Clock, late_s: float) -> Clip:
+    """The clip with the times of view 2 set back by its lateness, where that is found.
+
+    Args:
+        clip: Of two views.
+        clock: Of view 2.
+        late_s: The same, by the rig that is used.
+    """
+    period_s = clip.every / clip.views[1].fps
+    is_late = clock.is_found and abs(late_s) >= LEAST_LATE * period_s
+    return set_back(clip, late_s) if is_late else clip
+
+
+def calibration_facts(looked: Looked) -> dict[str, Any]:
+    """For the summary: the calibration that was found, and how good it is."""
+    if looked.found is None:
+        return {}
+    rig, quality = (msgspec.to_builtins(part) for part in (looked.found.rig, looked.found.quality))
+    return {"calibration": {**rig, "quality": quality}}

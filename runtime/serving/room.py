@@ -1,0 +1,119 @@
+"""One site under supervision: its process, what it says, why it does not run."""
+
+from multiprocessing.connection import Connection
+from typing import Final
+
+import msgspec
+
+from common.bus.control_messages import Pulse
+from common.bus.inbox import Alive
+from common.bus.message_codec import decode
+from runtime.forking.zygote import SPAWN, Zygote
+from runtime.live.free_ports import with_free_endpoint
+from runtime.live.process_table import Part
+from runtime.live.supervise import PartFailed, Watched
+from runtime.outside.run_figures import RunFigures, step
+from runtime.serving.site_status import Status, status_of
+from runtime.serving.sites import Site
+
+END_S: Final = 20.0
+"""What a site may take to end its processes and write its run; all sites end at once."""
+AGAIN_S: Final = 60.0
+"""A site that failed, or died too often, is tried anew after that: its camera may be back."""
+SITE: Final = "site"
+"""The part that the figures of a site speak of."""
+
+
+class Room:
+    """A site that was started."""
+
+    def __init__(self, site: Site, zygote: Zygote | None = None) -> None:
+        """Started now, of that zygote if it is warm; an endpoint left open is chosen."""
+        self.site = site
+        self._zygote = zygote
+        self.figures = RunFigures()
+        self.failure = ""
+        """Why it does not run; "" while it does."""
+        self._pulses: dict[str, Pulse] = {}
+        self._again_s = 0.0
+        self._ours, self._theirs = SPAWN.Pipe(duplex=False)
+        self._watched = self._started()
+
+    @property
+    def status(self) -> Status:
+        """How it is."""
+        return status_of(self.site.name, self._pulses.get(self.site.name), self.failure)
+
+    @property
+    def pulse(self) -> Pulse | None:
+        """Its newest."""
+        return self._pulses.get(self.site.name)
+
+    def look(self, now_s: float) -> str:
+        """Hear how it is, start it again where it died; what is to be told of that, or ""."""
+        self._hear(now_s)
+        if self.failure:
+            if now_s >= self._again_s:
+                self.failure = ""
+                self._watched = self._started()
+            return ""
+        try:
+            told = self._watched.look(now_s, self._pulses)
+        except PartFailed as error:
+            return self._fails(str(error), now_s)
+        if self._watched.given_up:
+            return self._fails(told, now_s)
+        self._is_there(self._watched.running.process.is_alive(), now_s)
+        return told
+
+    def ask(self) -> None:
+        """Ask it to end; `end` waits for it."""
+        self._watched.ask()
+
+    def end(self) -> None:
+        """End all its processes."""
+        self._watched.end()
+        self._ours.close()
+        self._theirs.close()
+
+    def _started(self) -> Watched:
+        self._pulses.clear()
+        settings = with_free_endpoint(self.site.settings)
+        site = self.site._replace(settings=settings)
+        part = Part(
+            self.site.name,
+            site_main,
+            (site, self._theirs),
+            beats=True,
+            nests=True,
+            end_s=END_S,
+            zygote=self._zygote,
+        )
+        return Watched(part)
+
+    def _fails(self, why: str, now_s: float) -> str:
+        """It is down, for a while."""
+        self.failure = (
+            f"{why.removeprefix(f'{self.site.name}: ')}; tried anew every {AGAIN_S:.0f} s, or at "
+            "once when its settings change"
+        )
+        self._again_s = now_s + AGAIN_S
+        self._is_there(False, now_s)
+        return f"{self.site.name}: down: {self.failure}"
+
+    def _hear(self, now_s: float) -> None:
+        while self._ours.poll():
+            pulse = decode(self._ours.recv_bytes(), Pulse)
+            self._pulses[self.site.name] = pulse
+            told = msgspec.structs.replace(pulse, process=SITE)
+            self.figures = step(self.figures, told, now_s)
+
+    def _is_there(self, there: bool, now_s: float) -> None:
+        self.figures = step(self.figures, Alive(SITE, there), now_s)
+
+
+def site_main(site: Site, words: Connection) -> None:
+    """The process of a site, imported where it runs."""
+    from runtime.serving.site_process import main
+
+    main(site, words)

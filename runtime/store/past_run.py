@@ -1,0 +1,159 @@
+"""A run that was written before: its poses and its summary, checked while they are read."""
+
+import json
+import re
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+
+from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS
+from common.body.extremities import EXTREMITY_NAMES
+from common.npz_file import Arrays, read_arrays
+from runtime.store.joint_arrays import parted
+
+if TYPE_CHECKING:
+    from runtime.store.past_journal import Told
+
+MAX_BYTES: Final = 1 << 31
+"""No poses of a run are larger: twenty hours at 15 frames a second."""
+
+ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
+    "frame": ("iu", ()),
+    "time_s": ("f", ()),
+    "joints_m": ("f", (len(JOINT_NAMES), 3)),
+    "joints_px": ("f", (2, len(JOINT_NAMES), 2)),
+    "angles_deg": ("f", (len(ANGLE_NAMES),)),
+    "confidence": ("f", (len(JOINT_NAMES),)),
+    "status": ("U", ()),
+    "views": ("U", ()),
+    "score": ("f", (2,)),
+}
+"""The arrays of `poses.npz` that are read: kind of entries and shape of a row."""
+SINGLE_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
+    "orientation": ("U", ()),
+    "orientation_confidence": ("f", ()),
+    "depth_confidence": ("f", (len(LIMBS),)),
+}
+"""What a run of a single view has beside them."""
+EXTREMITY_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
+    "extremities_m": ("f", (len(EXTREMITY_NAMES), 3)),
+    "extremities_px": ("f", (2, len(EXTREMITY_NAMES), 2)),
+    "extremities_confidence": ("f", (len(EXTREMITY_NAMES),)),
+}
+"""What the file has behind the 15 joints; runs that were written before it lack them."""
+CUT_SHORT: Final = "the run was cut short, or goes on: what it measured is read from its journal"
+
+
+class PastRunError(ValueError):
+    """A run folder that cannot be read: the text names it and the cure."""
+
+
+class PastRun(NamedTuple):
+    """What a run left behind."""
+
+    folder: Path
+    poses: Arrays
+    """Arrays by name: those of ROWS, EXTREMITY_ROWS where it has them, what else the file holds."""
+    summary: dict[str, Any]
+
+
+def is_run(folder: Path) -> bool:
+    """Whether a folder is that of a run, whole or cut short."""
+    from runtime.store.journal import has_journal
+
+    return (folder / "poses.npz").is_file() or has_journal(folder)
+
+
+def open_run(folder: Path) -> PastRun:
+    """Read a run folder; of a run that was cut short, what it wrote as it went.
+
+    Raises:
+        PastRunError: When it is none, was damaged, or a newer version wrote it.
+    """
+    if not folder.is_dir():
+        raise PastRunError(f"there is no run folder {folder}: name one that `tritrack track` wrote")
+    from runtime.store.past_journal import read_journal
+
+    told = read_journal(folder)
+    if told is not None:
+        return _cut_short(folder, told)
+    path = folder / "poses.npz"
+    if not path.exists():
+        raise PastRunError(f"{folder} has no poses.npz: {_how_to_track(folder)}")
+    try:
+        summary = json.loads((folder / "summary.json").read_text())
+        _refuse_a_newer_version(folder, summary)
+        poses = parted(read_arrays(path, MAX_BYTES))
+    except PastRunError:
+        raise
+    except FileNotFoundError as error:
+        raise PastRunError(f"{folder} has no summary.json: track the clip again") from error
+    except OSError as error:
+        raise PastRunError(
+            f"cannot read {error.filename or folder}: {error.strerror}; see that you may read it"
+        ) from error
+    except ValueError as error:
+        raise PastRunError(f"{folder} was damaged ({error}): track the clip again") from error
+    _refuse_other_arrays(path, poses)
+    return PastRun(folder, poses, summary if isinstance(summary, dict) else {})
+
+
+def _refuse_a_newer_version(folder: Path, summary: object) -> None:
+    """What a later minor version writes may mean something else; a patch changes no meaning."""
+    told = summary.get("versions") if isinstance(summary, dict) else None
+    theirs = str(told.get("tritrack")) if isinstance(told, dict) else ""
+    ours = version("tritrack")
+    if _minor(theirs) > _minor(ours):
+        raise PastRunError(
+            f"{folder} was written by tritrack {theirs}, and this is {ours}: "
+            "read it with that version (pip install --upgrade tritrack)"
+        )
+
+
+def _minor(told: str) -> tuple[int, ...]:
+    """The first two numbers of a version, which come before all others where it is none."""
+    found = re.match(r"(\d+)\.(\d+)", told)
+    return tuple(map(int, found.groups())) if found else ()
+
+
+def _how_to_track(folder: Path) -> str:
+    from runtime.store.journal import has_journal
+
+    if any(folder.glob("cam[12].*")):
+        return f"it is a clip; track it first: tritrack track {folder}"
+    if has_journal(folder):
+        return (
+            "it was cut short, and its journal is empty or of another version of tritrack: "
+            "track the clip again, or read it with the version that wrote it"
+        )
+    return "name one that `tritrack track` wrote"
+
+
+def _cut_short(folder: Path, told: "Told") -> PastRun:
+    from runtime.store.pose_arrays import poses
+    from runtime.store.runs import Rows, summary_of
+
+    bodies = Rows(told.bodies)
+    named = [posture.name for posture in told.postures if posture.name]
+    facts = {
+        **told.head.facts,
+        "scale_source": told.cameras[-1].scale_source if told.cameras else None,
+        "posture": named[-1] if named else "",
+        "warnings": [CUT_SHORT],
+    }
+    return PastRun(folder, poses(bodies), summary_of(bodies, told.head.settings, facts))
+
+
+def _refuse_other_arrays(path: Path, poses: dict[str, Any]) -> None:
+    rows = len(poses["frame"]) if np.ndim(poses.get("frame", 0)) == 1 else 0
+    further = SINGLE_ROWS | EXTREMITY_ROWS
+    known = ROWS | {name: row for name, row in further.items() if name in poses}
+    for name, (kinds, shape) in known.items():
+        array = np.asarray(poses.get(name))
+        if array.shape != (rows, *shape) or array.dtype.kind not in kinds:
+            found = f"{array.dtype} {array.shape}" if name in poses else "missing"
+            raise PastRunError(f"{path}: {name} is {found}, not {(rows, *shape)}: track it again")
+    if tuple(str(name) for name in np.ravel(poses.get("joint_names", ()))) != JOINT_NAMES:
+        raise PastRunError(f"{path}: joint_names are not those of this version: track it again")

@@ -1,0 +1,228 @@
+"""`recording.mcap`: all that a run's viewers reported and what was made of it, to do it again.
+
+One MCAP file, readable by any MCAP library: our messages as MessagePack, as they went over the bus
+(topics `/report/1`, `/body` ...), each body once more for Foxglove (`/scene`, `/numbers`), and as
+metadata settings, rig, body and versions. Outlines and joints, no picture.
+"""
+
+import struct
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from pathlib import Path
+from typing import IO, Any, Final, NamedTuple
+
+import msgspec
+
+from common.atomic_file import replacing
+from common.body.body import Bdp
+from common.bus.control_messages import Cameras
+from common.bus.message_codec import MalformedMessage, decode, encode
+from common.bus.messages import PROTOCOL, Body, Message, Moment, Posture, Report, ScaleSource
+from common.config.settings import Settings
+from common.rig.camera import Rig
+from integrator.frame_numbers import FrameTimes
+from runtime.store import foxglove_scene
+from runtime.store.runs import RunError, unwritable, versions
+
+NAME: Final = "recording.mcap"
+TORN: Final = ".recording.*.mcap"
+"""What is left of one in the folder of a run that was killed."""
+CHUNK_BYTES: Final = 1 << 17
+"""So much is written at once, half a second to two of a run: more is not lost when it is killed."""
+KINDS: Final[dict[str, type[Message]]] = {
+    "/report/1": Report,
+    "/report/2": Report,
+    "/body": Body,
+    "/posture": Posture,
+    "/cameras": Cameras,
+}
+"""Topics of our own messages."""
+
+Keep = Callable[[Message], None]
+
+
+class RecordingError(ValueError):
+    """A recording that cannot be written or read: the text names it and the cure."""
+
+
+class Head(msgspec.Struct, frozen=True, kw_only=True):
+    """What an integrator has to know before the first report."""
+
+    name: str
+    settings: Settings
+    period_s: float
+    alone: bool
+    """One viewer is all that the run has."""
+    rig: Rig | None
+    """None: it is assumed when somebody is seen."""
+    scale_source: ScaleSource | None = None
+    """Where the rig is from; None: it is calibrated, if there is one."""
+    by_person: bool = False
+    """The person tells the rig while the run goes on."""
+    body: Bdp | None
+    """As measured before the run; None: it was not."""
+    times: FrameTimes | None = None
+    """When camera 1 takes its frames; None where it is no part of the run."""
+    protocol: int = PROTOCOL
+    versions: dict[str, str] = {}
+
+
+class Recording(NamedTuple):
+    """What a recording holds, each in the order in which it was said."""
+
+    head: Head
+    reports: tuple[list[Report], list[Report]]
+    """Of viewer 1 and of viewer 2."""
+    bodies: list[Body]
+    postures: list[Posture]
+    cameras: list[Cameras]
+
+
+@contextmanager
+def recording_to(folder: Path, head: Head) -> Iterator[Keep]:
+    """A function that keeps a message; the file has its name when all is said, and is written as
+    it grows.
+
+    Raises:
+        RecordingError: Without the library mcap.
+        RunError: When the file cannot be written: it is gone then, what was measured has room.
+    """
+    library = _library()
+    with ExitStack() as doors:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            path = doors.enter_context(replacing(folder / NAME))
+            file = doors.enter_context(path.open("wb"))
+        except OSError as error:
+            raise unwritable(folder, error) from error
+        writer = library.Writer(file, chunk_size=CHUNK_BYTES)
+        writer.start(profile="", library="tritrack")
+        told = msgspec.structs.replace(head, versions=versions())
+        writer.add_metadata("tritrack", {"head": msgspec.json.encode(told).decode()})
+        yield _keeper(writer, file)
+        try:
+            writer.finish()
+            doors.close()
+        except OSError as error:
+            with suppress(OSError):  # it has not taken what was left to be written, nor does it now
+                file.close()
+            raise RunError(
+                f"{folder / NAME} could not be written to its end ({error.strerror}) and is gone, "
+                "so that there is room for what was measured: free some space, and record again"
+            ) from error
+
+
+def read_recording(folder: Path) -> Recording:
+    """Read the recording of a run folder; of a run that was killed, as far as it was written.
+
+    Raises:
+        RecordingError: When there is none, or it was damaged, or another version wrote it.
+    """
+    library = _library()
+    if not folder.is_dir():
+        raise RecordingError(f"there is no run folder {folder}: name one made with --record")
+    whole = folder / NAME
+    path = whole if whole.is_file() else next(iter(torn_recordings(folder)), None)
+    if path is None:
+        raise RecordingError(
+            f"{folder} has no {NAME}: track or run live again with --record, then replay it"
+        )
+    found: dict[str, list[Any]] = {topic: [] for topic in KINDS}
+    heads: list[Head] = []
+    try:
+        with path.open("rb") as file, suppress(*(() if path is whole else library.errors)):
+            for said in _said(library.StreamReader(file, validate_crcs=True)):
+                if isinstance(said, Head):
+                    heads.append(said)
+                else:
+                    found[topic_of(said)].append(said)
+    except library.errors as error:
+        raise RecordingError(
+            f"{path} was damaged or is of another version ({str(error) or type(error).__name__}): "
+            "record again"
+        ) from error
+    if not heads:
+        raise RecordingError(f"{path} was damaged, or ended before it began: record again")
+    reports = (found["/report/1"], found["/report/2"])
+    return Recording(heads[0], reports, found["/body"], found["/posture"], found["/cameras"])
+
+
+def torn_recordings(folder: Path) -> list[Path]:
+    """What runs that were killed left of their recordings in a folder, the newest first."""
+    return sorted(folder.glob(TORN), key=lambda path: path.stat().st_mtime_ns, reverse=True)
+
+
+def _said(reader: Any) -> Iterator[Head | Message]:
+    """What a recording holds of ours, in its order."""
+    topics: dict[int, str] = {}
+    for record in reader.records:
+        match type(record).__name__:
+            case "Channel":
+                topics[record.id] = record.topic
+            case "Metadata":
+                yield msgspec.json.decode(record.metadata["head"], type=Head)
+            case "Message" if topics[record.channel_id] in KINDS:
+                yield decode(record.data, KINDS[topics[record.channel_id]])
+
+
+def _keeper(writer: Any, file: IO[bytes]) -> Keep:
+    named = {
+        name: writer.register_schema(name, "jsonschema", schema)
+        for name, schema in foxglove_scene.schemas().items()
+    }
+    scene = writer.register_channel("/scene", "json", named[foxglove_scene.SCENE])
+    numbers = writer.register_channel("/numbers", "json", named[foxglove_scene.NUMBERS])
+    own = {topic: writer.register_channel(topic, "msgpack", 0) for topic in KINDS}
+    last_ns = 0
+
+    def keep(message: Message) -> None:
+        nonlocal last_ns
+        if isinstance(message, Moment):
+            last_ns = max(0, round(1e9 * message.captured_s))
+
+        def add(channel: int, data: bytes) -> None:
+            writer.add_message(channel, log_time=last_ns, publish_time=last_ns, data=data)
+
+        add(own[topic_of(message)], encode(message))
+        if isinstance(message, Body):
+            add(scene, foxglove_scene.scene_of(message))
+            add(numbers, foxglove_scene.numbers_of(message))
+        file.flush()  # nothing, but where a chunk is full
+
+    return keep
+
+
+def topic_of(message: Message) -> str:
+    """Where a recording has a message."""
+    if isinstance(message, Report):
+        return f"/report/{message.viewer}"
+    return f"/{type(message).__name__.lower()}"
+
+
+class _Library(NamedTuple):
+    Writer: Any
+    StreamReader: Any
+    errors: tuple[type[Exception], ...]
+    """What reading raises of a damaged file."""
+
+
+def _library() -> _Library:
+    try:
+        from mcap.exceptions import McapError
+        from mcap.stream_reader import StreamReader
+        from mcap.writer import Writer
+        from zstandard import ZstdError
+    except ImportError as error:
+        raise RecordingError("recordings need mcap: pip install 'tritrack[mcap]'") from error
+    own = (McapError, ZstdError, MalformedMessage, struct.error)
+    errors = (*own, OSError, ValueError, KeyError, RuntimeError, OverflowError, MemoryError)
+    return _Library(Writer, StreamReader, errors)
+
+
+def refuse_without_library() -> None:
+    """Say before a run that it cannot be recorded.
+
+    Raises:
+        RecordingError: Without the library mcap.
+    """
+    _library()

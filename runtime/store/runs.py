@@ -1,0 +1,174 @@
+"""Run folders: the poses, the summary and the postures of a run, as files."""
+
+import platform
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from textwrap import indent
+from typing import Any, Final, get_args
+
+import msgspec
+import numpy as np
+
+from common.atomic_file import replacing, unwritten
+from common.bus.messages import Body, Posture, Status
+from common.config.settings import Settings
+from runtime.store.joint_arrays import on_disk
+from runtime.store.pose_arrays import mapped_poses
+from runtime.store.run_exports import remove_exports
+from runtime.terminal import json_text
+
+VERSIONS_OF: Final = ("tritrack", "numpy", "opencv-python-headless", "numba", "eclipse-zenoh")
+
+BELIEVED: Final[tuple[Status, ...]] = ("measuring", "tracking")
+"""Of a body's status: what the views show bears it out. A predicted body was borne out a moment
+ago: it has a pose, with confidence 0."""
+
+NOBODY_SEEN: Final = (
+    "nobody was seen: the person must move, and be a sixth of the picture high at least"
+)
+"""Said of a run no frame of which shows anybody."""
+
+
+class RunError(RuntimeError):
+    """A run folder that cannot be written; the text names it and the cure."""
+
+
+def write_run(
+    folder: Path,
+    bodies: Iterable[Body],
+    settings: Settings,
+    facts: dict[str, Any],
+) -> None:
+    """Write `poses.npz` and `summary.json`, each whole or not at all.
+
+    What was exported of a run that stood there before is removed: it is of other poses.
+
+    Args:
+        folder: Made where it is not there.
+        bodies: In the order of time; an instant that camera 1 missed (frame -1) gets no row.
+        settings: As resolved for the run.
+        facts: What else the summary tells: seconds, scale_source, warnings ...
+
+    Raises:
+        RunError: When the folder or a file cannot be written: no space, no right.
+    """
+    rows = Rows(bodies)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with (
+            mapped_poses(rows, folder, on_disk) as arrays,
+            replacing(folder / "poses.npz") as path,
+            path.open("wb") as file,
+        ):
+            np.savez(file, allow_pickle=False, **arrays)
+        _write_json(folder / "summary.json", summary_of(rows, settings, facts))
+        remove_exports(folder)
+    except OSError as error:
+        raise unwritable(folder, error) from error
+
+
+class Rows:
+    """Those bodies that get a row: of the instants that have a frame's number."""
+
+    def __init__(self, bodies: Iterable[Body]) -> None:
+        """Of these, which may be gone through more than once."""
+        self._bodies = bodies
+
+    def __iter__(self) -> Iterator[Body]:
+        """In their order."""
+        return (body for body in self._bodies if body.frame >= 0)
+
+
+def write_postures(folder: Path, postures: Iterable[Posture], performed: str) -> None:
+    """Write `posture.json`: performances, each frame's name and scores, the clip's name.
+
+    Args:
+        folder: Made where it is not there.
+        postures: In the order of time; are gone through twice, and need not fit into memory.
+        performed: The clip's posture.
+
+    Raises:
+        RunError: When it cannot be written.
+    """
+    told_of = (posture.event for posture in postures if posture.event)
+    newest = {(event.name, event.onset_s): event for event in told_of}
+    events = [msgspec.to_builtins(event) for event in newest.values()]
+    told = json_text({"posture": performed, "events": events, "frames": []})
+    begin, _, end = told.rpartition("]")
+    rows = (_row_of(posture) for posture in postures if posture.frame >= 0)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with replacing(folder / "posture.json") as new, new.open("w") as file:
+            file.write(begin)
+            between = ""
+            for row in rows:
+                file.write(f"{between}\n{indent(json_text(row), '  ')}")
+                between = ","
+            file.write(f"{chr(10) + ' ' if between else ''}]{end}\n")
+    except OSError as error:
+        raise unwritable(folder, error) from error
+
+
+def _row_of(posture: Posture) -> dict[str, Any]:
+    return {
+        "frame": posture.frame,
+        "time_s": round(posture.captured_s, 4),
+        "name": posture.name,
+        "segment": posture.segment,
+        "doing": posture.doing,
+        "log_likelihoods": {
+            name: round(value, 3) for name, value in posture.log_likelihoods.items()
+        },
+    }
+
+
+def believed(bodies: Iterable[Body]) -> float | None:
+    """Share of the frames with a person in which the body is believed; None where nobody is."""
+    return _believed(Counter(body.status for body in bodies))
+
+
+def _believed(often: Counter[Status]) -> float | None:
+    seen = often.total() - often["empty"]
+    return round(sum(often[status] for status in BELIEVED) / seen, 4) if seen else None
+
+
+def summary_of(bodies: Iterable[Body], settings: Settings, facts: dict[str, Any]) -> dict[str, Any]:
+    """What `summary.json` tells of these bodies, with the facts given."""
+    often: Counter[Status] = Counter()
+    matches: list[int] = []
+    last: Body | None = None
+    for last in bodies:
+        often[last.status] += 1
+        if last.joints_m:
+            matches.append(last.matches)
+    return {
+        "frames": often.total(),
+        "frames_with_pose": len(matches),
+        "status": {status: often[status] for status in get_args(Status)},
+        "believed": _believed(often),
+        "matches_a_frame": round(float(np.mean(matches)), 1) if matches else 0.0,
+        **facts,
+        "bdp_m": None if last is None else msgspec.to_builtins(last.bdp),
+        "versions": versions(),
+        "settings": msgspec.to_builtins(settings),
+    }
+
+
+@cache
+def versions() -> dict[str, str]:
+    """Of what a run depends on; looking them up takes as long as ten frames."""
+    told = {name: version(name) for name in VERSIONS_OF}
+    return told | {"python": platform.python_version()}
+
+
+def unwritable(folder: Path, error: OSError) -> RunError:
+    """What is said of a run folder that takes no more."""
+    return RunError(unwritten(folder, error, "name another --out"))
+
+
+def _write_json(path: Path, value: Any) -> None:
+    with replacing(path) as new:
+        new.write_text(json_text(value) + "\n")

@@ -1,0 +1,169 @@
+"""Messages on disk, in the order in which they came: a sequence that takes no memory.
+
+The records are those of the journal (`runtime/store/journal.py`).
+"""
+
+import os
+import zlib
+from array import array
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, suppress
+from pathlib import Path
+from typing import IO, Any, Final, Generic, TypeVar, overload
+
+import msgspec
+
+from common.bus.message_codec import encode
+from common.bus.messages import Message, Report
+from runtime.store.journal import FRAME, HEAD, KINDS, MAGIC, framed
+from runtime.store.runs import unwritable
+
+Kind = TypeVar("Kind", bound=Message)
+
+MARKS: Final[dict[type[Message], bytes]] = {
+    **{kind: mark for mark, kind in KINDS.items()},
+    Report: b"r",
+}
+_DECODERS: Final[dict[bytes, msgspec.msgpack.Decoder[Any]]] = {
+    mark: msgspec.msgpack.Decoder(kind) for kind, mark in MARKS.items()
+}
+AT_ONCE: Final = 1 << 18
+"""Bytes that are written, and read, at once."""
+
+
+class Place(msgspec.Struct, frozen=True):
+    """How far a file had come."""
+
+    messages: int
+    size: int
+    """Bytes."""
+
+
+class Torn(ValueError):
+    """A file that does not hold what it held."""
+
+
+@contextmanager
+def writing(folder: Path) -> Iterator[None]:
+    """Tell of a folder that cannot be written.
+
+    Raises:
+        RunError: Instead of any OSError; the text says why.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise unwritable(folder, error) from error
+
+
+class MessageFile(Sequence[Kind], Generic[Kind]):
+    """Messages that are appended, and read as often as one likes."""
+
+    def __init__(self, path: Path, head: bytes = b"", place: Place | None = None) -> None:
+        """Begin a file, or go on with one from a place: what stands behind it goes.
+
+        Args:
+            path: Of the file, in a folder that is there.
+            head: The payload of its first record; of none where it is empty.
+            place: None: it begins anew.
+
+        Raises:
+            Torn: When the file does not come so far, or is damaged before it.
+            RunError: When it cannot be written; also when messages are appended or read.
+        """
+        self._path = path
+        self._first = framed(HEAD, head) if head else b""
+        self._starts = array("Q")
+        if place is not None:
+            self._size = self._scanned(place)
+            with self._writing():
+                self._file: IO[bytes] = path.open("r+b", AT_ONCE)
+                self._file.truncate(self._size)
+                self._file.seek(self._size)
+            return
+        with self._writing():
+            self._file = path.open("wb", AT_ONCE)
+            self._size = self._file.write(self._first)
+
+    def append(self, message: Kind) -> None:
+        """One message more."""
+        record = framed(MARKS[type(message)], encode(message))
+        self._starts.append(self._size)
+        with self._writing():
+            self._file.write(record)
+        self._size += len(record)
+
+    def clear(self) -> None:
+        """Forget all messages."""
+        with self._writing():
+            self._file.flush()
+            self._file.truncate(len(self._first))
+            self._file.seek(len(self._first))
+        self._size = len(self._first)
+        del self._starts[:]
+
+    def synced(self) -> Place:
+        """How far it has come; so far it outlives a power cut."""
+        with self._writing():
+            self._file.flush()
+            os.fsync(self._file.fileno())
+        return Place(len(self), self._size)
+
+    def close(self) -> None:
+        """Append no more; it can be read on. What the disk has not taken was told."""
+        with suppress(OSError):
+            self._file.close()
+
+    def __len__(self) -> int:
+        """How many messages."""
+        return len(self._starts)
+
+    def __iter__(self) -> Iterator[Kind]:
+        """All of them, in their order."""
+        return self._read_from(0)
+
+    @overload
+    def __getitem__(self, index: int) -> Kind: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[Kind]: ...
+    def __getitem__(self, index: int | slice) -> Kind | Sequence[Kind]:
+        """One of them, or several."""
+        if isinstance(index, slice):
+            return [self[n] for n in range(*index.indices(len(self)))]
+        return next(self._read_from(range(len(self))[index]))
+
+    def _read_from(self, first: int) -> Iterator[Kind]:
+        if not self._file.closed:
+            with self._writing():
+                self._file.flush()
+        left = len(self) - first
+        with self._path.open("rb", AT_ONCE) as file:
+            if left:
+                file.seek(self._starts[first])
+            for _ in range(left):
+                _magic, mark, length, _sum = FRAME.unpack(file.read(FRAME.size))
+                yield _DECODERS[mark].decode(file.read(length))
+
+    def _writing(self) -> AbstractContextManager[None]:
+        return writing(self._path.parent)
+
+    def _scanned(self, place: Place) -> int:
+        """Find the records before a place; its size."""
+        size = 0
+        try:
+            with self._path.open("rb", AT_ONCE) as file:
+                while size < place.size:
+                    magic, mark, length, total = FRAME.unpack(file.read(FRAME.size))
+                    known = magic == MAGIC and (mark == HEAD or mark in _DECODERS)
+                    payload = file.read(length) if known and size + length <= place.size else b""
+                    if len(payload) < length or not known or zlib.crc32(payload) != total:
+                        break
+                    if mark != HEAD:
+                        _DECODERS[mark].decode(payload)  # the sum is not over the mark
+                        self._starts.append(size)
+                    size += FRAME.size + length
+        except Exception as error:
+            raise Torn(f"{self._path} cannot be read: {error}") from error
+        if size != place.size or len(self) != place.messages:
+            raise Torn(f"{self._path} was damaged after {len(self)} messages")
+        return size
