@@ -34,10 +34,10 @@ import numpy as np
 from common.bus.messages import ViewerNumber
 from common.config import config_file
 from common.method import DEFAULT, PAPER, THESIS, Method
+from lab.accuracy.accuracy import compare, summary
 from runtime.offline.lockstep import Decoders, track_clip
 from runtime.overrides import overridden
 from runtime.store.pose_arrays import poses
-from tritrack.accuracy.accuracy import compare, summary
 
 SILHOUETTE_FIELDS = ("steady_light", "pixel_evidence", "body_colours", "alpha_matte", "slow_light")
 """With these alone it is the paper's search on our silhouettes."""

@@ -26,9 +26,9 @@ from common.body.body import JOINT_NAMES
 from common.bus.messages import Body
 from common.config.settings import Settings
 from common.video.clips import open_clip
+from lab.accuracy.accuracy import JOINTS
 from runtime.live.table import table_of_rows
 from runtime.offline.lockstep import Decoders, track_clip
-from tritrack.accuracy.accuracy import JOINTS
 
 LOST_S: Final = 1.5
 """How long the camera is away (issue 5, Shows 4)."""

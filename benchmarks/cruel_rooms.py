@@ -25,6 +25,7 @@ from rich.console import Console
 
 from common.config.settings import Settings
 from common.rig.camera import Rig, project
+from lab.accuracy.accuracy import compare
 from runtime.live.table import table_of_rows
 from runtime.offline.lockstep import Decoders, Tracked, track_clip
 from runtime.store.pose_arrays import poses
@@ -34,7 +35,6 @@ from synth.person.people import Colour, Look, Person, person
 from synth.picture.exposure import default_rig
 from synth.picture.render import room_of
 from synth.write import Filming, write_clip, write_rig
-from tritrack.accuracy.accuracy import compare
 
 LOST_MM: Final = 60.0
 NO_POSE_MM: Final = 500.0

@@ -26,10 +26,10 @@ from common.config.settings import Settings
 from common.raster.bits import count, pack_words
 from common.raster.kernel import draw_body, view_of
 from integrator.fit.silhouette_pair import products
+from lab.bench.bench import PERFORMER_SEED, machine
 from runtime.offline.lockstep import Decoders, track_clip
 from synth.picture.exposure import default_rig
 from synth.write import ClipSet, write_set
-from tritrack.bench.bench import PERFORMER_SEED, machine
 
 SIZES = ((160, 120), (320, 240), (640, 480))
 HYPOTHESES = (1, 4, 16, 64, 256)

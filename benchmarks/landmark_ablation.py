@@ -37,11 +37,11 @@ from common.video.clip_facts import both_cameras
 from common.video.clips import open_clip
 from integrator.rig.body_position import triangulate
 from integrator.rig.undistortion import undistorted_rig
+from lab.accuracy.accuracy import Compared, compare, summary
 from runtime.offline.lockstep import Decoders, track_clip
 from runtime.offline.performance import Watch
 from runtime.overrides import overridden
 from runtime.store.pose_arrays import poses
-from tritrack.accuracy.accuracy import Compared, compare, summary
 from viewer import track
 from viewer.capture import CapturedFrame
 from viewer.landmarks import own_landmarks

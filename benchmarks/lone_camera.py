@@ -30,11 +30,11 @@ from common.rig.camera import Camera
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reel
+from lab.accuracy.accuracy import compare, picked, summary
 from runtime.live.table import table_of_rows
 from runtime.offline.film_tracking import Film, follow_clip
 from runtime.overrides import overridden
 from runtime.store.pose_arrays import poses
-from tritrack.accuracy.accuracy import compare, picked, summary
 from viewer.room.background_source import background_of_film
 
 

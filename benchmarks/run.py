@@ -14,7 +14,7 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
 from rich.console import Console
 
-from tritrack.bench.bench import bench, table_of
+from lab.bench.bench import bench, table_of
 
 RESULTS = Path(__file__).with_name("results.json")
 

@@ -18,10 +18,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from recognizer.evaluation import Outcome, confusion, wilson
+from lab.posture_models.evaluation import Outcome, confusion, wilson
+from lab.posture_models.hmm_training import start, train_densities
 from recognizer.forward import forward
 from recognizer.postures import STATES
-from recognizer.training.hmm_training import start, train_densities
 
 Array = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""Our packages by the names that they have here: nine in a checkout, one in the wheel."""
+"""Our packages by the names that they have here: ten in a checkout, one in the wheel."""
 
 from pathlib import Path
 from typing import Final
@@ -7,8 +7,8 @@ PACKAGES: Final = (
     ("tritrack",)
     if __name__.startswith("tritrack.")
     else (
-        *("animator", "calibration", "common", "integrator", "recognizer"),
-        *("runtime", "synth", "tritrack", "viewer"),
+        *("animator", "calibration", "common", "integrator", "lab"),
+        *("recognizer", "runtime", "synth", "tritrack", "viewer"),
     )
 )
 """Names at the top that are ours: `hatch_build.py` moves all of them below one."""

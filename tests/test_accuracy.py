@@ -12,8 +12,7 @@ from rich.console import Console
 from scipy.spatial.transform import Rotation
 
 from common.npz_file import Arrays
-from runtime.offline.batch import Asked, track_all
-from tritrack.accuracy.accuracy import (
+from lab.accuracy.accuracy import (
     INDEX,
     JOINTS,
     LOST_MM,
@@ -24,6 +23,7 @@ from tritrack.accuracy.accuracy import (
     rooted,
     summary,
 )
+from runtime.offline.batch import Asked, track_all
 
 PLACES = {"shoulder": (0.2, 1.4), "elbow": (0.5, 1.4), "wrist": (0.5, 1.1)}
 PLACES |= {"hip": (0.1, 0.9), "knee": (0.1, 0.5), "ankle": (0.1, 0.1)}

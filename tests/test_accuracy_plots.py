@@ -8,9 +8,9 @@ from drawing import curves, figures_drawn
 
 pytest.importorskip("matplotlib", reason="pip install 'tritrack[report]'")
 
-from tritrack.accuracy.accuracy import JOINTS, Compared
-from tritrack.accuracy.accuracy_plots import plot_all
-from tritrack.accuracy.reliability import NEAR_MM
+from lab.accuracy.accuracy import JOINTS, Compared
+from lab.accuracy.accuracy_plots import plot_all
+from lab.accuracy.reliability import NEAR_MM
 
 
 def compared(off_mm: float, sure: float) -> Compared:

@@ -13,10 +13,10 @@ from common.body.body import POSE_INDEX, rest_pose
 from common.config.settings import Settings
 from common.raster.bits import unpack_words
 from common.raster.row_spans import gain, spans
-from tritrack.bench import bench as module
-from tritrack.bench.bench import bench, machine, table_of
-from tritrack.bench.bench_figure import Measured
-from tritrack.bench.bench_scenes import by_opencv, match_placed, scene, swayed
+from lab.bench import bench as module
+from lab.bench.bench import bench, machine, table_of
+from lab.bench.bench_figure import Measured
+from lab.bench.bench_scenes import by_opencv, match_placed, scene, swayed
 
 SIZES = [(160, 120), (640, 480)]
 

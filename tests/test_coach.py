@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tritrack.training.coach import (
+from lab.training.coach import (
     AGAIN_LOST,
     AGAIN_SHORT,
     AGAIN_STILL,

@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 import pytest
 
+from lab.postures import contact_strip as module
+from lab.postures.contact_strip import SHOWN, WIDTH_PX, contact_strip
 from runtime.offline.lockstep import Decoders
-from tritrack.postures import contact_strip as module
-from tritrack.postures.contact_strip import SHOWN, WIDTH_PX, contact_strip
 
 
 @pytest.fixture(scope="module")

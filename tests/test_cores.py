@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from lab.training.recordings import recordings
 from runtime.offline.batch import Asked, track_all
 from runtime.store.cores import ClusterError, made, spread
-from tritrack.training.recordings import recordings
 
 QUIET = Console(quiet=True)
 

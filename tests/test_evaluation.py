@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from acting import perform
 
-from recognizer import evaluation
-from recognizer.evaluation import (
+from lab.posture_models import evaluation
+from lab.posture_models.evaluation import (
     Outcome,
     Recording,
     confusion,
@@ -17,8 +17,8 @@ from recognizer.evaluation import (
     table,
     wilson,
 )
+from lab.posture_models.learning import Sizes, train
 from recognizer.postures import POSTURES
-from recognizer.training.learning import Sizes, train
 
 NAMES = tuple(POSTURES)
 PRINTED = (22, 21, 23, 21, 24, 20, 23, 24, 22, 22, 23, 24, 21, 22, 20)

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from acting import perform, performances, standing
 
+from lab.posture_models.learning import extended, train
 from recognizer import events
 from recognizer.events import finish, init, step
 from recognizer.features import bearings
 from recognizer.path_network import CHANGE, COUNT, ENTER, EXIT, LAST, ONSET, PathNetwork, advance
 from recognizer.performance_judge import Event
 from recognizer.postures import STATES, DensityModel
-from recognizer.training.learning import extended, train
 
 SHOWN = ("squat", "walk_toward", "raise_right_lateral", "kick_right_forward")
 """Some of the fifteen: a network of few is as good an example, and faster."""

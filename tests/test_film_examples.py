@@ -7,10 +7,10 @@ import pytest
 from truth_teacher import keypoints_of
 
 from common.bus.messages import Landmarks
+from lab.film_lessons.film_examples import ELSEWHERE, HELD_SHARE, example_of, looked_through
+from lab.landmark_lessons.picture_store import PictureStore
+from lab.training.training import TrainingError
 from synth.picture.picture_examples import SIDE_PX, PictureExample
-from tritrack.film_lessons.film_examples import ELSEWHERE, HELD_SHARE, example_of, looked_through
-from tritrack.landmark_lessons.picture_store import PictureStore
-from tritrack.training.training import TrainingError
 
 
 def shown(sure: int) -> Landmarks:

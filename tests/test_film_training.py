@@ -11,7 +11,7 @@ from numpy_torch import importable
 from rich.console import Console
 from truth_teacher import keypoints_of
 
-from tritrack.training.training import TrainingError
+from lab.training.training import TrainingError
 from viewer.landmarks.landmark_looks import refuse_no_network
 
 QUIET = Console(quiet=True)
@@ -22,7 +22,7 @@ def lesson(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """A film, its teacher, a folder, and how little is shown."""
     for extra in ("torch", "onnx", "onnxscript"):
         pytest.importorskip(extra, reason="the extra `train` is not installed")
-    from tritrack.film_lessons.film_training import Plan
+    from lab.film_lessons.film_training import Plan
 
     folder = tmp_path_factory.mktemp("lesson")
     teacher = keypoints_of(clip, 1, folder / "keypoints")
@@ -33,7 +33,7 @@ def lesson(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Any:
 def test_what_became_better_is_written_what_did_not_is_not_and_nothing_is_done_twice(
     lesson: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tritrack.film_lessons import film_training
+    from lab.film_lessons import film_training
 
     film, teacher, folder, plan = lesson
     monkeypatch.setattr(film_training, "FEWEST", 20)
@@ -54,7 +54,7 @@ def test_what_became_better_is_written_what_did_not_is_not_and_nothing_is_done_t
 def training() -> Any:
     """The module, also where the extra `train` is not installed."""
     with importable("onnx"):
-        from tritrack.film_lessons import film_training
+        from lab.film_lessons import film_training
 
         return film_training
 

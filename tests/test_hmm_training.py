@@ -5,8 +5,7 @@ import logging
 import numpy as np
 import pytest
 
-from recognizer.learning_error import LearningError
-from recognizer.training.hmm_training import (
+from lab.posture_models.hmm_training import (
     EMISSION_FLOOR,
     NEIGHBOUR_WIDTH,
     TRANSITION_FLOOR,
@@ -22,6 +21,7 @@ from recognizer.training.hmm_training import (
     train_densities,
     train_symbols,
 )
+from recognizer.learning_error import LearningError
 
 
 def test_states_follow_each_other_or_any() -> None:

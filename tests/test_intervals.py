@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tritrack.accuracy.intervals import intervals
+from lab.accuracy.intervals import intervals
 
 
 def clips_of(rng: np.random.Generator, count: int) -> list[np.ndarray]:

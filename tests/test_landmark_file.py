@@ -32,8 +32,8 @@ def shown() -> Planes:
 
 @pytest.fixture(scope="module")
 def shipped() -> Any:
-    from tritrack.landmark_lessons.landmark_file import fill, weights_of
-    from tritrack.landmark_lessons.landmark_layers import LandmarkNetwork
+    from lab.landmark_lessons.landmark_file import fill, weights_of
+    from lab.landmark_lessons.landmark_layers import LandmarkNetwork
 
     network = LandmarkNetwork()
     fill(network, weights_of(SHIPPED))
@@ -43,7 +43,7 @@ def shipped() -> Any:
 def test_the_weights_of_the_shipped_file_say_what_the_file_says(
     shown: Planes, shipped: Any
 ) -> None:
-    from tritrack.landmark_lessons.landmark_planes import STEP
+    from lab.landmark_lessons.landmark_planes import STEP
 
     for planes in shown:
         with torch.no_grad():
@@ -55,7 +55,7 @@ def test_the_weights_of_the_shipped_file_say_what_the_file_says(
 def test_a_file_takes_bytes_and_says_what_its_network_says(
     shown: Planes, shipped: Any, tmp_path: Path
 ) -> None:
-    from tritrack.landmark_lessons.landmark_file import write_network
+    from lab.landmark_lessons.landmark_file import write_network
 
     write_network(shipped, tmp_path / "again.onnx")
     (taken,) = opened(tmp_path / "again.onnx").get_inputs()

@@ -13,7 +13,7 @@ from numpy_torch import Tensor, importable, numpy_torch, tensor
 def learning() -> Any:
     """The module, also where the extra `train` is not installed."""
     with importable():
-        from tritrack.landmark_lessons import landmark_learning
+        from lab.landmark_lessons import landmark_learning
 
         return landmark_learning
 
@@ -22,7 +22,7 @@ def learning() -> Any:
 def loss() -> Any:
     """The module of the loss, also where the extra `train` is not installed."""
     with importable():
-        from tritrack.landmark_lessons import landmark_loss
+        from lab.landmark_lessons import landmark_loss
 
         return landmark_loss
 
@@ -56,8 +56,8 @@ def test_batches_come_in_their_order_and_a_few_are_asked_for_ahead(learning: Any
 
 
 def _begun(torch: Any) -> Any:
-    from tritrack.landmark_lessons.landmark_layers import Paced
-    from tritrack.landmark_lessons.landmark_learning import begun
+    from lab.landmark_lessons.landmark_layers import Paced
+    from lab.landmark_lessons.landmark_learning import begun
 
     network = torch.nn.Linear(2, 1)
     return begun(network, [Paced([network.weight], 0.5)])
@@ -65,7 +65,7 @@ def _begun(torch: Any) -> Any:
 
 def test_what_was_never_kept_begins_and_what_was_kept_goes_on(tmp_path: Path) -> None:
     torch = pytest.importorskip("torch", reason="the extra `train` is not installed")
-    from tritrack.landmark_lessons.landmark_learning import keep, resumed
+    from lab.landmark_lessons.landmark_learning import keep, resumed
 
     work = _begun(torch)
     assert resumed(work, tmp_path / "kept.pt").batch == 0

@@ -10,8 +10,8 @@ from drawn_pool import pool_here
 from numpy_torch import importable, numpy_torch
 from rich.console import Console
 
+from lab.landmark_lessons.picture_store import Part, PictureStore, draw
 from synth.picture.picture_examples import PictureExample, picture_examples
-from tritrack.landmark_lessons.picture_store import Part, PictureStore, draw
 
 QUIET = Console(quiet=True)
 
@@ -25,7 +25,7 @@ def torch() -> Any:
 def untrained() -> Any:
     """The module, also where the extra `train` is not installed."""
     with importable("onnx"):
-        from tritrack.landmark_lessons import landmark_training
+        from lab.landmark_lessons import landmark_training
 
         return landmark_training
 
@@ -37,7 +37,7 @@ def people(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def training(torch: Any, monkeypatch: pytest.MonkeyPatch) -> Any:
-    from tritrack.landmark_lessons import landmark_training
+    from lab.landmark_lessons import landmark_training
 
     monkeypatch.setattr(landmark_training, "BATCH", 4)
     monkeypatch.setattr(landmark_training, "BACKDROPS", 5)
@@ -66,7 +66,7 @@ def test_the_same_batch_is_made_up_of_the_same_pictures(training: Any, people: P
 def test_work_that_was_stopped_goes_on_where_it_was(
     torch: Any, training: Any, people: Path, tmp_path: Path
 ) -> None:
-    from tritrack.landmark_lessons import landmark_learning
+    from lab.landmark_lessons import landmark_learning
 
     straight = training._begun(tmp_path / "none", [people], 0)
     stopped = training._begun(tmp_path / "none", [people], 0)
@@ -83,7 +83,7 @@ def test_work_that_was_stopped_goes_on_where_it_was(
 
 
 def test_learning_makes_it_miss_less(training: Any, people: Path, tmp_path: Path) -> None:
-    from tritrack.landmark_lessons import landmark_loss
+    from lab.landmark_lessons import landmark_loss
 
     work, shown = training._begun(tmp_path / "none", [people], 0), wanted(training, people, 0)
     before = landmark_loss.loss(work.network, shown).item()
@@ -93,7 +93,7 @@ def test_learning_makes_it_miss_less(training: Any, people: Path, tmp_path: Path
 
 
 def test_a_map_that_peaks_at_a_joint_finds_it(torch: Any) -> None:
-    from tritrack.landmark_lessons import landmark_loss
+    from lab.landmark_lessons import landmark_loss
 
     joints = torch.tensor([[[20.0, 50.0]] * 15])
     due = landmark_loss._maps_due(joints)

@@ -19,7 +19,8 @@ BELOW = {
     **{name: {"common"} for name in STEPS},
     "integrator": {"calibration", "common"},
     "runtime": {*STEPS, "integrator", "calibration", "common"},
-    "tritrack": {*STEPS, "integrator", "calibration", "common", "runtime"},
+    "lab": {*STEPS, "integrator", "calibration", "common", "runtime"},
+    "tritrack": {*STEPS, "integrator", "calibration", "common", "runtime", "lab"},
 }
 """Which of our packages each may import."""
 HEAVY = (

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from acting import perform, performances
 
+from lab.posture_models.learning import extended, train
 from recognizer.model_file import load, save
 from recognizer.postures import PER_POSTURE, POSTURES, PostureModel, Recognizer, name
-from recognizer.training.learning import extended, train
 
 KNOWN = [posture for posture in POSTURES if posture not in ("raise_right_lateral", "squat")]
 

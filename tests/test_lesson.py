@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from acting import perform
 
+from lab.posture_models import lesson as lessons
+from lab.posture_models.learning import train
+from lab.posture_models.lesson import Lesson, taught
 from recognizer.learning_error import LearningError
 from recognizer.postures import PostureModel, name
-from recognizer.training import lesson as lessons
-from recognizer.training.learning import train
-from recognizer.training.lesson import Lesson, taught
 
 KNOWN = ("squat", "raise_right_lateral", "walk_toward")
 NEW = "kick_left_side"

@@ -9,10 +9,10 @@ from drawn_pool import Draws
 
 from common.rig.camera import Camera, Rig, centre
 from integrator.landmarks.landmark_rays import AT
+from lab.training import lifting_examples as module
+from lab.training.lifting_examples import INSTANT_S
 from synth.picture.shown_joints import ShownJoints
 from synth.picture.silhouette_examples import AT_LARGE, FPS, ORDINARY
-from tritrack.training import lifting_examples as module
-from tritrack.training.lifting_examples import INSTANT_S
 
 LEVEL = ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0))
 """A camera that looks along -z, upright."""

@@ -9,7 +9,7 @@ from integrator.proposal import lifting_network
 from integrator.proposal.landmark_look import INPUTS, Look
 from integrator.proposal.network_weights import shipped_lifting
 from integrator.proposal.pose_network import HIPS, OTHER_SIDES
-from tritrack.training.lifting_examples import LiftingExample, lifting_examples
+from lab.training.lifting_examples import LiftingExample, lifting_examples
 
 UNTAUGHT = range(900_000, 900_030)
 """Seeds beyond all that are taught."""

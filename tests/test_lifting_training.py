@@ -13,11 +13,11 @@ from rich.console import Console
 from integrator.proposal import lifting_network
 from integrator.proposal.landmark_look import INPUTS, Look
 from integrator.proposal.network_weights import LiftingNetwork, load, shipped_lifting
-from tritrack.training import lifting_training, torch_network
-from tritrack.training.lifting_examples import LiftingExample, lifting_examples
-from tritrack.training.lifting_training import learnt, train_lifting
-from tritrack.training.torch_network import Round
-from tritrack.training.training import TrainingError
+from lab.training import lifting_training, torch_network
+from lab.training.lifting_examples import LiftingExample, lifting_examples
+from lab.training.lifting_training import learnt, train_lifting
+from lab.training.torch_network import Round
+from lab.training.training import TrainingError
 
 QUIET = Console(quiet=True)
 

@@ -5,8 +5,8 @@ import pytest
 from test_accuracy import PERSON
 
 from common.body.proportions import thesis_bdp
-from tritrack.accuracy.accuracy import INDEX, Compared
-from tritrack.accuracy.limb_lengths import SEGMENTS, body_joints_m, length_errors, segments_m
+from lab.accuracy.accuracy import INDEX, Compared
+from lab.accuracy.limb_lengths import SEGMENTS, body_joints_m, length_errors, segments_m
 
 
 def compared(tracked_m: np.ndarray, true_m: np.ndarray) -> Compared:

@@ -10,19 +10,19 @@ from rich.console import Console
 from common.bus.messages import Body
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
+from lab.posture_models.learning import train
+from lab.posture_models.lesson import taught
+from lab.training import live_teaching
+from lab.training.coach import Said
+from lab.training.live_teaching import MOST_TAKES, Teaching, teach_live
+from lab.training.training import Plan, TrainingError
 from recognizer.model_file import load, save
 from recognizer.postures import Recognizer
-from recognizer.training.learning import train
-from recognizer.training.lesson import taught
 from runtime.live.launch import nothing_heard
 from synth.motion.streaming import streamed
 from synth.person.people import person
 from synth.picture.exposure import default_rig
 from synth.write import FPS, Filming, write_clip, write_rig
-from tritrack.training import live_teaching
-from tritrack.training.coach import Said
-from tritrack.training.live_teaching import MOST_TAKES, Teaching, teach_live
-from tritrack.training.training import Plan, TrainingError
 
 NEW = "raise_both_lateral"
 KNOWN = ("squat", "walk_toward", "kick_left_side")
@@ -42,7 +42,7 @@ def taught_by(
     """A teaching that cuts these performances out of what it sees, one a body."""
     takes = [perform(posture, n) for n, posture in enumerate(postures)]
     monkeypatch.setattr(
-        "tritrack.training.coach.step", lambda state, _: (state, Said(take=takes.pop(0)))
+        "lab.training.coach.step", lambda state, _: (state, Said(take=takes.pop(0)))
     )
     console = Console(record=True, width=200, file=io.StringIO())
     teaching = Teaching(NEW, load(plan.add_to), console, 0.0)

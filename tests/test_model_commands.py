@@ -8,13 +8,13 @@ from typed import instead, typed
 
 from common.atomic_file import FileRefused
 from common.config.settings import Settings
+from lab.landmark_lessons import work_of
+from lab.postures.posture_evaluation import KINDS
+from lab.postures.posture_evaluation import Plan as Split
+from lab.training.training import Plan
 from tritrack.commands import model_commands
 from tritrack.commands.model_commands import evaluate_app, teach, train
 from tritrack.commands.options import CACHE
-from tritrack.landmark_lessons import work_of
-from tritrack.postures.posture_evaluation import KINDS
-from tritrack.postures.posture_evaluation import Plan as Split
-from tritrack.training.training import Plan
 
 
 @pytest.fixture(autouse=True)
@@ -26,7 +26,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_postures_are_learnt_of_the_clips_that_are_typed(monkeypatch: pytest.MonkeyPatch) -> None:
     facts = {"sequences": {"squat": 3}, "knows": ["squat", "bow"]}
-    done = instead(monkeypatch, "tritrack.training.training.train_postures", facts)
+    done = instead(monkeypatch, "lab.training.training.train_postures", facts)
     words = ["--recognizer", "paper", "--mode", "default", "--cache", "kept"]
     said = typed(train, "a", "b", "--out", "m.npz", *words)
     assert done.last[:3] == (
@@ -44,9 +44,9 @@ def test_postures_are_learnt_of_the_clips_that_are_typed(monkeypatch: pytest.Mon
 @pytest.mark.parametrize(
     ("what", "place", "counted"),
     [
-        ("proposals", "tritrack.training.proposal_training.train_proposals", "instants"),
-        ("lifting", "tritrack.training.lifting_training.train_lifting", "instants"),
-        ("silhouettes", "tritrack.training.silhouette_training.train_silhouettes", "pixels"),
+        ("proposals", "lab.training.proposal_training.train_proposals", "instants"),
+        ("lifting", "lab.training.lifting_training.train_lifting", "instants"),
+        ("silhouettes", "lab.training.silhouette_training.train_silhouettes", "pixels"),
     ],
 )
 def test_each_network_is_learnt_by_its_own_teacher(
@@ -80,11 +80,11 @@ def test_a_model_is_replaced_only_by_force_and_landmarks_go_on_where_they_were(
 def test_a_posture_is_taught_by_takes_or_before_cameras_not_by_both(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    from tritrack.training import teaching
+    from lab.training import teaching
 
     monkeypatch.setattr(teaching, "line", lambda facts: f"taught: {facts['n']}")
-    films = instead(monkeypatch, "tritrack.training.teaching.teach", {"n": 1})
-    live = instead(monkeypatch, "tritrack.training.live_teaching.teach_live", {"n": 2})
+    films = instead(monkeypatch, "lab.training.teaching.teach", {"n": 1})
+    live = instead(monkeypatch, "lab.training.live_teaching.teach_live", {"n": 2})
     settings = Settings(mode="paper")
     instead(monkeypatch, "tritrack.commands.model_commands.config_file.load", settings)
     words = ["--out", "m.npz", "--add-to", "old.npz", "--again", "--recognizer", "paper"]
@@ -104,7 +104,7 @@ def test_a_posture_is_taught_by_takes_or_before_cameras_not_by_both(
 
 def test_what_is_evaluated_is_what_is_typed(monkeypatch: pytest.MonkeyPatch) -> None:
     report: dict[str, Any] = {"recognizers": {"default": {"table": "A"}, "paper": {"table": "B"}}}
-    place = "tritrack.postures.posture_evaluation.evaluate_postures"
+    place = "lab.postures.posture_evaluation.evaluate_postures"
     done = instead(monkeypatch, place, report)
     words = ["--split", "a:b", "--recognizer", "paper", "--mode", "default", "--model", "m.npz"]
     words += ["--sweep", "--cache", "kept", "--dask", "tcp://h:1"]
@@ -119,16 +119,16 @@ def test_what_is_evaluated_is_what_is_typed(monkeypatch: pytest.MonkeyPatch) -> 
 def test_spotting_and_tracking_are_measured_as_they_are_typed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    place = "tritrack.postures.spotting_report.evaluate_spotting"
+    place = "lab.postures.spotting_report.evaluate_spotting"
     spotted = instead(monkeypatch, place, {"table": "two of three"})
     words = ["--model", "m.npz", "--mode", "paper"]
     said = typed(evaluate_app, "spotting", "x", "--out", "r", *words)
     assert spotted.last[:4] == ([Path("x")], Path("r"), Path("m.npz"), "paper")
     assert "two of three" in said.output
-    place = "tritrack.accuracy.tracking_evaluation.evaluate_tracking"
+    place = "lab.accuracy.tracking_evaluation.evaluate_tracking"
     tracked = instead(monkeypatch, place, {"n": 1})
-    instead(monkeypatch, "tritrack.accuracy.accuracy_report.headline", {"mm": 20})
-    instead(monkeypatch, "tritrack.accuracy.accuracy_report.line", "20 mm")
+    instead(monkeypatch, "lab.accuracy.accuracy_report.headline", {"mm": 20})
+    instead(monkeypatch, "lab.accuracy.accuracy_report.line", "20 mm")
     words = ["--runs", "runs", "--mode", "paper", "--size", "160x120"]
     said = typed(evaluate_app, "tracking", "x", "--out", "r", *words)
     assert tracked.last[:5] == ([Path("x")], Path("r"), Path("runs"), "paper", "160x120")

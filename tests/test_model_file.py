@@ -11,10 +11,10 @@ from acting import perform, performances
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lab.posture_models.learning import train
 from recognizer import model_file
 from recognizer.model_file import ModelError, load, save
 from recognizer.postures import POSTURES, PostureModel, Recognizer, log_likelihoods
-from recognizer.training.learning import train
 
 RECOGNIZERS: list[Recognizer] = ["default", "paper"]
 

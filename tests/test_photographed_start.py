@@ -22,13 +22,13 @@ def shown() -> list[Composite]:
 
 @pytest.fixture(scope="module")
 def started(shown: list[Composite]) -> Any:
-    from tritrack.landmark_lessons.photographed_start import photographed_start
+    from lab.landmark_lessons.photographed_start import photographed_start
 
     return photographed_start(shown)
 
 
 def test_the_file_holds_numbers_alone_and_each_layer_once(started: Any) -> None:
-    from tritrack.landmark_lessons.photographed_start import START
+    from lab.landmark_lessons.photographed_start import START
 
     with np.load(START, allow_pickle=False) as held:
         shapes = {name: held[name].shape for name in held.files}
@@ -40,8 +40,8 @@ def test_the_file_holds_numbers_alone_and_each_layer_once(started: Any) -> None:
 
 def test_it_says_of_colours_what_that_network_says(started: Any, shown: list[Composite]) -> None:
     """The first layer by hand: red first, black nought, white one."""
-    from tritrack.landmark_lessons.landmark_planes import STEP, planes_of
-    from tritrack.landmark_lessons.photographed_start import START
+    from lab.landmark_lessons.landmark_planes import STEP, planes_of
+    from lab.landmark_lessons.photographed_start import START
 
     with np.load(START) as held:
         weights, offsets = (
@@ -57,7 +57,7 @@ def test_it_says_of_colours_what_that_network_says(started: Any, shown: list[Com
 
 def test_its_normalisations_are_of_what_it_is_shown(started: Any, shown: list[Composite]) -> None:
     """Each unit's answers have mean 0 and variance 1 before they are given back their own."""
-    from tritrack.landmark_lessons.landmark_planes import planes_of
+    from lab.landmark_lessons.landmark_planes import planes_of
 
     layer = started.eighth[0].wide
     found: dict[str, Any] = {}

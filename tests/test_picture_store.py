@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synth.picture.picture_examples import SIDE_PX, PictureExample
-from tritrack.landmark_lessons import picture_store
-from tritrack.landmark_lessons.picture_store import (
+from lab.landmark_lessons import picture_store
+from lab.landmark_lessons.picture_store import (
     Backdrops,
     Part,
     PictureStore,
@@ -17,6 +16,7 @@ from tritrack.landmark_lessons.picture_store import (
     is_drawn,
     store,
 )
+from synth.picture.picture_examples import SIDE_PX, PictureExample
 
 
 def example(seed: int) -> PictureExample:

@@ -13,15 +13,15 @@ from acting import perform
 from rich.console import Console
 from typed import instead
 
-from recognizer.evaluation import Recording
+from lab.posture_models.evaluation import Recording
+from lab.posture_models.learning import train
+from lab.postures import posture_evaluation
+from lab.postures.posture_evaluation import Plan, evaluate_postures
+from lab.postures.posture_split import EACH_IN_TURN
+from lab.training.training import TrainingError
 from recognizer.learning_error import LearningError
 from recognizer.model_file import save
-from recognizer.training.learning import train
 from runtime.faults import code_of
-from tritrack.postures import posture_evaluation
-from tritrack.postures.posture_evaluation import Plan, evaluate_postures
-from tritrack.postures.posture_split import EACH_IN_TURN
-from tritrack.training.training import TrainingError
 
 QUIET = Console(quiet=True)
 DANCED = (
@@ -185,7 +185,7 @@ def test_a_model_is_not_tested_on_who_it_was_learnt_from(
     model = tmp_path / "model.npz"
     learnt = train({name: [perform(motion, n) for n in range(3)] for name, motion in DANCED})
     save(replace(learnt, card=msgspec.structs.replace(learnt.card, performers=performers)), model)
-    tracked = instead(monkeypatch, "tritrack.postures.posture_evaluation.recordings", people)
+    tracked = instead(monkeypatch, "lab.postures.posture_evaluation.recordings", people)
     plan = Plan(recognizers=("default",), model=model)
     with (
         pytest.raises(LearningError, match="bob: in training and in test")

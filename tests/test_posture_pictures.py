@@ -8,8 +8,8 @@ from drawing import figures_drawn
 
 pytest.importorskip("matplotlib", reason="pip install 'tritrack[report]'")
 
-from tritrack.postures import posture_pictures
-from tritrack.postures.posture_pictures import draw_confusion, draw_worst
+from lab.postures import posture_pictures
+from lab.postures.posture_pictures import draw_confusion, draw_worst
 
 RESULT: dict[str, Any] = {
     "confusion": {"counts": [[3, 1, 0], [0, 0, 2]], "named": ["squat", "kick", ""]},

@@ -2,8 +2,8 @@
 
 import math
 
-from recognizer.evaluation import Outcome
-from tritrack.postures.posture_report import WORST, postures_of, result_of, worst_of
+from lab.posture_models.evaluation import Outcome
+from lab.postures.posture_report import WORST, postures_of, result_of, worst_of
 
 
 def outcome(truth: str, named: str, margin: float, performer: str = "ann") -> Outcome:

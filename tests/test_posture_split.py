@@ -4,11 +4,11 @@ import pytest
 from acting import perform
 from rich.console import Console
 
-from recognizer.evaluation import Recording
+from lab.posture_models.evaluation import Recording
+from lab.postures import posture_split
+from lab.postures.posture_split import EACH_IN_TURN, Job, jobs_of, judged, sweep_of
+from lab.training.training import TrainingError
 from recognizer.learning_error import LearningError
-from tritrack.postures import posture_split
-from tritrack.postures.posture_split import EACH_IN_TURN, Job, jobs_of, judged, sweep_of
-from tritrack.training.training import TrainingError
 
 QUIET = Console(quiet=True)
 

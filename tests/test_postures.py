@@ -12,8 +12,9 @@ from acting import perform, performances, standing
 from hmmlearn.hmm import CategoricalHMM, GaussianHMM
 
 from common.body.body import ANGLE_INDEX, ANGLE_NAMES
+from lab.posture_models.evaluation import Recording, folds, recognise
+from lab.posture_models.learning import train
 from recognizer.codebook import symbols
-from recognizer.evaluation import Recording, folds, recognise
 from recognizer.features import bearings, features
 from recognizer.forward import forward
 from recognizer.postures import (
@@ -25,7 +26,6 @@ from recognizer.postures import (
     log_likelihoods,
     name,
 )
-from recognizer.training.learning import train
 
 TOPOLOGIES: list[Topology] = ["left-right", "ergodic"]
 RECOGNIZERS: list[Recognizer] = ["default", "paper"]

@@ -14,12 +14,12 @@ from rich.console import Console
 from integrator.proposal import network_weights, pose_network
 from integrator.proposal.network_weights import to_bfloat16
 from integrator.proposal.silhouette_window import BESIDE, Look
+from lab.training import proposal_examples, proposal_training, torch_network
+from lab.training.proposal_examples import Example, example, example_of
+from lab.training.proposal_training import learnt, train_proposals
+from lab.training.torch_network import Round
+from lab.training.training import TrainingError
 from synth.picture.silhouette_examples import AT_LARGE, ORDINARY, silhouette_examples
-from tritrack.training import proposal_examples, proposal_training, torch_network
-from tritrack.training.proposal_examples import Example, example, example_of
-from tritrack.training.proposal_training import learnt, train_proposals
-from tritrack.training.torch_network import Round
-from tritrack.training.training import TrainingError
 
 QUIET = Console(quiet=True)
 

@@ -10,7 +10,10 @@ import pytest
 from rich.console import Console
 from spoiling import copied, edit_json
 
-from recognizer.evaluation import Recording
+from lab.posture_models.evaluation import Recording
+from lab.postures.posture_evaluation import Plan
+from lab.training import recordings as stage
+from lab.training.recordings import RecordingError, announced, recordings
 from runtime.offline import clip_cache
 from runtime.offline.batch import Asked, track_all
 from runtime.store.clip_paths import ClipsFailed
@@ -18,9 +21,6 @@ from runtime.store.runs import RunError
 from synth.write import ClipSet
 from tritrack.commands.options import CACHE
 from tritrack.making import make_clips
-from tritrack.postures.posture_evaluation import Plan
-from tritrack.training import recordings as stage
-from tritrack.training.recordings import RecordingError, announced, recordings
 
 QUIET = Console(quiet=True)
 POSTURES = ("raise_right_lateral", "squat")

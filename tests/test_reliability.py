@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tritrack.accuracy.accuracy import JOINTS, Compared
-from tritrack.accuracy.reliability import auc, gap, reliability, roc, trust
+from lab.accuracy.accuracy import JOINTS, Compared
+from lab.accuracy.reliability import auc, gap, reliability, roc, trust
 
 said_and_came = st.lists(
     st.tuples(st.integers(0, 20).map(lambda n: n / 20), st.booleans()), min_size=1, max_size=60

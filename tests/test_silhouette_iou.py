@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from common.config.settings import Settings
+from lab.accuracy.silhouette_iou import iou, overlaps, shrunk
 from runtime.offline.lockstep import Decoders
-from tritrack.accuracy.silhouette_iou import iou, overlaps, shrunk
 
 masks = arrays(np.bool_, (8, 6))
 

@@ -10,10 +10,8 @@ import pytest
 from drawn_pool import Draws, pool_here
 from rich.console import Console
 
-from synth.motion.motions import EMPTY, MOTION, POSTURES, performance
-from synth.person.people import person
-from tritrack.training import silhouette_training
-from tritrack.training.silhouette_training import (
+from lab.training import silhouette_training
+from lab.training.silhouette_training import (
     Examples,
     LabelledFilm,
     examples_of,
@@ -21,7 +19,9 @@ from tritrack.training.silhouette_training import (
     fitted,
     train_silhouettes,
 )
-from tritrack.training.training import TrainingError
+from lab.training.training import TrainingError
+from synth.motion.motions import EMPTY, MOTION, POSTURES, performance
+from synth.person.people import person
 from viewer.silhouette.boundary_features import FEATURES
 from viewer.silhouette.pixel_classifier import load, log_odds, save, shipped
 

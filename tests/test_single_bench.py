@@ -6,8 +6,8 @@ import cv2
 import pytest
 
 from common.config.settings import Settings
-from tritrack.bench import single_bench
-from tritrack.bench.single_bench import Times, figures, parts_ms
+from lab.bench import single_bench
+from lab.bench.single_bench import Times, figures, parts_ms
 
 
 @pytest.mark.parametrize("mode", ["default", "thesis"])

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from acting import perform, performances, standing
 
+from lab.posture_models.learning import train
 from recognizer.features import ROW_NAMES
 from recognizer.postures import POSTURES, PostureModel, Recognizer, log_likelihoods
 from recognizer.spotting import Judgement, State, init, step
-from recognizer.training.learning import train
 
 WINDOW = 40
 JITTER = np.repeat([1.0, 0.003], [17, 3])

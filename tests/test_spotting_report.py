@@ -7,13 +7,13 @@ import pytest
 from acting import perform
 from rich.console import Console
 
-from recognizer.evaluation import wilson
+from lab.posture_models.evaluation import wilson
+from lab.posture_models.learning import train
+from lab.posture_models.streams import Act, Found
+from lab.postures import spotting_report
+from lab.postures.spotting_report import evaluate_spotting
+from lab.training.training import TrainingError
 from recognizer.performance_judge import Event
-from recognizer.training.learning import train
-from recognizer.training.streams import Act, Found
-from tritrack.postures import spotting_report
-from tritrack.postures.spotting_report import evaluate_spotting
-from tritrack.training.training import TrainingError
 
 QUIET = Console(quiet=True)
 FALSE = (Event("squat", 12, 41, 1.0, 1), Event("bow", 99, 120, 1.0, 1))

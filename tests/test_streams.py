@@ -11,14 +11,14 @@ from test_exporting import write
 
 from common.body.body import JOINT_NAMES
 from common.config.part_settings import RecognizerSettings
+from lab.posture_models import streams
+from lab.posture_models.learning import train
+from lab.posture_models.streams import Act, Stream, found, joined
+from lab.postures import spotting_report
+from lab.postures.spotting_report import streams as streams_of
+from lab.training.training import TrainingError
 from recognizer.performance_judge import Event
 from recognizer.postures import DensityModel
-from recognizer.training import streams
-from recognizer.training.learning import train
-from recognizer.training.streams import Act, Stream, found, joined
-from tritrack.postures import spotting_report
-from tritrack.postures.spotting_report import streams as streams_of
-from tritrack.training.training import TrainingError
 
 ACTS = (Act("squat", 10, 40), Act("walk_toward", 60, 90), Act("kick_left_side", 120, 150))
 

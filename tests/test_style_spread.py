@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from recognizer.evaluation import Recording
+from lab.posture_models.evaluation import Recording
+from lab.postures.style_spread import spread_of
 from synth.person.people import STYLE_RANGES, person, take_style
-from tritrack.postures.style_spread import spread_of
 
 LEARNT, TESTED = 100, 900
 """Seeds of the two sets of the experiment."""

@@ -14,6 +14,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from lab.training.lifting_examples import lifting_examples
+from lab.training.proposal_examples import example_of
 from synth.motion import falling, footing, idling, moves, roaming
 from synth.motion.idling import IDLE, RETURNS
 from synth.motion.motions import POSTURES, Motion, performance, stance
@@ -38,8 +40,6 @@ from synth.picture.random_rig import random_rig, rig_about
 from synth.picture.render import render
 from synth.picture.shown_joints import shown_joints
 from synth.picture.synth_room import furnished, lamp_pixels, lit_from
-from tritrack.training.lifting_examples import lifting_examples
-from tritrack.training.proposal_examples import example_of
 
 MAKERS = (falling, footing, moves, roaming, portrait, rings, skeleton, tailor, raster)
 """What the others call: a change in one of these is a change of what seeds make, too."""

@@ -7,13 +7,13 @@ import pytest
 from acting import perform
 from rich.console import Console
 
-from recognizer.evaluation import Recording
+from lab.posture_models.evaluation import Recording
+from lab.training import teaching
+from lab.training.teaching import line, teach
+from lab.training.training import Plan, TrainingError, train_postures
 from recognizer.learning_error import LearningError
 from recognizer.model_file import load
 from recognizer.postures import PER_POSTURE
-from tritrack.training import teaching
-from tritrack.training.teaching import line, teach
-from tritrack.training.training import Plan, TrainingError, train_postures
 
 QUIET = Console(quiet=True)
 NEW = "kick_left_side"
@@ -27,7 +27,7 @@ def plan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Plan:
         for posture in ("squat", "walk_toward")
         for n in range(3)
     ]
-    monkeypatch.setattr("tritrack.training.training.recordings", lambda *_: people)
+    monkeypatch.setattr("lab.training.training.recordings", lambda *_: people)
     train_postures([], tmp_path / "two.npz", Plan(None, "default", tmp_path), QUIET)
     return Plan(None, "default", tmp_path, tmp_path / "two.npz")
 

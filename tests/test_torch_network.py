@@ -12,8 +12,8 @@ from rich.progress import Progress
 from integrator.proposal.landmark_look import INPUTS
 from integrator.proposal.network_weights import JOINTS, LiftingNetwork
 from integrator.proposal.pose_network import recurrent_step
-from tritrack.training import torch_network
-from tritrack.training.torch_network import Round, layers_of, learn, loss, parts_of
+from lab.training import torch_network
+from lab.training.torch_network import Round, layers_of, learn, loss, parts_of
 
 UNITS = (20, 6, 9)
 DUE = 39

@@ -16,13 +16,13 @@ from rich.console import Console
 
 import tritrack.__main__ as door
 from common.config.settings import Settings
+from lab.accuracy import tracking_evaluation
+from lab.accuracy.accuracy import compare, summary
+from lab.accuracy.silhouette_iou import Overlap
+from lab.accuracy.tracking_evaluation import EvaluationError, evaluate_tracking
+from lab.accuracy.worst_frames import TRACKED, TRUE
 from runtime.offline.batch import Asked, track_all
 from runtime.store.clip_paths import ClipsFailed
-from tritrack.accuracy import tracking_evaluation
-from tritrack.accuracy.accuracy import compare, summary
-from tritrack.accuracy.silhouette_iou import Overlap
-from tritrack.accuracy.tracking_evaluation import EvaluationError, evaluate_tracking
-from tritrack.accuracy.worst_frames import TRACKED, TRUE
 
 QUIET = Console(quiet=True)
 TERMINAL = Console(file=StringIO(), force_terminal=True)

@@ -8,11 +8,11 @@ import pytest
 from acting import perform
 from rich.console import Console
 
-from recognizer.evaluation import Recording
+from lab.posture_models.evaluation import Recording
+from lab.training import training
+from lab.training.training import Plan, train_postures
 from recognizer.learning_error import LearningError
 from recognizer.model_file import ModelError, load
-from tritrack.training import training
-from tritrack.training.training import Plan, train_postures
 
 QUIET = Console(quiet=True)
 POSTURES = ("raise_right_lateral", "squat")

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from test_accuracy import PERSON
 
 from common.config.settings import Settings
-from tritrack.accuracy import worst_frames
-from tritrack.accuracy.accuracy import INDEX, Compared
-from tritrack.accuracy.worst_frames import APART, TRACKED, TRUE, WorstFrame, stick, worst
+from lab.accuracy import worst_frames
+from lab.accuracy.accuracy import INDEX, Compared
+from lab.accuracy.worst_frames import APART, TRACKED, TRUE, WorstFrame, stick, worst
 
 
 def clip_of(off_mm: list[float]) -> Compared:

@@ -125,7 +125,7 @@ def bench(
 
     Example: tritrack bench
     """
-    from tritrack.bench.bench import main as bench_main
+    from lab.bench.bench import main as bench_main
 
     bench_main(json_wanted, quick)
 

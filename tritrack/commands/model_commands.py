@@ -7,6 +7,7 @@ import typer
 
 from common.atomic_file import refuse_to_replace
 from common.config import config_file
+from lab.landmark_lessons import work_of
 from runtime.terminal import counted
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import (
@@ -22,7 +23,6 @@ from tritrack.commands.options import (
     writable_file,
 )
 from tritrack.extras import refuse_without
-from tritrack.landmark_lessons import work_of
 
 LEARN: Final = ("learn", "sklearn")
 """The extra of what learns models, and what it brings."""
@@ -79,7 +79,7 @@ def train(
     if not runs:
         raise typer.BadParameter("name clips or run folders to learn postures from")
     refuse_without(*LEARN)
-    from tritrack.training.training import Plan, train_postures
+    from lab.training.training import Plan, train_postures
 
     facts = train_postures(runs, out, Plan(mode, recognizer, cache), console)
     line = (
@@ -94,27 +94,27 @@ def _train_network(
 ) -> None:
     """Learn one of the networks in the package from people that are made up for it."""
     if what == "proposals":
-        from tritrack.training.proposal_training import train_proposals
+        from lab.training.proposal_training import train_proposals
 
         facts = train_proposals(out, 0, console)
         tell(facts, json_wanted, f"{facts['instants']} instants learnt, written to {out}")
         return
     if what == "lifting":
-        from tritrack.training.lifting_training import train_lifting
+        from lab.training.lifting_training import train_lifting
 
         facts = train_lifting(out, 0, console)
         tell(facts, json_wanted, f"{facts['instants']} instants learnt, written to {out}")
         return
     if what == "silhouettes":
         refuse_without(*LEARN)
-        from tritrack.training.silhouette_training import train_silhouettes
+        from lab.training.silhouette_training import train_silhouettes
 
         facts = train_silhouettes(out, 0, console)
         tell(facts, json_wanted, f"{facts['pixels']} pixels learnt, written to {out}")
         return
     if what == "landmarks":
         refuse_without("train", "torch", "onnx", "onnxscript", "anny")
-        from tritrack.landmark_lessons.landmark_training import train_landmarks
+        from lab.landmark_lessons.landmark_training import train_landmarks
 
         facts = train_landmarks(out, 0, console)
         tell(facts, json_wanted, f"{facts['pictures']} pictures learnt, written to {out}")
@@ -123,7 +123,7 @@ def _train_network(
 def _teach_on_films(films: list[Path], teacher: str, out: Path, json_wanted: bool) -> None:
     """Teach the shipped network of landmarks by what another pose estimator sees in films."""
     refuse_without("train", "torch", "onnx", "onnxscript", "anny")
-    from tritrack.film_lessons.film_training import teach_on_films
+    from lab.film_lessons.film_training import teach_on_films
 
     facts = teach_on_films(films, teacher, out, console)
     line = f"better: {facts['verdict']}; written to {out}: name it in the settings, landmarks = ..."
@@ -164,12 +164,12 @@ def teach(
     refuse_without(*LEARN)
     if bool(takes) == (live is not None):
         raise typer.BadParameter("name takes of it, or --live CONFIG")
-    from tritrack.training import teaching
-    from tritrack.training.training import Plan
+    from lab.training import teaching
+    from lab.training.training import Plan
 
     plan = Plan(None, recognizer, cache, add_to, again)
     if live is not None:
-        from tritrack.training.live_teaching import teach_live
+        from lab.training.live_teaching import teach_live
 
         facts = teach_live(posture, config_file.load(live), out, plan, console, count_in)
     else:
@@ -212,7 +212,7 @@ def evaluate_postures(
     refuse_without("report", "matplotlib")
     if model is None:
         refuse_without(*LEARN)
-    from tritrack.postures import posture_evaluation
+    from lab.postures import posture_evaluation
 
     plan = posture_evaluation.Plan(
         split, posture_evaluation.KINDS[recognizer], mode, model, sweep, cache, dask
@@ -243,7 +243,7 @@ def evaluate_spotting(
 
     Example: tritrack evaluate spotting runs/*_stream --out report
     """
-    from tritrack.postures import spotting_report
+    from lab.postures import spotting_report
 
     report = spotting_report.evaluate_spotting(runs, out, model, mode, console)
     tell(report, json_wanted, report["table"])
@@ -270,7 +270,7 @@ def evaluate_tracking(
     Example: tritrack evaluate tracking clips/*/ --out report
     """
     refuse_without("report", "matplotlib")
-    from tritrack.accuracy import accuracy_report, tracking_evaluation
+    from lab.accuracy import accuracy_report, tracking_evaluation
 
     report = tracking_evaluation.evaluate_tracking(clips, out, runs, mode, size, console)
     facts = accuracy_report.headline(report)

@@ -1,0 +1,100 @@
+"""How fast one camera's clip is followed, from its video to poses, once its background is known."""
+
+import time
+from collections.abc import Iterator
+from typing import Final, NamedTuple
+
+import cv2
+
+from common.config.settings import Settings
+from common.method import METHODS, Mode
+from common.video.clips import open_clip
+from common.video.decoding import Decoder
+from common.video.frame_cache import Reel
+from lab.bench.bench_figure import Measured, least_s
+from runtime.offline.film_passes import FilmFacts, bodies_of, silhouettes_of
+from runtime.offline.film_tracking import Film, follow_clip
+from viewer.room.background_source import background_of_film
+
+ALONE: Final = (1,)
+"""The view that is followed."""
+FOLLOWED: Final[tuple[tuple[Mode, str, float], ...]] = (
+    ("default", "320x240", 200.0),
+    ("thesis", "320x240", 200.0),
+)
+"""Modes and sizes that it is followed in, and how many frames a second are asked for."""
+
+
+class Times(NamedTuple):
+    """Least seconds of several runs over all frames; the decoder's by the clock, it is a process
+    of its own, the others' of this process, whatever else the machine does."""
+
+    frames: int
+    decoding_s: float
+    silhouettes_s: float
+    poses_s: float
+
+    @property
+    def frames_a_second(self) -> float:
+        """One stage after the other on one core; learning the background does not count."""
+        return self.frames / (self.decoding_s + self.silhouettes_s + self.poses_s)
+
+
+def figures(settings: Settings, repeats: int, target: float) -> Iterator[Measured]:
+    """The rate, and what each part takes."""
+    at, found = f"{settings.mode}, {settings.size}", followed(settings, repeats)
+    yield Measured(f"single, video to poses, {at}", found.frames_a_second, "frames/s", target)
+    for what, value_ms in parts_ms(found).items():
+        yield Measured(f"- {what}, {at}", value_ms, "ms a frame")
+
+
+def parts_ms(found: Times) -> dict[str, float]:
+    """What each stage takes for a frame."""
+    parts_s = (found.decoding_s, found.silhouettes_s, found.poses_s)
+    names = ("decoding of one view", "silhouettes of one view", "poses of one view")
+    return {name: 1e3 * part_s / found.frames for name, part_s in zip(names, parts_s, strict=True)}
+
+
+def followed(settings: Settings, repeats: int) -> Times:
+    """Follow a clip's first camera again and again, as `tritrack single` does without calibration.
+
+    Args:
+        settings: Name the clip, the mode and the size of the working picture.
+        repeats: How often, after a first time that may compile.
+
+    Raises:
+        ClipError: When there is no such clip.
+        Undecodable, DecoderDied: When it has no pictures.
+    """
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        with Decoder() as decoder:
+            return _followed(settings, repeats, decoder)
+    finally:
+        cv2.setNumThreads(threads)
+
+
+def _followed(settings: Settings, repeats: int, decoder: Decoder) -> Times:
+    clip = open_clip(settings, decoder, ALONE)
+    view, reel = clip.views[0], Reel(decoder)
+    background = background_of_film(view, settings.silhouette, reel)
+    method, period_s = METHODS[settings.mode], clip.every / view.fps
+    followed = follow_clip(Film(clip, background), settings, method, decoder)
+    film = FilmFacts(settings, method, view.number, period_s, None)
+
+    def decoded() -> int:
+        return sum(1 for _ in decoder.frames(view.source, view.size))
+
+    def cut_out() -> int:
+        return len(silhouettes_of(clip, background, film, reel))
+
+    def posed() -> int:
+        return len(bodies_of(followed.reports, film).bodies)
+
+    return Times(
+        len(followed.reports),
+        least_s(decoded, repeats),
+        least_s(cut_out, repeats, time.process_time),
+        least_s(posed, repeats, time.process_time),
+    )

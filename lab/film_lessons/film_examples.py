@@ -1,0 +1,138 @@
+"""A film's frames as examples: the window about the person, and the joints that a teacher sees."""
+
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.bus.messages import Landmarks
+from common.config.part_settings import CameraSettings
+from common.config.settings import Settings
+from common.method import DEFAULT
+from common.raster.similarity import Mask
+from common.video.clips import open_clip
+from common.video.decoding import Decoder, Image
+from lab.landmark_lessons.picture_store import is_drawn, store
+from lab.training.training import TrainingError
+from runtime.terminal import Tell
+from synth.picture.picture_examples import FRAME, FRAMED, SIDE_PX, PictureExample
+from viewer import track
+from viewer.capture import recorded
+from viewer.landmarks.body_region import body_region, stature_px
+from viewer.landmarks.landmark_sources import outside_sources
+from viewer.landmarks.landmark_window import Window, planes_of
+from viewer.room.background_source import background_of_film
+
+SIZE: Final = "640x480"
+"""Bound of the picture that windows are cut from."""
+MOST: Final = 3000
+"""Frames of one film, spread over it, that are looked at."""
+TAUGHT, FEWEST = 0.5, 8
+"""Joints that the teacher is surer of are taught; a frame with fewer of them is not."""
+HELD_SHARE: Final = 0.2
+"""Of a film, its end: nothing is learnt from it, it tells whether the network became better."""
+ASIDE: Final = 0.04
+"""Standard deviation of the person's middle from the window's, in sides."""
+ELSEWHERE: Final = -1000.0
+"""Where a joint is that is not taught: in no window."""
+
+
+class Looked(NamedTuple):
+    """What a film gives."""
+
+    learnt: Path
+    """A folder of examples, as `PictureStore` reads them."""
+    held: Path
+    """Another, of its last fifth."""
+
+
+def looked_through(film: Path, teacher: str, folder: Path, tell: Tell) -> Looked:
+    """Look through a film with its teacher, where that is not done yet.
+
+    Args:
+        film: Of one camera that stands still.
+        teacher: As a run's settings name a source of landmarks outside: `mediapipe`, or a folder.
+        folder: Keeps what is found.
+        tell: Is told the share that is done.
+
+    Raises:
+        TrainingError: When the teacher sees nobody.
+        SettingsError: When the teacher cannot be used.
+        ClipError, Undecodable, DecoderDied: When the film cannot.
+    """
+    looked = Looked(folder / "learnt", folder / "held")
+    if not (is_drawn(looked.learnt) and is_drawn(looked.held)):
+        examples = list(_examples(film, teacher, tell))
+        learnt = round((1.0 - HELD_SHARE) * len(examples))
+        if not 0 < learnt < len(examples):
+            raise TrainingError(f"{film}: {teacher} sees nobody there: leave it out")
+        for part, own in ((looked.learnt, examples[:learnt]), (looked.held, examples[learnt:])):
+            store(part, own)
+    tell(1.0)
+    return looked
+
+
+def _examples(film: Path, teacher: str, tell: Tell) -> Iterator[PictureExample]:
+    camera = CameraSettings(source=str(film))
+    settings = Settings(camera_1=camera, landmarks=teacher, size=SIZE)
+    rng = np.random.default_rng(97)
+    with Decoder() as decoder:
+        clip = open_clip(settings, decoder, (1,))
+        view = clip.views[0]
+        room = background_of_film(view, settings.silhouette, decoder)
+        setup = track.Setup(1, None, settings, DEFAULT, alone=True)
+        state = track.init(setup, room.background, patches=room.patches)
+        every = max(1, math.ceil(view.frames / MOST))
+        with outside_sources(settings, clip.views) as sources:
+            for frame in recorded(view, every, decoder, sources[1]):
+                state, report, mask = track.look(state, frame, None)
+                tell(frame.index / max(view.frames, 1))
+                if report.landmarks is not None:
+                    yield from example_of(frame.picture, mask, report.landmarks, rng)
+
+
+def example_of(
+    picture: Image, mask: Mask, shown: Landmarks, rng: np.random.Generator
+) -> Sequence[PictureExample]:
+    """The example of a frame: all of its window counts as the person, as that is what lies there;
+    none where the teacher is sure of too little.
+
+    Args:
+        picture: (H, W, 3)
+        mask: (H, W) the outline; where that is empty, one is drawn about the joints.
+        shown: What the teacher sees.
+        rng: Source of how the person is framed.
+    """
+    sure = np.array(shown.confidence) > TAUGHT
+    tall_px = stature_px(shown)
+    if sure.sum() < FEWEST or not tall_px:
+        return ()
+    joints_px = np.array(shown.joints_px)
+    outline = mask if mask.any() else body_region(shown, picture.shape, 0.0).view(np.bool_)
+    window = _framed(joints_px[sure], rng)
+    planes = planes_of(picture, outline, window, SIDE_PX)[0]
+    scale = SIDE_PX / window.side
+    places = np.where(sure[:, None], scale * (joints_px - (window.left, window.top)), ELSEWHERE)
+    body = np.full((SIDE_PX, SIDE_PX, 4), 255, np.uint8)
+    body[..., :3] = planes[:3].transpose(1, 2, 0)
+    return (
+        PictureExample(
+            body,
+            (planes[3] > 127).astype(np.uint8),
+            places.astype(np.float32),
+            np.zeros(2, np.float32),
+            scale * tall_px,
+        ),
+    )
+
+
+def _framed(joints_px: NDArray[np.float64], rng: np.random.Generator) -> Window:
+    """A window about joints, as those of made-up people lie about them."""
+    low, high = joints_px.min(axis=0), joints_px.max(axis=0)
+    side = max(8.0, float((high - low).max()) * FRAMED * math.exp(rng.uniform(*FRAME)))
+    middle = (low + high) / 2 + ASIDE * side * rng.normal(0.0, 1.0, 2)
+    left, top = np.rint(middle - side / 2).astype(int).tolist()
+    return Window(left, top, round(side))

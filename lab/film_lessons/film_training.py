@@ -1,0 +1,234 @@
+"""Teaching the shipped network of landmarks on films, and whether that made it better."""
+
+import multiprocessing
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import cv2
+import numpy as np
+import torch
+from rich.console import Console
+
+from lab.film_lessons.film_examples import Looked, looked_through
+from lab.landmark_lessons import landmark_loss, work_of
+from lab.landmark_lessons.landmark_file import fill, weights_of, write_network
+from lab.landmark_lessons.landmark_layers import LandmarkNetwork
+from lab.landmark_lessons.landmark_learning import (
+    Work,
+    ahead,
+    begun,
+    keep,
+    learnt_from,
+    resumed,
+)
+from lab.landmark_lessons.picture_store import Backdrops, Part, PictureStore, draw
+from lab.training.training import TrainingError
+from runtime.terminal import bar
+from synth.picture.composites import Composite, composite
+from viewer.landmarks.landmark_looks import SHIPPED
+
+FIRST: Final = 30_000_000
+"""Seed of the first of them: the shipped network saw none."""
+FILM_SHARE: Final = 0.5
+"""Of each batch."""
+RATE, WARM, MEAN_OVER, KEEP_EVERY = 1e-3, 20, 50, 50
+"""As in `landmark_training`: the network is taught already."""
+FAR: Final = 0.3
+"""A joint that is farther off counts no more than this, statures."""
+FORGETS: Final = 1.03
+"""So many times as much may joints of made-up people be off as before."""
+GROUP: Final = 64
+"""Pictures that are looked at together."""
+FEWEST: Final = 50
+"""Examples to learn from, at least; and a quarter of that held back."""
+
+
+class Plan(NamedTuple):
+    """How much is shown."""
+
+    people: int = 300
+    """Made-up people, sixteen pictures each, are shown too, so that nothing is forgotten: our own,
+    ..."""
+    anny_people: int = 150
+    """... and of the Anny model."""
+    held_back: int = 40
+    """Made-up people by whom it is told whether anything was forgotten."""
+    backdrops: int = 600
+    batches: int = 500
+    batch: int = 96
+
+
+class Verdict(NamedTuple):
+    """How far joints are off, statures, before and after."""
+
+    film: tuple[float, float]
+    """Of the films' ends."""
+    made_up: tuple[float, float]
+    """Of made-up people."""
+
+    @property
+    def better(self) -> bool:
+        """Whether it became better on the films, and forgot hardly anything."""
+        return self.film[1] < self.film[0] and self.made_up[1] < FORGETS * self.made_up[0]
+
+    def line(self) -> str:
+        """In words."""
+        (film, film_now), (made_up, made_up_now) = self
+        return (
+            f"joints {100 * film:.1f} -> {100 * film_now:.1f} % of the stature off at the films' "
+            f"ends, {100 * made_up:.1f} -> {100 * made_up_now:.1f} % of made-up people"
+        )
+
+
+class Wanted(NamedTuple):
+    """A batch that is to be made up; the same wish gives the same batch."""
+
+    films: tuple[Path, ...]
+    made_up: tuple[Path, ...]
+    at: int
+    plan: Plan
+
+
+def teach_on_films(
+    films: Sequence[Path], teacher: str, out: Path, console: Console, plan: Plan = Plan()
+) -> dict[str, Any]:
+    """Teach the shipped network on films and write it, if it became better; what was looked
+    through, drawn and learnt is kept in `<out>.work`: the next call goes on from there.
+
+    Args:
+        films: Of cameras that stand still; the last fifth of each tells how good it is.
+        teacher: See `looked_through`.
+        out: The file to write, ONNX.
+        console: For progress.
+        plan: How much is shown.
+
+    Raises:
+        TrainingError: When too little of anybody is seen, or it became no better.
+    """
+    folder = work_of(out)
+    looked = _looked(films, teacher, folder, console)
+    *made_up, held_back = _drawn(folder, plan, console)
+    wanted = Wanted(tuple(each.learnt for each in looked), tuple(made_up), 0, plan)
+    before = _shipped()
+    work = _learnt(wanted, folder / "learnt.pt", console)
+    held = Wanted(tuple(each.held for each in looked), (held_back,), 0, plan)
+    verdict = Verdict(*zip(*(_off(each, held) for each in (before, work.mean)), strict=True))
+    if not verdict.better:
+        raise TrainingError(f"no better, so nothing is written: {verdict.line()}")
+    write_network(work.mean, out)
+    return {"model": str(out), "verdict": verdict.line(), **verdict._asdict()}
+
+
+def _looked(films: Sequence[Path], teacher: str, folder: Path, console: Console) -> list[Looked]:
+    with bar(console) as progress:
+        looked = []
+        for n, film in enumerate(films):
+            task = progress.add_task(f"looking through {film.name}", total=1.0)
+
+            def tell(share: float, task: Any = task) -> None:
+                progress.update(task, completed=share)
+
+            looked.append(looked_through(film, teacher, folder / f"film{n}_{film.stem}", tell))
+    learnt, held = ([len(PictureStore([each[at]])) for each in looked] for at in (0, 1))
+    if sum(learnt) < FEWEST or sum(held) < FEWEST // 4:
+        raise TrainingError(
+            f"the teacher saw somebody in {sum(learnt) + sum(held)} frames: name films of more"
+        )
+    return looked
+
+
+def _drawn(folder: Path, plan: Plan, console: Console) -> list[Path]:
+    """Made-up people: our own, those of Anny, and last those who are held back."""
+    parts = [
+        Part(folder / "own", FIRST, plan.people),
+        Part(folder / "anny", FIRST, plan.anny_people, anny=True),
+        Part(folder / "held_back", FIRST + plan.people, plan.held_back),
+    ]
+    asked = [part for part in parts if part.people]
+    with multiprocessing.get_context("spawn").Pool() as pool, bar(console) as progress:
+        drawn = pool.imap(draw, asked)
+        return list(progress.track(drawn, total=len(asked), description="drawing"))
+
+
+def composed(wanted: Wanted) -> list[Composite]:
+    """One batch: of films and of made-up people, all lit, turned and spoilt in ever new ways."""
+    cv2.setNumThreads(1)
+    films, made_up = _opened(wanted.films), _opened(wanted.made_up)
+    backdrops, rng = _backdrops(wanted.plan), np.random.default_rng([wanted.at, 83])
+    return [
+        composite(
+            (films if rng.random() < FILM_SHARE else made_up).any(rng),
+            lambda: made_up.any(rng),
+            lambda: backdrops.any(rng),
+            rng,
+        )
+        for _ in range(wanted.plan.batch)
+    ]
+
+
+@lru_cache(maxsize=4)
+def _opened(folders: tuple[Path, ...]) -> PictureStore:
+    return PictureStore(list(folders))
+
+
+@lru_cache(maxsize=1)
+def _backdrops(plan: Plan) -> Backdrops:
+    return Backdrops.drawn(range(FIRST, FIRST + plan.backdrops))
+
+
+def _shipped() -> Any:
+    """The shipped network; its normalisations are folded, and stay as they are."""
+    network = LandmarkNetwork().to(memory_format=torch.channels_last)
+    fill(network, weights_of(SHIPPED))
+    return network.eval()
+
+
+def _learnt(wanted: Wanted, kept: Path, console: Console) -> Work:
+    """The network after all batches; what was kept before is not done again."""
+    network, batches = _shipped(), wanted.plan.batches
+    work = resumed(begun(network, network.paces()), kept)
+    wishes = (wanted._replace(at=at) for at in range(work.batch, batches))
+    with multiprocessing.get_context("spawn").Pool(1) as pool, bar(console) as progress:
+        task = progress.add_task("learning", total=batches, completed=work.batch)
+        for shown in ahead(pool, composed, wishes):
+            rate = RATE * min(1.0, (work.batch + 1) / WARM, 1.0 - work.batch / batches)
+            work = learnt_from(work, shown, rate, max(1.0 / MEAN_OVER, 1.0 / (1 + work.batch)))
+            progress.advance(task)
+            if work.batch % KEEP_EVERY == 0 or work.batch == batches:
+                keep(work, kept)
+    return work
+
+
+def _off(network: Any, held: Wanted) -> tuple[float, float]:
+    """How far joints are off, of the films' ends as they are, and of made-up people."""
+    films = _opened(held.films)
+    plain = [_plain(films[at]) for at in range(len(films))]
+    rng, made_up, backdrops = (
+        np.random.default_rng(89),
+        _opened(held.made_up),
+        _backdrops(held.plan),
+    )
+    spoilt = [
+        composite(made_up[at], lambda: made_up.any(rng), lambda: backdrops.any(rng), rng)
+        for at in range(len(made_up))
+    ]
+    return _mean_off(network, plain), _mean_off(network, spoilt)
+
+
+def _plain(example: Any) -> Composite:
+    """An example of a film as it was filmed."""
+    joints = example.joints_px
+    inside = ((joints > 0) & (joints < len(example.body))).all(axis=1)
+    outline = example.outline * np.uint8(255)
+    picture = np.ascontiguousarray(example.body[..., :3])
+    return Composite(
+        picture, outline, joints, inside, example.facing, example.stature_px, nobody=False
+    )
+
+
+def _mean_off(network: Any, shown: list[Composite]) -> float:
+    groups = [shown[at : at + GROUP] for at in range(0, len(shown), GROUP)]
+    off = np.concatenate([landmark_loss.joints_off(network, group) for group in groups])
+    return float(np.minimum(off[np.isfinite(off)], FAR).mean())

@@ -1,0 +1,84 @@
+"""The network that lifts landmarks, trained on motion that is made up and shown by no picture."""
+
+import multiprocessing
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from rich.console import Console
+
+from integrator.proposal.landmark_look import INPUTS
+from integrator.proposal.network_weights import LiftingNetwork, save
+from lab.training import torch_network
+from lab.training.lifting_examples import LiftingExample, lifting_examples
+from lab.training.torch_network import Round, torch_or_refuse
+from lab.training.training import TrainingError
+from runtime.terminal import bar
+
+PERFORMANCES: Final = 30_000
+"""How many are learnt from, each before one camera and before two: some sixty instants each."""
+UNITS: Final = (320, 320, 320)
+"""Units of fc1 and fc2, of the recurrent unit, and of fc3."""
+ROUNDS: Final = (Round(10, 2e-3, 64), Round(6, 1e-3, 64))
+SHORTEST: Final = 8
+"""Instants that a performance must have."""
+
+
+def train_lifting(out: Path, seed: int, console: Console) -> dict[str, Any]:
+    """Learn the network afresh and write it: three quarters of an hour on two cores, 4 GB.
+
+    Args:
+        out: The file to write.
+        seed: The first performance's; also of the network's start.
+        console: For progress.
+
+    Raises:
+        TrainingError: When PyTorch is not installed, or the file cannot be written.
+    """
+    torch_or_refuse()
+    if not out.parent.is_dir():
+        raise TrainingError(f"cannot write {out}: there is no folder {out.parent}")
+    with multiprocessing.get_context("spawn").Pool() as pool, bar(console) as progress:
+        drawn = progress.track(
+            pool.imap(lifting_examples, range(seed, seed + PERFORMANCES), chunksize=8),
+            total=PERFORMANCES,
+            description="drawing",
+        )
+        shown = [one for both in drawn for one in both if len(one.due) >= SHORTEST]
+    network = learnt(shown, seed, console)
+    try:
+        save(network, out)
+    except OSError as error:
+        raise TrainingError(f"cannot write {out}: {error.strerror}") from error
+    return {"model": str(out), "instants": sum(len(one.due) for one in shown)}
+
+
+def learnt(
+    shown: list[LiftingExample], seed: int, console: Console, rounds: Sequence[Round] = ROUNDS
+) -> LiftingNetwork:
+    """The network that misses least: mean distance of the joints.
+
+    Args:
+        shown: Performances.
+        seed: Of the network's start and the order of the performances.
+        console: For progress.
+        rounds: Of training.
+
+    Raises:
+        TrainingError: When PyTorch is not installed.
+    """
+    torch = torch_or_refuse()
+    torch.manual_seed(seed)
+    usual = np.concatenate([one.due for one in shown]).mean(axis=0)
+    parts = torch_network.parts_of(torch, INPUTS, UNITS, usual)
+    examples = [_tensors(torch, one) for one in shown]
+    torch_network.learn(torch, parts, examples, rounds, seed, console)
+    return LiftingNetwork(*torch_network.layers_of(parts))
+
+
+def _tensors(torch: Any, shown: LiftingExample) -> tuple[Any, ...]:
+    """Inputs, what is due, ones, and the stature: as tensors of an example's instants."""
+    ones = np.ones(len(shown.due), np.float32)
+    parts = (shown.inputs, shown.due, ones, ones * np.float32(shown.stature_m))
+    return tuple(torch.from_numpy(part) for part in parts)

@@ -1,0 +1,115 @@
+"""The network that proposes poses, trained on silhouettes of synthetic people."""
+
+import multiprocessing
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import scipy.linalg
+from rich.console import Console
+
+from integrator.proposal.network_weights import PoseNetwork, save, to_bfloat16
+from integrator.proposal.pose_network import SEES
+from integrator.proposal.silhouette_window import BESIDE, CELLS, Floats
+from lab.training import torch_network
+from lab.training.proposal_examples import Example, example_of
+from lab.training.torch_network import Round, torch_or_refuse
+from lab.training.training import TrainingError
+from runtime.terminal import bar
+from synth.picture.silhouette_examples import AT_LARGE, ORDINARY
+
+PERFORMANCES: Final = {ORDINARY: 12_000, AT_LARGE: 5_000}
+"""How many of which manner are learnt from: some sixty instants each."""
+COMPONENTS: Final = 192
+"""Principal components of a window that are kept."""
+SAMPLED: Final = 12
+"""Instants of each performance that the components are computed from, at most."""
+LIFTED: Final = 0.02
+"""What is added to a component's spread before dividing by it, in those of the first."""
+UNITS: Final = (512, 512, 384)
+"""Units of fc1 and fc2, of the recurrent unit, and of fc3."""
+ROUNDS: Final = (Round(24, 2e-3, 64), Round(20, 1e-3, 64))
+SHORTEST: Final = 8
+"""Instants that a performance must have."""
+
+
+def train_proposals(out: Path, seed: int, console: Console) -> dict[str, Any]:
+    """Learn the network afresh and write it: an hour and a half on two cores, 9 GB.
+
+    Args:
+        out: The file to write.
+        seed: The first performance's; also of the network's start.
+        console: For progress.
+
+    Raises:
+        TrainingError: When PyTorch is not installed, or the file cannot be written.
+    """
+    torch_or_refuse()
+    if not out.parent.is_dir():
+        raise TrainingError(f"cannot write {out}: there is no folder {out.parent}")
+    with multiprocessing.get_context("spawn").Pool() as pool, bar(console) as progress:
+        manners = [manner for manner, count in PERFORMANCES.items() for _ in range(count)]
+        drawn = progress.track(
+            pool.imap(example_of, enumerate(manners, seed), chunksize=8),
+            total=len(manners),
+            description="drawing",
+        )
+        shown = [each for each in drawn if len(each.due) >= SHORTEST]
+    network = learnt(shown, seed, console)
+    try:
+        save(network, out)
+    except OSError as error:
+        raise TrainingError(f"cannot write {out}: {error.strerror}") from error
+    return {"model": str(out), "instants": sum(len(each.due) for each in shown)}
+
+
+def learnt(
+    shown: list[Example], seed: int, console: Console, rounds: Sequence[Round] = ROUNDS
+) -> PoseNetwork:
+    """The network that misses least: mean distance of the joints.
+
+    Args:
+        shown: Performances.
+        seed: Of the network's start and the order of the performances.
+        console: For progress.
+        rounds: Of training.
+
+    Raises:
+        TrainingError: When PyTorch is not installed.
+    """
+    torch = torch_or_refuse()
+    torch.manual_seed(seed)
+    mean, components = _components(shown)
+    examples = [_tensors(torch, mean, components, each) for each in shown]
+    usual = np.concatenate([each.due for each in shown]).mean(axis=0)
+    parts = torch_network.parts_of(torch, 2 * COMPONENTS + BESIDE, UNITS, usual)
+    torch_network.learn(torch, parts, examples, rounds, seed, console)
+    return PoseNetwork(to_bfloat16(components), -mean @ components, *torch_network.layers_of(parts))
+
+
+def _components(shown: list[Example]) -> tuple[Floats, Floats]:
+    """Mean (CELLS,) and components (CELLS, COMPONENTS) of windows, scaled to spreads of about 1."""
+    sampled = [
+        each.cells[:: 1 + len(each.cells) // SAMPLED][
+            each.beside[:: 1 + len(each.cells) // SAMPLED][:, SEES] > 0
+        ]
+        for each in shown
+    ]
+    windows = np.concatenate(sampled).astype(np.float32) / 255
+    mean = windows.mean(axis=0)
+    windows -= mean
+    kept = [CELLS - COMPONENTS, CELLS - 1]
+    values, vectors = scipy.linalg.eigh(windows.T @ windows / len(windows), subset_by_index=kept)
+    spreads = np.sqrt(np.maximum(values, 0.0))
+    return mean, (vectors / (spreads + LIFTED * spreads[-1])).astype(np.float32)
+
+
+def _tensors(torch: Any, mean: Floats, components: Floats, shown: Example) -> tuple[Any, ...]:
+    """Inputs, what is due, ones, and the stature: as tensors of an example's instants."""
+    windows = shown.cells.astype(np.float32) / np.float32(255)
+    seen = (windows - mean) @ components * shown.beside[:, SEES, None]
+    seen = np.concatenate([seen.reshape(len(seen), -1), shown.beside], axis=1)
+    ones = np.ones(len(seen), np.float32)
+    parts = (seen, shown.due, ones, ones * np.float32(shown.stature_m))
+    return tuple(torch.from_numpy(part) for part in parts)

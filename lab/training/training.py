@@ -1,0 +1,100 @@
+"""Posture models from clips or runs."""
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+from rich.console import Console
+
+from common.method import Mode
+from lab.posture_models.learning import train
+from lab.posture_models.lesson import LEAST_TAKES
+from lab.training.recordings import recordings
+from recognizer.__main__ import SHIPPED, SHIPPED_PAPER
+from recognizer.model_file import load, save
+from recognizer.postures import PostureModel, Recognizer
+from runtime.store.cores import spread
+from runtime.terminal import warn
+
+SHIPPED_MODELS: Final[dict[Recognizer, Path]] = {"default": SHIPPED, "paper": SHIPPED_PAPER}
+"""What a command line calls `shipped`."""
+
+
+class TrainingError(ValueError):
+    """What cannot be learnt, tested or written; the text names the cure."""
+
+
+class Plan(NamedTuple):
+    """What a model is to be, and how its clips are tracked."""
+
+    mode: Mode | None
+    """How clips are tracked; None: in the recogniser's own mode."""
+    recognizer: Recognizer
+    """Which kind of model."""
+    cache: Path
+    """Folder that keeps what tracking made of clips."""
+    add_to: Path = Path("shipped")
+    """Of teaching: the model that a posture is added to, which tells its kind."""
+    again: bool = False
+    """Of teaching: the posture is one of that model's, learnt anew."""
+
+
+def train_postures(
+    paths: Sequence[Path], out: Path, plan: Plan, console: Console
+) -> dict[str, Any]:
+    """Learn a model of each posture and write it.
+
+    Args:
+        paths: Clip folders whose `meta.json` names posture and performer, or their run folders.
+        out: The file to write.
+        plan: What the model is to be.
+        console: For progress and warnings.
+
+    Raises:
+        RecordingError: When a folder is neither, or names no posture.
+        ClipsFailed: When clips cannot be used.
+        LearningError: When nothing can be learnt.
+        ModelError: When the file cannot be written.
+    """
+    learnt: dict[str, list[Any]] = defaultdict(list)
+    performers = set()
+    with spread(""):
+        given = recordings(paths, plan.mode or plan.recognizer, plan.cache, console)
+    for recording in given:
+        learnt[recording.posture].append(recording.rows)
+        performers.add(recording.performer)
+    _warn_of_few(learnt, console)
+    model = train(dict(learnt), plan.recognizer, performers=sorted(performers))
+    save(model, out)
+    return {
+        "model": str(out),
+        "sequences": {name: len(given) for name, given in sorted(learnt.items())},
+        "performers": sorted(performers),
+        "knows": list(model.names),
+    }
+
+
+def _warn_of_few(learnt: Mapping[str, Sequence[Any]], console: Console) -> None:
+    """Say what a model learns too little for to tell postures apart."""
+    if len(learnt) == 1:
+        warn(
+            console,
+            f"only {next(iter(learnt))} is learnt: such a model names any motion so; name clips of "
+            "others, or add it to a model: tritrack teach",
+        )
+    few = [name for name, takes in sorted(learnt.items()) if len(takes) < LEAST_TAKES]
+    if few:
+        warn(
+            console,
+            f"less than {LEAST_TAKES} takes of {', '.join(few)}: film more, of several people",
+        )
+
+
+def model_named(path: Path, recognizer: Recognizer) -> PostureModel:
+    """The model in a file, or the one in the package where the path is `shipped`.
+
+    Raises:
+        ModelError: When it cannot be read.
+    """
+    return load(SHIPPED_MODELS[recognizer] if path == Path("shipped") else path)
