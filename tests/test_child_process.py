@@ -12,8 +12,8 @@ from typing import Any
 import psutil
 import pytest
 
-from common.video import child_process
-from common.video.child_process import PIPE_BYTES, Broken, Child
+from common.child import child_process
+from common.child.child_process import PIPE_BYTES, Broken, Child
 
 ECHO = """
 import os, sys

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from common.child.child_process import Broken
 from common.video import decoding
-from common.video.child_process import Broken
 from common.video.decoding import (
     DAMAGED,
     END,

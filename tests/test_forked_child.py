@@ -11,8 +11,8 @@ import psutil
 import pytest
 from test_parent_death import SOON_S, ended_within, sleeps, written
 
+from common.child.forked_child import can_fork
 from common.video.decoding import Decoder, DecoderDied
-from common.video.forked_child import can_fork
 from runtime.forking.zygote import SPAWN, Zygote
 from runtime.live.process_table import Part, end, inherited, started
 
@@ -55,7 +55,7 @@ def main():
 """
 STARTER = """
 import multiprocessing, os, signal, subprocess, sys
-from common.video import forked_child
+from common.child import forked_child
 forked_child.FORK = multiprocessing.get_context("fork")
 signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGTERM,))
 asked, ask = os.pipe()

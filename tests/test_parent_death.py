@@ -12,7 +12,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from common.parent_death import end_with_parent
+from common.child.parent_death import end_with_parent
 from runtime.live.process_table import Part, end, started
 
 SOON_S = 2.0
@@ -93,7 +93,7 @@ def test_a_process_that_nobody_started_so_is_left_alone() -> None:
 def test_a_child_that_works_ends_with_its_pipe() -> None:
     """It reads nothing at the moment, as a decoder that waits for a camera."""
     code = (
-        "import sys, time; from common.parent_death import end_with_pipe; "
+        "import sys, time; from common.child.parent_death import end_with_pipe; "
         "end_with_pipe(sys.stdin.fileno()); print('up', flush=True); time.sleep(600)"
     )
     child = subprocess.Popen(

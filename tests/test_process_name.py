@@ -10,7 +10,7 @@ import pytest
 @pytest.mark.parametrize(("name", "shown"), [("viewer 1", "viewer 1"), ("s" * 20, "s" * 15)])
 def test_ps_shows_the_name(name: str, shown: str) -> None:
     code = (
-        "import os, subprocess; from common.process_name import be_shown_as\n"
+        "import os, subprocess; from common.child.process_name import be_shown_as\n"
         f"be_shown_as({name!r})\n"
         "print(subprocess.check_output(['ps', '-o', 'comm=', '-p', str(os.getpid())], text=True))"
     )

@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 
 from common.cache_folder import mark_of_all
-from common.parent_death import end_with
+from common.child.parent_death import end_with
 
 
 def compile_all() -> None:

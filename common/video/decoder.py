@@ -12,7 +12,7 @@ from typing import IO, Any, Final, NamedTuple
 import cv2
 import numpy as np
 
-from common.parent_death import end_with_pipe
+from common.child.parent_death import end_with_pipe
 from common.video.complaints import INTERLACED, Complaints
 from common.video.decoding import (
     DAMAGED,

@@ -16,7 +16,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.video.child_process import Broken, Child
+from common.child.child_process import Broken, Child
 
 HEADER: Final = struct.Struct("<4scIdI")
 """What goes before every answer: magic, kind, index, grabbed_s, bytes that follow."""

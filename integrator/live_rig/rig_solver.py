@@ -9,7 +9,7 @@ from typing import Final
 import msgspec
 
 from calibration.tracks.lateness import LEAST_LATE
-from common.video.child_process import Broken, Child
+from common.child.child_process import Broken, Child
 from integrator.live_rig.rig_job import LENGTH, Job, Solved, solved
 
 MODULE: Final = f"{__package__}.rig_child"

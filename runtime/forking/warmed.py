@@ -11,7 +11,7 @@ import sys
 from typing import Final
 
 from common.cache_folder import mark_of_all
-from common.parent_death import end_with
+from common.child.parent_death import end_with
 from common.video import decoder
 from integrator import __main__ as integrator_process
 from recognizer import __main__ as recognizer_process

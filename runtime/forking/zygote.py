@@ -22,8 +22,8 @@ from multiprocessing import forkserver, util
 from multiprocessing.context import ForkServerContext, SpawnContext
 from typing import Any, Final
 
-from common import parent_death
 from common.cache_folder import mark_of_all
+from common.child import parent_death
 
 SPAWN: Final = multiprocessing.get_context("spawn")
 FORK: Final = multiprocessing.get_context("forkserver")

@@ -12,9 +12,9 @@ from typing import Any, Final, NamedTuple
 
 from animator.page.door import Entrance
 from common.bus.process import ProcessContext
+from common.child.parent_death import end_with_parent
+from common.child.process_name import be_shown_as
 from common.config.settings import Settings
-from common.parent_death import end_with_parent
-from common.process_name import be_shown_as
 from common.video.clip_facts import Clip
 from runtime.forking.adoption import Adopted, adopted, adopting, be_adopted
 from runtime.forking.zygote import FORK, SPAWN, Zygote

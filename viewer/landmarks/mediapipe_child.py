@@ -12,7 +12,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from common.parent_death import end_with_pipe
+from common.child.parent_death import end_with_pipe
 from viewer.landmarks.mediapipe_protocol import (
     NOBODY,
     POINTS,

@@ -10,9 +10,9 @@ from typing import Final, Self
 import numpy as np
 
 from common.bus.messages import Landmarks
+from common.child.child_process import Broken, Child
 from common.config.picture_size import working_size
 from common.config.settings_error import SettingsError
-from common.video.child_process import Broken, Child
 from common.video.clip_facts import View
 from common.video.decoding import Decoded, Image, Size
 from viewer.landmarks.mediapipe_joints import landmarks_of

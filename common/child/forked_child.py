@@ -15,7 +15,7 @@ from multiprocessing import forkserver
 from multiprocessing.connection import Connection
 from typing import Any, Final
 
-from common.process_name import be_shown_as
+from common.child.process_name import be_shown_as
 
 FORK: Final = multiprocessing.get_context("forkserver")
 

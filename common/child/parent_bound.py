@@ -2,6 +2,6 @@
 
 import os
 
-from common.parent_death import end_with
+from common.child.parent_death import end_with
 
 end_with(os.getppid())

@@ -12,7 +12,7 @@ import time
 from collections.abc import Sequence
 from typing import Final
 
-from common.video.forked_child import ForkedChild, can_fork
+from common.child.forked_child import ForkedChild, can_fork
 
 PIPE_BYTES: Final = 1 << 20
 """How far a child may run ahead of its reader: 18 pictures of 160x120; as much as Linux grants."""

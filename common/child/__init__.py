@@ -1,0 +1,1 @@
+"""Child processes: begun, named, ended with the process that began them."""
