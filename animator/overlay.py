@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from animator.scene import LEFT, RIGHT, TRUNK, UNSURE, Colour
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
-from common.video.decoding import Image
+from common.video.pictures import Image
 
 SHOWN: Final = (640, 480)
 """Larger pictures are not needed to see who is followed and how."""

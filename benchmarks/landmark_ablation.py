@@ -43,7 +43,7 @@ from runtime.offline.performance import Watch
 from runtime.overrides import overridden
 from runtime.store.pose_arrays import poses
 from viewer import track
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 from viewer.landmarks import own_landmarks
 
 

@@ -24,7 +24,8 @@ from common.config import config_file
 from common.method import METHODS
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.frame_cache import Reader, Reel
+from common.video.frame_cache import Reel
+from common.video.pictures import Reader
 from runtime.offline.rig_from_person import sighting_of
 from synth.motion.motions import performance
 from synth.person.people import person

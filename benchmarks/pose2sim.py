@@ -35,7 +35,7 @@ from integrator.rig.undistortion import undistorted
 from runtime.offline.lockstep import Decoders, track_clip
 from runtime.offline.performance import Watch
 from runtime.store.runs import write_run
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 
 PAIRS: Final = (("cam01", "cam04"), ("cam03", "cam04"), ("cam02", "cam03"))
 Y_UP: Final = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])

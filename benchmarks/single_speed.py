@@ -19,7 +19,7 @@ from rich.console import Console
 from common.config.config_file import load
 from common.config.settings_error import SettingsError
 from common.video.clip_sources import ClipError
-from common.video.decoding import DecoderDied, Undecodable
+from common.video.pictures import DecoderDied, Undecodable
 from lab.bench.single_bench import followed, parts_ms
 from runtime.live.table import table_of_rows
 from runtime.overrides import overridden

@@ -32,7 +32,8 @@ from common.method import METHODS
 from common.settled import settle
 from common.video.clip_facts import Clip
 from common.video.clips import open_clip
-from common.video.decoding import Decoder, Image
+from common.video.decoding import Decoder
+from common.video.pictures import Image
 from integrator import merge, merge_state
 from integrator.merge_state import Start
 from recognizer import __main__ as recognizer_process
@@ -41,7 +42,7 @@ from runtime.live.launch import Heard
 from runtime.live.session import live
 from synth.write import ClipSet, write_set
 from viewer import track
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 from viewer.room.background_source import opening_of_view
 
 HZ: Final = 15.0

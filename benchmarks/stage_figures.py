@@ -22,7 +22,7 @@ from common.body.body import ANGLE_INDEX, JOINT_NAMES, LIMB_ENDS
 from common.bus.messages import Body, Report
 from common.config.settings import Settings
 from common.raster.silhouette_report import unpack
-from common.video.decoding import Image
+from common.video.pictures import Image
 from recognizer.__main__ import SHIPPED, step
 from recognizer.__main__ import init as recognizer_init
 from recognizer.model_file import load

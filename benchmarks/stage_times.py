@@ -28,7 +28,7 @@ from integrator import merge
 from recognizer import __main__ as recognizer_process
 from runtime.live.table import table_of_rows
 from viewer import track
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 
 STAGES: Final = ("viewer 1", "viewer 2", "reports coded", "integrator", "body coded", "recogniser")
 WARM: Final = 15

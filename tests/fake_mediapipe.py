@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from common.video.clip_facts import View
-from common.video.decoding import Decoded, Image, Size
+from common.video.pictures import Decoded, Image, Size
 
 POSE = """
 import os, time

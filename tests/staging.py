@@ -18,11 +18,11 @@ from common.raster.kernel import draw_body, view_of
 from common.raster.silhouette_report import box_of, pack
 from common.raster.similarity import Mask
 from common.rig.camera import Rig, paper_rig
-from common.video.decoding import Image
+from common.video.pictures import Image
 from integrator import merge, merge_state
 from integrator.merge_state import Start
 from viewer import track
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 from viewer.silhouette.silhouette import Seen
 
 WIDTH, HEIGHT = 160, 120

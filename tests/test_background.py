@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background.background import (
     _range,
     estimated,

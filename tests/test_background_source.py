@@ -17,7 +17,8 @@ from common.config.settings import Settings
 from common.video.clip_facts import View
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
-from common.video.decoding import ALL, Decoded, Decoder, Wanted
+from common.video.decoding import Decoder
+from common.video.pictures import ALL, Decoded, Wanted
 from viewer.background.background import Background, learn
 from viewer.room import background_source
 from viewer.room.background_source import (

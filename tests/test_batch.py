@@ -16,7 +16,7 @@ from common.body.proportions import thesis_bdp
 from common.bus.messages import Body, Report, ViewerNumber
 from common.config.settings import Settings
 from common.video.clip_facts import Clip, Meta, View
-from common.video.decoding import Undecodable
+from common.video.pictures import Undecodable
 from integrator.frame_numbers import FrameTimes
 from runtime.offline import batch
 from runtime.offline.batch import Asked, head_of, track_all

@@ -9,7 +9,7 @@ from rich.progress import Progress
 
 from calibration.board.board import BOARDS, Board, chessboard
 from common.rig.rig_file import CalibrationError
-from common.video.decoding import Decoded, Size, VideoInfo, Wanted
+from common.video.pictures import Decoded, Size, VideoInfo, Wanted
 from runtime.offline import board_films
 from runtime.offline.board_films import Looked, looked_through
 

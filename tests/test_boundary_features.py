@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background.background import BackgroundModel
 from viewer.silhouette.alpha_matte import NOISE, SHARES
 from viewer.silhouette.boundary_features import (

@@ -19,23 +19,10 @@ import pytest
 
 from common.bus.messages import Landmarks
 from common.video.clip_facts import View
-from common.video.decoding import (
-    DAMAGED,
-    END,
-    FRAME,
-    HEADER,
-    INFO,
-    MAGIC,
-    STALL_S,
-    CameraLost,
-    Decoded,
-    Decoder,
-    DecoderDied,
-    Image,
-    Undecodable,
-    Wanted,
-)
-from viewer.capture import WAITING, CapturedFrame, Live, RoomClock, recorded
+from common.video.decoding import DAMAGED, END, FRAME, HEADER, INFO, MAGIC, STALL_S, Decoder
+from common.video.pictures import CameraLost, Decoded, DecoderDied, Image, Undecodable, Wanted
+from viewer.capture import WAITING, Live, RoomClock, recorded
+from viewer.captured_frame import CapturedFrame
 
 SIZE = (64, 48)
 FRAMES = 40

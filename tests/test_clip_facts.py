@@ -16,7 +16,7 @@ from common.video.clip_facts import (
     unread_facts,
     uprights_of,
 )
-from common.video.decoding import Ending
+from common.video.pictures import Ending
 
 LYING = Upright(width=160, height=90, quarters=1, square_width=200, square_height=108)
 """Pixels of 160x90 are made square, 200x108, and then turned to stand."""

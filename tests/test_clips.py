@@ -18,7 +18,8 @@ from common.rig.camera import paper_rig, project
 from common.video.clip_facts import Act, Clip, Meta, View, shortfall
 from common.video.clip_sources import ClipError
 from common.video.clips import find_calibration, meta_of, open_clip, probed
-from common.video.decoding import Decoder, Ending, Source, Undecodable, VideoInfo
+from common.video.decoding import Decoder
+from common.video.pictures import Ending, Source, Undecodable, VideoInfo
 
 SIZE = (320, 240)
 

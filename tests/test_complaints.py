@@ -21,7 +21,8 @@ from common.video.clip_facts import View, shortfall, unread_facts
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.complaints import MOST_BYTES, Complaints
-from common.video.decoding import Decoder, Ending, Image
+from common.video.decoding import Decoder
+from common.video.pictures import Ending, Image
 from runtime.live.screen import warnings_of
 from viewer import __main__ as viewer
 from viewer import track

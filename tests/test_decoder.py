@@ -14,19 +14,8 @@ import pytest
 
 from common.video import decoder
 from common.video.decoder import Grabbed, OpenFilm, Refused, grabs, judged, opened, reduced, say
-from common.video.decoding import (
-    DAMAGED,
-    END,
-    FRAME,
-    HEADER,
-    INFO,
-    MAGIC,
-    REFUSED,
-    SKIPPED,
-    TIMES,
-    Image,
-    Source,
-)
+from common.video.decoding import DAMAGED, END, FRAME, HEADER, INFO, MAGIC, REFUSED, SKIPPED, TIMES
+from common.video.pictures import Image, Source
 
 
 class Capture:

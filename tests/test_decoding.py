@@ -20,9 +20,11 @@ from common.video.decoding import (
     REFUSED,
     SKIPPED,
     TIMES,
+    Decoder,
+)
+from common.video.pictures import (
     CameraLost,
     Decoded,
-    Decoder,
     DecoderDied,
     Ending,
     Undecodable,

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from test_background import HEIGHT, WIDTH, passer_by, room, shot, walker
 
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background import empty_opening
 from viewer.background.background import overlaid_opening, slopes
 from viewer.background.empty_opening import (

@@ -40,7 +40,7 @@ from runtime.offline.film_passes import (
 )
 from runtime.unfinished.unfinished_run import BODIES
 from runtime.unfinished.work import Course
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 from viewer.room.background_source import FilmBackground
 from viewer.track import Setup
 

@@ -18,7 +18,7 @@ from common.method import METHODS
 from common.notes.notes import Note, Notes
 from common.rig.camera import PAPER_ROTATIONS
 from common.video.clip_facts import Clip, Meta, View
-from common.video.decoding import Ending
+from common.video.pictures import Ending
 from runtime.offline import film_tracking
 from runtime.offline.film_passes import (
     CUTTING,

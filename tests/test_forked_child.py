@@ -12,7 +12,8 @@ import pytest
 from test_parent_death import SOON_S, ended_within, sleeps, written
 
 from common.child.forked_child import can_fork
-from common.video.decoding import Decoder, DecoderDied
+from common.video.decoding import Decoder
+from common.video.pictures import DecoderDied
 from runtime.forking.zygote import SPAWN, Zygote
 from runtime.live.process_table import Part, end, inherited, started
 

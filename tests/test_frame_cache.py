@@ -5,8 +5,8 @@ from itertools import islice
 
 import numpy as np
 
-from common.video.decoding import ALL, Decoded, Ending, Size, Source, Wanted
 from common.video.frame_cache import Reel, Told
+from common.video.pictures import ALL, Decoded, Ending, Size, Source, Wanted
 
 SIZE = (4, 3)
 BYTES = 3 * SIZE[0] * SIZE[1]

@@ -11,9 +11,9 @@ import pytest
 from common.bus.messages import ViewerNumber
 from common.config.settings import Settings
 from common.video.clips import open_clip
-from common.video.decoding import ALL, Decoded, Ending, Size, Source, Wanted
+from common.video.pictures import ALL, Decoded, Ending, Size, Source, Wanted
 from runtime.offline.frame_pairs import instants, openings, share_of
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 
 SLOW_S = 0.3
 

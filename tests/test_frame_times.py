@@ -14,8 +14,9 @@ from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
 from common.video.clip_facts import View, shortfall
 from common.video.clips import open_clip
-from common.video.decoding import Decoder, VideoInfo
+from common.video.decoding import Decoder
 from common.video.frame_times import timed
+from common.video.pictures import VideoInfo
 from viewer.capture import recorded
 
 HZ = 30

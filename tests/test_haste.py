@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 from viewer.haste import LASTS_S, LATE, Haste
 
 PERIOD_S = 1 / 15

@@ -10,7 +10,7 @@ from test_own_landmarks import RIG
 from common.bus.messages import Landmarks
 from common.config.part_settings import SilhouetteSettings
 from common.raster.similarity import Mask
-from common.video.decoding import Image
+from common.video.pictures import Image
 from synth.motion.motions import MOTION, performance
 from synth.person.people import person
 from synth.picture.render import render

@@ -12,7 +12,7 @@ from common.body.extremities import EXTREMITY_NAMES
 from common.bus.messages import Landmarks
 from common.config.settings_error import SettingsError
 from common.video.clip_facts import View
-from common.video.decoding import Decoded
+from common.video.pictures import Decoded
 from viewer.landmarks.keypoint_files import (
     MOST_BYTES,
     KeypointFiles,

@@ -34,6 +34,36 @@ IDS = [
     *(f"P{n}" for n in range(1, 61)),
     *(f"T{n}" for n in range(1, 29)),
 ]
+SHELLS = {
+    *("common.child.child_process", "common.video.clips", "common.video.decoder"),
+    *("common.video.decoding", "viewer.__main__", "viewer.capture"),
+    *("viewer.landmarks.landmark_sources", "viewer.landmarks.mediapipe_child"),
+    "viewer.room.background_source",
+    *("viewer.landmarks.mediapipe_protocol", "viewer.landmarks.mediapipe_source"),
+    *("integrator.__main__", "integrator.live_rig.live_calibration"),
+    "integrator.live_rig.rig_solver",
+}
+"""What fetches pictures, landmarks or rigs: it may use what only some systems have."""
+HIDING = """
+import importlib, importlib.abc, os, signal, sys
+
+class Hidden(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path, target=None):
+        if name.partition(".")[0] in {"fcntl", "runtime", "lab", "tritrack"}:
+            raise ModuleNotFoundError(f"{name} is hidden", name=name)
+
+import cv2, msgspec, multiprocessing, numba, scipy, subprocess  # they may know of fcntl
+sys.modules.pop("fcntl", None)
+sys.meta_path.insert(0, Hidden())
+del os.fork, signal.pthread_sigmask
+for name in sys.argv[1:]:
+    try:
+        importlib.import_module(name)
+    except (ImportError, AttributeError) as error:
+        print(f"{name}: {error}")
+"""
+"""Imports what it is given where a system has no such calls, and prints what that cannot be done
+with."""
 ROW = re.compile(r"^\| ([CMPT]\d+) \| (.+?) \| (.+?) \| (.+?) \|$", re.MULTILINE)
 PLACE = re.compile(r"`([\w/]+\.\w+)(?: \((\w+)\))?`")
 TEST = re.compile(r"`(test_\w+\.py)::(test_\w+)`")
@@ -88,6 +118,25 @@ def test_no_imports_turn_in_circles(found: list[Source]) -> None:
     assert circles(pointing((str(a), str(b)) for a, b in between)) == []
     rooms = ((room_of(a), room_of(b)) for a, b in between)
     assert circles(pointing((a, b) for a, b in rooms if a != b)) == []
+
+
+def test_steps_and_types_are_imported_where_no_process_can_be_forked(found: list[Source]) -> None:
+    """By themselves, and without what runs them."""
+    rooms = BELOW["tritrack"] - {"runtime", "lab"}
+    names = {
+        ".".join(each.path.with_suffix("").parts).removesuffix(".__init__")
+        for each in found
+        if each.package in rooms
+    }
+    assert in_vain(names - SHELLS) == []
+    assert in_vain(SHELLS) == sorted(SHELLS)
+
+
+def in_vain(names: set[str]) -> list[str]:
+    """Which of our modules cannot be imported where HIDING hides."""
+    asked = [sys.executable, "-c", HIDING, *sorted(names)]
+    got = subprocess.run(asked, cwd=ROOT, capture_output=True, text=True, check=True)
+    return [line.partition(":")[0] for line in got.stdout.splitlines()]
 
 
 def test_every_folder_is_a_package_that_says_what_it_is(found: list[Source]) -> None:

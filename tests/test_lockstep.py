@@ -22,7 +22,7 @@ from common.config.settings_error import SettingsError
 from common.method import METHODS
 from common.video.clip_facts import Act, Clip, Meta, View
 from common.video.clip_sources import ClipError
-from common.video.decoding import Ending
+from common.video.pictures import Ending
 from integrator import diagnostics, merge_state
 from runtime.offline import lockstep
 from runtime.offline.batch import Asked, track_all

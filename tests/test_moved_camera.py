@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from common.body.body import Vector
 from common.rig.turned_camera import angle_deg
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background import moved_camera
 from viewer.background.background import learn
 from viewer.background.moved_camera import (

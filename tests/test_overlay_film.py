@@ -11,7 +11,7 @@ import pytest
 from animator.overlay import SHOWN
 from common.config.picture_size import working_size
 from common.rig.camera import Camera, Matrix
-from common.video.decoding import Wanted
+from common.video.pictures import Wanted
 from runtime.offline.film_tracking import Followed
 from tritrack.single import overlay_film
 from tritrack.single.overlay_film import STANDS_S, shown_times

@@ -11,7 +11,7 @@ from common.body.body import JOINT_NAMES
 from common.bus.messages import Box, Landmarks
 from common.raster.similarity import Mask
 from common.rig.camera import project
-from common.video.decoding import Image
+from common.video.pictures import Image
 from synth.motion.motions import MOTION, performance
 from synth.person.people import person
 from synth.person.skeleton import JOINTS

@@ -23,7 +23,7 @@ from runtime.offline.performance import STAGE, Going, Prepared, Watch, performed
 from runtime.offline.rig_check import Witness
 from runtime.unfinished.state_codec import packed, unpacked
 from runtime.unfinished.work import Course, Kept
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 
 VIEWS: tuple[ViewerNumber, ...] = (1, 2)
 

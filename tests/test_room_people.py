@@ -7,7 +7,7 @@ from test_own_landmarks import acted
 
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Landmarks
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.landmarks.own_landmarks import found_anywhere
 from viewer.room import room_people
 from viewer.room.room_people import Look, _place, are_sure, looked_at

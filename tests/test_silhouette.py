@@ -14,7 +14,7 @@ from common.config.part_settings import SilhouetteSettings
 from common.config.settings import Settings
 from common.method import DEFAULT, PAPER
 from common.raster.similarity import Mask
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer import track
 from viewer.background.background import BackgroundModel, learn, light_gain
 from viewer.background.moved_objects import Patch

@@ -15,7 +15,7 @@ from animator.marking.marking_page import LIVE
 from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
 from common.video.clip_sources import ClipError
-from common.video.decoding import Decoded, DecoderDied, Image, Size, Source
+from common.video.pictures import Decoded, DecoderDied, Image, Size, Source
 from tritrack.marking import stills
 from tritrack.marking.stills import MOST_STILLS, Album, Running, common_size, open_album
 

@@ -10,9 +10,10 @@ import pytest
 from common.bus.messages import Landmarks
 from common.rig.upright import Upright
 from common.video.clip_facts import View
-from common.video.decoding import CameraLost, Decoded, Ending, Wanted
+from common.video.pictures import CameraLost, Decoded, Ending, Wanted
 from viewer import capture
-from viewer.capture import CapturedFrame, Live, RoomClock, recorded
+from viewer.capture import Live, RoomClock, recorded
+from viewer.captured_frame import CapturedFrame
 
 PICTURE = np.zeros((6, 8, 3), np.uint8)
 

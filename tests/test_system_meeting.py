@@ -23,7 +23,7 @@ from common.config.settings import Settings
 from common.method import DEFAULT
 from common.rig.camera import paper_rig
 from common.video.clip_facts import View
-from common.video.decoding import DecoderDied
+from common.video.pictures import DecoderDied
 from integrator import __main__ as integrator
 from integrator import merge_state
 from integrator.hearing import run_start

@@ -21,7 +21,7 @@ from common.bus.process import ProcessContext
 from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clip_facts import View
-from common.video.decoding import DecoderDied, Ending
+from common.video.pictures import DecoderDied, Ending
 from viewer import __main__ as viewer_process
 from viewer import track
 from viewer.__main__ import (
@@ -37,7 +37,7 @@ from viewer.__main__ import (
     run,
 )
 from viewer.background.background import learn
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 from viewer.haste import Haste
 
 VIEW = View(2, "cam2.avi", (64, 48), (64, 48), 15.0, 40)

@@ -17,7 +17,7 @@ from viewer import camera_fault, track
 from viewer.background import moved_camera
 from viewer.background.background import Background, learn
 from viewer.background.moved_objects import Patch
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 from viewer.room.outline_correction import Corrected
 from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen

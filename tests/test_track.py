@@ -35,7 +35,7 @@ from common.raster.similarity import Mask
 from common.rig.camera import project
 from viewer import track
 from viewer.background.background import learn
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 from viewer.paper import pose_search
 
 

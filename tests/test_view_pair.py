@@ -8,7 +8,7 @@ from common.bus.messages import ViewerNumber
 from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
 from common.video.clip_sources import ClipError, Footage
-from common.video.decoding import Source
+from common.video.pictures import Source
 from common.video.view_pair import refuse_one_of_two, refuse_same_source
 
 

@@ -13,7 +13,7 @@ from common.config.settings import Settings
 from common.method import DEFAULT
 from viewer import track
 from viewer.background.background import learn
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 from viewer.viewer_warmup import warm_up
 
 

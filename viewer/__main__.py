@@ -21,11 +21,13 @@ from common.settled import settle
 from common.video.clip_facts import View, shortfall
 from common.video.clip_sources import footage_of
 from common.video.clips import open_clip
-from common.video.decoding import Decoder, DecoderDied, Undecodable
+from common.video.decoding import Decoder
+from common.video.pictures import DecoderDied, Undecodable
 from viewer import track
 from viewer.background.background import Background
 from viewer.background.new_background import Learning
-from viewer.capture import CapturedFrame, Live, RoomClock
+from viewer.capture import Live, RoomClock
+from viewer.captured_frame import CapturedFrame
 from viewer.haste import Haste
 from viewer.jpeg import jpeg_of
 from viewer.landmarks.landmark_sources import outside_sources

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from common.bus.messages import CameraFault
 from common.compiled import compiled
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer import frozen_picture
 from viewer.background.background import DARK, Background
 

@@ -8,12 +8,11 @@ from typing import Final, NamedTuple, Self
 import msgspec
 
 from common.bus.mailbox import Mailbox
-from common.bus.messages import Landmarks
 from common.bus.rate import Clock, wait_until
-from common.rig.upright import Upright
 from common.video.clip_facts import View
-from common.video.decoding import CameraLost, Decoded, Decoder, Ending, Image, Wanted
-from common.video.frame_cache import Reader
+from common.video.decoding import Decoder
+from common.video.pictures import CameraLost, Decoded, Ending, Reader, Wanted
+from viewer.captured_frame import CapturedFrame
 from viewer.landmarks.outside_source import OutsideSource
 
 WAITING: Final = 2
@@ -21,27 +20,6 @@ WAITING: Final = 2
 
 PATIENCE_S: Final = 30.0
 """How long a recorded frame's landmarks are waited for, where nothing is late."""
-
-
-class CapturedFrame(msgspec.Struct, frozen=True):
-    """One picture and when it was taken."""
-
-    index: int
-    """Its place in the video, also where only every n-th frame is taken."""
-    captured_s: float
-    """Seconds since the clip began, or by the room's clock for a camera."""
-    clock_s: float
-    """The same moment by the room's clock; offline the same as `captured_s`."""
-    picture: Image
-    """(height, width, 3), BGR, at the working size."""
-    next_s: float | None = None
-    """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
-    landmarks: tuple[Landmarks, ...] = ()
-    """Of every person that a source outside sees in it, in pixels of `picture`."""
-    upright: Upright | None = None
-    """How `picture` comes from the file's; None: it is that, made smaller."""
-    hurried: bool = False
-    """It comes late: there is no time to look at more than the outline."""
 
 
 def recorded(

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import compiled
-from common.video.decoding import Image
+from common.video.pictures import Image
 
 FROZEN_AFTER: Final = 2
 """Repeats that may be no fault: files made for a faster rate hold each picture two or three times,

@@ -4,7 +4,7 @@ from typing import Final
 
 import msgspec
 
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 
 LATE: Final = 0.15
 """Shares of a frame's period that a viewer may be late without being in a hurry."""

@@ -26,7 +26,7 @@ from viewer.background import moved_camera
 from viewer.background.background import Background
 from viewer.background.moved_objects import Patch
 from viewer.background.turned_picture import lens_of, turned_background
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 from viewer.expected_body import expected_body
 from viewer.landmarks.landmark_looks import network_of
 from viewer.landmarks.outside_source import nearest_landmarks

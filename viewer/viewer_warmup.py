@@ -9,7 +9,7 @@ from common.bus.messages import Guide
 from common.raster.kernel import draw_body
 from viewer import track
 from viewer.background.image_stack import median, squares
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 from viewer.paper.posed_model import view_at
 from viewer.silhouette import silhouette
 

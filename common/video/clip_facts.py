@@ -10,7 +10,7 @@ from common.body.body import Bdp
 from common.bus.messages import ViewerNumber
 from common.rig.camera import Rig
 from common.rig.upright import Upright, Uprights, swapped
-from common.video.decoding import Ending, Source
+from common.video.pictures import Ending, Source
 
 TOUCH_S: Final = 1e-6
 """By which times that are written as fractions of a second may be off."""

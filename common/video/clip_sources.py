@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 from common.bus.messages import ViewerNumber
 from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
-from common.video.decoding import Source
+from common.video.pictures import Source
 
 COMPANIONS: Final = {".json", ".npz", ".txt", ".csv", ".toml", ".md", ".png", ".jpg", ".jpeg"}
 """Files that may stand beside `cam1.*` under the same name and are no video of it."""

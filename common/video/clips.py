@@ -18,8 +18,9 @@ from common.rig.camera import Camera, Rig
 from common.rig.rig_file import CalibrationError, fitted, load_rig
 from common.video.clip_facts import Clip, Meta, View
 from common.video.clip_sources import NOTHING, ClipError, Footage, companions_folder, footage_of
-from common.video.decoding import Decoder, DecoderDied, Source, Undecodable, VideoInfo
+from common.video.decoding import Decoder
 from common.video.frame_times import timed
+from common.video.pictures import DecoderDied, Source, Undecodable, VideoInfo
 from common.video.shared_rate import at_one_rate
 from common.video.upright_views import filed_rig, upright_views
 from common.video.view_pair import refuse_one_of_two, refuse_same_source

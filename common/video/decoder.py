@@ -25,11 +25,8 @@ from common.video.decoding import (
     SKIPPED,
     TIMES,
     TIMES_AT_ONCE,
-    Image,
-    Source,
-    cure,
-    named,
 )
+from common.video.pictures import Image, Source, cure, named
 
 SIGN_OF_LIFE: Final = 100
 """Of so many frames that are passed over the asker hears: grabbing many takes a while."""

@@ -2,23 +2,12 @@
 
 import math
 from collections.abc import Callable, Iterator
-from typing import Final, Protocol
+from typing import Final
 
-from common.video.decoding import ALL, Decoded, Ending, Size, Source, Wanted
+from common.video.pictures import ALL, Decoded, Ending, Reader, Size, Source, Wanted
 
 MOST_BYTES: Final = 1 << 27
 """What a reel keeps at most: 38 s at 320x240 and 15 frames a second, 2.5 minutes at 160x120."""
-
-
-class Reader(Protocol):
-    """Whatever gives the pictures of a source: a decoder, or a reel before it."""
-
-    @property
-    def ending(self) -> Ending:
-        """Of the source that was last read to its end."""
-
-    def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:
-        """The wanted pictures of a source, reduced to `size`."""
 
 
 class Reel:

@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 
 from common.body.body import Vector
-from common.video.decoding import VideoInfo
+from common.video.pictures import VideoInfo
 
 ROUNDED_S: Final = 0.002
 """Matroska rounds times to milliseconds: a frame that is nearer to its place keeps the rate."""

@@ -7,7 +7,7 @@ from typing import Final
 
 from common.config.settings import Settings
 from common.video.clip_sources import COMPANIONS, ClipError, Footage
-from common.video.decoding import Source
+from common.video.pictures import Source
 
 ONE_ALONE: Final = (
     "to track by one camera alone add --views {seen}, or name its video in settings "

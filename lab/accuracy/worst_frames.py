@@ -14,7 +14,7 @@ from common.npz_file import Arrays
 from common.rig.camera import project
 from common.video.clip_facts import View, both_cameras
 from common.video.clips import open_clip
-from common.video.decoding import Image
+from common.video.pictures import Image
 from lab.accuracy.accuracy import INDEX, JOINTS, Compared
 from runtime.offline.lockstep import Decoders
 from viewer.capture import recorded

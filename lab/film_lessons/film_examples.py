@@ -14,7 +14,8 @@ from common.config.settings import Settings
 from common.method import DEFAULT
 from common.raster.similarity import Mask
 from common.video.clips import open_clip
-from common.video.decoding import Decoder, Image
+from common.video.decoding import Decoder
+from common.video.pictures import Image
 from lab.landmark_lessons.picture_store import is_drawn, store
 from lab.training.training import TrainingError
 from runtime.terminal import Tell

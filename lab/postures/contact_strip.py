@@ -17,7 +17,7 @@ from recognizer.__main__ import MOVING
 from runtime.offline.lockstep import Decoders, track_clip
 from runtime.offline.performance import Watch
 from runtime.overrides import overridden
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 from viewer.jpeg import jpeg_of
 
 SHOWN: Final = 8

@@ -14,7 +14,7 @@ from common.config.settings import Settings
 from common.method import Mode
 from common.video.clip_sources import ClipError
 from common.video.clips import meta_of
-from common.video.decoding import DecoderDied, Undecodable
+from common.video.pictures import DecoderDied, Undecodable
 from lab.posture_models.evaluation import Recording
 from recognizer.__main__ import MOVING
 from recognizer.features import ROW_NAMES, rows

@@ -13,7 +13,7 @@ from rich.console import Console
 from common.config.part_settings import SilhouetteSettings
 from common.method import DEFAULT
 from common.raster.similarity import Mask
-from common.video.decoding import Image
+from common.video.pictures import Image
 from lab.training.training import TrainingError
 from runtime.terminal import bar
 from synth.motion.motions import EMPTY, POSTURES, Motion, performance

@@ -7,7 +7,8 @@ from common.rig.rig_file import CalibrationError, load_rig
 from common.video.clip_facts import Clip, both_cameras
 from common.video.clip_sources import ClipError, companions_folder, footage_of
 from common.video.clips import find_calibration, open_clip
-from common.video.decoding import Decoder, Source, VideoInfo
+from common.video.decoding import Decoder
+from common.video.pictures import Source, VideoInfo
 
 
 class Unopened(Decoder):

@@ -14,7 +14,7 @@ from common.config.settings_error import SettingsError
 from common.method import Mode
 from common.video.clip_facts import Clip, both_cameras
 from common.video.clip_sources import ClipError, footage_of, refuse_no_footage
-from common.video.decoding import DecoderDied, Undecodable
+from common.video.pictures import DecoderDied, Undecodable
 from integrator.frame_numbers import frame_times
 from runtime.offline.lockstep import Decoders, Tracked, measured_before, track_clip
 from runtime.offline.performance import Watch

@@ -10,8 +10,9 @@ from calibration.board.board import BOARDS, Board
 from calibration.board.board_corners import corners_in
 from calibration.board.still_board import Film
 from common.rig.rig_file import CalibrationError
-from common.video.decoding import Decoded, Decoder, Image, Size, VideoInfo, Wanted
+from common.video.decoding import Decoder
 from common.video.frame_times import timed
+from common.video.pictures import Decoded, Image, Size, VideoInfo, Wanted
 from runtime.terminal import Tell, by_share
 
 LOOKS_HZ: Final = 5.0

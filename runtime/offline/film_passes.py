@@ -25,8 +25,7 @@ from common.rig.camera import Camera, Rig
 from common.rig.upright_camera import as_worked_on
 from common.video.clip_facts import Clip
 from common.video.clip_sources import ClipError
-from common.video.decoding import Ending
-from common.video.frame_cache import Reader
+from common.video.pictures import Ending, Reader
 from integrator import merge, merge_state
 from integrator.merge_state import Start, State
 from integrator.opening_posture import Opening

@@ -15,7 +15,7 @@ from common.notes.notes import Notes
 from common.raster.silhouette_report import with_silhouette
 from common.rig.camera import PAPER_ROTATIONS, Camera
 from common.video.clip_facts import Clip, shortfall, unread_facts
-from common.video.frame_cache import Reader
+from common.video.pictures import Reader
 from runtime.offline.film_passes import (
     CUTTING,
     POSING,

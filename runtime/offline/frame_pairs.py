@@ -8,10 +8,10 @@ from typing import Final
 from common.bus.messages import ViewerNumber
 from common.config.part_settings import SilhouetteSettings
 from common.video.clip_facts import Clip, View
-from common.video.decoding import ALL, Decoded, Ending, Size, Source, Wanted
-from common.video.frame_cache import Reader
+from common.video.pictures import ALL, Decoded, Ending, Reader, Size, Source, Wanted
 from integrator.pairing import are_together
-from viewer.capture import CapturedFrame, recorded
+from viewer.capture import recorded
+from viewer.captured_frame import CapturedFrame
 from viewer.landmarks.landmark_sources import Sources
 from viewer.room.background_source import Opening, opening_of_view
 

@@ -20,7 +20,7 @@ from runtime.offline.rig_check import Seen, Witness
 from runtime.unfinished.unfinished_run import BODIES
 from runtime.unfinished.work import Course
 from viewer import track
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 from viewer.landmarks.landmark_sources import Sources
 
 STAGE: Final = "instants"

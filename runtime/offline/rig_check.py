@@ -9,7 +9,7 @@ from calibration.tracks.joint_tracks import Row, Sighting, row_of, track_of_rows
 from calibration.tracks.lateness import UNSEEN, Clock, clock_of
 from common.bus.messages import Body, Report, ViewerNumber
 from common.video.clip_facts import Clip
-from viewer.capture import CapturedFrame
+from viewer.captured_frame import CapturedFrame
 
 MOST_LATE_FRAMES: Final = 0.75
 """What is later is tracked again, with its times set back."""

@@ -14,7 +14,7 @@ from common.method import Method
 from common.rig.absurd_rig import nearly_one_view
 from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip, set_back
-from common.video.frame_cache import Reader
+from common.video.pictures import Reader
 from runtime.offline.frame_pairs import instants, openings
 from viewer import track
 from viewer.landmarks.landmark_sources import Sources

@@ -15,7 +15,8 @@ from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError, fitted
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.frame_cache import Reader, Reel
+from common.video.frame_cache import Reel
+from common.video.pictures import Reader
 from runtime.offline.rig_from_person import ON_TIME, sighting_of
 from viewer.landmarks.landmark_sources import outside_sources
 

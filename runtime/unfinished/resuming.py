@@ -11,7 +11,7 @@ from rich.console import Console
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
 from common.video.clip_sources import ClipError, footage_of
-from common.video.decoding import DecoderDied, Undecodable
+from common.video.pictures import DecoderDied, Undecodable
 from runtime.store import journal
 from runtime.store.runs import RunError
 from runtime.terminal import say, warn

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from common.body.body import Vector
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig, project
-from common.video.decoding import Image
+from common.video.pictures import Image
 from synth.motion.motions import Motion
 from synth.person.mesh import Mesh, body_mesh
 from synth.person.people import PATTERNS, Look, Person

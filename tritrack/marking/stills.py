@@ -17,15 +17,8 @@ from common.config.picture_size import working_size
 from common.config.settings import Settings
 from common.video.clip_sources import NOTHING, ClipError, Footage, footage_of
 from common.video.clips import SAME_ASPECT, probed
-from common.video.decoding import (
-    Decoded,
-    Decoder,
-    DecoderDied,
-    Image,
-    Size,
-    Source,
-    Wanted,
-)
+from common.video.decoding import Decoder
+from common.video.pictures import Decoded, DecoderDied, Image, Size, Source, Wanted
 from runtime.terminal import bar
 
 MOST_STILLS: Final = 100

@@ -14,7 +14,8 @@ from common.bus.messages import Body, Report
 from common.config.picture_size import working_size
 from common.raster.silhouette_report import unpack
 from common.rig.upright_camera import as_worked_on
-from common.video.decoding import Decoder, Wanted
+from common.video.decoding import Decoder
+from common.video.pictures import Wanted
 from runtime.offline.film_tracking import Followed
 from runtime.terminal import Tell
 

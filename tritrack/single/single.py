@@ -18,8 +18,9 @@ from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path
 from common.video.clip_sources import ClipError, footage_of, refuse_no_footage
 from common.video.clips import open_clip
-from common.video.decoding import Decoder, DecoderDied, Undecodable
+from common.video.decoding import Decoder
 from common.video.frame_cache import Reel, Told
+from common.video.pictures import DecoderDied, Undecodable
 from runtime.offline.film_tracking import Film, Followed, Heard, follow_clip, follow_masks
 from runtime.overrides import overridden
 from runtime.store.clip_paths import ClipsFailed

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import compiling
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background.image_stack import Floats, Overlaid, median, overlaid
 
 SENSOR_NOISE: Final = 2.0

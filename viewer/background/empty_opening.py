@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import INLINE, KERNEL
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background.background import large_regions, light_gain
 from viewer.background.image_stack import CHANGES, LUMA, Bytes, Floats, Overlaid
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.raster.similarity import Mask
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background.background import Background, even_light
 from viewer.background.image_stack import CHANGES, LUMA, Floats, median
 from viewer.background.occluded_background import SHOWN, bridged, estimated_of

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import compiled
-from common.video.decoding import Image
+from common.video.pictures import Image
 
 Floats = NDArray[np.float32]
 Bytes = NDArray[np.uint8]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from common.body.body import Vector
 from common.rig.picture_shift import Shift
 from common.rig.turned_camera import shift_of
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background.background import Background
 from viewer.background.turned_picture import Lens, rays_of, seen_at, turn_between
 

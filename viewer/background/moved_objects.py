@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from common.raster.similarity import Mask
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background.background import Background, even_light, spread_of
 from viewer.background.image_stack import CHANGES, LUMA, Floats, median, squares
 

@@ -3,7 +3,7 @@
 from common.bus.control_messages import Answer, Command
 from common.bus.inbox import Inbox
 from common.bus.messages import CameraFault, ViewerNumber
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background.background import Background, learnt, lit, overlaid_opening
 from viewer.background.empty_opening import is_still
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.raster.similarity import Mask
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background.background import Background, estimated, even_light, spread_of
 from viewer.background.image_stack import CHANGES, LUMA, Floats, median, squares
 from viewer.background.median_people import occupied

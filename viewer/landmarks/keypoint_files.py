@@ -13,7 +13,7 @@ from common.bus.messages import Landmarks
 from common.config.settings_error import SettingsError
 from common.rig.upright_camera import as_worked_on
 from common.video.clip_facts import View
-from common.video.decoding import Decoded, Size
+from common.video.pictures import Decoded, Size
 from viewer.landmarks.fifteen_joints import facing_deg, fifteen, fifteen_shares
 from viewer.landmarks.keypoint_layouts import (
     BODY_POINTS,

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from common.bus.messages import Box
 from common.raster.similarity import Mask
-from common.video.decoding import Image
+from common.video.pictures import Image
 
 SIDE: Final = 192
 """Pixels across what the network sees."""

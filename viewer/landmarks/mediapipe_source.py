@@ -14,7 +14,7 @@ from common.child.child_process import Broken, Child
 from common.config.picture_size import working_size
 from common.config.settings_error import SettingsError
 from common.video.clip_facts import View
-from common.video.decoding import Decoded, Image, Size
+from common.video.pictures import Decoded, Image, Size
 from viewer.landmarks.mediapipe_joints import landmarks_of
 from viewer.landmarks.mediapipe_protocol import BYTES, POINTS, REFUSED, Answer, answer_of
 

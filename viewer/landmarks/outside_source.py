@@ -5,7 +5,7 @@ from typing import Protocol
 import numpy as np
 
 from common.bus.messages import Box, Landmarks
-from common.video.decoding import Decoded, Size
+from common.video.pictures import Decoded, Size
 
 
 class OutsideSource(Protocol):

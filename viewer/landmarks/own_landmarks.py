@@ -11,7 +11,7 @@ from common.body.body import JOINT_NAMES, Vector
 from common.body.trunk_lean import TILTED_DEG, lean_deg
 from common.bus.messages import Landmarks
 from common.raster.similarity import Mask
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.landmarks.landmark_looks import SHIPPED
 from viewer.landmarks.landmark_network import find
 from viewer.landmarks.landmark_window import (

@@ -13,8 +13,8 @@ from common.bus.messages import Landmarks
 from common.config.part_settings import SilhouetteSettings
 from common.video.clip_facts import View
 from common.video.clip_sources import ClipError
-from common.video.decoding import Decoder, Image, Source, Wanted, named
-from common.video.frame_cache import Reader
+from common.video.decoding import Decoder
+from common.video.pictures import Image, Reader, Source, Wanted, named
 from viewer.background.background import (
     Background,
     even_light,

@@ -9,7 +9,7 @@ import numpy as np
 from common.config.part_settings import SilhouetteSettings
 from common.method import DEFAULT
 from common.raster.similarity import Mask
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background.background import Background
 from viewer.landmarks.body_region import body_region
 from viewer.room.room_people import Look

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bus.messages import Landmarks
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.landmarks.body_region import Bytes, body_region
 from viewer.landmarks.own_landmarks import found_anywhere, found_between
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.compiled import INLINE, KERNEL
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background.background import BackgroundModel
 from viewer.background.image_stack import Bytes, Floats
 from viewer.silhouette.difference import (

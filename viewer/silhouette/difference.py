@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 
 from common.compiled import INLINE, KERNEL
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background.background import BackgroundModel
 from viewer.background.image_stack import Bytes, Floats
 

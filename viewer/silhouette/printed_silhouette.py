@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background.background import Background
 from viewer.background.image_stack import Floats
 

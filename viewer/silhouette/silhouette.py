@@ -11,7 +11,7 @@ from common.config.part_settings import SilhouetteSettings
 from common.method import DEFAULT, Method
 from common.raster.silhouette_report import box_of, is_cut
 from common.raster.similarity import Mask
-from common.video.decoding import Image
+from common.video.pictures import Image
 from viewer.background.background import DARK, Background, BackgroundModel, learn, light_gain
 from viewer.background.image_stack import Bytes, Floats
 from viewer.background.moved_objects import Patch

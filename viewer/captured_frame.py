@@ -1,0 +1,28 @@
+"""What a viewer's step is given of a camera."""
+
+import msgspec
+
+from common.bus.messages import Landmarks
+from common.rig.upright import Upright
+from common.video.pictures import Image
+
+
+class CapturedFrame(msgspec.Struct, frozen=True):
+    """One picture and when it was taken."""
+
+    index: int
+    """Its place in the video, also where only every n-th frame is taken."""
+    captured_s: float
+    """Seconds since the clip began, or by the room's clock for a camera."""
+    clock_s: float
+    """The same moment by the room's clock; offline the same as `captured_s`."""
+    picture: Image
+    """(height, width, 3), BGR, at the working size."""
+    next_s: float | None = None
+    """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
+    landmarks: tuple[Landmarks, ...] = ()
+    """Of every person that a source outside sees in it, in pixels of `picture`."""
+    upright: Upright | None = None
+    """How `picture` comes from the file's; None: it is that, made smaller."""
+    hurried: bool = False
+    """It comes late: there is no time to look at more than the outline."""
