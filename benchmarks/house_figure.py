@@ -20,8 +20,10 @@ from house_levels import Box, Package, ordered, package
 from source_map import sources
 
 MIDDLE: Final = ("viewer", "integrator", "recognizer", "animator", "synth")
-"""Packages of the middle floor; tritrack stands on them, common lies below."""
-FLOORS: Final = (("tritrack",), MIDDLE, ("common",))
+"""Packages of the middle floor; what runs them stands on it, what they share lies below."""
+FLOORS: Final = (("tritrack",), ("lab",), ("runtime",), MIDDLE, ("calibration",), ("common",))
+STACKED: Final = (("tritrack",), ("lab",), ("calibration",))
+"""Floors that stand on another of one package."""
 SHARES: Final = {"viewer": 26, "integrator": 25, "recognizer": 21, "animator": 17, "synth": 11}
 """Widths of the packages of the middle floor; the others are as wide as all of these."""
 INCHES: Final = 0.125
@@ -42,6 +44,7 @@ FLOOR_GAP: Final = 4.0
 COLOURS: Final = {
     **{"tritrack": "#e8e4f3", "common": "#e9e9e6", "viewer": "#dcecf7", "integrator": "#def0df"},
     **{"recognizer": "#fbe9d4", "animator": "#f8dfe3", "synth": "#f4f0cf"},
+    **{"lab": "#e3edf0", "runtime": "#efe6dc", "calibration": "#e0efe8"},
 }
 INK: Final = "#55555c"
 
@@ -63,9 +66,13 @@ def draw(packages: Mapping[str, Package], out: Path) -> None:
             share = float(SHARES.get(name, width))
             panel(axes, packages[name], (left, top, share - 0.6, depth))
             if name in MIDDLE:
-                for y in (top, top + depth + FLOOR_GAP):
+                below = (top + depth + FLOOR_GAP,) if name == "integrator" else ()
+                for y in (top, *below):
                     x = left + share / 2
                     arrow(axes, (x, y - FLOOR_GAP + 0.2), (x, y - 0.2), 2.2)
+            elif floor in STACKED:
+                y = top + depth + FLOOR_GAP
+                arrow(axes, (width / 2, y - FLOOR_GAP + 0.2), (width / 2, y - 0.2), 2.2)
             left += share
         top += depth + FLOOR_GAP
     save(figure, out)
