@@ -1,4 +1,4 @@
-"""tritrack in one's own program: bodies of a clip, or of a live run as they come."""
+"""tritrack in one's own program: bodies of images, of a clip, or of a live run as they come."""
 
 import asyncio
 import time

@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 
 from common.video import decoder
-from common.video.decoder import Grabbed, OpenFilm, Refused, grabs, judged, opened, reduced, say
+from common.video.decoder import Grabbed, OpenFilm, Refused, grabs, judged, opened, say
 from common.video.decoding import DAMAGED, END, FRAME, HEADER, INFO, MAGIC, REFUSED, SKIPPED, TIMES
 from common.video.pictures import Image, Source
+from common.video.reduction import reduced
 
 
 class Capture:

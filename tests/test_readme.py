@@ -27,6 +27,7 @@ from common.cache_folder import compiled_folder
 
 ROOT: Final = Path(__file__).parents[1]
 COMMAND: Final = re.compile(r"^ {4}(\S.*)$", re.MULTILINE)
+FENCED: Final = re.compile(r"^```.*?^```$", re.DOTALL | re.MULTILINE)
 LIMIT_S: Final = 900.0
 """Who takes longer hangs; the installation is the longest."""
 PORTS: Final = (8080, 7447)
@@ -78,7 +79,9 @@ when nobody came for half a minute.
 
 
 def commands() -> list[str]:
-    return [line.strip() for line in COMMAND.findall((ROOT / "README.md").read_text())]
+    """All indented lines; programs stand between fences."""
+    typed_ones = FENCED.sub("", (ROOT / "README.md").read_text())
+    return [line.strip() for line in COMMAND.findall(typed_ones)]
 
 
 def result_of(command: str) -> Result:

@@ -18,7 +18,7 @@ from common.rig.upright_camera import (
     upright_camera,
     upright_of,
 )
-from common.video.decoder import reduced
+from common.video.reduction import reduced
 
 SIZE: Final = (320, 240)
 LEVEL: Final = paper_rig(SIZE, (400.0, 400.0), (4.5, 4.5)).cameras[0]

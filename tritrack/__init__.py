@@ -14,15 +14,18 @@ if TYPE_CHECKING:
         subscribe,
         track,
     )
+    from runtime.steps.tracker import Bodies, Tracker
 
 __all__ = [
     "ANGLE_NAMES",
     "JOINT_NAMES",
     "POSE_INDEX",
+    "Bodies",
     "Body",
     "Posture",
     "Report",
     "Subscription",
+    "Tracker",
     "subscribe",
     "track",
 ]
@@ -32,6 +35,10 @@ def __getattr__(name: str) -> Any:
     """What programs import, loaded when it is asked for: a command must heed signals before."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name in ("Bodies", "Tracker"):
+        from runtime.steps import tracker
+
+        return getattr(tracker, name)
     from runtime import client
 
     return getattr(client, name)

@@ -18,7 +18,7 @@ from common.bus.messages import (
 )
 from common.config.settings import Settings
 from common.method import Method
-from common.raster.silhouette_report import pack
+from common.raster.silhouette_report import pack, unpack
 from common.raster.similarity import Mask
 from common.rig.camera import Camera
 from viewer import camera_fault
@@ -158,9 +158,8 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
     watched, fault = camera_fault.step(state.fault, frame.picture, frame.captured_s, moving_since_s)
     state = state._replace(fault=watched)
     if fault:
-        nobody = Seen(np.zeros(frame.picture.shape[:2], np.bool_), None, 0, 0, cut=False)
-        report = _report_of(state.setup.viewer, frame, nobody)
-        return state, msgspec.structs.replace(report, fault=fault), nobody.mask
+        report = without_person(state.setup.viewer, frame)
+        return state, msgspec.structs.replace(report, fault=fault), unpack(report)
     state = _followed(_patched(state, frame.index), frame)
     remembered, seen = silhouette.step(state.silhouette, frame.picture, _near_px(state, guide))
     landmarks = _landmarks(state, frame, seen)
@@ -209,6 +208,12 @@ def describe(state: State, report: Report, mask: Mask, guide: Guide | None) -> t
         return state, report
     search, report = pose_search.step(search, report, mask, guide)
     return state._replace(search=search), report
+
+
+def without_person(viewer: ViewerNumber, frame: CapturedFrame) -> Report:
+    """The report on a picture that is not looked at."""
+    nothing = np.zeros(frame.picture.shape[:2], np.bool_)
+    return _report_of(viewer, frame, Seen(nothing, None, 0, 0, cut=False))
 
 
 def _report_of(viewer: ViewerNumber, frame: CapturedFrame, seen: Seen) -> Report:

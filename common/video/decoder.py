@@ -5,7 +5,7 @@ import json
 import os
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import IO, Any, Final, NamedTuple
 
@@ -27,6 +27,7 @@ from common.video.decoding import (
     TIMES_AT_ONCE,
 )
 from common.video.pictures import Image, Source, cure, named
+from common.video.reduction import reduced
 
 SIGN_OF_LIFE: Final = 100
 """Of so many frames that are passed over the asker hears: grabbing many takes a while."""
@@ -159,18 +160,6 @@ def grabs(capture: cv2.VideoCapture, every: int, start: int) -> Iterator[Grabbed
         now_s = time.monotonic()
         is_wanted = index % every == 0 and (index >= start or index == 0)
         yield Grabbed(index, now_s, capture.retrieve()[1] if is_wanted else None)
-
-
-def reduced(picture: Image, size: Sequence[int], quarters: int) -> Image:
-    """A picture turned clockwise by quarter turns, and then of another size (width, height).
-
-    Each pixel is the mean of what it covers (P1).
-    """
-    width, height = size
-    lying = (height, width) if quarters % 2 else (width, height)
-    if (picture.shape[1], picture.shape[0]) != lying:
-        picture = cv2.resize(picture, lying, interpolation=cv2.INTER_AREA)
-    return np.ascontiguousarray(np.rot90(picture, -quarters)) if quarters else picture
 
 
 def say(

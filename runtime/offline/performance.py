@@ -5,18 +5,18 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
-from itertools import repeat
 from typing import Final, NamedTuple
 
 from common.bus.messages import Body, Guide, Report, ViewerNumber
 from common.bus.pair import Pair
 from common.video.clip_facts import Clip
 from common.video.frame_cache import Reel
-from integrator import diagnostics, merge, merge_state
+from integrator import diagnostics, merge_state
 from integrator.live_rig.live_calibration import LiveCalibration, Looking
 from integrator.live_rig.rig_solver import SolverAtOnce
 from runtime.offline.frame_pairs import instants, share_of
 from runtime.offline.rig_check import Seen, Witness
+from runtime.steps.together import joined, looked
 from runtime.unfinished.unfinished_run import BODIES
 from runtime.unfinished.work import Course
 from viewer import track
@@ -149,23 +149,17 @@ def _stepped(
 ) -> tuple[Going, dict[int, Report], Body]:
     """One instant more."""
     start = time.perf_counter()
-    before, guides = [going.viewers[number] for number in frames], repeat(going.guide)
-    seen = dict(zip(frames, pool.map(track.step, before, frames.values(), guides), strict=True))
-    viewers = going.viewers | {number: state for number, (state, _) in seen.items()}
-    reports: dict[int, Report] = {number: report for number, (_, report) in seen.items()}
+    viewers, reports = looked(going.viewers, frames, going.guide, pool.map)
     starts = going.starts | {number: frame.index + 1 for number, frame in frames.items()}
     middle = time.perf_counter()
-    pair = Pair(reports.get(1), reports.get(2))
-    state, body, guide = merge.step(going.integrator, pair)
-    calibration.heard(pair)
-    state = calibration.changed(state)
+    state, body, guide = joined(going.integrator, reports, calibration)
     spent = dict(going.spent)
     spent["viewers"] += middle - start
     spent["integrator"] += time.perf_counter() - middle
     going = going._replace(
         viewers=viewers,
         integrator=state,
-        noticed=diagnostics.step(going.noticed, pair),
+        noticed=diagnostics.step(going.noticed, Pair(reports.get(1), reports.get(2))),
         guide=guide,
         starts=starts,
         spent=spent,

@@ -1,0 +1,20 @@
+"""Pictures at the size that is worked on."""
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+
+from common.video.pictures import Image
+
+
+def reduced(picture: Image, size: Sequence[int], quarters: int) -> Image:
+    """A picture turned clockwise by quarter turns, and then of another size (width, height).
+
+    Each pixel is the mean of what it covers (P1).
+    """
+    width, height = size
+    lying = (height, width) if quarters % 2 else (width, height)
+    if (picture.shape[1], picture.shape[0]) != lying:
+        picture = cv2.resize(picture, lying, interpolation=cv2.INTER_AREA)
+    return np.ascontiguousarray(np.rot90(picture, -quarters)) if quarters else picture

@@ -1,0 +1,105 @@
+"""The cameras of a loop of one's own: which there are, and how their images are worked on."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple, get_args
+
+import msgspec
+
+from common.bus.messages import ViewerNumber
+from common.config.picture_size import working_size
+from common.config.settings_error import SettingsError
+from common.rig.absurd_rig import refuse_absurd
+from common.rig.camera import Rig
+from common.rig.rig_file import CalibrationError, check_rig, fitted, load_rig
+from common.video.clip_facts import Clip, Meta, View
+from common.video.upright_views import filed_rig, upright_views
+
+Size = tuple[int, int]
+"""Width and height, pixels."""
+
+
+class Cameras(NamedTuple):
+    """The cameras that give images."""
+
+    numbers: dict[str, ViewerNumber]
+    """The viewer of each, by its name, in the order in which images are given."""
+    rig: Rig | None
+    """Their calibration, for pictures of any size."""
+    where: str
+    """What messages call it."""
+
+
+def cameras_of(calibration: str | Path | Rig | None, names: Sequence[str]) -> Cameras:
+    """The cameras of a calibration, or those of its cameras that are named.
+
+    Raises:
+        CalibrationError: When the calibration cannot be used.
+        SettingsError: When there are two without one.
+    """
+    if calibration is None:
+        return Cameras(_uncalibrated(names), None, "")
+    if isinstance(calibration, Rig):
+        where = "the calibration"
+        check_rig(calibration, where)
+        return Cameras(_calibrated(calibration, names, where), calibration, where)
+    rig = load_rig(Path(calibration))
+    return Cameras(_calibrated(rig, names, str(calibration)), rig, str(calibration))
+
+
+def clip_of(
+    cameras: Cameras, sizes: Mapping[ViewerNumber, Size], bound: Size, rate_hz: float
+) -> Clip:
+    """What is known of the images, as of a clip: views and rig as they are worked on.
+
+    Args:
+        cameras: Give the images.
+        sizes: Of each camera's images.
+        bound: Of the working pictures.
+        rate_hz: Images a second of each camera.
+
+    Raises:
+        CalibrationError: When the calibration is of other pictures, or no cameras stand so.
+    """
+    views = tuple(
+        View(n, name, sizes[n], working_size(sizes[n], bound), rate_hz, 0)
+        for name, n in cameras.numbers.items()
+    )
+    rig, where = cameras.rig, cameras.where
+    if rig is not None:
+        seen = [fitted(fitted(rig, view.source_size, where), view.size, where) for view in views]
+        places = [_place(rig, view.number) for view in views]
+        own = tuple(one.cameras[place] for one, place in zip(seen, places, strict=True))
+        rig, views = upright_views(msgspec.structs.replace(seen[0], cameras=own), views)
+    clip = Clip("images", views, 1, rig, Meta())
+    filed = filed_rig(clip)
+    if filed is not None:
+        refuse_absurd(filed, where)
+    return clip
+
+
+def _place(rig: Rig, number: ViewerNumber) -> int:
+    """Of a viewer's camera in a calibration."""
+    return 0 if len(rig.cameras) == 1 else number - 1
+
+
+def _uncalibrated(names: Sequence[str]) -> dict[str, ViewerNumber]:
+    if len(names) > 1:
+        raise SettingsError(
+            "two cameras need a calibration: make one (tritrack calibrate person), or track a "
+            "recorded clip (tritrack track), which can do without"
+        )
+    return dict.fromkeys(names or ("cam1",), 1)
+
+
+def _calibrated(rig: Rig, wanted: Sequence[str], where: str) -> dict[str, ViewerNumber]:
+    viewers: tuple[ViewerNumber, ...] = get_args(ViewerNumber)
+    names = [camera.name for camera in rig.cameras]
+    missing = [name for name in wanted if name not in names]
+    if missing:
+        raise CalibrationError(f"{where} has no camera {missing[0]!r}; it has {', '.join(names)}")
+    if len(names) > len(viewers):
+        raise CalibrationError(
+            f"{where} has {len(names)} cameras: keep two (tritrack calibrate import --camera)"
+        )
+    return {name: viewers[names.index(name)] for name in wanted or names}

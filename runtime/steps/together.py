@@ -1,0 +1,53 @@
+"""The steps of one instant, in lock-step: its viewers, then the integrator."""
+
+from collections.abc import Callable, Iterable, Mapping
+from itertools import repeat
+from typing import Any
+
+from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.bus.pair import Pair
+from integrator import merge, merge_state
+from integrator.live_rig.live_calibration import LiveCalibration
+from viewer import track
+from viewer.captured_frame import CapturedFrame
+
+Viewers = Mapping[ViewerNumber, track.State]
+Reports = Mapping[int, Report]
+Each = Callable[..., Iterable[Any]]
+"""`map`, or one that works side by side."""
+
+
+def looked(
+    viewers: Viewers,
+    frames: Mapping[ViewerNumber, CapturedFrame],
+    guide: Guide | None,
+    each: Each = map,
+) -> tuple[dict[ViewerNumber, track.State], dict[int, Report]]:
+    """What each viewer remembers after its frame, and its report.
+
+    Args:
+        viewers: What each remembers.
+        frames: Of the instant; a viewer without one stays as it is.
+        guide: What the integrator made of the instant before; None at the start.
+        each: Calls the viewers' steps.
+    """
+    before = [viewers[number] for number in frames]
+    seen = dict(zip(frames, each(track.step, before, frames.values(), repeat(guide)), strict=True))
+    states = {**viewers, **{number: state for number, (state, _) in seen.items()}}
+    return states, {number: report for number, (_, report) in seen.items()}
+
+
+def joined(
+    integrator: merge_state.State, reports: Reports, calibration: LiveCalibration
+) -> tuple[merge_state.State, Body, Guide]:
+    """What the integrator remembers after the reports of an instant, the body and the guide.
+
+    Args:
+        integrator: What it remembers.
+        reports: One at least.
+        calibration: Hears them, and changes the rig.
+    """
+    pair = Pair(reports.get(1), reports.get(2))
+    state, body, guide = merge.step(integrator, pair)
+    calibration.heard(pair)
+    return calibration.changed(state), body, guide

@@ -1,0 +1,204 @@
+"""A loop of one's own over images: the bodies of `tritrack track`, and what it is refused for."""
+
+import doctest
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+
+import runtime.steps.tracker
+from common.config.part_settings import CameraSettings
+from common.config.settings import Settings
+from common.config.settings_error import SettingsError
+from common.rig.rig_file import CalibrationError, load_rig
+from common.video.pictures import Image
+from runtime.offline.lockstep import Decoders, track_clip
+from tritrack import Body, Tracker
+
+EMPTY = np.full((120, 160, 3), 90, np.uint8)
+
+
+def pictures(video: Path) -> Iterator[Image]:
+    capture = cv2.VideoCapture(str(video))
+    while True:
+        came, picture = capture.read()
+        if not came:
+            return
+        yield np.asarray(picture, np.uint8)
+
+
+@pytest.fixture(scope="module")
+def films(clip: Path) -> list[list[Image]]:
+    return [list(pictures(clip / f"cam{number}.avi")) for number in (1, 2)]
+
+
+def tracked(clip: Path, films: list[list[Image]], folder: Path, views: Any) -> list[Body]:
+    """By the command, with the first pictures as those of the empty room."""
+    plates = [str(folder / f"empty{number}.png") for number in (1, 2)]
+    for plate, film in zip(plates, films, strict=True):
+        cv2.imwrite(plate, film[0])
+    first, second = (CameraSettings(background=plate) for plate in plates)
+    settings = Settings(clip=str(clip), camera_1=first, camera_2=second)
+    with Decoders() as decoders:
+        return list(track_clip(settings, decoders, views).bodies)
+
+
+@pytest.mark.parametrize(
+    "views",
+    [
+        pytest.param((1, 2), id="both"),
+        pytest.param((1,), id="cam1", marks=pytest.mark.slow),
+        pytest.param((2,), id="cam2", marks=pytest.mark.slow),
+    ],
+)
+def test_a_loop_gives_bit_for_bit_the_bodies_of_a_tracked_clip(
+    clip: Path, films: list[list[Image]], tmp_path: Path, views: tuple[int, ...]
+) -> None:
+    used = [films[number - 1] for number in views]
+    tracker = Tracker(
+        clip.parent / "calibration.json",
+        cameras=[f"cam{number}" for number in views],
+        size="160x120",
+        background=[film[0] for film in used],
+    )
+    assert tracker.posture is None
+    got, names = list[Body](), set[str]()
+    for instant in zip(*used, strict=True):
+        got += tracker.step(list(instant))
+        assert tracker.posture is not None
+        assert tracker.posture.frame == len(got) - 1
+        names.add(tracker.posture.name)
+    assert got == tracked(clip, films, tmp_path, views)
+    assert len(got) == 69
+    if len(views) == 2:
+        assert "raise_right_lateral" in names
+
+
+def test_without_pictures_of_the_empty_room_the_first_half_second_is_that(
+    clip: Path, films: list[list[Image]]
+) -> None:
+    """Eight images at 15 a second, as of a live camera."""
+    tracker = Tracker(clip.parent / "calibration.json", size="160x120")
+    first = zip(*(film[:40] for film in films), strict=True)
+    status = [tracker.step(list(instant))[0].status for instant in first]
+    assert set(status[:8]) == {"empty"}
+    assert status.count("tracking") > 20
+
+
+def test_one_camera_needs_no_calibration_and_an_image_may_be_given_alone(
+    films: list[list[Image]],
+) -> None:
+    tracker = Tracker(size="160x120", background=films[0][0])
+    assert tracker.cameras == ("cam1",)
+    bodies = [tracker.step(image, 0.1 * n)[0] for n, image in enumerate(films[0][:40])]
+    assert [body.captured_s for body in bodies[:3]] == [0.0, 0.1, 0.2]
+    assert bodies[-1].views == "1"
+    assert bodies[-1].scale_source == "assumed"
+
+
+def test_images_may_go_by_the_cameras_names_and_one_may_be_missing(
+    clip: Path, films: list[list[Image]]
+) -> None:
+    tracker = Tracker(
+        clip.parent / "calibration.json",
+        size="160x120",
+        background={"cam2": films[1][0], "cam1": films[0][0]},
+    )
+    for n in range(30):
+        tracker.step({"cam2": films[1][n], "cam1": films[0][n]})
+    assert tracker.step([films[0][30], films[1][30]])[0].views == "both"
+    assert tracker.step({"cam1": films[0][31]})[0].views == "1"
+    assert tracker.step([None, films[1][32]])[0].views == "2"
+
+
+def test_bodies_become_the_arrays_of_a_run(clip: Path, films: list[list[Image]]) -> None:
+    tracker = Tracker(
+        clip.parent / "calibration.json", size="160x120", background=[f[0] for f in films]
+    )
+    for instant in zip(*(film[:30] for film in films), strict=True):
+        bodies = tracker.step(list(instant))
+    assert len(bodies) == 1
+    arrays = bodies.to_numpy()
+    assert arrays["joints_m"].shape == (1, 15, 3)
+    assert arrays["joints_m"][0].tolist() == [list(joint) for joint in bodies[0].joints_m]
+    assert arrays["frame"].tolist() == [29]
+
+
+def test_pictures_may_be_larger_than_what_is_worked_on(
+    clip: Path, films: list[list[Image]]
+) -> None:
+    rig = load_rig(clip.parent / "calibration.json")
+    tracker = Tracker(rig, size="80x60", background=[film[0] for film in films])
+    body = tracker.step([film[0] for film in films])[0]
+    assert body.status == "empty"
+    for instant in zip(*(film[1:30] for film in films), strict=True):
+        body = tracker.step(list(instant))[0]
+    assert np.array(body.joints_px).max(axis=(1, 2)).tolist() < [80.0, 80.0]
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"size": "big"}, "size must look like 160x120"),
+        ({"mode": "thesis"}, "mode must be default or paper"),
+        ({"landmarks": "mediapipe"}, "landmarks must be own or none"),
+        ({"rate_hz": 0.0}, "rate_hz must be from 0 to 1000"),
+        ({"stature_m": 17.5}, "stature_m must be from 0.5 to 2.6"),
+        ({"cameras": ("left", "right")}, "two cameras need a calibration"),
+    ],
+)
+def test_what_no_loop_could_mean_is_refused(given: dict[str, Any], said: str) -> None:
+    with pytest.raises(SettingsError, match=said):
+        Tracker(**given)
+
+
+def test_a_camera_that_the_calibration_has_not_is_refused(clip: Path) -> None:
+    with pytest.raises(CalibrationError, match=r"has no camera 'left'; it has cam1, cam2"):
+        Tracker(clip.parent / "calibration.json", cameras=["left"])
+
+
+@pytest.mark.parametrize(
+    ("images", "said"),
+    [
+        ([EMPTY, EMPTY], r"2 images for 1 cameras \(cam1\)"),
+        ({"left": EMPTY}, "there is no camera 'left': there is cam1"),
+        ([None], "an instant needs an image"),
+        (EMPTY.astype(np.float32), r"an image is an array \(H, W, 3\) of uint8"),
+        (EMPTY[..., 0], r"an image is an array \(H, W, 3\) of uint8"),
+        (EMPTY[..., :2], "an image has three colours"),
+    ],
+    ids=["too many", "unknown", "none", "floats", "grey", "two colours"],
+)
+def test_what_is_no_image_is_refused(images: Any, said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        Tracker(size="160x120", background=EMPTY).step(images)
+
+
+def test_a_background_of_another_shape_or_none_of_one_camera_is_refused(
+    clip: Path, films: list[list[Image]]
+) -> None:
+    first = [film[0] for film in films]
+    rig = clip.parent / "calibration.json"
+    tracker = Tracker(rig, size="160x120", background=[first[0], first[1][:100]])
+    with pytest.raises(ValueError, match="the background of camera cam2 is of another shape"):
+        tracker.step(first)
+    with pytest.raises(ValueError, match="camera cam1 has no background"):
+        Tracker(rig, size="160x120", background={"cam2": first[1]}).step(first)
+
+
+def test_images_keep_their_size_and_time_goes_on() -> None:
+    tracker = Tracker(size="160x120", background=EMPTY)
+    tracker.step(EMPTY, 5.0)
+    with pytest.raises(ValueError, match=r"captured_s must go on: 5.0 came after 5.0"):
+        tracker.step(EMPTY, 5.0)
+    with pytest.raises(ValueError, match="cam1 gives 160x100 pixels, it gave 160x120"):
+        tracker.step(EMPTY[:100], 6.0)
+    assert tracker.step(EMPTY, 6.0)[0].captured_s == 6.0
+
+
+def test_its_example_is_true() -> None:
+    failed, tried = doctest.testmod(runtime.steps.tracker)
+    assert (failed, tried > 4) == (0, True)
