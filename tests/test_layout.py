@@ -12,7 +12,7 @@ import pytest
 from source_map import Source, arrows, circles, pointing, room_of, sources, tracked
 
 ROOT = Path(__file__).parents[1]
-STEPS = {"viewer", "recognizer", "animator", "synth"}
+STEPS = ("viewer", "recognizer", "animator", "synth")
 BELOW = {
     "common": set[str](),
     "calibration": {"common"},

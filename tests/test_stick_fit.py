@@ -122,6 +122,8 @@ def test_what_is_expected_of_a_posed_body_is_where_its_picture_has_it(yaw_deg: f
     assert found[:, 1].max() == pytest.approx(rows[-1], abs=8.0)
     right, left = (found[JOINT_NAMES.index(f"{side}_shoulder"), 0] for side in "rl")
     assert right <= left
+    elsewhere = pose + np.eye(len(pose))[:3].T @ (0.4, 0.9, -0.7)  # the view says where it is seen
+    np.testing.assert_allclose(joints_px(ADULT, expected(body, elsewhere, view, 175.0)), found)
 
 
 @pytest.mark.parametrize(
