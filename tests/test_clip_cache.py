@@ -66,6 +66,8 @@ def test_a_clip_that_moved_keeps_its_key(own: Settings, tmp_path: Path) -> None:
     moved = tmp_path / "elsewhere" / "own"
     shutil.copytree(own.clip, moved)
     assert key_of(Settings(clip=str(moved)), "tracker") == before
+    renamed = moved.rename(tmp_path / "another")  # what is kept bears the clip's name
+    assert key_of(Settings(clip=str(renamed)), "tracker") != before
 
 
 def test_a_camera_is_no_recorded_clip(tmp_path: Path) -> None:
