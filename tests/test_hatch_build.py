@@ -56,7 +56,7 @@ def test_an_import_of_ours_names_the_namespace(source: str, new: str) -> None:
 @pytest.mark.parametrize(
     "source",
     [
-        "from runtime.live import session",
+        "from tritrack.commands import options",
         "from commons import x",
         "from . import common",
         "from numpy import viewer",

@@ -67,8 +67,8 @@ def test_an_expired_certificate_is_named_by_the_doctor_who_then_fails(
 def test_without_the_library_both_say_how_to_install_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for name in ("authority", "key_check"):
-        monkeypatch.setitem(sys.modules, f"runtime.keys.{name}", None)
+    for name in ("runtime.keys.authority", "tritrack.doctor.key_check"):
+        monkeypatch.setitem(sys.modules, name, None)
     assert code_of(monkeypatch, "keys", tmp_path / "keys") == 2
     assert key_commands.INSTALL in capsys.readouterr().err
     (found,) = examined_keys(tmp_path)

@@ -172,10 +172,11 @@ def test_a_line_of_the_log_has_its_time_its_process_and_its_level(tmp_path: Path
 def test_what_the_supervisor_logs_goes_to_the_runs_log_alone_while_it_runs(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    path, own = tmp_path / "log.txt", logging.getLogger("tritrack")
+    """Whichever of our rooms a line is from."""
+    path, own = tmp_path / "log.txt", logging.getLogger("runtime")
     with logged("supervisor", path):
         own.warning("within")
-        logging.getLogger("runtime.live").warning("deeper")
+        logging.getLogger("common.bus.inbox").warning("deeper")
     own.warning("after")
     lines = path.read_text().splitlines()
     assert [line.split(" supervisor  WARNING ")[1] for line in lines] == ["within", "deeper"]

@@ -17,6 +17,7 @@ import psutil
 from common.bus.bus import Bus, Stopped
 from common.bus.control_messages import Pulse
 from common.bus.rate import Pace
+from common.packages import PACKAGES
 
 BEAT_S: Final = 1.0
 READY_S: Final = 60.0
@@ -83,15 +84,17 @@ def start_log(name: str, path: Path | None, level: int | str | None = None) -> N
 @contextmanager
 def logged(name: str, path: Path) -> Iterator[None]:
     """Write what the supervisor logs to the run's log alone: its terminal shows it in words."""
-    handler, own = logging.FileHandler(path), logging.getLogger("tritrack")
+    handler, ours = logging.FileHandler(path), [logging.getLogger(each) for each in PACKAGES]
     handler.setFormatter(logging.Formatter(_format(name)))
-    own.addHandler(handler)
-    own.propagate = False
+    for logger in ours:
+        logger.addHandler(handler)
+        logger.propagate = False
     try:
         yield
     finally:
-        own.propagate = True
-        own.removeHandler(handler)
+        for logger in ours:
+            logger.propagate = True
+            logger.removeHandler(handler)
         handler.close()
 
 
