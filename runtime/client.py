@@ -15,6 +15,7 @@ from common.config.settings import Settings
 
 if TYPE_CHECKING:
     from common.bus.bus import Bus
+    from runtime.store.past_run import PastRun
 
 __all__ = [
     "ANGLE_NAMES",
@@ -24,6 +25,7 @@ __all__ = [
     "Posture",
     "Report",
     "Subscription",
+    "load_run",
     "subscribe",
     "track",
 ]
@@ -41,6 +43,13 @@ HUB: Final = "integrator"
 def track(source: str | Path, views: tuple[ViewerNumber, ...] = (1, 2)) -> list[Body]:
     """Track a recorded clip: the bodies that `tritrack track` writes, one a frame.
 
+    >>> from tritrack import track
+    >>> bodies = track(clip)  # its folder
+    >>> bodies[0].status, bodies[40].status
+    ('empty', 'tracking')
+    >>> len(bodies[40].joints_m)  # as JOINT_NAMES, metres
+    15
+
     Args:
         source: A clip folder (cam1.*, cam2.*), or a settings file (TOML).
         views: The cameras to use.
@@ -56,6 +65,27 @@ def track(source: str | Path, views: tuple[ViewerNumber, ...] = (1, 2)) -> list[
 
     with threadpool_limits(1), Decoders() as decoders:
         return list(track_clip(load(Path(source)), decoders, views).bodies)
+
+
+def load_run(folder: str | Path) -> "PastRun":
+    """Read a run folder: its poses as arrays, its summary.
+
+    >>> from tritrack import load_run
+    >>> run = load_run(folder)
+    >>> run.poses["joints_m"].shape
+    (69, 15, 3)
+    >>> run.summary["scale_source"]
+    'calibrated'
+
+    Args:
+        folder: That `tritrack track`, `single` or `live` wrote, whole or cut short.
+
+    Raises:
+        PastRunError: When it is none, was damaged, or a newer version wrote it.
+    """
+    from runtime.store.past_run import open_run
+
+    return open_run(Path(folder))
 
 
 @overload
@@ -80,6 +110,13 @@ def subscribe(
     keys: str = "",
 ) -> "Subscription":  # type: ignore[type-arg]
     """What a live run says, for `for` and `async for`, until the run is over.
+
+    >>> from tritrack import subscribe
+    >>> frames = []
+    >>> for body in subscribe(endpoint):  # as `[bus] endpoint` of the run's settings
+    ...     frames.append(body.frame)
+    >>> frames[-1]  # the run is over
+    119
 
     Args:
         endpoint: Where the integrator listens, `[bus] endpoint` of the run's settings.

@@ -1,6 +1,7 @@
 """tritrack in one's own program: loops that begin and end with a run, and the examples in docs."""
 
 import asyncio
+import doctest
 import subprocess
 import sys
 import threading
@@ -12,10 +13,12 @@ import pytest
 from meeting import EARLY, free_endpoint, saying
 from threadpoolctl import threadpool_info, threadpool_limits
 
+import tritrack
 from common.bus.bus import BusError
 from common.bus.messages import Body
 from runtime.offline import lockstep
 from tritrack import subscribe, track
+from tritrack.exporting import ExportError
 
 EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"
 
@@ -153,3 +156,31 @@ def test_an_example_is_short_and_the_plain_one_is_plain(path: Path) -> None:
     if path.name == "plain_zenoh.py":
         assert "tritrack import" not in text
         assert "common" not in text
+
+
+@pytest.fixture(scope="module")
+def run(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The run of a clip, its calibration beside it."""
+    out = tmp_path_factory.mktemp("runs")
+    command = [sys.executable, "-m", "tritrack", "track", str(clip), "--out", str(out)]
+    subprocess.run(command, check=True, capture_output=True)
+    return out / clip.name
+
+
+def test_the_examples_of_the_reference_are_true(clip: Path, run: Path) -> None:
+    examples = doctest.DocTestFinder()
+    names = ("subscribe", "track", "load_run", "export")
+    with saying(120) as endpoint:
+        known = {"clip": clip, "folder": run, "endpoint": endpoint}
+        for name in names:
+            (example,) = examples.find(getattr(tritrack, name), name, globs=known)
+            done = doctest.DocTestRunner().run(example)
+            assert (name, done.failed, done.attempted > 1) == (name, 0, True)
+
+
+def test_a_format_that_there_is_not_is_refused_by_name(run: Path) -> None:
+    with pytest.raises(ExportError, match="there is no format 'fbx': there are bvh, "):
+        tritrack.export(run, "fbx")  # type: ignore[arg-type]
+    written = tritrack.export(str(run), "bvh", run / "further.bvh", scale="cm")
+    assert written["files"] == [str(run / "further.bvh")]
+    assert (run / "further.bvh").read_text().startswith("HIERARCHY")

@@ -11,10 +11,12 @@ if TYPE_CHECKING:
         Posture,
         Report,
         Subscription,
+        load_run,
         subscribe,
         track,
     )
     from runtime.steps.tracker import Bodies, Tracker
+    from tritrack.exporting import export
 
 __all__ = [
     "ANGLE_NAMES",
@@ -26,6 +28,8 @@ __all__ = [
     "Report",
     "Subscription",
     "Tracker",
+    "export",
+    "load_run",
     "subscribe",
     "track",
 ]
@@ -39,6 +43,10 @@ def __getattr__(name: str) -> Any:
         from runtime.steps import tracker
 
         return getattr(tracker, name)
+    if name == "export":
+        from tritrack.exporting import export
+
+        return export
     from runtime import client
 
     return getattr(client, name)

@@ -38,6 +38,43 @@ class Written(NamedTuple):
     """Ending and content of a second file."""
 
 
+def export(
+    folder: str | Path,
+    to: Format,
+    out: str | Path | None = None,
+    *,
+    scale: Scale = "m",
+    replace: bool = False,
+) -> dict[str, Any]:
+    """Write a run in another format, as `tritrack export` does.
+
+    >>> from tritrack import export
+    >>> written = export(folder, "csv")
+    >>> written["frames"]
+    69
+
+    Args:
+        folder: That of the run.
+        to: bvh, gltf, usd, trc, mot, c3d or csv.
+        out: The file to write; None: one in the run folder, in place of an earlier export.
+        scale: Unit of a BVH file, m or cm; of all others the format says it.
+        replace: What stands at `out` may be lost.
+
+    Returns:
+        `file`, `files`, `frames`, and of a skeleton of fixed bones `off_mm`, how far its joints
+        are from the run's.
+
+    Raises:
+        PastRunError: When there is no such run.
+        ExportError: When it has no poses, the format's library is not installed, or the file cannot
+            be written or has the name of another format.
+        FileRefused: When a file would be lost.
+    """
+    if to not in OWN_NAMES:
+        raise ExportError(f"there is no format {to!r}: there are {', '.join(OWN_NAMES)}")
+    return export_run(Path(folder), to, None if out is None else Path(out), scale, replace)
+
+
 def export_run(
     folder: Path, to: Format, out: Path | None, scale: Scale = "m", replace: bool = False
 ) -> dict[str, Any]:
