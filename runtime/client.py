@@ -43,12 +43,13 @@ HUB: Final = "integrator"
 def track(source: str | Path, views: tuple[ViewerNumber, ...] = (1, 2)) -> list[Body]:
     """Track a recorded clip: the bodies that `tritrack track` writes, one a frame.
 
-    >>> from tritrack import track
-    >>> bodies = track(clip)  # its folder
-    >>> bodies[0].status, bodies[40].status
-    ('empty', 'tracking')
-    >>> len(bodies[40].joints_m)  # as JOINT_NAMES, metres
-    15
+    Examples:
+        >>> from tritrack import track
+        >>> bodies = track(clip)  # its folder
+        >>> bodies[0].status, bodies[40].status
+        ('empty', 'tracking')
+        >>> len(bodies[40].joints_m)  # as JOINT_NAMES, metres
+        15
 
     Args:
         source: A clip folder (cam1.*, cam2.*), or a settings file (TOML).
@@ -70,12 +71,13 @@ def track(source: str | Path, views: tuple[ViewerNumber, ...] = (1, 2)) -> list[
 def load_run(folder: str | Path) -> "PastRun":
     """Read a run folder: its poses as arrays, its summary.
 
-    >>> from tritrack import load_run
-    >>> run = load_run(folder)
-    >>> run.poses["joints_m"].shape
-    (69, 15, 3)
-    >>> run.summary["scale_source"]
-    'calibrated'
+    Examples:
+        >>> from tritrack import load_run
+        >>> run = load_run(folder)
+        >>> run.poses["joints_m"].shape
+        (69, 15, 3)
+        >>> run.summary["scale_source"]
+        'calibrated'
 
     Args:
         folder: That `tritrack track`, `single` or `live` wrote, whole or cut short.
@@ -111,12 +113,13 @@ def subscribe(
 ) -> "Subscription":  # type: ignore[type-arg]
     """What a live run says, for `for` and `async for`, until the run is over.
 
-    >>> from tritrack import subscribe
-    >>> frames = []
-    >>> for body in subscribe(endpoint):  # as `[bus] endpoint` of the run's settings
-    ...     frames.append(body.frame)
-    >>> frames[-1]  # the run is over
-    119
+    Examples:
+        >>> from tritrack import subscribe
+        >>> frames = []
+        >>> for body in subscribe(endpoint):  # as `[bus] endpoint` of the run's settings
+        ...     frames.append(body.frame)
+        >>> frames[-1]  # the run is over
+        119
 
     Args:
         endpoint: Where the integrator listens, `[bus] endpoint` of the run's settings.

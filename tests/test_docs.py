@@ -54,3 +54,6 @@ def test_the_pages_make_a_site_without_a_broken_link(tmp_path: Path) -> None:
     first = (tmp_path / "site" / "index.html").read_text()
     assert "two ordinary cameras, or one" in first
     assert "fonts.googleapis" not in first
+    reference = (tmp_path / "site" / "api" / "index.html").read_text()
+    for name in ("Tracker", "Bodies", "track", "load_run", "export", "subscribe", "Body"):
+        assert re.search(rf"<span[^>]*>{name}</span>|<code>{name}</code>", reference), name

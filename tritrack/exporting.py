@@ -48,10 +48,11 @@ def export(
 ) -> dict[str, Any]:
     """Write a run in another format, as `tritrack export` does.
 
-    >>> from tritrack import export
-    >>> written = export(folder, "csv")
-    >>> written["frames"]
-    69
+    Examples:
+        >>> from tritrack import export
+        >>> written = export(folder, "csv")
+        >>> written["frames"]
+        69
 
     Args:
         folder: That of the run.

@@ -76,14 +76,15 @@ class Tracker:
     The steps are those of `tritrack track`: calibrated clips give the same bodies, bit for bit,
     where both are given pictures of the empty room. There is no other process, no bus, no file.
 
-    >>> import numpy as np
-    >>> empty = np.full((120, 160, 3), 90, np.uint8)
-    >>> tracker = Tracker(size="160x120", background=empty)
-    >>> bodies = tracker.step(empty, captured_s=0.0)
-    >>> bodies[0].status
-    'empty'
-    >>> bodies.to_numpy()["joints_m"].shape
-    (1, 15, 3)
+    Examples:
+        >>> import numpy as np
+        >>> empty = np.full((120, 160, 3), 90, np.uint8)
+        >>> tracker = Tracker(size="160x120", background=empty)
+        >>> bodies = tracker.step(empty, captured_s=0.0)
+        >>> bodies[0].status
+        'empty'
+        >>> bodies.to_numpy()["joints_m"].shape
+        (1, 15, 3)
     """
 
     def __init__(
