@@ -78,6 +78,7 @@ def test_the_report_says_what_run_and_truth_say(clip: Path, runs: Path, written:
     assert report["all"] == json.loads(json.dumps(due))
     assert report["per_clip"] == {clip.name: report["all"]}
     assert list(report["per_posture"]) == ["raise_right_lateral"]
+    assert list(report["per_performer"]) == ["s90001"]
     assert (report["mode"], report["size"]) == (["default"], ["160x120"])
     assert 0.8 < report["silhouettes"]["mean"] < 1.0
     joints = 12 * due["frames"] * due["coverage"]
