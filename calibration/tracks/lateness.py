@@ -3,8 +3,10 @@
 At one instant both views of a point are bound by one relation (`view_relation.py`).
 It is fitted for each lateness that leaves the clips enough in common; the one that explains most is
 the likeliest. By its relation it is asked which others explain what they pair nearly as well.
+In long clips it is fitted only where both views move alike (`moving_alike.py`), and here and there.
 """
 
+from itertools import chain, pairwise
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
@@ -19,6 +21,7 @@ from calibration.tracks.joint_tracks import (
     height_px,
     smoothed,
 )
+from calibration.tracks.moving_alike import promising
 from calibration.tracks.sight_lines import Numbers
 from calibration.tracks.view_relation import relation_of, terms_of
 from common.body.body import OTHER_SIDE, Vector
@@ -29,6 +32,10 @@ LEAST_SHARED: Final = 12
 """So many of them both views must have: what fewer show fits anything."""
 STEP_S: Final = 0.07
 """Latenesses that are tried at first are so far apart, or a frame."""
+MOST_TRIED: Final = 900
+"""Where there are more, both views last longer than half a minute; then the promising are tried."""
+NEAR_BEST_S: Final = 1.0
+"""And all that are so near to the best of them."""
 FINE_FRAMES: Final = np.arange(-6, 7) / 4
 """Then around the likeliest."""
 ERR: Final = 0.022
@@ -116,11 +123,11 @@ class _Paired(NamedTuple):
 def clock_of(sighting: Sighting) -> Clock:
     """How late view 2 is, as far as both views show it."""
     views = _prepared(sighting)
-    fits = _fits(views, _tried(*views)) if views else []
-    if not views or not fits:
+    runs = _searched(views, sighting) if views else []
+    if not views or not runs:
         return UNSEEN
-    usual = float(np.median([fit.miss for fit in fits]))
-    best = max(fits, key=lambda fit: fit.weights.sum() * (usual - fit.miss))
+    fits = list(chain(*runs))
+    best = _likeliest(fits)
     period_s = float(np.median(np.diff(views[1].times_s)))
     near = _fits(views, (best.late_s + period_s * FINE_FRAMES).tolist())
     finest = min(near, key=lambda fit: fit.miss)
@@ -129,7 +136,8 @@ def clock_of(sighting: Sighting) -> Clock:
         return UNSEEN
     on_time = any(fit.late_s == 0.0 and _ratio(fit, finest) <= SURE_AS_GOOD for fit in fits)
     is_sure = finest.miss <= CLEAR or abs(finest.late_s) <= period_s
-    rivals_s = _rivals(finest, fits, AS_GOOD if is_sure else SURE_AS_GOOD)
+    as_good = AS_GOOD if is_sure else SURE_AS_GOOD
+    rivals_s = tuple(chain(*(_rivals(finest, run, as_good) for run in runs)))
     if rivals_s and on_time and min(map(abs, (finest.late_s, *rivals_s))) > ONE_S:
         rivals_s = (*rivals_s, 0.0)
     return Clock(finest.late_s, rivals_s, on_time)
@@ -156,12 +164,35 @@ def _in_heights(track: JointTrack, unit_px: float) -> JointTrack:
     return track._replace(joints_px=(track.joints_px - middle_px) / unit_px)
 
 
-def _tried(first: JointTrack, second: JointTrack) -> list[float]:
+def _searched(views: tuple[JointTrack, JointTrack], sighting: Sighting) -> list[list[_Fit]]:
+    """What is tried, each run of latenesses that are a step apart for itself."""
+    step_s = max(STEP_S, float(np.median(np.diff(views[1].times_s))))
+    steps = tried = _steps(*views, step_s)
+    if len(steps) > MOST_TRIED:
+        tried = promising(sighting.first, sighting.second, steps, step_s)
+    fits = _fits(views, (step_s * tried).tolist())
+    if not fits:
+        return []
+    is_near = np.abs(step_s * steps - _likeliest(fits).late_s) <= NEAR_BEST_S
+    more = np.setdiff1d(steps[is_near], tried)
+    fits = sorted(fits + _fits(views, (step_s * more).tolist()), key=lambda fit: fit.late_s)
+    tried = np.union1d(tried, more)
+    begins = step_s * tried[1:][np.diff(tried) > 1]
+    cuts = np.searchsorted([fit.late_s for fit in fits], begins).tolist()
+    runs = [fits[begin:end] for begin, end in pairwise((0, *cuts, len(fits)))]
+    return [run for run in runs if run]
+
+
+def _steps(first: JointTrack, second: JointTrack, step_s: float) -> NDArray[np.int64]:
     """All latenesses that may leave enough in common; 0 is among them."""
-    step_s = max(STEP_S, float(np.median(np.diff(second.times_s))))
     low = int((second.times_s[0] - first.times_s[-1]) / step_s)
     high = int((second.times_s[-1] - first.times_s[0]) / step_s)
-    return (step_s * np.arange(low, high + 1)).tolist()
+    return np.arange(low, high + 1)
+
+
+def _likeliest(fits: list[_Fit]) -> _Fit:
+    usual = float(np.median([fit.miss for fit in fits]))
+    return max(fits, key=lambda fit: fit.weights.sum() * (usual - fit.miss))
 
 
 def _paired(
