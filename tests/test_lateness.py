@@ -5,10 +5,12 @@ from typing import Final
 import numpy as np
 import pytest
 from test_person_calibration import PAPER, filmed_by_the_papers_rig
-from wild_rigs import AT, Film, seen
+from wild_rigs import AT, Film, seen, walked
 
+from calibration.tracks import lateness
 from calibration.tracks.joint_tracks import JointTrack, Sighting
-from calibration.tracks.lateness import LEAST_SHARED, UNSEEN, clock_of
+from calibration.tracks.late_fit import LEAST_SHARED, Fit, fits_of
+from calibration.tracks.lateness import UNSEEN, clock_of
 from synth.motion.motions import performance
 from synth.person.people import person
 
@@ -17,6 +19,8 @@ SHOWN: Final = filmed_by_the_papers_rig(8, "squat").sighting
 PERIOD_S: Final = 1 / 15
 CYCLE_S: Final = 40 / 15
 """After so long made-up walks repeat themselves, to the last hair."""
+MOST_FITS: Final = 600
+"""Of a clip of any length: a second or two."""
 OPENING: Final = 24
 """Frames of a T, and of arms that come down."""
 
@@ -94,3 +98,33 @@ def test_a_view_that_shows_nobody_has_no_clock() -> None:
     assert clock_of(SHOWN._replace(second=few)) == UNSEEN
     assert UNSEEN.state == "unknown"
     assert UNSEEN.may_be_on_time
+
+
+@pytest.fixture(scope="module")
+def long_walk() -> Sighting:
+    """Two minutes of walks through the room, each another way."""
+    film = walked(person(9101), 9101, 15.0, 17)
+    return seen(film, PAPER, 0.0, np.random.default_rng(9101))
+
+
+@pytest.mark.parametrize("frames", [-700, -9, 0, 330])
+def test_a_view_of_a_long_clip_is_found_as_by_trying_all_with_few_fits(
+    long_walk: Sighting, frames: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown = long_walk._replace(
+        first=from_frame(long_walk.first, max(frames, 0)),
+        second=from_frame(long_walk.second, max(-frames, 0)),
+    )
+    tried_s: list[float] = []
+
+    def counted(views: tuple[JointTrack, JointTrack], each_s: list[float]) -> list[Fit]:
+        tried_s.extend(each_s)
+        return fits_of(views, each_s)
+
+    monkeypatch.setattr(lateness, "fits_of", counted)
+    found = clock_of(shown)
+    assert found.is_found
+    assert found.late_s == pytest.approx(frames * PERIOD_S, abs=PERIOD_S)
+    assert found.may_be_on_time == (frames == 0)
+    assert len(tried_s) < MOST_FITS
+    assert 0.0 in tried_s

@@ -12,40 +12,26 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.tracks import person_prior as prior
 from calibration.tracks.joint_tracks import (
     LEAST_SURE,
     JointTrack,
     Sighting,
-    at_times,
     height_px,
     smoothed,
 )
+from calibration.tracks.late_fit import LEAST_SHARED, SURE, Fit, fits_of
 from calibration.tracks.moving_alike import promising
-from calibration.tracks.sight_lines import Numbers
-from calibration.tracks.view_relation import relation_of, terms_of
-from common.body.body import OTHER_SIDE, Vector
 
 MOMENTS: Final = 120
 """So many of view 1, evenly spread, are looked at."""
-LEAST_SHARED: Final = 12
-"""So many of them both views must have: what fewer show fits anything."""
 STEP_S: Final = 0.07
 """Latenesses that are tried at first are so far apart, or a frame."""
 MOST_TRIED: Final = 900
-"""Where there are more, both views last longer than half a minute; then the promising are tried."""
+"""Where there are more, only the promising are tried: both views last more than half a minute."""
 NEAR_BEST_S: Final = 1.0
 """And all that are so near to the best of them."""
 FINE_FRAMES: Final = np.arange(-6, 7) / 4
 """Then around the likeliest."""
-ERR: Final = 0.022
-"""By what landmarks miss the relation, heights of the person."""
-SURE: Final = 0.12
-"""Landmarks less sure than this are left out."""
-EXCHANGE_COST: Final = 0.5
-"""By how much exchanged sides must explain a part better."""
-ROUNDS: Final = 3
-"""In each it is asked anew whose sides are exchanged, and what is far off weighs less."""
 SHARED_S: Final = 2.0
 """A clock that leaves less in common is not told."""
 AS_GOOD, SURE_AS_GOOD = 1.2, 1.4
@@ -62,7 +48,6 @@ ONE_S, WIDE_S = 0.25, 0.45
 them are as good: who moves slowly shows time less exactly."""
 LEAST_LATE: Final = 0.6
 """Share of a frame by which view 2 must be late before its clock is set."""
-_IN_PART: Final = np.eye(3)[prior.PART_OF_JOINT]
 
 
 class Clock(NamedTuple):
@@ -91,35 +76,6 @@ UNSEEN: Final = Clock(0.0, None)
 """Where both views show too little of anybody."""
 
 
-class _Fit(NamedTuple):
-    """What a lateness makes of the moments."""
-
-    late_s: float
-    costs: Vector
-    """(moments,) how far landmarks miss the relation that fits best; 0 where not both show any."""
-    weights: Vector
-    """(moments,) of these landmarks."""
-
-    @property
-    def miss(self) -> float:
-        """Of a landmark, on average."""
-        return float(self.costs.sum() / self.weights.sum())
-
-    @property
-    def moments(self) -> int:
-        """That both views have."""
-        return int(np.count_nonzero(self.weights))
-
-
-class _Paired(NamedTuple):
-    """What both views show at the moments that they have in common."""
-
-    terms: Numbers
-    """(2, n, 15, 8): sides as they are, and exchanged in view 2."""
-    weights: Numbers
-    """(2, n, 15)"""
-
-
 def clock_of(sighting: Sighting) -> Clock:
     """How late view 2 is, as far as both views show it."""
     views = _prepared(sighting)
@@ -129,7 +85,7 @@ def clock_of(sighting: Sighting) -> Clock:
     fits = list(chain(*runs))
     best = _likeliest(fits)
     period_s = float(np.median(np.diff(views[1].times_s)))
-    near = _fits(views, (best.late_s + period_s * FINE_FRAMES).tolist())
+    near = fits_of(views, (best.late_s + period_s * FINE_FRAMES).tolist())
     finest = min(near, key=lambda fit: fit.miss)
     apart_s = float(np.median(np.diff(views[0].times_s)))
     if finest.moments * apart_s < SHARED_S:
@@ -164,18 +120,18 @@ def _in_heights(track: JointTrack, unit_px: float) -> JointTrack:
     return track._replace(joints_px=(track.joints_px - middle_px) / unit_px)
 
 
-def _searched(views: tuple[JointTrack, JointTrack], sighting: Sighting) -> list[list[_Fit]]:
+def _searched(views: tuple[JointTrack, JointTrack], sighting: Sighting) -> list[list[Fit]]:
     """What is tried, each run of latenesses that are a step apart for itself."""
     step_s = max(STEP_S, float(np.median(np.diff(views[1].times_s))))
     steps = tried = _steps(*views, step_s)
     if len(steps) > MOST_TRIED:
         tried = promising(sighting.first, sighting.second, steps, step_s)
-    fits = _fits(views, (step_s * tried).tolist())
+    fits = fits_of(views, (step_s * tried).tolist())
     if not fits:
         return []
     is_near = np.abs(step_s * steps - _likeliest(fits).late_s) <= NEAR_BEST_S
     more = np.setdiff1d(steps[is_near], tried)
-    fits = sorted(fits + _fits(views, (step_s * more).tolist()), key=lambda fit: fit.late_s)
+    fits = sorted(fits + fits_of(views, (step_s * more).tolist()), key=lambda fit: fit.late_s)
     tried = np.union1d(tried, more)
     begins = step_s * tried[1:][np.diff(tried) > 1]
     cuts = np.searchsorted([fit.late_s for fit in fits], begins).tolist()
@@ -190,59 +146,12 @@ def _steps(first: JointTrack, second: JointTrack, step_s: float) -> NDArray[np.i
     return np.arange(low, high + 1)
 
 
-def _likeliest(fits: list[_Fit]) -> _Fit:
+def _likeliest(fits: list[Fit]) -> Fit:
     usual = float(np.median([fit.miss for fit in fits]))
     return max(fits, key=lambda fit: fit.weights.sum() * (usual - fit.miss))
 
 
-def _paired(
-    first: JointTrack, second: JointTrack, late_s: float
-) -> tuple[NDArray[np.bool_], _Paired]:
-    """Which moments both views have, and what they show there."""
-    there = at_times(second, first.times_s + late_s)
-    both = there.confidence.mean(axis=1) >= LEAST_SURE
-    places, sure = there.joints_px[both], there.confidence[both]
-    ways = [(places, sure), (places[:, OTHER_SIDE], sure[:, OTHER_SIDE])]
-    weights = np.stack([np.minimum(first.confidence[both], other) for _, other in ways])
-    return both, _Paired(
-        np.stack([terms_of(first.joints_px[both], other) for other, _ in ways]),
-        np.where(weights >= SURE, weights, 0.0),
-    )
-
-
-def _fits(views: tuple[JointTrack, JointTrack], tried: list[float]) -> list[_Fit]:
-    """Of those latenesses that leave enough in common."""
-    return [fit for late_s in tried if (fit := _fitted(*views, late_s))]
-
-
-def _fitted(first: JointTrack, second: JointTrack, late_s: float) -> _Fit | None:
-    both, paired = _paired(first, second, late_s)
-    if both.sum() < LEAST_SHARED or not paired.weights[0].any():
-        return None
-    sides = np.zeros(paired.terms.shape[1:3], np.bool_)
-    trust = np.ones(sides.shape)
-    for _ in range(ROUNDS):
-        weights = np.where(sides, paired.weights[1], paired.weights[0])
-        terms = np.where(sides[..., None], paired.terms[1], paired.terms[0])
-        relation = relation_of(terms.reshape(-1, terms.shape[-1]), (trust * weights).ravel())
-        off = (relation.off(paired.terms) / ERR) ** 2 / 2.0
-        sides = _sides(paired.weights * np.log1p(off))
-        trust = 1.0 / (1.0 + np.where(sides, off[1], off[0]))
-    costs, weights = np.zeros((2, len(both)))
-    each = np.where(sides, paired.weights[1], paired.weights[0])
-    costs[both] = (each * np.log1p(np.where(sides, off[1], off[0]))).sum(axis=1)
-    weights[both] = each.sum(axis=1)
-    return _Fit(late_s, costs, weights)
-
-
-def _sides(costs: Numbers) -> NDArray[np.bool_]:
-    """(n, 15) whose sides are exchanged, by what landmarks cost either way (2, n, 15)."""
-    as_is, other = costs @ _IN_PART
-    exchanged = (other + EXCHANGE_COST < as_is) & (np.arange(3) != prior.TRUNK)
-    return exchanged[:, prior.PART_OF_JOINT]
-
-
-def _rivals(best: _Fit, fits: list[_Fit], as_good: float) -> tuple[float, ...]:
+def _rivals(best: Fit, fits: list[Fit], as_good: float) -> tuple[float, ...]:
     """One of each stretch of latenesses that are as good as the best, by what both pair."""
     ratios = np.array([_ratio(fit, best) for fit in fits])
     late_s = np.array([fit.late_s for fit in fits])
@@ -256,7 +165,7 @@ def _rivals(best: _Fit, fits: list[_Fit], as_good: float) -> tuple[float, ...]:
     return tuple(late_s[rivals].tolist())
 
 
-def _ratio(fit: _Fit, best: _Fit) -> float:
+def _ratio(fit: Fit, best: Fit) -> float:
     """How much more one misses than the best, at moments that both have where these are enough."""
     both = (fit.weights > 0) & (best.weights > 0)
     if both.sum() < LEAST_SHARED:

@@ -63,7 +63,7 @@ def alike(first: JointTrack, second: JointTrack, steps: Steps, step_s: float) ->
 
 
 def _at_steps(track: JointTrack, step_s: float) -> tuple[int, Numbers]:
-    """The first step; (n, 15, 3) places about a landmark's mean, weighed, and whether it is seen."""
+    """The first step; (n, 15, 3) places about a landmark's mean, weighed, and whether seen."""
     begin, end = (int(np.ceil(track.times_s[n] / step_s)) for n in (0, -1))
     shown = at_times(track, step_s * np.arange(begin, end, dtype=np.float64))
     weights = shown.confidence * (shown.confidence.mean(axis=1) >= LEAST_SURE)[:, None]

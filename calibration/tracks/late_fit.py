@@ -1,0 +1,100 @@
+"""What one lateness makes of what both views show: a relation, and how far landmarks miss it."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.tracks import person_prior as prior
+from calibration.tracks.joint_tracks import LEAST_SURE, JointTrack, at_times
+from calibration.tracks.sight_lines import Numbers
+from calibration.tracks.view_relation import relation_of, terms_of
+from common.body.body import OTHER_SIDE, Vector
+
+LEAST_SHARED: Final = 12
+"""So many of them both views must have: what fewer show fits anything."""
+ERR: Final = 0.022
+"""By what landmarks miss the relation, heights of the person."""
+SURE: Final = 0.12
+"""Landmarks less sure than this are left out."""
+EXCHANGE_COST: Final = 0.5
+"""By how much exchanged sides must explain a part better."""
+ROUNDS: Final = 3
+"""In each it is asked anew whose sides are exchanged, and what is far off weighs less."""
+_IN_PART: Final = np.eye(3)[prior.PART_OF_JOINT]
+
+
+class Fit(NamedTuple):
+    """What a lateness makes of the moments."""
+
+    late_s: float
+    costs: Vector
+    """(moments,) how far landmarks miss the relation that fits best; 0 where not both show any."""
+    weights: Vector
+    """(moments,) of these landmarks."""
+
+    @property
+    def miss(self) -> float:
+        """Of a landmark, on average."""
+        return float(self.costs.sum() / self.weights.sum())
+
+    @property
+    def moments(self) -> int:
+        """That both views have."""
+        return int(np.count_nonzero(self.weights))
+
+
+class _Paired(NamedTuple):
+    """What both views show at the moments that they have in common."""
+
+    terms: Numbers
+    """(2, n, 15, 8): sides as they are, and exchanged in view 2."""
+    weights: Numbers
+    """(2, n, 15)"""
+
+
+def _paired(
+    first: JointTrack, second: JointTrack, late_s: float
+) -> tuple[NDArray[np.bool_], _Paired]:
+    """Which moments both views have, and what they show there."""
+    there = at_times(second, first.times_s + late_s)
+    both = there.confidence.mean(axis=1) >= LEAST_SURE
+    places, sure = there.joints_px[both], there.confidence[both]
+    ways = [(places, sure), (places[:, OTHER_SIDE], sure[:, OTHER_SIDE])]
+    weights = np.stack([np.minimum(first.confidence[both], other) for _, other in ways])
+    return both, _Paired(
+        np.stack([terms_of(first.joints_px[both], other) for other, _ in ways]),
+        np.where(weights >= SURE, weights, 0.0),
+    )
+
+
+def fits_of(views: tuple[JointTrack, JointTrack], tried: list[float]) -> list[Fit]:
+    """Of those latenesses that leave enough in common."""
+    return [fit for late_s in tried if (fit := _fitted(*views, late_s))]
+
+
+def _fitted(first: JointTrack, second: JointTrack, late_s: float) -> Fit | None:
+    both, paired = _paired(first, second, late_s)
+    if both.sum() < LEAST_SHARED or not paired.weights[0].any():
+        return None
+    sides = np.zeros(paired.terms.shape[1:3], np.bool_)
+    trust = np.ones(sides.shape)
+    for _ in range(ROUNDS):
+        weights = np.where(sides, paired.weights[1], paired.weights[0])
+        terms = np.where(sides[..., None], paired.terms[1], paired.terms[0])
+        relation = relation_of(terms.reshape(-1, terms.shape[-1]), (trust * weights).ravel())
+        off = (relation.off(paired.terms) / ERR) ** 2 / 2.0
+        sides = _sides(paired.weights * np.log1p(off))
+        trust = 1.0 / (1.0 + np.where(sides, off[1], off[0]))
+    costs, weights = np.zeros((2, len(both)))
+    each = np.where(sides, paired.weights[1], paired.weights[0])
+    costs[both] = (each * np.log1p(np.where(sides, off[1], off[0]))).sum(axis=1)
+    weights[both] = each.sum(axis=1)
+    return Fit(late_s, costs, weights)
+
+
+def _sides(costs: Numbers) -> NDArray[np.bool_]:
+    """(n, 15) whose sides are exchanged, by what landmarks cost either way (2, n, 15)."""
+    as_is, other = costs @ _IN_PART
+    exchanged = (other + EXCHANGE_COST < as_is) & (np.arange(3) != prior.TRUNK)
+    return exchanged[:, prior.PART_OF_JOINT]
