@@ -71,7 +71,7 @@ def main() -> None:
     asked.add_argument("clips", type=Path, nargs="+")
     asked.add_argument("--size", nargs="+", default=["160x120", "320x240"])
     given = asked.parse_args()
-    clips = [clip.resolve() for clip in given.clips]
+    clips = [clip.resolve() for clip in given.clips if clip.is_dir()]
     odd = 0
     for size in given.size:
         for way, options in WAYS.items():
