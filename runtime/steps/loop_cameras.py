@@ -35,8 +35,13 @@ def cameras_of(calibration: str | Path | Rig | None, names: Sequence[str]) -> Ca
 
     Raises:
         CalibrationError: When the calibration cannot be used.
-        SettingsError: When there are two without one.
+        SettingsError: When there are two without one, or one is named twice.
     """
+    if isinstance(names, str):
+        raise SettingsError(f"cameras is a list of names: [{names!r}]")
+    twice = [name for place, name in enumerate(names) if name in names[:place]]
+    if twice:
+        raise SettingsError(f"cameras names {twice[0]!r} twice")
     if calibration is None:
         return Cameras(_uncalibrated(names), None, "")
     if isinstance(calibration, Rig):

@@ -5,16 +5,18 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from common.bus.messages import ViewerNumber
+from common.video.clip_facts import View
 from common.video.pictures import Image
+from common.video.reduction import reduced
 
 Images = Image | Sequence[Image | None] | Mapping[str, Image | None]
 """Of one camera, of all in their order, or by the cameras' names; None: it has none now."""
 
 
 def by_viewer(
-    images: Images, numbers: Mapping[str, ViewerNumber]
-) -> dict[ViewerNumber, Image | None]:
-    """Images by the viewers' numbers.
+    images: Images | None, numbers: Mapping[str, ViewerNumber]
+) -> dict[ViewerNumber, Image]:
+    """Those images that there are, by the viewers' numbers.
 
     Args:
         images: As they were given.
@@ -23,28 +25,57 @@ def by_viewer(
     Raises:
         ValueError: When one is no image, or they are not of these cameras.
     """
-    if isinstance(images, np.ndarray):
-        images = [images]
+    listed = _listed(images, numbers)
+    if len(listed) != len(numbers):
+        raise ValueError(
+            f"{len(listed)} images for {len(numbers)} cameras ({', '.join(numbers)}): give one of "
+            "each, or None; cameras=[...] names those that give any"
+        )
+    named = [each for each in zip(numbers, listed, strict=True) if each[1] is not None]
+    return {numbers[name]: _image(name, image) for name, image in named}
+
+
+def picture_of(image: Image, view: View) -> Image:
+    """What is worked on of an image: a copy, for a program may read its next image into this one.
+
+    It lies in memory row by row and can be written, whatever the image does: for another kind of
+    array every compiled pass would be compiled anew.
+    """
+    return np.array(reduced(image, view.size, view.quarters), np.uint8, order="C")
+
+
+def _listed(images: Images | None, numbers: Mapping[str, ViewerNumber]) -> Sequence[object]:
+    if images is None or isinstance(images, np.ndarray):
+        return [images]
     if isinstance(images, Mapping):
         unknown = [name for name in images if name not in numbers]
         if unknown:
             known = ", ".join(numbers)
             raise ValueError(f"there is no camera {unknown[0]!r}: there is {known}")
-        images = [images.get(name) for name in numbers]
-    if len(images) != len(numbers):
+        return [images.get(name) for name in numbers]
+    if isinstance(images, str) or not isinstance(images, Sequence):
         raise ValueError(
-            f"{len(images)} images for {len(numbers)} cameras ({', '.join(numbers)}): give one of "
-            "each, or None; cameras=(...) names those that give any"
+            f"images are one array, a list of them or a dict by camera, got {_kind(images)}"
         )
-    for name, image in zip(numbers, images, strict=True):
-        _refuse_no_image(name, image)
-    return dict(zip(numbers.values(), images, strict=True))
+    return images
 
 
-def _refuse_no_image(name: str, image: object) -> None:
-    if image is None:
-        return
-    if not isinstance(image, np.ndarray) or image.dtype != np.uint8 or image.ndim != 3:
-        raise ValueError(f"camera {name}: an image is an array (H, W, 3) of uint8")
-    if image.shape[2] != 3 or not image.size:
-        raise ValueError(f"camera {name}: an image has three colours, this is {image.shape}")
+def _image(name: str, image: object) -> Image:
+    if not isinstance(image, np.ndarray):
+        raise ValueError(f"camera {name}: an image is an array (H, W, 3) of uint8, {_got(image)}")
+    if image.dtype != np.uint8 or image.ndim != 3 or image.shape[2] != 3 or not image.size:
+        raise ValueError(
+            f"camera {name}: an image is an array (H, W, 3) of uint8, blue, green, red; this is "
+            f"{image.shape} of {image.dtype}"
+        )
+    return image
+
+
+def _got(image: object) -> str:
+    if isinstance(image, tuple) and len(image) == 2 and isinstance(image[0], bool):
+        return "got what read() of a video gives: take the second of both, read()[1]"
+    return f"got {_kind(image)}"
+
+
+def _kind(thing: object) -> str:
+    return type(thing).__name__

@@ -1,14 +1,13 @@
 """tritrack in a loop of one's own: images in, bodies out, in this process."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final, Literal, NamedTuple
 
 import msgspec
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
-from common.bus.messages import Body, Guide, Posture, Report, ViewerNumber
+from common.bus.messages import Body, Guide, Posture, ViewerNumber
 from common.config.part_settings import BodySettings
 from common.config.picture_size import size_of
 from common.config.settings import Settings
@@ -16,21 +15,20 @@ from common.config.settings_error import SettingsError
 from common.method import METHODS, Mode
 from common.rig.camera import Rig
 from common.video.clip_facts import Clip, both_cameras, uprights_of
-from common.video.clips import SAME_ASPECT
 from common.video.pictures import Image
-from common.video.reduction import reduced
 from integrator import merge_state
 from integrator.frame_numbers import FrameTimes
 from integrator.live_rig.live_calibration import LiveCalibration
 from integrator.live_rig.rig_solver import SolverAtOnce
 from integrator.merge_state import Start
 from recognizer import __main__ as recognizer
+from runtime.steps.loop_backgrounds import Learns, empty_of, is_enough, plates_of, viewer_of
 from runtime.steps.loop_cameras import cameras_of, clip_of
-from runtime.steps.loop_images import Images, by_viewer
+from runtime.steps.loop_images import Images, by_viewer, picture_of
+from runtime.steps.one_thread import ONE_THREAD
 from runtime.steps.together import joined, looked
 from runtime.store.pose_arrays import poses
 from viewer import track
-from viewer.background.background import learn
 from viewer.captured_frame import CapturedFrame
 
 BOUND: Final = "320x240"
@@ -64,10 +62,18 @@ class Bodies(msgspec.Struct, frozen=True):
 class _Going(NamedTuple):
     """What is remembered from one instant to the next."""
 
+    clip: Clip
+    learns: Learns
+    """Of each camera whose background is learnt yet."""
     viewers: dict[ViewerNumber, track.State]
-    """None of them while the backgrounds are learnt."""
+    """Of each camera whose background is known."""
     integrator: merge_state.State
+    calibration: LiveCalibration
+    naming: recognizer.State
     guide: Guide | None = None
+    posture: Posture | None = None
+    instants: int = 0
+    last_s: float | None = None
 
 
 class Tracker:
@@ -118,21 +124,13 @@ class Tracker:
             SettingsError: When anything else is out of bounds, or not for a loop of one's own.
         """
         self._settings = _settings(size, mode, landmarks, stature_m)
-        if not 0.0 < rate_hz <= LARGEST_RATE_HZ:
+        self._rate_hz = float(rate_hz)
+        if not 0.0 < self._rate_hz <= LARGEST_RATE_HZ:
             raise SettingsError(f"rate_hz must be from 0 to {LARGEST_RATE_HZ:g}, got {rate_hz}")
-        self._rate_hz = rate_hz
         self._cameras = cameras_of(calibration, cameras)
-        self._plates = None if background is None else by_viewer(background, self._cameras.numbers)
+        numbers = self._cameras.numbers
+        self._plates = None if background is None else plates_of(background, numbers)
         self._going: _Going | None = None
-        self._clip: Clip | None = None
-        self._learns: dict[ViewerNumber, list[Image]] = {
-            n: [] for n in self._cameras.numbers.values()
-        }
-        self._count = 0
-        self._last_s: float | None = None
-        self._posture: Posture | None = None
-        self._naming: recognizer.State | None = None
-        self._threads = ThreadpoolController()
 
     @property
     def cameras(self) -> tuple[str, ...]:
@@ -142,7 +140,7 @@ class Tracker:
     @property
     def posture(self) -> Posture | None:
         """What the body is doing, by the last step; None before the first."""
-        return self._posture
+        return None if self._going is None else self._going.posture
 
     def step(self, images: Images, captured_s: float | None = None) -> Bodies:
         """One instant: the image of each camera, and the bodies that they show.
@@ -156,114 +154,89 @@ class Tracker:
                 none, or when time does not go on.
             CalibrationError: When the calibration is of pictures of another shape.
         """
-        given = {
-            n: image
-            for n, image in by_viewer(images, self._cameras.numbers).items()
-            if image is not None
-        }
-        now_s = self._count / self._rate_hz if captured_s is None else float(captured_s)
-        self._refuse_what_does_not_go_on(given, now_s)
-        with self._threads.limit(limits=1):
-            if self._going is None:
-                self._clip, self._going = self._begun(given)
-            body = self._stepped(self._going, given, now_s)
-            if self._naming is None:
-                model = recognizer.model_of(self._settings)
-                self._naming = recognizer.init(model, self._settings.recognizer.window_frames)
-            self._naming, self._posture = recognizer.step(self._naming, body)
-        self._count, self._last_s = self._count + 1, now_s
+        given, going = by_viewer(images, self._cameras.numbers), self._going
+        self._refuse_too_few(given)
+        with ONE_THREAD:
+            going = going or self._begun(given)
+            now_s = going.instants / self._rate_hz if captured_s is None else float(captured_s)
+            _refuse_what_does_not_go_on(going, given, now_s)
+            heard = going.calibration.looking
+            try:
+                self._going, body = self._stepped(going, given, now_s)
+            except BaseException:  # an interrupted instant is as if it had never come
+                going.calibration.looking = heard
+                raise
         return Bodies((body,))
 
-    def _stepped(self, going: _Going, given: dict[ViewerNumber, Image], now_s: float) -> Body:
-        assert self._clip is not None
-        views = {view.number: view for view in self._clip.views}
-        frames = {
-            n: CapturedFrame(
-                self._count,
-                now_s,
-                now_s,
-                reduced(image, views[n].size, views[n].quarters),
-                upright=views[n].upright,
+    def _refuse_too_few(self, given: Mapping[ViewerNumber, Image]) -> None:
+        missing = [name for name, n in self._cameras.numbers.items() if n not in given]
+        if self._going is None and missing:
+            raise ValueError(
+                f"camera {missing[0]} gives no image: the first instant needs one of each camera"
             )
-            for n, image in given.items()
-        }
-        reports: dict[int, Report]
-        if going.viewers:
-            viewers, reports = looked(going.viewers, frames, going.guide)
-        else:
-            viewers = self._learnt(frames)
-            reports = {n: track.without_person(n, frame) for n, frame in frames.items()}
-        integrator, body, guide = joined(going.integrator, reports, self._calibration)
-        self._going = _Going(viewers, integrator, guide)
-        return body
+        if not given:
+            raise ValueError("no camera gives an image: leave the instant out, or end at it")
 
-    def _begun(self, given: dict[ViewerNumber, Image]) -> tuple[Clip, _Going]:
+    def _begun(self, given: Mapping[ViewerNumber, Image]) -> _Going:
         """The views as they are worked on, and steps that have seen nothing."""
+        settings, period_s = self._settings, 1.0 / self._rate_hz
         sizes = {n: (image.shape[1], image.shape[0]) for n, image in given.items()}
-        clip = clip_of(self._cameras, sizes, size_of(self._settings.size), self._rate_hz)
-        method, alone = METHODS[self._settings.mode], len(clip.views) == 1
-        times = FrameTimes(1.0 / self._rate_hz, counts=True)
+        clip = clip_of(self._cameras, sizes, size_of(settings.size), self._rate_hz)
+        alone, times = len(clip.views) == 1, FrameTimes(period_s, counts=True)
         start = Start(alone, None, times=times, uprights=uprights_of(clip))
-        rig = both_cameras(clip)
-        state = merge_state.init(rig, 1.0 / self._rate_hz, self._settings, method, start)
-        self._calibration = LiveCalibration(state, looks=False, solver=SolverAtOnce())
-        self._clip = clip
-        return clip, _Going(self._with_plates(clip), state)
+        method = METHODS[settings.mode]
+        state = merge_state.init(both_cameras(clip), period_s, settings, method, start)
+        naming = recognizer.init(recognizer.model_of(settings), settings.recognizer.window_frames)
+        views, empty = clip.views, {} if self._plates is None else empty_of(self._plates, clip)
+        viewers = {v.number: viewer_of(v, clip, settings, empty[v.number]) for v in views if empty}
+        calibration = LiveCalibration(state, looks=False, solver=SolverAtOnce())
+        learns: Learns = {} if empty else {view.number: () for view in views}
+        return _Going(clip, learns, viewers, state, calibration, naming)
 
-    def _with_plates(self, clip: Clip) -> dict[ViewerNumber, track.State]:
-        """Viewers that know their backgrounds, where pictures of these were given."""
-        plates = self._plates
-        if plates is None:
-            return {}
-        for view in clip.views:
-            plate = plates[view.number]
-            if plate is None:
-                raise ValueError(f"camera {view.source} has no background: give one of each camera")
-            aspect = plate.shape[1] * view.source_size[1] / (plate.shape[0] * view.source_size[0])
-            if abs(aspect - 1.0) > SAME_ASPECT:
-                raise ValueError(
-                    f"the background of camera {view.source} is of another shape than its images: "
-                    "take an empty image of the same camera, uncropped"
-                )
-            self._learns[view.number] = [reduced(plate, view.size, view.quarters)]
-        return self._viewers(clip)
+    def _stepped(
+        self, going: _Going, given: Mapping[ViewerNumber, Image], now_s: float
+    ) -> tuple[_Going, Body]:
+        frames: dict[ViewerNumber, CapturedFrame] = {}
+        for view in going.clip.views:
+            if view.number in given:
+                picture, count = picture_of(given[view.number], view), going.instants
+                frame = CapturedFrame(count, now_s, now_s, picture, upright=view.upright)
+                frames[view.number] = frame
+        known = {n: frame for n, frame in frames.items() if n in going.viewers}
+        viewers, reports = looked(going.viewers, known, going.guide)
+        going = going._replace(viewers=viewers)
+        for number in frames.keys() - known.keys():
+            reports[number] = track.without_person(number, frames[number])
+            going = self._learnt(going, number, frames[number].picture)
+        integrator, body, guide = joined(going.integrator, reports, going.calibration)
+        naming, posture = recognizer.step(going.naming, body)
+        going = going._replace(integrator=integrator, guide=guide, naming=naming, posture=posture)
+        return going._replace(instants=going.instants + 1, last_s=now_s), body
 
-    def _learnt(self, frames: dict[ViewerNumber, CapturedFrame]) -> dict[ViewerNumber, track.State]:
-        """Viewers that know their backgrounds, once enough was seen of each; none before."""
-        clip = self._clip
-        assert clip is not None
-        for number, frame in frames.items():
-            self._learns[number].append(frame.picture)
-        due = {
-            view.number: view.frames_in(self._settings.silhouette.empty_s) for view in clip.views
-        }
-        if any(len(self._learns[number]) < count for number, count in due.items()):
-            return {}
-        return self._viewers(clip)
+    def _learnt(self, going: _Going, number: ViewerNumber, picture: Image) -> _Going:
+        """With one picture more of a camera's empty room, and its viewer once they are enough."""
+        (view,) = (view for view in going.clip.views if view.number == number)
+        empty = (*going.learns[number], picture)
+        if not is_enough(empty, view, self._settings.silhouette.empty_s):
+            return going._replace(learns={**going.learns, number: empty})
+        learns = {n: own for n, own in going.learns.items() if n != number}
+        viewers = {**going.viewers, number: viewer_of(view, going.clip, self._settings, empty)}
+        return going._replace(learns=learns, viewers=viewers)
 
-    def _viewers(self, clip: Clip) -> dict[ViewerNumber, track.State]:
-        settings, rig = self._settings, both_cameras(clip)
-        method, alone = METHODS[settings.mode], len(clip.views) == 1
-        viewers: dict[ViewerNumber, track.State] = {}
-        for view in clip.views:
-            camera = None if rig is None else rig.cameras[view.number - 1]
-            setup = track.Setup(view.number, camera, settings, method, alone)
-            viewers[view.number] = track.init(setup, learn(self._learns.pop(view.number)))
-        return viewers
 
-    def _refuse_what_does_not_go_on(self, given: dict[ViewerNumber, Image], now_s: float) -> None:
-        if not given or (self._clip is None and len(given) < len(self._cameras.numbers)):
-            raise ValueError("an instant needs an image, the first one of each camera")
-        if not np.isfinite(now_s) or (self._last_s is not None and now_s <= self._last_s):
-            raise ValueError(f"captured_s must go on: {now_s} came after {self._last_s}")
-        for view in self._clip.views if self._clip is not None else ():
-            image = given.get(view.number)
-            if image is not None and (image.shape[1], image.shape[0]) != view.source_size:
-                wide, high = view.source_size
-                raise ValueError(
-                    f"camera {view.source} gives {image.shape[1]}x{image.shape[0]} pixels, it gave "
-                    f"{wide}x{high}: begin anew with another Tracker"
-                )
+def _refuse_what_does_not_go_on(
+    going: _Going, given: Mapping[ViewerNumber, Image], now_s: float
+) -> None:
+    if not np.isfinite(now_s) or (going.last_s is not None and now_s <= going.last_s):
+        raise ValueError(f"captured_s must go on: {now_s} came after {going.last_s}")
+    for view in going.clip.views:
+        image = given.get(view.number)
+        if image is not None and (image.shape[1], image.shape[0]) != view.source_size:
+            wide, high = view.source_size
+            raise ValueError(
+                f"camera {view.source} gives {image.shape[1]}x{image.shape[0]} pixels, it gave "
+                f"{wide}x{high}: begin anew with another Tracker"
+            )
 
 
 def _settings(size: str, mode: Mode, landmarks: str, stature_m: float) -> Settings:
@@ -272,7 +245,7 @@ def _settings(size: str, mode: Mode, landmarks: str, stature_m: float) -> Settin
     if landmarks not in ("own", "none"):
         raise SettingsError(f"landmarks must be own or none, got {landmarks!r}")
     try:
-        body = BodySettings(stature_m=stature_m)
-        return Settings(size=size, mode=mode, landmarks=landmarks, body=body)
+        body = BodySettings(stature_m=float(stature_m))
+        return Settings(size=str(size), mode=mode, landmarks=landmarks, body=body)
     except ValueError as error:
         raise SettingsError(str(error)) from error

@@ -1,0 +1,63 @@
+"""The backgrounds of a loop of one's own: from pictures of the empty room, or its first images."""
+
+from collections.abc import Mapping
+
+from common.bus.messages import ViewerNumber
+from common.config.settings import Settings
+from common.method import METHODS
+from common.video.clip_facts import Clip, View, both_cameras
+from common.video.clips import SAME_ASPECT
+from common.video.pictures import Image
+from runtime.steps.loop_images import Images, by_viewer, picture_of
+from viewer import track
+from viewer.background.background import learn
+
+Plates = Mapping[ViewerNumber, Image]
+Learns = Mapping[ViewerNumber, tuple[Image, ...]]
+"""Pictures of the empty room, of each camera, at the size that is worked on."""
+
+
+def plates_of(background: Images, numbers: Mapping[str, ViewerNumber]) -> Plates:
+    """Pictures of the empty room, copied: one of each camera.
+
+    Raises:
+        ValueError: When there is none of a camera, or one is no image.
+    """
+    plates = by_viewer(background, numbers)
+    missing = [name for name, number in numbers.items() if number not in plates]
+    if missing:
+        raise ValueError(
+            f"camera {missing[0]} has no background: give one of each camera "
+            "(cv2.imread gives None where it can read no picture)"
+        )
+    return {number: plate.copy() for number, plate in plates.items()}
+
+
+def empty_of(plates: Plates, clip: Clip) -> Learns:
+    """Those pictures as they are worked on.
+
+    Raises:
+        ValueError: When one is of another shape than the images of its camera.
+    """
+    for view in clip.views:
+        plate = plates[view.number]
+        aspect = plate.shape[1] * view.source_size[1] / (plate.shape[0] * view.source_size[0])
+        if abs(aspect - 1.0) > SAME_ASPECT:
+            raise ValueError(
+                f"the background of camera {view.source} is of another shape than its images: "
+                "take an empty image of the same camera, uncropped"
+            )
+    return {view.number: (picture_of(plates[view.number], view),) for view in clip.views}
+
+
+def is_enough(empty: tuple[Image, ...], view: View, empty_s: float) -> bool:
+    """Whether a camera showed the empty room for so long."""
+    return len(empty) >= view.frames_in(empty_s)
+
+
+def viewer_of(view: View, clip: Clip, settings: Settings, empty: tuple[Image, ...]) -> track.State:
+    """A viewer that knows its background, and has seen nothing else."""
+    rig, method = both_cameras(clip), METHODS[settings.mode]
+    camera = None if rig is None else rig.cameras[view.number - 1]
+    setup = track.Setup(view.number, camera, settings, method, len(clip.views) == 1)
+    return track.init(setup, learn(empty))
