@@ -2,6 +2,8 @@
 
 import doctest
 from collections.abc import Iterator
+from itertools import count
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +16,10 @@ from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
 from common.rig.rig_file import CalibrationError, load_rig
+from common.video.clip_facts import View
 from common.video.pictures import Image
 from runtime.offline.lockstep import Decoders, track_clip
+from runtime.steps.loop_images import picture_of
 from tritrack import Body, Tracker
 
 EMPTY = np.full((120, 160, 3), 90, np.uint8)
@@ -148,6 +152,9 @@ def test_pictures_may_be_larger_than_what_is_worked_on(
         ({"rate_hz": 0.0}, "rate_hz must be from 0 to 1000"),
         ({"stature_m": 17.5}, "stature_m must be from 0.5 to 2.6"),
         ({"cameras": ("left", "right")}, "two cameras need a calibration"),
+        ({"cameras": "left"}, r"cameras is a list of names: \['left'\]"),
+        ({"cameras": ("left", "left")}, "cameras names 'left' twice"),
+        ({"size": (320, 240)}, r"size must look like 160x120, got '\(320, 240\)'"),
     ],
 )
 def test_what_no_loop_could_mean_is_refused(given: dict[str, Any], said: str) -> None:
@@ -165,12 +172,33 @@ def test_a_camera_that_the_calibration_has_not_is_refused(clip: Path) -> None:
     [
         ([EMPTY, EMPTY], r"2 images for 1 cameras \(cam1\)"),
         ({"left": EMPTY}, "there is no camera 'left': there is cam1"),
-        ([None], "an instant needs an image"),
-        (EMPTY.astype(np.float32), r"an image is an array \(H, W, 3\) of uint8"),
-        (EMPTY[..., 0], r"an image is an array \(H, W, 3\) of uint8"),
-        (EMPTY[..., :2], "an image has three colours"),
+        ([None], "camera cam1 gives no image: the first instant needs one of each"),
+        (None, "camera cam1 gives no image: the first instant needs one of each"),
+        ((False, None), r"2 images for 1 cameras"),
+        ([(True, EMPTY)], r"cam1: an image is an array .* take the second of both, read\(\)\[1\]"),
+        (["cam1.png"], r"cam1: an image is an array \(H, W, 3\) of uint8, got str"),
+        ("cam1.png", "images are one array, a list of them or a dict by camera, got str"),
+        (iter([EMPTY]), "a list of them or a dict by camera, got list_iterator"),
+        (EMPTY.astype(np.float32), r"this is \(120, 160, 3\) of float32"),
+        (EMPTY[..., 0], r"an image is an array \(H, W, 3\) .* this is \(120, 160\) of uint8"),
+        (EMPTY[..., :2], r"blue, green, red; this is \(120, 160, 2\) of uint8"),
+        (EMPTY[:0], r"this is \(0, 160, 3\) of uint8"),
     ],
-    ids=["too many", "unknown", "none", "floats", "grey", "two colours"],
+    ids=[
+        "many",
+        "unknown",
+        "none",
+        "end",
+        "read",
+        "pair",
+        "path",
+        "text",
+        "iterator",
+        "floats",
+        "grey",
+        "colours",
+        "size",
+    ],
 )
 def test_what_is_no_image_is_refused(images: Any, said: str) -> None:
     with pytest.raises(ValueError, match=said):
@@ -197,6 +225,112 @@ def test_images_keep_their_size_and_time_goes_on() -> None:
     with pytest.raises(ValueError, match="cam1 gives 160x100 pixels, it gave 160x120"):
         tracker.step(EMPTY[:100], 6.0)
     assert tracker.step(EMPTY, 6.0)[0].captured_s == 6.0
+
+
+class Reel:
+    """Images that all come in the same arrays, as `capture.read(image)` gives them."""
+
+    def __init__(self, films: list[list[Image]]) -> None:
+        """Nothing read yet."""
+        self._films = films
+        self.images = [np.zeros_like(film[0]) for film in films]
+
+    def read(self, n: int) -> list[Image]:
+        for image, film in zip(self.images, self._films, strict=True):
+            image[:] = film[n]
+        return self.images
+
+
+@pytest.mark.parametrize("learns", [True, False], ids=["learnt", "given"])
+def test_a_program_may_read_all_images_into_the_same_arrays(
+    clip: Path, films: list[list[Image]], learns: bool
+) -> None:
+    """The last picture and those of the empty room are remembered, not where they came in."""
+    rig, got = load_rig(clip.parent / "calibration.json"), []
+    for reel in (Reel(films), None):
+        plates = [film[0].copy() for film in films]
+        tracker = Tracker(rig, size="160x120", background=None if learns else plates)
+        for plate in plates:
+            plate[:] = 0
+        bodies = list[Body]()
+        for n in range(30):
+            bodies += tracker.step(reel.read(n) if reel else [film[n] for film in films])
+        got.append(bodies)
+    assert got[0] == got[1]
+    assert got[0][-1].views == "both"
+
+
+def test_an_image_may_lie_in_memory_in_any_way_and_is_not_written(films: list[list[Image]]) -> None:
+    """Compiled passes see the same kind of array always: they are not compiled anew."""
+    image, view = films[0][30], View(1, "", (160, 120), (160, 120), 15.0, 0)
+    ways: list[Image] = [
+        image.copy(),
+        np.asfortranarray(image),
+        np.repeat(image, 2, axis=1)[:, ::2],
+        np.ascontiguousarray(image[..., ::-1])[..., ::-1],
+    ]
+    for given in ways:
+        given.flags.writeable = False
+        picture = picture_of(given, view)
+        assert np.array_equal(picture, image)
+        assert (picture.flags.c_contiguous, picture.flags.writeable) == (True, True)
+        assert not np.shares_memory(picture, given)
+
+
+@pytest.mark.parametrize("stage", ["looked", "joined", "recognizer.step", "viewer_of"])
+def test_an_instant_that_is_interrupted_may_be_given_again(
+    clip: Path, films: list[list[Image]], stage: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is as if it had never come, wherever Ctrl-C met it, learning too."""
+    rig, instants = load_rig(clip.parent / "calibration.json"), list(zip(*films, strict=True))[:24]
+    whole = Tracker(rig, size="160x120")
+    wanted = [whole.step(instant)[0] for instant in instants]
+    met = attrgetter(stage)(runtime.steps.tracker)
+    turns = count()
+
+    def interrupted(*given: Any) -> Any:
+        done = met(*given)
+        if next(turns) % 3 == 1:
+            raise KeyboardInterrupt
+        return done
+
+    monkeypatch.setattr(f"runtime.steps.tracker.{stage}", interrupted)
+    tracker, got, again = Tracker(rig, size="160x120"), list[Body](), 0
+    while len(got) < len(instants) and again < 100:
+        try:
+            got += tracker.step(instants[len(got)])
+        except KeyboardInterrupt:
+            again += 1
+    assert again > 0
+    assert got == wanted
+
+
+def test_a_camera_that_is_away_at_first_keeps_the_other_from_nothing(
+    clip: Path, films: list[list[Image]]
+) -> None:
+    """Each learns its own background; pictures of it are not heaped up meanwhile."""
+    tracker = Tracker(clip.parent / "calibration.json", size="160x120")
+    tracker.step([films[0][0], films[1][0]])
+    bodies = [tracker.step([film, None])[0] for film in films[0][1:40]]
+    assert {body.status for body in bodies[:7]} == {"empty"}
+    assert (bodies[-1].status, bodies[-1].views) == ("tracking", "1")
+
+
+@pytest.mark.parametrize("background", [[EMPTY, None], {"cam1": EMPTY}], ids=["list", "dict"])
+def test_a_picture_of_the_empty_room_that_is_missing_is_refused_at_once(
+    clip: Path, background: Any
+) -> None:
+    with pytest.raises(
+        ValueError, match=r"cam2 has no background: .* cv2\.imread gives None"
+    ):
+        Tracker(clip.parent / "calibration.json", background=background)
+
+
+def test_a_picture_of_another_shape_is_refused_and_costs_nothing() -> None:
+    tracker = Tracker(size="160x120", background=EMPTY)
+    with pytest.raises(ValueError, match="cam1 is of another shape than its images"):
+        tracker.step(EMPTY[:90])
+    assert tracker.step(EMPTY)[0].frame == 0
 
 
 def test_its_example_is_true() -> None:
