@@ -2,47 +2,40 @@
 
 import threading
 
+import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from runtime.steps.one_thread import OneThread
+from runtime.steps.one_thread import one_thread
 
 
 def threads() -> set[int]:
     return {each["num_threads"] for each in threadpool_info() if each["user_api"] == "blas"}
 
 
-def test_the_last_of_two_that_overlap_sets_the_threads_back() -> None:
-    """Limits of two threads that are not nested would leave one thread for good."""
-    one = OneThread()
-    first_left, second_in = threading.Event(), threading.Event()
-    met = list[set[int]]()
+def test_threads_that_meet_take_turns_and_the_program_has_its_own_back() -> None:
+    """Limits that overlap would leave one thread for good."""
+    asks, came = threading.Event(), threading.Event()
 
     def second() -> None:
-        with one:
-            second_in.set()
-            first_left.wait(5.0)
-            met.append(threads())
+        asks.set()
+        with one_thread():
+            came.set()
 
     with threadpool_limits(2):
-        before = threads()
         other = threading.Thread(target=second)
-        with one:
+        with one_thread():
             other.start()
-            assert second_in.wait(5.0)
-            met.append(threads())
-        first_left.set()
-        other.join()
-        assert met == [{1}, {1}]
-        assert threads() == before == {2}
+            assert asks.wait(5.0)
+            assert not came.wait(0.1)
+            assert threads() == {1}
+        other.join(5.0)
+        assert came.is_set()
+        assert threads() == {2}
 
 
-def test_threads_are_set_back_after_an_error_and_steps_may_be_nested() -> None:
-    one = OneThread()
+def test_threads_are_set_back_after_an_error() -> None:
     with threadpool_limits(2):
-        try:
-            with one, one:
-                assert threads() == {1}
-                raise KeyboardInterrupt
-        except KeyboardInterrupt:
-            pass
+        with pytest.raises(KeyboardInterrupt), one_thread(), one_thread():
+            assert threads() == {1}
+            raise KeyboardInterrupt
         assert threads() == {2}

@@ -25,7 +25,7 @@ from recognizer import __main__ as recognizer
 from runtime.steps.loop_backgrounds import Learns, empty_of, is_enough, plates_of, viewer_of
 from runtime.steps.loop_cameras import cameras_of, clip_of
 from runtime.steps.loop_images import Images, by_viewer, picture_of
-from runtime.steps.one_thread import ONE_THREAD
+from runtime.steps.one_thread import one_thread
 from runtime.steps.together import joined, looked
 from runtime.store.pose_arrays import poses
 from viewer import track
@@ -116,12 +116,13 @@ class Tracker:
             landmarks: Whether the network of landmarks looks at the pictures.
             background: Of the empty room, as images are given to `step`; None: it is learnt from
                 the first half second of images, as of a live camera. Nobody may be seen in these.
-            rate_hz: Images a second of each camera.
+            rate_hz: Images a second of each camera, about, also where `captured_s` is given.
             stature_m: Of the person, where no calibration gives the scale.
 
         Raises:
             CalibrationError: When the calibration cannot be used.
             SettingsError: When anything else is out of bounds, or not for a loop of one's own.
+            ValueError: When `background` is no image of each camera. Both errors above are such.
         """
         self._settings = _settings(size, mode, landmarks, stature_m)
         self._rate_hz = float(rate_hz)
@@ -145,8 +146,11 @@ class Tracker:
     def step(self, images: Images, captured_s: float | None = None) -> Bodies:
         """One instant: the image of each camera, and the bodies that they show.
 
+        Images are copied. An instant that is refused, or interrupted, is as if it had never come.
+
         Args:
-            images: (H, W, 3) uint8, blue, green, red; always of the same size.
+            images: (H, W, 3) uint8, blue, green, red; always of the same size. None where a camera
+                has none now; the first instant needs one of each.
             captured_s: When they were taken, seconds on any clock; None: `rate_hz` tells.
 
         Raises:
@@ -156,7 +160,7 @@ class Tracker:
         """
         given, going = by_viewer(images, self._cameras.numbers), self._going
         self._refuse_too_few(given)
-        with ONE_THREAD:
+        with one_thread():
             going = going or self._begun(given)
             now_s = going.instants / self._rate_hz if captured_s is None else float(captured_s)
             _refuse_what_does_not_go_on(going, given, now_s)
