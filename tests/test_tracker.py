@@ -283,14 +283,6 @@ def test_a_camera_that_is_away_at_first_keeps_the_other_from_nothing(
     assert (bodies[-1].status, bodies[-1].views) == ("tracking", "1")
 
 
-@pytest.mark.parametrize("background", [[EMPTY, None], {"cam1": EMPTY}], ids=["list", "dict"])
-def test_a_picture_of_the_empty_room_that_is_missing_is_refused_at_once(
-    clip: Path, background: Any
-) -> None:
-    with pytest.raises(ValueError, match=r"cam2 has no background: .*\(cv2\.imread gives None"):
-        Tracker(clip.parent / "calibration.json", background=background)
-
-
 def test_a_picture_of_another_shape_is_refused_and_costs_nothing() -> None:
     tracker = Tracker(size="160x120", background=EMPTY)
     with pytest.raises(ValueError, match="cam1 is of another shape than its images"):
