@@ -16,8 +16,8 @@ from common.video.clip_facts import Clip, uprights_of
 from integrator import commands, diagnostics, merge, merge_state, opening_posture
 from integrator.frame_numbers import frame_times
 from integrator.handed_over import Estate
+from integrator.hearing.rig_publisher import RigPublisher
 from integrator.hearing.subscriber import Subscriber
-from integrator.hearing.told import Told
 from integrator.integrator_warmup import warm_up
 from integrator.live_rig.live_calibration import LiveCalibration, is_by_person
 from integrator.merge_state import Start, State
@@ -42,7 +42,7 @@ def run(
     pace = Pace(period_s)
     heart = Heart(bus, "integrator", pace)
     subscriber = Subscriber(bus, viewers, period_s, wait_s, estate.over, estate.start_s)
-    noticed, said, told = diagnostics.State(), Annotations(), Told(bus)
+    noticed, said, told = diagnostics.State(), Annotations(), RigPublisher(bus)
     heart.beat("ready", "\n".join(diagnostics.assumed(state)))
     looks = state.scale_source == "assumed" and state.proposes and len(viewers) == 2
     with LiveCalibration(state, looks=looks, late_s=estate.late_s) as calibration:

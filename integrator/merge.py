@@ -238,4 +238,4 @@ def _smoothed(state: State, dt_s: float) -> tuple[State, Vector]:
 def _without_pose(state: State) -> State:
     """Nobody is in any view: what was learnt of the body is kept, its pose is not."""
     fresh = smoothing.init(len(ANGLE_NAMES), state.smooth.period_s)
-    return state._replace(found=None, doubted=0, met=False, smooth=fresh)
+    return state._replace(found=None, doubted=0, ever_confirmed=False, smooth=fresh)

@@ -70,7 +70,7 @@ class State(NamedTuple):
     """How often the rig was changed: places before and after do not compare."""
     doubted: int = 0
     """For how many frames the body has not been believed."""
-    met: bool = False
+    ever_confirmed: bool = False
     """Whether it was believed since somebody came."""
     uprights: Uprights = (None, None)
     """How each view's picture comes from its file's, as it last told."""

@@ -94,9 +94,9 @@ def weighed(
     assert state.rig is not None
     places_m = _places_m(state, found.pose)
     if annotations.joints_px or is_believed(places_m, state.rig, pair, scores):
-        return state._replace(doubted=0, met=True)
+        return state._replace(doubted=0, ever_confirmed=True)
     lost = _lost_frames(state)
-    least = lost if found.alone is not None and not state.met else 1
+    least = lost if found.alone is not None and not state.ever_confirmed else 1
     state = state._replace(doubted=max(least, state.doubted + 1))
     if state.doubted % lost or found.alone is not None:
         return state

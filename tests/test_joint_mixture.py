@@ -9,13 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from integrator.landmarks.joint_mixture import (
-    HARDLY,
     HELD,
+    OUTLIER_PENALTY,
     PROPOSED,
     ROUNDS,
     SHOWN,
+    Evidence,
     Spread,
-    Witnesses,
     most_probable,
 )
 
@@ -32,20 +32,20 @@ def rays_through(*places_m: np.ndarray) -> np.ndarray:
 def told(
     proposed_m: np.ndarray,
     directions: np.ndarray,
-    surety: float = 0.8,
-    sureties: tuple[float, float] = (0.8, 0.8),
+    inlier_probability: float = 0.8,
+    inliers: tuple[float, float] = (0.8, 0.8),
     wider_m: float = 0.0,
     others: tuple[np.ndarray, float] | None = None,
     often: float = PROPOSED.often,
-) -> Witnesses:
+) -> Evidence:
     """What is said; `others`: rays to where else the views may see it, and how probably."""
     elsewhere, other = (np.zeros((2, 3)), 0.0) if others is None else others
-    return Witnesses(
+    return Evidence(
         proposed_m,
-        surety,
+        inlier_probability,
         CENTRES_M,
         np.stack([directions, elsewhere], axis=1),
-        np.stack([sureties, (other, other)], axis=1),
+        np.stack([inliers, (other, other)], axis=1),
         np.array([0.02 + wider_m, 0.03, 0.03]),
         PROPOSED.roughly + wider_m,
         often,
@@ -53,7 +53,7 @@ def told(
     )
 
 
-def place_of(witnesses: Witnesses) -> tuple[np.ndarray, float, np.ndarray]:
+def place_of(witnesses: Evidence) -> tuple[np.ndarray, float, np.ndarray]:
     place_m, precision = np.empty(3), np.empty(6)
     return place_m, most_probable(witnesses, place_m, precision), precision
 
@@ -113,7 +113,7 @@ def test_where_a_view_may_see_it_too_counts_for_nothing_beside_those_who_agree()
 def test_a_proposal_that_is_unsure_gives_way_across_a_sure_ray_and_keeps_its_depth() -> None:
     proposed_m = TRUE_M + np.array([0.15, 0.0, 0.0])
     rays = rays_through(TRUE_M, TRUE_M)
-    place_m, _, _ = place_of(told(proposed_m, rays, surety=0.2, sureties=(0.9, 0.0)))
+    place_m, _, _ = place_of(told(proposed_m, rays, inlier_probability=0.2, inliers=(0.9, 0.0)))
     off = place_m - proposed_m
     assert off @ rays[0] < 0.05
     assert np.linalg.norm(np.cross(place_m - CENTRES_M[0], rays[0])) < 0.03
@@ -155,19 +155,19 @@ def bell(square: float, spread_m: float, axes: int) -> float:
 
 def anywhere(roughly_m: float, unlikely: float, often: float, kind: Spread, axes: int) -> float:
     beyond = unlikely * (1 - often) / (kind.far * roughly_m) ** axes
-    return float(beyond * np.exp(-HARDLY * often / kind.often)) + 1e-30
+    return float(beyond * np.exp(-OUTLIER_PENALTY * often / kind.often)) + 1e-30
 
 
-def weighed(w: Witnesses, here: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+def weighed(w: Evidence, here: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
     """Log probability of a place, and normal equations, by matrices."""
-    square, unlikely = float(np.square(here - w.proposed_m).sum()), 1 - w.surety
-    right = w.surety * bell(square, w.spreads_m[0], 3)
+    square, unlikely = float(np.square(here - w.proposed_m).sum()), 1 - w.inlier_probability
+    right = w.inlier_probability * bell(square, w.spreads_m[0], 3)
     rough = unlikely * w.often * bell(square, w.roughly_m, 3)
     total = right + rough + anywhere(w.roughly_m, unlikely, w.often, PROPOSED, 3)
     weight = (right / w.spreads_m[0] ** 2 + rough / w.roughly_m**2) / total + HELD
     normal, side, log = weight * np.eye(3), weight * w.proposed_m, np.log(total)
     for view in range(2):
-        sure, other = w.sureties[view]
+        sure, other = w.inliers[view]
         if sure <= 0.0:
             continue
         spread_m, roughly_m = w.spreads_m[1 + view], SHOWN.roughly * w.stature_m
@@ -187,10 +187,10 @@ def weighed(w: Witnesses, here: np.ndarray) -> tuple[float, np.ndarray, np.ndarr
     return float(log), normal, side
 
 
-def starts(w: Witnesses) -> Iterator[np.ndarray]:
+def starts(w: Evidence) -> Iterator[np.ndarray]:
     """The proposed place, those nearest to it on each ray, and where rays of both views meet."""
     yield w.proposed_m
-    rays = [[(w.centres_m[v], w.directions[v, r]) for r in range(2) if w.sureties[v, r] > 0]
+    rays = [[(w.centres_m[v], w.directions[v, r]) for r in range(2) if w.inliers[v, r] > 0]
             for v in range(2)]  # fmt: skip
     for centre_m, along in (*rays[0], *rays[1]):
         yield centre_m + (w.proposed_m - centre_m) @ along * along
@@ -199,7 +199,7 @@ def starts(w: Witnesses) -> Iterator[np.ndarray]:
         yield (one_m + along[0] * one + two_m + along[1] * two) / 2
 
 
-def expected_place(w: Witnesses) -> tuple[np.ndarray, float, np.ndarray]:
+def expected_place(w: Evidence) -> tuple[np.ndarray, float, np.ndarray]:
     found = []
     for start in starts(w):
         here = start
@@ -219,13 +219,13 @@ def test_the_place_is_the_highest_peak_that_climbing_from_all_witnesses_finds(se
     spread_m = (0.01, 0.05, 0.3)[seed % 3]
     shown = rays_through(*(TRUE_M + rng.normal(0.0, spread_m, (2, 3))))
     elsewhere = rays_through(*(TRUE_M + rng.normal(0.0, 2 * spread_m, (2, 3))))
-    sureties = ((0.7, 0.5), (0.7, 0.0), (0.0, 0.6), (0.1, 0.2))[seed % 4]
+    inliers = ((0.7, 0.5), (0.7, 0.0), (0.0, 0.6), (0.1, 0.2))[seed % 4]
     w = told(
-        TRUE_M + rng.normal(0.0, spread_m, 3), shown, rng.uniform(0.01, 0.9), sureties,
+        TRUE_M + rng.normal(0.0, spread_m, 3), shown, rng.uniform(0.01, 0.9), inliers,
         wider_m=rng.uniform(0.0, 0.02), others=(elsewhere, 0.15 * (seed % 2)),
         often=(0.05, 0.95)[seed % 5 > 1],
     )  # fmt: skip
-    w = w._replace(sureties=w.sureties * (w.sureties[:, :1] > 0))
+    w = w._replace(inliers=w.inliers * (w.inliers[:, :1] > 0))
     found, expected = place_of(w), expected_place(w)
     for one, other in zip(found, expected, strict=True):
         assert one == pytest.approx(other, rel=1e-6, abs=1e-7)

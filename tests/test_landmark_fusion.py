@@ -12,19 +12,19 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector
 from common.bus.messages import Landmarks
 from common.rig.camera import Camera, project
-from integrator.landmarks import landmark_fusion, limb_springs, proposal_misfit, turned_about
-from integrator.landmarks.exchanged_sides import Exchanged
+from integrator.landmarks import front_back_flip, landmark_fusion, limb_springs, proposal_residual
 from integrator.landmarks.joint_mixture import (
     LEAST,
     MOST,
     PROPOSED,
     SECOND,
     SHOWN,
-    Witnesses,
+    Evidence,
     most_probable,
 )
 from integrator.landmarks.landmark_fusion import FIRM_M
 from integrator.landmarks.landmark_rays import AT, Rays, rays_of
+from integrator.landmarks.left_right_swap import Exchanged
 from integrator.proposal.pose_network import OTHER_SIDES
 from integrator.rig.undistortion import undistorted_camera, undistorted_report
 
@@ -161,7 +161,7 @@ def test_a_proposal_that_both_faces_contradict_is_turned_and_one_that_they_confi
     yaw_deg: float,
 ) -> None:
     true_m = walking(yaw_deg)
-    facings = [turned_about.yaw_deg(np.array(camera.R), true_m[AT]) for camera in RIG.cameras]
+    facings = [front_back_flip.yaw_deg(np.array(camera.R), true_m[AT]) for camera in RIG.cameras]
     seen = rays(true_m, true_m, (facings[0], facings[1]))
     assert not fused(true_m[AT], seen, 0.8, instants=10).memory.turned[1]
     found = fused(true_m[AT][OTHER_SIDES], seen, 0.8, instants=10)
@@ -171,11 +171,11 @@ def test_a_proposal_that_both_faces_contradict_is_turned_and_one_that_they_confi
 
 def test_a_sure_view_is_hardly_ever_confused_and_an_unsure_one_half_the_time() -> None:
     """Rates of made-up people whom views are so sure of: 37, 15, 8 and .1 %."""
-    rates = [turned_about.confused(sure) for sure in (0.54, 0.64, 0.7, 0.92)]
+    rates = [front_back_flip.confused(sure) for sure in (0.54, 0.64, 0.7, 0.92)]
     assert rates == pytest.approx([0.37, 0.15, 0.08, 0.001], abs=0.02)
-    assert turned_about.confused(1.0) < 1e-9
-    assert turned_about.confused(0.2) == 0.5
-    assert turned_about.confused(0.0) == turned_about.UNTOLD
+    assert front_back_flip.confused(1.0) < 1e-9
+    assert front_back_flip.confused(0.2) == 0.5
+    assert front_back_flip.confused(0.0) == front_back_flip.UNTOLD
 
 
 def raising(side: str) -> np.ndarray:
@@ -190,7 +190,7 @@ def raising(side: str) -> np.ndarray:
 def test_a_turned_proposal_does_not_exchange_the_arms_that_both_views_show() -> None:
     """Turned about and back again it raises the other arm, as surely as ever."""
     true_m, proposed_m = raising("r"), raising("l")
-    facings = [turned_about.yaw_deg(np.array(camera.R), true_m[AT]) for camera in RIG.cameras]
+    facings = [front_back_flip.yaw_deg(np.array(camera.R), true_m[AT]) for camera in RIG.cameras]
     seen = rays(true_m, true_m, (facings[0], facings[1]))
     found = fused(proposed_m[AT][OTHER_SIDES], seen, 0.8, instants=10)
     assert found.memory.turned[1]
@@ -201,7 +201,7 @@ def test_a_turned_proposal_does_not_exchange_the_arms_that_both_views_show() -> 
 def test_a_camera_that_takes_front_for_back_by_itself_turns_nobody() -> None:
     """Front and back are confused by one view often, a profile's left and right by none."""
     true_m = walking()
-    facing_2 = turned_about.yaw_deg(np.array(RIG.cameras[1].R), true_m[AT])
+    facing_2 = front_back_flip.yaw_deg(np.array(RIG.cameras[1].R), true_m[AT])
     found = fused(true_m[AT], rays(true_m, true_m, (180.0, facing_2)), 0.8, instants=30)
     assert not found.memory.turned[1]
 
@@ -209,7 +209,7 @@ def test_a_camera_that_takes_front_for_back_by_itself_turns_nobody() -> None:
 def test_facing_is_zero_towards_the_camera_and_ninety_to_the_right_of_its_picture() -> None:
     pose = rest_pose()
     first = RIG.cameras[0]
-    assert turned_about.yaw_deg(np.array(first.R), joints(BODY, pose)[AT]) == pytest.approx(
+    assert front_back_flip.yaw_deg(np.array(first.R), joints(BODY, pose)[AT]) == pytest.approx(
         0.0, abs=1.0
     )
     pose[POSE_INDEX["torso_y"]] = 90.0
@@ -218,7 +218,7 @@ def test_facing_is_zero_towards_the_camera_and_ninety_to_the_right_of_its_pictur
     to_right = (
         project(first, nose_m[None])[0, 0] > project(first, turned_m.mean(axis=0)[None])[0, 0]
     )
-    assert turned_about.yaw_deg(np.array(first.R), turned_m) == pytest.approx(
+    assert front_back_flip.yaw_deg(np.array(first.R), turned_m) == pytest.approx(
         90.0 if to_right else -90.0, abs=1.0
     )
 
@@ -249,7 +249,7 @@ def test_a_picture_turned_upright_says_which_way_somebody_faces(
     level = np.array(RIG.cameras[0].R)
     a = way * np.radians(roll_deg)
     rolled = np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]]) @ level
-    off_deg = turned_about.yaw_deg(rolled, joints_m) - turned_about.yaw_deg(level, joints_m)
+    off_deg = front_back_flip.yaw_deg(rolled, joints_m) - front_back_flip.yaw_deg(level, joints_m)
     assert np.cos(np.radians(off_deg)) == pytest.approx(1.0, abs=1e-3)
 
 
@@ -276,21 +276,21 @@ def test_each_joint_is_looked_for_with_both_sides_of_either_view() -> None:
 
     for joint, first, second in np.ndindex(12, 2, 2):
         at = [(view, joint ^ side) for view, side in enumerate((first, second))]
-        sureties = np.zeros((2, 2))
+        inliers = np.zeros((2, 2))
         for view, own in at:
             sure = seen.confidence[view, own]
-            sureties[view, 0] = share(sure, landmark_fusion.SHOWN_RIGHT) if sure else 0.0
+            inliers[view, 0] = share(sure, landmark_fusion.SHOWN_RIGHT) if sure else 0.0
             other = seen.others_confidence[view, own]
-            sureties[view, 1] = min(other if other >= SECOND else 0.0, MOST - sureties[view, 0])
+            inliers[view, 1] = min(other if other >= SECOND else 0.0, MOST - inliers[view, 0])
         sure = float(confidence[joint])
         right_m = PROPOSED.right + PROPOSED.unsure * (1.0 - sure)
         shown = [1.75 * (SHOWN.right + SHOWN.unsure * (1.0 - seen.confidence[each])) for each in at]
-        witnesses = Witnesses(
+        witnesses = Evidence(
             proposal.joints_m[joint],
             share(sure, landmark_fusion.PROPOSED_RIGHT),
             seen.centres_m,
             np.array([[seen.directions[each], seen.others[each]] for each in at]),
-            sureties,
+            inliers,
             np.array([np.hypot(right_m, wider_m[joint]), *shown]),
             float(np.hypot(PROPOSED.roughly, wider_m[joint])),
             0.7,
@@ -332,12 +332,12 @@ def test_what_is_remembered_is_each_steps_own() -> None:
     joints_m = walking()[AT]
     seen = rays(walking(), walking())
     one = fused(joints_m, seen, 0.6)
-    turned = turned_about.step(None, joints_m, seen)
+    turned = front_back_flip.step(None, joints_m, seen)
     assert one.memory.turned == turned
-    misfit = proposal_misfit.step(None, joints_m, seen, 1.75)
+    misfit = proposal_residual.step(None, joints_m, seen, 1.75)
     for own, due in zip(one.memory.misfit, misfit, strict=True):
         assert np.array_equal(np.asarray(own), np.asarray(due))
     assert one.memory.lengths_m is not None
     assert one.memory.lengths_m == pytest.approx(limb_springs.lengths_m(None, one.joints_m, 1.75))
     two = landmark_fusion.step(one.memory, joints_m, np.full(12, 0.6), seen, 1.75)
-    assert two.memory.turned == turned_about.step(one.memory.turned, joints_m, seen)
+    assert two.memory.turned == front_back_flip.step(one.memory.turned, joints_m, seen)

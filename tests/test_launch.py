@@ -66,9 +66,9 @@ def assert_equals_offline(run: Path, clip: Path) -> None:
 def live_in_time(settings: Settings, out: Path, **how: Any) -> dict[str, Any]:
     """A live run whose viewers were never in a hurry, what its summary tells.
 
-    A viewer that is late leaves looks out (`viewer/haste.py`), and where the integrator is late it
-    goes on with an older guide, so only a run without either equals an offline one; a machine that
-    stands still for 30 ms gets two more trials.
+    A viewer that is late leaves looks out (`viewer/load_shedding.py`), and where the integrator is
+    late it goes on with an older guide, so only a run without either equals an offline one; a
+    machine that stands still for 30 ms gets two more trials.
     """
     for _ in range(3):
         facts = live(settings, out, QUIET, **how)

@@ -470,11 +470,11 @@ def test_scores_are_those_of_each_views_own_camera_and_silhouette() -> None:
 
 def test_without_anybody_the_body_is_kept_and_its_pose_is_not() -> None:
     state = instants()._replace(
-        found=merge_state.Posed(standing(), ("facade", "flank")), doubted=3, met=True
+        found=merge_state.Posed(standing(), ("facade", "flank")), doubted=3, ever_confirmed=True
     )
     state, _ = merge._smoothed(state, 0.1)
     after = merge._without_pose(state)
-    assert (after.found, after.doubted, after.met) == (None, 0, False)
+    assert (after.found, after.doubted, after.ever_confirmed) == (None, 0, False)
     assert after.smooth.P is None
     assert after.smooth.period_s == state.smooth.period_s
     assert len(after.smooth.x) == len(state.smooth.x)

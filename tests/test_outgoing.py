@@ -128,8 +128,8 @@ def test_a_body_that_is_believed_is_doubted_no_more(
 ) -> None:
     monkeypatch.setattr(outgoing, "is_believed", lambda *_: believed)
     notes = Annotations(joints_px={"l_wrist": (3.0, 4.0)} if annotated else {})
-    after = weighed(state._replace(doubted=3, met=False), BOTH, SCORES, notes)
-    assert (after.doubted, after.met) == (0, True)
+    after = weighed(state._replace(doubted=3, ever_confirmed=False), BOTH, SCORES, notes)
+    assert (after.doubted, after.ever_confirmed) == (0, True)
 
 
 def test_what_the_network_remembers_of_a_body_that_both_lost_is_forgotten_every_five_frames(
@@ -138,7 +138,8 @@ def test_what_the_network_remembers_of_a_body_that_both_lost_is_forgotten_every_
     monkeypatch.setattr(outgoing, "is_believed", lambda *_: False)
     assert state.found is not None
     memory: Any = object()
-    state = state._replace(found=state.found._replace(memory=memory), doubted=0, met=False)
+    found = state.found._replace(memory=memory)
+    state = state._replace(found=found, doubted=0, ever_confirmed=False)
     kept = []
     for _ in range(2 * LOST_FRAMES):
         state = weighed(state, BOTH, SCORES, Annotations())
@@ -149,16 +150,19 @@ def test_what_the_network_remembers_of_a_body_that_both_lost_is_forgotten_every_
     assert kept == [True, True, True, True, False] * 2
 
 
-@pytest.mark.parametrize(("met", "doubted"), [(True, 1), (False, LOST_FRAMES)])
+@pytest.mark.parametrize(("ever_confirmed", "doubted"), [(True, 1), (False, LOST_FRAMES)])
 def test_one_view_keeps_what_it_remembers_and_loses_at_once_who_it_never_met(
-    state: State, monkeypatch: pytest.MonkeyPatch, met: bool, doubted: int
+    state: State, monkeypatch: pytest.MonkeyPatch, ever_confirmed: bool, doubted: int
 ) -> None:
     monkeypatch.setattr(outgoing, "is_believed", lambda *_: False)
     memory, alone = object(), object()
     assert state.found is not None
     found = state.found._replace(memory=memory, alone=alone)  # type: ignore[arg-type]
     after = weighed(
-        state._replace(found=found, met=met), Pair(seen(1), None), SCORES, Annotations()
+        state._replace(found=found, ever_confirmed=ever_confirmed),
+        Pair(seen(1), None),
+        SCORES,
+        Annotations(),
     )
     assert after.doubted == doubted
     assert after.found is not None

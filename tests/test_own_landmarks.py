@@ -27,7 +27,7 @@ from viewer.landmarks.landmark_window import (
     window_of,
 )
 from viewer.landmarks.own_landmarks import (
-    Eye,
+    LandmarkModel,
     _about,
     _turn_deg,
     found_anywhere,
@@ -199,7 +199,7 @@ def lying() -> np.ndarray:
 
 def test_a_sure_look_at_the_outline_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
     looks = Looks(monkeypatch, looked(0.5))
-    found = own_landmarks(PICTURE, seen(BOXED), None, Eye(SHIPPED, twice=True))
+    found = own_landmarks(PICTURE, seen(BOXED), None, LandmarkModel(SHIPPED, twice=True))
     window = window_of(Box(left=100, right=159, top=60, bottom=199))
     assert looks.shown == [(window, True)]
     assert looks.eyes == [(SHIPPED, True)]

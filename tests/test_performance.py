@@ -19,7 +19,7 @@ from common.video.clip_facts import Clip, Meta, View
 from integrator import merge_state
 from runtime.offline import performance
 from runtime.offline.lockstep import Decoders, track_clip
-from runtime.offline.performance import STAGE, Going, Prepared, Watch, performed
+from runtime.offline.performance import STAGE, LockstepState, Prepared, Watch, performed
 from runtime.offline.rig_check import Witness
 from runtime.unfinished.state_codec import packed, unpacked
 from runtime.unfinished.work import Course, Kept
@@ -109,8 +109,8 @@ class Noted:
 
     due = True
 
-    def __init__(self, resumed: Going | None = None) -> None:
-        self.left, self.states, self.bodies = resumed, list[Going](), list[Body]()
+    def __init__(self, resumed: LockstepState | None = None) -> None:
+        self.left, self.states, self.bodies = resumed, list[LockstepState](), list[Body]()
 
     def messages(self, _: str) -> list[Body]:
         return self.bodies
@@ -123,7 +123,7 @@ class Noted:
 
     def save(self, stage: str, state: object) -> None:
         assert stage == STAGE
-        assert isinstance(state, Going)
+        assert isinstance(state, LockstepState)
         self.states.append(state)
 
 

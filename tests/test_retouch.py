@@ -18,8 +18,8 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 from websockets.typing import Origin, Subprotocol
 
-from animator.retouching.easel import GAP_M, TALL_M
 from animator.retouching.retouch import RetouchPage
+from animator.retouching.retouch_scene import GAP_M, TALL_M
 from animator.take import Take
 from common.body.body import LIMB_ENDS
 from common.notes.notes import Held, Notes, held

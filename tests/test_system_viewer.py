@@ -38,7 +38,7 @@ from viewer.__main__ import (
 )
 from viewer.background.background import learn
 from viewer.captured_frame import CapturedFrame
-from viewer.haste import Haste
+from viewer.load_shedding import LoadShedder
 
 VIEW = View(2, "cam2.avi", (64, 48), (64, 48), 15.0, 40)
 EMPTY = learn([np.full((48, 64, 3), 100, np.uint8)])
@@ -270,10 +270,10 @@ def test_a_background_takes_half_a_second_of_the_frames_that_are_looked_at(
 
 
 def test_the_news_are_each_told_under_their_name() -> None:
-    guides, haste = Guides(Taken(), 2), Haste(1 / 15)  # type: ignore[arg-type]
-    guides.misses, haste.frames = 7, 8
+    guides, shedder = Guides(Taken(), 2), LoadShedder(1 / 15)  # type: ignore[arg-type]
+    guides.misses, shedder.frames = 7, 8
     live = SimpleNamespace(odd=("slow", "gone"), dropped=6)
-    assert _news(live, guides, haste, ("a", "b")) == {  # type: ignore[arg-type]
+    assert _news(live, guides, shedder, ("a", "b")) == {  # type: ignore[arg-type]
         "detail": "a\nb\nslow\ngone",
         "dropped": 6,
         "guide_misses": 7,

@@ -28,11 +28,11 @@ from viewer.background.background import Background
 from viewer.background.new_background import Learning
 from viewer.capture import Live, RoomClock
 from viewer.captured_frame import CapturedFrame
-from viewer.haste import Haste
 from viewer.jpeg import jpeg_of
 from viewer.landmarks.landmark_sources import outside_sources
+from viewer.load_shedding import LoadShedder
+from viewer.resend_buffer import ResendBuffer
 from viewer.room.background_source import keep, opening_of_run
-from viewer.unheard import Unheard
 from viewer.viewer_warmup import warm_up
 
 LAST_WORDS_S: Final = 1.0
@@ -112,26 +112,26 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
     pace = Pace(period_s)
     heart = Heart(bus, f"viewer {view.number}", pace)
     guides = Guides(bus.subscribe(Guide), view.number)
-    unheard, alive = Unheard(), bus.watch_alive()
+    unheard_reports, alive = ResendBuffer(), bus.watch_alive()
     learning = Learning(bus.subscribe(Command), view.number, _empty_frames(state, view))
-    haste, before, why = Haste(period_s), -1, ""
+    shedder, before, why = LoadShedder(period_s), -1, ""
     try:
         while not stop.is_set() and not live.over:
             frame = live.take(period_s)
             if frame is None:
-                heart.beat("running", **_news(live, guides, haste, warnings))
+                heart.beat("running", **_news(live, guides, shedder, warnings))
                 continue
             guide = guides.of_frame(before, WAIT_SHARE * period_s)
-            frame = haste.of_frame(frame, time.monotonic() + live.offset_s - frame.clock_s)
+            frame = shedder.of_frame(frame, time.monotonic() + live.offset_s - frame.clock_s)
             state, report = track.step(state, frame, guide)
-            for missed in unheard.again(guides.heard, alive.drain()):
+            for missed in unheard_reports.again(guides.heard, alive.drain()):
                 bus.publish(missed)
             bus.publish(report)
-            unheard.said(report)
+            unheard_reports.said(report)
             pace.done(frame.clock_s - live.offset_s, time.monotonic())
             if state.setup.settings.pictures:
                 bus.publish(_picture(view.number, frame))
-            heart.beat("running", **_news(live, guides, haste, warnings))
+            heart.beat("running", **_news(live, guides, shedder, warnings))
             background, answer = learning.step(frame.picture, report.fault)
             if background is not None:
                 state = _before(background, state, prepared)
@@ -143,11 +143,11 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
         raise
     finally:  # Also when the decoder broke: nobody shall wait for this view again.
         bus.publish(Ended(viewer=view.number, frames=pace.frames, why=why))
-    for odd in (shortfall(view, live.ending) if live.over else "", haste.odd(pace.frames)):
+    for odd in (shortfall(view, live.ending) if live.over else "", shedder.odd(pace.frames)):
         if odd:
             log.warning(odd)
             warnings = (*warnings, odd)
-    heart.beat("ended", **_news(live, guides, haste, warnings))
+    heart.beat("ended", **_news(live, guides, shedder, warnings))
 
 
 def _before(background: Background, state: track.State, prepared: Prepared) -> track.State:
@@ -254,13 +254,15 @@ def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | No
     return RoomClock(start_s, offset.offset_s)
 
 
-def _news(live: Live, guides: Guides, haste: Haste, warnings: tuple[str, ...]) -> dict[str, Any]:
+def _news(
+    live: Live, guides: Guides, shedder: LoadShedder, warnings: tuple[str, ...]
+) -> dict[str, Any]:
     """What is odd and what was lost so far, as a Pulse tells it."""
     return {
         "detail": "\n".join((*warnings, *live.odd)),
         "dropped": live.dropped,
         "guide_misses": guides.misses,
-        "hurried": haste.frames,
+        "hurried": shedder.frames,
         "malformed": guides.malformed,
         "foreign": guides.foreign,
     }

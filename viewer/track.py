@@ -30,7 +30,7 @@ from viewer.captured_frame import CapturedFrame
 from viewer.expected_body import expected_body
 from viewer.landmarks.landmark_looks import network_of
 from viewer.landmarks.outside_source import nearest_landmarks
-from viewer.landmarks.own_landmarks import Eye, own_landmarks
+from viewer.landmarks.own_landmarks import LandmarkModel, own_landmarks
 from viewer.paper import pose_search
 from viewer.paper.measure import opening_measure
 from viewer.room.outline_correction import corrected, is_trusted
@@ -245,7 +245,7 @@ def _landmarks(state: State, frame: CapturedFrame, seen: Seen) -> Landmarks | No
         return None
     settings = state.setup.settings
     if settings.looks_itself:
-        eye = Eye(network_of(settings.landmarks), state.setup.alone and not frame.hurried)
+        eye = LandmarkModel(network_of(settings.landmarks), state.setup.alone and not frame.hurried)
         return own_landmarks(frame.picture, seen, state.landmarks, eye)
     return nearest_landmarks(frame.landmarks, seen.box)
 

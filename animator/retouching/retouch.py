@@ -7,10 +7,10 @@ import numpy as np
 
 from animator.page.door import HOST
 from animator.retouching.controls import AUTO, Controls
-from animator.retouching.easel import Easel, Picture
 from animator.retouching.fitting import Fit, Fitting
 from animator.retouching.keyboard import bind
 from animator.retouching.player import Player
+from animator.retouching.retouch_scene import Picture, RetouchScene
 from animator.retouching.viser_door import close_server, open_server
 from animator.take import Take, doubts_at, next_doubtful, with_notes
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS
@@ -54,7 +54,7 @@ class RetouchPage:
         self._lock = threading.RLock()
         self._server = open_server(port)
         first = picture_of(self._row)
-        self._easel = Easel(self._server, size, first, self.place, self.flip)
+        self._easel = RetouchScene(self._server, size, first, self.place, self.flip)
         self._controls = Controls(self._server.gui, take, self)
         self._fitting = Fitting(fit, self._fitted, self._controls.tell)
         bind(self._server.gui, self)

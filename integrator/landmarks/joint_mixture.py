@@ -36,7 +36,7 @@ PROPOSED: Final = Spread(right=0.014, unsure=0.061, roughly=0.09, often=0.95, fa
 """Of joints that outlines propose, metres."""
 SHOWN: Final = Spread(right=0.012, unsure=0.035, roughly=0.051, often=0.55, far=2)
 """Of landmarks, statures beside their ray. All were chosen on r01, r04 and made-up people."""
-HARDLY: Final = 4.5
+OUTLIER_PENALTY: Final = 4.5
 """So far the log probability of what is neither is lowered, while nothing is doubted."""
 LEAST, MOST = 0.01, 0.98
 """Nobody is believed more or less surely."""
@@ -49,18 +49,18 @@ NONE, BOTH = -1, 2
 """Of rays: no ray of a view, and how many a view has."""
 
 
-class Witnesses(NamedTuple):
+class Evidence(NamedTuple):
     """What is said of one joint."""
 
     proposed_m: Any
     """(3,)"""
-    surety: float
+    inlier_probability: float
     """How probably the proposed joint is right."""
     centres_m: Any
     """(2, 3) the cameras."""
     directions: Any
     """(2, BOTH, 3) of its rays: of each view where it shows the joint, and where else it may."""
-    sureties: Any
+    inliers: Any
     """(2, BOTH) how probably each landmark is right; 0: there is none."""
     spreads_m: Any
     """(3,) of the proposed joint and of both landmarks, where they are right."""
@@ -79,7 +79,7 @@ def most_probable(told: Any, place_m: Any, precision: Any) -> float:
     least squares (the EM algorithm of Dempster 1977) climb to the next peak; the highest counts.
 
     Args:
-        told: Witnesses.
+        told: Evidence.
         place_m: (3,) gets the place.
         precision: (6,) gets xx, xy, xz, yy, yz, zz of its inverse covariance, 1 / m^2.
     """
@@ -106,7 +106,7 @@ def _start(told: Any, first: int, second: int, here: Any) -> bool:
     here[:] = told.proposed_m
     for view, ray in enumerate((first, second)):
         if ray != NONE:
-            if told.sureties[view, ray] <= 0.0:
+            if told.inliers[view, ray] <= 0.0:
                 return False
             _drop(told.centres_m[view], told.directions[view, ray], here)
     if NONE in (first, second):
@@ -149,9 +149,9 @@ def _weigh(told: Any, here: Any, normal: Any, right: Any) -> float:
     square = 0.0
     for i in range(3):
         square += (here[i] - told.proposed_m[i]) ** 2
-    surety, spread_m = told.surety, told.spreads_m[0]
-    unlikely = 1.0 - surety
-    is_right = _bell(square, spread_m, surety, 3)
+    inlier_probability, spread_m = told.inlier_probability, told.spreads_m[0]
+    unlikely = 1.0 - inlier_probability
+    is_right = _bell(square, spread_m, inlier_probability, 3)
     is_rough = _bell(square, told.roughly_m, unlikely * told.often, 3)
     total = is_right + is_rough + _anywhere(told.roughly_m, unlikely, told.often, PROPOSED, 3)
     weight = (is_right / spread_m**2 + is_rough / told.roughly_m**2) / total + HELD
@@ -161,7 +161,7 @@ def _weigh(told: Any, here: Any, normal: Any, right: Any) -> float:
         right[i] = weight * told.proposed_m[i]
     found = math.log(total)
     for view in range(2):
-        if told.sureties[view, 0] > 0.0:
+        if told.inliers[view, 0] > 0.0:
             found += _look(told, view, here, normal, right)
     return found
 
@@ -173,15 +173,15 @@ def _look(told: Any, view: int, here: Any, normal: Any, right: Any) -> float:
     It shows the joint at its first place or at its second: whichever is nearer pulls.
     """
     first, second = told.directions[view]
-    surety, other = told.sureties[view]
+    inlier_probability, other = told.inliers[view]
     centre_m, spread_m, roughly_m = (
         told.centres_m[view],
         told.spreads_m[1 + view],
         SHOWN.roughly * told.stature_m,
     )
     square = _beside(centre_m, first, here)
-    unlikely = 1.0 - surety - other
-    is_right = _bell(square, spread_m, surety, 2)
+    unlikely = 1.0 - inlier_probability - other
+    is_right = _bell(square, spread_m, inlier_probability, 2)
     is_rough = _bell(square, roughly_m, unlikely * SHOWN.often, 2)
     is_second = _bell(_beside(centre_m, second, here), spread_m, other, 2) if other > 0.0 else 0.0
     total = is_right + is_rough + is_second + _anywhere(roughly_m, unlikely, SHOWN.often, SHOWN, 2)
@@ -222,7 +222,7 @@ def _bell(square: float, spread_m: float, often: float, axes: int) -> float:
 def _anywhere(roughly_m: float, unlikely: float, often: float, kind: Any, axes: int) -> float:
     """How probably somebody who is neither right nor, so often, roughly right says so."""
     beyond = unlikely * (1.0 - often) / (kind.far * roughly_m) ** axes
-    return beyond * math.exp(-HARDLY * often / kind.often) + 1e-30
+    return beyond * math.exp(-OUTLIER_PENALTY * often / kind.often) + 1e-30
 
 
 @compiled

@@ -8,13 +8,12 @@ from numpy.typing import NDArray
 from common.body.body import Vector
 from common.compiled import compiled
 from integrator.landmarks import (
-    displaced_proposal,
-    exchanged_sides,
+    front_back_flip,
+    left_right_swap,
     limb_springs,
-    proposal_misfit,
-    turned_about,
+    proposal_offset,
+    proposal_residual,
 )
-from integrator.landmarks.exchanged_sides import Exchanged, Exchanges
 from integrator.landmarks.joint_mixture import (
     BOTH,
     LEAST,
@@ -22,11 +21,12 @@ from integrator.landmarks.joint_mixture import (
     PROPOSED,
     SECOND,
     SHOWN,
-    Witnesses,
+    Evidence,
     most_probable,
 )
 from integrator.landmarks.landmark_rays import Rays
-from integrator.landmarks.proposal_misfit import Misfit
+from integrator.landmarks.left_right_swap import Exchanged, Exchanges
+from integrator.landmarks.proposal_residual import Misfit
 from integrator.proposal import pose_network
 from integrator.proposal.network_weights import JOINTS
 from integrator.proposal.pose_network import OTHER_SIDES
@@ -104,15 +104,15 @@ def step(
         rays: Of both views' landmarks.
         stature_m: Of the person.
     """
-    turned = turned_about.step(None if before is None else before.turned, proposed_m, rays)
+    turned = front_back_flip.step(None if before is None else before.turned, proposed_m, rays)
     if turned[1]:
         proposed_m, confidence = proposed_m[OTHER_SIDES], confidence[OTHER_SIDES]
-    misfit = proposal_misfit.step(
+    misfit = proposal_residual.step(
         None if before is None else before.misfit, proposed_m, rays, stature_m
     )
-    wider_m = proposal_misfit.wider_m(misfit, rays, stature_m)
-    doubt = proposal_misfit.doubt(misfit, turned[1])
-    displaced, proposed_m = displaced_proposal.step(
+    wider_m = proposal_residual.wider_m(misfit, rays, stature_m)
+    doubt = proposal_residual.doubt(misfit, turned[1])
+    displaced, proposed_m = proposal_offset.step(
         None if before is None else before.displaced, proposed_m, _shown(rays), rays, stature_m
     )
     values, places_m, precisions = _weighed(
@@ -120,7 +120,7 @@ def step(
         rays,
         stature_m,
     )
-    exchanges, decided = exchanged_sides.step(
+    exchanges, decided = left_right_swap.step(
         None if before is None else before.exchanges,
         values[ARMS].sum(axis=0),
         values[LEGS].sum(axis=0),
@@ -197,7 +197,7 @@ def _aside(joints_m: NDArray[np.float64], centres_m: NDArray[np.float64]) -> tup
 
 def _confused(rays: Rays) -> tuple[float, float]:
     """How probably each view took front for back."""
-    first, second = (turned_about.confused(sure) for sure in rays.facing_confidence)
+    first, second = (front_back_flip.confused(sure) for sure in rays.facing_confidence)
     return first, second
 
 
@@ -219,7 +219,7 @@ def _modes(
     n = len(proposed_m)
     values, places_m = np.empty((n, 2, 2)), np.empty((n, 2, 2, 3))
     precisions = np.empty((n, 2, 2, 6))
-    along, sureties, spreads = np.empty((2, BOTH, 3)), np.empty((2, BOTH)), np.empty(3)
+    along, inliers, spreads = np.empty((2, BOTH, 3)), np.empty((2, BOTH)), np.empty(3)
     for joint in range(n):
         spreads[0] = spreads_m[joint]
         for first in range(2):
@@ -227,14 +227,14 @@ def _modes(
                 for view in range(2):
                     own = joint ^ (first if view == 0 else second)
                     along[view] = directions[view, own]
-                    sureties[view] = seen[view, own]
+                    inliers[view] = seen[view, own]
                     spreads[1 + view] = seen_m[view, own]
-                told = Witnesses(
+                told = Evidence(
                     proposed_m[joint],
                     sure[joint],
                     centres_m,
                     along,
-                    sureties,
+                    inliers,
                     spreads,
                     roughly_m[joint],
                     often,

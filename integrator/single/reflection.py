@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, OTHER_SIDE
 from common.notes.notes import ORIENTATIONS, Orientation
 from common.rig.camera import Camera, arrays_of, centre
-from integrator.landmarks import turned_about
+from integrator.landmarks import front_back_flip
 from integrator.landmarks.landmark_rays import AT
 
 Joints = NDArray[np.float64]
@@ -51,7 +51,7 @@ class Front(NamedTuple):
 
 def yaw_deg(camera: Camera, joints_m: Joints) -> float:
     """Which way the lines across shoulders and hips face: 0 the camera, 90 the picture's right."""
-    return turned_about.yaw_deg(arrays_of(camera).R, joints_m[AT])
+    return front_back_flip.yaw_deg(arrays_of(camera).R, joints_m[AT])
 
 
 def faces(yaw: float) -> Orientation:

@@ -2,7 +2,7 @@
 
 A fork works within milliseconds, where a process of its own imports and loads for seconds, and
 shares with the others what it does not change. The zygote opens no door and begins no thread. When
-it dies its forks live on (`adoption.py`), and the next that is started brings up another one.
+it dies its forks live on (`reparenting.py`), and the next that is started brings up another one.
 
 A process that was itself forked of a zygote, as that of a site is, has its own zygote by one fork
 more: all rooms of a machine share what was loaded once.

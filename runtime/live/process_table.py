@@ -16,9 +16,9 @@ from common.child.parent_death import end_with_parent
 from common.child.process_name import be_shown_as
 from common.config.settings import Settings
 from common.video.clip_facts import Clip
-from runtime.forking.adoption import Adopted, adopted, adopting, be_adopted
+from runtime.forking.reparenting import ReparentedProcess, adopted, adopting, be_adopted
 from runtime.forking.zygote import FORK, SPAWN, Zygote
-from runtime.live.beside import Beside, confessed
+from runtime.live.thread_worker import ThreadWorker, confessed
 
 END_S: Final = 5.0
 """What most processes may take to close their doors."""
@@ -58,7 +58,7 @@ class Running(NamedTuple):
     """A part that was started."""
 
     part: Part
-    process: BaseProcess | Adopted | Beside
+    process: BaseProcess | ReparentedProcess | ThreadWorker
     words: Connection
     """On which it says why it fails."""
 
@@ -148,7 +148,7 @@ def started(part: Part) -> Running:
     Python."""
     if part.beside:
         ours, theirs = SPAWN.Pipe(duplex=False)
-        return Running(part, Beside(part.name, part.main, part.arguments, theirs), ours)
+        return Running(part, ThreadWorker(part.name, part.main, part.arguments, theirs), ours)
     if part.zygote is not None and part.zygote.context is FORK:
         with suppress(EOFError, OSError):  # the zygote dies at this moment
             return _begun(part, FORK)

@@ -33,7 +33,7 @@ from runtime.offline.frame_pairs import openings
 from runtime.offline.opening_clip import body_of
 from runtime.offline.performance import (
     STAGE,
-    Going,
+    LockstepState,
     Performance,
     Prepared,
     Watch,
@@ -148,7 +148,7 @@ def track_clip(
 
 def _as_left(looked: Looked, course: Course) -> Looked:
     """With the clock by which a run that was cut short was being tracked again."""
-    left = course.work.resumed(STAGE, Going)
+    left = course.work.resumed(STAGE, LockstepState)
     late_s = left.late_s - looked.clip.views[-1].late_s if left else 0.0
     if not late_s:
         return looked

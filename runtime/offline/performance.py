@@ -53,7 +53,7 @@ class Prepared(NamedTuple):
     """What that took."""
 
 
-class Going(NamedTuple):
+class LockstepState(NamedTuple):
     """All that is remembered from one instant to the next."""
 
     viewers: dict[ViewerNumber, track.State]
@@ -96,7 +96,7 @@ def performed(
     """
     clip, work = ready.clip, course.work
     calibration = LiveCalibration(ready.integrator, looks=False, solver=SolverAtOnce())
-    going = work.resumed(STAGE, Going) or _begun(ready, calibration, witness)
+    going = work.resumed(STAGE, LockstepState) or _begun(ready, calibration, witness)
     calibration.looking, witness.seen = going.calibration, going.witness
     bodies = work.messages(BODIES)
     before_s, began = going.spent["following"], time.perf_counter()
@@ -127,8 +127,8 @@ def _side_by_side(count: int) -> Iterator[Executor]:
         sys.setswitchinterval(turns_s)
 
 
-def _begun(ready: Prepared, calibration: LiveCalibration, witness: Witness) -> Going:
-    return Going(
+def _begun(ready: Prepared, calibration: LiveCalibration, witness: Witness) -> LockstepState:
+    return LockstepState(
         ready.viewers,
         ready.integrator,
         calibration.looking,
@@ -142,11 +142,11 @@ def _begun(ready: Prepared, calibration: LiveCalibration, witness: Witness) -> G
 
 
 def _stepped(
-    going: Going,
+    going: LockstepState,
     frames: dict[ViewerNumber, CapturedFrame],
     calibration: LiveCalibration,
     pool: Executor,
-) -> tuple[Going, dict[int, Report], Body]:
+) -> tuple[LockstepState, dict[int, Report], Body]:
     """One instant more."""
     start = time.perf_counter()
     viewers, reports = looked(going.viewers, frames, going.guide, pool.map)
@@ -168,8 +168,8 @@ def _stepped(
 
 
 def _saved(
-    going: Going, calibration: LiveCalibration, witness: Witness, following_s: float
-) -> Going:
+    going: LockstepState, calibration: LiveCalibration, witness: Witness, following_s: float
+) -> LockstepState:
     """With what is remembered elsewhere."""
     return going._replace(
         calibration=calibration.looking,

@@ -1,7 +1,7 @@
 """What a run over a long film leaves on disk while it goes on, so that it can go on after a stop.
 
 Bodies are the records of the journal, so a run that was cut short is read like one that ended.
-Beside them lie its other messages and, now and then anew, the state of its stages.
+ThreadWorker them lie its other messages and, now and then anew, the state of its stages.
 """
 
 import contextlib

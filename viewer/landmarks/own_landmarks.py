@@ -42,7 +42,7 @@ camera."""
 _TRUNK: Final = [JOINT_NAMES.index(name) for name in ("pelvis", "neck")]
 
 
-class Eye(NamedTuple):
+class LandmarkModel(NamedTuple):
     """How a picture is looked at."""
 
     network: Path = SHIPPED
@@ -50,7 +50,7 @@ class Eye(NamedTuple):
     """In the mirror too."""
 
 
-TWICE: Final = Eye(twice=True)
+TWICE: Final = LandmarkModel(twice=True)
 """How single pictures are looked at, of which nothing is known."""
 
 
@@ -74,7 +74,7 @@ SUREST: Final = attrgetter("surety")
 
 
 def own_landmarks(
-    picture: Image, seen: Seen, before: Landmarks | None, eye: Eye = Eye()
+    picture: Image, seen: Seen, before: Landmarks | None, eye: LandmarkModel = LandmarkModel()
 ) -> Landmarks | None:
     """What the network makes of a picture; None where it sees nobody.
 
@@ -133,7 +133,7 @@ def _told(best: _Look) -> Landmarks:
     )
 
 
-def _surest(picture: Image, seen: Seen, known: Window | None, eye: Eye) -> _Look:
+def _surest(picture: Image, seen: Seen, known: Window | None, eye: LandmarkModel) -> _Look:
     """The surest look, the first of them where that is sure.
 
     Args:
@@ -156,7 +156,7 @@ def _surest(picture: Image, seen: Seen, known: Window | None, eye: Eye) -> _Look
     return max(best, _look(picture, seen.mask, window_of(seen.box), eye), key=SUREST)
 
 
-def _set_upright(picture: Image, look: _Look, eye: Eye) -> _Look:
+def _set_upright(picture: Image, look: _Look, eye: LandmarkModel) -> _Look:
     """A look, or a surer one in a window that is turned as the trunk leans there."""
     window = _about(look.joints_px, tuple(look.confidence))
     if window is None or not _is_turned(window.turn_deg - look.window.turn_deg):
@@ -166,14 +166,14 @@ def _set_upright(picture: Image, look: _Look, eye: Eye) -> _Look:
     return max(look, _look(picture, look.mask, window, eye), key=SUREST)
 
 
-def _look(picture: Image, mask: Mask | None, window: Window, eye: Eye) -> _Look:
+def _look(picture: Image, mask: Mask | None, window: Window, eye: LandmarkModel) -> _Look:
     found = find(planes_of(picture, mask, window), *eye)
     joints_px, second_px = map(window.in_picture, (found.joints, found.second))
     facing, second = (found.facing_deg, found.facing_confidence), found.second_confidence
     return _Look(mask, window, joints_px, found.confidence, facing, found.nobody, second_px, second)
 
 
-def _search(picture: Image, eye: Eye) -> _Look:
+def _search(picture: Image, eye: LandmarkModel) -> _Look:
     """Somebody anywhere: first in all of the picture, then closer."""
     far = _look(picture, None, whole(picture.shape), eye)
     window = _about(far.joints_px, tuple(far.confidence))

@@ -43,7 +43,7 @@ Picture = NDArray[np.uint8]
 """(H, W, 3), red, green, blue."""
 
 
-class Easel:
+class RetouchScene:
     """What stands in the room of the page.
 
     Args:

@@ -22,7 +22,7 @@ BORN_S: Final = 20.0
 LOOK_S: Final = 0.005
 
 
-class Adopted:
+class ReparentedProcess:
     """A child that another process forked; to its supervisor what multiprocessing's would be."""
 
     def __init__(self, pid: int, born: BaseProcess | None = None) -> None:
@@ -82,7 +82,7 @@ def adopting() -> Iterator[None]:
         prctl(PR_SET_CHILD_SUBREAPER, 0, 0, 0, 0)
 
 
-def adopted(born: BaseProcess, words: Connection) -> Adopted:
+def adopted(born: BaseProcess, words: Connection) -> ReparentedProcess:
     """The part that a zygote's fork leaves behind; `adopting` since before that was started.
 
     Args:
@@ -96,7 +96,7 @@ def adopted(born: BaseProcess, words: Connection) -> Adopted:
     if not words.poll(BORN_S):
         born.kill()
         raise TimeoutError(f"no fork in {BORN_S:g} s")
-    one = Adopted(int(words.recv()), born)
+    one = ReparentedProcess(int(words.recv()), born)
     born.join(BORN_S)
     return one
 

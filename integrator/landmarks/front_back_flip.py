@@ -18,7 +18,7 @@ the same profile then), as logits: of r01, r04 and made-up people whom views are
 .7 to .8 and .8 to 1 sure of, 37, 15, 8 and .1 % are taken for the other way about."""
 UNTOLD: Final = 0.15
 """How often one that does not tell it does."""
-ANYHOW: Final = 0.005
+UNIFORM_FLOOR: Final = 0.005
 """How often it tells any other facing."""
 RARELY: Final = 0.01
 """How often proposals are turned about ..."""
@@ -26,7 +26,7 @@ ANEW: Final = 0.1
 """... and how often it is decided anew whether they are."""
 TRUST: Final = 0.6
 """How much of what an instant says is believed: the next says nearly the same."""
-INSISTS: Final = 0.7
+FLIP_THRESHOLD: Final = 0.7
 """A proposal is turned where that is so probable, and turned no more where it is as improbable."""
 
 
@@ -51,7 +51,7 @@ def step(
             told = _told(said, facing + 180.0, wrong) / _told(said, facing, wrong)
             odds += TRUST * math.log(told)
     now = 1.0 / (1.0 + math.exp(-odds))
-    return now, now > (1.0 - INSISTS if turned else INSISTS)
+    return now, now > (1.0 - FLIP_THRESHOLD if turned else FLIP_THRESHOLD)
 
 
 def yaw_deg(rotation: NDArray[np.float64], joints_m: NDArray[np.float64]) -> float:
@@ -80,7 +80,7 @@ def confused(confidence: float) -> float:
 def _told(said_deg: float, facing_deg: float, wrong: float) -> float:
     """How probably a view says so of somebody who faces there, by how often it is confused."""
     plain = (1.0 - wrong) * _near(said_deg - facing_deg)
-    return plain + wrong * _near(said_deg - (180.0 - facing_deg)) + ANYHOW
+    return plain + wrong * _near(said_deg - (180.0 - facing_deg)) + UNIFORM_FLOOR
 
 
 def _near(off_deg: float) -> float:

@@ -20,7 +20,7 @@ radians: 95 % of r01's and r04's instants are displaced by no more than 1.5 time
 by no more than some twice."""
 SURELY: Final = 1.5
 """So many times as far, a proposal is believed; of what is beyond it is moved back."""
-LATELY: Final = 0.3
+EMA_WEIGHT: Final = 0.3
 """Share of an instant in how far proposals have been displaced lately."""
 OUTLYING: Final = 4.0
 """Spreads of a landmark at which it counts half: it may well speak of something else."""
@@ -48,7 +48,7 @@ def step(
     """
     moves = _moves(proposed_m)
     now = _displaced(moves, proposed_m, sure, rays, stature_m)
-    lately = LATELY * now + (0.0 if before is None else (1.0 - LATELY) * before)
+    lately = EMA_WEIGHT * now + (0.0 if before is None else (1.0 - EMA_WEIGHT) * before)
     off = float(np.linalg.norm(lately / USUAL))
     back = lately * max(0.0, 1.0 - SURELY / max(off, SURELY))
     return lately, proposed_m + moves @ back

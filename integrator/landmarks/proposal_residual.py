@@ -17,14 +17,14 @@ FARTHEST: Final = 0.25
 """A landmark that is farther off says no more than one that is so far."""
 DOUBTED_FROM: Final = 0.035
 """A third are farther off, in statures; one who is farther ..."""
-STEEPLY: Final = 4.0
+ODDS_EXPONENT: Final = 4.0
 """... is right by odds that fall with this power of how much farther: of made-up people in rooms
 that deceive, joints of .7 to .9 sure proposals that were .03, .045, .06, .08 and .1 off were near
 in 76, 55, 47, 29 and 11 % ..."""
 TURNED: Final = 50.0
 """... and by so many times lower odds where it is taken for turned about: 1 % of those were near,
 60 % roughly right."""
-LATELY: Final = 0.2
+EMA_WEIGHT: Final = 0.2
 """Share of an instant that all its landmarks are sure of."""
 
 
@@ -85,12 +85,12 @@ def doubt(misfit: Misfit, turned: bool) -> float:
         turned: Proposals are taken for turned about.
     """
     beyond = max(1.0, math.sqrt(misfit.whole) / DOUBTED_FROM)
-    return (TURNED if turned else 1.0) * float(beyond**STEEPLY)
+    return (TURNED if turned else 1.0) * float(beyond**ODDS_EXPONENT)
 
 
 def _renewed(before: Any, squares: Any, weights: Any, joints: int) -> Any:
     """A mean that takes a share of what so many joints say now."""
-    share = LATELY * np.minimum(1.0, weights / joints)
+    share = EMA_WEIGHT * np.minimum(1.0, weights / joints)
     return (1.0 - share) * before + share * squares / np.maximum(weights, 1e-9)
 
 

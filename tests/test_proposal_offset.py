@@ -6,20 +6,20 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from test_proposal_misfit import BODY_M, STATURE_M, rays_to
+from test_proposal_residual import BODY_M, STATURE_M, rays_to
 
 from common.body.body import Vector
-from integrator.landmarks import displaced_proposal
-from integrator.landmarks.displaced_proposal import (
-    LATELY,
+from integrator.landmarks import proposal_offset
+from integrator.landmarks.joint_mixture import SHOWN
+from integrator.landmarks.landmark_rays import Rays
+from integrator.landmarks.proposal_offset import (
+    EMA_WEIGHT,
     LOOSELY,
     OUTLYING,
     ROUNDS,
     SURELY,
     USUAL,
 )
-from integrator.landmarks.joint_mixture import SHOWN
-from integrator.landmarks.landmark_rays import Rays
 
 Joints = np.ndarray
 FORWARD_M = np.array([0.0, 0.0, 0.2])
@@ -29,9 +29,7 @@ def after(instants: int, proposed_m: Joints, rays: Rays) -> tuple[Vector, Joints
     """What is known, and the proposal moved, after so many equal instants."""
     known: Vector | None = None
     for _ in range(instants):
-        known, moved_m = displaced_proposal.step(
-            known, proposed_m, rays.confidence, rays, STATURE_M
-        )
+        known, moved_m = proposal_offset.step(known, proposed_m, rays.confidence, rays, STATURE_M)
     assert known is not None
     return known, moved_m
 
@@ -107,14 +105,14 @@ def test_an_instant_is_least_squares_weighted_by_how_far_rays_are_outlying(seed:
                 normal += weight * moves.T @ moves
                 right -= weight * moves.T @ off_m
         found = np.linalg.solve(normal, right)
-    known, moved_m = displaced_proposal.step(None, proposed_m, rays.confidence, rays, STATURE_M)
-    assert known == pytest.approx(LATELY * found)
+    known, moved_m = proposal_offset.step(None, proposed_m, rays.confidence, rays, STATURE_M)
+    assert known == pytest.approx(EMA_WEIGHT * found)
     off = np.linalg.norm(known / USUAL)
     turn_x = np.column_stack([away_m[:, 2], np.zeros(12), -away_m[:, 0]])
     back = known * max(0.0, 1.0 - SURELY / float(off))
     assert moved_m == pytest.approx(proposed_m + back[:3] + back[3] * turn_x)
-    later, _ = displaced_proposal.step(known, proposed_m, rays.confidence, rays, STATURE_M)
-    assert later == pytest.approx(LATELY * found + (1.0 - LATELY) * known)
+    later, _ = proposal_offset.step(known, proposed_m, rays.confidence, rays, STATURE_M)
+    assert later == pytest.approx(EMA_WEIGHT * found + (1.0 - EMA_WEIGHT) * known)
 
 
 def test_one_view_alone_does_not_say_how_far_a_proposal_is_displaced() -> None:

@@ -12,8 +12,8 @@ import pytest
 pytest.importorskip("viser", reason="the page is an extra: install tritrack[page]")
 
 from animator.overlay import STROKES
-from animator.retouching import easel as easels
-from animator.retouching.easel import (
+from animator.retouching import retouch_scene as easels
+from animator.retouching.retouch_scene import (
     ASPECT,
     BALL_M,
     CHOSEN,
@@ -23,7 +23,7 @@ from animator.retouching.easel import (
     PLACED,
     STANDS_BACK,
     TALL_M,
-    Easel,
+    RetouchScene,
 )
 from animator.scene import LEFT, RIGHT, TRUNK, UNSURE
 from common.body.body import JOINT_NAMES, LIMBS
@@ -38,7 +38,7 @@ class Room:
 
     def __init__(self) -> None:
         self.server, self.told = MagicMock(), list[tuple[Any, ...]]()
-        self.easel = Easel(
+        self.easel = RetouchScene(
             self.server,
             SIZE,
             PICTURE,

@@ -4,7 +4,7 @@ import msgspec
 
 from common.bus.inbox import Alive
 from common.bus.messages import Report
-from viewer.unheard import HUB, MOST, Unheard
+from viewer.resend_buffer import HUB, MOST, ResendBuffer
 
 WENT, CAME = Alive(HUB, alive=False), Alive(HUB, alive=True)
 
@@ -15,14 +15,14 @@ def report(frame: int) -> Report:
     return msgspec.convert({**fields, **times}, Report)
 
 
-def spoken(frames: int) -> Unheard:
-    one = Unheard()
+def spoken(frames: int) -> ResendBuffer:
+    one = ResendBuffer()
     for frame in range(frames):
         one.said(report(frame))
     return one
 
 
-def again(one: Unheard, heard: int, *alive: Alive) -> list[int]:
+def again(one: ResendBuffer, heard: int, *alive: Alive) -> list[int]:
     return [each.frame for each in one.again(heard, alive)]
 
 

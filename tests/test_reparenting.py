@@ -13,17 +13,17 @@ from typing import Any
 
 import pytest
 
-from runtime.forking import adoption
-from runtime.forking.adoption import Adopted, adopted, adopting
+from runtime.forking import reparenting
+from runtime.forking.reparenting import ReparentedProcess, adopted, adopting
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="parts are adopted on Linux alone")
 SPAWN = get_context("spawn")
 
 
-def child(code: str) -> Adopted:
+def child(code: str) -> ReparentedProcess:
     """Of this process, and not multiprocessing's."""
     words = [sys.executable, "-S", "-c", code]
-    return Adopted(os.posix_spawn(sys.executable, words, os.environ))
+    return ReparentedProcess(os.posix_spawn(sys.executable, words, os.environ))
 
 
 def test_how_it_ended_is_known_and_asked_again() -> None:
@@ -54,7 +54,7 @@ def test_who_dies_before_it_says_its_number_is_not_waited_for() -> None:
 
 
 def test_who_never_says_its_number_is_killed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(adoption, "BORN_S", 0.1)
+    monkeypatch.setattr(reparenting, "BORN_S", 0.1)
     ours, _theirs = SPAWN.Pipe(duplex=False)
     born = SPAWN.Process(target=time.sleep, args=(60.0,))
     born.start()
@@ -85,7 +85,7 @@ def test_who_said_its_number_is_a_child_of_that_number_and_its_parent_is_awaited
     one = adopted(born, ours)
     one.join()
     assert (one.pid, one.exitcode) == (real.pid, 4)
-    assert born.calls == [("join", adoption.BORN_S)]
+    assert born.calls == [("join", reparenting.BORN_S)]
 
 
 def test_orphans_are_taken_in_meanwhile_and_not_for_longer() -> None:
@@ -109,7 +109,7 @@ def test_who_goes_on_as_a_child_of_its_grandparent_is_a_process_of_its_own() -> 
     has another parent."""
     code = (
         "import os, sys; sys.path.insert(0, sys.argv[1])\n"
-        "from runtime.forking.adoption import be_adopted\n"
+        "from runtime.forking.reparenting import be_adopted\n"
         "class Words:\n"
         "    def send(self, pid): print(os.getpid(), pid, flush=True)\n"
         "first = os.getpid()\n"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from integrator.landmarks.exchanged_sides import (
+from integrator.landmarks.left_right_swap import (
     ANEW,
     BOTH_ASIDE,
     PART,

@@ -15,7 +15,7 @@ TOLD: Final = 0.02
 """What share of a run's frames may be hurried without a word."""
 
 
-class Haste:
+class LoadShedder:
     """Which frames are in a hurry.
 
     A machine with more rooms than it has the time for would otherwise be late with every body of

@@ -12,7 +12,7 @@ MOST: Final = 128
 """Reports that are kept, eight seconds at 15 frames a second: longer than a new start takes."""
 
 
-class Unheard:
+class ResendBuffer:
     """The reports of late, up to those that a guide has heard of."""
 
     def __init__(self) -> None:

@@ -17,7 +17,7 @@ KILLED: Final = 70
 """Exit code of a process of which a thread hangs: no thread can be killed alone."""
 
 
-class Beside:
+class ThreadWorker:
     """A part in a thread; to its supervisor what a process of its own would be."""
 
     def __init__(

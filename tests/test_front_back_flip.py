@@ -4,22 +4,22 @@ import math
 
 import numpy as np
 import pytest
-from test_proposal_misfit import BODY_M, rays_to
+from test_proposal_residual import BODY_M, rays_to
 
-from integrator.landmarks.landmark_rays import Rays
-from integrator.landmarks.turned_about import (
+from integrator.landmarks.front_back_flip import (
     ANEW,
-    ANYHOW,
-    INSISTS,
+    FLIP_THRESHOLD,
     RARELY,
     SHARPER,
     TRUST,
+    UNIFORM_FLOOR,
     UNTOLD,
     WIDE_DEG,
     confused,
     step,
     yaw_deg,
 )
+from integrator.landmarks.landmark_rays import Rays
 from integrator.proposal.network_weights import JOINTS
 
 
@@ -77,7 +77,8 @@ def expected(before: float, joints_m: np.ndarray, rays: Rays) -> float:
         return math.exp(-(off_deg**2) / (2 * WIDE_DEG**2))
 
     def says(said_deg: float, deg: float, wrong: float) -> float:
-        return (1 - wrong) * near(said_deg - deg) + wrong * near(said_deg + deg - 180.0) + ANYHOW
+        told = (1 - wrong) * near(said_deg - deg) + wrong * near(said_deg + deg - 180.0)
+        return told + UNIFORM_FLOOR
 
     is_so = before + ANEW * (RARELY - before)
     is_not = 1.0 - is_so
@@ -107,7 +108,7 @@ def test_a_proposal_is_turned_once_that_is_sure_and_until_it_is_as_surely_not_so
     nothing = told((0.0, 0.0), (0.0, 0.0))
     unsure = (0.5 - ANEW * RARELY) / (1 - ANEW)
     between = 0.5
-    assert 1.0 - INSISTS < between < INSISTS
+    assert 1.0 - FLIP_THRESHOLD < between < FLIP_THRESHOLD
     for was in (True, False):
         now, turned = step((unsure, was), BODY_M, nothing)
         assert now == pytest.approx(between)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from viewer.captured_frame import CapturedFrame
-from viewer.haste import LASTS_S, LATE, Haste
+from viewer.load_shedding import LASTS_S, LATE, LoadShedder
 
 PERIOD_S = 1 / 15
 FRAME = CapturedFrame(0, 0.0, 0.0, np.zeros((2, 2, 3), np.uint8))
@@ -16,8 +16,8 @@ FRAME = CapturedFrame(0, 0.0, 0.0, np.zeros((2, 2, 3), np.uint8))
 
 def hurried(late_s: list[float]) -> list[bool]:
     """Of frames that are so late."""
-    haste = Haste(PERIOD_S)
-    return [haste.of_frame(FRAME, late).hurried for late in late_s]
+    shedder = LoadShedder(PERIOD_S)
+    return [shedder.of_frame(FRAME, late).hurried for late in late_s]
 
 
 def test_who_is_in_time_looks_at_every_frame() -> None:
@@ -47,31 +47,31 @@ def test_never_more_than_five_looks_in_a_row_are_left_out_nor_one_without_a_late
 
 
 def test_a_frame_in_a_hurry_is_the_same_picture_of_the_same_moment() -> None:
-    kept = Haste(PERIOD_S).of_frame(FRAME, 1.0)
+    kept = LoadShedder(PERIOD_S).of_frame(FRAME, 1.0)
     assert (kept.index, kept.captured_s, kept.clock_s) == (0, 0.0, 0.0)
     assert kept.picture is FRAME.picture
 
 
 def test_at_the_end_it_is_told_how_many_were_and_what_to_do_but_not_of_a_few() -> None:
-    haste = Haste(PERIOD_S)
+    shedder = LoadShedder(PERIOD_S)
     for late_s in (0.1, *[0.0] * 4):
-        haste.of_frame(FRAME, late_s)
-    assert haste.frames == 5
-    assert haste.odd(250) == ""
-    assert haste.odd(100).startswith("5 of 100 frames came too late")
-    assert "fewer rooms" in haste.odd(100)
+        shedder.of_frame(FRAME, late_s)
+    assert shedder.frames == 5
+    assert shedder.odd(250) == ""
+    assert shedder.odd(100).startswith("5 of 100 frames came too late")
+    assert "fewer rooms" in shedder.odd(100)
 
 
 @pytest.mark.parametrize(("frames", "told"), [(250, False), (249, True)])
 def test_two_in_a_hundred_frames_may_be_hurried_without_a_word(frames: int, told: bool) -> None:
-    haste = Haste(PERIOD_S)
-    haste.frames = 5
-    assert bool(haste.odd(frames)) == told
-    assert haste.odd(40).startswith("5 of 40 frames came too late to be looked into, only their")
+    shedder = LoadShedder(PERIOD_S)
+    shedder.frames = 5
+    assert bool(shedder.odd(frames)) == told
+    assert shedder.odd(40).startswith("5 of 40 frames came too late to be looked into, only their")
 
 
 @pytest.mark.parametrize(("period_s", "lasts"), [(1 / 30, 10), (1 / 4, 1), (1.0, 1)])
 def test_a_hurry_lasts_a_third_of_a_second_at_any_rate(period_s: float, lasts: int) -> None:
-    haste = Haste(period_s)
-    told = [haste.of_frame(FRAME, late_s).hurried for late_s in (0.2 * period_s, *[0.0] * 15)]
+    shedder = LoadShedder(period_s)
+    told = [shedder.of_frame(FRAME, late_s).hurried for late_s in (0.2 * period_s, *[0.0] * 15)]
     assert told == [True] * lasts + [False] * (16 - lasts)

@@ -6,7 +6,7 @@ from integrator import diagnostics
 from integrator.merge_state import State
 
 
-class Told:
+class RigPublisher:
     """What was told of the run already."""
 
     def __init__(self, bus: Bus) -> None:

@@ -11,9 +11,9 @@ import pytest
 from common.bus.process import ProcessContext, process
 from common.video.clip_sources import ClipError
 from runtime.faults import code_of
-from runtime.live.beside import KILLED
 from runtime.live.process_table import Part, last_words
 from runtime.live.supervise import PartFailed, Watched, watched
+from runtime.live.thread_worker import KILLED
 
 PATIENCE_S = 20.0
 

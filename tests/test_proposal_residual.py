@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from integrator.landmarks import proposal_misfit
+from integrator.landmarks import proposal_residual
 from integrator.landmarks.landmark_rays import Rays
-from integrator.landmarks.proposal_misfit import (
+from integrator.landmarks.proposal_residual import (
+    EMA_WEIGHT,
     FARTHEST,
-    LATELY,
-    STEEPLY,
+    ODDS_EXPONENT,
     TURNED,
     USUAL,
     WIDER,
@@ -38,30 +38,30 @@ def after(instants: int, proposed_m: np.ndarray, rays: Rays, before: float = 0.0
     """How far a proposal has been off after so many equal instants, statures."""
     found = Misfit(before**2, np.full(6, before**2))
     for _ in range(instants):
-        found = proposal_misfit.step(found, proposed_m, rays, STATURE_M)
+        found = proposal_residual.step(found, proposed_m, rays, STATURE_M)
     return math.sqrt(found.whole)
 
 
 def test_a_proposal_on_its_rays_is_not_off_and_is_not_widened() -> None:
     assert after(3, BODY_M, rays_to(BODY_M)) == pytest.approx(0.0, abs=1e-9)
     never = Misfit(0.0, np.zeros(6))
-    assert not proposal_misfit.wider_m(never, rays_to(BODY_M), STATURE_M).any()
+    assert not proposal_residual.wider_m(never, rays_to(BODY_M), STATURE_M).any()
 
 
 def test_one_who_stays_raised_is_off_by_that_in_statures() -> None:
     level_m = BODY_M * (1.0, 0.0, 1.0) + UP_M  # as high as the cameras
     assert after(99, level_m + 0.3 * UP_M, rays_to(level_m)) == pytest.approx(0.15)
     misfit = Misfit(0.15**2, np.zeros(6))
-    found_m = proposal_misfit.wider_m(misfit, rays_to(level_m), STATURE_M)
+    found_m = proposal_residual.wider_m(misfit, rays_to(level_m), STATURE_M)
     assert found_m == pytest.approx(np.full(12, WIDER * (0.15 - USUAL) * STATURE_M))
 
 
 def test_a_proposal_is_doubted_by_how_far_it_was_off_lately_and_once_it_is_turned() -> None:
     near, off, far = (Misfit(each**2, np.zeros(6)) for each in (0.02, 0.06, 0.12))
-    assert proposal_misfit.doubt(near, turned=False) == 1.0
-    doubts = [proposal_misfit.doubt(misfit, turned=False) for misfit in (off, far)]
-    assert doubts[1] / doubts[0] == pytest.approx(2.0**STEEPLY)
-    assert proposal_misfit.doubt(off, turned=True) == pytest.approx(TURNED * doubts[0])
+    assert proposal_residual.doubt(near, turned=False) == 1.0
+    doubts = [proposal_residual.doubt(misfit, turned=False) for misfit in (off, far)]
+    assert doubts[1] / doubts[0] == pytest.approx(2.0**ODDS_EXPONENT)
+    assert proposal_residual.doubt(off, turned=True) == pytest.approx(TURNED * doubts[0])
 
 
 def test_wrists_that_are_off_alone_are_doubted_by_one_view_and_all_alike_by_two() -> None:
@@ -71,14 +71,14 @@ def test_wrists_that_are_off_alone_are_doubted_by_one_view_and_all_alike_by_two(
     alone = rays_to(level_m, (0.8, 0.0))
     misfit = None
     for _ in range(99):
-        misfit = proposal_misfit.step(misfit, wrong_m, alone, STATURE_M)
+        misfit = proposal_residual.step(misfit, wrong_m, alone, STATURE_M)
     assert misfit is not None
     assert np.sqrt(misfit.pairs) == pytest.approx([0.0, 0.0, 0.2, 0.0, 0.0, 0.0])
     all_alike_m = WIDER * (0.2 / math.sqrt(6) - USUAL) * STATURE_M
-    found_m = proposal_misfit.wider_m(misfit, alone, STATURE_M)
+    found_m = proposal_residual.wider_m(misfit, alone, STATURE_M)
     assert found_m[4:6] == pytest.approx(WIDER * (0.2 - USUAL) * STATURE_M)
     assert np.delete(found_m, [4, 5]) == pytest.approx(all_alike_m)
-    found_m = proposal_misfit.wider_m(misfit, rays_to(level_m), STATURE_M)
+    found_m = proposal_residual.wider_m(misfit, rays_to(level_m), STATURE_M)
     assert found_m == pytest.approx(all_alike_m)
 
 
@@ -104,7 +104,7 @@ def test_no_proposal_is_farther_off_than_a_landmark_may_say(far_m: float) -> Non
 
 def test_what_was_is_forgotten_by_the_same_share_each_instant() -> None:
     found = after(7, BODY_M, rays_to(BODY_M, (1.0, 1.0)), before=0.2)
-    assert found == pytest.approx(0.2 * (1.0 - LATELY) ** 3.5)
+    assert found == pytest.approx(0.2 * (1.0 - EMA_WEIGHT) ** 3.5)
 
 
 def test_an_instant_is_a_mean_weighted_by_how_sure_its_landmarks_are() -> None:
@@ -128,13 +128,13 @@ def test_an_instant_is_a_mean_weighted_by_how_sure_its_landmarks_are() -> None:
             squares[pair] += (sure[view, at] * np.minimum(nearer, FARTHEST) ** 2).sum()
             weights[pair] += sure[view, at].sum()
     before = Misfit(0.002, rng.uniform(0.0, 0.01, 6))
-    found = proposal_misfit.step(before, proposed_m, rays, STATURE_M)
-    share = LATELY * min(1.0, weights.sum() / 12)
+    found = proposal_residual.step(before, proposed_m, rays, STATURE_M)
+    share = EMA_WEIGHT * min(1.0, weights.sum() / 12)
     mean = squares.sum() / weights.sum()
     assert found.whole == pytest.approx(share * mean + (1 - share) * before.whole)
-    shares = LATELY * np.minimum(1.0, weights / 2)
+    shares = EMA_WEIGHT * np.minimum(1.0, weights / 2)
     assert found.pairs == pytest.approx(shares * squares / weights + (1 - shares) * before.pairs)
-    first = proposal_misfit.step(None, proposed_m, rays, STATURE_M)
+    first = proposal_residual.step(None, proposed_m, rays, STATURE_M)
     assert first.whole == pytest.approx(share * mean)
 
 
@@ -142,7 +142,7 @@ def test_pairs_are_doubted_one_by_one_where_one_view_alone_has_landmarks() -> No
     pairs = np.array([0.0, 0.1, 0.2, 0.0, 0.07, 0.0]) ** 2
     misfit = Misfit(0.08**2, pairs)
     by_whole, by_pair = (
-        proposal_misfit.wider_m(misfit, rays_to(BODY_M, sure), STATURE_M)
+        proposal_residual.wider_m(misfit, rays_to(BODY_M, sure), STATURE_M)
         for sure in ((0.8, 0.8), (0.8, 0.0))
     )
     assert by_whole == pytest.approx(np.full(12, WIDER * (0.08 - USUAL) * STATURE_M))

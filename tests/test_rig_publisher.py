@@ -8,7 +8,7 @@ from common.bus.control_messages import Cameras
 from common.config.settings import Settings
 from common.method import DEFAULT
 from integrator import diagnostics, merge_state
-from integrator.hearing.told import Told
+from integrator.hearing.rig_publisher import RigPublisher
 
 KNOWN = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)
 NOBODY = merge_state.init(None, PERIOD_S, Settings(), DEFAULT)
@@ -16,7 +16,7 @@ NOBODY = merge_state.init(None, PERIOD_S, Settings(), DEFAULT)
 
 def test_a_rig_is_told_once_it_is_known_and_once_each_time_that_it_changes() -> None:
     bus = LocalBus()
-    heard, told = bus.subscribe(Cameras), Told(bus)
+    heard, told = bus.subscribe(Cameras), RigPublisher(bus)
     changed = KNOWN._replace(calibration=1, scale_source="person")
     for state in (NOBODY, KNOWN, KNOWN, changed, changed, KNOWN):
         told.rig(state, 0.25)
@@ -33,7 +33,7 @@ def test_a_doubt_is_kept_as_it_was_first_said_until_there_is_another_rig(
 ) -> None:
     doubts = ["", "40 mm apart", "90 mm apart", "", "", "10 mm apart"]
     monkeypatch.setattr(diagnostics, "doubt", lambda _: doubts.pop(0))
-    told = Told(LocalBus())
+    told = RigPublisher(LocalBus())
     told.rig(KNOWN, 0.0)
     assert [told.doubts(KNOWN) for _ in range(3)] == [[], ["40 mm apart"], ["40 mm apart"]]
     told.rig(KNOWN._replace(calibration=1), 0.0)
@@ -41,6 +41,6 @@ def test_a_doubt_is_kept_as_it_was_first_said_until_there_is_another_rig(
 
 
 def test_news_are_new_where_they_differ_from_those_before() -> None:
-    told = Told(LocalBus())
+    told = RigPublisher(LocalBus())
     said = [told.is_new(news) for news in ((), ("a",), ("a",), ("a", "b"), ())]
     assert said == [False, True, False, True, True]
