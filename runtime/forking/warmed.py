@@ -20,7 +20,7 @@ from viewer import __main__ as viewer_process
 
 PID = os.getpid()
 """Of who forks the parts."""
-FIRST_RUN: Final = f"{__package__.removesuffix('.forking')}.first_run"
+FIRST_RUN: Final = "tritrack.first_run"
 PROCESSES: Final = (viewer_process, integrator_process, recognizer_process, decoder)
 
 
