@@ -12,7 +12,7 @@ pytest.importorskip("viser", reason="the page is an extra: install tritrack[page
 from test_retouch import filmed, free_port
 from test_take import ARM
 
-from animator.retouching.controls import Controls
+from animator.retouching.controls import AUTO, Controls
 from animator.retouching.panel import ACCENT, piece, spoken
 from animator.retouching.viser_door import close_server, open_server
 from common.body.body import JOINT_NAMES
@@ -59,6 +59,13 @@ def test_what_a_browser_chooses_is_said_and_what_is_shown_is_not(
         ("pick", (JOINT_NAMES.index("r_knee"),)),
         ("go_to_frame", (6,)),
     ]
+
+
+def test_a_frame_without_notes_takes_back_what_the_one_before_showed(controls: Controls) -> None:
+    controls.show(3, ARM, Notes(note=(Note(6, "left", {"l_upper_arm": "away"}),)))
+    assert (controls.orientation.value, controls._depth["l_upper_arm"].value) == ("left", "away")
+    controls.show(3, ARM, Notes())
+    assert (controls.orientation.value, controls._depth["l_upper_arm"].value) == (AUTO, AUTO)
 
 
 def test_what_a_frame_leaves_open_and_what_became_of_an_input_are_told(controls: Controls) -> None:

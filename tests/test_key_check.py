@@ -5,6 +5,8 @@ import shutil
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -12,7 +14,7 @@ pytest.importorskip("cryptography", reason="keys are an extra: install tritrack[
 
 from runtime.keys.authority import make_keys
 from tritrack.doctor.installation import Finding
-from tritrack.doctor.key_check import examine_keys
+from tritrack.doctor.key_check import _dated, examine_keys
 
 DAYS = 30
 
@@ -64,6 +66,22 @@ def test_the_date_is_held_against_the_clock(keys: Path, days: int, says: str) ->
 
 def test_two_weeks_and_a_day_before_the_end_all_is_well(keys: Path) -> None:
     assert faults(keys, timedelta(days=DAYS - 15)) == {}
+
+
+@pytest.mark.parametrize(
+    ("now", "says"),
+    [
+        ((2026, 1, 1), "holds from 2026-01-02 03:04 UTC on, which is yet to come"),
+        ((2026, 2, 1), "until 2026-03-05 16:47 UTC"),
+        ((2026, 3, 1), "expires on 2026-03-05 16:47 UTC"),
+        ((2026, 3, 6), "expired on 2026-03-05 16:47 UTC"),
+    ],
+)
+def test_a_date_is_said_to_the_minute(now: tuple[int, int, int], says: str) -> None:
+    begins = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
+    ends = datetime(2026, 3, 5, 16, 47, tzinfo=UTC)
+    held: Any = SimpleNamespace(not_valid_before_utc=begins, not_valid_after_utc=ends)
+    assert _dated("client", held, datetime(*now, tzinfo=UTC)).detail == says
 
 
 def lose_key(keys: Path) -> None:

@@ -195,6 +195,19 @@ def test_a_viewer_that_ended_may_begin_again() -> None:
     assert times(pairs) == [(0.0, 0.0)]
 
 
+@pytest.mark.parametrize("viewer", [1, 2])
+def test_who_begins_again_is_not_bound_by_the_next_frame_that_was_announced(
+    viewer: ViewerNumber,
+) -> None:
+    """Else its partner's frame of 1 s goes out alone, for no frame was to come before 9 s."""
+    partner: ViewerNumber = 2 if viewer == 1 else 1
+    state, _ = heard(init(1.0), [report(viewer, 0.0, next_s=9.0), report(partner, 0.0)])
+    state = begin(end(state, viewer)[0], viewer)
+    state, pairs = step(state, report(partner, 1.0))
+    assert pairs == []
+    assert times(step(state, report(viewer, 1.0))[1]) == [(1.0, 1.0)]
+
+
 def test_a_frame_that_is_known_to_be_missing_is_not_waited_for() -> None:
     """A clip with frames missing in one camera, its viewer tells when the next one comes."""
     state, _ = heard(init(1.0), [report(1, 0.0, next_s=1.0), report(2, 0.0, next_s=3.0)])

@@ -64,6 +64,13 @@ def test_a_person_of_the_stature_that_is_typed_calibrates_all_clips(by_clips: Ca
     assert '"focal_px": 400.0' in said.output
 
 
+def test_a_view_that_is_late_by_next_to_nothing_is_late_by_plus_nothing(by_clips: Called) -> None:
+    late = quality(late_frames=(-0.04, 0.04))
+    by_clips.answer = FoundByClips(RIG, late, (Clock(0.0), Clock(0.0)))
+    said = typed(calibrate_app, "person", "a", "b")
+    assert "view 2 is late by +0.0, +0.0 frames" in said.output
+
+
 def test_a_calibration_that_is_there_is_replaced_only_by_force(
     by_clips: Called, here: Path
 ) -> None:

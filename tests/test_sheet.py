@@ -86,6 +86,7 @@ def test_points_to_the_very_border_are_taken() -> None:
         ((Mark("pole", (None, (float("nan"), 3.0)), (0.0, 0.0)),), {}, "point 1 is outside"),
         ((Mark("pole", at_m=(0.0, 1001.0)),), {}, "say metres"),
         ((Mark("pole", at_m=(0.0, float("inf"))),), {}, "say metres"),
+        ((POLE, Mark("pole", at_m=(-1001.0, 0.0))), {}, "pole 2 is farther than 1000 m off"),
         ((Mark("pole"),), {}, "point 1 is none of this page's"),
         ((Mark("wall"),), {}, "point 1 is none of this page's"),
         ((POLE,), {"pole_height_m": 0.0}, "height of the poles: must be a positive number, got 0"),
