@@ -147,6 +147,17 @@ def test_what_hangs_is_killed_but_not_by_a_supervisor_that_slept_itself(sleeper:
     until(lambda: sleeper.running.process.exitcode == -signal.SIGKILL)
 
 
+def test_what_is_killed_for_its_silence_is_killed_once_though_it_takes_a_moment_to_end(
+    sleeper: Watched, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pulses, kills = beating("viewer 2"), list[int]()
+    with monkeypatch.context() as patch:
+        patch.setattr(sleeper.running.process, "kill", lambda: kills.append(1))
+        said = [sleeper.look(100.0 + 0.5 * number, pulses) for number in range(16)]
+    assert len(kills) == 1
+    assert len([each for each in said if each]) == 1
+
+
 def test_what_came_to_its_end_unheard_does_not_hang() -> None:
     """Its last pulse is lost where the integrator is down as it ends."""
     with watched(Part("viewer 2", ends, (), leads=True, beats=True)) as one:
