@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import pytest
 
-pytestmark = pytest.mark.slow
+from tritrack import first_run
 
 
 def said(cache: Path | None, *words: str) -> str:
@@ -50,6 +50,7 @@ def anew(first: First) -> Path:
     return first.cache
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="parts of a run are forked on Linux alone")
 def test_a_first_live_run_compiles_before_its_clip_begins_and_not_in_its_midst(
     first: First,
@@ -68,6 +69,7 @@ def compiled_of(cache: Path) -> dict[Path, int]:
     return {path: path.stat().st_mtime_ns for path in cache.rglob("*.nbc")}
 
 
+@pytest.mark.slow
 def test_after_the_first_run_no_command_of_every_day_compiles(
     anew: Path, clip: Path, tmp_path: Path
 ) -> None:
@@ -85,6 +87,7 @@ def test_after_the_first_run_no_command_of_every_day_compiles(
     assert not [path for path in before if b"__main__" in path.read_bytes()]
 
 
+@pytest.mark.slow
 def test_nor_does_a_live_run_whose_cameras_nobody_calibrated(
     anew: Path, clip: Path, tmp_path: Path
 ) -> None:
@@ -104,9 +107,31 @@ def test_nor_does_a_live_run_whose_cameras_nobody_calibrated(
     assert compiled_of(anew) == before
 
 
+@pytest.mark.slow
 def test_what_is_compiled_anew_gives_the_same_bytes(anew: Path, clip: Path, tmp_path: Path) -> None:
     """As what another process compiled before."""
     for cache, out in ((anew, "anew"), (None, "before")):
         said(cache, "tritrack", "track", str(clip), "--out", str(tmp_path / out))
     first, second = (tmp_path / out / clip.name / "poses.npz" for out in ("anew", "before"))
     assert first.read_bytes() == second.read_bytes()
+
+
+def test_a_first_run_that_was_broken_off_is_begun_again_and_a_whole_one_is_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mark, runs = tmp_path / "all", list[str]()
+
+    def broken_off() -> None:
+        runs.append("broken off")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(first_run, "mark_of_all", lambda: mark)
+    monkeypatch.setattr(first_run, "_run_all", broken_off)
+    with pytest.raises(KeyboardInterrupt):
+        first_run.compile_all()
+    assert not mark.exists()
+    monkeypatch.setattr(first_run, "_run_all", lambda: runs.append("whole"))
+    first_run.compile_all()
+    first_run.compile_all()
+    assert runs == ["broken off", "whole"]
+    assert mark.exists()
