@@ -21,6 +21,7 @@ from common.body.proportions import body_vector, thesis_bdp
 from integrator.pose.inverse_kinematics import (
     PLACES,
     STRAIGHT_DEG,
+    _aim,
     bend,
     pose_of,
     trunk_of,
@@ -162,3 +163,15 @@ def test_the_trunk_has_square_axes_to_the_left_up_and_ahead() -> None:
     assert axes.T @ axes == pytest.approx(np.eye(3), abs=1e-12)
     assert np.linalg.det(axes) == pytest.approx(1.0)
     assert axes == pytest.approx(trunk_axes(BODY, posed(torso_y=30.0, torso_x=10.0)), abs=1e-6)
+
+
+@pytest.mark.parametrize(("arm", "z_deg"), [("r_shoulder", 150.0), ("l_shoulder", 210.0)])
+def test_of_two_ways_to_an_upper_arm_a_twist_before_does_not_decide(arm: str, z_deg: float) -> None:
+    """By hand, of a right arm: x and z turn by 70 and 0 degrees, or by 50 and 180 past z's limit;
+    the twist before is at the z of the second way."""
+    other_deg = (z_deg + 180.0) % 360.0
+    before = posed(**{f"{arm}_x": 100.0, f"{arm}_y": other_deg, f"{arm}_z": z_deg})
+    x, z = np.radians([30.0, z_deg])
+    axis = np.array([-np.cos(x) * np.sin(z), np.cos(x) * np.cos(z), np.sin(x)])
+    found = _aim(axis, POSE_INDEX[f"{arm}_x"], before)
+    assert found == pytest.approx((30.0, z_deg))

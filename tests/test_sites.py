@@ -95,6 +95,7 @@ def test_a_site_says_whether_its_parts_are_one_process(tmp_path: Path) -> None:
             "unknown setting site 1, settings.rooom (did you mean room?)",
         ),
         (site("hall") + site("hall"), "2 sites have the name hall (hall, hall)"),
+        (site("hall") + site("lobby") + site("hall"), ": 2 sites have the name hall (hall, hall)"),
         ("metrics = '9464'\n" + site("hall"), "look like 127.0.0.1:9464"),
     ],
 )
