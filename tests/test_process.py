@@ -172,15 +172,16 @@ def test_a_line_of_the_log_has_its_time_its_process_and_its_level(tmp_path: Path
 def test_what_the_supervisor_logs_goes_to_the_runs_log_alone_while_it_runs(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Whichever of our rooms a line is from."""
+    """And nothing of the parts, which may be threads of its process."""
     path, own = tmp_path / "log.txt", logging.getLogger("runtime")
     with logged("supervisor", path):
         own.warning("within")
-        logging.getLogger("common.bus.inbox").warning("deeper")
+        logging.getLogger("runtime.live.launch").warning("deeper")
+        logging.getLogger("viewer.__main__").warning("of a part")
     own.warning("after")
     lines = path.read_text().splitlines()
     assert [line.split(" supervisor  WARNING ")[1] for line in lines] == ["within", "deeper"]
-    assert caplog.messages == ["after"]
+    assert caplog.messages == ["of a part", "after"]
     assert own.propagate
     assert not own.handlers
     assert str(path) not in [file.path for file in psutil.Process().open_files()]

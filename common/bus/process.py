@@ -17,7 +17,6 @@ import psutil
 from common.bus.bus import Bus, Stopped
 from common.bus.control_messages import Pulse
 from common.bus.rate import Pace
-from common.packages import PACKAGES
 
 BEAT_S: Final = 1.0
 READY_S: Final = 60.0
@@ -26,6 +25,9 @@ PAGE_S: Final = 30.0
 """How long a clip waits for somebody to open the page, once all else is ready."""
 BEGIN_S: Final = READY_S + PAGE_S
 """How long a viewer that is ready waits for the run to begin."""
+SUPERVISING: Final = (f"{__name__.removesuffix('common.bus.process')}runtime", "tritrack.__main__")
+"""Loggers of what runs the parts, by the names that rooms have here; parts that are threads of its
+process log by their own."""
 
 
 class ProcessContext(NamedTuple):
@@ -84,7 +86,7 @@ def start_log(name: str, path: Path | None, level: int | str | None = None) -> N
 @contextmanager
 def logged(name: str, path: Path) -> Iterator[None]:
     """Write what the supervisor logs to the run's log alone: its terminal shows it in words."""
-    handler, ours = logging.FileHandler(path), [logging.getLogger(each) for each in PACKAGES]
+    handler, ours = logging.FileHandler(path), [logging.getLogger(each) for each in SUPERVISING]
     handler.setFormatter(logging.Formatter(_format(name)))
     for logger in ours:
         logger.addHandler(handler)
