@@ -49,6 +49,7 @@ from runtime.offline.rig_check import (
     trust_facts,
 )
 from runtime.offline.rig_from_person import Looked, by_person, calibration_facts
+from runtime.steps.together import viewer_of
 from runtime.unfinished.work import Course
 from viewer import track
 from viewer.landmarks.landmark_sources import Sources, oddities, outside_sources
@@ -204,9 +205,9 @@ def _prepared(
     learnt = openings(clip, settings.silhouette, reels)
     for view, opens in zip(clip.views, learnt, strict=True):
         odd += [opens.odd] if opens.odd else []
-        camera = None if rig is None else rig.cameras[view.number - 1]
-        setup = track.Setup(view.number, camera, settings, method, alone)
-        viewers[view.number] = track.init(setup, opens.background, somebody=opens.somebody)
+        viewers[view.number] = viewer_of(
+            view, clip, settings, method, opens.background, opens.somebody
+        )
     period_s = clip.every / clip.views[0].fps
     opening = opening_posture.init(known)
     source: ScaleSource | None = "person" if looked.found else None

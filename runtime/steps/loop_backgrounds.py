@@ -3,14 +3,10 @@
 from collections.abc import Mapping
 
 from common.bus.messages import ViewerNumber
-from common.config.settings import Settings
-from common.method import METHODS
-from common.video.clip_facts import Clip, View, both_cameras
+from common.video.clip_facts import Clip, View
 from common.video.clips import SAME_ASPECT
 from common.video.pictures import Image
 from runtime.steps.loop_images import Images, by_viewer, picture_of
-from viewer import track
-from viewer.background.background import learn
 
 Plates = Mapping[ViewerNumber, Image]
 Learns = Mapping[ViewerNumber, tuple[Image, ...]]
@@ -53,11 +49,3 @@ def empty_of(plates: Plates, clip: Clip) -> Learns:
 def is_enough(empty: tuple[Image, ...], view: View, empty_s: float) -> bool:
     """Whether a camera showed the empty room for so long."""
     return len(empty) >= view.frames_in(empty_s)
-
-
-def viewer_of(view: View, clip: Clip, settings: Settings, empty: tuple[Image, ...]) -> track.State:
-    """A viewer that knows its background, and has seen nothing else."""
-    rig, method = both_cameras(clip), METHODS[settings.mode]
-    camera = None if rig is None else rig.cameras[view.number - 1]
-    setup = track.Setup(view.number, camera, settings, method, len(clip.views) == 1)
-    return track.init(setup, learn(empty))

@@ -4,17 +4,45 @@ from collections.abc import Callable, Iterable, Mapping
 from itertools import repeat
 from typing import Any
 
-from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.bus.messages import Body, Guide, Landmarks, Report, ViewerNumber
 from common.bus.pair import Pair
+from common.config.settings import Settings
+from common.method import Method
+from common.video.clip_facts import Clip, View, both_cameras
 from integrator import merge, merge_state
 from integrator.live_rig.live_calibration import LiveCalibration
 from viewer import track
+from viewer.background.background import Background
 from viewer.captured_frame import CapturedFrame
 
 Viewers = Mapping[ViewerNumber, track.State]
 Reports = Mapping[int, Report]
 Each = Callable[..., Iterable[Any]]
 """`map`, or one that works side by side."""
+
+
+def viewer_of(
+    view: View,
+    clip: Clip,
+    settings: Settings,
+    method: Method,
+    background: Background,
+    somebody: Landmarks | None = None,
+) -> track.State:
+    """A viewer of a clip that knows its background.
+
+    Args:
+        view: Its camera's.
+        clip: With the rig.
+        settings: Of the run.
+        method: What is done beyond the print.
+        background: The picture without people.
+        somebody: The person in the first frame, where all of the clip was looked at before.
+    """
+    rig = both_cameras(clip)
+    camera = None if rig is None else rig.cameras[view.number - 1]
+    setup = track.Setup(view.number, camera, settings, method, len(clip.views) == 1)
+    return track.init(setup, background, somebody=somebody)
 
 
 def looked(

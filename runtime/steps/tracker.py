@@ -22,13 +22,14 @@ from integrator.live_rig.live_calibration import LiveCalibration
 from integrator.live_rig.rig_solver import SolverAtOnce
 from integrator.merge_state import Start
 from recognizer import __main__ as recognizer
-from runtime.steps.loop_backgrounds import Learns, empty_of, is_enough, plates_of, viewer_of
+from runtime.steps.loop_backgrounds import Learns, empty_of, is_enough, plates_of
 from runtime.steps.loop_cameras import cameras_of, clip_of
 from runtime.steps.loop_images import Images, by_viewer, picture_of
 from runtime.steps.one_thread import one_thread
-from runtime.steps.together import joined, looked
+from runtime.steps.together import joined, looked, viewer_of
 from runtime.store.pose_arrays import poses
 from viewer import track
+from viewer.background.background import learn
 from viewer.captured_frame import CapturedFrame
 
 BOUND: Final = "320x240"
@@ -115,7 +116,7 @@ class Tracker:
             mode: As `--mode`.
             landmarks: Whether the network of landmarks looks at the pictures.
             background: Of the empty room, as images are given to `step`; None: it is learnt from
-                the first half second of images, as of a live camera. Nobody may be seen in these.
+                the first half second of images, as of a live camera, without a person.
             rate_hz: Images a second of each camera, about, also where `captured_s` is given.
             stature_m: Of the person, where no calibration gives the scale.
 
@@ -192,7 +193,11 @@ class Tracker:
         state = merge_state.init(both_cameras(clip), period_s, settings, method, start)
         naming = recognizer.init(recognizer.model_of(settings), settings.recognizer.window_frames)
         views, empty = clip.views, {} if self._plates is None else empty_of(self._plates, clip)
-        viewers = {v.number: viewer_of(v, clip, settings, empty[v.number]) for v in views if empty}
+        viewers = {
+            view.number: viewer_of(view, clip, settings, method, learn(empty[view.number]))
+            for view in views
+            if empty
+        }
         calibration = LiveCalibration(state, looks=False, solver=SolverAtOnce())
         learns: Learns = {} if empty else {view.number: () for view in views}
         return _Going(clip, learns, viewers, state, calibration, naming)
@@ -224,8 +229,9 @@ class Tracker:
         if not is_enough(empty, view, self._settings.silhouette.empty_s):
             return going._replace(learns={**going.learns, number: empty})
         learns = {n: own for n, own in going.learns.items() if n != number}
-        viewers = {**going.viewers, number: viewer_of(view, going.clip, self._settings, empty)}
-        return going._replace(learns=learns, viewers=viewers)
+        settings = self._settings
+        begun = viewer_of(view, going.clip, settings, METHODS[settings.mode], learn(empty))
+        return going._replace(learns=learns, viewers={**going.viewers, number: begun})
 
 
 def _refuse_what_does_not_go_on(
