@@ -25,7 +25,10 @@ PAGE_S: Final = 30.0
 """How long a clip waits for somebody to open the page, once all else is ready."""
 BEGIN_S: Final = READY_S + PAGE_S
 """How long a viewer that is ready waits for the run to begin."""
-SUPERVISING: Final = (f"{__name__.removesuffix('common.bus.process')}runtime", "tritrack.__main__")
+SUPERVISING: Final = (
+    ".".join([*__name__.split(".")[:-3], "runtime"]),
+    "tritrack.__main__",
+)
 """Loggers of what runs the parts, by the names that rooms have here; parts that are threads of its
 process log by their own."""
 
