@@ -1,4 +1,4 @@
-"""Clips of performances on disk: two films, what they are of, and the truth."""
+"""Clips of performances on disk: a video a camera, what they are of, and the truth."""
 
 import itertools
 import json
@@ -11,12 +11,13 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.rig.camera import Rig, project
+from common.rig.camera import Camera, Rig, project
 from synth.motion.motions import POSTURES, Motion, movement, performance
 from synth.motion.streaming import streamed
 from synth.person.people import MEASURE_NAMES, Person, measure_vector, person
 from synth.person.skeleton import ANGLES, JOINTS
-from synth.picture.exposure import blurred, default_rig, exposures
+from synth.picture.exposure import blurred, exposures
+from synth.picture.random_rig import MOST_CAMERAS, rig_around
 from synth.picture.render import Shot, render
 
 FPS: Final = 15.0
@@ -50,13 +51,15 @@ class ClipSet(NamedTuple):
     """The same one gives the same clips, byte for byte."""
     postures: tuple[str, ...] = POSTURES
     """Which ones; not asked for when the motion is free or a fall."""
+    cameras: int = 2
+    """How many, 1 to MOST_CAMERAS."""
 
 
 class Filming(NamedTuple):
     """By what a motion is filmed."""
 
     rig: Rig
-    """Two cameras."""
+    """The cameras, by whose names the files and arrays are called."""
     room_seed: int
     seed: int
     """Of noise and exposure."""
@@ -83,10 +86,10 @@ def write_set(
         SynthError: When nothing would be written, a posture or the motion is not known, or the
             calibration of other cameras would be lost.
     """
-    motion, performers, takes, seed, postures = wanted
+    motion, performers, takes, seed, postures, cameras = wanted
     names = (motion,) if motion in ALONE else postures
     _refuse_what_cannot_be(wanted, size, names)
-    rig = default_rig(*size)
+    rig = rig_around(size, cameras, seed)
     out.mkdir(parents=True, exist_ok=True)
     _refuse_to_lose(out / "calibration.json", rig)
     write_rig(out / "calibration.json", rig)
@@ -114,7 +117,7 @@ def clip_name(someone: Person, posture: str, take: int) -> str:
 
 
 def write_clip(folder: Path, someone: Person, motion: Motion, filming: Filming, take: int) -> None:
-    """One clip: cam1.avi, cam2.avi (Motion JPEG), meta.json, truth.npz.
+    """One clip: cam1.avi, cam2.avi, ... (Motion JPEG), meta.json, truth.npz.
 
     Args:
         folder: Made where it is missing.
@@ -131,13 +134,12 @@ def write_clip(folder: Path, someone: Person, motion: Motion, filming: Filming, 
     masks = _film(folder, render(someone, motion, rig, room_seed, seed), rig, motion.fps)
     meta = _meta(someone, motion, filming, take)
     (folder / "meta.json").write_text(json.dumps(meta, indent=1) + "\n")
-    gain = exposures(len(motion.phase), seed, motion.fps)
+    gain = exposures(len(masks), len(motion.phase), seed, motion.fps)
     np.savez_compressed(
         folder / "truth.npz",
         allow_pickle=False,
         **_truth(someone, motion, rig, take),
-        mask_cam1=masks[0],
-        mask_cam2=masks[1],
+        **masks,
         gain=gain.astype(np.float32),
     )
 
@@ -157,20 +159,21 @@ def _refuse_to_lose(path: Path, rig: Rig) -> None:
         raise SynthError(f"{path} is of other cameras, whose clips it serves: name another --out")
 
 
-def _film(folder: Path, shots: Iterable[Shot], rig: Rig, fps: float) -> tuple[Packed, Packed]:
-    """Write both films; the masks of all frames, packed, (n, h, bytes) each."""
-    films = [_writer(folder / f"cam{n}.avi", rig, fps) for n in (1, 2)]
-    masks: tuple[list[Packed], list[Packed]] = ([], [])
+def _film(folder: Path, shots: Iterable[Shot], rig: Rig, fps: float) -> dict[str, Packed]:
+    """Write every camera's video; their masks of all frames, packed, (n, h, bytes) each."""
+    names = [camera.name for camera in rig.cameras]
+    videos = [_writer(folder / f"{name}.avi", rig, fps) for name in names]
+    masks: dict[str, list[Packed]] = {f"mask_{name}": [] for name in names}
     try:
         for shot in shots:
-            films[0].write(shot.frame1)
-            films[1].write(shot.frame2)
-            masks[0].append(np.packbits(shot.mask1, axis=1))
-            masks[1].append(np.packbits(shot.mask2, axis=1))
+            for video, frame in zip(videos, shot.frames, strict=True):
+                video.write(frame)
+            for packed, mask in zip(masks.values(), shot.masks, strict=True):
+                packed.append(np.packbits(mask, axis=1))
     finally:
-        for film in films:
-            film.release()
-    return np.stack(masks[0]), np.stack(masks[1])
+        for video in videos:
+            video.release()
+    return {name: np.stack(packed) for name, packed in masks.items()}
 
 
 def _writer(path: Path, rig: Rig, fps: float) -> cv2.VideoWriter:
@@ -205,18 +208,15 @@ def _meta(someone: Person, motion: Motion, filming: Filming, take: int) -> dict[
 def _truth(someone: Person, motion: Motion, rig: Rig, take: int) -> dict[str, np.ndarray]:
     """The arrays of `truth.npz` but those that the films give."""
     count = len(motion.phase)
-    seen = [_projected(rig, n, motion) for n in (0, 1)]
     return {
         "joints3d": motion.joints_m.astype(np.float32),
         "joint_names": np.array(JOINTS),
-        "joints2d_cam1": seen[0],
-        "joints2d_cam2": seen[1],
+        **{f"joints2d_{camera.name}": _projected(camera, motion) for camera in rig.cameras},
         "mask_shape": np.array([rig.height, rig.width]),
         "phase": motion.phase,
         "present": motion.present,
         "time": (np.arange(count) / motion.fps).astype(np.float32),
-        "frames_cam1": np.arange(count, dtype=np.int32),
-        "frames_cam2": np.arange(count, dtype=np.int32),
+        **{f"frames_{c.name}": np.arange(count, dtype=np.int32) for c in rig.cameras},
         "angles": motion.angles_deg.astype(np.float32),
         "angle_names": np.array(ANGLES),
         "root": motion.root_m.astype(np.float32),
@@ -231,8 +231,8 @@ def _truth(someone: Person, motion: Motion, rig: Rig, take: int) -> dict[str, np
     }
 
 
-def _projected(rig: Rig, n: int, motion: Motion) -> np.ndarray:
-    pixels = project(rig.cameras[n], motion.joints_m.reshape(-1, 3))
+def _projected(camera: Camera, motion: Motion) -> np.ndarray:
+    pixels = project(camera, motion.joints_m.reshape(-1, 3))
     return pixels.reshape(len(motion.phase), -1, 2).astype(np.float32)
 
 
@@ -242,12 +242,14 @@ def _number(posture: str) -> int:
 
 
 def _refuse_what_cannot_be(wanted: ClipSet, size: tuple[int, int], names: tuple[str, ...]) -> None:
-    motion, performers, takes, seed, _ = wanted
+    motion, performers, takes, seed, _, cameras = wanted
     if motion not in ("postures", *ALONE):
         raise SynthError(f"motion must be postures, {', '.join(ALONE)}, got {motion!r}")
     for what, number in (("performers", performers), ("takes", takes)):
         if number < 1:
             raise SynthError(f"{what} must be at least 1, got {number}")
+    if not 1 <= cameras <= MOST_CAMERAS:
+        raise SynthError(f"cameras must be 1 to {MOST_CAMERAS}, got {cameras}")
     if seed < 0:
         raise SynthError(f"seed must not be negative, got {seed}")
     if min(size) < 32 or max(size) > 4096:

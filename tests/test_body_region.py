@@ -20,14 +20,14 @@ def test_the_stature_is_that_of_the_person() -> None:
 
 
 def test_the_region_is_nearly_the_silhouette_and_a_little_more_holds_it() -> None:
-    mask = acted()[0].mask1
+    mask = acted()[0].masks[0]
     own = body_region(true_landmarks(), mask.shape, 0.0) > 0
     assert (own & mask).sum() / (own | mask).sum() > 0.7
     assert (mask & ~(body_region(true_landmarks(), mask.shape, 0.06) > 0)).mean() < 0.0005
 
 
 def test_all_bones_together_are_no_more_than_the_region() -> None:
-    mask = acted()[0].mask1
+    mask = acted()[0].masks[0]
     bones = [bone_region(true_landmarks(), mask.shape, n) for n in range(len(BONES))]
     whole = body_region(true_landmarks(), mask.shape, 0.01) > 0
     assert not (np.any(bones, axis=0) & ~whole).any()
@@ -42,7 +42,7 @@ def without(*names: str) -> Landmarks:
 
 
 def test_what_is_not_seen_makes_nobody_taller_and_is_not_drawn() -> None:
-    mask = acted()[0].mask1
+    mask = acted()[0].masks[0]
     unseen = without("l_ankle", "r_ankle", "l_wrist")
     assert stature_px(unseen) == pytest.approx(stature_px(true_landmarks()), rel=0.15)
     own, whole = (body_region(each, mask.shape, 0.0) > 0 for each in (unseen, true_landmarks()))

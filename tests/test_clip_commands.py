@@ -80,11 +80,13 @@ def test_people_are_made_as_many_and_as_they_are_asked_for(
 ) -> None:
     made = instead(monkeypatch, "tritrack.making.make_clips", [Path("x/a"), Path("x/b")])
     words = ["--motion", "postures", "--performers", 3, "--takes", 2, "--seed", 7]
-    said = typed(synth, "--out", "x", *words, "--size", "160x120", "--posture", "squat")
-    assert made.last[:3] == (Path("x"), ClipSet("postures", 3, 2, 7, ("squat",)), "160x120")
+    said = typed(
+        synth, "--out", "x", *words, "--size", "160x120", "--posture", "squat", "--cameras", 3
+    )
+    assert made.last[:3] == (Path("x"), ClipSet("postures", 3, 2, 7, ("squat",), 3), "160x120")
     assert "2 clips written to x" in said.output
     said = typed(synth, "--out", "x", "--json")
-    assert made.last[1:3] == (ClipSet("postures", 1, 1, 0, ()), "320x240")
+    assert made.last[1:3] == (ClipSet("postures", 1, 1, 0, (), 2), "320x240")
     assert json.loads(said.stdout) == {"clips": ["x/a", "x/b"]}
 
 

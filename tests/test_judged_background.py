@@ -32,7 +32,7 @@ def film() -> tuple[Image, list[Image], list[Mask]]:
     motion = performance(someone, "walk_sideways", 3)
     shots = list(render(someone, motion, RIG, 77, 3))
     shown = [shot for shot, phase in zip(shots, motion.phase, strict=True) if phase == MOTION][::4]
-    return shots[0].frame1, [shot.frame1 for shot in shown], [shot.mask1 for shot in shown]
+    return shots[0].frames[0], [shot.frames[0] for shot in shown], [shot.masks[0] for shot in shown]
 
 
 def test_a_background_with_somebody_in_it_gives_way_to_the_empty_room() -> None:

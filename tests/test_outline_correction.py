@@ -21,7 +21,7 @@ def unsure() -> Landmarks:
 
 def with_door() -> tuple[Mask, Mask]:
     """The person's outline with a door that they do not touch, and the true one."""
-    mask = acted()[0].mask1
+    mask = acted()[0].masks[0]
     cluttered = mask.copy()
     cluttered[40:220, 5:60] = True
     return cluttered, mask
@@ -29,7 +29,7 @@ def with_door() -> tuple[Mask, Mask]:
 
 def without_legs() -> tuple[Mask, Mask]:
     """The person's outline without the legs, and the true one."""
-    mask = acted()[0].mask1
+    mask = acted()[0].masks[0]
     rows = np.flatnonzero(mask.any(axis=1))
     ragged = mask.copy()
     ragged[(rows[0] + rows[-1]) // 2 :] = False
@@ -37,7 +37,7 @@ def without_legs() -> tuple[Mask, Mask]:
 
 
 def test_a_whole_outline_stays_as_it_is() -> None:
-    own = seen(acted()[0].mask1)
+    own = seen(acted()[0].masks[0])
     held = corrected(own, true_landmarks(), 0.15)
     assert held.seen is own
     assert not held.is_changed
@@ -61,7 +61,7 @@ def test_legs_of_the_floors_colour_come() -> None:
 
 
 def test_somebody_of_the_walls_colour_gets_an_outline() -> None:
-    mask = acted()[0].mask1
+    mask = acted()[0].masks[0]
     held = corrected(nobody(), true_landmarks(), 0.15)
     assert iou(held.seen.mask, mask) > 0.6
 

@@ -47,7 +47,7 @@ def acted() -> tuple[Shot, np.ndarray, float, Image]:
     motion = performance(someone, "raise_both_lateral", 3)
     at = int(np.flatnonzero(motion.phase == MOTION)[15])
     shots = render(someone, motion, RIG, 77, 3)
-    empty = next(shots).frame1
+    empty = next(shots).frames[0]
     shot = next(shot for i, shot in enumerate(shots, 1) if i == at)
     joints_px = project(RIG.cameras[0], motion.joints_m[at, PICK])
     focal, far_m = RIG.cameras[0].K[0][0], 4.5
@@ -75,17 +75,17 @@ def off(found: Landmarks | None) -> float:
 
 def test_the_joints_of_somebody_with_an_outline_are_found() -> None:
     shot = acted()[0]
-    assert off(own_landmarks(shot.frame1, seen(shot.mask1), None)) < 0.03
+    assert off(own_landmarks(shot.frames[0], seen(shot.masks[0]), None)) < 0.03
 
 
 def test_somebody_without_an_outline_is_found_in_all_of_the_picture() -> None:
-    assert off(own_landmarks(acted()[0].frame1, nobody(), None)) < 0.05
+    assert off(own_landmarks(acted()[0].frames[0], nobody(), None)) < 0.05
 
 
 def test_an_outline_that_is_elsewhere_does_not_lead_astray() -> None:
     wrong = np.zeros((240, 320), np.bool_)
     wrong[60:200, 5:50] = True
-    assert off(own_landmarks(acted()[0].frame1, seen(wrong), None)) < 0.05
+    assert off(own_landmarks(acted()[0].frames[0], seen(wrong), None)) < 0.05
 
 
 def test_in_an_empty_room_nobody_is_seen() -> None:
@@ -107,7 +107,7 @@ def test_an_outline_of_which_the_picture_shows_nobody_has_landmarks_that_are_not
 
 def test_whoever_faces_the_camera_is_told_to() -> None:
     shot = acted()[0]
-    found = own_landmarks(shot.frame1, seen(shot.mask1), None)
+    found = own_landmarks(shot.frames[0], seen(shot.masks[0]), None)
     assert found is not None
     assert abs(found.facing_deg) < 45
     assert found.facing_confidence > 0.5
@@ -115,9 +115,9 @@ def test_whoever_faces_the_camera_is_told_to() -> None:
 
 def test_a_grey_and_tiny_picture_is_looked_at_too() -> None:
     shot, joints_px, stature_px, _ = acted()
-    small = cv2.resize(shot.frame1, (160, 120), interpolation=cv2.INTER_AREA)
+    small = cv2.resize(shot.frames[0], (160, 120), interpolation=cv2.INTER_AREA)
     grey = cv2.cvtColor(cv2.cvtColor(small, cv2.COLOR_BGR2GRAY), cv2.COLOR_GRAY2BGR)
-    mask = cv2.resize(shot.mask1.astype(np.uint8), (160, 120)) > 0
+    mask = cv2.resize(shot.masks[0].astype(np.uint8), (160, 120)) > 0
     found = own_landmarks(np.asarray(grey, np.uint8), seen(mask), None)
     assert found is not None
     apart = np.linalg.norm(2 * np.array(found.joints_px) - joints_px, axis=1) / stature_px
@@ -134,8 +134,8 @@ def test_whoever_lies_or_stands_on_their_hands_is_found_as_well(
     size = np.array([320.0, 240.0])
     for _ in range(times):  # to the left
         joints_px, size = np.stack([joints_px[:, 1], size[0] - joints_px[:, 0]], 1), size[::-1]
-    picture = np.array(np.rot90(shot.frame1, times), np.uint8)
-    outline = seen(np.array(np.rot90(shot.mask1, times), np.bool_))
+    picture = np.array(np.rot90(shot.frames[0], times), np.uint8)
+    outline = seen(np.array(np.rot90(shot.masks[0], times), np.bool_))
     looks = Mock(wraps=find)
     monkeypatch.setattr("viewer.landmarks.own_landmarks.find", looks)
     found = None
@@ -154,7 +154,7 @@ def test_who_seemed_to_lie_and_stands_is_looked_at_upright_again() -> None:
     shot, joints_px, _, _ = acted()
     wrong = np.stack([joints_px[:, 1] + 40.0, joints_px[:, 0]], axis=1)
     before = Landmarks(tuple((x, y) for x, y in wrong.tolist()), (0.9,) * 15)
-    found = own_landmarks(shot.frame1, seen(shot.mask1), before)
+    found = own_landmarks(shot.frames[0], seen(shot.masks[0]), before)
     assert off(found) < 0.03
 
 

@@ -64,10 +64,10 @@ def test_the_same_seeds_give_the_same_frames_and_others_others() -> None:
         for x, y in zip(a, b, strict=True):
             np.testing.assert_array_equal(x, y)
     noise = next(shots(motion, seed=10))
-    assert (noise.frame1 != first[0].frame1).any()
-    np.testing.assert_array_equal(noise.mask1, first[0].mask1)
+    assert (noise.frames[0] != first[0].frames[0]).any()
+    np.testing.assert_array_equal(noise.masks[0], first[0].masks[0])
     other = next(render(person(1), motion, RIG, 5, 9))
-    assert np.abs(other.frame1.astype(int) - first[0].frame1).mean() > 5
+    assert np.abs(other.frames[0].astype(int) - first[0].frames[0]).mean() > 5
 
 
 def joints_and_masks(posture: str, rig: Rig) -> tuple[int, int]:
@@ -75,7 +75,7 @@ def joints_and_masks(posture: str, rig: Rig) -> tuple[int, int]:
     motion = performance(person(1), posture, 1)
     inside = seen = 0
     for i, shot in islice(enumerate(shots(motion, rig)), 10, None, 7):
-        for camera, mask in zip(rig.cameras, (shot.mask1, shot.mask2), strict=True):
+        for camera, mask in zip(rig.cameras, shot.masks, strict=True):
             near = cv2.dilate(mask.astype(np.uint8), np.ones((5, 5), np.uint8))
             pixels = np.floor(project(camera, motion.joints_m[i])).astype(int)
             within = ((pixels >= 0) & (pixels < (rig.width, rig.height))).all(axis=1)
@@ -95,7 +95,7 @@ def test_the_silhouette_is_the_body_and_no_limb_of_the_tracker() -> None:
     """Clothes are wider than the limbs; hands and feet reach beyond wrist and ankle."""
     rig = default_rig(320, 240)
     motion = shortened(performance(person(0), "walk_in_place", 1), 12, 13)
-    mask = next(shots(motion, rig, someone=0)).mask1
+    mask = next(shots(motion, rig, someone=0)).masks[0]
     measures = person(0).measures
     rows, columns = np.nonzero(mask)
     px_per_m = 401.14 / (4.5 - motion.root_m[0, 2])
@@ -112,8 +112,8 @@ def test_the_silhouette_is_the_body_and_no_limb_of_the_tracker() -> None:
 def test_half_the_size_shows_the_same_silhouette() -> None:
     """Masks are exact: at 320x240, averaged down, they differ from 160x120 on the edge only."""
     motion = shortened(performance(person(1), "walk_toward", 1), 45, 46)
-    small = next(shots(motion)).mask1
-    large = next(shots(motion, default_rig(320, 240))).mask1
+    small = next(shots(motion)).masks[0]
+    large = next(shots(motion, default_rig(320, 240))).masks[0]
     share = cv2.resize(large.astype(np.float32), (160, 120), interpolation=cv2.INTER_AREA)
     assert (small[share > 0.9]).all()
     assert not (small[share < 0.1]).any()
@@ -144,8 +144,8 @@ def test_the_surface_is_closed_and_faces_outwards() -> None:
 
 def test_the_empty_room_is_still_but_for_noise_and_flicker() -> None:
     motion = shortened(performance(person(1), "squat", 1), 0, 9)
-    frames = np.stack([shot.frame1 for shot in shots(motion)]).astype(float)
-    assert not np.stack([shot.mask1 for shot in shots(motion)]).any()
+    frames = np.stack([shot.frames[0] for shot in shots(motion)]).astype(float)
+    assert not np.stack([shot.masks[0] for shot in shots(motion)]).any()
     grain = (frames[:-1] - frames[1:]).std() / np.sqrt(2)
     assert 0.7 < grain < 4.0
     means = frames.mean(axis=(1, 2, 3))
@@ -158,10 +158,10 @@ def test_a_person_throws_a_shadow_outside_of_the_silhouette() -> None:
     empty = shortened(motion, 0, 1)
     there = shortened(motion, 14, 15)
     before, after = next(shots(empty)), next(shots(there))
-    away = ~cv2.dilate(after.mask1.astype(np.uint8), np.ones((7, 7), np.uint8)).astype(bool)
-    gain = exposures(1, 9, motion.fps)
-    np.testing.assert_array_equal(gain, exposures(1, 9, motion.fps))
-    darker = before.frame1.astype(int).mean(axis=2) - after.frame1.astype(int).mean(axis=2)
+    away = ~cv2.dilate(after.masks[0].astype(np.uint8), np.ones((7, 7), np.uint8)).astype(bool)
+    gain = exposures(2, 1, 9, motion.fps)
+    np.testing.assert_array_equal(gain, exposures(2, 1, 9, motion.fps))
+    darker = before.frames[0].astype(int).mean(axis=2) - after.frames[0].astype(int).mean(axis=2)
     assert (darker[away] > 8).sum() > 60
 
 

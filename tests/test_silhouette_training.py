@@ -22,6 +22,7 @@ from lab.training.silhouette_training import (
 from lab.training.training import TrainingError
 from synth.motion.motions import EMPTY, MOTION, POSTURES, performance
 from synth.person.people import person
+from synth.picture.render import Shot
 from viewer.silhouette.boundary_features import FEATURES
 from viewer.silhouette.pixel_classifier import load, log_odds, save, shipped
 
@@ -198,11 +199,9 @@ def test_a_film_is_taken_of_both_cameras_and_its_pictures_are_packed(
     def render(someone: Any, moved: Any, rig: Any, room_seed: int, seed: int) -> Any:
         noted.append((someone, moved, (rig.width, rig.height), room_seed, seed))
         for n in (1, 2):
-            yield (
-                np.full((8, 8, 3), 10 * n, np.uint8),
-                np.full((8, 8, 3), 100 + n, np.uint8),
-                np.full((8, 8), n == 1),
-                np.full((8, 8), n == 2),
+            yield Shot(
+                (np.full((8, 8, 3), 10 * n, np.uint8), np.full((8, 8, 3), 100 + n, np.uint8)),
+                (np.full((8, 8), n == 1), np.full((8, 8), n == 2)),
             )
 
     def moving(_: Any, posture: str, seed: int) -> Any:

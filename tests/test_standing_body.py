@@ -30,7 +30,7 @@ def test_somebody_who_stays_is_found_whole() -> None:
     motion = performance(someone, "raise_both_lateral", 3)
     shots = list(render(someone, motion, RIG, 77, 3))
     shown = [s for s, phase in zip(shots, motion.phase, strict=True) if phase == MOTION][::4]
-    frames, masks = [s.frame1 for s in shown], np.stack([s.mask1 for s in shown])
+    frames, masks = [s.frames[0] for s in shown], np.stack([s.masks[0] for s in shown])
     looks = looked_at(frames)
     found, true = standing(median(frames), looks), masks.mean(axis=0) > 0.5
     surest = max(looks, key=lambda look: sum(look.landmarks.confidence))

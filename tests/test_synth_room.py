@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from synth.picture.random_rig import random_rig
-from synth.picture.synth_room import furnished
+from synth.picture.random_rig import random_rig, rig_around
+from synth.picture.synth_room import _furniture, _walls, _walls_seen, furnished
 
 
 @pytest.mark.filterwarnings("error::RuntimeWarning")
@@ -16,3 +16,20 @@ def test_a_room_is_lit_as_rooms_are_wherever_its_cameras_stand(seed: int) -> Non
         assert np.isfinite(picture).all()
         assert picture.std() > 5.0
         assert picture.mean() < 250.0
+
+
+@pytest.mark.parametrize(("cameras", "furnished_walls"), [(1, 2), (2, 2), (3, 4), (8, 4)])
+def test_things_stand_along_every_wall_that_is_seen_behind_a_person(
+    cameras: int, furnished_walls: int
+) -> None:
+    """Each thing touches a wall from inside."""
+    rng = np.random.default_rng(6)
+    (room,) = _walls(rng, rig_around((80, 60), cameras, 6))
+    things = _furniture(rng, _walls_seen(room, cameras))
+    touched = set()
+    for thing in things:
+        sides = [(axis, 0) for axis in (0, 2) if thing.low[axis] == room.low[axis]]
+        sides += [(axis, 1) for axis in (0, 2) if thing.high[axis] == room.high[axis]]
+        assert sides
+        touched |= set(sides)
+    assert len(touched) == furnished_walls

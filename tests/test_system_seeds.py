@@ -145,7 +145,9 @@ def shots() -> list[Any]:
     motion = performance(person(2), "walk_toward", 3)
     names = ("joints_m", "bones", "angles_deg", "root_m", "phase")
     some = motion._replace(**{name: getattr(motion, name)[[0, 30, 45, 46]] for name in names})
-    return [[*shot] for shot in render(person(2), some, default_rig(40, 30), 5, 6)]
+    return [
+        [*shot.frames, *shot.masks] for shot in render(person(2), some, default_rig(40, 30), 5, 6)
+    ]
 
 
 def outlines() -> list[Any]:
@@ -197,7 +199,7 @@ def landmarks() -> list[Any]:
 
 def exposed() -> list[Any]:
     motions = [performance(person(2), name, 3) for name in ("kick_right_forward", "squat")]
-    return [[exposures(75, seed, 15.0) for seed in range(6)], [blurred(one) for one in motions]]
+    return [[exposures(2, 75, seed, 15.0) for seed in range(6)], [blurred(one) for one in motions]]
 
 
 def posed_anyhow() -> list[Any]:

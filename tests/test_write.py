@@ -39,7 +39,7 @@ def shots(count: int) -> Iterator[Shot]:
         mask = np.zeros((48, 64), np.bool_)
         mask[n:40, : 3 * n] = True
         frame = np.full((48, 64, 3), 20 * n, np.uint8)
-        yield Shot(frame, 2 * frame, mask, mask[::-1])
+        yield Shot((frame, 2 * frame), (mask, mask[::-1]))
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +77,7 @@ def test_the_masks_are_each_cameras_packed_by_rows(folder: Path) -> None:
     assert truth["mask_shape"].tolist() == [48, 64]
     for name, turned in (("mask_cam1", 1), ("mask_cam2", -1)):
         masks = np.unpackbits(truth[name], axis=2, count=64).astype(bool)
-        due = [shot.mask1[::turned] for shot in shots(6)]
+        due = [shot.masks[0][::turned] for shot in shots(6)]
         np.testing.assert_array_equal(masks, due)
 
 
@@ -97,7 +97,7 @@ def test_the_truth_is_of_this_motion_and_these_cameras(folder: Path) -> None:
         ("angles", motion.angles_deg.astype(np.float32)),
         ("root", motion.root_m.astype(np.float32)),
         ("measures", measure_vector(person(2))),
-        ("gain", exposures(6, 1003, 12.5).astype(np.float32)),
+        ("gain", exposures(2, 6, 1003, 12.5).astype(np.float32)),
     ):
         np.testing.assert_array_equal(truth[name], due)
     assert truth["joint_names"].tolist() == [*JOINTS]
@@ -188,6 +188,29 @@ def test_a_set_has_each_persons_takes_of_each_posture_all_of_one_seed(
     assert load_rig(out / "calibration.json") == rig
 
 
+@pytest.mark.parametrize("cameras", [1, 3])
+def test_every_camera_of_a_rig_has_its_video_and_its_truth(tmp_path: Path, cameras: int) -> None:
+    """Joints, projected by the calibration that is written, lie in each camera's silhouette."""
+    wanted = ClipSet("postures", seed=5, postures=("squat",), cameras=cameras)
+    (clip,) = write_set(tmp_path, wanted, (80, 60))
+    rig, names = load_rig(tmp_path / "calibration.json"), [f"cam{n + 1}" for n in range(cameras)]
+    assert [camera.name for camera in rig.cameras] == names
+    assert sorted(path.stem for path in clip.glob("*.avi")) == names
+    truth = np.load(clip / "truth.npz")
+    at = int(np.flatnonzero(truth["present"])[20])
+    assert truth["gain"].shape == (cameras, len(truth["present"]))
+    for prefix in ("joints2d", "frames", "mask"):
+        assert sum(name.startswith(f"{prefix}_cam") for name in truth.files) == cameras
+    for camera in rig.cameras:
+        pixels = project(camera, truth["joints3d"][at].astype(np.float64))
+        np.testing.assert_allclose(truth[f"joints2d_{camera.name}"][at], pixels, atol=1e-3)
+        mask = np.unpackbits(truth[f"mask_{camera.name}"][at], axis=1, count=80)
+        near = cv2.dilate(mask, np.ones((3, 3), np.uint8))
+        columns, rows = np.floor(pixels).astype(int).T
+        assert near[rows, columns].mean() > 0.9
+        assert near.mean() < 0.2
+
+
 @pytest.mark.parametrize("motion", ["free", "fall", "stream"])
 def test_what_is_one_take_each_is_no_take_of_each_posture(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, motion: Any
@@ -222,6 +245,8 @@ def test_a_calibration_of_other_cameras_is_not_lost(
         (ClipSet("dance"), SIZE, "motion must be postures, free, fall, stream, got 'dance'"),  # type: ignore[arg-type]
         (ClipSet("free", performers=0), SIZE, "performers must be at least 1, got 0"),
         (ClipSet("free", takes=0), SIZE, "takes must be at least 1, got 0"),
+        (ClipSet("free", cameras=0), SIZE, "cameras must be 1 to 8, got 0"),
+        (ClipSet("free", cameras=9), SIZE, "cameras must be 1 to 8, got 9"),
         (ClipSet("free", seed=-1), SIZE, "seed must not be negative, got -1"),
         (ClipSet("free"), (31, 48), "a picture has 32 to 4096 pixels each way, got 31x48"),
         (ClipSet("free"), (48, 4097), "a picture has 32 to 4096 pixels each way, got 48x4097"),

@@ -112,9 +112,9 @@ def films(seed: int, rng: np.random.Generator) -> list[LabelledFilm]:
     posture = POSTURES[seed % len(POSTURES)] if seed % FREE_EVERY else "free"
     moved = _cut(performance(someone, posture, seed), staging)
     quality = [cv2.IMWRITE_JPEG_QUALITY, int(rng.integers(*QUALITY))]
-    seen = [LabelledFilm([], []), LabelledFilm([], [])]
+    seen = [LabelledFilm([], []) for _ in rig.cameras]
     for shot in render(someone, moved, rig, ROOMS + seed, seed):
-        for film, frame, mask in zip(seen, shot[:2], shot[2:], strict=True):
+        for film, frame, mask in zip(seen, *shot, strict=True):
             packed = cv2.imencode(".jpg", frame, quality)[1]
             film.frames.append(np.asarray(cv2.imdecode(packed, cv2.IMREAD_COLOR), np.uint8))
             film.masks.append(mask)

@@ -21,12 +21,12 @@ def default_rig(width: int, height: int) -> Rig:
     return paper_rig((width, height), (focal, focal), (4.5, 4.5))
 
 
-def exposures(count: int, seed: int, fps: float) -> Vector:
-    """How bright each frame of each camera is, (2, count): flicker and a step of the exposure."""
+def exposures(cameras: int, count: int, seed: int, fps: float) -> Vector:
+    """How bright each frame is, (cameras, count): flicker and a step of the exposure."""
     rng = np.random.default_rng([seed, 2])
     t = np.arange(count) / fps
     flicker = 0.006 * np.sin(2 * np.pi * (np.outer(FLICKER_HZ, t) + rng.random((2, 1)))).sum(axis=0)
-    gains = rng.uniform(0.92, 1.12) * rng.uniform(0.97, 1.03, (2, 1)) * (1.0 + flicker)
+    gains = rng.uniform(0.92, 1.12) * rng.uniform(0.97, 1.03, (cameras, 1)) * (1.0 + flicker)
     for gain in gains:
         if rng.random() < 0.5:
             gain[int(rng.integers(count // 3, count)) :] *= 1.0 + rng.uniform(-0.04, 0.04)

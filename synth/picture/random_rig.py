@@ -1,13 +1,15 @@
-"""Pairs of cameras as people put them up."""
+"""Cameras as people put them up: pairs, and any number around a person."""
 
 from typing import Final
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.rig.camera import Camera, Rig, as_matrix, as_row, paper_rig
 from synth.person.skeleton import turned
+from synth.picture.exposure import default_rig
 
 WIDTHS_PX: Final = (160, 320)
 HEIGHTS_M, FOCALS = (0.8, 1.4), (1.0, 1.4)
@@ -25,6 +27,15 @@ DISTANCES_M, WIDTHS, AT_M = (2.2, 5.8), (0.85, 1.4), 4.5
 HOW_FAR: Final = (0.75, 1.3)
 CROSS_DEG, CROSSED_SHARE, RIGHT_SHARE = (45.0, 135.0), 0.5, 0.3
 """The angle to the second camera, of those where it is not 90; how many stand to the right."""
+FURTHER_DEG: Final = (135.0, 60.0, -150.0, -30.0, 100.0, 165.0)
+"""Bearings of camera 3 and on; the default rig's are 0, before the person, and -90, at their right.
+Any first few of them are spread. No two stand opposite each other, where rays coincide."""
+MOST_CAMERAS: Final = 2 + len(FURTHER_DEG)
+"""Of a rig around a person."""
+FURTHER_OFF_DEG, FURTHER_FAR_M, FURTHER_HIGH_M = 5.0, (4.5, 5.0), (0.8, 2.2)
+"""How far from their bearings those may stand; how far from the middle, and how high."""
+FURTHER_AIM_M, FURTHER_FOCALS, FURTHER_ROLL_DEG = (0.9, 1.05), (0.92, 1.0), 1.0
+"""The height that they look at; focal length in those of the default rig; deviation of the roll."""
 
 
 def random_rig(
@@ -52,6 +63,29 @@ def random_rig(
             for n in (0, 1)
         ),
     )
+
+
+def rig_around(size: tuple[int, int], count: int, seed: int) -> Rig:
+    """The default rig with further cameras all around the middle of the room.
+
+    Args:
+        size: Width and height of the pictures.
+        count: How many cameras, 1 to MOST_CAMERAS; a rig of more begins with those of fewer.
+        seed: Of where exactly the further ones stand.
+    """
+    rig = default_rig(*size)
+    rng = np.random.default_rng([seed, 4])
+    further = (_further(n, size, rig, rng) for n in range(2, count))
+    return msgspec.structs.replace(rig, cameras=(*rig.cameras[:count], *further))
+
+
+def _further(n: int, size: tuple[int, int], rig: Rig, rng: np.random.Generator) -> Camera:
+    """Camera n, from 0, of a rig around: it looks at the middle of a body."""
+    at_deg = FURTHER_DEG[n - 2] + rng.uniform(-FURTHER_OFF_DEG, FURTHER_OFF_DEG)
+    place = _on_circle(at_deg, rng.uniform(*FURTHER_FAR_M), rng.uniform(*FURTHER_HIGH_M))
+    roll_deg = FURTHER_ROLL_DEG * rng.normal()
+    R = turned("z", np.array([roll_deg]))[0] @ _looking(place, rng.uniform(*FURTHER_AIM_M))
+    return _camera(n, size, rig.cameras[0].K[0][0] * rng.uniform(*FURTHER_FOCALS), R, place)
 
 
 def rig_about(rng: np.random.Generator, middle_m: Vector) -> Rig:
@@ -94,8 +128,7 @@ def _about(
     aim = place[1] if level else rng.uniform(0.75, 1.1)
     roll_deg = ROLLED_DEG * rng.normal() if rng.random() < ROLLED_SHARE else 0.0
     R = turned("z", np.array([roll_deg]))[0] @ _looking(place, aim)
-    K = ((focal_px, 0.0, size[0] / 2), (0.0, focal_px, size[1] / 2), (0.0, 0.0, 1.0))
-    return Camera(f"cam{n + 1}", K, as_matrix(R), as_row(-R @ (place + stands_m)))
+    return _camera(n, size, focal_px, R, place + stands_m)
 
 
 def _looking(place: Vector, aim_m: float) -> NDArray[np.float64]:
@@ -118,5 +151,12 @@ def _slanted(
     """A camera somewhere on the circle that looks at the middle of a body, rolled a little."""
     level = _looking(place, rng.uniform(0.8, 1.1))
     R = turned("z", np.array([rng.normal(0.0, ROLL_DEG)]))[0] @ level
+    return _camera(n, size, focal_px, R, place)
+
+
+def _camera(
+    n: int, size: tuple[int, int], focal_px: float, R: NDArray[np.float64], place_m: Vector
+) -> Camera:
+    """Camera n, from 0, without distortion."""
     K = ((focal_px, 0.0, size[0] / 2), (0.0, focal_px, size[1] / 2), (0.0, 0.0, 1.0))
-    return Camera(f"cam{n + 1}", K, as_matrix(R), as_row(-R @ place))
+    return Camera(f"cam{n + 1}", K, as_matrix(R), as_row(-R @ place_m))

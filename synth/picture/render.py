@@ -1,4 +1,4 @@
-"""The renderer: a performance in a room, as two cameras see it, with exact silhouettes."""
+"""The renderer: a performance in a room, as each camera sees it, with exact silhouettes."""
 
 from collections.abc import Iterator
 from functools import lru_cache
@@ -36,14 +36,12 @@ Body = tuple[NDArray[np.float32], Mask]
 
 
 class Shot(NamedTuple):
-    """One moment in both views."""
+    """One moment, as each camera of the rig sees it."""
 
-    frame1: Image
-    """(h, w, 3) blue, green, red."""
-    frame2: Image
-    mask1: Mask
-    """(h, w) True where the person covers at least half of a pixel at the frame's time."""
-    mask2: Mask
+    frames: tuple[Image, ...]
+    """(h, w, 3) a camera: blue, green, red."""
+    masks: tuple[Mask, ...]
+    """(h, w) a camera: True where the person covers half of a pixel or more at the frame's time."""
 
 
 class _Scene(NamedTuple):
@@ -63,7 +61,7 @@ def render(someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int)
     Args:
         someone: Who is seen.
         motion: What they do.
-        rig: Two cameras.
+        rig: The cameras; the room is as large as they need.
         room_seed: Of the room.
         seed: Of what differs from take to take: noise, exposure.
     """
@@ -72,12 +70,13 @@ def render(someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int)
     pattern = (float(PATTERNS.index(look.pattern)), look.pitch_m, float(MATERIAL["shirt"]))
     scene = _Scene(body_mesh(someone), palette(look), pattern, room_of(room_seed, rig), rig, scale)
     places = _placed(scene.mesh, motion)
-    gains, smeared = exposures(len(motion.phase), seed, motion.fps), blurred(motion)
+    cameras = len(rig.cameras)
+    gains, smeared = exposures(cameras, len(motion.phase), seed, motion.fps), blurred(motion)
     rng = np.random.default_rng([seed, 3])
     grain = rng.normal(0.0, NOISE, (rig.height + 61, rig.width + 61, 3)).astype(np.float32)
     empty = _nobody(rig)
     for i in range(len(motion.phase)):
-        corners = rng.integers(0, 61, (2, 2))
+        corners = rng.integers(0, 61, (cameras, 2))
         if motion.present[i]:
             moments = _moments(places, i, bool(smeared[i]))
             bodies, dark = _bodies(scene, moments), _darkness(scene, places[i])
@@ -85,9 +84,9 @@ def render(someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int)
             bodies, dark = empty
         views = [
             _exposed(scene, n, bodies[n], dark[n], gains[n, i], _grain_of(grain, corners[n], rig))
-            for n in (0, 1)
+            for n in range(cameras)
         ]
-        yield Shot(views[0][0], views[1][0], views[0][1], views[1][1])
+        yield Shot(tuple(frame for frame, _ in views), tuple(mask for _, mask in views))
 
 
 @lru_cache(maxsize=2)
@@ -134,7 +133,7 @@ def _bodies(scene: _Scene, moments: list[NDArray[np.float64]]) -> list[Body]:
     shaded = np.empty(len(mesh.shares))
     shade(moments[0], mesh.faces, light, np.empty_like(moments[0]), shaded)
     found = []
-    for camera in scene.rig.cameras[:2]:
+    for camera in scene.rig.cameras:
         body = np.zeros((scene.rig.height, scene.rig.width, 4), np.float32)
         mask = np.zeros((scene.rig.height, scene.rig.width), bool)
         for k, places in enumerate(moments):
@@ -215,7 +214,8 @@ def _nobody(rig: Rig) -> tuple[list[Body], list[NDArray[np.float32]]]:
     """What stands for body and darkness while the room is empty."""
     shape = (rig.height, rig.width)
     body = np.zeros((*shape, 4), np.float32), np.zeros(shape, bool)
-    return [body, body], [np.ones(shape, np.float32)] * 2
+    cameras = len(rig.cameras)
+    return [body] * cameras, [np.ones(shape, np.float32)] * cameras
 
 
 def _grain_of(

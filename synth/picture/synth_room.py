@@ -28,6 +28,10 @@ LAMP_SPREAD_M: Final = 0.25
 """Half the size of the lamp: what stands in the room throws soft shadows, too."""
 BEHIND_M: Final = 0.6
 """Of the room behind each camera."""
+FURNISHED_M: Final = (-1.9, 1.7)
+"""Along the walls behind the person: where things begin."""
+WIDEST_M: Final = 0.9
+"""Of a thing that stands along a wall."""
 SAMPLES: Final = 2
 """Rays a pixel, each way."""
 
@@ -40,6 +44,19 @@ class Cuboid(NamedTuple):
     finish: Finish
 
 
+class Wall(NamedTuple):
+    """A wall, and the part of it that things stand along."""
+
+    axis: int
+    """Across which it stands: 0 for x, 2 for z."""
+    at_m: float
+    inwards: float
+    """Sign of that axis' way into the room."""
+    from_m: float
+    to_m: float
+    """Along the other axis: where things begin."""
+
+
 class Lamp(NamedTuple):
     """A pinhole that looks from the lamp at the middle of the room."""
 
@@ -50,7 +67,7 @@ class Lamp(NamedTuple):
 
 
 class Room(NamedTuple):
-    """What a camera sees of an empty room, for both cameras."""
+    """What each camera sees of an empty room."""
 
     pictures: tuple[Picture, ...]
     """(h, w, 3) a camera, 0-255."""
@@ -64,8 +81,7 @@ def furnished(seed: int, rig: Rig) -> Room:
     """The room of a seed, for the cameras of a rig."""
     rng = np.random.default_rng([seed, 1])
     boxes = _walls(rng, rig)
-    back, side = float(boxes[0].low[2]), float(boxes[0].high[0])
-    boxes += _furniture(rng, back, side)
+    boxes += _furniture(rng, _walls_seen(boxes[0], len(rig.cameras)))
     key = np.array([rng.uniform(-2.2, 2.2), rng.uniform(2.8, 3.8), rng.uniform(1.6, 3.0)])
     lamps = (_lamp(key), _lamp(np.array([0.05, 5.5, 0.05])))
     pictures, maps = [], []
@@ -112,16 +128,25 @@ def _walls(rng: np.random.Generator, rig: Rig) -> list[Cuboid]:
     return [Cuboid(low, high, finish("room", rng))]
 
 
-def _furniture(rng: np.random.Generator, back: float, side: float) -> list[Cuboid]:
-    """Things along the far wall of each camera."""
+def _walls_seen(room: Cuboid, cameras: int) -> list[Wall]:
+    """The back and the person's left, before which two cameras see them; the others if more do."""
+    low, high, last = room.low.tolist(), room.high.tolist(), (room.high - WIDEST_M).tolist()
+    walls = [Wall(2, low[2], 1.0, *FURNISHED_M), Wall(0, high[0], -1.0, *FURNISHED_M)]
+    if cameras > 2:
+        walls += [Wall(2, high[2], -1.0, low[0], last[0]), Wall(0, low[0], 1.0, low[2], last[2])]
+    return walls
+
+
+def _furniture(rng: np.random.Generator, walls: list[Wall]) -> list[Cuboid]:
+    """Things along the walls."""
     boxes = []
-    for wall in (0, 1):
-        along = -1.9
-        while along < 1.7:
+    for wall in walls:
+        along = wall.from_m
+        while along < wall.to_m:
             kind = str(rng.choice(["shelf", "chest", "picture", "curtain", "door", "none"]))
-            wide = float(rng.uniform(0.45, 0.9))
+            wide = float(rng.uniform(0.45, WIDEST_M))
             if kind != "none":
-                boxes.append(_against(rng, kind, along, wide, wall, (back, side)[wall]))
+                boxes.append(_against(rng, kind, along, wide, wall))
             along += wide + float(rng.uniform(0.15, 0.7))
     return boxes
 
@@ -136,16 +161,12 @@ _HEIGHTS: Final = {
 """Lower edge from, to; upper edge from, to; depth: metres."""
 
 
-def _against(
-    rng: np.random.Generator, kind: str, along: float, wide: float, wall: int, at: float
-) -> Cuboid:
+def _against(rng: np.random.Generator, kind: str, along: float, wide: float, wall: Wall) -> Cuboid:
     bottom_from, bottom_to, top_from, top_to, deep = _HEIGHTS[kind]
     bottom, top = rng.uniform(bottom_from, bottom_to), rng.uniform(top_from, top_to)
-    if wall == 0:
-        low, high = (along, bottom, at), (along + wide, top, at + deep)
-    else:
-        low, high = (at - deep, bottom, along), (at, top, along + wide)
-    return Cuboid(np.array(low), np.array(high), finish(kind, rng))
+    low, high = np.array([along, bottom, along]), np.array([along + wide, top, along + wide])
+    low[wall.axis], high[wall.axis] = sorted((wall.at_m, wall.at_m + wall.inwards * deep))
+    return Cuboid(low, high, finish(kind, rng))
 
 
 def _seen(

@@ -105,6 +105,9 @@ def synth(
     posture: Annotated[
         list[str] | None, typer.Option(help="Only this posture; may be given again.")
     ] = None,
+    cameras: Annotated[
+        int, typer.Option(help="How many, 1 to 8: the paper's two, then more around the person.")
+    ] = 2,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Make clips of synthetic people whose truth is known.
@@ -114,7 +117,7 @@ def synth(
     from synth.write import ClipSet
     from tritrack.making import make_clips
 
-    wanted = ClipSet(motion, performers, takes, seed, tuple(posture or ()))
+    wanted = ClipSet(motion, performers, takes, seed, tuple(posture or ()), cameras)
     made = make_clips(out, wanted, size, console)
     facts = {"clips": [str(folder) for folder in made]}
     tell(facts, json_wanted, f"{counted(len(made), 'clip')} written to {out}")
