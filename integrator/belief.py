@@ -12,7 +12,7 @@ from common.rig.camera import Camera, Rig, project
 from integrator.single.reflection import yaw_deg
 
 LOST_SCORE: Final = 0.35
-"""A body whose S is lower than this in every view is not believed, unless landmarks of both views
+"""A body whose S is lower than this in every view is not believed, unless landmarks of two views
 are trusted and bear it out: clothes of the wall's colour leave hardly an outline."""
 TRUSTED: Final = 0.5
 """Landmarks that are surer than this on average are held against a body."""
@@ -36,9 +36,9 @@ r01 and r04."""
 
 
 def is_believed(
-    joints_m: NDArray[np.float64], rig: Rig, pair: Pair, scores: tuple[float, float]
+    joints_m: NDArray[np.float64], rig: Rig, pair: Pair, scores: tuple[float, ...]
 ) -> bool:
-    """Whether what the views show bears a body out.
+    """Whether what the views show bears a body out: of those whose landmarks are trusted, two.
 
     Args:
         joints_m: (15, 3) world, JOINT_NAMES.
@@ -52,13 +52,13 @@ def is_believed(
         if report is not None and report.box is not None
     ]
     told = [(report, camera) for report, camera, _ in views if _is_trusted(report)]
-    if max(scores) < LOST_SCORE and len(told) < len(scores):
+    if max(scores) < LOST_SCORE and len(told) < 2:
         return False
     if told:
-        astray = any(
-            _astray(joints_m, camera, report.landmarks) > ASTRAY for report, camera in told
+        near = sum(
+            _astray(joints_m, camera, report.landmarks) <= ASTRAY for report, camera in told
         )
-        return not (astray or _is_turned_about(joints_m, told))
+        return near >= min(2, len(told)) and not _is_turned_about(joints_m, told)
     unsure = [report.landmarks for report, _, _ in views if report.landmarks is not None]
     if len(unsure) < len(views):
         return True

@@ -269,7 +269,9 @@ def test_each_joint_is_looked_for_with_both_sides_of_either_view() -> None:
     seen, rng = drawn_rays(1), np.random.default_rng(2)
     confidence, wider_m = rng.uniform(0.1, 0.95, 12), rng.uniform(0.0, 0.05, 12)
     proposal = landmark_fusion.Proposal(walking()[AT], confidence, wider_m, 0.7)
-    values, places_m, precisions = landmark_fusion._weighed(proposal, seen, 1.75)
+    ways = np.array(list(np.ndindex(2, 2)))
+    weighed = landmark_fusion._weighed(proposal, seen, 1.75, np.stack([ways, ways]))
+    values, places_m, precisions = (each.reshape(12, 2, 2, *each.shape[2:]) for each in weighed)
 
     def share(sure: float, between: tuple[float, float]) -> float:
         return float(np.clip((sure - between[0]) / (between[1] - between[0]), LEAST, MOST))

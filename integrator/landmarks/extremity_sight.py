@@ -29,17 +29,17 @@ _PARTS: Final = (("l_heel", "l_toe", "r_heel", "r_toe"), ("l_knuckle", "r_knuckl
 
 
 def seen_extremities(
-    rule_m: Floats, rig: Rig, seen: tuple[Report | None, Report | None], stature_m: float
+    rule_m: Floats, rig: Rig, seen: tuple[Report | None, ...], stature_m: float
 ) -> tuple[Floats, Floats]:
     """Where they are, (7, 3), and how sure that is, (7,): 0 where nobody measured it.
 
     Args:
         rule_m: (7, 3) where the body has them.
-        rig: Two cameras without distortion.
+        rig: V cameras without distortion.
         seen: Of each view, as without distortion.
         stature_m: From sole to crown.
     """
-    sure, nearest = np.zeros((2, len(rule_m))), np.zeros((2, len(rule_m), 3))
+    sure, nearest = np.zeros((len(seen), len(rule_m))), np.zeros((len(seen), len(rule_m), 3))
     for view, (camera, report) in enumerate(zip(rig.cameras, seen, strict=True)):
         shown = None if report is None else report.landmarks
         if shown is not None and shown.extremities_px:
@@ -69,18 +69,36 @@ def _own_sides(shown: Landmarks, rule_px: Floats) -> tuple[Floats, Floats]:
 def _met(
     rule_m: Floats, rig: Rig, lines: Floats, sure: Floats, stature_m: float
 ) -> tuple[Floats, Floats]:
-    """The middle between two lines of sight, or the place of one that is nearest to the rule's."""
-    centres = [arrays_of(camera).centre for camera in rig.cameras]
+    """The middle between two lines of sight, or the place of one that is nearest to the rule's.
+
+    Of more than two views each point is of the two that are surest of it.
+    """
+    centres = np.stack([arrays_of(camera).centre for camera in rig.cameras])
+    surest = np.sort(np.argsort(-sure, axis=0, kind="stable")[:2], axis=0)
+    places_m, confidence = rule_m.copy(), np.zeros(len(rule_m))
+    for pair in np.unique(surest, axis=1).T:
+        own = np.flatnonzero((surest == pair[:, None]).all(axis=0))
+        views = np.ix_(pair, own)
+        places_m[own], confidence[own] = _met_by_two(
+            rule_m[own], centres[pair], lines[views], sure[views], stature_m
+        )
+    return places_m, confidence
+
+
+def _met_by_two(
+    rule_m: Floats, centres_m: Floats, lines: Floats, sure: Floats, stature_m: float
+) -> tuple[Floats, Floats]:
+    """`_met` by views that stand at (2, 3), with lines (2, n, 3) and confidence (2, n)."""
     alone = [
         centre + ((rule_m - centre) * line).sum(axis=1, keepdims=True) * line
-        for centre, line in zip(centres, lines, strict=True)
+        for centre, line in zip(centres_m, lines, strict=True)
     ]
-    first, second, apart = lines[0], lines[1], centres[0] - centres[1]
+    first, second, apart = lines[0], lines[1], centres_m[0] - centres_m[1]
     cosine = (first * second).sum(axis=1)
     d, e = first @ apart, second @ apart
     slope = np.maximum(1.0 - cosine**2, 1e-6)
-    on_first = centres[0] + ((cosine * e - d) / slope)[:, None] * first
-    on_second = centres[1] + ((e - cosine * d) / slope)[:, None] * second
+    on_first = centres_m[0] + ((cosine * e - d) / slope)[:, None] * first
+    on_second = centres_m[1] + ((e - cosine * d) / slope)[:, None] * second
     meet = np.linalg.norm(on_first - on_second, axis=1) <= APART_SHARE * stature_m
     both = np.asarray((sure > 0).all(axis=0) & meet)
     surer = sure.argmax(axis=0)

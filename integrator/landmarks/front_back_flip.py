@@ -43,7 +43,7 @@ def step(
     was, turned = (RARELY, False) if before is None else before
     now = (1.0 - ANEW) * was + ANEW * RARELY
     odds = math.log(now / (1.0 - now))
-    for view in range(2):
+    for view in range(len(rays.centres_m)):
         if rays.facing_confidence[view] > 0.0:
             facing = yaw_deg(rays.rotations[view], joints_m)
             said = rays.facing_deg[view]

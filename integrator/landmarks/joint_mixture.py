@@ -57,13 +57,13 @@ class Evidence(NamedTuple):
     inlier_probability: float
     """How probably the proposed joint is right."""
     centres_m: Any
-    """(2, 3) the cameras."""
+    """(V, 3) the cameras."""
     directions: Any
-    """(2, BOTH, 3) of its rays: of each view where it shows the joint, and where else it may."""
+    """(V, BOTH, 3) of its rays: of each view where it shows the joint, and where else it may."""
     inliers: Any
-    """(2, BOTH) how probably each landmark is right; 0: there is none."""
+    """(V, BOTH) how probably each landmark is right; 0: there is none."""
     spreads_m: Any
-    """(3,) of the proposed joint and of both landmarks, where they are right."""
+    """(1 + V,) of the proposed joint and of each view's landmark, where they are right."""
     roughly_m: float
     """Of the proposed joint, where it is roughly right."""
     often: float
@@ -75,8 +75,9 @@ class Evidence(NamedTuple):
 def most_probable(told: Any, place_m: Any, precision: Any) -> float:
     """The log probability of the place of one joint where it is highest.
 
-    From where each witness alone would have it, and from where both rays meet, rounds of weighted
-    least squares (the EM algorithm of Dempster 1977) climb to the next peak; the highest counts.
+    From where each witness alone would have it, and from where the rays of two views meet, rounds
+    of weighted least squares (the EM algorithm of Dempster 1977) climb to the next peak; the
+    highest counts.
 
     Args:
         told: Evidence.
@@ -85,10 +86,9 @@ def most_probable(told: Any, place_m: Any, precision: Any) -> float:
     """
     best = -np.inf
     normal, right, here = np.zeros(6), np.zeros(3), np.zeros(3)
-    for first in range(NONE, BOTH):
-        for second in range(NONE, BOTH):
-            if not _start(told, first, second, here):
-                continue
+    taken = np.full(len(told.centres_m), NONE)
+    while True:
+        if _start(told, taken, here):
             for _ in range(ROUNDS):
                 _weigh(told, here, normal, right)
                 _solve(normal, right, here)
@@ -97,21 +97,46 @@ def most_probable(told: Any, place_m: Any, precision: Any) -> float:
                 best = found
                 place_m[:] = here
                 precision[:] = normal
-    return best
+        if not _next(taken):
+            return best
 
 
 @compiled
-def _start(told: Any, first: int, second: int, here: Any) -> bool:
-    """Where to climb from, by one ray of each view, or none; whether there is such a place."""
+def _next(taken: Any) -> bool:
+    """The next choice of rays, (V,) of NONE or a ray: at most two views give one; whether there
+    is another. The last view's changes first."""
+    while True:
+        view = len(taken) - 1
+        while view >= 0 and taken[view] == BOTH - 1:
+            taken[view] = NONE
+            view -= 1
+        if view < 0:
+            return False
+        taken[view] += 1
+        if (taken != NONE).sum() <= 2:
+            return True
+
+
+@compiled
+def _start(told: Any, taken: Any, here: Any) -> bool:
+    """Where to climb from, by the rays that are taken; whether there is such a place."""
     here[:] = told.proposed_m
-    for view, ray in enumerate((first, second)):
-        if ray != NONE:
-            if told.inliers[view, ray] <= 0.0:
+    one = other = NONE
+    for view in range(len(taken)):
+        if taken[view] != NONE:
+            if told.inliers[view, taken[view]] <= 0.0:
                 return False
-            _drop(told.centres_m[view], told.directions[view, ray], here)
-    if NONE in (first, second):
+            _drop(told.centres_m[view], told.directions[view, taken[view]], here)
+            one, other = other, view
+    if NONE in (one, other):
         return True
-    return _meet(told.centres_m, told.directions[0, first], told.directions[1, second], here)
+    return _meet(
+        told.centres_m[one],
+        told.directions[one, taken[one]],
+        told.centres_m[other],
+        told.directions[other, taken[other]],
+        here,
+    )
 
 
 @compiled
@@ -125,11 +150,11 @@ def _drop(centre_m: Any, direction: Any, here: Any) -> None:
 
 
 @compiled
-def _meet(centres_m: Any, one: Any, two: Any, here: Any) -> bool:
+def _meet(centre_m: Any, one: Any, other_m: Any, two: Any, here: Any) -> bool:
     """The middle between two rays where they are nearest; whether there is one."""
     cosine = first = second = 0.0
     for i in range(3):
-        apart = centres_m[0, i] - centres_m[1, i]
+        apart = centre_m[i] - other_m[i]
         cosine += one[i] * two[i]
         first += one[i] * apart
         second += two[i] * apart
@@ -137,9 +162,9 @@ def _meet(centres_m: Any, one: Any, two: Any, here: Any) -> bool:
     if sine_squared < 1e-6:
         return False
     for i in range(3):
-        near = centres_m[0, i] + one[i] * (cosine * second - first) / sine_squared
-        other = centres_m[1, i] + two[i] * (second - cosine * first) / sine_squared
-        here[i] = 0.5 * (near + other)
+        near = centre_m[i] + one[i] * (cosine * second - first) / sine_squared
+        far = other_m[i] + two[i] * (second - cosine * first) / sine_squared
+        here[i] = 0.5 * (near + far)
     return True
 
 
@@ -160,7 +185,7 @@ def _weigh(told: Any, here: Any, normal: Any, right: Any) -> float:
     for i in range(3):
         right[i] = weight * told.proposed_m[i]
     found = math.log(total)
-    for view in range(2):
+    for view in range(len(told.centres_m)):
         if told.inliers[view, 0] > 0.0:
             found += _look(told, view, here, normal, right)
     return found

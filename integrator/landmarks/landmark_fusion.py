@@ -25,7 +25,7 @@ from integrator.landmarks.joint_mixture import (
     most_probable,
 )
 from integrator.landmarks.landmark_rays import Rays
-from integrator.landmarks.left_right_swap import Exchanged, Exchanges
+from integrator.landmarks.left_right_swap import JOINTLY, Exchanged, Exchanges
 from integrator.landmarks.proposal_residual import Misfit
 from integrator.proposal import pose_network
 from integrator.proposal.network_weights import JOINTS
@@ -51,6 +51,8 @@ class Memory(NamedTuple):
     turned: tuple[float, bool]
     """How probably proposals are turned about, and whether they are taken for it."""
     exchanges: Exchanges
+    exchanged: Exchanged
+    """What was decided of them."""
     lengths_m: Vector
     """(10,) of `limb_springs.ENDS`."""
     misfit: Misfit
@@ -90,7 +92,7 @@ def step(
     rays: Rays,
     stature_m: float,
 ) -> Fused:
-    """One instant: each joint where the proposal and both views together most probably have it.
+    """One instant: each joint where the proposal and all views together most probably have it.
 
     Where faces say that the proposal is turned about, its sides are exchanged. Where proposals have
     lately been off what is shown, they are believed less closely and less surely; where they have
@@ -101,7 +103,7 @@ def step(
         before: Of the instant before; None at the first.
         proposed_m: (12, 3) world, of JOINTS.
         confidence: (12,) how probably each is less than 50 mm off.
-        rays: Of both views' landmarks.
+        rays: Of the views' landmarks.
         stature_m: Of the person.
     """
     turned = front_back_flip.step(None if before is None else before.turned, proposed_m, rays)
@@ -115,30 +117,67 @@ def step(
     displaced, proposed_m = proposal_offset.step(
         None if before is None else before.displaced, proposed_m, _shown(rays), rays, stature_m
     )
-    values, places_m, precisions = _weighed(
-        Proposal(proposed_m, _doubted(confidence, doubt), wider_m, _doubted(PROPOSED.often, doubt)),
-        rays,
-        stature_m,
+    proposal = Proposal(
+        proposed_m, _doubted(confidence, doubt), wider_m, _doubted(PROPOSED.often, doubt)
     )
-    exchanges, decided = left_right_swap.step(
-        None if before is None else before.exchanges,
-        values[ARMS].sum(axis=0),
-        values[LEGS].sum(axis=0),
-        _aside(proposed_m, rays.centres_m),
-        _confused(rays),
-    )
-    joints_m = np.concatenate([places_m[(ARMS, *decided.arms)], places_m[(LEGS, *decided.legs)]])
-    tight = np.concatenate([precisions[(ARMS, *decided.arms)], precisions[(LEGS, *decided.legs)]])
+    exchanges, decided, joints_m, tight = _with_own_sides(before, proposal, rays, stature_m)
     lengths_m = None if before is None else before.lengths_m
     if lengths_m is not None:
         joints_m = limb_springs.sprung(joints_m, tight, lengths_m)
     lengths_m = limb_springs.lengths_m(lengths_m, joints_m, stature_m)
-    memory = Memory(turned, exchanges, lengths_m, misfit, displaced)
+    memory = Memory(turned, exchanges, decided, lengths_m, misfit, displaced)
     return Fused(joints_m, _confidence(tight), decided, memory)
 
 
+def _with_own_sides(
+    before: Memory | None, proposal: Proposal, rays: Rays, stature_m: float
+) -> tuple[Exchanges, Exchanged, NDArray[np.float64], NDArray[np.float64]]:
+    """Which sides each view exchanged, and with that the joints (12, 3) and their precision."""
+    views = len(rays.centres_m)
+    known = None if before is None else before.exchanges
+    usual = (_aside(proposal.joints_m, rays.centres_m), _confused(rays))
+    if views <= JOINTLY:
+        all_ways = np.indices((2,) * views).reshape(views, -1).T
+        values, places_m, precisions = _weighed(
+            proposal, rays, stature_m, np.stack([all_ways, all_ways])
+        )
+        arms, legs = (values[part].sum(axis=0).reshape((2,) * views) for part in (ARMS, LEGS))
+        exchanges, decided = left_right_swap.step(known, arms, legs, *usual)
+        at = [int(np.ravel_multi_index(part, (2,) * views)) for part in decided]
+    else:
+        was = np.zeros((2, views), int) if before is None else np.array(before.exchanged)
+        one_way = was[:, None] ^ np.concatenate(
+            [np.zeros((1, views), int), np.eye(views, dtype=int)]
+        )
+        values, _, _ = _weighed(proposal, rays, stature_m, one_way)
+        arms, legs = (
+            _each_way(values[part].sum(axis=0), own) for part, own in zip((ARMS, LEGS), was, strict=True)
+        )
+        exchanges, decided = left_right_swap.step_each(known, arms, legs, *usual)
+        _, places_m, precisions = _weighed(proposal, rays, stature_m, np.array(decided)[:, None])
+        at = [0, 0]
+    joints_m = np.concatenate([places_m[ARMS, at[0]], places_m[LEGS, at[1]]])
+    return (
+        exchanges,
+        decided,
+        joints_m,
+        np.concatenate([precisions[ARMS, at[0]], precisions[LEGS, at[1]]]),
+    )
+
+
+def _each_way(values: Vector, was: NDArray[np.int_]) -> NDArray[np.float64]:
+    """(V, 2) of each view not exchanged and exchanged, the others as they were.
+
+    Args:
+        values: (1 + V,) as all were, and with each view's the other way.
+        was: (V,) how they were; 1: exchanged.
+    """
+    both = np.stack([np.full(len(was), values[0]), values[1:]], axis=1)
+    return np.where(was[:, None] == 1, both[:, ::-1], both)
+
+
 def _weighed(
-    proposal: Proposal, rays: Rays, stature_m: float
+    proposal: Proposal, rays: Rays, stature_m: float, ways: NDArray[np.int_]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """`_modes` of what confidences say of how sure and how wide each witness is."""
     shown = _shown(rays)
@@ -155,12 +194,13 @@ def _weighed(
         np.stack([shown, np.minimum(others, MOST - shown)], axis=2),
         stature_m * SHOWN.right_of(rays.confidence),
         stature_m,
+        ways,
     )
     return found
 
 
 def _shown(rays: Rays) -> NDArray[np.float64]:
-    """(2, 12) how probably each landmark is right; 0: there is none."""
+    """(V, 12) how probably each landmark is right; 0: there is none."""
     return np.where(rays.confidence > 0.0, _share(rays.confidence, SHOWN_RIGHT), 0.0)
 
 
@@ -183,7 +223,7 @@ def _share(confidence: Vector, between: tuple[float, float]) -> Vector:
     return found
 
 
-def _aside(joints_m: NDArray[np.float64], centres_m: NDArray[np.float64]) -> tuple[float, float]:
+def _aside(joints_m: NDArray[np.float64], centres_m: NDArray[np.float64]) -> tuple[float, ...]:
     """How far each camera sees a profile, in [0, 1]."""
     lefts, rights = joints_m[0::2], joints_m[1::2]
     girdles = [pose_network.SHOULDERS.start // 2, pose_network.HIPS.start // 2]
@@ -191,14 +231,12 @@ def _aside(joints_m: NDArray[np.float64], centres_m: NDArray[np.float64]) -> tup
     away = centres_m - joints_m.mean(axis=0)
     away[:, 1] = 0.0
     long = np.linalg.norm(away, axis=1) * np.linalg.norm(across) + 1e-9
-    first, second = (np.abs(away @ across) / long).tolist()
-    return first, second
+    return tuple((np.abs(away @ across) / long).tolist())
 
 
-def _confused(rays: Rays) -> tuple[float, float]:
+def _confused(rays: Rays) -> tuple[float, ...]:
     """How probably each view took front for back."""
-    first, second = (front_back_flip.confused(sure) for sure in rays.facing_confidence)
-    return first, second
+    return tuple(front_back_flip.confused(sure) for sure in rays.facing_confidence)
 
 
 @compiled
@@ -213,36 +251,48 @@ def _modes(
     seen: Any,
     seen_m: Any,
     stature_m: float,
+    ways: Any,
 ) -> tuple[Any, Any, Any]:
-    """Of each joint, exchanged by view 1 and by view 2: how probable its place is, log
-    (12, 2, 2), the place (12, 2, 2, 3) and its precision (12, 2, 2, 6)."""
-    n = len(proposed_m)
-    values, places_m = np.empty((n, 2, 2)), np.empty((n, 2, 2, 3))
-    precisions = np.empty((n, 2, 2, 6))
-    along, inliers, spreads = np.empty((2, BOTH, 3)), np.empty((2, BOTH)), np.empty(3)
+    """Of each joint, for each way in which views may have exchanged sides: how probable its place
+    is, log (12, S), the place (12, S, 3) and its precision (12, S, 6).
+
+    Args:
+        proposed_m: (12, 3)
+        sure: (12,) how probably each is right, and
+        spreads_m, roughly_m: (12,) how far off it is then, or if roughly right.
+        often: How often it is roughly right, where it is not right.
+        centres_m: (V, 3) the cameras.
+        directions: (V, 12, BOTH, 3) of their rays.
+        seen: (V, 12, BOTH) how probably each ray is right; 0: there is none.
+        seen_m: (V, 12) how far off it is then.
+        stature_m: Of the person.
+        ways: (2, S, V) of arms and of legs; 1: that view exchanged them.
+    """
+    n, views, joints_of_part = len(proposed_m), len(centres_m), len(proposed_m) // 2
+    values, places_m = np.empty((n, ways.shape[1])), np.empty((n, ways.shape[1], 3))
+    precisions = np.empty((n, ways.shape[1], 6))
+    along, inliers = np.empty((views, BOTH, 3)), np.empty((views, BOTH))
+    spreads = np.empty(1 + views)
     for joint in range(n):
         spreads[0] = spreads_m[joint]
-        for first in range(2):
-            for second in range(2):
-                for view in range(2):
-                    own = joint ^ (first if view == 0 else second)
-                    along[view] = directions[view, own]
-                    inliers[view] = seen[view, own]
-                    spreads[1 + view] = seen_m[view, own]
-                told = Evidence(
-                    proposed_m[joint],
-                    sure[joint],
-                    centres_m,
-                    along,
-                    inliers,
-                    spreads,
-                    roughly_m[joint],
-                    often,
-                    stature_m,
-                )
-                values[joint, first, second] = most_probable(
-                    told, places_m[joint, first, second], precisions[joint, first, second]
-                )
+        for way in range(ways.shape[1]):
+            for view in range(views):
+                own = joint ^ ways[joint // joints_of_part, way, view]
+                along[view] = directions[view, own]
+                inliers[view] = seen[view, own]
+                spreads[1 + view] = seen_m[view, own]
+            told = Evidence(
+                proposed_m[joint],
+                sure[joint],
+                centres_m,
+                along,
+                inliers,
+                spreads,
+                roughly_m[joint],
+                often,
+                stature_m,
+            )
+            values[joint, way] = most_probable(told, places_m[joint, way], precisions[joint, way])
     return values, places_m, precisions
 
 

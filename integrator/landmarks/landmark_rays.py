@@ -15,37 +15,38 @@ AT: Final = [JOINT_NAMES.index(name) for name in JOINTS]
 
 
 class Rays(NamedTuple):
-    """Where both views see the twelve joints that are proposed too."""
+    """Where the views see the twelve joints that are proposed too."""
 
     centres_m: NDArray[np.float64]
-    """(2, 3) the cameras."""
+    """(V, 3) the cameras."""
     directions: NDArray[np.float64]
-    """(2, 12, 3) unit length."""
+    """(V, 12, 3) unit length."""
     confidence: NDArray[np.float64]
-    """(2, 12) of `Landmarks.confidence`; 0: that view has no landmarks."""
+    """(V, 12) of `Landmarks.confidence`; 0: that view has no landmarks."""
     others: NDArray[np.float64]
-    """(2, 12, 3) of where else a view may see them, as `directions`."""
+    """(V, 12, 3) of where else a view may see them, as `directions`."""
     others_confidence: NDArray[np.float64]
-    """(2, 12) likewise; 0: that view has one place alone."""
+    """(V, 12) likewise; 0: that view has one place alone."""
     rotations: NDArray[np.float64]
-    """(2, 3, 3) from the world to each camera."""
-    facing_deg: tuple[float, float]
+    """(V, 3, 3) from the world to each camera."""
+    facing_deg: tuple[float, ...]
     """0 towards the camera, 90 to the right of its picture."""
-    facing_confidence: tuple[float, float]
+    facing_confidence: tuple[float, ...]
     """0: that view does not tell."""
 
 
-def rays_of(rig: Rig, seen: tuple[Report | None, Report | None]) -> Rays | None:
+def rays_of(rig: Rig, seen: tuple[Report | None, ...]) -> Rays | None:
     """The rays of an instant; None where no view reports landmarks.
 
     Args:
-        rig: Two cameras without distortion.
+        rig: V cameras without distortion.
         seen: Of each view, as without distortion; None where it has nobody.
     """
     shown = [None if report is None else report.landmarks for report in seen]
-    if shown == [None, None]:
+    if all(landmarks is None for landmarks in shown):
         return None
-    directions, confidence = np.zeros((2, 2, len(AT), 3)), np.zeros((2, 2, len(AT)))
+    directions = np.zeros((2, len(shown), len(AT), 3))
+    confidence = np.zeros((2, len(shown), len(AT)))
     for view, (camera, landmarks) in enumerate(zip(rig.cameras, shown, strict=True)):
         if landmarks is not None:
             directions[0, view] = rays(camera, np.array(landmarks.joints_px)[AT])
@@ -57,7 +58,6 @@ def rays_of(rig: Rig, seen: tuple[Report | None, Report | None]) -> Rays | None:
     facings = [
         (0.0, 0.0) if each is None else (each.facing_deg, each.facing_confidence) for each in shown
     ]
-    (facing_1, sure_1), (facing_2, sure_2) = facings
     return Rays(
         np.stack([camera.centre for camera in cameras]),
         directions[0],
@@ -65,6 +65,6 @@ def rays_of(rig: Rig, seen: tuple[Report | None, Report | None]) -> Rays | None:
         directions[1],
         confidence[1],
         np.stack([camera.R for camera in cameras]),
-        (facing_1, facing_2),
-        (sure_1, sure_2),
+        tuple(deg for deg, _ in facings),
+        tuple(sure for _, sure in facings),
     )

@@ -1,4 +1,4 @@
-"""A proposal that stands beside what both views show of its joints, as a whole, is moved there.
+"""A proposal that stands beside what the views show of its joints, as a whole, is moved there.
 
 An outline that has an edge of a curtain, or lacks a side, displaces or turns all that it proposes,
 and the network is as sure of it as ever. Landmarks are off one by one; together they hardly are.
@@ -42,8 +42,8 @@ def step(
         before: (4,) up to the instant before: to the rays by x, y and z in metres, and about the
             vertical in radians; None at the first.
         proposed_m: (12, 3) world, of JOINTS.
-        sure: (2, 12) how probably each landmark is right; 0: there is none.
-        rays: Of both views' landmarks.
+        sure: (V, 12) how probably each landmark is right; 0: there is none.
+        rays: Of the views' landmarks.
         stature_m: Of the person.
     """
     moves = _moves(proposed_m)
@@ -70,8 +70,8 @@ def _displaced(
     rays: Rays,
     stature_m: float,
 ) -> Vector:
-    """(4,) what brings a proposal nearest to the rays of both views; one alone does not tell it."""
-    if not sure.any(axis=1).all():
+    """(4,) what brings a proposal nearest to the rays of the views; one alone does not tell it."""
+    if sure.any(axis=1).sum() < 2:
         return np.zeros(4)
     along = rays.directions
     away_m = proposed_m - rays.centres_m[:, None]

@@ -45,13 +45,13 @@ def step(
     Args:
         before: Up to the instant before; None at the first: one instant alone proves little.
         proposed_m: (12, 3) world, of JOINTS.
-        rays: Of both views' landmarks.
+        rays: Of the views' landmarks.
         stature_m: Of the person.
     """
     pairs = len(proposed_m) // 2
     known = Misfit(0.0, np.zeros(pairs)) if before is None else before
     squares, weights = np.zeros((pairs, 2)), np.zeros((pairs, 2))
-    for view in range(2):
+    for view in range(len(rays.centres_m)):
         off = _off(proposed_m - rays.centres_m[view], rays.directions[view]) / stature_m
         own, exchanged = off[0].reshape(-1, 2), off[1].reshape(-1, 2)
         nearer = (own.sum(axis=1) <= exchanged.sum(axis=1))[:, None]
@@ -71,7 +71,7 @@ def wider_m(misfit: Misfit, rays: Rays, stature_m: float) -> Vector:
     views it would be the worse for it: 25.0 mm of `dev` for 23.4.
     """
     squares = np.full_like(misfit.pairs, misfit.whole)
-    if rays.confidence.any(axis=1).sum() < len(rays.confidence):
+    if rays.confidence.any(axis=1).sum() < 2:
         squares = np.maximum(squares, misfit.pairs)
     wider: Vector = WIDER * np.maximum(0.0, np.sqrt(squares) - USUAL) * stature_m
     return np.repeat(wider, 2)

@@ -109,13 +109,12 @@ def _where_rays_meet(rig: Rig, roots_px: tuple[Pixel, Pixel], facade: int) -> Ve
     return np.array([x_m, seen_m[1], z_m])
 
 
-def scales_at(rig: Rig, place_m: Vector) -> tuple[float, float]:
+def scales_at(rig: Rig, place_m: Vector) -> tuple[float, ...]:
     """Size of a metre at a place, in each picture, pixels; NaN where it is behind the camera."""
-    first, second = (px_per_m(camera, place_m) for camera in rig.cameras)
-    return first, second
+    return tuple(px_per_m(camera, place_m) for camera in rig.cameras)
 
 
-def scales_since(rig: Rig, place_m: Vector, measured_at_m: Vector) -> tuple[float, float]:
+def scales_since(rig: Rig, place_m: Vector, measured_at_m: Vector) -> tuple[float, ...]:
     """The same by the perspective scaling factors since the body was measured (P45).
 
     In a rig of the paper's kind: the scale where the BDPs were taken, times r_t1 and r_t2.
@@ -132,14 +131,14 @@ def scales_since(rig: Rig, place_m: Vector, measured_at_m: Vector) -> tuple[floa
     return reference[0] * factors[0], reference[1] * factors[1]
 
 
-def pixels_of(rig: Rig, place_m: Vector) -> tuple[Pixel, Pixel]:
-    """Where both views show a place; the picture's centre where one cannot."""
+def pixels_of(rig: Rig, place_m: Vector) -> tuple[Pixel, ...]:
+    """Where each view shows a place; the picture's centre where it cannot."""
     found: list[Pixel] = []
     for camera in rig.cameras:
         u, v = project(camera, place_m[None])[0].tolist()
         seen = math.isfinite(u) and math.isfinite(v)
         found.append((u, v) if seen else (rig.width / 2, rig.height / 2))
-    return found[0], found[1]
+    return tuple(found)
 
 
 def _at_depth(camera: Camera, pixel: Pixel, before_m: Vector) -> Vector:
@@ -153,14 +152,20 @@ def _at_depth(camera: Camera, pixel: Pixel, before_m: Vector) -> Vector:
     return point
 
 
-def facing_of(rig: Rig, pose: Vector) -> tuple[Facing, Facing]:
-    """What viewers 1 and 2 see of a pose that is known: who is more before it, or behind it."""
+def facing_of(rig: Rig, pose: Vector) -> tuple[Facing, ...]:
+    """What each viewer sees of a pose that is known: the facade where the person is more before it,
+    or behind it, than midway between the view that has them most so and the one least."""
     yaw = math.radians(pose[POSE_INDEX["torso_y"]])
     shares = []
     for camera in rig.cameras:
         x, _, z = (centre(camera) - pose[:3]).tolist()
         shares.append(abs(math.sin(yaw) * x + math.cos(yaw) * z) / math.hypot(x, z))
-    return ("facade", "flank") if shares[0] >= shares[1] else ("flank", "facade")
+    most, midway = max(shares), (max(shares) + min(shares)) / 2
+    facade = shares.index(most)
+    return tuple(
+        "facade" if view == facade or share > midway else "flank"
+        for view, share in enumerate(shares)
+    )
 
 
 def ground_position(x1_px: float, z2_px: float, rig: PaperRig) -> tuple[float, float]:
