@@ -55,9 +55,7 @@ def is_believed(
     if max(scores) < LOST_SCORE and len(told) < 2:
         return False
     if told:
-        near = sum(
-            _astray(joints_m, camera, report.landmarks) <= ASTRAY for report, camera in told
-        )
+        near = sum(_astray(joints_m, camera, report.landmarks) <= ASTRAY for report, camera in told)
         return near >= min(2, len(told)) and not _is_turned_about(joints_m, told)
     unsure = [report.landmarks for report, _, _ in views if report.landmarks is not None]
     if len(unsure) < len(views):

@@ -151,7 +151,8 @@ def _with_own_sides(
         )
         values, _, _ = _weighed(proposal, rays, stature_m, one_way)
         arms, legs = (
-            _each_way(values[part].sum(axis=0), own) for part, own in zip((ARMS, LEGS), was, strict=True)
+            _each_way(values[part].sum(axis=0), own)
+            for part, own in zip((ARMS, LEGS), was, strict=True)
         )
         exchanges, decided = left_right_swap.step_each(known, arms, legs, *usual)
         _, places_m, precisions = _weighed(proposal, rays, stature_m, np.array(decided)[:, None])
