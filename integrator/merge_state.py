@@ -26,7 +26,7 @@ class Posed(NamedTuple):
 
     pose: Vector
     """(25,) of POSE_NAMES, not smoothed."""
-    facing: tuple[Facing, Facing]
+    facing: tuple[Facing, ...]
     joints_m: NDArray[np.float64] | None = None
     """(15, 3) world, JOINT_NAMES; None: where the cylinders of the smooth pose end."""
     confidence: Vector | None = None
@@ -55,7 +55,7 @@ class State(NamedTuple):
     opening: Opening = Opening()
     found: Posed | None = None
     """Of the instant before; None while nobody is there."""
-    facing: tuple[Facing, Facing] = ("facade", "flank")
+    facing: tuple[Facing, ...] = ("facade", "flank")
     frames: tuple[int, int] = (-1, -1)
     """The last frame that was heard of each viewer."""
     last_s: float | None = None

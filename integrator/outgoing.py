@@ -269,10 +269,9 @@ def _views(pair: Pair) -> Views:
     return names[first is not None, second is not None]
 
 
-def _or_unseen(scales: tuple[float, float]) -> tuple[float, float]:
+def _or_unseen(scales: tuple[float, ...]) -> tuple[float, ...]:
     """Scales with 0 for a camera that has the body behind it."""
-    first, second = (scale if math.isfinite(scale) and scale > 0 else 0.0 for scale in scales)
-    return first, second
+    return tuple(scale if math.isfinite(scale) and scale > 0 else 0.0 for scale in scales)
 
 
 def _points(places_m: Vector) -> tuple[Point, ...]:

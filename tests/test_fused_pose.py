@@ -35,7 +35,7 @@ def state(method: Method, opening: Opening | None = None, **more: Any) -> State:
     return made._replace(opening=opening or Opening(bdp=PERSON), **more)
 
 
-def faced(made: State, *seen: Report | None) -> tuple[Facing, Facing]:
+def faced(made: State, *seen: Report | None) -> tuple[Facing, ...]:
     first, second = seen
     return fused_pose.step(made, RIG, (first, second), None).facing
 

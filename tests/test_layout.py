@@ -82,6 +82,7 @@ SYSTEM = {
     "system_live_view": "a live view's frames: decoder, clock and landmarks from outside by hand",
     "system_live_fallback": "live runs that lose a view: real processes that are killed or frozen",
     "system_lost_view": "both viewers and the integrator in lock-step, then one of them alone",
+    "system_many_views": "the fusion of landmarks of three views and more",
     "system_matrix": "what CI says of the Pythons that it lacks",
     "system_meeting": "how the processes of a run wait for each other",
     "system_viewer": "the viewer's loop, and how it starts: frames, guides and clock by hand",

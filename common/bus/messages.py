@@ -164,8 +164,8 @@ class Guide(Moment, frozen=True, kw_only=True):
     """Universal BDPs, metres; None until somebody was seen."""
     measured: bool = False
     """True once they come from the opening posture, False while they are a prior."""
-    facing: tuple[Facing, Facing] = ("facade", "flank")
-    scale_px_per_m: tuple[float, float] = (0.0, 0.0)
+    facing: tuple[Facing, ...] = ("facade", "flank")
+    scale_px_per_m: tuple[float, ...] = (0.0, 0.0)
     """Size of a metre at the body in each picture: reference scale times r_t,n (section 4.2); 0
     where a camera has the body behind it."""
     root_px: tuple[Pixel, Pixel] = ((0.0, 0.0), (0.0, 0.0))
@@ -234,7 +234,7 @@ class Body(Moment, frozen=True, kw_only=True):
     extremities_confidence: tuple[float, ...] = ()
     """EXTREMITY_NAMES order, in [0, 1]; 0: not measured, it follows from the joints."""
     score: tuple[float, float] = (0.0, 0.0)
-    facing: tuple[Facing, Facing] = ("facade", "flank")
+    facing: tuple[Facing, ...] = ("facade", "flank")
     bdp: Bdp | None = None
     matches: int = 0
     lifting: Lifting | None = None

@@ -41,7 +41,8 @@ def _faced(state: State, seen: Seen) -> tuple[Facing, Facing]:
         own = first or second
         assert own is not None
         if state.method.held_facing and state.opening.measured:
-            return state.facing
+            facing_1, facing_2 = state.facing
+            return facing_1, facing_2
         other: Facing = "flank" if own.vote == "facade" else "facade"
         return (own.vote, other) if second is None else (other, own.vote)
     sights = [

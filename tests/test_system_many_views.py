@@ -54,9 +54,15 @@ def with_legs_exchanged(seen: Rays, view: int) -> Rays:
 
 def taken(seen: Rays, views: list[int]) -> Rays:
     """Of some views alone, in this order."""
-    return Rays(
-        *(each[views] for each in seen[:6]),
-        *(tuple(each[view] for view in views) for each in seen[6:]),
+    return seen._replace(
+        centres_m=seen.centres_m[views],
+        directions=seen.directions[views],
+        confidence=seen.confidence[views],
+        others=seen.others[views],
+        others_confidence=seen.others_confidence[views],
+        rotations=seen.rotations[views],
+        facing_deg=tuple(seen.facing_deg[view] for view in views),
+        facing_confidence=tuple(seen.facing_confidence[view] for view in views),
     )
 
 
@@ -148,14 +154,16 @@ def test_three_views_that_say_nothing_of_each_other_are_three_models_of_one() ->
     joint_of = [
         own[0][:, None, None] + own[1][None, :, None] + own[2][None, None, :] for own in said
     ]
-    before_all, before_each = None, None
+    (arms, legs), (arms_each, legs_each) = joint_of, said
+    together, decided = left_right_swap.step(None, arms, legs, aside, confused)
+    apart, alone = left_right_swap.step_each(None, arms_each, legs_each, aside, confused)
     for _ in range(3):
-        before_all, decided = left_right_swap.step(before_all, *joint_of, aside, confused)
-        before_each, alone = left_right_swap.step_each(before_each, *said, aside, confused)
         assert decided == alone
-    for view in range(3):
-        others = tuple(axis for axis in range(6) if axis not in (view, 3 + view))
-        assert before_all.sum(axis=others) == pytest.approx(before_each[view])
+        for view in range(3):
+            others = tuple(axis for axis in range(6) if axis not in (view, 3 + view))
+            assert together.sum(axis=others) == pytest.approx(apart[view])
+        together, decided = left_right_swap.step(together, arms, legs, aside, confused)
+        apart, alone = left_right_swap.step_each(apart, arms_each, legs_each, aside, confused)
 
 
 def test_of_all_that_views_may_exchange_what_is_said_loudest_is_decided() -> None:
