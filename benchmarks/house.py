@@ -22,11 +22,13 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
 import numpy as np
+from house_words import names_a_pair, reaching
 from source_map import Function, Source, arrows, circles, pointing, room_of, sources
 
 FLOORS = {"tritrack": 5, "lab": 4, "runtime": 3, "calibration": 1, "common": 0}
 """Who may import whom: a package those of lower floors; all others stand on floor 2."""
 PARAMETERS = 6
+SMALL = 20
 WORST = 10
 
 Row = tuple[str, object]
@@ -43,13 +45,14 @@ def spread(values: Sequence[int]) -> str:
     return " / ".join(f"{value:.0f}" for value in np.percentile(values, [50, 90, 100]))
 
 
-def sizes(found: Sequence[Source]) -> list[tuple[str, int, int, str]]:
-    """Files, lines and largest folder of every package, and of all."""
+def sizes(found: Sequence[Source]) -> list[tuple[str, int, int, str, str]]:
+    """Files, lines, their share and the largest folder of every package, and of all."""
     names = sorted({each.package for each in found})
     groups = [*([e for e in found if e.package == name] for name in names), found]
+    lines = [sum(each.code_lines for each in group) for group in groups]
     return [
-        (name, len(group), sum(each.code_lines for each in group), largest(group))
-        for name, group in zip([*names, "all"], groups, strict=True)
+        (name, len(group), count, f"{count / lines[-1]:.1%}", largest(group))
+        for name, group, count in zip([*names, "all"], groups, lines, strict=True)
     ]
 
 
@@ -89,6 +92,23 @@ def arrow_rows(between: Sequence[tuple[Path, Path]]) -> list[Row]:
         ("circles of packages", said(turning((a.parts[0], b.parts[0]) for a, b in across))),
         ("circles of folders", said(turning((room_of(a), room_of(b)) for a, b in within))),
         ("circles of files", said(turning((str(a), str(b)) for a, b in between))),
+    ]
+
+
+def module_rows(found: Sequence[Source]) -> list[Row]:
+    """What modules name and reach, and how small they are; a folder's own file is none."""
+    modules = [each for each in found if each.path.name != "__init__.py"]
+    pairs = [each.path for each in modules if names_a_pair(each)]
+    bound = {*reaching(found)} & {each.path for each in modules}
+    steps = [path for path in bound if floor(path) < FLOORS["runtime"]]
+    small = [each.path for each in modules if each.code_lines < SMALL]
+    return [
+        ("modules", len(modules)),
+        ("modules that name a pair of views", by_package(pairs)),
+        ("modules that cannot be imported without fcntl", by_package(bound)),
+        ("of them below runtime", len(steps)),
+        ("annotations that are Any", sum(each.open_types for each in found)),
+        (f"modules of fewer than {SMALL} lines", by_package(small)),
     ]
 
 
@@ -135,8 +155,8 @@ def main() -> None:
     root = Path.cwd()
     found = sources(root)
     functions = [*chain.from_iterable(each.functions for each in found)]
-    print(table(("package", "files", "lines", "most files a folder"), sizes(found)))
-    rows = [*arrow_rows(arrows(root, found)), *functions_rows(functions)]
+    print(table(("package", "files", "lines", "share", "most files a folder"), sizes(found)))
+    rows = [*arrow_rows(arrows(root, found)), *module_rows(found), *functions_rows(functions)]
     print(table(("", ""), [*rows, *([] if given.no_way else way_rows(root))]))
     longest = sorted(functions, key=lambda each: -each.code_lines)[:WORST]
     print(table(("longest functions", "lines"), [(e.place, e.code_lines) for e in longest]))

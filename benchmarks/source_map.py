@@ -51,6 +51,12 @@ class Source(NamedTuple):
     functions: list[Function]
     imports: set[str]
     """Names of modules, wherever in the file they are imported."""
+    at_once: set[str]
+    """Those of them that are imported as the file is."""
+    words: list[str]
+    """What its code consists of, in order, without strings and comments."""
+    open_types: int
+    """Annotations that are `Any`."""
 
     @property
     def package(self) -> str:
@@ -104,13 +110,42 @@ def _source(root: Path, path: Path) -> Source:
         for node in ast.walk(tree)
         if isinstance(node, Definition)
     ]
-    return Source(path, len(lines), functions, set(_imports(root, tree)))
+    return Source(
+        path,
+        len(lines),
+        functions,
+        set(_imports(root, ast.walk(tree))),
+        set(_imports(root, _run_at_once(tree))),
+        [t.string for t in _tokens(text) if t.type not in {*NO_CODE, tokenize.STRING}],
+        sum(isinstance(each, ast.Name) and each.id == "Any" for each in _annotations(tree)),
+    )
+
+
+def _tokens(text: str) -> Iterator[tokenize.TokenInfo]:
+    return tokenize.generate_tokens(io.StringIO(text).readline)
+
+
+def _run_at_once(node: ast.AST) -> Iterator[ast.AST]:
+    """What runs as a file is imported: nothing in functions, nothing that only checkers read."""
+    for child in ast.iter_child_nodes(node):
+        checked = isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING"
+        if not (checked or isinstance(child, Definition)):
+            yield child
+            yield from _run_at_once(child)
+
+
+def _annotations(tree: ast.Module) -> Iterator[ast.expr | None]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.arg | ast.AnnAssign):
+            yield node.annotation
+        elif isinstance(node, Definition):
+            yield node.returns
 
 
 def _code_lines(text: str, tree: ast.Module) -> set[int]:
     """Numbers of the lines that hold code."""
     lines: set[int] = set()
-    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+    for token in _tokens(text):
         if token.type not in NO_CODE:
             lines |= set(range(token.start[0], token.end[0] + 1))
     for node in ast.walk(tree):
@@ -144,8 +179,8 @@ def _kind(node: Definition) -> str:
     return "command" if typed else "plain"
 
 
-def _imports(root: Path, tree: ast.Module) -> Iterator[str]:
-    for node in ast.walk(tree):
+def _imports(root: Path, nodes: Iterable[ast.AST]) -> Iterator[str]:
+    for node in nodes:
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
