@@ -1,6 +1,5 @@
 """The files of ours that one frame passes on its way from two cameras to a posture's name."""
 
-import importlib.util
 import subprocess
 import sys
 import tempfile
@@ -13,6 +12,7 @@ from typing import Any, NamedTuple
 from unittest.mock import patch
 
 from numba.core.dispatcher import Dispatcher
+from source_map import file_of
 
 from common.config.settings import Settings
 from integrator import merge
@@ -22,8 +22,8 @@ from viewer import track
 PERFORMER_SEED = 90_001
 """Whom the clip shows: a person of no training set."""
 POSTURE = "raise_right_lateral"
-OFFLINE = ("runtime.offline.lockstep", "runtime.offline")
-"""Where the lock-step run lies now, and where it lay in version 0.1.0."""
+OFFLINE = ("runtime.offline.lockstep", "tritrack.offline.lockstep", "tritrack.offline")
+"""Where the lock-step run lies now, and where it lay in versions 0.2.0 and 0.1.0."""
 
 
 class Way(NamedTuple):
@@ -89,28 +89,22 @@ def way(root: Path) -> Way:
     with ExitStack() as doors:
         for module in (track, merge):
             doors.enter_context(patch.object(module, "step", calls.noted(module.step)))
-        _follow(watch)
+        _follow(root, watch)
     compiled = _compiled()
     return Way([_files(root, codes, compiled) for codes in each])
 
 
-def _follow(watch: Callable[..., None]) -> None:
-    offline = import_module(next(filter(_is_there, OFFLINE)))
+def _follow(root: Path, watch: Callable[..., None]) -> None:
+    offline = import_module(next(module for module in OFFLINE if file_of(root, module)))
     with tempfile.TemporaryDirectory(prefix="tritrack-way-") as folder, offline.Decoders() as doors:
         # by the command, which is the same in every version
         asked = ("--posture", POSTURE, "--seed", str(PERFORMER_SEED), "--size", "160x120")
         command = (sys.executable, "-m", "tritrack", "synth", "--out", folder, *asked)
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         clip = next(Path(folder).glob(f"*{POSTURE}"))
-        shown = getattr(offline, "Watch", lambda each: each)  # older versions take a function
-        offline.track_clip(Settings(clip=str(clip)), doors, (1, 2), shown(watch))
-
-
-def _is_there(module: str) -> bool:
-    try:
-        return importlib.util.find_spec(module) is not None
-    except ModuleNotFoundError:
-        return False
+        older = not isinstance(getattr(offline, "Watch", None), type)  # which takes the function
+        seen = watch if older else offline.Watch(watch)
+        offline.track_clip(Settings(clip=str(clip)), doors, (1, 2), seen)
 
 
 def _compiled() -> dict[CodeType, Dispatcher]:

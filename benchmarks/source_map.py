@@ -186,10 +186,10 @@ def _imports(root: Path, nodes: Iterable[ast.AST]) -> Iterator[str]:
         elif isinstance(node, ast.ImportFrom):
             for alias in node.names:
                 whole = f"{node.module}.{alias.name}"
-                yield whole if _file_of(root, whole) else str(node.module)
+                yield whole if file_of(root, whole) else str(node.module)
 
 
-def _file_of(root: Path, module: str) -> Path | None:
+def file_of(root: Path, module: str) -> Path | None:
     """The file of one of our modules, from the checkout's top; None where it is not ours."""
     stem = Path(*module.split("."))
     for path in (stem.with_suffix(".py"), stem / "__init__.py"):
@@ -200,7 +200,7 @@ def _file_of(root: Path, module: str) -> Path | None:
 
 def arrows(root: Path, found: list[Source]) -> list[tuple[Path, Path]]:
     """Which file imports which, among ours."""
-    files = [(each.path, _file_of(root, name)) for each in found for name in sorted(each.imports)]
+    files = [(each.path, file_of(root, name)) for each in found for name in sorted(each.imports)]
     ours = {each.path for each in found}
     return [(importer, file) for importer, file in files if file in ours and file is not None]
 
