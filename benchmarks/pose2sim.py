@@ -91,12 +91,12 @@ calibration = "{calibration}"
 size = "{size}"
 every = {every}
 
-[camera_1]
+[cameras.cam1]
 source = "{videos}{one}.mp4"
 background = "{plates}/bg_{one}.png"
 calibrated_as = "{one}"
 
-[camera_2]
+[cameras.cam2]
 source = "{videos}{two}.mp4"
 background = "{plates}/bg_{two}.png"
 calibrated_as = "{two}"

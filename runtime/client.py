@@ -40,7 +40,7 @@ LOOK_S: Final = 0.2
 HUB: Final = "integrator"
 
 
-def track(source: str | Path, views: tuple[ViewerNumber, ...] = (1, 2)) -> list[Body]:
+def track(source: str | Path, views: tuple[ViewerNumber, ...] | None = None) -> list[Body]:
     """Track a recorded clip: the bodies that `tritrack track` writes, one a frame.
 
     Examples:

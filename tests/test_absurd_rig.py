@@ -121,7 +121,7 @@ def placed(*centres_m: tuple[float, float, float]) -> Rig:
 @pytest.mark.parametrize(
     ("second_m", "said"),
     [
-        ((2.0, 1.04, 3.0), "both cameras stand at one place; calibrate again"),
+        ((2.0, 1.04, 3.0), "cam1 and cam2 stand at one place; calibrate again"),
         ((2.0, 1.06, 3.0), ""),
         ((2.0, 1.0, 62.9), ""),
         ((2.0, 1.0, -57.9), "the cameras are 61 m apart: is t in millimetres"),
@@ -170,3 +170,11 @@ def test_thirty_degrees_apart_are_two_views(apart_deg: float, odd: bool) -> None
     assert said.startswith(f"the cameras look {apart_deg:.0f} degrees apart: " if odd else "")
     assert bool(said) == odd
     assert nearly_one_view(msgspec.structs.replace(GOOD, cameras=(first,))) == ""
+
+
+def test_of_three_cameras_each_two_are_looked_at() -> None:
+    rig = placed((0.0, 1.0, 4.0), (4.0, 1.0, 0.0))
+    first, second = rig.cameras
+    third = msgspec.structs.replace(second, name="door")
+    with pytest.raises(CalibrationError, match=f"^here: {second.name} and door stand at one place"):
+        refuse_absurd(msgspec.structs.replace(rig, cameras=(first, second, third)), "here")

@@ -16,7 +16,7 @@ from runtime.live import admission
 from runtime.live.admission import LiveRefused, admitted, opened
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.0, 4.0))
-CAMERAS = Settings(camera_1=CameraSettings(device=0))
+CAMERAS = Settings(cameras={"cam1": CameraSettings(device=0)})
 
 
 @pytest.mark.parametrize("record", [True, False])

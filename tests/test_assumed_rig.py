@@ -12,7 +12,7 @@ from integrator.rig.assumed_rig import FOCAL_SHARE, assumed_rig
 
 def standing_person(viewer: int, top: int, bottom: int) -> Report:
 
-    return msgspec.structs.replace(report(viewer), box=Box(70, 90, top, bottom))  # type: ignore[arg-type]
+    return msgspec.structs.replace(report(viewer), box=Box(70, 90, top, bottom))
 
 
 @pytest.mark.parametrize("stature_m", [1.5, 1.75])

@@ -45,7 +45,7 @@ def decoder() -> Iterator[Decoder]:
 
 
 def view_of(folder: Path, decoder: Decoder, camera: CameraSettings | None = None) -> View:
-    settings = Settings(clip=str(folder), camera_1=camera)
+    settings = Settings(clip=str(folder), cameras={"cam1": camera or CameraSettings()})
     return open_clip(settings, decoder, (1,)).views[0]
 
 
@@ -73,10 +73,10 @@ def test_somebody_in_the_opening_frames_is_noticed(
     refilmed(folder, lambda film: film[40:60] + 6 * film[:8], cameras=(1,))
     _, odd, _ = opening_of_view(view_of(folder, decoder), SilhouetteSettings(), decoder)
     assert "cam1.avi does not open with an empty room" in odd
-    assert "camera_1.background" in odd
+    assert "cameras.cam1.background" in odd
     view = view_of(folder, decoder)
     of_a_film = background_of_film(view, SilhouetteSettings(), decoder).odd
-    assert of_a_film == odd.replace("camera_1.background", "--background")
+    assert of_a_film == odd.replace("cameras.cam1.background", "--background")
 
 
 def test_who_stays_all_through_is_known_from_the_first_frame(
@@ -317,7 +317,7 @@ def test_backgrounds_are_tried_the_likelier_first(
     assert clip.told["judges"] == list(range(90, 135, 3))  # twenty of 45 at most
     odd = (
         "film.avi does not open with an empty room: the background is estimated from the clip "
-        "(name an empty picture with camera_1.background)"
+        "(name an empty picture with cameras.cam1.background)"
     )
     knows = decided.get("sure", True) and decided.get("seen", (True,))[0]
     assert found == (clip.rooms["uncovered"], odd, SOMEBODY if knows else None)

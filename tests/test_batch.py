@@ -152,7 +152,7 @@ def test_all_that_is_asked_of_clips_reaches_each_of_them(tracker: Tracker, tmp_p
     assert json.loads((out / "b" / "summary.json").read_text())["clip"] == "b"
     track_all(folders[:1], out, Asked(), Console(quiet=True))
     _, settings, views = tracker.asked[-1]
-    assert (settings.mode, settings.trust_calibration, views) == ("default", False, (1, 2))
+    assert (settings.mode, settings.trust_calibration, views) == ("default", False, None)
 
 
 def test_a_clock_that_was_set_is_said_of_its_clip(tracker: Tracker, tmp_path: Path) -> None:

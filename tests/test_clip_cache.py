@@ -71,7 +71,7 @@ def test_a_clip_that_moved_keeps_its_key(own: Settings, tmp_path: Path) -> None:
 
 
 def test_a_camera_is_no_recorded_clip(tmp_path: Path) -> None:
-    settings = msgspec.convert({"camera_1": {"device": 0}}, Settings)
+    settings = msgspec.convert({"cameras": {"cam1": {"device": 0}}}, Settings)
     with pytest.raises(ClipError, match="camera 0 is no recorded clip"):
         key_of(settings, "tracker")
 

@@ -11,7 +11,9 @@ from common.video.clip_sources import (
     ClipError,
     Footage,
     companions_folder,
+    first_camera,
     footage_of,
+    numbers_of,
     refuse_no_footage,
 )
 
@@ -28,17 +30,19 @@ def folder(tmp_path: Path) -> Path:
 def test_a_folder_names_both_and_a_views_own_source_goes_before_it(folder: Path) -> None:
     plain, whole = CameraSettings(), Settings(clip=str(folder))
     one, two = str(folder / "cam1.avi"), str(folder / "cam2.MKV")
-    assert footage_of(whole) == [Footage(1, one, plain), Footage(2, two, plain)]
+    assert footage_of(whole) == [Footage(1, one, plain, "cam1"), Footage(2, two, plain, "cam2")]
     own, device = CameraSettings(source="x.mp4"), CameraSettings(device=0)
-    mixed = Settings(clip=str(folder), camera_1=own, camera_2=device)
-    assert footage_of(mixed) == [Footage(1, "x.mp4", own), Footage(2, 0, device)]
+    mixed = Settings(clip=str(folder), cameras={"cam1": own, "cam2": device})
+    assert footage_of(mixed) == [Footage(1, "x.mp4", own, "cam1"), Footage(2, 0, device, "cam2")]
     named = CameraSettings(calibrated_as="left")
-    assert footage_of(Settings(clip=str(folder), camera_2=named))[1] == Footage(2, two, named)
+    assert footage_of(Settings(clip=str(folder), cameras={"cam2": named}))[1] == Footage(
+        2, two, named, "cam2"
+    )
 
 
 def test_a_view_without_a_source_is_left_out(folder: Path) -> None:
     camera = CameraSettings(device=3)
-    assert footage_of(Settings(camera_2=camera)) == [Footage(2, 3, camera)]
+    assert footage_of(Settings(cameras={"cam2": camera})) == [Footage(2, 3, camera, "cam2")]
     assert footage_of(Settings()) == []
     (folder / "cam1.avi").unlink()
     assert [view.number for view in footage_of(Settings(clip=str(folder)))] == [2]
@@ -46,14 +50,17 @@ def test_a_view_without_a_source_is_left_out(folder: Path) -> None:
 
 def test_what_is_no_clip_is_refused_by_its_name(folder: Path) -> None:
     for clip, said in (
-        (folder / "cam1.avi", "cam1.avi is a file: name its folder, or set it as camera_1.source"),
+        (
+            folder / "cam1.avi",
+            "cam1.avi is a file: name its folder, or set it as cameras.cam1.source",
+        ),
         (folder / "gone", "there is no clip folder .*gone: check the path"),
         (folder / "cam2.d", "cam2.d has neither cam1.* nor cam2.*: name the videos so"),
     ):
         with pytest.raises(ClipError, match=said):
             footage_of(Settings(clip=str(clip)))
     (folder / "cam2.avi").touch()
-    with pytest.raises(ClipError, match=r"has 2 videos of camera 2 \(cam2\.MKV, cam2\.avi\): keep"):
+    with pytest.raises(ClipError, match=r"has 2 videos of cam2 \(cam2\.MKV, cam2\.avi\): keep"):
         footage_of(Settings(clip=str(folder)))
 
 
@@ -61,12 +68,64 @@ def test_settings_that_name_nothing_are_refused_by_their_file(folder: Path) -> N
     with pytest.raises(ClipError, match=rf"^room\.toml: {NOTHING}$"):
         refuse_no_footage(Settings(), Path("room.toml"))
     refuse_no_footage(Settings(clip=str(folder)), Path("room.toml"))
-    refuse_no_footage(Settings(camera_2=CameraSettings(device=0)), Path("room.toml"))
+    refuse_no_footage(Settings(cameras={"cam2": CameraSettings(device=0)}), Path("room.toml"))
 
 
 def test_what_goes_with_the_videos_lies_in_the_clip_or_beside_the_first_file() -> None:
     camera = CameraSettings()
-    named = [Footage(1, 0, camera), Footage(2, "b/two.avi", camera), Footage(1, "c/x.avi", camera)]
+    sources = (0, "b/two.avi", "c/x.avi")
+    named = [Footage(1, source, camera, "cam1") for source in sources]
     assert companions_folder(Settings(clip="a"), named) == Path("a")
     assert companions_folder(Settings(), named) == Path("b")
     assert companions_folder(Settings(), named[:1]) == Path()
+
+
+def test_a_folder_has_up_to_eight_cameras(tmp_path: Path) -> None:
+    for n in range(8, 0, -1):
+        (tmp_path / f"cam{n}.mp4").touch()
+    found = footage_of(Settings(clip=str(tmp_path)))
+    assert [(one.number, one.name) for one in found] == [(n, f"cam{n}") for n in range(1, 9)]
+    (tmp_path / "cam9.mp4").touch()
+    with pytest.raises(ClipError, match=r"has cam9\.mp4: a clip has 8 cameras at most"):
+        footage_of(Settings(clip=str(tmp_path)))
+
+
+def test_cameras_of_any_name_are_numbered_in_their_order() -> None:
+    left, right = CameraSettings(source="l.avi"), CameraSettings(device=1)
+    found = footage_of(Settings(cameras={"left": left, "right": right}))
+    assert found == [Footage(1, "l.avi", left, "left"), Footage(2, 1, right, "right")]
+
+
+@pytest.mark.parametrize(
+    ("names", "numbers"),
+    [
+        (["cam2"], [2]),
+        (["cam3", "cam1"], [3, 1]),
+        (["door", "cam1", "stairs", "cam3"], [2, 1, 4, 3]),
+        (["cam08", "cam9", "cam0"], [1, 2, 3]),
+    ],
+)
+def test_who_is_called_by_a_number_has_it_and_others_take_what_is_free(
+    names: list[str], numbers: list[int]
+) -> None:
+    assert [*numbers_of(names).values()] == numbers
+
+
+def test_a_ninth_camera_is_refused_by_name(folder: Path) -> None:
+    seven = {f"c{n}": CameraSettings(device=n) for n in range(7)}
+    with pytest.raises(ClipError, match=r"9 cameras \(c0, .*, cam1, cam2\): keep 8 at most"):
+        footage_of(Settings(clip=str(folder), cameras=seven))
+
+
+def test_a_named_camera_without_a_video_is_refused(folder: Path) -> None:
+    """A clip folder has none of that name to give."""
+    plate = {"left": CameraSettings(background="empty.png")}
+    with pytest.raises(ClipError, match=r"^cameras\.left has neither source nor device"):
+        footage_of(Settings(clip=str(folder), cameras=plate))
+
+
+def test_the_first_camera_is_that_of_number_1() -> None:
+    camera = CameraSettings(device=0)
+    assert first_camera(Settings(cameras={"cam2": camera, "left": camera})) == "left"
+    assert first_camera(Settings(cameras={"cam2": camera, "cam1": camera})) == "cam1"
+    assert first_camera(Settings(cameras={"cam2": camera})) == "cam1"

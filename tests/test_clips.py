@@ -114,8 +114,10 @@ def test_two_of_several_cameras_are_taken_by_name(folder: Path, decoder: Decoder
     settings = Settings(
         clip=str(folder),
         calibration=str(folder / "four.json"),
-        camera_1=CameraSettings(calibrated_as="d"),
-        camera_2=CameraSettings(calibrated_as="b"),
+        cameras={
+            "cam1": CameraSettings(calibrated_as="d"),
+            "cam2": CameraSettings(calibrated_as="b"),
+        },
     )
     rig = open_clip(settings, decoder).rig
     assert rig is not None
@@ -123,7 +125,7 @@ def test_two_of_several_cameras_are_taken_by_name(folder: Path, decoder: Decoder
     wrong = Settings(
         clip=str(folder),
         calibration=settings.calibration,
-        camera_1=CameraSettings(calibrated_as="x"),
+        cameras={"cam1": CameraSettings(calibrated_as="x")},
     )
     assert "no camera 'x'; it has a, b, c, d" in refusal(wrong, decoder)
 
@@ -134,11 +136,58 @@ def test_of_more_cameras_than_views_none_is_taken_by_its_place(
     calibrate(folder / "calibration.json", names=("a", "b", "c", "d"))
     said = refusal(Settings(clip=str(folder)), decoder)
     assert "has 4 cameras (a, b, c, d): say which of them took view 1" in said
-    assert "camera_1.calibrated_as" in said
+    assert "cameras.cam1.calibrated_as" in said
     calibrate(folder / "calibration.json", names=("cam3", "cam2", "cam1"))
     rig = opened(folder, decoder).rig
     assert rig is not None
     assert [camera.name for camera in rig.cameras] == ["cam1", "cam2"]
+
+
+def test_a_calibrations_cameras_are_those_of_the_clips_names(
+    folder: Path, decoder: Decoder
+) -> None:
+    """In whatever order it lists them; names of none of the clip's go by their place."""
+    calibrate(folder / "calibration.json", names=("cam2", "cam1"))
+    rig = opened(folder, decoder).rig
+    assert rig is not None
+    assert [camera.name for camera in rig.cameras] == ["cam1", "cam2"]
+    calibrate(folder / "calibration.json", names=("left", "cam1"))
+    rig = opened(folder, decoder).rig
+    assert rig is not None
+    assert [camera.name for camera in rig.cameras] == ["left", "cam1"]
+
+
+def test_three_cameras_are_a_clip_of_three_views(folder: Path, decoder: Decoder) -> None:
+    film(folder / "cam3.avi")
+    calibrate(folder / "calibration.json", names=("c", "b", "a"))
+    clip = opened(folder, decoder)
+    assert [(view.number, view.name) for view in clip.views] == [
+        (1, "cam1"),
+        (2, "cam2"),
+        (3, "cam3"),
+    ]
+    assert clip.rig is not None
+    assert [camera.name for camera in clip.rig.cameras] == ["c", "b", "a"]
+    some = open_clip(Settings(clip=str(folder)), decoder, (1, 3))
+    assert some.rig is not None
+    assert [camera.name for camera in some.rig.cameras] == ["c", "a"]
+    calibrate(folder / "calibration.json", names=("c", "b"))
+    said = refusal(Settings(clip=str(folder)), decoder)
+    assert "has 2 cameras, the clip has a view 3: calibrate all" in said
+
+
+def test_a_missing_camera_is_let_go_where_it_is_not_asked_for(
+    folder: Path, decoder: Decoder
+) -> None:
+    (folder / "cam2.avi").rename(folder / "cam3.avi")
+    said = refusal(Settings(clip=str(folder)), decoder)
+    assert (
+        "has cam1.avi, cam3.avi and no cam2.*: add it; to track without it add --views 1,3" in said
+    )
+    calibrate(folder / "calibration.json", names=("cam1", "cam2", "cam3"))
+    clip = open_clip(Settings(clip=str(folder)), decoder, (1, 3))
+    assert clip.rig is not None
+    assert [camera.name for camera in clip.rig.cameras] == ["cam1", "cam3"]
 
 
 def test_one_video_makes_a_single_view_clip(folder: Path, decoder: Decoder) -> None:
@@ -159,7 +208,7 @@ def test_cameras_at_one_place_are_refused_unless_the_user_insists(
     told["cameras"][1]["t"] = told["cameras"][0]["t"]
     path.write_text(json.dumps(told))
     settings = Settings(clip=str(folder), calibration=str(path))
-    assert "r01_walk: both cameras stand at one place" in refusal(settings, decoder)
+    assert "r01_walk: left and right stand at one place" in refusal(settings, decoder)
     insisted = msgspec.structs.replace(settings, trust_calibration=True)
     assert open_clip(insisted, decoder).rig is not None
 
@@ -211,8 +260,10 @@ def test_the_missing_one_may_be_the_first(folder: Path, decoder: Decoder) -> Non
 
 def test_files_under_any_name_are_taken_from_the_settings(tmp_path: Path, decoder: Decoder) -> None:
     settings = Settings(
-        camera_1=CameraSettings(source=film(tmp_path / "front.avi")),
-        camera_2=CameraSettings(source=film(tmp_path / "side.avi")),
+        cameras={
+            "cam1": CameraSettings(source=film(tmp_path / "front.avi")),
+            "cam2": CameraSettings(source=film(tmp_path / "side.avi")),
+        },
     )
     clip = open_clip(settings, decoder)
     assert [view.source for view in clip.views] == [
@@ -224,13 +275,15 @@ def test_files_under_any_name_are_taken_from_the_settings(tmp_path: Path, decode
 
 def test_a_view_of_another_host_is_not_touched(folder: Path, decoder: Decoder) -> None:
     (folder / "cam2.avi").write_bytes(b"")
-    settings = Settings(clip=str(folder), camera_2=CameraSettings(device=63))
+    settings = Settings(clip=str(folder), cameras={"cam2": CameraSettings(device=63)})
     clip = open_clip(settings, decoder, numbers=(1,))
     assert [view.number for view in clip.views] == [1]
 
 
 def test_an_upright_picture_keeps_its_shape(tmp_path: Path, decoder: Decoder) -> None:
-    settings = Settings(camera_1=CameraSettings(source=film(tmp_path / "a.avi", size=(270, 480))))
+    settings = Settings(
+        cameras={"cam1": CameraSettings(source=film(tmp_path / "a.avi", size=(270, 480)))}
+    )
     assert open_clip(settings, decoder).views[0].size == (68, 120)
 
 
@@ -320,26 +373,28 @@ def test_a_missing_folder_file_or_source_is_named(tmp_path: Path, decoder: Decod
     assert "set clip" in refusal(Settings(), decoder)
     assert "neither cam1.* nor cam2.*" in refusal(Settings(clip=str(tmp_path)), decoder)
     view = CameraSettings(source=gone + ".avi")
-    assert "gone.avi: check the path" in refusal(Settings(camera_1=view), decoder)
+    assert "gone.avi: check the path" in refusal(Settings(cameras={"cam1": view}), decoder)
     file = film(tmp_path / "walk.avi")
     assert "walk.avi is a file" in refusal(Settings(clip=file), decoder)
     plate = CameraSettings(source=file, background=str(tmp_path / "plate.png"))
-    assert "plate.png: check the path" in refusal(Settings(camera_1=plate), decoder)
+    assert "plate.png: check the path" in refusal(Settings(cameras={"cam1": plate}), decoder)
 
 
 def test_a_picture_is_no_film(tmp_path: Path, decoder: Decoder) -> None:
     cv2.imwrite(str(tmp_path / "room.png"), np.zeros((SIZE[1], SIZE[0], 3), np.uint8))
     camera = CameraSettings(source=str(tmp_path / "room.png"))
-    assert "room.png is one picture: name a video" in refusal(Settings(camera_1=camera), decoder)
+    assert "room.png is one picture: name a video" in refusal(
+        Settings(cameras={"cam1": camera}), decoder
+    )
 
 
 def test_a_background_of_another_shape_is_refused(tmp_path: Path, decoder: Decoder) -> None:
     source, plate = film(tmp_path / "cam1.avi"), tmp_path / "empty.png"
     camera = CameraSettings(source=source, background=str(plate))
     cv2.imwrite(str(plate), np.zeros((SIZE[1], SIZE[0], 3), np.uint8))
-    assert open_clip(Settings(camera_1=camera), decoder).views[0].background == str(plate)
+    assert open_clip(Settings(cameras={"cam1": camera}), decoder).views[0].background == str(plate)
     cv2.imwrite(str(plate), np.zeros((180, 320, 3), np.uint8))
-    said = refusal(Settings(camera_1=camera), decoder)
+    said = refusal(Settings(cameras={"cam1": camera}), decoder)
     assert "empty.png has 320x180 pixels" in said
     assert "cam1.avi 320x240: take an empty frame of the same camera" in said
 
@@ -391,14 +446,14 @@ def test_a_background_that_is_no_picture_is_named_with_its_own_cure(
     if name:
         (folder / name).write_bytes(b"no picture")
     camera = CameraSettings(source=str(folder / "cam1.avi"), background=str(folder / name))
-    assert said in refusal(Settings(camera_1=camera), decoder)
+    assert said in refusal(Settings(cameras={"cam1": camera}), decoder)
 
 
 def test_two_videos_of_one_camera_are_not_guessed_between(folder: Path, decoder: Decoder) -> None:
     film(folder / "cam1.mkv")
     (folder / "cam1.png").write_bytes(b"a still beside the video is none of the two")
     said = refusal(Settings(clip=str(folder)), decoder)
-    assert "2 videos of camera 1 (cam1.avi, cam1.mkv)" in said
+    assert "2 videos of cam1 (cam1.avi, cam1.mkv)" in said
 
 
 @pytest.mark.parametrize(
@@ -486,15 +541,17 @@ def test_a_file_and_a_camera_are_what_they_say_or_what_is_told_of_them(tmp_path:
     facts = Facts(cam1=VideoInfo(640, 480, 20.0, 9), **{"3": VideoInfo(320, 240, 0.0, 7)})
     camera = CameraSettings(device=3)
     tell(tmp_path, fps=25, capture_s={"cam2": [0.0, 0.5]})
-    first, second = clip_of_facts(tmp_path, facts, camera_2=camera, offset_s=0.5, fps=24.0).views
+    first, second = clip_of_facts(
+        tmp_path, facts, cameras={"cam2": camera}, offset_s=0.5, fps=24.0
+    ).views
     assert (first.fps, first.frames, first.size, first.late_s) == (24.0, 9, (160, 120), 0.0)
     assert (second.fps, second.frames, second.source_size) == (15.0, 0, (320, 240))
     assert (second.late_s, second.capture_s) == (0.5, ())
-    first, _ = clip_of_facts(tmp_path, facts, camera_2=camera, size="64x64").views
+    first, _ = clip_of_facts(tmp_path, facts, cameras={"cam2": camera}, size="64x64").views
     assert (first.fps, first.size) == (25.0, (64, 48))
     tell(tmp_path, capture_s={"cam1": [0.0, 0.5]})
     facts.known["3"] = VideoInfo(320, 240, 30.0, 0)
-    first, second = clip_of_facts(tmp_path, facts, camera_2=camera).views
+    first, second = clip_of_facts(tmp_path, facts, cameras={"cam2": camera}).views
     assert (first.fps, first.capture_s, second.fps) == (20.0, (0.0, 0.5), 30.0)
 
 
@@ -534,9 +591,9 @@ def test_a_background_may_differ_by_two_hundredths_in_its_shape(
     if refused:
         said = rf"plate\.png has {width}x240 pixels, .*cam1\.mkv 640x480: take an empty frame"
         with pytest.raises(ClipError, match=said):
-            clip_of_facts(tmp_path, facts, camera_1=camera)
+            clip_of_facts(tmp_path, facts, cameras={"cam1": camera})
     else:
-        assert clip_of_facts(tmp_path, facts, camera_1=camera).views[0].background
+        assert clip_of_facts(tmp_path, facts, cameras={"cam1": camera}).views[0].background
 
 
 def test_an_avi_that_does_not_begin_as_one_is_refused_though_pictures_are_found_in_it(
@@ -589,7 +646,7 @@ def test_a_clip_is_named_after_its_folder_or_its_first_video(
     folder: Path, decoder: Decoder
 ) -> None:
     camera = CameraSettings(source=str(folder / "cam2.avi"))
-    assert open_clip(Settings(camera_2=camera), decoder).name == "cam2"
+    assert open_clip(Settings(cameras={"cam2": camera}), decoder).name == "cam2"
     assert open_clip(Settings(clip=str(folder), every=2), decoder).every == 2
 
 

@@ -65,7 +65,7 @@ def written(path: Path, code: str, size: tuple[int, int] = SIZE, fps: float = HZ
 
 def read(path: Path, decoder: Decoder) -> tuple[View, list[Image]]:
     """A file as a run opens it, and its pictures."""
-    settings = Settings(camera_1=CameraSettings(source=str(path)))
+    settings = Settings(cameras={"cam1": CameraSettings(source=str(path))})
     view = open_clip(settings, decoder).views[0]
     return view, [frame.picture for frame in decoder.frames(str(path), view.size)]
 

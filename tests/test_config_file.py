@@ -48,7 +48,10 @@ def test_some_settings_are_shipped() -> None:
     [
         ("rooom = 'x'", r"unknown setting rooom \(did you mean room\?\)"),
         ("[search]\nstop = 4", r"unknown setting search\.stop \(did you mean stop_deg"),
-        ("[camera_1]\nsorce = 'a'", r"unknown setting camera_1\.sorce"),
+        (
+            "[cameras.left]\nsorce = 'a'",
+            r"run\.toml: cameras\.left: unknown setting sorce .did you",
+        ),
         ("every = 'two'", "every must be a whole number, got text"),
         ("[page]\nport = 1.5", r"page\.port must be a whole number"),
         ("mode = 'quick'", "mode must be default, paper or thesis, got 'quick'"),
@@ -84,7 +87,7 @@ def test_what_is_misspelt_or_ill_typed_is_refused_with_its_place(
         ("[search]\nstop_deg = 0", "got 64"),
         ("[search]\nleg_window_deg = 4", "leg_window_deg"),
         ("[recognizer]\nwindow_frames = 1", "got 1"),
-        ("[camera_1]\nsource = 'a'\ndevice = 0", "both set"),
+        ("[cameras.cam1]\nsource = 'a'\ndevice = 0", "cameras.cam1: .*both set"),
         ("[bus]\nendpoint = 'tcp/192.168.1.5:7447'", "tcp/192.168.1.5:7447.*tritrack keys FOLDER"),
         ("[bus]\nendpoint = 'tcp/0.0.0.0:7447'", "or set open_to_all = true"),
         ("[page]\nhost = ''", "host must be a plain name or address, got ''"),
@@ -131,7 +134,7 @@ def test_paths_are_relative_to_the_file_and_variables_are_filled_in(
     text = """
         clip = "$CLIPS/$NAME"
         calibration = "here.json"
-        [camera_1]
+        [cameras.cam1]
         source = "clips/${NAME}.mp4"
         background = "/plates/empty.png"
         [recognizer]
@@ -144,11 +147,11 @@ def test_paths_are_relative_to_the_file_and_variables_are_filled_in(
     assert settings.bus.keys == str(tmp_path / "keys")
     assert settings.clip == "/elsewhere/kick"
     assert settings.calibration == str(tmp_path / "here.json")
-    assert settings.camera_1 is not None
-    assert settings.camera_1.source == str(tmp_path / "clips" / "kick.mp4")
-    assert settings.camera_1.background == "/plates/empty.png"
+    assert [*settings.cameras] == ["cam1"]
+    camera = settings.cameras["cam1"]
+    assert camera.source == str(tmp_path / "clips" / "kick.mp4")
+    assert camera.background == "/plates/empty.png"
     assert settings.recognizer.model == str(tmp_path / "own.model")
-    assert settings.camera_2 is None
 
 
 def test_landmarks_are_a_word_or_a_folder_beside_the_file(

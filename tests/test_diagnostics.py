@@ -21,7 +21,7 @@ def report(viewer: int, seen: bool = True, cut: bool = False) -> Report:
         frame=0,
         captured_s=0.0,
         clock_s=0.0,
-        viewer=viewer,  # type: ignore[arg-type]
+        viewer=viewer,
         width=8,
         height=1,
         silhouette=b"\0",

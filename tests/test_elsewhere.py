@@ -22,7 +22,7 @@ def calibration(clip: Path, tmp_path: Path) -> Path:
 
 
 def settings_of(calibration: Path, **more: object) -> Settings:
-    own = Settings(calibration=str(calibration), camera_1=NOWHERE, camera_2=NEITHER)
+    own = Settings(calibration=str(calibration), cameras={"cam1": NOWHERE, "cam2": NEITHER})
     return msgspec.structs.replace(own, **more)
 
 
@@ -57,4 +57,4 @@ def test_a_calibration_that_cannot_be_read_is_told(calibration: Path) -> None:
 
 def test_without_a_calibration_the_camera_itself_must_be_there() -> None:
     with pytest.raises(ClipError, match="camera 63"):
-        two_camera_clip(Settings(camera_1=NOWHERE, camera_2=NEITHER))
+        two_camera_clip(Settings(cameras={"cam1": NOWHERE, "cam2": NEITHER}))

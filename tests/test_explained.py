@@ -27,7 +27,7 @@ MARKERS = "width = 3\nheight = 4\n[[cameras]]\nname = 'a'\n"
         (Settings, "every = 'two'", "every must be a whole number, got text"),
         (Settings, "[page]\nport = 1.5", "page.port must be a whole number, got a fraction"),
         (Settings, "[page]\nwait = 1", "page.wait must be true or false, got a whole number"),
-        (Settings, "camera_1 = 3", "camera_1 must be a table, got a whole number"),
+        (Settings, "cameras = 3", "cameras must be a table, got a whole number"),
         (Settings, "every = 0", "every must be from 1 to 1000, got 0"),
         (Settings, "[page]\nport = -1", "page: port must be from 0 to 65535, got -1"),
         (

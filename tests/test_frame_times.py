@@ -63,7 +63,9 @@ def uneven(path: Path) -> str:
 
 
 def view_of(source: str, decoder: Decoder, fps: float = 0.0) -> View:
-    return open_clip(Settings(camera_1=CameraSettings(source=source), fps=fps), decoder).views[0]
+    return open_clip(
+        Settings(cameras={"cam1": CameraSettings(source=source)}, fps=fps), decoder
+    ).views[0]
 
 
 @pytest.mark.parametrize("suffix", [".mp4", ".mov", ".mkv", ".avi"])

@@ -1,7 +1,5 @@
 """Landmarks as rays: through the camera and each joint, and nothing of a view that has none."""
 
-from typing import get_args
-
 import msgspec
 import numpy as np
 import pytest
@@ -46,7 +44,7 @@ def test_rays_lead_from_each_camera_through_the_twelve_joints() -> None:
     found = rays_of(RIG, (report(1), report(2, second=True)))
     assert found is not None
     assert [JOINT_NAMES[i] for i in AT] == list(JOINTS)
-    for view, number in enumerate(get_args(ViewerNumber)):
+    for view, number in enumerate((1, 2)):
         assert found.centres_m[view] == pytest.approx(centre(RIG.cameras[view]))
         assert found.directions[view] == pytest.approx(towards(number, JOINTS_M), abs=1e-9)
         assert found.confidence[view] == pytest.approx(SURE[AT])

@@ -29,7 +29,7 @@ from tritrack.commands.live_commands import (
     waiting,
 )
 
-CAMERAS = Settings(camera_1=CameraSettings(device=0), camera_2=CameraSettings(device=1))
+CAMERAS = Settings(cameras={"cam1": CameraSettings(device=0), "cam2": CameraSettings(device=1)})
 VIEWS = tuple(View(n, n, (160, 120), (160, 120), 30.0, 0) for n in (1, 2))
 CLIP = Clip("room", VIEWS, 2, None, Meta())
 

@@ -252,7 +252,7 @@ def test_who_leaves_one_view_for_the_other_is_told_by_what_that_one_knows() -> N
 @MODES
 @pytest.mark.parametrize("alone", [1, 2])
 def test_a_run_with_one_viewer_tells_a_body(mode: Mode, alone: int) -> None:
-    told = Stage(settings=Settings(mode=mode), views=(alone,)).show([standing()] * 6)  # type: ignore[arg-type]
+    told = Stage(settings=Settings(mode=mode), views=(alone,)).show([standing()] * 6)
     assert {t.body.views for t in told} == {str(alone)}
     assert len(told[-1].body.joints_m) == 15
     assert told[-1].reports[2 - alone] is None
@@ -453,7 +453,7 @@ def test_scores_are_those_of_each_views_own_camera_and_silhouette() -> None:
     state = instants()._replace(opening=opening, found=found)
 
     def scores(*masks: Any) -> tuple[float, float]:
-        given = [None if mask is None else report(n + 1, mask) for n, mask in enumerate(masks)]  # type: ignore[arg-type]
+        given = [None if mask is None else report(n + 1, mask) for n, mask in enumerate(masks)]
         return merge._scores(state, merge.Instant(RIG, (given[0], given[1]), 0.1, Annotations()))
 
     assert scores(first, second) == (1.0, 1.0)

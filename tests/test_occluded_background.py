@@ -66,7 +66,9 @@ def test_legs_that_only_sway_are_not_absorbed() -> None:
 
 def test_without_the_library_the_cure_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "skimage.segmentation", None)
-    with pytest.raises(NoSegments, match=r"tritrack\[single\].*camera_1.background.*--background"):
+    with pytest.raises(
+        NoSegments, match=r"tritrack\[single\].*cameras.cam1.background.*--background"
+    ):
         learn_uncovered([shot(walker(n), 2.0, n) for n in range(4)])
 
 

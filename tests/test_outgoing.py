@@ -30,7 +30,7 @@ FRONT, SIDE = silhouettes(standing())
 def seen(n: int, **said: Any) -> Report:
     """Of viewer n, with its own place of the navel."""
     given = {"frame": 10 + n, "captured_s": 2.0, "clock_s": 5.0 + n, "root_px": (70.0 + n, 50.0)}
-    return report(n, (FRONT, SIDE)[n - 1], **{**given, **said})  # type: ignore[arg-type]
+    return report(n, (FRONT, SIDE)[n - 1], **{**given, **said})
 
 
 BOTH = Pair(seen(1), seen(2))

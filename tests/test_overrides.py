@@ -59,7 +59,7 @@ def test_track_looks_by_the_landmarks_that_are_named(clip: Path, tmp_path: Path)
 def test_single_looks_by_the_landmarks_that_are_named(clip: Path, tmp_path: Path) -> None:
     video = next(clip.glob("cam1.*"))
     file = tmp_path / "said.toml"
-    file.write_text(f'landmarks = "none"\n[camera_1]\nsource = "{video}"\n')
+    file.write_text(f'landmarks = "none"\n[cameras.cam1]\nsource = "{video}"\n')
     single([file], tmp_path / "runs", size="160x120")
     single([video], tmp_path / "runs", size="160x120", landmarks="none")
     assert poses(tmp_path / "runs" / "cam1") == poses(tmp_path / "runs" / "said")

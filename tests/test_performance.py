@@ -142,14 +142,14 @@ def guided(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int | None]]:
 
     def look(state: int, frame: CapturedFrame, guide: Guide | None) -> tuple[int, Report]:
         given.append((state, None if guide is None else guide.frames[0]))
-        seen = report(state // 100, frame=frame.index, captured_s=frame.captured_s)  # type: ignore[arg-type]
+        seen = report(state // 100, frame=frame.index, captured_s=frame.captured_s)
         return state + 1, seen
 
     def merged(state: Any, pair: Pair) -> tuple[Any, Body, Guide]:
         assert [one and one.viewer for one in pair] == [1, 2]
         n, moment = pair.newest.frame, dict[str, Any](captured_s=0.0, clock_s=0.0)
         moved = (1,) if n == MOVED_AT else ()
-        body = Body(frame=n, status="empty", views="none", moved=moved, **moment)  # type: ignore[arg-type]
+        body = Body(frame=n, status="empty", views="none", moved=moved, **moment)
         return state, body, Guide(frame=n, frames=(n, n), **moment)
 
     def frames(_clip: object, _reels: object, _sources: object, starts: dict[int, int]) -> Any:

@@ -19,7 +19,7 @@ def test_the_prior_is_as_high_as_the_silhouettes(views: tuple[int, ...], stature
     pose[1] *= stature_m / 1.75
     both = silhouettes(pose, thesis_bdp(stature_m))
     roots = [(80.0, 60.0 + (1.0 - pose[1]) * 50.0)] * 2
-    seen = [report(n + 1, both[n], root_px=roots[n]) if n in views else None for n in (0, 1)]  # type: ignore[arg-type]
+    seen = [report(n + 1, both[n], root_px=roots[n]) if n in views else None for n in (0, 1)]
     body = prior(RIG, (seen[0], seen[1]))
     assert stature(body) == pytest.approx(stature_m, abs=0.06)
     assert body.torso.height / stature(body) == pytest.approx(52 / 175)

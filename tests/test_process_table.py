@@ -34,7 +34,7 @@ CONTEXT = ProcessContext()
 
 def clip(*numbers: int) -> Clip:
     """Views of 30 frames a second, of which every second is taken."""
-    views = [View(n, f"cam{n}.avi", (160, 120), (160, 120), 30.0, 9) for n in numbers]  # type: ignore[arg-type]
+    views = [View(n, f"cam{n}.avi", (160, 120), (160, 120), 30.0, 9) for n in numbers]
     return Clip("room", tuple(views), 2, None, Meta())
 
 

@@ -1,7 +1,6 @@
 """The pose of two views, of what outlines propose and what landmarks lift."""
 
 import math
-from typing import get_args
 
 import msgspec
 import numpy as np
@@ -11,7 +10,7 @@ from rolling import BODY, ROLLED, on_one_leg, outlines, told
 from common.body.body import JOINT_NAMES, POSE_INDEX, Vector
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
-from common.bus.messages import Landmarks, Report, ViewerNumber
+from common.bus.messages import Landmarks, Report
 from common.bus.pair import Seen
 from common.method import DEFAULT
 from common.rig.camera import Camera, project
@@ -163,9 +162,7 @@ def networks(monkeypatch: pytest.MonkeyPatch) -> Networks:
 
 
 def both_shown(first: bool = True, second: bool = True) -> Seen:
-    made = zip(
-        get_args(ViewerNumber), outlines(on_one_leg()), ROLLED.cameras, (first, second), strict=True
-    )
+    made = zip((1, 2), outlines(on_one_leg()), ROLLED.cameras, (first, second), strict=True)
     one, other = (
         shown(told(n, mask), camera, 0.9) if there else None for n, mask, camera, there in made
     )

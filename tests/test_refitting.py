@@ -36,7 +36,7 @@ def run(clip: Path, tmp_path: Path) -> Path:
 
 
 def settings_of(film: Path) -> Settings:
-    return Settings(size="160x120", camera_1=CameraSettings(source=str(film)))
+    return Settings(size="160x120", cameras={"cam1": CameraSettings(source=str(film))})
 
 
 def files_of(run: Path) -> dict[str, bytes]:

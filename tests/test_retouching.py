@@ -58,7 +58,7 @@ def run_of(folder: Path, video: Path, n: int = 4, frames: Sequence[int] = ()) ->
         "score": np.zeros((n, 2)),
         "joint_names": np.array(JOINT_NAMES),
     }
-    write(folder, arrays, json.dumps({"settings": {"camera_1": {"source": str(video)}}}))
+    write(folder, arrays, json.dumps({"settings": {"cameras": {"cam1": {"source": str(video)}}}}))
     return folder
 
 
@@ -214,7 +214,7 @@ def test_a_run_of_a_camera_wants_a_film_of_it(
 ) -> None:
     film(tmp_path / "dance.avi")
     run = run_of(tmp_path / "run", tmp_path / "dance.avi")
-    settings = Settings(camera_1=CameraSettings(source=str(tmp_path / "dance.avi")))
+    settings = Settings(cameras={"cam1": CameraSettings(source=str(tmp_path / "dance.avi"))})
     found = open_clip(settings, None, (1,))
     camera = msgspec.structs.replace(found.views[0], source=0)
     live = msgspec.structs.replace(found, views=(camera,))
@@ -232,13 +232,14 @@ def settings_of(tmp_path: Path, settings: dict[str, Any], video: Path | None) ->
 def test_the_video_that_is_named_takes_the_place_of_what_the_run_was_of(tmp_path: Path) -> None:
     """The rest of its camera stays, a device of this host does not; a clip is not read any more."""
     camera = {"device": 2, "calibrated_as": "left", "background": "room.png"}
-    found = settings_of(tmp_path, {"size": "80x60", "camera_1": camera}, Path("moved.avi"))
-    assert found.camera_1 == CameraSettings("moved.avi", -1, "room.png", "left")
+    told = {"size": "80x60", "cameras": {"cam1": camera}}
+    found = settings_of(tmp_path, told, Path("moved.avi"))
+    assert found.cameras["cam1"] == CameraSettings("moved.avi", -1, "room.png", "left")
     assert (found.size, found.clip) == ("80x60", "")
     found = settings_of(tmp_path, {"clip": "some/clip"}, Path("moved.avi"))
-    assert (found.camera_1, found.clip) == (CameraSettings("moved.avi"), "")
+    assert (found.cameras["cam1"], found.clip) == (CameraSettings("moved.avi"), "")
     found = settings_of(tmp_path, {"clip": "some/clip"}, None)
-    assert (found.camera_1, found.clip) == (None, "some/clip")
+    assert (found.cameras, found.clip) == ({}, "some/clip")
 
 
 def test_the_turn_to_the_camera_is_the_calibrations_the_assumed_one_or_level(
@@ -246,7 +247,8 @@ def test_the_turn_to_the_camera_is_the_calibrations_the_assumed_one_or_level(
 ) -> None:
     film(tmp_path / "dance.avi")
     run = run_of(tmp_path / "run", tmp_path / "dance.avi")
-    clip = open_clip(Settings(camera_1=CameraSettings(str(tmp_path / "dance.avi"))), None, (1,))
+    filmed = CameraSettings(str(tmp_path / "dance.avi"))
+    clip = open_clip(Settings(cameras={"cam1": filmed}), None, (1,))
     level = retouching._turn_of(open_run(run), msgspec.structs.replace(clip, rig=None))
     assert level == PAPER_ROTATIONS[0]
     turn = [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]
@@ -266,7 +268,8 @@ def test_a_row_without_a_picture_shows_the_one_before_it_or_black(
 ) -> None:
     """The video has frames 0 to 3 of 0, 60, 120 and 180 grey; rows beyond it keep the last."""
     film(tmp_path / "dance.avi")
-    clip = open_clip(Settings(camera_1=CameraSettings(str(tmp_path / "dance.avi"))), None, (1,))
+    camera = CameraSettings(str(tmp_path / "dance.avi"))
+    clip = open_clip(Settings(cameras={"cam1": camera}), None, (1,))
 
     def shown(*frames: int) -> list[float]:
         take: Any = SimpleNamespace(frame=np.array(frames))

@@ -68,7 +68,7 @@ def test_metrics_are_looked_at_only_where_there_are_some(sound: Settings, tmp_pa
 def test_a_camera_that_is_missing_is_named(sound: Settings, tmp_path: Path) -> None:
     (tmp_path / "cam2.avi").unlink()
     gone = CameraSettings(source=str(tmp_path / "cam2.avi"))
-    nowhere = Settings(clip=sound.clip, bus=sound.bus, page=sound.page, camera_2=gone)
+    nowhere = Settings(clip=sound.clip, bus=sound.bus, page=sound.page, cameras={"cam2": gone})
     seen = found(nowhere, tmp_path)
     assert not seen["pictures"].ok
     assert "cam2.avi" in seen["pictures"].detail

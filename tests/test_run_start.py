@@ -16,7 +16,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
 
 
 def ask(starter: Starter, viewer: int | None = None, ready: bool = False) -> float | None:
-    answer = starter.answer(ClockQuestion(viewer=viewer, ready=ready))  # type: ignore[arg-type]
+    answer = starter.answer(ClockQuestion(viewer=viewer, ready=ready))
     return answer.start_s
 
 

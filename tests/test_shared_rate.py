@@ -11,7 +11,7 @@ from common.video.shared_rate import at_one_rate
 def view(number: int, hz: float, seconds: float = 10.0, late_s: float = 0.0) -> View:
     size = (160, 120)
     frames = round(hz * seconds)
-    return View(1 if number == 1 else 2, f"cam{number}.avi", size, size, hz, frames, late_s=late_s)
+    return View(number, f"cam{number}.avi", size, size, hz, frames, late_s=late_s)
 
 
 @pytest.mark.parametrize(("slow_hz", "fast_hz"), [(25.0, 29.97), (15.0, 30.0), (24.0, 60.0)])
@@ -95,3 +95,9 @@ def test_a_hundredth_is_another_rate_and_a_twentieth_where_times_are_rounded(
         times_s = tuple(n / 20.0 for n in range(slow.frames))
         slow = msgspec.structs.replace(slow, capture_s=times_s)
     assert bool(at_one_rate((slow, fast), 1)[1].picked) == thinned
+
+
+def test_of_several_all_that_are_faster_meet_the_slowest() -> None:
+    first, second, third = at_one_rate((view(1, 30.0), view(2, 15.0), view(3, 60.0)), 1)
+    assert (first.picked[:3], second.picked, third.picked[:3]) == ((0, 2, 4), (), (0, 4, 8))
+    assert {one.fps for one in (first, second, third)} == {15.0}

@@ -274,13 +274,13 @@ def test_a_background_and_notes_that_are_named_take_the_place_of_those_beside(
     save_notes(other, mine)
     job = job_of(path, Given(), SMALL)
     assert (job.notes, job.path, job.masks) == (beside, path, None)
-    assert job.settings.camera_1 == CameraSettings(source=str(path))
+    assert job.settings.cameras["cam1"] == CameraSettings(source=str(path))
     assert job.settings.size == "160x120"
     given = Given(notes=other, background=tmp_path / "room.png", landmarks="none")
     job = job_of(path, given, SMALL)
     assert job.notes == mine
     assert job.settings.landmarks == "none"
-    assert job.settings.camera_1 == CameraSettings(str(path), -1, str(tmp_path / "room.png"))
+    assert job.settings.cameras["cam1"] == CameraSettings(str(path), -1, str(tmp_path / "room.png"))
 
 
 def test_a_clip_folder_has_the_notes_of_its_first_camera_and_may_have_no_camera_settings(
@@ -292,7 +292,7 @@ def test_a_clip_folder_has_the_notes_of_its_first_camera_and_may_have_no_camera_
     save_notes(folder / "notes.toml", Notes(note=(Note(3, "left"),)))
     job = job_of(folder, Given(background=Path("room.png")), SMALL)
     assert job.notes.note[0].frame == 3
-    assert job.settings.camera_1 == CameraSettings(background="room.png")
+    assert job.settings.cameras["cam1"] == CameraSettings(background="room.png")
     assert job.settings.clip == str(folder)
 
 

@@ -50,7 +50,7 @@ def test_a_long_film_is_shown_in_evenly_spread_stills(tmp_path: Path) -> None:
     for n in range(count):
         writer.write(np.full((48, 64, 3), n % 200, np.uint8))
     writer.release()
-    settings = Settings(camera_1=CameraSettings(source=str(path)))
+    settings = Settings(cameras={"cam1": CameraSettings(source=str(path))})
     with open_album(settings, QUIET) as album:
         (film,) = album.pictures
         assert MOST_STILLS / 2 < len(film.stills) <= MOST_STILLS
@@ -60,7 +60,7 @@ def test_a_long_film_is_shown_in_evenly_spread_stills(tmp_path: Path) -> None:
 
 def test_a_photograph_is_a_film_of_one_still(tmp_path: Path) -> None:
     cv2.imwrite(str(tmp_path / "photo.png"), np.full((48, 64, 3), 90, np.uint8))
-    settings = Settings(camera_2=CameraSettings(source=str(tmp_path / "photo.png")))
+    settings = Settings(cameras={"cam2": CameraSettings(source=str(tmp_path / "photo.png"))})
     with open_album(settings, QUIET) as album:
         assert [(each.number, each.frames) for each in album.pictures] == [(2, (0,))]
         assert grey(album.jpeg(2, 0)) == pytest.approx(90, abs=2)
@@ -77,7 +77,10 @@ def test_films_that_are_not_there_are_named(tmp_path: Path) -> None:
     for settings, says in (
         (Settings(), "nothing to look at"),
         (Settings(clip=str(tmp_path)), r"neither cam1.\* nor cam2"),
-        (Settings(camera_1=CameraSettings(source="gone.avi")), "there is no file gone.avi"),
+        (
+            Settings(cameras={"cam1": CameraSettings(source="gone.avi")}),
+            "there is no file gone.avi",
+        ),
     ):
         with pytest.raises(ClipError, match=says), open_album(settings, QUIET):
             pass

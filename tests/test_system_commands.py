@@ -263,7 +263,7 @@ def test_what_contradicts_itself_or_cannot_be_read_is_refused(
         ('clip = "x"\nevery = "two"', "every must be a whole number, got text"),
         ('clip = "x"\nsize = "huge"', "size must look like 160x120, got 'huge'"),
         ("clip =", "a value is missing"),
-        ("", r"bad\.toml: there is nothing to look at: set clip, or camera_1"),
+        ("", r"bad\.toml: there is nothing to look at: set clip, or cameras"),
     ],
     ids=["unknown", "ill-typed", "meaningless", "no TOML", "none"],
 )

@@ -81,7 +81,7 @@ def many_bodies(wanted: Wanted, count: int) -> None:
 
 def test_messages_that_came_onto_the_disk_stay_there(disk: FullDisk, tmp_path: Path) -> None:
     (tmp_path / "cam1.avi").write_bytes(b"hashed, not decoded")
-    settings = Settings(camera_1=CameraSettings(source=str(tmp_path / "cam1.avi")))
+    settings = Settings(cameras={"cam1": CameraSettings(source=str(tmp_path / "cam1.avi"))})
     wanted = Wanted(disk.folder / "run", settings, {})
     disk.room_bytes = 50_000
     with pytest.raises(RunError):

@@ -65,8 +65,7 @@ def test_the_units_are_all_processes_of_a_rig() -> None:
 
 def test_the_cameras_are_those_of_the_settings(services: dict[str, Any]) -> None:
     settings = load(ROOT / "configs" / RIG)
-    for number, camera in ((1, settings.camera_1), (2, settings.camera_2)):
-        assert camera is not None
+    for number, camera in ((1, settings.cameras["cam1"]), (2, settings.cameras["cam2"])):
         assert services[f"viewer-{number}"]["devices"] == [f"/dev/video{camera.device}"]
 
 

@@ -110,7 +110,7 @@ def test_a_guide_that_is_ahead_is_as_good(clock: Clock) -> None:
 
 
 def question(number: int, ready: bool = True) -> ClockQuestion:
-    return ClockQuestion(viewer=number, ready=ready)  # type: ignore[arg-type]
+    return ClockQuestion(viewer=number, ready=ready)
 
 
 def test_the_start_is_fixed_once_when_every_viewer_is_ready(

@@ -43,7 +43,7 @@ def tracked(clip: Path, films: list[list[Image]], folder: Path, views: Any) -> l
     for plate, film in zip(plates, films, strict=True):
         cv2.imwrite(plate, film[0])
     first, second = (CameraSettings(background=plate) for plate in plates)
-    settings = Settings(clip=str(clip), camera_1=first, camera_2=second)
+    settings = Settings(clip=str(clip), cameras={"cam1": first, "cam2": second})
     with Decoders() as decoders:
         return list(track_clip(settings, decoders, views).bodies)
 

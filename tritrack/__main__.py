@@ -12,14 +12,16 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
 import logging
 import sys
+import warnings
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Final, Literal
+from typing import Annotated, Final, Literal, TextIO
 
 import typer
 
+from common.config.renamed_settings import RenamedSetting
 from runtime.faults import code_of, told
-from runtime.terminal import complain, json_text
+from runtime.terminal import complain, json_text, warn
 from tritrack.commands.clip_commands import export, replay, retouch, single, synth, track
 from tritrack.commands.command_output import JsonWanted, console, results
 from tritrack.commands.key_commands import examined_keys, keys
@@ -145,6 +147,8 @@ app.add_typer(evaluate_app, name="evaluate")
 def main() -> None:
     """Run a command; a user's mistake is one line and exit code 2, a fault of ours 1."""
     heed_in_order()
+    warnings.filterwarnings("default", category=RenamedSetting)
+    warnings.showwarning = tell_warning
     try:
         code = app(standalone_mode=False)
     except typer.TyperException as error:
@@ -158,6 +162,25 @@ def main() -> None:
     if code in STOPS:  # typer may have made a code of Ctrl-C
         complain(console, WORD)
     sys.exit(code or 0)
+
+
+def tell_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    """An old word of settings is told in one line; what libraries warn of, as Python tells it."""
+    if issubclass(category, RenamedSetting):
+        warn(console, str(message))
+    else:
+        print(
+            warnings.formatwarning(message, category, filename, lineno, line),
+            file=file or sys.stderr,
+            end="",
+        )
 
 
 def refuse_usage(error: typer.TyperException) -> int:

@@ -1,6 +1,6 @@
 """Everything that is ever said on the bus."""
 
-from typing import Final, Literal
+from typing import Annotated, Final, Literal
 
 import msgspec
 
@@ -10,7 +10,10 @@ from common.rig.upright import Upright
 
 PROTOCOL: Final = 11
 
-ViewerNumber = Literal[1, 2]
+MOST_VIEWS: Final = 8
+"""Cameras of a rig."""
+ViewerNumber = Annotated[int, msgspec.Meta(ge=1, le=MOST_VIEWS)]
+"""A camera's place in the rig's order, the first is 1: never a place in a pair."""
 Facing = Literal["facade", "flank"]
 Status = Literal["empty", "measuring", "tracking", "predicted", "lost"]
 Views = Literal["both", "1", "2", "none"]

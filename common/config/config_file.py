@@ -8,6 +8,7 @@ import msgspec
 
 from common.config.explained import explained
 from common.config.part_settings import CameraSettings
+from common.config.renamed_settings import settings_of, warn_of_renamed
 from common.config.settings import LANDMARK_SOURCES, NETWORK, Settings
 from common.config.settings_error import SettingsError
 
@@ -34,7 +35,9 @@ def load(path: Path) -> Settings:
     except OSError as error:
         raise SettingsError(f"cannot read the settings {path}: {error.strerror}") from error
     try:
-        settings = msgspec.toml.decode(text, type=Settings)
+        written = msgspec.toml.decode(text)
+        warn_of_renamed(written, str(path))
+        settings = settings_of(written)
     except (UnicodeDecodeError, msgspec.DecodeError) as error:
         if isinstance(error, UnicodeDecodeError) or b"\0" in text:
             raise SettingsError(
@@ -42,6 +45,8 @@ def load(path: Path) -> Settings:
                 f"and cam2.*; of one video: tritrack single {path}"
             ) from error
         raise SettingsError(f"{path}: {explained(error, Settings)}") from error
+    except SettingsError as error:
+        raise SettingsError(f"{path}: {error}") from error
     return with_full_paths(settings, path)
 
 
@@ -57,8 +62,7 @@ def with_full_paths(settings: Settings, path: Path) -> Settings:
         clip=full_path(settings.clip, path),
         calibration=full_path(settings.calibration, path),
         opening=full_path(settings.opening, path),
-        camera_1=_camera(settings.camera_1, path),
-        camera_2=_camera(settings.camera_2, path),
+        cameras={name: _camera(camera, path) for name, camera in settings.cameras.items()},
         recognizer=msgspec.structs.replace(
             settings.recognizer, model=full_path(settings.recognizer.model, path)
         ),
@@ -78,9 +82,7 @@ def full_path(name: str, path: Path) -> str:
     return str(path.parent / filled) if name else ""
 
 
-def _camera(given: CameraSettings | None, path: Path) -> CameraSettings | None:
-    if given is None:
-        return None
+def _camera(given: CameraSettings, path: Path) -> CameraSettings:
     return msgspec.structs.replace(
         given, source=full_path(given.source, path), background=full_path(given.background, path)
     )

@@ -1,5 +1,6 @@
 """The settings of one run: one frozen value, with all defaults."""
 
+import re
 from typing import Final
 
 import msgspec
@@ -21,6 +22,7 @@ from common.method import Mode
 LANDMARK_SOURCES: Final = ("own", "none", "mediapipe")
 """What `landmarks` may say instead of a path."""
 MOST_OFFSET_S: Final = 3600.0
+CAMERA_NAME: Final = re.compile(r"[A-Za-z0-9_-]{1,32}")
 NETWORK: Final = ".onnx"
 """What the name of a network of ours ends in."""
 
@@ -59,8 +61,8 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     empty."""
     pictures: bool = False
     """Publish small pictures for the page; otherwise no picture leaves a viewer."""
-    camera_1: CameraSettings | None = None
-    camera_2: CameraSettings | None = None
+    cameras: dict[str, CameraSettings] = {}
+    """Each camera by its name, in their order: of a clip folder cam1, cam2 ..., else any."""
     silhouette: SilhouetteSettings = SilhouetteSettings()
     search: SearchSettings = SearchSettings()
     body: BodySettings = BodySettings()
@@ -78,6 +80,11 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         if not self.room or set(self.room) & set("/*$#? "):
             raise ValueError(f"room must be a plain word, got {self.room!r}")
         size_of(self.size)
+        for name in self.cameras:
+            if not CAMERA_NAME.fullmatch(name):
+                raise ValueError(
+                    f"a camera's name is up to 32 of A-Z a-z 0-9 _ and -, got {name!r}"
+                )
         if not self.landmarks:
             raise ValueError(
                 f"landmarks must be {', '.join(LANDMARK_SOURCES)} or a folder or network"

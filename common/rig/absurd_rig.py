@@ -1,6 +1,7 @@
 """Rigs that no room has, refused before a run unless the user insists, and those of little use."""
 
 import math
+from itertools import combinations
 from typing import Final
 
 import numpy as np
@@ -30,13 +31,13 @@ INSIST: Final = (
 
 
 def refuse_absurd(rig: Rig, where: str) -> None:
-    """Refuse a rig of two cameras that could stand in no room.
+    """Refuse a rig two cameras of which, or one, could stand in no room.
 
     Raises:
         CalibrationError: With the camera's name, what is absurd and what to do.
     """
-    if len(rig.cameras) == 2:
-        _refuse_absurd_pair(rig, where)
+    for first, second in combinations(rig.cameras, 2):
+        _refuse_absurd_pair((first, second), where)
     for camera in rig.cameras:
         share, across, down = camera.K[0][0] / rig.width, camera.K[0][2], camera.K[1][2]
         if not FOCALS[0] <= share <= FOCALS[1]:
@@ -56,28 +57,30 @@ def refuse_absurd(rig: Rig, where: str) -> None:
             )
 
 
-def _refuse_absurd_pair(rig: Rig, where: str) -> None:
-    first, second = rig.cameras
+def _refuse_absurd_pair(pair: tuple[Camera, Camera], where: str) -> None:
+    first, second = pair
     apart_m = float(np.linalg.norm(centre(first) - centre(second)))
     if apart_m < TOGETHER_M:
-        raise CalibrationError(f"{where}: both cameras stand at one place; {INSIST}")
+        raise CalibrationError(
+            f"{where}: {first.name} and {second.name} stand at one place; {INSIST}"
+        )
     if apart_m > APART_M:
         raise CalibrationError(
             f"{where}: the cameras are {apart_m:.0f} m apart: is t in millimetres? it must be in "
             f"metres; {INSIST}"
         )
-    ups = [-np.array(camera.R)[1] for camera in rig.cameras]
-    if max(up[1] for up in ups) < NO_UP and ups[0] @ ups[1] > ALIKE and not _is_rolled(rig, ups):
+    ups = [-np.array(camera.R)[1] for camera in pair]
+    if max(up[1] for up in ups) < NO_UP and ups[0] @ ups[1] > ALIKE and not _is_rolled(pair, ups):
         raise CalibrationError(
             f"{where}: y does not point up in its world, {'xyz'[int(np.abs(ups[0]).argmax())]} "
             f"seems to: turn it; {INSIST}"
         )
 
 
-def _is_rolled(rig: Rig, ups: list[Vector]) -> bool:
+def _is_rolled(pair: tuple[Camera, Camera], ups: list[Vector]) -> bool:
     """Whether cameras whose ups, (3,) each, are alike and not y are rolled in a world of y up."""
-    turned = [_up_when_turned(camera) for camera in rig.cameras]
-    hangs = max(float(centre(camera)[1]) for camera in rig.cameras) > HUNG_M
+    turned = [_up_when_turned(camera) for camera in pair]
+    hangs = max(float(centre(camera)[1]) for camera in pair) > HUNG_M
     return bool(turned[0] @ turned[1] >= ups[0] @ ups[1] and hangs)
 
 

@@ -61,6 +61,13 @@ class View(msgspec.Struct, frozen=True):
     """Those of its frames that are looked at, where the other view is slower; (): all."""
     late_s: float = 0.0
     """By how much its own times are late: they are set back by it."""
+    name: str = ""
+    """Of its camera; as in a clip folder, by its number, when empty."""
+
+    def __post_init__(self) -> None:
+        """Name it by its number where it has no name of its own."""
+        if not self.name:
+            msgspec.structs.force_setattr(self, "name", f"cam{self.number}")
 
     @property
     def quarters(self) -> int:

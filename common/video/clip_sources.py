@@ -1,16 +1,19 @@
 """Footage: the files and cameras that a run's settings name, not yet looked into."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from common.bus.messages import ViewerNumber
+from common.bus.messages import MOST_VIEWS, ViewerNumber
 from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
 from common.video.pictures import Source
 
 COMPANIONS: Final = {".json", ".npz", ".txt", ".csv", ".toml", ".md", ".png", ".jpg", ".jpeg"}
 """Files that may stand beside `cam1.*` under the same name and are no video of it."""
-NOTHING: Final = "there is nothing to look at: set clip, or camera_1 with source or device"
+CLIP_CAMERAS: Final = tuple(f"cam{n + 1}" for n in range(MOST_VIEWS))
+"""Names of the cameras of a clip folder, by their numbers."""
+NOTHING: Final = "there is nothing to look at: set clip, or cameras.cam1 with source or device"
 """Said of settings that name no footage."""
 
 
@@ -24,33 +27,50 @@ class Footage(NamedTuple):
     number: ViewerNumber
     source: Source
     settings: CameraSettings
+    name: str
+    """Of the camera."""
 
 
 def footage_of(settings: Settings) -> list[Footage]:
-    """One or two views, in their order.
+    """The cameras that settings or their clip folder have, by their numbers.
 
     Raises:
-        ClipError: When the clip folder is none, holds no video, or too many of one camera.
+        ClipError: When the clip folder is none, holds no video, too many of one camera or of more
+            cameras than there may be; when a camera has no video.
     """
-    found = []
-    own: dict[ViewerNumber, CameraSettings | None] = {1: settings.camera_1, 2: settings.camera_2}
-    for number, given in own.items():
-        camera = given or CameraSettings()
-        source: Source | None = None
-        if camera.device >= 0:
-            source = camera.device
-        elif camera.source:
-            source = camera.source
-        elif settings.clip:
-            source = _in_folder(Path(settings.clip), number)
-        if source is not None:
-            found.append(Footage(number, source, camera))
-    if settings.clip and not found:
+    names = [*settings.cameras, *(name for name in CLIP_CAMERAS if name not in settings.cameras)]
+    cameras = {name: settings.cameras.get(name, CameraSettings()) for name in names}
+    sources = {name: _source_of(name, camera, settings.clip) for name, camera in cameras.items()}
+    if settings.clip:
+        _refuse_a_ninth(Path(settings.clip))
+    named = {name: source for name, source in sources.items() if source is not None}
+    if settings.clip and not named:
         raise ClipError(
             f"{settings.clip} has neither cam1.* nor cam2.*: name the videos so, or name them in "
-            "the settings (camera_1.source)"
+            "the settings (cameras.cam1.source)"
         )
-    return found
+    numbers = numbers_of([*named])
+    found = [Footage(numbers[name], named[name], cameras[name], name) for name in named]
+    return sorted(found, key=lambda one: one.number)
+
+
+def numbers_of(names: Sequence[str]) -> dict[str, ViewerNumber]:
+    """The viewers of cameras: cam1 to cam8 have their numbers, others the lowest that are free.
+
+    Raises:
+        ClipError: When there are more cameras than there may be.
+    """
+    if len(names) > MOST_VIEWS:
+        raise ClipError(f"{len(names)} cameras ({', '.join(names)}): keep {MOST_VIEWS} at most")
+    own = {name: n + 1 for n, name in enumerate(CLIP_CAMERAS) if name in names}
+    free = (n + 1 for n, name in enumerate(CLIP_CAMERAS) if name not in own)
+    return {name: own[name] if name in own else next(free) for name in names}
+
+
+def first_camera(settings: Settings) -> str:
+    """Name of camera 1, which settings may not speak of."""
+    numbers = numbers_of([*settings.cameras])
+    return next((name for name, number in numbers.items() if number == 1), CLIP_CAMERAS[0])
 
 
 def refuse_no_footage(settings: Settings, path: Path) -> None:
@@ -63,22 +83,46 @@ def refuse_no_footage(settings: Settings, path: Path) -> None:
         raise ClipError(f"{path}: {NOTHING}")
 
 
-def _in_folder(folder: Path, number: ViewerNumber) -> str | None:
+def _source_of(name: str, camera: CameraSettings, clip: str) -> Source | None:
+    """A camera's device or video, or the clip's video of its name."""
+    if camera.device >= 0:
+        return camera.device
+    if camera.source:
+        return camera.source
+    if name not in CLIP_CAMERAS:
+        raise ClipError(f"cameras.{name} has neither source nor device: set one of them")
+    return _in_folder(Path(clip), name) if clip else None
+
+
+def _in_folder(folder: Path, name: str) -> str | None:
     if folder.is_file():
-        raise ClipError(f"{folder} is a file: name its folder, or set it as camera_{number}.source")
+        raise ClipError(f"{folder} is a file: name its folder, or set it as cameras.{name}.source")
     if not folder.is_dir():
         raise ClipError(f"there is no clip folder {folder}: check the path")
-    videos = [
-        path
-        for path in sorted(folder.glob(f"cam{number}.*"))
-        if path.suffix.lower() not in COMPANIONS and path.is_file()
-    ]
+    videos = _videos(folder, name)
     if len(videos) > 1:
         raise ClipError(
-            f"{folder} has {len(videos)} videos of camera {number} "
-            f"({', '.join(path.name for path in videos)}): keep one, or set camera_{number}.source"
+            f"{folder} has {len(videos)} videos of {name} "
+            f"({', '.join(path.name for path in videos)}): keep one, or set cameras.{name}.source"
         )
     return str(videos[0]) if videos else None
+
+
+def _refuse_a_ninth(folder: Path) -> None:
+    """Its video would be left out without a word."""
+    for path in _videos(folder, f"cam{MOST_VIEWS + 1}"):
+        raise ClipError(
+            f"{folder} has {path.name}: a clip has {MOST_VIEWS} cameras at most, cam1.* to "
+            f"cam{MOST_VIEWS}.*; remove it"
+        )
+
+
+def _videos(folder: Path, name: str) -> list[Path]:
+    return [
+        path
+        for path in sorted(folder.glob(f"{name}.*"))
+        if path.suffix.lower() not in COMPANIONS and path.is_file()
+    ]
 
 
 def companions_folder(settings: Settings, named: list[Footage]) -> Path:

@@ -1,11 +1,11 @@
 """Clips: where the frames of a run come from, checked before it begins."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import ExitStack
 from itertools import pairwise
 from pathlib import Path
-from typing import Final, get_args
+from typing import Final
 
 import msgspec
 
@@ -14,7 +14,7 @@ from common.config.explained import explained
 from common.config.picture_size import size_of, working_size
 from common.config.settings import Settings
 from common.rig.absurd_rig import nearly_one_view, refuse_absurd
-from common.rig.camera import Camera, Rig
+from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError, fitted, load_rig
 from common.video.clip_facts import Clip, Meta, View
 from common.video.clip_sources import NOTHING, ClipError, Footage, companions_folder, footage_of
@@ -23,7 +23,7 @@ from common.video.frame_times import timed
 from common.video.pictures import DecoderDied, Source, Undecodable, VideoInfo
 from common.video.shared_rate import at_one_rate
 from common.video.upright_views import filed_rig, upright_views
-from common.video.view_pair import refuse_one_of_two, refuse_same_source
+from common.video.view_pair import refuse_missing, refuse_same_source
 
 SAME_ASPECT: Final = 0.02
 """Pictures whose sides have ratios that differ by less show the same, at two sizes."""
@@ -36,7 +36,7 @@ CAMERA_HZ: Final = 15.0
 def open_clip(
     settings: Settings,
     decoder: Decoder | None = None,
-    numbers: Iterable[ViewerNumber] = (1, 2),
+    numbers: Collection[ViewerNumber] | None = None,
 ) -> Clip:
     """Find and check all that a run needs to know of its pictures.
 
@@ -44,18 +44,18 @@ def open_clip(
         settings: Name a clip folder, or a file or camera for each view, or both: a view's own
             source goes before the folder's.
         decoder: Looks into the files; a new one when None. Pass one to save its start.
-        numbers: The views to look at; the others are not touched, as they may be on other hosts.
+        numbers: The cameras to look at; the others are not touched, as they may be on other hosts.
+            None: all.
 
     Raises:
         ClipError: When something is missing, empty, no video, or contradicts the rest; when two
             views are of one camera; when no cameras stand as the calibration has them.
     """
-    wanted = set(numbers)
-    named = [view for view in footage_of(settings) if view.number in wanted]
-    if not named:
+    found = footage_of(settings)
+    if not found:
         raise ClipError(NOTHING)
-    if len(wanted) > 1:
-        refuse_one_of_two(settings, named)
+    refuse_missing(settings, found, numbers)
+    named = [each for each in found if numbers is None or each.number in numbers]
     folder = companions_folder(settings, named)
     meta = _meta(folder)
     with ExitStack() as doors:
@@ -63,7 +63,7 @@ def open_clip(
         each_view = tuple(_view(each, settings, meta, reader) for each in named)
     refuse_same_source(named)
     views = at_one_rate(each_view, settings.every)
-    rig = _rig(settings, folder, named, views)
+    rig = _rig(settings, folder, found, views)
     if rig is not None:
         rig, views = upright_views(rig, views)
     clip = Clip(
@@ -138,6 +138,7 @@ def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> V
     size = (info.width, info.height)
     return View(
         number=named.number,
+        name=named.name,
         source=named.source,
         source_size=size,
         size=working_size(size, size_of(settings.size)),
@@ -151,7 +152,7 @@ def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> V
 
 def _told_s(meta: Meta, named: Footage) -> tuple[float, ...]:
     """When a file's frames were taken, by what stands beside it."""
-    return meta.capture_s.get(f"cam{named.number}", ()) if isinstance(named.source, str) else ()
+    return meta.capture_s.get(named.name, ()) if isinstance(named.source, str) else ()
 
 
 def probed(source: Source, decoder: Decoder) -> VideoInfo:
@@ -211,57 +212,59 @@ def _refuse_a_lost_head(path: Path) -> None:
 
 
 def _rig(
-    settings: Settings, folder: Path, named: list[Footage], views: tuple[View, ...]
+    settings: Settings, folder: Path, found: Sequence[Footage], views: tuple[View, ...]
 ) -> Rig | None:
+    """The calibration of those cameras of a clip that are looked at, at their working size."""
     path = find_calibration(settings, folder)
     if path is None:
         return None
     try:
         rig = load_rig(path)
+        places = _places(rig, found, [view.number for view in views], path)
         cameras = tuple(
-            _calibrated(rig, each, view, path, len(views) == 1)
-            for each, view in zip(named, views, strict=True)
+            fitted(fitted(rig, view.source_size, str(path)), view.size, str(path)).cameras[place]
+            for view, place in zip(views, places, strict=True)
         )
     except CalibrationError as error:
         raise ClipError(str(error)) from error
     return msgspec.structs.replace(rig, cameras=cameras)
 
 
-def _calibrated(rig: Rig, named: Footage, view: View, path: Path, alone: bool) -> Camera:
-    """A view's camera, by the name that the settings give or by its place in the file."""
+def _places(
+    rig: Rig, found: Sequence[Footage], wanted: Sequence[ViewerNumber], path: Path
+) -> list[int]:
+    """Where cameras stand in a calibration: as the settings call them, by name, or by number.
+
+    Raises:
+        ClipError: When the calibration lacks one, or has other cameras too and no such names.
+    """
     names = [camera.name for camera in rig.cameras]
-    wanted = named.settings.calibrated_as
-    if wanted and wanted not in names:
-        raise ClipError(f"{path} has no camera {wanted!r}; it has {', '.join(names)}")
-    if not wanted and len(names) > len(get_args(ViewerNumber)):
-        wanted = _of_the_files_name(names, view, path)
-    place = names.index(wanted) if wanted else view.number - 1
-    if alone and len(names) == 1:
-        place = 0
-    if place >= len(names):
-        raise ClipError(
-            f"{path} has {len(names)} camera, the clip has a view {view.number}: calibrate both, "
-            f"or set camera_{view.number}.calibrated_as"
-        )
-    seen = fitted(rig, view.source_size, str(path))
-    return fitted(seen, view.size, str(path)).cameras[place]
-
-
-def _of_the_files_name(names: list[str], view: View, path: Path) -> str:
-    """Which of more cameras than there are views: the one that is called as the view is."""
-    name = f"cam{view.number}"
-    if name not in names:
-        raise ClipError(
-            f"{path} has {len(names)} cameras ({', '.join(names)}): say which of them took view "
-            f"{view.number}, by camera_{view.number}.calibrated_as in the settings, or keep two "
-            "(tritrack calibrate import --camera NAME --camera NAME)"
-        )
-    return name
+    by_name = all(one.name in names for one in found if not one.settings.calibrated_as)
+    places = []
+    for one in (each for each in found if each.number in wanted):
+        called = one.settings.calibrated_as or (one.name if by_name else "")
+        if called and called not in names:
+            raise ClipError(f"{path} has no camera {called!r}; it has {', '.join(names)}")
+        if not called and len(names) > max(2, len(found)):
+            raise ClipError(
+                f"{path} has {len(names)} cameras ({', '.join(names)}): say which of them took "
+                f"view {one.number}, by cameras.{one.name}.calibrated_as in the settings, or keep "
+                "those of the clip (tritrack calibrate import --camera NAME --camera NAME)"
+            )
+        lone = len(wanted) == len(names) == 1
+        places.append(names.index(called) if called else 0 if lone else one.number - 1)
+        if places[-1] >= len(names):
+            has = f"{len(names)} camera{'s' if len(names) > 1 else ''}"
+            raise ClipError(
+                f"{path} has {has}, the clip has a view {one.number}: calibrate all, or set "
+                f"cameras.{one.name}.calibrated_as"
+            )
+    return places
 
 
 def _oddities(views: tuple[View, ...], meta: Meta, rig: Rig | None) -> Iterator[str]:
     for view in views:
-        told_s = meta.capture_s.get(f"cam{view.number}", ())
+        told_s = meta.capture_s.get(view.name, ())
         if told_s and view.frames and len(told_s) != view.frames:
             yield (
                 f"meta.json has {len(told_s)} capture times for camera {view.number}, "

@@ -1,4 +1,4 @@
-"""Two films of different rates: of the faster those frames are looked at that meet the slower's."""
+"""Videos of different rates: of the faster those frames are looked at that meet the slowest's."""
 
 from typing import Final
 
@@ -16,23 +16,24 @@ usual gap, which times that are rounded to milliseconds tell no better (33 ms of
 
 
 def at_one_rate(views: tuple[View, ...], every: int) -> tuple[View, ...]:
-    """The views of a clip, at the rate of the slower.
+    """The views of a clip, at the rate of the slowest.
 
     A frame without a partner would have the body follow one view alone for a moment, again and
-    again, which is less exact than both at a lower rate.
+    again, which is less exact than all at a lower rate.
 
     Args:
-        views: One or two; a camera's frames come when they come.
-        every: Every n-th frame of the slower is looked at.
+        views: A camera's frames come when they come.
+        every: Every n-th frame of the slowest is looked at.
     """
     if len(views) < 2 or not all(view.frames for view in views):
         return views
-    slow, fast = sorted(views, key=lambda view: view.fps)
-    varies = any(view.capture_s for view in views)
-    if fast.fps / slow.fps - 1.0 <= (SAME_VARYING if varies else SAME_RATE):
-        return views
-    thin = _meeting(fast, slow, every)
-    return tuple(thin if view.number == thin.number else view for view in views)
+    slow = min(views, key=lambda view: view.fps)
+    return tuple(_meeting(view, slow, every) if _is_faster(view, slow) else view for view in views)
+
+
+def _is_faster(view: View, slow: View) -> bool:
+    varies = view.capture_s or slow.capture_s
+    return view.fps / slow.fps - 1.0 > (SAME_VARYING if varies else SAME_RATE)
 
 
 def _meeting(fast: View, slow: View, every: int) -> View:

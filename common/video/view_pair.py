@@ -1,52 +1,71 @@
-"""Whether a clip's views belong together, by their files and names: checked before a run."""
+"""Whether a clip's cameras belong together, by their files and names: checked before a run."""
 
 import filecmp
+from collections.abc import Collection, Sequence
 from itertools import combinations
 from pathlib import Path
 from typing import Final
 
+from common.bus.messages import ViewerNumber
 from common.config.settings import Settings
 from common.video.clip_sources import COMPANIONS, ClipError, Footage
 from common.video.pictures import Source
 
-ONE_ALONE: Final = (
-    "to track by one camera alone add --views {seen}, or name its video in settings "
-    "(camera_{seen}.source) instead of the clip"
+WITHOUT: Final = (
+    "to track {without} add --views {views}, or name {videos} in settings (cameras.{name}.source) "
+    "instead of the clip"
 )
 
 
-def refuse_one_of_two(settings: Settings, named: list[Footage]) -> None:
-    """See that a clip folder of which two views are asked has both.
+def refuse_missing(
+    settings: Settings, found: Sequence[Footage], asked: Collection[ViewerNumber] | None
+) -> None:
+    """See that all cameras are there that are asked for.
 
     Args:
         settings: Of the run.
-        named: What was found of the two views.
+        found: The cameras that they and their clip have.
+        asked: The cameras to use; None: all. A clip has two at least, and none is left out before
+            its last.
 
     Raises:
-        ClipError: When the folder has a video of one camera alone; a file that may be the other
-            is named.
+        ClipError: When one is not there; a file that may be its video is named.
     """
-    if not settings.clip or len(named) != 1 or not isinstance(named[0].source, str):
-        return
-    seen, folder = named[0], Path(settings.clip)
-    if seen.settings.source:
-        return
-    missing = 2 if seen.number == 1 else 1
-    found = Path(str(seen.source))
-    likely = _likely(folder, found, missing)
+    there = [each.number for each in found]
+    of_a_folder = any(_is_of_the_folder(each, settings) for each in found)
+    all_of_it = range(1, max([2, *there]) + 1) if of_a_folder else there
+    missing = [n for n in (all_of_it if asked is None else asked) if n not in there]
+    if missing and settings.clip:
+        raise ClipError(f"{settings.clip} {_without(settings, found, missing[0])}")
+    if missing:
+        names = ", ".join(f"{each.number} ({each.name})" for each in found)
+        raise ClipError(f"there is no camera {missing[0]}: the settings name {names or 'none'}")
+
+
+def _is_of_the_folder(one: Footage, settings: Settings) -> bool:
+    return bool(settings.clip) and isinstance(one.source, str) and not one.settings.source
+
+
+def _without(settings: Settings, found: Sequence[Footage], missing: ViewerNumber) -> str:
+    """What a folder lacks, and the cures."""
+    videos = [Path(each.source).name for each in found if isinstance(each.source, str)]
+    likely = _likely(Path(settings.clip), videos, missing)
     cure = f"rename {likely} to cam{missing}{Path(likely).suffix}" if likely else "add it"
-    raise ClipError(
-        f"{folder} has {found.name} and no cam{missing}.*: {cure}; "
-        + ONE_ALONE.format(seen=seen.number)
+    without = WITHOUT.format(
+        without="by one camera alone" if len(found) == 1 else "without it",
+        views=",".join(str(each.number) for each in found),
+        videos="its video" if len(found) == 1 else "the videos",
+        name=found[0].name,
     )
+    return f"has {', '.join(videos) or 'cameras'} and no cam{missing}.*: {cure}; {without}"
 
 
-def _likely(folder: Path, found: Path, missing: int) -> str:
+def _likely(folder: Path, found: Collection[str], missing: ViewerNumber) -> str:
     """The name of a file that may be the missing camera's video; "" where there is none."""
     names = [
         path.name
         for path in sorted(folder.iterdir())
-        if path.is_file() and path != found and path.suffix.lower() not in COMPANIONS
+        if path.is_file() and path.name not in found and path.suffix.lower() not in COMPANIONS
     ]
     return next((name for name in names if str(missing) in Path(name).stem), "")
 

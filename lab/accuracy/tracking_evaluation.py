@@ -11,6 +11,7 @@ from rich.console import Console
 
 from common.body.body import Bdp
 from common.config import config_file
+from common.config.renamed_settings import settings_of
 from common.config.settings import Settings
 from common.method import Mode
 from common.npz_file import Arrays, DamagedFile, read_arrays
@@ -134,7 +135,7 @@ def _case(run: Path, clip: Path | None, mode: Mode | None, size: str | None) -> 
     """A run with its truth."""
     try:
         facts = json.loads((run / "summary.json").read_text())
-        settings = msgspec.convert(facts["settings"], Settings)
+        settings = settings_of(facts["settings"])
         bdp = msgspec.convert(facts["bdp_m"], Bdp | None)
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise EvaluationError(f"{run} is no run folder: {error}; track the clip again") from error

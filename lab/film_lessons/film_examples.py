@@ -78,7 +78,7 @@ def looked_through(film: Path, teacher: str, folder: Path, tell: Tell) -> Looked
 
 def _examples(film: Path, teacher: str, tell: Tell) -> Iterator[PictureExample]:
     camera = CameraSettings(source=str(film))
-    settings = Settings(camera_1=camera, landmarks=teacher, size=SIZE)
+    settings = Settings(cameras={"cam1": camera}, landmarks=teacher, size=SIZE)
     rng = np.random.default_rng(97)
     with Decoder() as decoder:
         clip = open_clip(settings, decoder, (1,))

@@ -11,6 +11,8 @@ from common.video.clip_facts import Clip, both_cameras
 from runtime.live.free_ports import own_session, refuse_held_ports, with_free_endpoint
 from runtime.store.recording import refuse_without_library
 
+MOST_LIVE: Final = 2
+"""Cameras of a live run."""
 NO_POSTURE: Final = -1
 """posture_id of a clip that shows none of the postures: free motion, a test of the tracker."""
 
@@ -31,6 +33,7 @@ def admitted(settings: Settings, record: bool, console: Console) -> Settings:
         LiveRefused, RecordingError, PortHeld, PageError, KeysError: When they cannot be.
     """
     refuse_mode(settings)
+    refuse_a_third_camera(settings)
     if record:
         refuse_without_library()
     found = with_free_endpoint(settings)
@@ -86,4 +89,22 @@ def refuse_mode(settings: Settings) -> None:
         raise LiveRefused(
             "the thesis's mode is not for live runs: set mode = 'default' or 'paper', or follow "
             "a recorded video with: tritrack single VIDEO --mode thesis"
+        )
+
+
+def refuse_a_third_camera(settings: Settings) -> None:
+    """Say that live runs have viewers 1 and 2 alone.
+
+    Raises:
+        LiveRefused: When there are other cameras.
+        ClipError: As `footage_of`.
+    """
+    from common.video.clip_sources import footage_of
+
+    named = footage_of(settings)
+    if any(one.number > MOST_LIVE for one in named):
+        names = ", ".join(one.name for one in named)
+        raise LiveRefused(
+            f"a live run has two cameras at most, cam1 and cam2: there are {names}; leave out the "
+            "others, or track recorded videos of them: tritrack track"
         )

@@ -40,8 +40,8 @@ class Asked(NamedTuple):
     size: str | None = None
     landmarks: str | None = None
     """Where joints of the pictures come from."""
-    views: tuple[ViewerNumber, ...] = (1, 2)
-    """The cameras to use."""
+    views: tuple[ViewerNumber, ...] | None = None
+    """The cameras to use; None: all that a clip has."""
     trusted: bool = False
     """A calibration is trusted even where it seems wrong."""
     record: bool = False

@@ -3,13 +3,13 @@
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack
-from typing import Any, NamedTuple, get_args
+from typing import Any, NamedTuple
 
 import msgspec
 
 from calibration.tracks.lateness import Clock
 from common.body.body import Bdp
-from common.bus.messages import Body, ScaleSource, ViewerNumber
+from common.bus.messages import MOST_VIEWS, Body, ScaleSource, ViewerNumber
 from common.config.settings import Settings
 from common.method import METHODS, Method
 from common.video.clip_facts import (
@@ -72,7 +72,7 @@ class Decoders:
         """None started yet."""
         self._doors = ExitStack()
         self.of: dict[ViewerNumber, Decoder] = {
-            number: self._doors.enter_context(Decoder()) for number in get_args(ViewerNumber)
+            number: self._doors.enter_context(Decoder()) for number in range(1, MOST_VIEWS + 1)
         }
 
     def __enter__(self) -> "Decoders":
@@ -106,7 +106,7 @@ class _Followed(NamedTuple):
 def track_clip(
     settings: Settings,
     decoders: Decoders,
-    views: tuple[ViewerNumber, ...] = (1, 2),
+    views: tuple[ViewerNumber, ...] | None = None,
     watch: Watch | None = None,
     method: Method | None = None,
     course: Course = Course(),
@@ -116,7 +116,7 @@ def track_clip(
     Args:
         settings: Of the run.
         decoders: Read the videos.
-        views: The cameras to use.
+        views: The cameras to use; None: all that the clip has.
         watch: Is shown every instant of a clip whose scale is known before.
         method: Instead of that of the settings' mode.
         course: Is told how much of the clip is over, and keeps what it gives.

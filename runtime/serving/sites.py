@@ -5,12 +5,13 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import msgspec
 
 from common.config.config_file import full_path, load, with_full_paths
 from common.config.explained import explained
+from common.config.renamed_settings import in_new_words, warn_of_renamed
 from common.config.settings import Settings
 from common.config.settings_error import SettingsError
 from common.endpoint import address_of
@@ -102,13 +103,26 @@ def files_of(path: Path) -> tuple[Path, ...]:
 
 def _read(path: Path) -> SitesFile:
     try:
-        return msgspec.toml.decode(path.read_bytes(), type=SitesFile)
+        written = msgspec.toml.decode(path.read_bytes())
+        for entry in _own_settings(written):
+            warn_of_renamed(entry["settings"], str(path))
+            entry["settings"] = in_new_words(entry["settings"])
+        return msgspec.convert(written, SitesFile)
     except OSError as error:
         raise SettingsError(f"cannot read the sites {path}: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise SettingsError(f"{path} is no file of sites: name a TOML file") from error
     except msgspec.DecodeError as error:
         raise SettingsError(f"{path}: {explained(error, SitesFile)}") from error
+    except SettingsError as error:
+        raise SettingsError(f"{path}: {error}") from error
+
+
+def _own_settings(written: dict[str, Any]) -> list[dict[str, Any]]:
+    """Entries that hold settings themselves."""
+    entries = written.get("site")
+    found = entries if isinstance(entries, list) else []
+    return [one for one in found if isinstance(one, dict) and isinstance(one.get("settings"), dict)]
 
 
 def _site(entry: SiteEntry, path: Path) -> Site:

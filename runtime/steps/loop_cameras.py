@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple, get_args
+from typing import NamedTuple
 
 import msgspec
 
@@ -67,7 +67,7 @@ def clip_of(
         CalibrationError: When the calibration is of other pictures, or no cameras stand so.
     """
     views = tuple(
-        View(n, name, sizes[n], working_size(sizes[n], bound), rate_hz, 0)
+        View(n, name, sizes[n], working_size(sizes[n], bound), rate_hz, 0, name=name)
         for name, n in cameras.numbers.items()
     )
     rig, where = cameras.rig, cameras.where
@@ -98,13 +98,12 @@ def _uncalibrated(names: Sequence[str]) -> dict[str, ViewerNumber]:
 
 
 def _calibrated(rig: Rig, wanted: Sequence[str], where: str) -> dict[str, ViewerNumber]:
-    viewers: tuple[ViewerNumber, ...] = get_args(ViewerNumber)
     names = [camera.name for camera in rig.cameras]
     missing = [name for name in wanted if name not in names]
     if missing:
         raise CalibrationError(f"{where} has no camera {missing[0]!r}; it has {', '.join(names)}")
-    if len(names) > len(viewers):
+    if len(names) > 2:
         raise CalibrationError(
             f"{where} has {len(names)} cameras: keep two (tritrack calibrate import --camera)"
         )
-    return {name: viewers[names.index(name)] for name in wanted or names}
+    return {name: names.index(name) + 1 for name in wanted or names}

@@ -2,11 +2,10 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
-from common.bus.messages import ViewerNumber
 from common.config.part_settings import BusSettings
 from common.config.settings import Settings
 from runtime.faults import refuse_unfollowed
@@ -24,13 +23,13 @@ from tritrack.commands.options import (
     Record,
     Resume,
     Size,
+    Views,
+    numbers_given,
     size_given,
     writable,
     writable_file,
 )
 from tritrack.exporting import Scale, export_run
-
-VIEWERS: Final[dict[str, tuple[ViewerNumber, ...]]] = {"12": (1, 2), "1": (1,), "2": (2,)}
 
 
 def track(
@@ -42,9 +41,7 @@ def track(
             help=f"{MODES}; thesis: as published 2006, one camera. Else the settings' mode."
         ),
     ] = None,
-    views: Annotated[
-        Literal["12", "1", "2"], typer.Option(help="Cameras to use: both, or only one.")
-    ] = "12",
+    views: Views = None,
     size: Size = None,
     landmarks: LandmarkSource = None,
     trust_calibration: Annotated[
@@ -70,7 +67,7 @@ def track(
     """
     from runtime.offline.batch import Asked, track_all
 
-    seen = mode, size, landmarks, VIEWERS[views], trust_calibration
+    seen = mode, size, landmarks, None if views is None else numbers_given(views), trust_calibration
     asked = Asked(*seen, record, resume, force, offset)
     facts = track_all(clips, out, asked, console)
     tell(facts, json_wanted, line_of_runs(facts["clips"], out))

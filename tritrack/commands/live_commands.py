@@ -1,12 +1,11 @@
 """The live commands: a whole run on this machine, or one process of a rig spread over hosts."""
 
 from pathlib import Path
-from typing import Annotated, Final, Literal, cast
+from typing import Annotated, Final, Literal
 
 import msgspec
 import typer
 
-from common.bus.messages import ViewerNumber
 from common.config import config_file
 from common.config.part_settings import BusSettings
 from common.config.settings import Settings
@@ -117,12 +116,9 @@ def view(
 
     Example: tritrack view configs/live.toml --viewer 1
     """
-    from common.video.clip_sources import footage_of
     from viewer.__main__ import main as viewer_main
 
-    settings, number = live_settings(settings_file), cast(ViewerNumber, viewer)
-    footage_of(settings)  # refuses what is no clip at once, not when the integrator answers
-    viewer_main(settings, number)
+    viewer_main(live_settings(settings_file), viewer)
 
 
 def integrate(settings_file: ConfigPath) -> None:
@@ -216,8 +212,9 @@ def bridge(
 
 def live_settings(path: Path) -> Settings:
     """The settings of a process of a live run."""
-    from runtime.live.admission import refuse_mode
+    from runtime.live.admission import refuse_a_third_camera, refuse_mode
 
     settings = config_file.load(path)
     refuse_mode(settings)
+    refuse_a_third_camera(settings)
     return settings

@@ -8,6 +8,7 @@ from typing import Annotated, Final, Literal
 import typer
 
 from common.atomic_file import refuse_special
+from common.bus.messages import MOST_VIEWS, ViewerNumber
 from common.config.picture_size import size_of
 from common.config.settings import MOST_OFFSET_S
 
@@ -48,6 +49,34 @@ def size_given(text: str | None) -> str | None:
             size_of(text)
     except ValueError as error:
         raise typer.BadParameter(str(error)) from error
+    return text
+
+
+def numbers_given(text: str) -> tuple[ViewerNumber, ...]:
+    """Numbers of cameras: 2, 1,3 or, as versions before wrote them, 12; in ascending order.
+
+    Raises:
+        BadParameter: When one is none, is beyond the last that there may be, or comes twice.
+    """
+    words = [word.strip() for word in text.split(",")] if "," in text else [*text]
+    if not words or not all(word.isascii() and word.isdigit() for word in words):
+        raise typer.BadParameter(f"cameras are numbers with commas between: 2 or 1,3; got {text}")
+    numbers = sorted(int(word) for word in words)
+    if numbers[0] < 1 or numbers[-1] > MOST_VIEWS:
+        raise typer.BadParameter(f"cameras have the numbers 1 to {MOST_VIEWS}, got {text}")
+    if len(set(numbers)) < len(numbers):
+        raise typer.BadParameter(f"each camera is named once, got {text}")
+    return tuple(numbers)
+
+
+def views_given(text: str | None) -> str | None:
+    """The cameras to use, refused before anything is opened.
+
+    Raises:
+        BadParameter: As `numbers_given`.
+    """
+    if text is not None:
+        numbers_given(text)
     return text
 
 
@@ -133,6 +162,10 @@ LandmarkSource = Annotated[
         help="What finds joints in the pictures: own, none, mediapipe, FILE.onnx, or a folder of "
         "keypoints. Else the settings' landmarks."
     ),
+]
+Views = Annotated[
+    str | None,
+    typer.Option(help="Cameras to use, as 2 or 1,3; else all.", callback=views_given),
 ]
 Size = Annotated[
     str | None,

@@ -137,8 +137,8 @@ def _fit(folder: Path, settings: Settings, notes: Notes, said: Connection) -> No
 
         return tell
 
-    camera = settings.camera_1
-    job = Job(Path(camera.source if camera else ""), settings, None, notes)
+    sources = [camera.source for camera in settings.cameras.values()]
+    job = Job(Path(sources[0] if sources else ""), settings, None, notes)
     try:
         with Decoder() as decoder:
             follow(job, folder, decoder, Console(quiet=True), begun, Begun(InMemory(), {}))

@@ -17,12 +17,14 @@ from common.bus.process import ProcessContext, process
 from common.config.explained import explained
 from common.config.part_settings import CameraSettings
 from common.config.picture_size import working_size
+from common.config.renamed_settings import settings_of
 from common.config.settings import Settings
+from common.config.settings_error import SettingsError
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path, save_notes
 from common.rig.camera import PAPER_ROTATIONS, Camera, Matrix
 from common.video.clip_facts import Clip
-from common.video.clip_sources import ClipError
+from common.video.clip_sources import ClipError, first_camera
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from runtime.store.other_run import run_told
@@ -127,17 +129,16 @@ def how_to_go_on(video: Path, run: PastRun) -> str:
 def _settings_of(run: PastRun, video: Path | None) -> Settings:
     """The run's own; its video is where it is now."""
     try:
-        settings = msgspec.convert(run.summary.get("settings", {}), Settings)
-    except msgspec.ValidationError as error:
-        raise RetouchError(
-            f"{run.folder}/summary.json: {explained(error, Settings)}; track the clip again"
-        ) from error
+        settings = settings_of(run.summary.get("settings", {}))
+    except (msgspec.ValidationError, SettingsError) as error:
+        why = error if isinstance(error, SettingsError) else explained(error, Settings)
+        raise RetouchError(f"{run.folder}/summary.json: {why}; track the clip again") from error
     if video is None:
         return settings
-    camera = CameraSettings(source=str(video))
-    if settings.camera_1 is not None:
-        camera = msgspec.structs.replace(settings.camera_1, source=str(video), device=-1)
-    return msgspec.structs.replace(settings, clip="", camera_1=camera)
+    name = first_camera(settings)
+    before = settings.cameras.get(name, CameraSettings())
+    camera = msgspec.structs.replace(before, source=str(video), device=-1)
+    return msgspec.structs.replace(settings, clip="", cameras={name: camera})
 
 
 def _clip_of(run: PastRun, settings: Settings) -> Clip:

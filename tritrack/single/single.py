@@ -16,7 +16,13 @@ from common.config.settings_error import SettingsError
 from common.method import METHODS
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path
-from common.video.clip_sources import ClipError, footage_of, refuse_no_footage
+from common.video.clip_sources import (
+    CLIP_CAMERAS,
+    ClipError,
+    first_camera,
+    footage_of,
+    refuse_no_footage,
+)
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reel, Told
@@ -155,13 +161,15 @@ def job_of(path: Path, given: Given, settings: Settings) -> Job:
         refuse_no_footage(own, path)
         beside = path / "cam1" if path.is_dir() else path
     else:
-        own = msgspec.structs.replace(settings, camera_1=CameraSettings(source=str(path)))
+        cameras = {CLIP_CAMERAS[0]: CameraSettings(source=str(path))}
+        own = msgspec.structs.replace(settings, cameras=cameras)
         beside = path
     settings = overridden(own, settings.mode, settings.size, given.landmarks)
     if given.background is not None:
-        camera = settings.camera_1 or CameraSettings()
+        name = first_camera(settings)
+        camera = settings.cameras.get(name, CameraSettings())
         camera = msgspec.structs.replace(camera, background=str(given.background))
-        settings = msgspec.structs.replace(settings, camera_1=camera)
+        settings = msgspec.structs.replace(settings, cameras={**settings.cameras, name: camera})
     file = given.notes or notes_path(beside)
     return Job(path, settings, None, load_notes(file) if given.notes or file.exists() else Notes())
 

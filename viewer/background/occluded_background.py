@@ -139,7 +139,8 @@ def segments(picture: Floats) -> NDArray[np.int64]:
     except ImportError as error:
         raise NoSegments(
             "the background of a busy clip needs scikit-image: pip install 'tritrack[single]', or "
-            "name an empty picture with camera_1.background, of `tritrack single` with --background"
+            "name an empty picture with cameras.cam1.background, of `tritrack single` with "
+            "--background"
         ) from error
     return np.asarray(
         felzenszwalb(

@@ -126,7 +126,7 @@ def of_clip(
     best = best_of(groups, judges, looks, settings)
     if best is opened:
         return Opening(best, "", None)
-    odd = _estimated(view, f"camera_{view.number}.background")
+    odd = _estimated(view, f"cameras.{view.name}.background")
     first = looks[0].landmarks if looks[0].is_somebody and are_sure(looks) else None
     return Opening(best, odd, first)
 
