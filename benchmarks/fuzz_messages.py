@@ -39,9 +39,9 @@ from common.bus.control_messages import (
     Ended,
     Pulse,
 )
+from common.bus.instant import Instant
 from common.bus.message_codec import TOPICS, MalformedMessage, decode, encode
 from common.bus.messages import Body, Guide, Message, Picture, Report
-from common.bus.pair import Pair
 from common.config.config_file import load
 from common.method import METHODS
 from common.rig.camera import Rig
@@ -50,6 +50,7 @@ from common.video.frame_cache import Reel
 from integrator import commands, diagnostics, merge, merge_state, pairing
 from integrator.frame_numbers import frame_times
 from integrator.merge_state import Start
+from integrator.pairing import with_item
 from integrator.single.sight import Annotations
 from runtime.live.table import table_of_rows
 from runtime.offline.frame_pairs import openings
@@ -66,7 +67,7 @@ class Honest(NamedTuple):
 
     said: dict[type[Message], list[tuple[int, bytes]]]
     """Of each kind: at which instant, and the bytes."""
-    pairs: list[Pair]
+    pairs: list[Instant]
     integrator: list[merge_state.State]
     recogniser: list[recogniser.State]
     viewer: track.State
@@ -94,7 +95,7 @@ def honest(path: Path) -> Honest:
     judged = recogniser.init(model, settings.recognizer.window_frames)
     found = Honest({kind: [] for kind in KINDS}, [], [], [], viewer, heard[9][0][1])
     for i, (_, reports, _) in enumerate(heard):
-        pair = Pair(reports.get(1), reports.get(2))
+        pair = Instant((reports.get(1), reports.get(2)))
         found.pairs.append(pair)
         found.integrator.append(state)
         found.recogniser.append(judged)
@@ -123,8 +124,7 @@ def heard(known: Honest, at: int, message: Message) -> None:
     """Hand a message to who would hear it."""
     if isinstance(message, Report):
         _, complete = pairing.step(pairing.init(1 / 15, (message.viewer,)), message)
-        pair = known.pairs[at]
-        forged = Pair(message, pair.second) if message.viewer == 1 else Pair(pair.first, message)
+        forged = Instant(with_item(known.pairs[at].views, message.viewer - 1, message))
         after, _, _ = merge.step(known.integrator[at], forged)
         merge.step(after, known.pairs[min(at + 1, len(known.pairs) - 1)])
         diagnostics.step(diagnostics.State(), complete[0])

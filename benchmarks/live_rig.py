@@ -18,8 +18,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from common.body.body import JOINT_NAMES
+from common.bus.instant import Instant, two_views
 from common.bus.messages import Body, Guide, Report
-from common.bus.pair import Pair
 from common.config.part_settings import BodySettings
 from common.config.settings import Settings
 from common.method import METHODS
@@ -61,10 +61,10 @@ def live_bodies(settings: Settings, decoders: Decoders) -> list[Body]:
             for number, frame in frames.items():
                 viewers[number], report = track.step(viewers[number], frame, guide)
                 reports[number] = set_back(report, search.late_s)
-            pair = Pair(reports.get(1), reports.get(2))
+            pair = Instant((reports.get(1), reports.get(2)))
             state, body, guide = merge.step(state, pair)
             bodies.append(body)
-            search, job = rig_search.step(search, pair)
+            search, job = rig_search.step(search, two_views(pair.views))
             if job is not None:
                 coming.append((body.captured_s + WAIT_S, solved(job)))
             if coming and body.captured_s >= coming[0][0]:

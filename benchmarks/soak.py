@@ -23,9 +23,9 @@ import psutil
 from rich.console import Console
 from threadpoolctl import threadpool_limits
 
+from common.bus.instant import Instant
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Body, Guide, Report, ViewerNumber
-from common.bus.pair import Pair
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from common.method import METHODS
@@ -118,7 +118,7 @@ class Steps:
             viewer, report = track.step(self.viewers[number], frame, self.guide)
             self.viewers[number] = viewer
             reports[number] = decode(encode(report), Report)
-        pair = Pair(reports[1], reports[2])
+        pair = Instant((reports[1], reports[2]))
         self.integrator, body, guide = merge.step(self.integrator, pair)
         self.guide = decode(encode(guide), Guide)
         heard = decode(encode(body), Body)

@@ -18,9 +18,9 @@ from rich.console import Console
 from soak import CAMERAS, HZ, Steps
 from threadpoolctl import threadpool_limits
 
+from common.bus.instant import Instant
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Body, Guide, Report
-from common.bus.pair import Pair
 from common.config.settings import Settings
 from common.settled import settle
 from common.video.clips import open_clip
@@ -69,7 +69,7 @@ def timed(clip: Path, size: str) -> Iterator[list[float]]:
             at.append(time.thread_time())
         first, second = (decode(encode(report), Report) for report in reports)
         at.append(time.thread_time())
-        steps.integrator, body, guide = merge.step(steps.integrator, Pair(first, second))
+        steps.integrator, body, guide = merge.step(steps.integrator, Instant((first, second)))
         at.append(time.thread_time())
         steps.guide, heard = decode(encode(guide), Guide), decode(encode(body), Body)
         at.append(time.thread_time())

@@ -1,4 +1,4 @@
-"""The integrator process: pairs of reports in, bodies and guides out; the room's clock."""
+"""The integrator process: reports of an instant in, bodies and guides out; the room's clock."""
 
 import threading
 import time
@@ -38,10 +38,11 @@ def run(
     wait_s: float = 0.0,
     estate: Estate = Estate(None),
 ) -> None:
-    """Pair and merge what the viewers report, until each has ended; wait so long for the page."""
+    """Merge what the viewers report until each has ended; wait so long for the page."""
     pace = Pace(period_s)
     heart = Heart(bus, "integrator", pace)
-    subscriber = Subscriber(bus, viewers, period_s, wait_s, estate.over, estate.start_s)
+    begun, cameras = (estate.over, estate.start_s), len(state.frames)
+    subscriber = Subscriber(bus, viewers, period_s, wait_s, *begun, cameras)
     noticed, said, told = diagnostics.State(), Annotations(), RigPublisher(bus)
     heart.beat("ready", "\n".join(diagnostics.assumed(state)))
     looks = state.scale_source == "assumed" and state.proposes and len(viewers) == 2
@@ -49,14 +50,14 @@ def run(
         while subscriber.going and not stop.is_set():
             state, said = _obeyed(state, said, subscriber.commands(), bus)
             subscriber.late_s = calibration.late_s
-            for pair in subscriber.pairs():
-                state, body, guide = merge.step(state, pair, said)
+            for instant in subscriber.instants():
+                state, body, guide = merge.step(state, instant, said)
                 said = Annotations()
-                noticed = diagnostics.step(noticed, pair)
+                noticed = diagnostics.step(noticed, instant)
                 bus.publish(guide)
                 bus.publish(body)
                 pace.done(body.clock_s, time.monotonic())
-                calibration.heard(pair)
+                calibration.heard(instant)
             state = calibration.changed(state)
             told.rig(state, calibration.late_s)
             news = (*calibration.news, *subscriber.news)

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import OTHER_SIDE
+from common.bus.instant import Instant
 from common.bus.messages import Landmarks, Report
-from common.bus.pair import Pair
 from common.rig.camera import Camera, Rig, project
 from integrator.single.reflection import yaw_deg
 
@@ -36,19 +36,19 @@ r01 and r04."""
 
 
 def is_believed(
-    joints_m: NDArray[np.float64], rig: Rig, pair: Pair, scores: tuple[float, ...]
+    joints_m: NDArray[np.float64], rig: Rig, instant: Instant, scores: tuple[float, ...]
 ) -> bool:
     """Whether what the views show bears a body out: of those whose landmarks are trusted, two.
 
     Args:
         joints_m: (15, 3) world, JOINT_NAMES.
         rig: The cameras.
-        pair: What was heard of the instant.
+        instant: What was heard.
         scores: S of the body in each view.
     """
     views = [
         (report, camera, score)
-        for report, camera, score in zip(pair, rig.cameras, scores, strict=True)
+        for report, camera, score in zip(instant.views, rig.cameras, scores, strict=True)
         if report is not None and report.box is not None
     ]
     told = [(report, camera) for report, camera, _ in views if _is_trusted(report)]

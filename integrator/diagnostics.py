@@ -2,8 +2,8 @@
 
 from typing import Final, NamedTuple
 
+from common.bus.instant import Instant
 from common.bus.messages import CameraFault, Report
-from common.bus.pair import Pair
 from integrator import merge_state
 
 DOUBTED: Final = 0.5
@@ -22,20 +22,23 @@ class Useless(NamedTuple):
 class State(NamedTuple):
     """How often each viewer saw somebody, and how often only a part of them."""
 
-    seen: tuple[int, int] = (0, 0)
-    cut: tuple[int, int] = (0, 0)
-    useless: tuple[Useless, Useless] = (Useless(), Useless())
+    seen: tuple[int, ...] = ()
+    """By view, in the order of the rig's cameras; empty before the first instant."""
+    cut: tuple[int, ...] = ()
+    useless: tuple[Useless, ...] = ()
 
 
-def step(state: State, pair: Pair) -> State:
+def step(state: State, instant: Instant) -> State:
     """One instant more."""
-    first, second = (_with(own, each) for own, each in zip(state.useless, pair, strict=True))
-    detected = [report is not None and report.box is not None for report in pair]
-    partly = [report is not None and report.cut for report in pair]
+    views = instant.views
+    if not state.seen:
+        state = State((0,) * len(views), (0,) * len(views), (Useless(),) * len(views))
+    detected = [report is not None and report.box is not None for report in views]
+    partly = [report is not None and report.cut for report in views]
     return State(
-        (state.seen[0] + detected[0], state.seen[1] + detected[1]),
-        (state.cut[0] + partly[0], state.cut[1] + partly[1]),
-        (first, second),
+        tuple(before + now for before, now in zip(state.seen, detected, strict=True)),
+        tuple(before + now for before, now in zip(state.cut, partly, strict=True)),
+        tuple(_with(own, each) for own, each in zip(state.useless, views, strict=True)),
     )
 
 

@@ -36,7 +36,7 @@ class HandedOver(msgspec.Struct, frozen=True):
     """By how much the times of view 2 are set back."""
     numbered: int
     """The last number that an instant had."""
-    shifts: tuple[Shift, Shift] = (AS_IT_WAS, AS_IT_WAS)
+    shifts: tuple[Shift, ...] = (AS_IT_WAS, AS_IT_WAS)
     """How the cameras stood when the rig was told."""
     over: tuple[Ended, ...] = ()
     """What viewers said that ended: they do not say it twice."""

@@ -7,8 +7,8 @@ import msgspec
 from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
+from common.bus.instant import Instant
 from common.bus.messages import Landmarks, Report, ViewerNumber
-from common.bus.pair import Pair
 from common.config.settings import Settings
 from common.method import METHODS
 from common.raster.kernel import draw_body, view_of
@@ -33,7 +33,7 @@ def warm_up(settings: Settings, size: tuple[int, int]) -> None:
         state = merge_state.init(rig, 1.0, settings, METHODS[settings.mode])
         for index in range(4):
             first, second = (_report(viewer, index, size, known) for viewer in VIEWERS)
-            state, _, _ = merge.step(state, Pair(first, second if index < 3 else None))
+            state, _, _ = merge.step(state, Instant((first, second if index < 3 else None)))
     _clear(known, (_report(1, 0, size, known), _report(2, 0, size, known)))
 
 
@@ -41,9 +41,7 @@ def _clear(rig: Rig, seen: tuple[Report, Report]) -> None:
     """Clear silhouettes, of which one has clutter."""
     clutter = unpack(seen[0])
     clutter[: len(clutter) // 20, : len(clutter) // 20] = True
-    visual_hull.cleaned(
-        rig, Pair(msgspec.structs.replace(seen[0], silhouette=pack(clutter)), seen[1])
-    )
+    visual_hull.cleaned(rig, (msgspec.structs.replace(seen[0], silhouette=pack(clutter)), seen[1]))
 
 
 def _rig(size: tuple[int, int]) -> Rig:

@@ -1,14 +1,16 @@
-"""Two reports in, or one, and one body out: place, body, facing, pose, in section 4's order."""
+"""The reports of an instant in, one body out: place, body, facing, pose, in section 4's order."""
 
 from typing import NamedTuple
+
+import msgspec
 
 from calibration.gate import moved_cameras, rig_agreement, silhouette_motion
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, Vector
 from common.body.kinematics import ALL_LIMBS
 from common.body.proportions import body_vector
 from common.body.stick_body import ADULT, THESIS
+from common.bus.instant import Instant, Seen, two_views
 from common.bus.messages import Body, Guide, Report
-from common.bus.pair import Pair, Seen
 from common.raster.bits import count
 from common.raster.kernel import match, view_of
 from common.raster.silhouette_report import words_of
@@ -23,16 +25,16 @@ from integrator.pose import joint_limits, smoothing
 from integrator.rig.assumed_rig import assumed_rig
 from integrator.rig.body_position import facing_of
 from integrator.rig.tilted_camera import assumed_rig_of_one
-from integrator.rig.undistortion import undistorted_pair, undistorted_rig
+from integrator.rig.undistortion import undistorted_instant, undistorted_rig
 from integrator.single import single_view
 from integrator.single.sight import Annotations, Sight
 
 
-class Instant(NamedTuple):
-    """What the views show of somebody, and what it is held against."""
+class Sighting(NamedTuple):
+    """What the views show of a person, and what it is held against."""
 
     rig: Rig
-    """Two cameras without distortion."""
+    """Cameras without distortion."""
     seen: Seen
     """One of them at least is there."""
     dt_s: float
@@ -41,7 +43,7 @@ class Instant(NamedTuple):
 
 
 def step(
-    state: State, pair: Pair, annotations: Annotations = Annotations()
+    state: State, instant: Instant, annotations: Annotations = Annotations()
 ) -> tuple[State, Body, Guide]:
     """One instant: what each viewer reports of it becomes one body, and a guide for the next.
 
@@ -51,64 +53,66 @@ def step(
 
     Args:
         state: From `merge_state.init` or the step before.
-        pair: What each viewer reports.
+        instant: What each viewer reports.
         annotations: What the user says of the frame, where one view is alone.
     """
-    state, dt_s = _at(state, pair)
+    state, dt_s = _at(state, instant)
     state = state._replace(
-        stands=moved_cameras.step(state.stands, pair),
-        motion=silhouette_motion.step(state.motion, pair),
+        stands=moved_cameras.step(state.stands, instant),
+        motion=silhouette_motion.step(state.motion, instant),
     )
-    seen = undistorted_pair(state.rig, pair).detections
+    seen = undistorted_instant(state.rig, instant).detections
     state = _with_rig(state, seen)
-    if seen == (None, None) or state.rig is None:
+    if not any(seen) or state.rig is None:
         state = _without_pose(state)
-        return (state, *outgoing.no_detection(state, pair))
-    now = Instant(undistorted_rig(state.rig), seen, dt_s, annotations)
-    state = state._replace(agreement=rig_agreement.step(state.agreement, now.rig, now.seen))
+        return (state, *outgoing.no_detection(state, instant))
+    now = Sighting(undistorted_rig(state.rig), seen, dt_s, annotations)
+    state = _with_agreement(state, now)
     state, settled_at = _with_opening(state, now)
     state, now = _with_pose(state, now, settled_at)
     state = _with_shape(state, now)
     scores = _scores(state, now)
-    state = outgoing.weighed(state, pair, scores, annotations)
+    state = outgoing.weighed(state, instant, scores, annotations)
     state, angles = _smoothed(state, dt_s)
-    body = outgoing.body_of(state, pair, now.seen, angles, scores)
-    guide = outgoing.guide_of(state, pair, settled_at is not None)
+    body = outgoing.body_of(state, instant, now.seen, angles, scores)
+    guide = outgoing.guide_of(state, instant, settled_at is not None)
     return state, body, guide
 
 
-def _at(state: State, pair: Pair) -> tuple[State, float]:
-    """The state at the moment of a pair, and the time since the one before."""
-    now_s, before_s = pair.newest.captured_s, state.last_s
+def _at(state: State, instant: Instant) -> tuple[State, float]:
+    """The state at the moment of an instant, and the time since the one before."""
+    now_s, before_s = instant.newest.captured_s, state.last_s
     frames = tuple(
         before if report is None else report.frame
-        for before, report in zip(state.frames, pair, strict=True)
+        for before, report in zip(state.frames, instant.views, strict=True)
     )
     uprights = tuple(
         before if report is None else report.upright
-        for before, report in zip(state.uprights, pair, strict=True)
+        for before, report in zip(state.uprights, instant.views, strict=True)
     )
     dt_s = 0.0
     if state.found is not None and before_s is not None:  # whom nobody saw before owes nothing
         dt_s = max(0.0, now_s - before_s)
-    number = _number(state, pair)
+    number = _number(state, instant)
     return state._replace(
-        frames=(frames[0], frames[1]),
-        uprights=(uprights[0], uprights[1]),
+        frames=frames,
+        uprights=uprights,
         last_s=now_s,
         number=number,
         numbered=max(number, state.numbered),
     ), dt_s
 
 
-def _number(state: State, pair: Pair) -> int:
-    """Rows are counted by camera 1's frames; by camera 2's where that is alone in the run."""
-    first, second = pair
+def _number(state: State, instant: Instant) -> int:
+    """Rows are counted by camera 1's frames; by those of the first that is there in a run without
+    it."""
+    first, *others = instant.views
     if first is not None:
         return first.frame
     if state.times is None:
-        return second.frame if second is not None and state.frames[0] < 0 else NO_FRAME
-    return frame_at(state.times, pair.newest.captured_s, state.numbered, state.last_s)
+        there = [report.frame for report in others if report is not None]
+        return there[0] if there and state.frames[0] < 0 else NO_FRAME
+    return frame_at(state.times, instant.newest.captured_s, state.numbered, state.last_s)
 
 
 def _with_rig(state: State, seen: Seen) -> State:
@@ -124,17 +128,28 @@ def _with_rig(state: State, seen: Seen) -> State:
     return state._replace(rig=rig, stands=moved_cameras.told_by(state.stands, None, rig))
 
 
-def _with_opening(state: State, now: Instant) -> tuple[State, Vector | None]:
+def _with_agreement(state: State, now: Sighting) -> State:
+    """The state with what cameras 1 and 2 show of whether the rig is right."""
+    if len(now.seen) < 2:
+        return state
+    rig = now.rig
+    if len(now.seen) > 2:
+        rig = msgspec.structs.replace(rig, cameras=rig.cameras[:2])
+    agreement = rig_agreement.step(state.agreement, rig, two_views(now.seen))
+    return state._replace(agreement=agreement)
+
+
+def _with_opening(state: State, now: Sighting) -> tuple[State, Vector | None]:
     """The state with what is known of the body; the navel's place if that is now measured (4.2)."""
     due = state.settings.body.opening_frames
     opening, settled_at = opening_posture.step(state.opening, now.rig, now.seen, due, state.method)
     return state._replace(opening=opening), settled_at
 
 
-def _with_pose(state: State, now: Instant, settled_at: Vector | None) -> tuple[State, Instant]:
+def _with_pose(state: State, now: Sighting, settled_at: Vector | None) -> tuple[State, Sighting]:
     """The state with the pose of an instant, and the instant without clutter: of one view,
     proposed, or searched for by the viewers (4.3, 4.4)."""
-    if state.method.stick_lifting or (state.proposes and None in now.seen):
+    if state.method.stick_lifting or (state.proposes and _is_alone(now.seen)):
         found = _lone(state, now)
     elif state.proposes:
         both = _proposed(state, now)
@@ -149,15 +164,19 @@ def _with_pose(state: State, now: Instant, settled_at: Vector | None) -> tuple[S
         state = state._replace(opening=state.opening._replace(bdp=both.bdp))
         now = now._replace(seen=both.seen)
     else:
-        found = fused_pose.step(state, now.rig, now.seen, settled_at)
+        found = fused_pose.step(state, now.rig, two_views(now.seen), settled_at)
     return state._replace(found=found, facing=found.facing), now
 
 
-def _lone(state: State, now: Instant) -> Posed:
+def _is_alone(seen: Seen) -> bool:
+    """Whether one view alone shows the person."""
+    return sum(report is not None for report in seen) == 1
+
+
+def _lone(state: State, now: Sighting) -> Posed:
     """The pose that one view shows: the other is gone, sees nobody, or there is none."""
     rig, bdp, before = state.rig, state.opening.bdp, state.found
-    report = now.seen[0] or now.seen[1]
-    assert report is not None
+    report = next(report for report in now.seen if report is not None)
     assert bdp is not None
     assert rig is not None
     method, dt_s, annotations = state.method, now.dt_s, now.annotations
@@ -178,7 +197,7 @@ def _lone(state: State, now: Instant) -> Posed:
     )
 
 
-def _proposed(state: State, now: Instant) -> ProposedPose:
+def _proposed(state: State, now: Sighting) -> ProposedPose:
     """The pose that both silhouettes propose: beyond the paper."""
     known, opening = state.found, state.opening
     assert opening.bdp is not None
@@ -186,11 +205,11 @@ def _proposed(state: State, now: Instant) -> ProposedPose:
     if known is not None:
         before = proposed_pose.Before(known.memory, known.pose, known.landmarks)
     is_first = known is None and not (opening.measured or opening.samples)
-    given = proposed_pose.Instant(opening.bdp, now.rig, now.seen, now.dt_s, state.method, is_first)
+    given = proposed_pose.Sighting(opening.bdp, now.rig, now.seen, now.dt_s, state.method, is_first)
     return proposed_pose.step(before, given)
 
 
-def _with_shape(state: State, now: Instant) -> State:
+def _with_shape(state: State, now: Sighting) -> State:
     """The state with a body fitted to the silhouettes."""
     if not state.method.shape_fit or state.found is None:
         return state
@@ -198,19 +217,19 @@ def _with_shape(state: State, now: Instant) -> State:
     return state._replace(opening=fitted)
 
 
-def _scores(state: State, now: Instant) -> tuple[float, float]:
+def _scores(state: State, now: Sighting) -> tuple[float, ...]:
     """S of the pose in each picture; 0 where that view has nobody."""
     found = state.found
     assert found is not None
     if found.alone is not None:
-        return (found.alone.score, 0.0) if now.seen[0] is not None else (0.0, found.alone.score)
+        own = next(n for n, report in enumerate(now.seen) if report is not None)
+        return tuple(found.alone.score if n == own else 0.0 for n in range(len(now.seen)))
     assert state.opening.bdp is not None
     body = body_vector(state.opening.bdp)
-    first, second = (
+    return tuple(
         _score(body, found.pose, camera, report)
         for camera, report in zip(now.rig.cameras, now.seen, strict=True)
     )
-    return first, second
 
 
 def _score(body: Vector, pose: Vector, camera: Camera, report: Report | None) -> float:

@@ -1,11 +1,11 @@
-"""What the integrator remembers from one pair of reports to the next."""
+"""What the integrator remembers from one instant to the next."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.gate import rig_agreement, silhouette_motion
+from calibration.gate import moved_cameras, rig_agreement, silhouette_motion
 from calibration.gate.moved_cameras import MovedCameras
 from common.body.body import ANGLE_NAMES, Vector
 from common.bus.messages import Facing, ScaleSource
@@ -56,8 +56,8 @@ class State(NamedTuple):
     found: Posed | None = None
     """Of the instant before; None while nobody is there."""
     facing: tuple[Facing, ...] = ("facade", "flank")
-    frames: tuple[int, int] = (-1, -1)
-    """The last frame that was heard of each viewer."""
+    frames: tuple[int, ...] = (-1, -1)
+    """The last frame that was heard of each viewer, in the order of the rig's cameras."""
     last_s: float | None = None
     number: int = -1
     """Of the instant: the frame of camera 1 that was taken then."""
@@ -76,7 +76,7 @@ class State(NamedTuple):
     """How each view's picture comes from its file's, as it last told."""
     stands: MovedCameras = MovedCameras()
     """How the cameras stand, against how they stood when the rig was told."""
-    motion: silhouette_motion.State = silhouette_motion.NOTHING
+    motion: silhouette_motion.State = silhouette_motion.init(2)
     """The silhouettes of the last half second."""
 
     @property
@@ -98,8 +98,8 @@ class Start(NamedTuple):
     """When camera 1 takes its frames."""
     by_person: bool = False
     """A rig that is assumed is only the first guess: the person will tell it."""
-    uprights: Uprights = (None, None)
-    """How the pictures of viewer 1 and viewer 2 come from their files', before either reports."""
+    uprights: Uprights = ()
+    """How the views' pictures come from their files', before any reports; empty: as they are."""
 
 
 def init(
@@ -108,8 +108,8 @@ def init(
     """An integrator that has heard nothing.
 
     Args:
-        rig: The cameras of viewer 1 and viewer 2, for the working size; None: a rig of the
-            paper's kind is assumed when somebody is seen.
+        rig: The viewers' cameras, for the working size; None: a rig of the paper's kind, of two,
+            is assumed when a person is seen.
         period_s: Time between frames.
         settings: Of the run.
         method: What is done beyond the print.
@@ -120,4 +120,18 @@ def init(
     smooth = smoothing.init(len(ANGLE_NAMES), period_s)
     known = (rig, source, proposes, start.alone)
     state = State(settings, method, *known, smooth, start.opening, times=start.times)
-    return state._replace(uprights=start.uprights)
+    cameras = 2 if rig is None else len(rig.cameras)
+    return state._replace(
+        facing=facing_at_start(cameras),
+        frames=(-1,) * cameras,
+        uprights=start.uprights or (None,) * cameras,
+        stands=moved_cameras.init(cameras),
+        motion=silhouette_motion.init(cameras),
+    )
+
+
+def facing_at_start(cameras: int) -> tuple[Facing, ...]:
+    """What each view is held to see before anything is known: the first alone the facade (P47)."""
+    first: Facing = "facade"
+    other: Facing = "flank"
+    return (first, *(other,) * (cameras - 1))

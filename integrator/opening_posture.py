@@ -7,8 +7,8 @@ import numpy as np
 
 from common.body.body import Bdp, Vector, body_of_lengths
 from common.body.proportions import thesis_bdp
+from common.bus.instant import Seen
 from common.bus.messages import Measure, Report
-from common.bus.pair import Seen
 from common.method import Method
 from common.rig.camera import Rig
 from integrator.prior_body import prior
@@ -63,7 +63,7 @@ def init(body: Bdp | None) -> Opening:
 def step(
     opening: Opening, rig: Rig, seen: Seen, due: int, method: Method
 ) -> tuple[Opening, Vector | None]:
-    """One pair of reports more; the navel's place where it is now settled, else None.
+    """One instant more; the navel's place where it is now settled, else None.
 
     A posture that is broken off for as many frames as it is due begins afresh.
 

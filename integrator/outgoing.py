@@ -12,8 +12,8 @@ from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, Vector, rest_pose
 from common.body.extremities import extremities
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
+from common.bus.instant import Instant, Seen, two_views
 from common.bus.messages import Agreement, Body, Guide, Pixel, Point, Report, Status, Views
-from common.bus.pair import Pair, Seen
 from common.rig.camera import project
 from common.rig.upright_camera import as_filed
 from integrator.belief import is_believed
@@ -29,13 +29,13 @@ then it is predicted: it has a pose, with confidence 0."""
 
 
 def body_of(
-    state: State, pair: Pair, seen: Seen, angles_deg: Vector, scores: tuple[float, float]
+    state: State, instant: Instant, seen: Seen, angles_deg: Vector, scores: tuple[float, ...]
 ) -> Body:
     """The body in the pose that was found, with its angles smooth; a lost one is given no pose.
 
     Args:
         state: Of this instant; its pose is as found.
-        pair: What was heard of it.
+        instant: What was heard of it.
         seen: The same as without distortion, of views that have somebody.
         angles_deg: The smooth angles, ANGLE_NAMES order.
         scores: S of the pose in each view.
@@ -48,8 +48,8 @@ def body_of(
     pose[list(ANGLES_IN_POSE)] = angles_deg
     places_m = _places_m(state, pose)
     pixels = tuple(project(camera, places_m) for camera in rig.cameras)
-    outside = _outside(pair, pixels)
-    told = state.agreement.told if _views(pair) == "both" else None
+    outside = _outside(instant, pixels)
+    told = state.agreement.told if _views(instant) == "both" else None
     believed = _believed(state, told)
     confidence = np.where(outside, 0.0, _confidence(state, scores) * believed)
     status, posed = _status(state), {}
@@ -62,26 +62,26 @@ def body_of(
             **_extremities(state, seen, places_m, believed),
         }
     return Body(
-        **_moment(state, pair),
+        **_moment(state, instant),
         **posed,
         status=status,
-        views=_views(pair),
+        views=_views(instant),
         confidence=tuple(confidence.tolist()),
         score=scores,
         facing=found.facing,
         bdp=bdp,
-        matches=sum(_matches(report) for report in pair if report is not None),
+        matches=sum(_matches(report) for report in instant.views if report is not None),
         lifting=None if found.alone is None else found.alone.lifting,
         scale_source=state.scale_source,
         calibration=state.calibration,
         agreement=told,
         moved=state.stands.doubtful,
-        made_of=_made_of(pair),
+        made_of=_made_of(instant),
     )
 
 
 def weighed(
-    state: State, pair: Pair, scores: tuple[float, float], annotations: Annotations
+    state: State, instant: Instant, scores: tuple[float, ...], annotations: Annotations
 ) -> State:
     """The state with how long the body has not been believed; one that both lost is forgotten.
 
@@ -93,7 +93,7 @@ def weighed(
     assert found is not None
     assert state.rig is not None
     places_m = _places_m(state, found.pose)
-    if annotations.joints_px or is_believed(places_m, state.rig, pair, scores):
+    if annotations.joints_px or is_believed(places_m, state.rig, instant, scores):
         return state._replace(doubted=0, ever_confirmed=True)
     lost = _lost_frames(state)
     least = lost if found.alone is not None and not state.ever_confirmed else 1
@@ -138,18 +138,18 @@ def _matches(report: Report) -> int:
     return report.matches + (0 if report.fit is None else report.fit.matches)
 
 
-def _outside(pair: Pair, pixels: tuple[NDArray[np.float64], ...]) -> NDArray[np.bool_]:
+def _outside(instant: Instant, pixels: tuple[NDArray[np.float64], ...]) -> NDArray[np.bool_]:
     """Which joints the only picture of somebody does not show, (15,): they are guessed."""
-    first, second = pair.detections
-    report = second if first is None else first
-    if report is None or None not in (first, second) or not report.cut:
+    seen = [report for report in instant.detections if report is not None]
+    if len(seen) != 1 or not seen[0].cut:
         return np.zeros(len(JOINT_NAMES), np.bool_)
-    places_px = pixels[0 if second is None else 1]
+    (report,) = seen
+    places_px = pixels[report.viewer - 1]
     shown = (places_px >= 0) & (places_px <= (report.width, report.height))
     return np.logical_not(shown.all(axis=1))
 
 
-def _confidence(state: State, scores: tuple[float, float]) -> Vector:
+def _confidence(state: State, scores: tuple[float, ...]) -> Vector:
     """Of each joint, (15,): what was found with the pose, or how well the whole body fits."""
     assert state.found is not None
     if state.doubted:
@@ -166,14 +166,14 @@ def _believed(state: State, told: Agreement | None) -> float:
     return min(state.stands.left, 1.0 if told is None else told.believed)
 
 
-def guide_of(state: State, pair: Pair, settled_now: bool) -> Guide:
+def guide_of(state: State, instant: Instant, settled_now: bool) -> Guide:
     """What the viewers need for their next frame.
 
     As printed each starts where it had the body itself; beyond that where both together have it.
 
     Args:
         state: Of this instant.
-        pair: What was heard of it.
+        instant: What was heard of it.
         settled_now: The body has just been measured: both start where it was.
     """
     rig, found, known = state.rig, state.found, state.opening
@@ -182,21 +182,21 @@ def guide_of(state: State, pair: Pair, settled_now: bool) -> Guide:
     place = found.pose[:3]
     measured_at = np.array(known.measured_at_m) if known.measured else place
     roots = list(pixels_of(rig, place))
-    for n, report in enumerate(pair):
+    for n, report in enumerate(instant.views):
         own = not (state.method.shared_start or settled_now)
         if own and report is not None and report.root_px is not None:
             roots[n] = report.root_px
     upright = pixels_of(rig, np.array([place[0], measured_at[1], place[2]]))
     return Guide(
-        **_moment(state, pair),
+        **_moment(state, instant),
         frames=state.frames,
         status=_status(state),
         bdp=known.bdp,
         measured=known.measured,
         facing=state.facing,
         scale_px_per_m=_or_unseen(scales_since(rig, place, measured_at)),
-        root_px=(roots[0], roots[1]),
-        rest_row_px=(upright[0][1], upright[1][1]),
+        root_px=tuple(roots),
+        rest_row_px=tuple(row for _, row in upright),
         pose=tuple(found.pose.tolist()),
         stick=_asks_for_stick(state),
         proposes=state.proposes,
@@ -214,42 +214,46 @@ def _asks_for_stick(state: State) -> bool:
     return alone is not None and alone.stick and state.scale_source == "assumed"
 
 
-def no_detection(state: State, pair: Pair) -> tuple[Body, Guide]:
+def no_detection(state: State, instant: Instant) -> tuple[Body, Guide]:
     """What is told while nobody is in any view."""
-    known = state.opening
+    known, cameras = state.opening, len(instant.views)
     body = Body(
-        **_moment(state, pair),
+        **_moment(state, instant),
         status="empty",
         views="none",
+        score=(0.0,) * cameras,
         facing=state.facing,
         bdp=known.bdp,
         scale_source=state.scale_source,
         calibration=state.calibration,
         moved=state.stands.doubtful,
-        made_of=_made_of(pair),
+        made_of=_made_of(instant),
     )
     guide = Guide(
-        **_moment(state, pair),
+        **_moment(state, instant),
         frames=state.frames,
         bdp=known.bdp,
         measured=known.measured,
         facing=state.facing,
+        scale_px_per_m=(0.0,) * cameras,
+        root_px=((0.0, 0.0),) * cameras,
+        rest_row_px=(0.0,) * cameras,
         pose=tuple(rest_pose().tolist()),
         proposes=state.proposes,
+        moves=(False,) * cameras,
     )
     return body, guide
 
 
-def _moment(state: State, pair: Pair) -> dict[str, Any]:
+def _moment(state: State, instant: Instant) -> dict[str, Any]:
     """Which frame is spoken of, and when it was taken."""
-    newest = pair.newest
+    newest = instant.newest
     return {"frame": state.number, "captured_s": newest.captured_s, "clock_s": newest.clock_s}
 
 
-def _made_of(pair: Pair) -> tuple[int, int]:
-    """Which frame of each viewer is in a pair; -1: none."""
-    first, second = (-1 if report is None else report.frame for report in pair)
-    return first, second
+def _made_of(instant: Instant) -> tuple[int, ...]:
+    """Which frame of each viewer is in an instant; -1: none."""
+    return tuple(-1 if report is None else report.frame for report in instant.views)
 
 
 def _status(state: State) -> Status:
@@ -262,10 +266,10 @@ def _status(state: State) -> Status:
     return "measuring" if state.opening.under_way else "tracking"
 
 
-def _views(pair: Pair) -> Views:
+def _views(instant: Instant) -> Views:
     names: dict[tuple[bool, bool], Views] = {(True, True): "both", (True, False): "1"}
     names |= {(False, True): "2", (False, False): "none"}
-    first, second = pair.detections
+    first, second = two_views(instant.detections)
     return names[first is not None, second is not None]
 
 

@@ -21,37 +21,46 @@ NEVER_S: Final = float("inf")
 
 
 class State(NamedTuple):
-    """What is known of both viewers; one that is no part of the run counts as over from ever."""
+    """What is known of each viewer; one that is no part of the run counts as over from ever."""
 
     period_s: float
     began_s: float = NEVER_S
     """When the first report of the run came, by the room's clock; from then on silence counts."""
-    heard_s: tuple[float, float] = (0.0, 0.0)
+    heard_s: tuple[float, ...] = (0.0, 0.0)
     """When the last report of each came."""
-    gone_s: tuple[float, float] = (NEVER_S, NEVER_S)
+    gone_s: tuple[float, ...] = (NEVER_S, NEVER_S)
     """Since when each is no longer on the bus."""
-    over_s: tuple[float, float] = (NEVER_S, NEVER_S)
+    over_s: tuple[float, ...] = (NEVER_S, NEVER_S)
     """Since when each has ended."""
-    why_over: tuple[str, str] = ("", "")
-    fault: tuple[CameraFault, CameraFault] = ("", "")
+    why_over: tuple[str, ...] = ("", "")
+    fault: tuple[CameraFault, ...] = ("", "")
     """What is wrong with the last picture of each."""
-    lost_for: tuple[str, str] = ("", "")
+    lost_for: tuple[str, ...] = ("", "")
     """Why each view is lost, as it was told; "" while it is not."""
     news: tuple[str, ...] = ()
     """All that was told, a line each."""
 
 
-def init(period_s: float, viewers: tuple[ViewerNumber, ...]) -> State:
-    """Nothing was heard."""
-    first, second = (NEVER_S if number in viewers else -NEVER_S for number in (1, 2))
-    return State(period_s, over_s=(first, second))
+def init(period_s: float, viewers: tuple[ViewerNumber, ...], cameras: int = 2) -> State:
+    """Nothing was heard of the viewers of a run, on a rig of so many cameras."""
+    numbers = range(1, cameras + 1)
+    sound: CameraFault = ""
+    return State(
+        period_s,
+        heard_s=(0.0,) * cameras,
+        gone_s=(NEVER_S,) * cameras,
+        over_s=tuple(NEVER_S if number in viewers else -NEVER_S for number in numbers),
+        why_over=("",) * cameras,
+        fault=(sound,) * cameras,
+        lost_for=("",) * cameras,
+    )
 
 
 def heard(state: State, report: Report, now_s: float) -> State:
     """A viewer reports: it is there, whatever the bus says."""
     own = report.viewer - 1
     if state.began_s == NEVER_S:
-        state = state._replace(began_s=now_s, heard_s=(now_s, now_s))
+        state = state._replace(began_s=now_s, heard_s=(now_s,) * len(state.heard_s))
     return state._replace(
         heard_s=with_item(state.heard_s, own, now_s),
         gone_s=with_item(state.gone_s, own, NEVER_S),
@@ -96,17 +105,17 @@ def step(state: State, now_s: float) -> tuple[State, list[str]]:
     """What has become of the viewers since the step before, a line for each change."""
     if now_s < state.began_s:
         return state, []
-    causes = (_cause(state, 0, now_s), _cause(state, 1, now_s))
+    causes = tuple(_cause(state, own, now_s) for own in range(len(state.over_s)))
     told = [
         f"{now_s - state.began_s:.1f} s: {line}"
-        for own in (0, 1)
+        for own in range(len(causes))
         for line in _changed(own, state, causes)
     ]
-    first, second = (
+    lost_for = tuple(
         cause and (before or cause) for cause, before in zip(causes, state.lost_for, strict=True)
     )
     news = (*state.news, *told)[-MOST_NEWS:]
-    return state._replace(lost_for=(first, second), news=news), told
+    return state._replace(lost_for=lost_for, news=news), told
 
 
 def _cause(state: State, own: int, now_s: float) -> str:
@@ -124,13 +133,21 @@ def _cause(state: State, own: int, now_s: float) -> str:
     return f"its camera's picture is {state.fault[own]}" if state.fault[own] else ""
 
 
-def _changed(own: int, state: State, causes: tuple[str, str]) -> list[str]:
+def _changed(own: int, state: State, causes: tuple[str, ...]) -> list[str]:
     """What to say where a view is lost or found; another cause for the same loss is no news."""
-    before, cause, other = state.lost_for[own], causes[own], 1 - own
+    before, cause = state.lost_for[own], causes[own]
     if bool(cause) == bool(before):
         return []
     if before:
         return [f"view {own + 1} is back"]
-    alone = not causes[other] and state.over_s[other] == NEVER_S
-    left = f"view {other + 1} goes on alone" if alone else "nobody looks now"
-    return [f"view {own + 1} is lost ({cause}); {left}"]
+    left = [n for n, why in enumerate(causes) if not why and state.over_s[n] == NEVER_S]
+    return [f"view {own + 1} is lost ({cause}); {_going_on(left)}"]
+
+
+def _going_on(left: list[int]) -> str:
+    """What is said of the views that are left."""
+    if not left:
+        return "nobody looks now"
+    if len(left) == 1:
+        return f"view {left[0] + 1} goes on alone"
+    return f"views {', '.join(str(n + 1) for n in left)} go on"

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from common.body.body import Bdp, Vector
 from common.body.proportions import thesis_bdp
+from common.bus.instant import Seen
 from common.bus.messages import Pixel, Report
-from common.bus.pair import Seen
 from common.raster.silhouette_report import unpack
 from common.rig.camera import Camera, Rig, project, px_per_m
 from integrator.proposal.silhouette_window import ABOVE_M, standing_m

@@ -10,8 +10,8 @@ from posing import posed
 
 from common.body.body import Bdp, Vector
 from common.body.proportions import body_vector, thesis_bdp
+from common.bus.instant import Instant
 from common.bus.messages import Body, Box, Guide, Report, ViewerNumber
-from common.bus.pair import Pair
 from common.config.settings import Settings
 from common.method import METHODS, Method
 from common.raster.kernel import draw_body, view_of
@@ -121,7 +121,7 @@ class Stage:
             moment = self.at * PERIOD_S
             frame = CapturedFrame(self.at, moment, moment, mask.view(np.uint8))
             self.viewers[n], reports[n - 1] = track.step(viewer, frame, self.guide)
-        self.state, body, self.guide = merge.step(self.state, Pair(reports[0], reports[1]))
+        self.state, body, self.guide = merge.step(self.state, Instant((reports[0], reports[1])))
         self.at += 1
         return Told((reports[0], reports[1]), body, self.guide)
 

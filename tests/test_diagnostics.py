@@ -4,8 +4,8 @@ import msgspec
 import pytest
 
 from calibration.gate import rig_agreement
+from common.bus.instant import Instant
 from common.bus.messages import Agreement, Box, Report, ScaleSource
-from common.bus.pair import Pair
 from common.config.part_settings import BodySettings
 from common.config.settings import Settings
 from common.method import DEFAULT
@@ -30,7 +30,7 @@ def report(viewer: int, seen: bool = True, cut: bool = False) -> Report:
     )
 
 
-def noticed(*pairs: Pair) -> diagnostics.State:
+def noticed(*pairs: Instant) -> diagnostics.State:
     state = diagnostics.State()
     for pair in pairs:
         state = diagnostics.step(state, pair)
@@ -45,7 +45,7 @@ def merged(calibrated: bool = True, measured: bool = True) -> merge_state.State:
 
 
 def test_a_good_performance_is_not_odd() -> None:
-    assert diagnostics.warnings(noticed(Pair(report(1), report(2))), merged()) == []
+    assert diagnostics.warnings(noticed(Instant((report(1), report(2)))), merged()) == []
 
 
 def test_without_calibration_the_assumed_stature_is_named_from_the_start() -> None:
@@ -57,7 +57,7 @@ def test_without_calibration_the_assumed_stature_is_named_from_the_start() -> No
 
 
 def test_proportions_that_were_not_measured_are_the_theses() -> None:
-    (told,) = diagnostics.warnings(noticed(Pair(report(1), None)), merged(measured=False))
+    (told,) = diagnostics.warnings(noticed(Instant((report(1), None))), merged(measured=False))
     assert "thesis's proportions" in told
 
 
@@ -67,19 +67,23 @@ def test_pictures_that_showed_no_scene_are_told_with_their_kind_and_time() -> No
         msgspec.structs.replace(report(2, seen=not fault), fault=fault, captured_s=40.0 + n)
         for n, fault in enumerate(faults)
     ]
-    (told,) = diagnostics.warnings(noticed(*(Pair(report(1), each) for each in seen)), merged())
+    (told,) = diagnostics.warnings(
+        noticed(*(Instant((report(1), each)) for each in seen)), merged()
+    )
     assert told.startswith(
         "the picture of camera 2 is black or frozen in 3 frames, first at 41.0 s"
     )
 
 
 def test_an_empty_room_misses_no_opening_posture() -> None:
-    nobody = noticed(Pair(report(1, seen=False), report(2, seen=False)))
+    nobody = noticed(Instant((report(1, seen=False), report(2, seen=False))))
     assert diagnostics.warnings(nobody, merged(measured=False)) == []
 
 
 def test_a_person_partly_outside_is_counted_by_viewer() -> None:
-    pairs = [Pair(report(1), report(2, cut=n < 3)) for n in range(10)] + [Pair(report(1), None)]
+    pairs = [Instant((report(1), report(2, cut=n < 3))) for n in range(10)] + [
+        Instant((report(1), None))
+    ]
     assert diagnostics.warnings(noticed(*pairs), merged()) == [
         "viewer 2 saw the person partly outside its picture in 3 of 10 frames: "
         "what is outside is guessed"

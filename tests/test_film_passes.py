@@ -15,8 +15,8 @@ from staging import RIG
 
 from common.body.body import JOINT_NAMES
 from common.body.proportions import thesis_bdp
+from common.bus.instant import Instant
 from common.bus.messages import Body, Guide, Report, ViewerNumber
-from common.bus.pair import Pair
 from common.config.part_settings import BodySettings
 from common.config.settings import Settings
 from common.method import METHODS, Method, Mode
@@ -333,7 +333,7 @@ def test_each_frame_is_told_by_its_own_viewer_with_what_the_user_says(
     (viewer, seen, mask, by), (state, pair, annotations) = asked
     assert (viewer, seen, mask.all(), state) == ("viewer", report, True, "integrator")
     assert by == msgspec.structs.replace(guide, stick=oriented)
-    assert pair == (Pair(report, None) if number == 1 else Pair(None, report))
+    assert pair == (Instant((report, None)) if number == 1 else Instant((None, report)))
     assert annotations.orientation == ("left" if oriented else None)
     assert annotations.joints_px == {"l_wrist": (20.0, 15.0)}
     now, _ = film_passes._posed(at._replace(guide=None), report, film)

@@ -40,7 +40,7 @@ def faults(folder: Path, later: timedelta = timedelta()) -> dict[str, Finding]:
 def test_new_keys_are_sound_and_tell_until_when_and_for_which_hosts(keys: Path) -> None:
     found = {one.what: one for one in examine_keys(keys)}
     assert all(one.ok for one in found.values())
-    assert len(found) == 9
+    assert len(found) == 15
     assert "rig.local" in found["keys: integrator"].detail
     assert f"{datetime.now(UTC) + timedelta(days=DAYS):%Y-%m-%d}" in found["keys: client"].detail
 
@@ -51,7 +51,7 @@ def test_a_host_needs_its_own_parts_alone(keys: Path) -> None:
             shutil.rmtree(path) if path.is_dir() else path.unlink()
     assert faults(keys) == {}
     absent = [one for one in examine_keys(keys) if one.detail == "not here"]
-    assert len(absent) == 7
+    assert len(absent) == 13
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_a_host_needs_its_own_parts_alone(keys: Path) -> None:
 )
 def test_the_date_is_held_against_the_clock(keys: Path, days: int, says: str) -> None:
     found = faults(keys, timedelta(days=days))
-    assert len(found) == 9
+    assert len(found) == 15
     assert all(says in one.detail for one in found.values())
     assert all(("--force" in one.cure) is (days > 0) for one in found.values())
 

@@ -34,7 +34,7 @@ def test_what_the_command_makes_the_doctor_finds_sound(
 ) -> None:
     folder = tmp_path / "keys"
     assert code_of(monkeypatch, "keys", folder, "--host", "rig.local", "--json") == 0
-    assert len(json.loads(capsys.readouterr().out)["files"]) == 17
+    assert len(json.loads(capsys.readouterr().out)["files"]) == 29
     assert code_of(monkeypatch, "doctor", "--keys", folder, "--json") == 0
     found = json.loads(capsys.readouterr().out)
     assert all(one["ok"] for one in found)

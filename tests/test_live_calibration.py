@@ -10,8 +10,8 @@ from staging import PERIOD_S, RIG
 from test_rig_search import GOOD, both
 
 from calibration.gate import rig_agreement
+from common.bus.instant import Instant
 from common.bus.messages import Agreement
-from common.bus.pair import Pair
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from common.method import METHODS
@@ -70,7 +70,7 @@ def test_a_rig_that_is_taken_is_told_with_its_moment_and_the_frames_wait_for_not
     state = begun()
     with LiveCalibration(state, looks=True) as calibration:
         for n in range(round(2 * ASKS_S[0] / PERIOD_S)):
-            calibration.heard(both(n))
+            calibration.heard(Instant(both(n)))
             assert calibration.changed(state) is state
         assert len(solver.jobs) == 1
         solver.said = GOOD
@@ -93,7 +93,7 @@ def test_a_run_whose_person_told_no_rig_says_at_its_end_why(
     state = begun()
     with LiveCalibration(state, looks=True) as calibration:
         for n in range(round(1.5 * ASKS_S[0] / PERIOD_S)):
-            calibration.heard(both(n))
+            calibration.heard(Instant(both(n)))
         solver.said = said
         assert calibration.changed(state) is state
     assert why in calibration.news[-1]
@@ -133,10 +133,10 @@ def test_a_live_run_is_calibrated_by_its_person_and_is_replayed_byte_for_byte(
     assert facts["same"] == facts["bodies"] > 400
 
 
-def told_of(n: int, shift: Shift | None) -> Pair:
+def told_of(n: int, shift: Shift | None) -> Instant:
     first, second = both(n)
     assert second is not None
-    return Pair(first, msgspec.structs.replace(second, shift=shift))
+    return Instant((first, msgspec.structs.replace(second, shift=shift)))
 
 
 def test_a_camera_that_is_moved_is_turned_at_once_and_then_placed_by_the_person(
@@ -198,13 +198,13 @@ def test_a_rig_that_is_doubted_is_looked_for_once_and_its_end_says_which_stayed(
 ) -> None:
     state = doubted(begun())
     with LiveCalibration(state, looks=False, late_s=0.25) as calibration:
-        calibration.heard(both(0))
+        calibration.heard(Instant(both(0)))
         assert not calibration.looking.search.rows[0], "nothing is looked for yet"
         assert calibration.changed(state) is state
         assert calibration.looking.looks
         assert calibration.looking.search.rig == RIG
         assert calibration.looking.search.late_s == calibration.late_s == 0.25
-        calibration.heard(both(1))
+        calibration.heard(Instant(both(1)))
         begun_once = calibration.looking.search
         assert begun_once.rows[0]
         calibration.changed(state)
@@ -226,7 +226,7 @@ def test_a_rig_that_nobody_doubts_is_let_be_and_nothing_is_said_at_the_end(solve
     solver.close = lambda: closed.append(True)  # type: ignore[method-assign]
     with LiveCalibration(state, looks=False) as calibration:
         for n in range(5):
-            calibration.heard(both(n))
+            calibration.heard(Instant(both(n)))
             assert calibration.changed(state) is state
     assert closed == [True]
     assert calibration.news == ()
@@ -239,7 +239,7 @@ def test_a_late_view_is_set_back_when_the_rig_that_says_so_is_taken(solver: Solv
     state = begun()
     with LiveCalibration(state, looks=True) as calibration:
         for n in range(round(1.1 * ASKS_S[0] / PERIOD_S)):
-            calibration.heard(both(n))
+            calibration.heard(Instant(both(n)))
         solver.said = msgspec.structs.replace(GOOD, late_s=0.2)
         assert calibration.changed(state).rig == RIG
         assert calibration.late_s == 0.2

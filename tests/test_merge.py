@@ -26,9 +26,9 @@ from staging import (
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES, POSE_INDEX, Vector
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
+from common.bus.instant import Instant
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Guide
-from common.bus.pair import Pair
 from common.config.settings import Settings
 from common.method import DEFAULT, METHODS, Mode
 from common.rig.camera import project
@@ -349,10 +349,10 @@ def test_a_late_partner_is_not_waited_for() -> None:
     state = merge_state.init(RIG, 1 / 15, Settings(), DEFAULT)
     masks = silhouettes(standing())
     first = report(1, masks[0], root_px=(80.0, 61.0), frame=7)
-    state, body, guide = merge.step(state, Pair(first, None))
+    state, body, guide = merge.step(state, Instant((first, None)))
     assert (body.frame, body.views, guide.frames) == (7, "1", (7, -1))
     second = msgspec.structs.replace(report(2, masks[1], root_px=(80.0, 61.0)), frame=9)
-    state, body, guide = merge.step(state, Pair(None, second))
+    state, body, guide = merge.step(state, Instant((None, second)))
     assert (body.frame, body.views, guide.frames) == (-1, "2", (7, 9))
 
 
@@ -360,9 +360,11 @@ def test_an_integrator_is_a_value() -> None:
     """The same pairs give the same bodies again."""
     stage = after_opening(Stage())
     state, masks = stage.state, silhouettes(standing())
-    pair = Pair(
-        report(1, masks[0], root_px=(80.0, 61.0), frame=30, captured_s=2.0),
-        report(2, masks[1], root_px=(80.0, 61.0), frame=30, captured_s=2.0),
+    pair = Instant(
+        (
+            report(1, masks[0], root_px=(80.0, 61.0), frame=30, captured_s=2.0),
+            report(2, masks[1], root_px=(80.0, 61.0), frame=30, captured_s=2.0),
+        )
     )
     one, other = merge.step(state, pair), merge.step(state, pair)
     assert one[1:] == other[1:]
@@ -381,21 +383,21 @@ def test_an_instant_counts_on_from_what_each_viewer_reported_last() -> None:
     state = instants()._replace(frames=(4, 9), last_s=0.4, number=4, numbered=4)
     second = report(2, frame=12, captured_s=0.62)
     first = report(1, frame=6, captured_s=0.6)
-    both, dt_s = merge._at(state, Pair(first, second))
+    both, dt_s = merge._at(state, Instant((first, second)))
     assert (both.frames, both.number, both.numbered, both.last_s) == ((6, 12), 6, 6, 0.6)
     assert dt_s == 0.0, "nobody was there before"
     found: Any = object()
     state = state._replace(found=found)
     later = msgspec.structs.replace(second, clock_s=1.0)
-    own, dt_s = merge._at(state, Pair(first, later))
+    own, dt_s = merge._at(state, Instant((first, later)))
     assert own.last_s == 0.62
     assert dt_s == pytest.approx(0.22)
-    own, dt_s = merge._at(state, Pair(None, second))
+    own, dt_s = merge._at(state, Instant((None, second)))
     assert (own.frames, own.number, own.numbered) == ((4, 12), 6, 6)
     assert dt_s == pytest.approx(0.22)
-    back, dt_s = merge._at(state._replace(last_s=0.7), Pair(first, None))
+    back, dt_s = merge._at(state._replace(last_s=0.7), Instant((first, None)))
     assert (back.frames, back.last_s, dt_s) == ((6, 9), 0.6, 0.0)
-    lower, _ = merge._at(state._replace(numbered=40), Pair(first, None))
+    lower, _ = merge._at(state._replace(numbered=40), Instant((first, None)))
     assert (lower.number, lower.numbered) == (6, 40)
 
 
@@ -403,20 +405,20 @@ def test_how_a_picture_comes_from_its_file_is_kept_while_a_viewer_is_away() -> N
     one: Any = SimpleNamespace(frame=3, captured_s=0.3, clock_s=0.3, upright="turned")
     before: Any = ("first", "second")
     state = instants()._replace(uprights=before)
-    both: Any = merge._at(state, Pair(one, None))[0].uprights
+    both: Any = merge._at(state, Instant((one, None)))[0].uprights
     assert both == ("turned", "second")
     one.frame = 5
-    both = merge._at(state, Pair(None, one))[0].uprights
+    both = merge._at(state, Instant((None, one)))[0].uprights
     assert both == ("first", "turned")
 
 
 def test_rows_are_camera_2s_only_where_that_is_alone_in_the_run() -> None:
     alone = instants(alone=True)
     second = report(2, frame=12, captured_s=0.6)
-    assert merge._number(alone, Pair(None, second)) == 12
-    assert merge._number(alone, Pair(report(1, frame=7), second)) == 7
+    assert merge._number(alone, Instant((None, second))) == 12
+    assert merge._number(alone, Instant((report(1, frame=7), second))) == 7
     heard = alone._replace(frames=(3, 11))
-    assert merge._number(heard, Pair(None, second)) == NO_FRAME
+    assert merge._number(heard, Instant((None, second))) == NO_FRAME
 
 
 def test_a_pose_that_is_not_believed_does_not_move_the_smooth_one() -> None:
@@ -452,9 +454,9 @@ def test_scores_are_those_of_each_views_own_camera_and_silhouette() -> None:
     found = merge_state.Posed(pose, ("facade", "flank"))
     state = instants()._replace(opening=opening, found=found)
 
-    def scores(*masks: Any) -> tuple[float, float]:
+    def scores(*masks: Any) -> tuple[float, ...]:
         given = [None if mask is None else report(n + 1, mask) for n, mask in enumerate(masks)]
-        return merge._scores(state, merge.Instant(RIG, (given[0], given[1]), 0.1, Annotations()))
+        return merge._scores(state, merge.Sighting(RIG, (given[0], given[1]), 0.1, Annotations()))
 
     assert scores(first, second) == (1.0, 1.0)
     one, other = scores(raised, second)

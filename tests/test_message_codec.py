@@ -259,7 +259,7 @@ def test_a_number_that_is_not_finite_is_refused_wherever_it_stands(
         (GUIDE, "pose", (0.0,) * (len(POSE_NAMES) - 1), "pose has 24 entries, not 25"),
         (BODY, "pose", (0.0,) * 26, "pose has 26 entries, not 25"),
         (BODY, "joints_m", ((0.0, 0.0, 0.0),) * 14, "joints_m has 14 entries, not 15"),
-        (BODY, "joints_px", (((0.0, 0.0),) * 15,) * 3, "joints_px has 3 entries"),
+        (BODY, "joints_px", (((0.0, 0.0),) * 15,) * 9, "joints_px has 9 entries, not 8"),
         (BODY, "joints_px", (((0.0, 0.0),) * 15, ((0.0, 0.0),) * 14), "no 15 joints"),
         (BODY, "angles_raw_deg", (0.0,) * 16, "angles_raw_deg has 16 entries, not 17"),
         (BODY, "confidence", (1.0,), "confidence has 1 entries, not 15"),
@@ -346,7 +346,14 @@ def test_a_body_that_was_not_lifted_from_segments_has_no_errors_of_depth() -> No
 
 @pytest.mark.parametrize(
     ("field", "value"),
-    [("viewer", 3), ("vote", "back"), ("frame", "7"), ("box", [1, 2, 0]), ("nonsense", 1)],
+    [
+        ("viewer", 0),
+        ("viewer", 9),
+        ("vote", "back"),
+        ("frame", "7"),
+        ("box", [1, 2, 0]),
+        ("nonsense", 1),
+    ],
 )
 def test_what_no_viewer_would_say_is_refused(field: str, value: object) -> None:
     told = msgspec.msgpack.decode(encode(REPORT)) | {field: value}
@@ -453,10 +460,13 @@ def test_a_silhouette_of_the_papers_size_has_2400_bytes() -> None:
             "without height or dep",
         ),
         (BODY, "extremities_m", ((0.0, 0.0, 0.0),) * 6, "extremities_m has 6 entries, not 7"),
-        (BODY, "extremities_px", (((0.0, 0.0),) * 7,) * 3, "extremities_px has 3 entries, not 2"),
+        (BODY, "extremities_px", (((0.0, 0.0),) * 7,) * 9, "extremities_px has 9 entries, not 8"),
         (BODY, "extremities_px", (((0.0, 0.0),) * 6,), "extremities_px has no 7 places in a came"),
         (BODY, "extremities_confidence", (0.5,) * 8, "extremities_confidence has 8 entries, not"),
-        (BODY, "moved", (1, 2, 1), "moved has 3 entries, not 2"),
+        (BODY, "moved", (1, 2, 1) * 3, "moved has 9 entries, not 8"),
+        (BODY, "made_of", (), "made_of has 0 entries"),
+        (GUIDE, "frames", (), "frames has 0 entries"),
+        (GUIDE, "moves", (False,) * 3, "moves has no 2 entries"),
         (GUIDE, "pose", (1.0,) * 24 + (1.1e9,), r"pose holds 1100000000\.0, at most 1e\+09 is t"),
         (BODY, "joints_m", ((0.0, -1.1e9, 0.0),) * 15, r"joints_m holds -1100000000\.0, at most"),
         (REPORT, "angles_deg", {"r_shoulder_x": 2e9}, r"angles_deg holds 2000000000\.0"),

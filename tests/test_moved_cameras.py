@@ -14,8 +14,8 @@ from calibration.gate.moved_cameras import (
     told_by,
     turned_rig,
 )
+from common.bus.instant import Instant
 from common.bus.messages import ViewerNumber
-from common.bus.pair import Pair
 from common.rig.camera import arrays_of, project
 from common.rig.picture_shift import Shift
 from common.rig.turned_camera import angle_deg, shift_of, turned
@@ -25,7 +25,7 @@ SHIFT = shift_of(TURN, arrays_of(RIG.cameras[1]).focal_px)
 
 
 def after(state: MovedCameras, second: Shift | None) -> MovedCameras:
-    return moved_cameras.step(state, Pair(report(1), report(2, shift=second)))
+    return moved_cameras.step(state, Instant((report(1), report(2, shift=second))))
 
 
 def test_a_moved_camera_is_named_and_hardly_anything_is_believed() -> None:
@@ -69,11 +69,11 @@ def test_a_view_that_is_silent_or_faulty_stands_where_it_was_last_seen(
     viewer: ViewerNumber,
 ) -> None:
     moved = report(viewer, shift=SHIFT)
-    silent = (Pair(moved, None), Pair(None, moved))[viewer - 1]
+    silent = (Instant((moved, None)), Instant((None, moved)))[viewer - 1]
     state = moved_cameras.step(MovedCameras(), silent)
     assert state.moved == (viewer,)
     covered = report(viewer, fault="covered")
-    state = moved_cameras.step(state, Pair(*((covered, None), (None, covered))[viewer - 1]))
+    state = moved_cameras.step(state, Instant(((covered, None), (None, covered))[viewer - 1]))
     assert state.moved == (viewer,)
 
 
@@ -115,6 +115,8 @@ def test_a_rig_that_is_new_as_a_whole_or_of_a_camera_that_stood_is_confirmed() -
     assert told_by(state, None, turned_only).unconfirmed == ()
     assert told_by(state, None, turned_only).of_rig == state.now
     assert told_by(MovedCameras(), RIG, turned_only).unconfirmed == ()
-    both = moved_cameras.step(MovedCameras(), Pair(report(1, shift=SHIFT), report(2, shift=SHIFT)))
+    both = moved_cameras.step(
+        MovedCameras(), Instant((report(1, shift=SHIFT), report(2, shift=SHIFT)))
+    )
     assert told_by(both, RIG, turned_rig(RIG, both)).unconfirmed == (1, 2)
     assert told_by(both, RIG, turned_only).unconfirmed == (2,)

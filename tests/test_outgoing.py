@@ -10,8 +10,8 @@ from staging import NOBODY, PAPER, RIG, Stage, exact, report, silhouettes, stand
 
 from calibration.gate import moved_cameras, rig_agreement, silhouette_motion
 from common.body.proportions import stature
+from common.bus.instant import Instant
 from common.bus.messages import Agreement, Lifting, Report
-from common.bus.pair import Pair
 from common.method import DEFAULT
 from common.rig.camera import project
 from integrator import outgoing
@@ -33,7 +33,7 @@ def seen(n: int, **said: Any) -> Report:
     return report(n, (FRONT, SIDE)[n - 1], **{**given, **said})
 
 
-BOTH = Pair(seen(1), seen(2))
+BOTH = Instant((seen(1), seen(2)))
 
 
 @pytest.fixture
@@ -45,7 +45,7 @@ def state(monkeypatch: pytest.MonkeyPatch) -> State:
     return stage.state._replace(number=41, frames=(11, 12), calibration=3)
 
 
-def told(state: State, pair: Pair = BOTH, scores: tuple[float, float] = SCORES) -> Any:
+def told(state: State, pair: Instant = BOTH, scores: tuple[float, float] = SCORES) -> Any:
     assert state.found is not None
     angles = np.linspace(1.0, 17.0, 17)
     return body_of(state, pair, pair.detections, angles, scores)
@@ -63,13 +63,13 @@ def test_a_body_is_of_its_instant_and_of_the_frames_that_it_was_made_of(state: S
     assert sorted(set(body.pose) & set(np.linspace(1.0, 17.0, 17))) == [*np.linspace(1.0, 17.0, 17)]
     assert body.angles_raw_deg != body.pose[-17:]
     assert len(body.extremities_m) == len(body.extremities_confidence) == 7
-    alone = told(state, Pair(None, seen(2)))
+    alone = told(state, Instant((None, seen(2))))
     assert (alone.made_of, alone.views) == ((-1, 12), "2")
-    assert told(state, Pair(seen(1), None)).views == "1"
+    assert told(state, Instant((seen(1), None))).views == "1"
 
 
 def test_matches_of_both_viewers_and_of_their_sticks_are_counted(state: State) -> None:
-    pair = Pair(seen(1, matches=30), seen(2, matches=12))
+    pair = Instant((seen(1, matches=30), seen(2, matches=12)))
     assert told(state, pair).matches == 42
 
 
@@ -95,11 +95,11 @@ def test_what_was_found_with_a_pose_goes_before_how_well_it_fits(state: State) -
 
 @pytest.mark.parametrize(
     ("pair", "trusts", "left"),
-    [(BOTH, False, 0.25), (BOTH, True, 1.0), (Pair(seen(1), None), False, 1.0)],
+    [(BOTH, False, 0.25), (BOTH, True, 1.0), (Instant((seen(1), None)), False, 1.0)],
     ids=["both", "trusted", "one view"],
 )
 def test_a_rig_that_both_views_contradict_takes_confidence_away(
-    state: State, pair: Pair, trusts: bool, left: float
+    state: State, pair: Instant, trusts: bool, left: float
 ) -> None:
     doubts = rig_agreement.State(told=Agreement(70.0, 0.0, 0.0, 10.0, 0.25))
     settings = msgspec.structs.replace(state.settings, trust_calibration=trusts)
@@ -112,12 +112,12 @@ def test_joints_that_the_only_picture_cuts_off_are_guessed(state: State) -> None
     high = RIG.height // 2
     assert state.found is not None
     cut = msgspec.structs.replace(seen(1, cut=True), height=high)
-    body = told(state, Pair(cut, None))
+    body = told(state, Instant((cut, None)))
     below = [place[1] > high for place in body.joints_px[0]]
     assert 2 < sum(below) < 12
     assert [sure == 0.0 for sure in body.confidence] == below
-    assert {body.status, told(state, Pair(cut, seen(2))).status} == {"tracking"}
-    assert 0.0 not in told(state, Pair(cut, seen(2))).confidence
+    assert {body.status, told(state, Instant((cut, seen(2)))).status} == {"tracking"}
+    assert 0.0 not in told(state, Instant((cut, seen(2)))).confidence
 
 
 @pytest.mark.parametrize(
@@ -160,7 +160,7 @@ def test_one_view_keeps_what_it_remembers_and_loses_at_once_who_it_never_met(
     found = state.found._replace(memory=memory, alone=alone)  # type: ignore[arg-type]
     after = weighed(
         state._replace(found=found, ever_confirmed=ever_confirmed),
-        Pair(seen(1), None),
+        Instant((seen(1), None)),
         SCORES,
         Annotations(),
     )
@@ -176,7 +176,7 @@ def test_as_printed_each_viewer_starts_where_it_had_the_body_itself(state: State
     assert state.found is not None
     place = state.found.pose[:3]
     shared = pixels_of(RIG, place)
-    assert guide_of(state, Pair(seen(1), None), False).root_px == ((71.0, 50.0), shared[1])
+    assert guide_of(state, Instant((seen(1), None)), False).root_px == ((71.0, 50.0), shared[1])
     assert guide_of(state, BOTH, True).root_px == shared, "the body has just been measured"
     assert guide_of(state._replace(method=DEFAULT), BOTH, False).root_px == shared
 
@@ -213,11 +213,11 @@ def test_a_stick_is_asked_of_one_view_that_fits_badly_by_an_assumed_rig(
     alone: Any = Alone()
     alone.stick = stick
     state = state._replace(found=state.found._replace(alone=alone), scale_source=source)
-    assert guide_of(state, Pair(seen(1), None), False).stick is asked
+    assert guide_of(state, Instant((seen(1), None)), False).stick is asked
 
 
 def test_where_nobody_is_the_lengths_and_the_facing_are_kept(state: State) -> None:
-    empty = Pair(report(1, NOBODY, frame=11), None)
+    empty = Instant((report(1, NOBODY, frame=11), None))
     state = state._replace(facing=("flank", "facade"), proposes=True)
     body, guide = no_detection(state, empty)
     assert (body.status, body.views, body.joints_m, body.made_of) == ("empty", "none", (), (11, -1))
@@ -235,21 +235,23 @@ def test_what_else_is_told_of_an_instant_is_what_the_state_knows(state: State) -
     assert state.found is not None
     alone: Any = SimpleNamespace(lifting=lifting, stick=False)
     known = state._replace(stands=stands, found=state.found._replace(alone=alone))
-    body = told(known, Pair(None, seen(2)))
+    body = told(known, Instant((None, seen(2))))
     assert (body.moved, body.lifting) == ((2,), lifting)
     assert told(state).lifting is None
     assert body.confidence == pytest.approx([0.4] * 15), "half of it is left"
     agreed = rig_agreement.State(told=Agreement(70.0, 0.0, 0.0, 10.0, 0.7))
     assert told(known._replace(agreement=agreed)).confidence == pytest.approx([0.4] * 15)
     assert told(known._replace(agreement=agreed)).agreement == agreed.told
-    assert told(known._replace(agreement=agreed), Pair(None, seen(2))).agreement is None
+    assert told(known._replace(agreement=agreed), Instant((None, seen(2)))).agreement is None
     half_s = [seen(1, captured_s=at_s) for at_s in (0.0, 0.5)]
     moved = msgspec.structs.replace(half_s[1], silhouette=report(1, NOBODY).silhouette, area_px=90)
-    motion = silhouette_motion.NOTHING
+    motion = silhouette_motion.init(2)
     for each in (half_s[0], moved):
-        motion = silhouette_motion.step(motion, Pair(None, msgspec.structs.replace(each, viewer=2)))
+        motion = silhouette_motion.step(
+            motion, Instant((None, msgspec.structs.replace(each, viewer=2)))
+        )
     assert guide_of(state._replace(motion=motion), BOTH, False).moves == (False, True)
-    empty, _ = no_detection(known, Pair(report(1, NOBODY), None))
+    empty, _ = no_detection(known, Instant((report(1, NOBODY), None)))
     assert empty.moved == (2,)
     behind = outgoing._pixels(np.array([[np.nan, np.nan], [3.0, 4.0]]))
     assert behind == ((-1.0, -1.0), (3.0, 4.0))
@@ -295,13 +297,13 @@ def test_only_the_view_that_is_alone_and_cut_says_what_is_outside(state: State) 
     first_px[9] = (-3.0, 7.0)
     pixels = first_px, second_px
     outside = [n in (3, 4, 5, 8) for n in range(15)]
-    assert outgoing._outside(Pair(None, seen(2, cut=True)), pixels).tolist() == outside
-    first_only = outgoing._outside(Pair(seen(1, cut=True), None), pixels)
+    assert outgoing._outside(Instant((None, seen(2, cut=True))), pixels).tolist() == outside
+    first_only = outgoing._outside(Instant((seen(1, cut=True), None)), pixels)
     assert first_only.tolist() == [n == 9 for n in range(15)]
     for whole in (
-        Pair(None, seen(2)),
-        Pair(seen(1, cut=True), seen(2, cut=True)),
-        Pair(report(1, NOBODY), None),
+        Instant((None, seen(2))),
+        Instant((seen(1, cut=True), seen(2, cut=True))),
+        Instant((report(1, NOBODY), None)),
     ):
         assert not outgoing._outside(whole, pixels).any()
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from common.bus import clock
 from common.bus.clock import Exchange
+from common.bus.instant import Instant
 from common.bus.messages import Report, ViewerNumber
-from common.bus.pair import Pair
 from integrator.hearing.subscriber import OVERDUE_PERIODS
 from integrator.pairing import QUEUE, State, away, begin, end, init, overdue, step
 
@@ -34,19 +34,16 @@ def report(
     )
 
 
-def heard(state: State, reports: Sequence[Report]) -> tuple[State, list[Pair]]:
-    pairs: list[Pair] = []
+def heard(state: State, reports: Sequence[Report]) -> tuple[State, list[Instant]]:
+    pairs: list[Instant] = []
     for one in reports:
         state, more = step(state, one)
         pairs += more
     return state, pairs
 
 
-def times(pairs: Sequence[Pair]) -> list[tuple[float | None, float | None]]:
-    return [
-        tuple(None if one is None else one.captured_s for one in pair)  # type: ignore[misc]
-        for pair in pairs
-    ]
+def times(pairs: Sequence[Instant]) -> list[tuple[float | None, ...]]:
+    return [tuple(None if one is None else one.captured_s for one in pair.views) for pair in pairs]
 
 
 def test_reports_of_one_instant_go_out_together() -> None:
@@ -83,7 +80,7 @@ def test_a_camera_twice_as_fast_is_paired_at_the_very_moments_of_the_slower(
     assert (whole, state.late) == ([(0.0, 0.0), (1.0, 1.0), (2.0, 2.0)], 0)
 
 
-def flush(state: State) -> tuple[State, list[Pair]]:
+def flush(state: State) -> tuple[State, list[Instant]]:
     """Both viewers have said their last."""
     state, first = end(state, 1)
     state, second = end(state, 2)
@@ -111,7 +108,9 @@ def test_a_single_viewers_reports_pass_through(viewer: ViewerNumber) -> None:
     state = init(1.0, viewers=(viewer,))
     for second in range(3):
         state, pairs = step(state, report(viewer, float(second)))
-        assert [one for pair in pairs for one in pair if one] == [report(viewer, float(second))]
+        assert [one for pair in pairs for one in pair.views if one] == [
+            report(viewer, float(second))
+        ]
     assert step(state, report(other, 3.0)) == (state._replace(late=1), [])
 
 
@@ -275,15 +274,104 @@ def test_every_report_goes_out_once_in_the_order_of_time_or_is_counted(
         pairs += more + old
     state, rest = flush(state)
     pairs += rest
-    out = [[one for one in view if one] for view in zip(*pairs, strict=True)] or [[], []]
+    views = zip(*(pair.views for pair in pairs), strict=True)
+    out = [[one for one in view if one] for view in views] or [[], []]
     assert len(out[0]) + len(out[1]) + state.late == len(talk[0]) + len(talk[1])
     for view in out:
         assert all(a.captured_s < b.captured_s for a, b in itertools.pairwise(view))
-    moments = [max(one.captured_s for one in pair if one) for pair in pairs]
+    moments = [max(one.captured_s for one in pair.views if one) for pair in pairs]
     assert all(a < b for a, b in itertools.pairwise(moments))
-    for first, second in pairs:
+    for first, second in (pair.views for pair in pairs):
         if first and second:
             assert abs(first.captured_s - second.captured_s) <= 0.5
+
+
+@st.composite
+def talks_of_three(draw: st.DrawFn) -> list[list[Report]]:
+    """What three viewers say, of cameras that do not run in step and miss frames."""
+    said = []
+    for viewer in (1, 2, 3):
+        shift, rate = draw(st.floats(-0.5, 0.5)), draw(st.sampled_from([1, 1, 2]))
+        frames = sorted(draw(st.sets(st.integers(0, 12))))
+        taken = [n / rate + shift + draw(st.floats(-0.2, 0.2)) / rate for n in frames]
+        known = draw(st.booleans())
+        said.append(
+            [
+                report(viewer, moment, n, next_s if known else None)
+                for n, moment, next_s in zip(frames, taken, [*taken, 99.0][1:], strict=True)
+            ]
+        )
+    return said
+
+
+def heard_as(said: list[list[Report]], turns: Sequence[int]) -> tuple[State, list[Instant]]:
+    """What three viewers say, each in turn, to the end."""
+    speakers = [iter(own) for own in said]
+    state, found = heard(init(1.0, (1, 2, 3), cameras=3), [next(speakers[n]) for n in turns])
+    for viewer in (1, 2, 3):
+        state, rest = end(state, viewer)
+        found += rest
+    return state, found
+
+
+def turns_of(said: list[list[Report]]) -> list[int]:
+    return [n for n, own in enumerate(said) for _ in own]
+
+
+@given(talks_of_three(), st.data())
+def test_what_three_viewers_say_goes_out_alike_however_they_are_interleaved(
+    said: list[list[Report]], data: st.DataObject
+) -> None:
+    ways = [heard_as(said, data.draw(st.permutations(turns_of(said)))) for _ in range(2)]
+    assert ways[0][1] == ways[1][1]
+    assert ways[0][0].late == ways[1][0].late
+
+
+@given(talks_of_three(), st.data(), st.floats(0.0, 3.0))
+def test_every_report_of_three_viewers_is_in_one_instant_or_counted(
+    said: list[list[Report]], data: st.DataObject, wait_s: float
+) -> None:
+    """An instant lies within half a period of each of its views, also where some are overdue."""
+    speakers = [iter(own) for own in said]
+    state, found = init(1.0, (1, 2, 3), cameras=3), list[Instant]()
+    for n in data.draw(st.permutations(turns_of(said))):
+        one = next(speakers[n])
+        state, more = step(state, one)
+        state, old = overdue(state, one.clock_s, wait_s)
+        found += more + old
+    for viewer in (1, 2, 3):
+        state, rest = end(state, viewer)
+        found += rest
+    out = [one for instant in found for one in instant.views if one]
+    assert len(out) == len({id(one) for one in out})
+    assert len(out) + state.late + state.dropped == sum(map(len, said))
+    assert state.waiting == ((), (), ())
+    for instant in found:
+        assert [one and one.viewer for one in instant.views] in (
+            [n if one else None for n, one in enumerate(instant.views, 1)],
+        )
+        times_s = [one.captured_s for one in instant.views if one]
+        assert any(max(abs(at_s - other) for other in times_s) <= 0.5 for at_s in times_s)
+
+
+def test_three_cameras_a_third_of_a_period_apart_are_of_one_instant() -> None:
+    """The first and the last are farther apart than half a period: the second is the instant."""
+    talk = [report(n + 1, frame + n / 3, frame) for frame in range(4) for n in range(3)]
+    _, found = heard(init(1.0, (1, 2, 3), cameras=3), talk)
+    assert [[one and one.frame for one in instant.views] for instant in found] == [
+        [frame] * 3 for frame in range(4)
+    ]
+
+
+def test_an_instant_of_three_waits_for_the_view_that_may_still_come_and_for_no_other() -> None:
+    three = init(1.0, (1, 2, 3), cameras=3)
+    state, found = heard(three, [report(1, 0.0, next_s=1.0), report(2, 0.1, next_s=1.1)])
+    assert found == []
+    assert len(away(state, 3)[1]) == 1
+    state, found = step(state, report(3, 0.9))
+    assert times(found) == [(0.0, 0.1, None)]
+    _, found = overdue(step(state, report(1, 1.0))[0], now_s=3.0, wait_s=1.0)
+    assert times(found) == [(1.0, None, 0.9)]
 
 
 def exchanges(skew_s: float, seed: int) -> list[Exchange]:
@@ -297,7 +385,7 @@ def exchanges(skew_s: float, seed: int) -> list[Exchange]:
     return asked
 
 
-def corrected_pairs(offset_s: float) -> list[Pair]:
+def corrected_pairs(offset_s: float) -> list[Instant]:
     """Two viewers of one instant; viewer 2's clock is 200 ms behind the room's."""
     talk = []
     for n in range(40):
@@ -307,9 +395,10 @@ def corrected_pairs(offset_s: float) -> list[Pair]:
     return pairs + flush(state)[1]
 
 
-def frames_of(pairs: list[Pair]) -> list[tuple[int, int]]:
+def frames_of(pairs: list[Instant]) -> list[tuple[int, int]]:
     """The frames' numbers of the pairs that are whole."""
-    return [(p.first.frame, p.second.frame) for p in pairs if p.first and p.second]
+    whole = (pair.views for pair in pairs if all(pair.views))
+    return [(first.frame, second.frame) for first, second in whole if first and second]
 
 
 @pytest.mark.parametrize("seed", range(5))

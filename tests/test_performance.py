@@ -11,8 +11,8 @@ import pytest
 from spoiling import copied, refilmed
 from staging import PERIOD_S, RIG, report
 
+from common.bus.instant import Instant
 from common.bus.messages import Body, Guide, Report, ViewerNumber
-from common.bus.pair import Pair
 from common.config.settings import Settings
 from common.method import DEFAULT, Mode
 from common.video.clip_facts import Clip, Meta, View
@@ -145,8 +145,8 @@ def guided(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int | None]]:
         seen = report(state // 100, frame=frame.index, captured_s=frame.captured_s)
         return state + 1, seen
 
-    def merged(state: Any, pair: Pair) -> tuple[Any, Body, Guide]:
-        assert [one and one.viewer for one in pair] == [1, 2]
+    def merged(state: Any, pair: Instant) -> tuple[Any, Body, Guide]:
+        assert [one and one.viewer for one in pair.views] == [1, 2]
         n, moment = pair.newest.frame, dict[str, Any](captured_s=0.0, clock_s=0.0)
         moved = (1,) if n == MOVED_AT else ()
         body = Body(frame=n, status="empty", views="none", moved=moved, **moment)

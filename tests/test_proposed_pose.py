@@ -10,12 +10,12 @@ from rolling import BODY, ROLLED, on_one_leg, outlines, told
 from common.body.body import JOINT_NAMES, POSE_INDEX, Vector
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
+from common.bus.instant import Seen
 from common.bus.messages import Landmarks, Report
-from common.bus.pair import Seen
 from common.method import DEFAULT
 from common.rig.camera import Camera, project
 from integrator.fit import proposed_pose
-from integrator.fit.proposed_pose import Before, Instant
+from integrator.fit.proposed_pose import Before, Sighting
 from integrator.pose.inverse_kinematics import trunk_of
 from integrator.proposal import lifting_network, pose_network, pose_proposal
 from integrator.proposal.lifting_network import Lifted
@@ -63,7 +63,7 @@ def test_what_one_view_alone_shows_goes_where_the_network_is_unsure_with_it_and_
     monkeypatch: pytest.MonkeyPatch, glared: float, clean: float, cleared: bool
 ) -> None:
     proposing(monkeypatch, glared, clean)
-    found = proposed_pose.step(Before(), Instant(BODY, ROLLED, glaring(), 1 / 15, DEFAULT))
+    found = proposed_pose.step(Before(), Sighting(BODY, ROLLED, glaring(), 1 / 15, DEFAULT))
     assert (found.seen != glaring()) == cleared
     assert found.confidence == pytest.approx(clean if cleared else glared)
 
@@ -236,6 +236,6 @@ def test_joints_lie_beside_the_cylinders_where_they_are_free(
     for free in (True, False):
         method = msgspec.structs.replace(DEFAULT, free_joints=free)
         seen = (told(1, outlines(on_one_leg())[0]), told(2, outlines(on_one_leg())[1]))
-        found = proposed_pose.step(Before(), Instant(BODY, ROLLED, seen, 1 / 15, method))
+        found = proposed_pose.step(Before(), Sighting(BODY, ROLLED, seen, 1 / 15, method))
         ends.append(np.allclose(found.joints_m, joints(body_vector(BODY), found.pose)))
     assert ends == [False, True]

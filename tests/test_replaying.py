@@ -26,7 +26,7 @@ from runtime.store.other_run import OtherRun, run_of
 from runtime.store.past_run import open_run
 from runtime.store.recording import Head, Recording, read_recording
 from runtime.store.runs import write_run
-from tritrack.replaying import _rigs, pairs, replay_on_bus, replay_run, say
+from tritrack.replaying import _rigs, instants, replay_on_bus, replay_run, say
 
 pytest.importorskip("mcap", reason="pip install 'tritrack[mcap]'")
 
@@ -75,7 +75,7 @@ def test_a_body_whose_reports_were_lost_is_left_out(run: Path) -> None:
     recording = read_recording(run)
     recording.reports[0].pop(3)
     recording.reports[1].pop(3)
-    made_of = list(pairs(recording))
+    made_of = list(instants(recording))
     assert len(made_of) == len(recording.bodies) - 1
     assert all(body.captured_s == pair.newest.captured_s for body, pair in made_of)
 
@@ -85,9 +85,9 @@ def test_a_body_of_one_view_is_made_of_that_view_again_whatever_came_too_late(ru
     for n, alone in ((3, (3, -1)), (5, (-1, 5))):
         assert recording.bodies[n].made_of == (n, n)
         recording.bodies[n] = msgspec.structs.replace(recording.bodies[n], made_of=alone)
-    made_of = [pair for _, pair in pairs(recording)]
-    assert made_of[3].second is None
-    assert made_of[5].first is None
+    made_of = [pair for _, pair in instants(recording)]
+    assert made_of[3].views[1] is None
+    assert made_of[5].views[0] is None
     assert len(made_of) == len(recording.bodies)
 
 
@@ -196,10 +196,10 @@ def test_a_viewer_that_counts_anew_is_told_apart_by_the_moment() -> None:
         body_at(9.0, (-1, -1)),
         body_at(5.3, (3, 8)),
     ]
-    found = [*pairs(made_up(first, second, bodies, [late]))]
+    found = [*instants(made_up(first, second, bodies, [late]))]
     assert [body for body, _ in found] == bodies[:4]
-    assert [pair.first for _, pair in found] == [first[0], first[1], first[1], first[1]]
-    set_back, as_it_was = found[2][1].second, found[3][1].second
+    assert [instant.views[0] for _, instant in found] == [first[0], first[1], first[1], first[1]]
+    set_back, as_it_was = found[2][1].views[1], found[3][1].views[1]
     assert set_back is not None
     assert set_back.captured_s == pytest.approx(5.3)
     assert set_back.clock_s == 5.8

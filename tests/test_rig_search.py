@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from staging import report, silhouettes, standing
 
+from common.bus.instant import TwoViews
 from common.bus.messages import Landmarks, Report, ViewerNumber
-from common.bus.pair import Pair
 from common.rig.camera import paper_rig
 from integrator.live_rig import rig_search
 from integrator.live_rig.rig_job import Job, Solved, Stand, Trusted, track_of_bytes
@@ -30,8 +30,8 @@ def seen(
     return report(viewer, MASKS[viewer - 1], landmarks=Landmarks(places, (sure,) * 15), **moment)
 
 
-def both(n: int, swing: float = 30.0, sure: float = 0.9) -> Pair:
-    return Pair(seen(1, n, swing, sure), seen(2, n, swing, sure))
+def both(n: int, swing: float = 30.0, sure: float = 0.9) -> TwoViews:
+    return (seen(1, n, swing, sure), seen(2, n, swing, sure))
 
 
 def moved(seconds: float, state: State | None = None, first: int = 0) -> tuple[State, list[Job]]:
@@ -77,8 +77,8 @@ def test_who_stands_still_or_is_hardly_seen_tells_nothing_and_fills_no_memory(pa
 
 def test_what_is_left_out_leaves_a_row_of_nobody_in_both_views() -> None:
     state, _ = moved(1.0)
-    state, _ = rig_search.step(state, Pair(seen(1, 30, 30.0), None))
-    state, _ = rig_search.step(state, Pair(seen(1, 31, 30.0), None))
+    state, _ = rig_search.step(state, (seen(1, 30, 30.0), None))
+    state, _ = rig_search.step(state, (seen(1, 31, 30.0), None))
     for rows in state.rows:
         track = track_of_bytes(b"".join(rows))
         assert (track.confidence[-1] == 0.0).all()
@@ -136,7 +136,7 @@ def test_view_2_is_set_back_by_what_it_is_late_and_rows_keep_its_own_time() -> N
     state, _ = moved(ASKS_S[0])
     state, _ = answered(state, msgspec.structs.replace(GOOD, late_s=0.2))
     assert state.late_s == 0.2
-    state, _ = rig_search.step(state, Pair(seen(1, 65, 30.0), seen(2, 65, 30.0, late_s=-0.2)))
+    state, _ = rig_search.step(state, (seen(1, 65, 30.0), seen(2, 65, 30.0, late_s=-0.2)))
     assert state.last_s == pytest.approx((65 / HZ, 65 / HZ))
     state, _ = moved(0.0, rig_search.init(1 / HZ, 1.75))
     state, _ = answered(state._replace(asked=1), msgspec.structs.replace(GOOD, late_s=0.02))
@@ -244,7 +244,7 @@ def test_a_job_says_all_that_is_known_and_a_new_search_keeps_what_stays() -> Non
 def test_pictures_of_two_sizes_tell_nothing() -> None:
     state, _ = moved(0.0)
     other = msgspec.structs.replace(seen(2, 9, 30.0), width=161)
-    after, _ = rig_search.step(state, Pair(seen(1, 9, 30.0), other))
+    after, _ = rig_search.step(state, (seen(1, 9, 30.0), other))
     assert (after.rows, after.moved_s) == (state.rows, state.moved_s)
 
 
@@ -254,7 +254,7 @@ def test_who_stops_counts_as_moving_for_a_second_and_then_leaves_a_gap() -> None
     assert box is not None
     tall_px = box.bottom - box.top
 
-    def at(n: int, by_px: float) -> Pair:
+    def at(n: int, by_px: float) -> TwoViews:
         pair = []
         for viewer in (1, 2):
             one = seen(viewer, n, 0.0)
@@ -263,7 +263,7 @@ def test_who_stops_counts_as_moving_for_a_second_and_then_leaves_a_gap() -> None
             places[3] = (places[3][0] + by_px, places[3][1])
             shown = msgspec.structs.replace(one.landmarks, joints_px=tuple(places))
             pair.append(msgspec.structs.replace(one, landmarks=shown))
-        return Pair(pair[0], pair[1])
+        return (pair[0], pair[1])
 
     state, _ = rig_search.step(rig_search.init(1 / HZ, 1.75), at(0, 0.0))
     assert state.posed is not None

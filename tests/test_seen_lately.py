@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from staging import RIG, report, silhouettes, standing
 
+from common.bus.instant import TwoViews
 from common.bus.messages import Landmarks, Report, ViewerNumber
-from common.bus.pair import Pair
 from integrator.live_rig.rig_job import track_of_bytes
 from integrator.live_rig.seen_lately import State, stand_before, step
 
@@ -24,7 +24,7 @@ def seen(viewer: ViewerNumber, captured_s: float, sure: float = 0.9) -> Report:
 def after(times_s: list[float]) -> State:
     state = State()
     for at_s in times_s:
-        state = step(state, Pair(seen(1, at_s), seen(2, at_s + 0.01)))
+        state = step(state, (seen(1, at_s), seen(2, at_s + 0.01)))
     return state
 
 
@@ -49,16 +49,16 @@ def test_a_stand_is_what_each_view_saw_a_second_before_a_move_was_told() -> None
 @pytest.mark.parametrize(
     ("pair", "counts"),
     [
-        (Pair(seen(1, 1.0), None), False),
-        (Pair(None, seen(2, 1.0)), False),
-        (Pair(seen(1, 1.0), report(2, MASKS[1])), False),
-        (Pair(report(1, MASKS[0]), seen(2, 1.0)), False),
-        (Pair(seen(1, 1.0, 0.39), seen(2, 1.0)), False),
-        (Pair(seen(1, 1.0), seen(2, 1.0, 0.39)), False),
-        (Pair(seen(1, 1.0, 0.41), seen(2, 1.0, 0.41)), True),
+        ((seen(1, 1.0), None), False),
+        ((None, seen(2, 1.0)), False),
+        ((seen(1, 1.0), report(2, MASKS[1])), False),
+        ((report(1, MASKS[0]), seen(2, 1.0)), False),
+        ((seen(1, 1.0, 0.39), seen(2, 1.0)), False),
+        ((seen(1, 1.0), seen(2, 1.0, 0.39)), False),
+        ((seen(1, 1.0, 0.41), seen(2, 1.0, 0.41)), True),
     ],
 )
 def test_only_instants_at_which_both_views_are_sure_of_somebody_count(
-    pair: Pair, counts: bool
+    pair: TwoViews, counts: bool
 ) -> None:
     assert bool(step(State(), pair).rows) is counts

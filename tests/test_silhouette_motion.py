@@ -5,9 +5,9 @@ import math
 import pytest
 from staging import NOBODY, report
 
-from calibration.gate.silhouette_motion import NOTHING, State, moves, step
+from calibration.gate.silhouette_motion import State, init, moves, step
+from common.bus.instant import Instant
 from common.bus.messages import Report, ViewerNumber
-from common.bus.pair import Pair
 from common.raster.similarity import Mask
 
 RATE_HZ = 15.0
@@ -20,9 +20,11 @@ def block(left: int, wide: int = 20) -> Mask:
 
 
 def after(first: list[Mask], second: list[Mask], rate_hz: float = RATE_HZ) -> State:
-    state = NOTHING
+    state = init(2)
     for n, masks in enumerate(zip(first, second, strict=True)):
-        state = step(state, Pair(told(1, masks[0], n / rate_hz), told(2, masks[1], n / rate_hz)))
+        state = step(
+            state, Instant((told(1, masks[0], n / rate_hz), told(2, masks[1], n / rate_hz)))
+        )
     return state
 
 
@@ -55,7 +57,7 @@ def test_less_than_half_a_second_and_an_empty_view_tell_nothing() -> None:
 def test_a_view_that_says_nothing_keeps_what_it_showed() -> None:
     walked = [block(40 + n) for n in range(9)]
     state = after(walked, walked)
-    assert step(state, Pair(None, told(2, block(48), 9 / RATE_HZ)))[0] == state[0]
+    assert step(state, Instant((None, told(2, block(48), 9 / RATE_HZ))))[0] == state[0]
     assert moves(state) == (True, True)
 
 
@@ -70,8 +72,11 @@ def test_motion_is_more_than_fifteen_hundredths_of_the_area(changed_px: int, mov
     still = [block(40)] * 8
     state = step(
         after(still, still),
-        Pair(
-            report(1, other, captured_s=8 / RATE_HZ, area_px=1600), told(2, block(40), 8 / RATE_HZ)
+        Instant(
+            (
+                report(1, other, captured_s=8 / RATE_HZ, area_px=1600),
+                told(2, block(40), 8 / RATE_HZ),
+            )
         ),
     )
     assert moves(state) == (moved, False)

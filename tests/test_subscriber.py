@@ -25,14 +25,14 @@ def test_one_view_goes_on_alone_once_the_other_is_over() -> None:
     bus = LocalBus()
     subscriber = Subscriber(bus, (1, 2), PERIOD_S, 0.0, OVER[1:])
     bus.publish(report(1))
-    assert [pair.first is not None for pair in subscriber.pairs()] == [True]
+    assert [pair.views[0] is not None for pair in subscriber.instants()] == [True]
 
 
 def test_what_was_said_last_is_left_to_the_next() -> None:
     bus = LocalBus()
     subscriber = Subscriber(bus, (1, 2), PERIOD_S, 0.0)
     bus.publish(OVER[0])
-    subscriber.pairs()
+    subscriber.instants()
     assert subscriber.over == OVER[:1]
 
 
@@ -43,7 +43,7 @@ def test_a_last_report_that_comes_as_the_wait_runs_out_keeps_its_partner(
     bus, wait = LocalBus(), Inbox.take
     subscriber, now_s = Subscriber(bus, (1, 2), 1.0, 0.0), time.monotonic()
     bus.publish(report(2, clock_s=now_s))
-    assert subscriber.pairs() == []
+    assert subscriber.instants() == []
     late = [report(1, clock_s=now_s), OVER[0]]
 
     def runs_out(inbox: Inbox[Report], timeout_s: float) -> Report | None:
@@ -53,8 +53,8 @@ def test_a_last_report_that_comes_as_the_wait_runs_out_keeps_its_partner(
         return found
 
     monkeypatch.setattr(Inbox, "take", runs_out)
-    pairs = [pair for _ in range(3) for pair in subscriber.pairs()]
-    assert [None in pair for pair in pairs] == [False]
+    pairs = [pair for _ in range(3) for pair in subscriber.instants()]
+    assert [None in pair.views for pair in pairs] == [False]
     assert subscriber.over == OVER[:1]
 
 
@@ -83,12 +83,12 @@ def test_a_report_that_has_no_partner_goes_on_alone_after_two_periods(
     bus = LocalBus()
     subscriber = Subscriber(bus, (1, 2), period_s, 0.0, start_s=99.0)
     bus.publish(report(1, clock_s=clock.now_s))
-    assert subscriber.pairs() == []
+    assert subscriber.instants() == []
     clock.now_s += OVERDUE_PERIODS * period_s - 0.01
-    assert subscriber.pairs() == []
+    assert subscriber.instants() == []
     clock.now_s += 0.02
-    (alone,) = subscriber.pairs()
-    assert (alone.first is not None, alone.second) == (True, None)
+    (alone,) = subscriber.instants()
+    assert (alone.views[0] is not None, alone.views[1]) == (True, None)
 
 
 @pytest.mark.parametrize("started", [None, 99.0], ids=["from the start", "in the place of one"])
@@ -97,11 +97,11 @@ def test_what_comes_at_the_very_first_is_gathered_for_a_moment_and_later_no_more
 ) -> None:
     bus = LocalBus()
     subscriber = Subscriber(bus, (1, 2), PERIOD_S, 0.0, start_s=started)
-    subscriber.pairs()
+    subscriber.instants()
     assert clock.slept_s == []
     for frame in range(3):
         bus.publish(report(1, frame=frame, clock_s=clock.now_s))
-        subscriber.pairs()
+        subscriber.instants()
     assert clock.slept_s == [GATHER_S]
 
 
@@ -110,11 +110,11 @@ def test_times_of_view_2_are_set_back_and_waited_for_as_much_longer(clock: Clock
     subscriber = Subscriber(bus, (1, 2), 0.1, 0.0, start_s=99.0)
     subscriber.late_s = 0.5
     bus.publish(report(1, captured_s=7.0, clock_s=clock.now_s))
-    assert subscriber.pairs() == []
+    assert subscriber.instants() == []
     clock.now_s += 0.3
-    assert subscriber.pairs() == [], "longer than two periods"
+    assert subscriber.instants() == [], "longer than two periods"
     bus.publish(report(2, captured_s=7.5, clock_s=clock.now_s))
-    (both,) = subscriber.pairs()
-    assert both.first is not None
-    assert both.second is not None
-    assert both.second.captured_s == pytest.approx(7.0)
+    (both,) = subscriber.instants()
+    assert both.views[0] is not None
+    assert both.views[1] is not None
+    assert both.views[1].captured_s == pytest.approx(7.0)

@@ -5,15 +5,15 @@ import numpy as np
 import pytest
 from rolling import BODY, ROLLED, on_one_leg, outlines, told
 
+from common.bus.instant import Instant
 from common.bus.messages import Report
-from common.bus.pair import Pair
 from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask, similarity
 from common.rig.camera import project
 from integrator.proposal import pose_proposal
 from integrator.rig.undistortion import (
     undistorted,
-    undistorted_pair,
+    undistorted_instant,
     undistorted_report,
     undistorted_rig,
 )
@@ -54,9 +54,9 @@ def test_a_bent_silhouette_is_the_straight_one_again() -> None:
 
 def test_a_lens_that_does_not_bend_changes_nothing() -> None:
     first, second = outlines(on_one_leg())
-    pair = Pair(told(1, first), told(2, second))
-    assert undistorted_pair(ROLLED, pair) == pair
-    assert undistorted_pair(None, pair) == pair
+    pair = Instant((told(1, first), told(2, second)))
+    assert undistorted_instant(ROLLED, pair) == pair
+    assert undistorted_instant(None, pair) == pair
     assert undistorted_rig(ROLLED) is ROLLED
 
 

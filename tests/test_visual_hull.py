@@ -8,7 +8,6 @@ import numpy as np
 from posing import posed
 from rolling import ROLLED, on_one_leg, outlines, told
 
-from common.bus.pair import Pair
 from common.raster.kernel import view_of
 from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
@@ -46,7 +45,7 @@ def test_a_person_alone_is_kept_and_reported_as_before() -> None:
         first, second = outlines(pose)
         for before, after in zip((first, second), kept(first, second), strict=True):
             assert share(after, before) > 0.97
-        pair = Pair(told(1, first), told(2, second))
+        pair = (told(1, first), told(2, second))
         assert visual_hull.cleaned(ROLLED, pair) == (pair, False)
 
 
@@ -56,9 +55,9 @@ def test_what_one_view_alone_shows_goes_and_the_border_is_free_again() -> None:
     glare = np.zeros_like(first)
     glare[200:240, 0:40] = True
     spoilt = first | glare
-    found = visual_hull.cleaned(ROLLED, Pair(told(1, spoilt), told(2, second)))
+    found = visual_hull.cleaned(ROLLED, (told(1, spoilt), told(2, second)))
     assert found.clutter
-    report = found.pair.first
+    report = found.seen[0]
     assert report is not None
     assert told(1, spoilt).cut
     assert not report.cut
@@ -102,9 +101,9 @@ def test_outlines_without_a_common_place_are_left_alone() -> None:
     first, second = outlines(on_one_leg())
     corner = np.zeros_like(second)
     corner[:10, :10] = True
-    pair = Pair(told(1, first), told(2, corner))
+    pair = (told(1, first), told(2, corner))
     assert visual_hull.cleaned(ROLLED, pair) == (pair, False)
-    alone = Pair(told(1, first), None)
+    alone = (told(1, first), None)
     assert visual_hull.cleaned(ROLLED, alone) == (alone, False)
 
 
@@ -176,8 +175,8 @@ def test_little_clutter_is_left_as_it_is() -> None:
         spoilt = second.copy()
         rows = int(np.ceil(share * visual_hull.CLUTTER_SHARE * area / 20))
         spoilt[10 : 10 + rows, 0:20] = True
-        pair = Pair(told(1, first), told(2, spoilt))
+        pair = (told(1, first), told(2, spoilt))
         found = visual_hull.cleaned(ROLLED, pair)
         assert found.clutter == is_clutter
         if not is_clutter:
-            assert found.pair == pair
+            assert found.seen == pair

@@ -7,13 +7,13 @@ from rich.console import Console
 
 from animator.page.live import LivePage
 from animator.scene import Snapshot
+from common.bus.instant import Instant
 from common.bus.messages import Report
-from common.bus.pair import Pair
 from common.bus.process import ProcessContext, process
 from common.rig.camera import Rig
 from runtime.store.past_run import open_run
 from runtime.store.recording import Recording, read_recording
-from tritrack.replaying import pairs
+from tritrack.replaying import instants
 
 MOST_BYTES: Final = 160_000_000
 """Of the frames that the page keeps for a browser: some ten minutes, as many as a browser does."""
@@ -47,7 +47,7 @@ def replay_on_page(folder: Path, port: int, console: Console) -> dict[str, Any]:
 def show(page: LivePage, recording: Recording) -> int:
     """Tell a page all bodies of a recording, each with its outlines and its posture; how many."""
     rigs: dict[int, Rig | None] = {told.calibration: told.rig for told in recording.cameras}
-    made_of = {body.captured_s: pair for body, pair in pairs(recording)}
+    made_of = {body.captured_s: instant for body, instant in instants(recording)}
     postures = {posture.captured_s: posture for posture in recording.postures}
     calibration, performed = -1, ""
     for body in recording.bodies:
@@ -63,5 +63,6 @@ def show(page: LivePage, recording: Recording) -> int:
     return len(recording.bodies)
 
 
-def _reports(pair: Pair | None) -> dict[int, Report]:
-    return {report.viewer: report for report in pair or () if report}
+def _reports(instant: Instant | None) -> dict[int, Report]:
+    views = () if instant is None else instant.views
+    return {report.viewer: report for report in views if report}

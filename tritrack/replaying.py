@@ -12,9 +12,9 @@ from rich.console import Console
 
 from common.bus.bus import Bus, open_hub
 from common.bus.control_messages import Cameras
+from common.bus.instant import Instant
 from common.bus.message_codec import encode
 from common.bus.messages import Body, Message, Moment, Report
-from common.bus.pair import Pair
 from common.bus.rate import wait_until
 from common.config.part_settings import BusSettings
 from common.method import METHODS
@@ -64,7 +64,7 @@ def replay_run(folder: Path, out: Path | None, force: bool = False) -> dict[str,
 
 
 def integrated(recording: Recording) -> Replayed:
-    """The bodies that the recorded reports give, in the recorded pairs."""
+    """The bodies that the recorded reports give, in the recorded instants."""
     head = recording.head
     opening = opening_posture.init(head.body)
     state = merge_state.init(
@@ -76,16 +76,16 @@ def integrated(recording: Recording) -> Replayed:
     )
     rigs = {told.calibration: told.rig for told in recording.cameras}
     bodies, same = [], 0
-    for before, pair in pairs(recording):
+    for before, instant in instants(recording):
         if before.calibration > state.calibration and before.calibration in rigs:
             state = with_rig(state, rigs[before.calibration])
-        state, body, _guide = merge.step(state, pair)
+        state, body, _guide = merge.step(state, instant)
         bodies.append(body)
         same += encode(body) == encode(before)
     return Replayed(bodies, same, state.scale_source)
 
 
-def pairs(recording: Recording) -> Iterator[tuple[Body, Pair]]:
+def instants(recording: Recording) -> Iterator[tuple[Body, Instant]]:
     """Each recorded body with the reports that it was made of, if none of these is lost."""
     first, second = (_by_frame(reports) for reports in recording.reports)
     late_s = {told.calibration: told.late_s for told in recording.cameras}
@@ -97,7 +97,7 @@ def pairs(recording: Recording) -> Iterator[tuple[Body, Pair]]:
         other = _near(others, body, tolerance_s)
         found = (-1 if one is None else one.frame, -1 if other is None else other.frame)
         if found == body.made_of != (-1, -1):
-            yield body, Pair(one, other)
+            yield body, Instant((one, other))
 
 
 def _by_frame(reports: Sequence[Report]) -> defaultdict[int, list[Report]]:

@@ -58,12 +58,15 @@ class Guides:
         self._inbox, self._viewer = inbox, viewer
 
     def of_frame(self, index: int, wait_s: float) -> Guide | None:
-        """The guide that has heard of this viewer's frame; else the newest, counted as a miss."""
+        """The guide that has heard of this viewer's frame; else the newest, counted as a miss.
+
+        One of a rig that lacks this viewer's camera is none.
+        """
         until_s = time.monotonic() + wait_s
         while self.heard < index:
             left_s = until_s - time.monotonic()
             guide = self._inbox.take(max(0.0, left_s))
-            if guide is not None:
+            if guide is not None and len(guide.frames) >= self._viewer:
                 self.newest = guide
             elif left_s <= 0:
                 self.misses += 1

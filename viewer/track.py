@@ -179,11 +179,12 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
 
 
 def _moving_since_s(state: State, guide: Guide | None) -> float | None:
-    """Since when the person in this view has moved in the other; None where that is not known."""
-    other = 2 - state.setup.viewer
-    if guide is None or state.near_px is None or not guide.moves[other]:
+    """Since when the person in this view has moved in another; None where that is not known."""
+    if guide is None or state.near_px is None:
         return None
-    return guide.captured_s - MOTION_S
+    own = state.setup.viewer
+    moves = any(moves for number, moves in enumerate(guide.moves, start=1) if number != own)
+    return guide.captured_s - MOTION_S if moves else None
 
 
 def describe(state: State, report: Report, mask: Mask, guide: Guide | None) -> tuple[State, Report]:

@@ -6,8 +6,8 @@ import msgspec
 import numpy as np
 
 from common.body.body import Vector
+from common.bus.instant import Instant
 from common.bus.messages import Report, ViewerNumber
-from common.bus.pair import Pair
 from common.rig.camera import Camera, Rig, arrays_of
 from common.rig.picture_shift import Shift
 from common.rig.turned_camera import turn_of, turned
@@ -24,9 +24,9 @@ MOVED_LEFT: Final = 0.05
 class MovedCameras(NamedTuple):
     """What the viewers tell of how their cameras stand."""
 
-    now: tuple[Shift, Shift] = (AS_IT_WAS, AS_IT_WAS)
+    now: tuple[Shift, ...] = (AS_IT_WAS, AS_IT_WAS)
     """Against the start of the run."""
-    of_rig: tuple[Shift, Shift] = (AS_IT_WAS, AS_IT_WAS)
+    of_rig: tuple[Shift, ...] = (AS_IT_WAS, AS_IT_WAS)
     """The same when the rig in use was told."""
     unconfirmed: tuple[ViewerNumber, ...] = ()
     """Cameras whose place in it was told by their picture alone, as if turned on the spot."""
@@ -34,19 +34,17 @@ class MovedCameras(NamedTuple):
     @property
     def moved(self) -> tuple[ViewerNumber, ...]:
         """The cameras that the rig in use does not have where they stand."""
-        numbers: tuple[ViewerNumber, ...] = (1, 2)
+        shifts = zip(self.now, self.of_rig, strict=True)
         return tuple(
             n
-            for n, now, before in zip(numbers, self.now, self.of_rig, strict=True)
+            for n, (now, before) in enumerate(shifts, start=1)
             if far_px(now, before) > OTHERWISE_PX
         )
 
     @property
     def doubtful(self) -> tuple[ViewerNumber, ...]:
         """These, and those whose new place nobody has confirmed."""
-        both = {*self.moved, *self.unconfirmed}
-        numbers: tuple[ViewerNumber, ...] = (1, 2)
-        return tuple(n for n in numbers if n in both)
+        return tuple(sorted({*self.moved, *self.unconfirmed}))
 
     @property
     def left(self) -> float:
@@ -62,13 +60,18 @@ def far_px(one: Shift, other: Shift) -> float:
     return float(max(abs(one.right_px - other.right_px), abs(one.down_px - other.down_px), roll_px))
 
 
-def step(state: MovedCameras, pair: Pair) -> MovedCameras:
+def init(cameras: int) -> MovedCameras:
+    """So many cameras stand as they stood."""
+    return MovedCameras((AS_IT_WAS,) * cameras, (AS_IT_WAS,) * cameras)
+
+
+def step(state: MovedCameras, instant: Instant) -> MovedCameras:
     """One instant more."""
-    first, second = (
+    now = tuple(
         before if report is None or report.fault else _shift(report)
-        for report, before in zip(pair, state.now, strict=True)
+        for report, before in zip(instant.views, state.now, strict=True)
     )
-    return state._replace(now=(first, second))
+    return state._replace(now=now)
 
 
 def _shift(report: Report) -> Shift:
@@ -79,10 +82,10 @@ def told_by(state: MovedCameras, before: Rig | None, rig: Rig) -> MovedCameras:
     """The same from a new rig on: what of it is the cameras' turn alone is not confirmed."""
     unconfirmed: tuple[ViewerNumber, ...] = ()
     if before is not None:
-        numbers: tuple[ViewerNumber, ...] = (1, 2)
+        cameras = zip(before.cameras, rig.cameras, strict=True)
         unconfirmed = tuple(
             n
-            for n, old, new in zip(numbers, before.cameras, rig.cameras, strict=True)
+            for n, (old, new) in enumerate(cameras, start=1)
             if old != new and stays(old, new) and n in state.moved
         )
     return state._replace(of_rig=state.now, unconfirmed=unconfirmed)

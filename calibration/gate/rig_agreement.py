@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from calibration.tracks.joint_tracks import is_upright
 from calibration.tracks.person_prior import ANKLE_SHARE
 from common.body.body import JOINT_NAMES, OTHER_SIDE, Vector
+from common.bus.instant import TwoViews
 from common.bus.messages import Agreement, Landmarks, Report
-from common.bus.pair import Seen
 from common.rig.camera import Camera, Rig, arrays_of, rays
 
 SAMPLES, APART_S = 40, 0.15
@@ -69,7 +69,7 @@ class State(NamedTuple):
     told: Agreement | None = None
 
 
-def step(state: State, rig: Rig, seen: Seen) -> State:
+def step(state: State, rig: Rig, seen: TwoViews) -> State:
     """One instant more.
 
     Args:

@@ -4,8 +4,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from common.bus.instant import Instant
 from common.bus.messages import MOTION_S, Report
-from common.bus.pair import Pair
 
 MOVED: Final = 0.15
 """Pixels that became the person's or ceased to be, as a share of the silhouette, where somebody
@@ -20,15 +20,18 @@ class Shown(NamedTuple):
     area_px: int
 
 
-State = tuple[tuple[Shown, ...], tuple[Shown, ...]]
+State = tuple[tuple[Shown, ...], ...]
 """The silhouettes of each view, oldest first: the last MOTION_S, and one that is older."""
-NOTHING: Final[State] = ((), ())
 
 
-def step(state: State, pair: Pair) -> State:
+def init(cameras: int) -> State:
+    """Nothing was seen by so many views."""
+    return ((),) * cameras
+
+
+def step(state: State, instant: Instant) -> State:
     """One instant more; a view without a person shows no motion."""
-    first, second = (_with(own, report) for own, report in zip(state, pair, strict=True))
-    return first, second
+    return tuple(_with(own, report) for own, report in zip(state, instant.views, strict=True))
 
 
 def _with(own: tuple[Shown, ...], report: Report | None) -> tuple[Shown, ...]:
@@ -41,10 +44,9 @@ def _with(own: tuple[Shown, ...], report: Report | None) -> tuple[Shown, ...]:
     return own[old[-1] :] if old else own
 
 
-def moves(state: State) -> tuple[bool, bool]:
+def moves(state: State) -> tuple[bool, ...]:
     """Whether the person has moved in each view within MOTION_S; False where that is not known."""
-    first, second = (_moves(own) for own in state)
-    return first, second
+    return tuple(_moves(own) for own in state)
 
 
 def _moves(own: tuple[Shown, ...]) -> bool:

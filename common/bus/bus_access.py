@@ -2,7 +2,7 @@
 
 from typing import Any, Final, NamedTuple
 
-from common.bus.bus_keys import Part
+from common.bus.bus_keys import VIEWERS, Part
 from common.bus.control_messages import Answer, Cameras, ClockQuestion, Command, Ended, Pulse
 from common.bus.inbox import QUESTIONS
 from common.bus.message_codec import TOPICS
@@ -21,8 +21,7 @@ class Right(NamedTuple):
 
 _VIEWER: Final = (Report, Picture, Ended, Pulse, Answer), (ClockQuestion,)
 RIGHTS: Final[dict[Part, Right]] = {
-    "viewer1": Right("viewer 1", *_VIEWER, viewer=1),
-    "viewer2": Right("viewer 2", *_VIEWER, viewer=2),
+    **{part: Right(f"viewer {n}", *_VIEWER, viewer=n) for n, part in VIEWERS.items()},
     "recognizer": Right("recognizer", (Posture, Pulse), (ClockQuestion,)),
     "animator": Right("animator", (Command, Pulse)),
     "supervisor": Right(says=(Answer,)),

@@ -6,14 +6,33 @@ from typing import Any, Final, Literal, NamedTuple, get_args
 from common.bus.messages import ViewerNumber
 
 Part = Literal[
-    "integrator", "viewer1", "viewer2", "recognizer", "animator", "supervisor", "metrics", "client"
+    "integrator",
+    "viewer1",
+    "viewer2",
+    "viewer3",
+    "viewer4",
+    "viewer5",
+    "viewer6",
+    "viewer7",
+    "viewer8",
+    "recognizer",
+    "animator",
+    "supervisor",
+    "metrics",
+    "client",
 ]
 """Who speaks on a bus: the common name of a certificate. A client only listens."""
 
 PARTS: Final[tuple[Part, ...]] = get_args(Part)
 HUB: Final[Part] = "integrator"
 """All others connect to it: its certificate is a server's."""
-VIEWERS: Final[dict[ViewerNumber, Part]] = {1: "viewer1", 2: "viewer2"}
+VIEWERS: Final[dict[ViewerNumber, Part]] = dict(
+    enumerate((part for part in PARTS if part.startswith("viewer")), start=1)
+)
+PARTS_OF_EVERY_RUN: Final = tuple(
+    part for part in PARTS if part not in ("client", *list(VIEWERS.values())[2:])
+)
+"""Whose keys are looked for before a run starts; the viewer of a third camera looks itself."""
 AUTHORITY: Final = "ca.pem"
 """The certificate that signed all others; every host of a run needs it."""
 

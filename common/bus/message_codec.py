@@ -9,6 +9,7 @@ from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES, Bdp, E
 from common.body.extremities import EXTREMITY_NAMES
 from common.bus.control_messages import Answer, Cameras, Command, Ended, Pulse
 from common.bus.messages import (
+    MOST_VIEWS,
     PROTOCOL,
     Agreement,
     Body,
@@ -65,33 +66,24 @@ Said = TypeVar("Said", bound=Message)
 MOST: Final = 1e9
 """No number of ours is larger: seconds of thirty years, pixels, frames."""
 _CARRIERS: Final = (
-    Agreement,
-    Box,
-    Measure,
-    Fit,
-    Landmarks,
-    Lifting,
-    Performance,
-    Bdp,
-    Elliptic,
-    Round,
-    Rig,
-    Shift,
-    Camera,
-    Upright,
+    *(Agreement, Box, Measure, Fit, Landmarks, Lifting, Performance),
+    *(Bdp, Elliptic, Round, Rig, Shift, Camera, Upright),
 )
 """Structs in messages whose numbers are looked at."""
+_VIEWS: Final = tuple(range(MOST_VIEWS + 1))
 _LENGTHS: Final[dict[tuple[type[Message], str], tuple[int, ...]]] = {
     (Guide, "pose"): (0, len(POSE_NAMES)),
     (Body, "pose"): (0, len(POSE_NAMES)),
     (Body, "joints_m"): (0, len(JOINT_NAMES)),
-    (Body, "joints_px"): (0, 1, 2),
+    (Body, "joints_px"): _VIEWS,
     (Body, "angles_raw_deg"): (0, len(ANGLE_NAMES)),
     (Body, "confidence"): (0, len(JOINT_NAMES)),
     (Body, "extremities_m"): (0, len(EXTREMITY_NAMES)),
-    (Body, "extremities_px"): (0, 1, 2),
+    (Body, "extremities_px"): _VIEWS,
     (Body, "extremities_confidence"): (0, len(EXTREMITY_NAMES)),
-    (Body, "moved"): (0, 1, 2),
+    (Body, "moved"): _VIEWS,
+    **{(Body, name): _VIEWS[1:] for name in ("score", "facing", "made_of")},
+    (Guide, "frames"): _VIEWS[1:],
 }
 
 
@@ -151,8 +143,10 @@ def _refuse_what_no_process_would_say(message: Message) -> None:
             _refuse_a_large_number(name, value)
     if isinstance(message, Report):
         _refuse_a_false_report(message)
-    if isinstance(message, Body):
+    elif isinstance(message, Body):
         _refuse_a_false_body(message)
+    elif isinstance(message, Guide):
+        _refuse_a_false_guide(message)
 
 
 def _refuse_a_false_report(report: Report) -> None:
@@ -192,12 +186,10 @@ def _refuse_false_landmarks(landmarks: Landmarks) -> None:
         length = len(getattr(landmarks, name))
         if length != len(JOINT_NAMES):
             raise MalformedMessage(f"{name} has {length} entries, not {len(JOINT_NAMES)}")
-    for name in ("extremities_px", "extremities_confidence"):
-        if len(getattr(landmarks, name)) not in (0, len(EXTREMITY_NAMES)):
-            raise MalformedMessage(f"{name} has no {len(EXTREMITY_NAMES)} entries")
-    for name in ("second_px", "second_confidence"):
-        if len(getattr(landmarks, name)) not in (0, len(JOINT_NAMES)):
-            raise MalformedMessage(f"{name} has no {len(JOINT_NAMES)} entries")
+    for kind, names in (("extremities", EXTREMITY_NAMES), ("second", JOINT_NAMES)):
+        for name in (f"{kind}_px", f"{kind}_confidence"):
+            if len(getattr(landmarks, name)) not in (0, len(names)):
+                raise MalformedMessage(f"{name} has no {len(names)} entries")
     if len(landmarks.extremities_px) != len(landmarks.extremities_confidence):
         raise MalformedMessage("extremities without their confidence")
     if len(landmarks.second_px) != len(landmarks.second_confidence):
@@ -210,6 +202,13 @@ def _refuse_false_landmarks(landmarks: Landmarks) -> None:
         raise MalformedMessage("landmarks of confidences beyond 0 to 1")
     if not -180.0 <= landmarks.facing_deg <= 180.0:
         raise MalformedMessage(f"landmarks that face {landmarks.facing_deg} degrees")
+
+
+def _refuse_a_false_guide(guide: Guide) -> None:
+    """What is by camera is of all cameras, or a viewer finds no entry of its own."""
+    for name in ("facing", "scale_px_per_m", "root_px", "rest_row_px", "moves"):
+        if len(getattr(guide, name)) != len(guide.frames):
+            raise MalformedMessage(f"{name} has no {len(guide.frames)} entries")
 
 
 def _refuse_a_false_body(body: Body) -> None:

@@ -160,8 +160,9 @@ class Report(Moment, frozen=True, kw_only=True):
 class Guide(Moment, frozen=True, kw_only=True):
     """What the integrator tells the viewers for their next frame."""
 
-    frames: tuple[int, int]
-    """The last frame of each viewer that it has heard of; -1: none."""
+    frames: tuple[int, ...]
+    """The last frame of each viewer that it has heard of; -1: none. This and all else by camera is
+    in the order of the rig's cameras."""
     status: Status = "empty"
     bdp: Bdp | None = None
     """Universal BDPs, metres; None until somebody was seen."""
@@ -171,9 +172,9 @@ class Guide(Moment, frozen=True, kw_only=True):
     scale_px_per_m: tuple[float, ...] = (0.0, 0.0)
     """Size of a metre at the body in each picture: reference scale times r_t,n (section 4.2); 0
     where a camera has the body behind it."""
-    root_px: tuple[Pixel, Pixel] = ((0.0, 0.0), (0.0, 0.0))
+    root_px: tuple[Pixel, ...] = ((0.0, 0.0), (0.0, 0.0))
     """Where to expect the navel in each picture."""
-    rest_row_px: tuple[float, float] = (0.0, 0.0)
+    rest_row_px: tuple[float, ...] = (0.0, 0.0)
     """Row of each picture where the navel would be if the person stood upright there (P33)."""
     pose: tuple[float, ...] = ()
     """Predicted pose, POSE_NAMES order, metres and degrees."""
@@ -181,9 +182,9 @@ class Guide(Moment, frozen=True, kw_only=True):
     """A stick body is asked for: one view is left, and what it proposes does not fit."""
     proposes: bool = False
     """The integrator reads the pose off the silhouettes: angles are not to be searched for."""
-    moves: tuple[bool, bool] = (False, False)
+    moves: tuple[bool, ...] = (False, False)
     """Whether each view's silhouette has changed within the last MOTION_S as a person's who moves:
-    a picture of the other that has not is no picture of now."""
+    a picture of another that has not is no picture of now."""
 
 
 class Lifting(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -236,7 +237,8 @@ class Body(Moment, frozen=True, kw_only=True):
     """The same in the picture of each camera."""
     extremities_confidence: tuple[float, ...] = ()
     """EXTREMITY_NAMES order, in [0, 1]; 0: not measured, it follows from the joints."""
-    score: tuple[float, float] = (0.0, 0.0)
+    score: tuple[float, ...] = (0.0, 0.0)
+    """S of the pose in the picture of each camera; 0 where it sees no person."""
     facing: tuple[Facing, ...] = ("facade", "flank")
     bdp: Bdp | None = None
     matches: int = 0
@@ -250,8 +252,8 @@ class Body(Moment, frozen=True, kw_only=True):
     """None where one view alone shows the body, and until enough was seen."""
     moved: tuple[ViewerNumber, ...] = ()
     """Cameras that were moved, and whose new place the person has not confirmed yet."""
-    made_of: tuple[int, int] = (-1, -1)
-    """Frames of the reports of viewer 1 and 2 that it is made of; -1: none of that viewer."""
+    made_of: tuple[int, ...] = (-1, -1)
+    """Frames of each viewer's report that it is made of; -1: none of that viewer."""
 
 
 class Performance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

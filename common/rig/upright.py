@@ -24,8 +24,9 @@ class Upright(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return swapped((self.square_width, self.square_height), self.quarters)
 
 
-Uprights = tuple[Upright | None, Upright | None]
-"""Of both views; None: the picture that is worked on is the file's, made smaller."""
+Uprights = tuple[Upright | None, ...]
+"""Of each view, in the order of the rig's cameras; None: the picture that is worked on is the
+file's, made smaller."""
 
 
 def swapped(size: Size, quarters: int) -> Size:

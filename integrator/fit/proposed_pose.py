@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from common.body.body import Bdp, Vector, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
-from common.bus.pair import Pair, Seen
+from common.bus.instant import Seen, two_views
 from common.method import Method
 from common.rig.camera import Rig
 from integrator.fit import visual_hull
@@ -32,7 +32,7 @@ class Before(NamedTuple):
     landmarks: landmark_fusion.Memory | None = None
 
 
-class Instant(NamedTuple):
+class Sighting(NamedTuple):
     """What both views show, and what it is held against."""
 
     bdp: Bdp
@@ -63,7 +63,7 @@ class ProposedPose(NamedTuple):
     """The body; another than before where it was a prior by silhouettes with clutter."""
 
 
-def step(before: Before, now: Instant) -> ProposedPose:
+def step(before: Before, now: Sighting) -> ProposedPose:
     """One instant of both views.
 
     A pose in which the network is not confident and that fits badly is looked for in the
@@ -84,7 +84,7 @@ def step(before: Before, now: Instant) -> ProposedPose:
     )
 
 
-def _proposed(before: Before, now: Instant) -> PoseProposal:
+def _proposed(before: Before, now: Sighting) -> PoseProposal:
     up = pose_proposal.up_of(now.bdp, before.pose)
     return pose_proposal.step(
         before.memory, now.bdp, now.rig, now.seen, now.dt_s, up, now.method.lifting
@@ -92,7 +92,7 @@ def _proposed(before: Before, now: Instant) -> PoseProposal:
 
 
 def _with_landmarks(
-    before: Before, now: Instant, known: PoseProposal
+    before: Before, now: Sighting, known: PoseProposal
 ) -> tuple[PoseProposal, landmark_fusion.Memory | None]:
     """The proposal made one with what the pictures show of the joints, where they show any."""
     rays = rays_of(now.rig, now.seen)
@@ -105,17 +105,17 @@ def _with_landmarks(
 
 
 def _without_clutter(
-    before: Before, now: Instant, known: PoseProposal
-) -> tuple[Instant, PoseProposal]:
+    before: Before, now: Sighting, known: PoseProposal
+) -> tuple[Sighting, PoseProposal]:
     """The instant without what both views do not show as one piece, if that is surer."""
     body, was = body_vector(now.bdp), rest_pose() if before.pose is None else before.pose
     pose, _ = pose_proposal.pose_and_rest(body, was, known.joints_m)
     if poorest(pose, body, now.rig, now.seen) >= POOR:
         return now, known
-    cleaned = visual_hull.cleaned(now.rig, Pair(*now.seen))
+    cleaned = visual_hull.cleaned(now.rig, two_views(now.seen))
     if not cleaned.clutter:
         return now, known
-    kept = cleaned.pair.detections
+    kept = cleaned.seen
     clean = now._replace(seen=kept, bdp=prior(now.rig, kept) if now.is_first else now.bdp)
     again = _proposed(before, clean)
     return (clean, again) if again.confidence.mean() > known.confidence.mean() else (now, known)

@@ -16,7 +16,7 @@ from common.body.proportions import (
     stature,
     thesis_bdp,
 )
-from common.bus.pair import Seen
+from common.bus.instant import Seen
 from common.compiled import compiled
 from common.raster.kernel import match
 from common.rig.camera import Rig

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.body.kinematics import ALL_LIMBS
+from common.bus.instant import Seen
 from common.bus.messages import Report
-from common.bus.pair import Seen
 from common.compiled import compiled
 from common.raster.bits import Bits, count
 from common.raster.kernel import draw_limbs, match, match_over, view_of

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.pair import Pair
+from common.bus.instant import TwoViews
 from common.compiled import compiled
 from common.raster.kernel import NEAREST_M, seen_at, view_of
 from common.raster.silhouette_report import unpack, with_silhouette
@@ -35,28 +35,28 @@ CLUTTER_SHARE: Final = 0.03
 class Cleaned(NamedTuple):
     """Two reports of one piece, and whether anything else was in them."""
 
-    pair: Pair
+    seen: TwoViews
     clutter: bool
 
 
-def cleaned(rig: Rig, pair: Pair) -> Cleaned:
+def cleaned(rig: Rig, seen: TwoViews) -> Cleaned:
     """The reports of an instant without what is no part of the person.
 
     Args:
         rig: Two cameras; their world has y up and its floor at 0.
-        pair: What was seen, left as it is where one view alone shows somebody.
+        seen: The reports with a person, left as it is where one view alone shows somebody.
     """
-    first, second = pair.detections
+    first, second = seen
     if first is None or second is None:
-        return Cleaned(pair, False)
+        return Cleaned(seen, False)
     masks = (unpack(first), unpack(second))
     kept = one_piece(rig, masks)
     if kept is None or not any(
         after.sum() < (1.0 - CLUTTER_SHARE) * before.sum()
         for after, before in zip(kept, masks, strict=True)
     ):
-        return Cleaned(pair, False)
-    return Cleaned(Pair(with_silhouette(first, kept[0]), with_silhouette(second, kept[1])), True)
+        return Cleaned(seen, False)
+    return Cleaned((with_silhouette(first, kept[0]), with_silhouette(second, kept[1])), True)
 
 
 def one_piece(rig: Rig, masks: tuple[Mask, Mask]) -> tuple[Mask, Mask] | None:

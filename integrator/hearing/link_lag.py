@@ -3,6 +3,7 @@
 from typing import Final, NamedTuple
 
 from common.bus.messages import ViewerNumber
+from integrator.pairing import with_item
 
 LOOKS_AT: Final = 30
 """Moments at which reports came: the quickest of so many tells what the link takes."""
@@ -24,17 +25,17 @@ class Link(NamedTuple):
 
 
 class State(NamedTuple):
-    """What is known of both links."""
+    """What is known of each view's link."""
 
     period_s: float
-    links: tuple[Link, Link] = (Link(), Link())
+    links: tuple[Link, ...] = (Link(), Link())
     news: tuple[str, ...] = ()
     """What was told, a line each."""
 
 
-def init(period_s: float) -> State:
-    """Nothing was heard."""
-    return State(period_s)
+def init(period_s: float, cameras: int = 2) -> State:
+    """Nothing was heard of so many views."""
+    return State(period_s, (Link(),) * cameras)
 
 
 def heard(state: State, viewer: ViewerNumber, now_s: float, late_s: float) -> State:
@@ -47,7 +48,7 @@ def heard(state: State, viewer: ViewerNumber, now_s: float, late_s: float) -> St
 
 
 def lag_s(state: State) -> float:
-    """How long the slower view's reports are to be waited for beyond what others are."""
+    """How long the slowest view's reports are to be waited for beyond what others are."""
     slowest = max((min(link.late_s) for link in state.links if link.late_s), default=0.0)
     return min(LONGEST_S, max(0.0, slowest))
 
@@ -60,7 +61,7 @@ def told(state: State, since_s: float) -> tuple[State, list[str]]:
         since_s: Seconds since the run began.
     """
     lines: list[str] = []
-    for viewer, link in zip((1, 2), state.links, strict=True):
+    for viewer, link in enumerate(state.links, start=1):
         if len(link.late_s) < LOOKS_AT:
             continue
         slow_s, bound_s = min(link.late_s), SLOW_PERIODS * state.period_s
@@ -71,10 +72,9 @@ def told(state: State, since_s: float) -> tuple[State, list[str]]:
                 f"or its clock was set); {waits}"
             )
         is_told = slow_s > (bound_s / 2 if link.is_told else bound_s)
-        state = _with(state, 1 if viewer == 1 else 2, link._replace(is_told=is_told))
+        state = _with(state, viewer, link._replace(is_told=is_told))
     return state._replace(news=(*state.news, *lines)), lines
 
 
 def _with(state: State, viewer: ViewerNumber, link: Link) -> State:
-    first, second = state.links
-    return state._replace(links=(link, second) if viewer == 1 else (first, link))
+    return state._replace(links=with_item(state.links, viewer - 1, link))

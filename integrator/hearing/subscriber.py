@@ -1,4 +1,4 @@
-"""What the viewers say, in pairs of one instant."""
+"""What the viewers say, by the instant."""
 
 import logging
 import time
@@ -7,8 +7,8 @@ from typing import Final
 from common.bus.bus import Bus
 from common.bus.control_messages import ClockQuestion, Command, Ended
 from common.bus.inbox import Alive
+from common.bus.instant import Instant
 from common.bus.messages import Report, ViewerNumber
-from common.bus.pair import Pair
 from integrator import pairing, presence
 from integrator.hearing import link_lag
 from integrator.hearing.run_start import Starter
@@ -26,13 +26,13 @@ GATHER_S: Final = 0.3
 """Started again in the middle of a run, it waits so long for what the viewers say once more, and
 takes it in by its time."""
 OVERDUE_PERIODS: Final = 2.0
-"""A report whose partner is two frames late goes on alone, and so do those after it."""
+"""A report goes on without another of its instant that is two frames late, as do those after it."""
 
 log = logging.getLogger(__name__)
 
 
 class Subscriber:
-    """What the viewers say, in pairs of one instant, and who of them is there."""
+    """What the viewers say, by the instant, and who of them is there."""
 
     def __init__(
         self,
@@ -42,8 +42,10 @@ class Subscriber:
         wait_s: float,
         over: tuple[Ended, ...] = (),
         start_s: float | None = None,
+        cameras: int = 2,
     ) -> None:
-        """Listen from now on; the run may have begun, and some viewers have ended, before."""
+        """Listen to viewers of a rig of so many cameras from now on; the run may have begun, and
+        some viewers have ended, before."""
         self.starter = Starter(frozenset(viewers), wait_s, start_s)
         self._gathers = start_s is not None
         """It was started again, and has yet to wait for what is said once more."""
@@ -53,9 +55,9 @@ class Subscriber:
         self._alive = bus.watch_alive()
         self._moves: list[Alive | Ended] = []
         """Who came, went and ended, until all is in that they reported before."""
-        self._paired = pairing.init(period_s, viewers)
-        self._present = presence.init(period_s, viewers)
-        self._links = link_lag.init(period_s)
+        self._paired = pairing.init(period_s, viewers, cameras)
+        self._present = presence.init(period_s, viewers, cameras)
+        self._links = link_lag.init(period_s, cameras)
         self._period_s, self._overdue_s = period_s, OVERDUE_PERIODS * period_s
         self.late_s = 0.0
         """By how much the times of view 2 are set back."""
@@ -80,12 +82,12 @@ class Subscriber:
 
     @property
     def _wait_s(self) -> float:
-        """How long after its picture a report that has no partner goes on alone."""
+        """How long after its picture a report goes on without others of its instant."""
         return self._overdue_s + link_lag.lag_s(self._links)
 
-    def pairs(self) -> list[Pair]:
+    def instants(self) -> list[Instant]:
         """What is complete now, or overdue; waits a moment for a report."""
-        complete: list[Pair] = []
+        complete: list[Instant] = []
         if not self._moves:
             self._looked_s = time.monotonic()
         self._moves += [*self._alive.drain(), *self._ended.drain()]
@@ -145,8 +147,8 @@ class Subscriber:
             "foreign": self._reports.foreign,
         }
 
-    def _who_came_and_went(self, now_s: float) -> list[Pair]:
-        released: list[Pair] = []
+    def _who_came_and_went(self, now_s: float) -> list[Instant]:
+        released: list[Instant] = []
         for moved in self._moves:
             if isinstance(moved, Ended):
                 released += self._end(moved, now_s)
@@ -163,7 +165,7 @@ class Subscriber:
         self._moves = []
         return released
 
-    def _end(self, said: Ended, now_s: float) -> list[Pair]:
+    def _end(self, said: Ended, now_s: float) -> list[Instant]:
         """A viewer has said its last; what waited for it is released."""
         self._present = presence.ended(self._present, said, now_s)
         self.over = (*self.over, said)

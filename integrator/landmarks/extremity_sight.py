@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.extremities import EXTREMITY_NAMES
-from common.bus.messages import Landmarks, Report
+from common.bus.instant import Seen
+from common.bus.messages import Landmarks
 from common.rig.camera import Rig, arrays_of, project, rays
 
 Floats = NDArray[np.float64]
@@ -29,7 +30,7 @@ _PARTS: Final = (("l_heel", "l_toe", "r_heel", "r_toe"), ("l_knuckle", "r_knuckl
 
 
 def seen_extremities(
-    rule_m: Floats, rig: Rig, seen: tuple[Report | None, ...], stature_m: float
+    rule_m: Floats, rig: Rig, seen: Seen, stature_m: float
 ) -> tuple[Floats, Floats]:
     """Where they are, (7, 3), and how sure that is, (7,): 0 where nobody measured it.
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Report
+from common.bus.instant import Seen
 from common.rig.camera import Rig, arrays_of, rays
 from integrator.proposal.network_weights import JOINTS
 
@@ -35,7 +35,7 @@ class Rays(NamedTuple):
     """0: that view does not tell."""
 
 
-def rays_of(rig: Rig, seen: tuple[Report | None, ...]) -> Rays | None:
+def rays_of(rig: Rig, seen: Seen) -> Rays | None:
     """The rays of an instant; None where no view reports landmarks.
 
     Args:

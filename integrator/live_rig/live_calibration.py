@@ -3,7 +3,7 @@
 from typing import Final, NamedTuple, Protocol
 
 from calibration.gate.moved_cameras import turned_rig
-from common.bus.pair import Pair
+from common.bus.instant import Instant, two_views
 from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip
@@ -86,13 +86,13 @@ class LiveCalibration:
         if at.looks and at.stays:
             self._tell(f"{at.stays}: {rig_search.why_none(at.search)}")
 
-    def heard(self, pair: Pair) -> None:
+    def heard(self, instant: Instant) -> None:
         """One instant more."""
-        lately = seen_lately.step(self.looking.lately, pair)
-        at = self.looking = self.looking._replace(now_s=pair.newest.captured_s, lately=lately)
+        lately = seen_lately.step(self.looking.lately, two_views(instant.detections))
+        at = self.looking = self.looking._replace(now_s=instant.newest.captured_s, lately=lately)
         if not at.looks or at.search.is_over:
             return
-        search, job = rig_search.step(at.search, pair)
+        search, job = rig_search.step(at.search, two_views(instant.views))
         self.looking = at._replace(search=search)
         if job is not None:
             self._solver.ask(job)

@@ -9,7 +9,7 @@ from common.rig.camera import Rig
 from common.rig.turned_camera import angle_deg
 from integrator import opening_posture
 from integrator.live_rig.rig_job import Solved
-from integrator.merge_state import State
+from integrator.merge_state import State, facing_at_start
 from integrator.pose import smoothing
 
 
@@ -34,7 +34,7 @@ def with_rig(state: State, rig: Rig) -> State:
         smooth=smoothing.init(len(ANGLE_NAMES), state.smooth.period_s),
         opening=opening,
         found=None,
-        facing=("facade", "flank"),
+        facing=facing_at_start(len(rig.cameras)),
         doubted=0,
         agreement=rig_agreement.State(),
         stands=moved_cameras.told_by(state.stands, state.rig, rig),
@@ -93,4 +93,7 @@ def word_of_moved(state: State) -> str:
 
 def cameras_named(numbers: tuple[ViewerNumber, ...]) -> str:
     """The cameras with a verb."""
-    return f"camera {numbers[0]} was" if len(numbers) == 1 else "both cameras were"
+    if len(numbers) == 1:
+        return f"camera {numbers[0]} was"
+    named = " and ".join(str(number) for number in numbers)
+    return "both cameras were" if numbers == (1, 2) else f"cameras {named} were"

@@ -14,8 +14,8 @@ from calibration.tracks.joint_tracks import (
     row_of,
 )
 from calibration.tracks.lateness import LEAST_LATE
+from common.bus.instant import Instant, TwoViews
 from common.bus.messages import Report, ViewerNumber
-from common.bus.pair import Pair
 from common.rig.camera import Rig
 from integrator.live_rig.rig_job import Job, Solved, Stand, Trusted, packed
 
@@ -114,11 +114,12 @@ def anew(
     )
 
 
-def step(state: State, pair: Pair) -> tuple[State, Job | None]:
-    """One instant more, and what to ask now, if anything."""
+def step(state: State, views: TwoViews) -> tuple[State, Job | None]:
+    """One instant more, of whose two reports one at least is there, and what to ask now, if
+    anything."""
     if state.asked == len(ASKS_S):
         return state, None
-    state = _gathered(state, pair)
+    state = _gathered(state, views)
     if state.waits or state.moved_s < ASKS_S[state.asked]:
         return state, None
     first, second = (b"".join(rows) for rows in state.rows)
@@ -195,11 +196,11 @@ def _holds(trust: Trusted) -> bool:
     return set(trust.odd) <= {"late"}
 
 
-def _gathered(state: State, pair: Pair) -> State:
+def _gathered(state: State, views: TwoViews) -> State:
     """The state with an instant in which somebody moves before both views."""
-    first, second = pair
+    first, second = views
     if first is None or second is None or not _is_sure(first) or not _is_sure(second):
-        return _left_out(state, pair)
+        return _left_out(state, views)
     size_px = (first.width, first.height)
     if size_px != (second.width, second.height):
         return state
@@ -209,7 +210,7 @@ def _gathered(state: State, pair: Pair) -> State:
         state = state._replace(posed=(now_s, pose))
     assert state.posed is not None
     if now_s - state.posed[0] > STILL_S:
-        return _left_out(state, pair)
+        return _left_out(state, views)
     state = _with_row(_with_row(state, 0, row_of(first)), 1, row_of(second))
     return state._replace(moved_s=state.moved_s + state.period_s, gap=False)
 
@@ -229,13 +230,14 @@ def _pose(report: Report) -> NDArray[np.float64]:
     return (joints_px - joints_px.mean(axis=0)) / max(report.box.bottom - report.box.top, 1)
 
 
-def _left_out(state: State, pair: Pair) -> State:
+def _left_out(state: State, views: TwoViews) -> State:
     """The state that knows of a gap: who is not seen is between no neighbours."""
     if state.gap:
         return state
+    newest = Instant(views).newest
     for view in (0, 1):
         none = np.zeros(JOINTS)
-        row = (pair.newest.captured_s, np.zeros((JOINTS, 2)), none, 0.0, 0.0)
+        row = (newest.captured_s, np.zeros((JOINTS, 2)), none, 0.0, 0.0)
         state = _with_row(state, view, row)
     return state._replace(gap=True)
 

@@ -3,7 +3,7 @@
 from typing import Final, NamedTuple
 
 from calibration.tracks.joint_tracks import LEAST_SURE, row_of
-from common.bus.pair import Pair
+from common.bus.instant import TwoViews
 from common.rig.camera import Rig
 from integrator.live_rig.rig_job import Stand, packed
 
@@ -20,9 +20,14 @@ class State(NamedTuple):
     """When, and what each view saw."""
 
 
-def step(state: State, pair: Pair) -> State:
-    """One instant more."""
-    first, second = pair.detections
+def step(state: State, seen: TwoViews) -> State:
+    """One instant more.
+
+    Args:
+        state: What was kept.
+        seen: The reports with a person.
+    """
+    first, second = seen
     if first is None or second is None or first.landmarks is None or second.landmarks is None:
         return state
     one, other = row_of(first), row_of(second)

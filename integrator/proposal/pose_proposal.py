@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, Bdp, Vector
 from common.body.kinematics import TORSO, joints, limb_frames
 from common.body.proportions import body_vector, stature
-from common.bus.messages import Report
+from common.bus.instant import Seen
 from common.raster.silhouette_report import unpack
 from common.rig.camera import Rig
 from integrator.pose.inverse_kinematics import pose_of, trunk_of
@@ -99,7 +99,7 @@ def step(
     memory: Memory | None,
     bdp: Bdp,
     rig: Rig,
-    seen: tuple[Report | None, Report | None],
+    seen: Seen,
     since_s: float,
     up: Vector | None = None,
     lifts: bool = True,
@@ -145,7 +145,7 @@ def step(
 
 def _lifted(
     memory: Floats | None,
-    seen: tuple[Report | None, Report | None],
+    seen: Seen,
     rig: Rig,
     stature_m: float,
     since_s: float,

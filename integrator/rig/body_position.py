@@ -6,8 +6,8 @@ from typing import Any, Final
 import numpy as np
 
 from common.body.body import POSE_INDEX, Vector
+from common.bus.instant import Seen
 from common.bus.messages import Facing, Pixel, Report
-from common.bus.pair import Seen
 from common.compiled import compiled
 from common.raster.kernel import NEAREST_M
 from common.raster.silhouette_report import unpack

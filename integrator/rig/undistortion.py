@@ -8,8 +8,8 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from common.bus.instant import Instant
 from common.bus.messages import Landmarks, Pixel, Report
-from common.bus.pair import Pair
 from common.raster.silhouette_report import box_of, is_cut, pack, unpack
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig
@@ -28,15 +28,15 @@ def undistorted_camera(camera: Camera) -> Camera:
     return msgspec.structs.replace(camera, distortion=()) if any(camera.distortion) else camera
 
 
-def undistorted_pair(rig: Rig | None, pair: Pair) -> Pair:
+def undistorted_instant(rig: Rig | None, instant: Instant) -> Instant:
     """The reports of an instant as such cameras would give rise to; as they are of unknown ones."""
     if rig is None:
-        return pair
-    first, second = (
+        return instant
+    views = tuple(
         None if report is None else undistorted_report(report, camera)
-        for report, camera in zip(pair, rig.cameras, strict=True)
+        for report, camera in zip(instant.views, rig.cameras, strict=True)
     )
-    return Pair(first, second)
+    return Instant(views)
 
 
 def undistorted_report(report: Report, camera: Camera) -> Report:

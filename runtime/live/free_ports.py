@@ -9,7 +9,7 @@ from typing import Final
 
 import msgspec
 
-from common.bus.bus_keys import PARTS, refuse_missing
+from common.bus.bus_keys import PARTS_OF_EVERY_RUN, refuse_missing
 from common.config.part_settings import AUTO, PageSettings
 from common.config.settings import Settings
 from common.endpoint import address_of
@@ -32,9 +32,8 @@ def refuse_held_ports(settings: Settings) -> None:
         KeysError: When a part of a live run lacks its keys.
     """
     if settings.bus.keys:
-        for part in PARTS:
-            if part != "client":
-                refuse_missing(Path(settings.bus.keys), part)
+        for part in PARTS_OF_EVERY_RUN:
+            refuse_missing(Path(settings.bus.keys), part)
     refuse_held_endpoint(settings)
     refuse_held_page(settings)
     refuse_held_metrics(settings.metrics)

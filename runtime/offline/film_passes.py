@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from calibration.tracks.joint_tracks import is_upright
 from common.body.proportions import thesis_bdp
+from common.bus.instant import Instant
 from common.bus.messages import Body, Guide, Report, ScaleSource, ViewerNumber
-from common.bus.pair import Pair
 from common.config.settings import Settings
 from common.method import Method
 from common.notes.notes import Notes, held
@@ -180,8 +180,8 @@ def _posed(at: Posing, report: Report, film: FilmFacts) -> tuple[Posing, Body]:
     if guide is not None and annotations.orientation is not None:
         guide = msgspec.structs.replace(guide, stick=True)
     viewer, full = track.describe(at.viewer, report, unpack(report), guide)
-    pair = Pair(full, None) if film.number == 1 else Pair(None, full)
-    state, body, guide = merge.step(at.integrator, pair, annotations)
+    instant = Instant((full, None)) if film.number == 1 else Instant((None, full))
+    state, body, guide = merge.step(at.integrator, instant, annotations)
     return at._replace(viewer=viewer, integrator=state, guide=guide), body
 
 

@@ -7,8 +7,8 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Final, NamedTuple
 
+from common.bus.instant import instant_of
 from common.bus.messages import Body, Guide, Report, ViewerNumber
-from common.bus.pair import Pair
 from common.video.clip_facts import Clip
 from common.video.frame_cache import Reel
 from integrator import diagnostics, merge_state
@@ -159,7 +159,7 @@ def _stepped(
     going = going._replace(
         viewers=viewers,
         integrator=state,
-        noticed=diagnostics.step(going.noticed, Pair(reports.get(1), reports.get(2))),
+        noticed=diagnostics.step(going.noticed, instant_of(reports, len(state.frames))),
         guide=guide,
         starts=starts,
         spent=spent,

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable, Mapping
 from itertools import repeat
 from typing import Any
 
+from common.bus.instant import instant_of
 from common.bus.messages import Body, Guide, Landmarks, Report, ViewerNumber
-from common.bus.pair import Pair
 from common.config.settings import Settings
 from common.method import Method
 from common.video.clip_facts import Clip, View, both_cameras
@@ -75,7 +75,7 @@ def joined(
         reports: One at least.
         calibration: Hears them, and changes the rig.
     """
-    pair = Pair(reports.get(1), reports.get(2))
-    state, body, guide = merge.step(integrator, pair)
-    calibration.heard(pair)
+    instant = instant_of(reports, len(integrator.frames))
+    state, body, guide = merge.step(integrator, instant)
+    calibration.heard(instant)
     return calibration.changed(state), body, guide
