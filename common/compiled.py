@@ -6,7 +6,7 @@ import logging
 import pickle
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Protocol, TypeVar
 
 import numba
 from numba.core.caching import NullCache
@@ -24,6 +24,8 @@ and edits that come and go need not compile again."""
 
 log = logging.getLogger(__name__)
 
+Function = TypeVar("Function", bound=Callable[..., object])
+
 
 class KeptOverloads(NullCache):
     """numba's cache of one function: a file for each signature and each state of the sources that
@@ -34,7 +36,7 @@ class KeptOverloads(NullCache):
     same name. A file here is named by all that decides its content; it is whole or not there.
     """
 
-    def __init__(self, function: Callable[..., Any]) -> None:
+    def __init__(self, function: Callable[..., object]) -> None:
         """Nothing but sources is read, and nothing written, before the function is called."""
         self._name = f"{function.__module__}.{function.__qualname__}"
         self._sources = module_digest(function.__module__)
@@ -76,7 +78,15 @@ class KeptOverloads(NullCache):
             path.unlink(missing_ok=True)
 
 
-def compiling(**flags: Any) -> Callable[[Callable[..., Any]], Any]:
+class Compiler(Protocol):
+    """A decorator: what it compiles is called as before."""
+
+    def __call__(self, function: Function, /) -> Function:
+        """The function, compiled where it is first called."""
+        ...
+
+
+def compiling(**flags: bool | str) -> Compiler:
     """A decorator: numba's njit with these flags, which keeps what it compiled and lets other
     threads run meanwhile.
 
@@ -84,7 +94,7 @@ def compiling(**flags: Any) -> Callable[[Callable[..., Any]], Any]:
     next process cannot know them by the name `__main__`, and no digest speaks for them.
     """
 
-    def decorate(function: Callable[..., Any]) -> Any:
+    def decorate(function: Function) -> Function:
         dispatcher = numba.njit(nogil=True, **flags)(function)
         if function.__module__.split(".")[0] in PACKAGES:
             dispatcher._cache = KeptOverloads(function)
@@ -97,5 +107,5 @@ compiled: Final = compiling()
 """A function that computes as Python does; division by zero is an error."""
 KERNEL: Final = compiling(fastmath=True, error_model="numpy")
 """A whole-picture pass."""
-INLINE: Final = numba.njit(fastmath=True, error_model="numpy", inline="always")
+INLINE: Final[Compiler] = numba.njit(fastmath=True, error_model="numpy", inline="always")
 """What a pass does at a pixel; calls that carry arrays would cost more than the work."""

@@ -1,7 +1,7 @@
 """The feature vectors: the paper's ten angles as directions, and all limbs' with the travel."""
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -140,7 +140,7 @@ def bearings(given: Rows) -> Bearings:
 
 
 @compiled
-def _point(turns_deg: Any, shown: Any) -> None:
+def _point(turns_deg: NDArray[np.float64], shown: NDArray[np.float64]) -> None:
     """Write R_z R_x (0, 1, 0) and R_z R_x R_y R_hinge (0, 1, 0), side by side."""
     for row in range(len(turns_deg)):
         x, y, z, hinge = np.radians(turns_deg[row])
@@ -156,7 +156,9 @@ def _point(turns_deg: Any, shown: Any) -> None:
 
 
 @compiled
-def _move(root: Any, yaw_deg: Any, shown: Any) -> None:
+def _move(
+    root: NDArray[np.float64], yaw_deg: NDArray[np.float64], shown: NDArray[np.float64]
+) -> None:
     """Write the weighted way of the root since TRAVEL_POSES poses before, or since the first, in
     the body's frame."""
     for row in range(len(root)):

@@ -1,15 +1,18 @@
 """The forward algorithm for all postures at once, compiled: it runs at every live frame."""
 
 import math
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from common.body.body import Floats
 from common.compiled import compiled
 
 
 @compiled
-def forward(start: Any, transition: Any, log_emission: Any) -> Any:
+def forward(
+    start: NDArray[np.float64], transition: NDArray[np.float64], log_emission: NDArray[np.float64]
+) -> Floats:
     """log P(observations | posture), shape (p,); 0 where nothing was observed.
 
     Each step is divided by its sum, and so are the densities by their largest; the logarithms are

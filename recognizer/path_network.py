@@ -2,11 +2,12 @@
 
 import math
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from common.body.body import Floats, Vector
 from common.compiled import compiled
 from recognizer.postures import Array, DensityModel
 
@@ -31,6 +32,8 @@ ENTER, EXIT, CHANGE = 8.0, 8.0, 3.0
 """What it costs a path to enter a posture, to leave one, and to go from standing to something
 unknown or back."""
 
+Records = NDArray[np.int64]
+"""(p s + 2, LAST) or with one more column: what the best path into each state remembers."""
 ONSET, COUNT, PHASE, LAST = 0, 1, 2, 3
 """What a path remembers of the posture that it is in: its first frame, how often the course was
 gone through, whether it is in its second half; and of one that is over: its last frame."""
@@ -88,8 +91,8 @@ class PathNetwork:
 
 @compiled
 def emissions(
-    seen: Any, speed: Any, mean: Any, variance: Any, rest: Any, rest_variance: Any
-) -> Any:
+    seen: Vector, speed: float, mean: Floats, variance: Floats, rest: Vector, rest_variance: Vector
+) -> Floats:
     """Weighted log density of one frame in each state of the network, (p s + 2,): all states of all
     postures, standing, the filler.
 
@@ -124,7 +127,7 @@ def emissions(
 
 
 @compiled
-def _way_into(k: int, score: Any, log_transition: Any, enter: float) -> tuple[float, int]:
+def _way_into(k: int, score: Vector, log_transition: Floats, enter: float) -> tuple[float, int]:
     """The best way into a state of a posture: its score, and from which of that posture's states;
     -1 from outside, at the score of `enter`."""
     states = log_transition.shape[1]
@@ -138,7 +141,7 @@ def _way_into(k: int, score: Any, log_transition: Any, enter: float) -> tuple[fl
 
 
 @compiled
-def _turned(side: int, own: Any) -> None:
+def _turned(side: int, own: NDArray[np.int64]) -> None:
     """Count a repetition where a path comes to the far end after the near one."""
     if side > 0 and own[PHASE] == 0:
         own[COUNT] += 1
@@ -149,9 +152,15 @@ def _turned(side: int, own: Any) -> None:
 
 @compiled
 def advance(
-    score: Any, record: Any, over: Any, emission: Any, log_transition: Any, side: Any, frame: int,
+    score: Vector,
+    record: Records,
+    over: Records,
+    emission: Vector,
+    log_transition: Floats,
+    side: NDArray[np.int64],
+    frame: int,
     open_: bool,
-) -> Any:  # fmt: skip
+) -> tuple[Vector, Records, Records]:
     """One frame further: the best path into every state of the network.
 
     Args:

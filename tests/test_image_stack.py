@@ -31,7 +31,7 @@ def test_pictures_laid_over_each_other_are_numpys_mean_and_median(count: int) ->
     rng = np.random.default_rng(count)
     frames = rng.integers(0, 256, (count, 5, 7, 3), np.uint8)
     lights = rng.uniform(0.8, 1.2, (count, 3)).astype(np.float32)
-    even = frames / lights[:, None, None]
+    even = np.asarray(frames / lights[:, None, None], np.float32)
     found = overlaid(frames, lights)
     np.testing.assert_array_equal(found.mean, even.mean(axis=0))
     np.testing.assert_array_equal(found.median, np.median(even, axis=0).astype(np.float32))

@@ -1,6 +1,7 @@
 """The silhouette, held against drawn people and clips whose masks are known (P3, P4)."""
 
 from pathlib import Path
+from typing import Any
 
 import cv2
 import msgspec
@@ -196,7 +197,7 @@ def test_step_leaves_the_state_that_it_was_given() -> None:
 
 
 def test_after_the_rehearsal_no_frame_waits_for_the_compiler() -> None:
-    kernels = [light_gain, seeds, same_body, label, sides_of, matte, redraw]
+    kernels: list[Any] = [light_gain, seeds, same_body, label, sides_of, matte, redraw]
     kernels += [body_colours_of, counted, adapted]
     setup = track.Setup(1, None, Settings(), DEFAULT)
     warm_up(track.init(setup, learn([shot(room(), 2.0, 9)])), (WIDTH, HEIGHT))

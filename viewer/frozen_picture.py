@@ -68,14 +68,14 @@ def step(
 
 def _repeated(state: State, picture: Image, captured_s: float) -> State:
     """The state with how often a picture came again, bit for bit, or where it changed."""
-    last, high, wide = state.last, *picture.shape[:2]
-    if last is None or last.shape != picture.shape:
+    last, reached, (high, wide) = state.last, state.reached, picture.shape[:2]
+    if last is None or reached is None or last.shape != picture.shape:
         nothing = np.zeros((-(-high // CELL), -(-wide // CELL)), np.bool_)
         return State(picture, since_s=captured_s, reached=nothing)
     if _same(picture, last):
         return state._replace(repeats=state.repeats + 1)
     if not _is_noisy(state):
-        state = state._replace(reached=_with_changes(picture, last, state.reached))
+        state = state._replace(reached=_with_changes(picture, last, reached))
     return state._replace(last=picture, repeats=0, since_s=captured_s)
 
 

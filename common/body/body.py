@@ -8,6 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
+"""(n,) numbers: a body, a pose, a view, a place in metres; what uses it says how many."""
+Floats = NDArray[np.float64]
+"""Numbers of more dimensions, (n, k) or (n, k, 3): rows of places, of frames, of weights."""
 
 
 class Elliptic(msgspec.Struct, frozen=True, cache_hash=True, forbid_unknown_fields=True):

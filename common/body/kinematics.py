@@ -1,7 +1,7 @@
 """From angles to places: the chain of coordinate systems from world to limb (section 2.2)."""
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from common.body.body import (
     TORSO_X,
     TORSO_Y,
     TORSO_Z,
+    Floats,
     Vector,
 )
 from common.body.proportions import (
@@ -50,7 +51,7 @@ _LENGTH_AT: Final = np.array([2, 5, 8, 11, 14, 17, 19, 21, 23, 25])
 
 
 @compiled
-def _turn(frames: Any, limb: int, angle_deg: float, one: int, other: int) -> None:
+def _turn(frames: Floats, limb: int, angle_deg: float, one: int, other: int) -> None:
     """Multiply a limb's rotation by a turn that leads the axis `one` to the axis `other`."""
     if angle_deg == 0.0:
         return
@@ -62,7 +63,7 @@ def _turn(frames: Any, limb: int, angle_deg: float, one: int, other: int) -> Non
 
 
 @compiled
-def _start(frames: Any, parent: int, limb: int, x: float, y: float) -> None:
+def _start(frames: Floats, parent: int, limb: int, x: float, y: float) -> None:
     """A limb's frame = its parent's, with its origin at the parent's point (x, y, 0)."""
     for i in range(3):
         row = 3 + 3 * i
@@ -72,7 +73,7 @@ def _start(frames: Any, parent: int, limb: int, x: float, y: float) -> None:
 
 
 @compiled
-def _hang_ball(frames: Any, limb: int, x: float, y: float, pose: Any, at: int) -> None:
+def _hang_ball(frames: Floats, limb: int, x: float, y: float, pose: Vector, at: int) -> None:
     """M_N^S = T(x, y, 0) R_z R_x R_y with the angles pose[at : at + 3] = (x, y, z)."""
     _start(frames, TORSO, limb, x, y)
     _turn(frames, limb, pose[at + 2], 0, 1)
@@ -81,14 +82,14 @@ def _hang_ball(frames: Any, limb: int, x: float, y: float, pose: Any, at: int) -
 
 
 @compiled
-def _hang_hinge(frames: Any, upper: int, length: float, angle_deg: float) -> None:
+def _hang_hinge(frames: Floats, upper: int, length: float, angle_deg: float) -> None:
     """M_S^F = T(0, length, 0) R_x."""
     _start(frames, upper, upper + 2, 0.0, length)
     _turn(frames, upper + 2, angle_deg, 1, 2)
 
 
 @compiled
-def hang_limbs(body: Any, pose: Any, limbs: int, frames: Any) -> None:
+def hang_limbs(body: Vector, pose: Vector, limbs: int, frames: Floats) -> None:
     """Write the frames of some limbs, not the trunk's: what they hang on is placed already.
 
     Args:
@@ -114,7 +115,7 @@ def hang_limbs(body: Any, pose: Any, limbs: int, frames: Any) -> None:
 
 
 @compiled
-def place_limbs(body: Any, pose: Any, limbs: int, frames: Any) -> None:
+def place_limbs(body: Vector, pose: Vector, limbs: int, frames: Floats) -> None:
     """Write the frames of some limbs into `frames` (10, FRAME).
 
     M_W^N = T R_y R_x (R_z innermost: the paper keeps it at 0), then M_N^S and M_S^F (P8).
@@ -150,7 +151,7 @@ def segments(body: Vector, pose: Vector) -> NDArray[np.float64]:
 
 
 @compiled
-def joints(body: Any, pose: Any) -> Any:
+def joints(body: Vector, pose: Vector) -> Floats:
     """The 15 landmarks, (15, 3), world metres, in the order of JOINT_NAMES."""
     frames, out = np.empty((10, FRAME)), np.empty((15, 3))
     place_limbs(body, pose, ALL_LIMBS, frames)
@@ -172,7 +173,7 @@ def joints(body: Any, pose: Any) -> Any:
 
 
 @compiled
-def _along(frames: Any, body: Any, upper: int, distance_m: float, i: int) -> float:
+def _along(frames: Floats, body: Vector, upper: int, distance_m: float, i: int) -> float:
     """Coordinate i of the point so far along an upper limb and the lower one that follows it."""
     beyond_m = distance_m - body[_LENGTH_AT[upper]]
     if beyond_m <= 0.0:

@@ -1,11 +1,11 @@
 """Proportions of bodies: the thesis's, a standing body's, and where joints lie in its cylinders."""
 
 from functools import lru_cache
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from common.body.body import Bdp, Elliptic, Round, Vector
+from common.body.body import Bdp, Elliptic, Floats, Round, Vector
 from common.compiled import compiled
 
 THESIS_RATIOS: Final = {
@@ -127,7 +127,7 @@ def _body_numbers(bdp: Bdp) -> tuple[float, ...]:
 
 
 @compiled
-def attached(lengths: Any) -> Any:
+def attached(lengths: Vector) -> Floats:
     """The body vector (BODY,) of its LENGTHS lengths."""
     body = np.empty(BODY)
     body[:LENGTHS] = lengths

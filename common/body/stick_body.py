@@ -1,11 +1,11 @@
 """The stick body of one view: ten segments in the picture, their proportions, and their joints."""
 
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
+from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Floats, Vector
 from common.body.proportions import THESIS_DIAMETERS, THESIS_RATIOS
 from common.compiled import compiled
 
@@ -81,7 +81,7 @@ ADULT: Final = _adult()
 
 
 @compiled
-def place_segments(lengths: Any, pose: Any, ends: Any) -> None:
+def place_segments(lengths: Vector, pose: Vector, ends: Floats) -> None:
     """Both ends of every segment in the picture.
 
     Args:
@@ -122,7 +122,7 @@ def place_segments(lengths: Any, pose: Any, ends: Any) -> None:
 
 
 @compiled
-def place_chain(upper: int, lengths: Any, pose: Any, ends: Any) -> None:
+def place_chain(upper: int, lengths: Vector, pose: Vector, ends: Floats) -> None:
     """The same for an upper limb and the lower limb that hangs on it; the trunk is placed."""
     line, side = (SHOULDER_LINE, upper - 6) if upper >= 6 else (HIP_LINE, upper - 2)
     _hang(ends, upper, ends[line, 2 * side], ends[line, 2 * side + 1], lengths, pose)
@@ -130,14 +130,14 @@ def place_chain(upper: int, lengths: Any, pose: Any, ends: Any) -> None:
 
 
 @compiled
-def _hang(ends: Any, limb: int, x: float, y: float, lengths: Any, pose: Any) -> None:
+def _hang(ends: Floats, limb: int, x: float, y: float, lengths: Vector, pose: Vector) -> None:
     reach = lengths[limb] * pose[RATIO + limb] * pose[STATURE]
     angle = np.radians(pose[ANGLE + limb])
     _set(ends, limb, x, y, x + reach * np.cos(angle), y - reach * np.sin(angle))
 
 
 @compiled
-def _set(ends: Any, row: int, ax: float, ay: float, bx: float, by: float) -> None:
+def _set(ends: Floats, row: int, ax: float, ay: float, bx: float, by: float) -> None:
     ends[row, 0], ends[row, 1], ends[row, 2], ends[row, 3] = ax, ay, bx, by
 
 

@@ -28,7 +28,7 @@ def popcount(_context: Any, _word: Any) -> Any:
 
 
 @compiled
-def count(bits: Any) -> int:
+def count(bits: Bits) -> int:
     """Number of pixels in packed rows."""
     total = 0
     for row in range(bits.shape[0]):
@@ -38,7 +38,7 @@ def count(bits: Any) -> int:
 
 
 @compiled
-def count_both(one: Any, other: Any) -> int:
+def count_both(one: Bits, other: Bits) -> int:
     """Number of pixels that two packed masks share."""
     total = 0
     for row in range(one.shape[0]):

@@ -8,15 +8,15 @@ Source: Huang & Chung 2004, section 2.3.
 import math
 import time
 from functools import lru_cache
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from common.body.body import LIMBS, Vector, rest_pose
+from common.body.body import LIMBS, Floats, Vector, rest_pose
 from common.body.kinematics import ALL_LIMBS, FRAME, place_limbs
 from common.body.proportions import ARMS, PER_ELLIPTIC, PER_ROUND, body_vector, thesis_bdp
 from common.compiled import compiled
-from common.raster.bits import blank, count, count_both, unpack_words
+from common.raster.bits import Bits, blank, count, count_both, unpack_words
 from common.raster.row_spans import PRIMITIVE, draw, spans
 from common.raster.similarity import Mask
 from common.rig.camera import Camera
@@ -41,7 +41,7 @@ VIEW: Final = 17
 
 
 @compiled
-def seen_at(view: Any, x: float, y: float, z: float) -> tuple[float, float, float]:
+def seen_at(view: Vector, x: float, y: float, z: float) -> tuple[float, float, float]:
     """(u, v, depth): where a view, of true perspective, shows a place of the world; pixels, metres.
 
     What is nearer than NEAREST_M, or behind the camera, is shown as if it were so near.
@@ -65,7 +65,7 @@ def score(hit: int, drawn: int, seen: int) -> float:
 
 
 @compiled
-def limb_size(body: Any, limb: int) -> tuple[float, float, float]:
+def limb_size(body: Vector, limb: int) -> tuple[float, float, float]:
     """Half width, half depth and height of a limb from the body vector."""
     if limb < R_UPPER_ARM:
         at = PER_ELLIPTIC * limb
@@ -76,7 +76,7 @@ def limb_size(body: Any, limb: int) -> tuple[float, float, float]:
 
 @compiled
 def _section(
-    frames: Any, limb: int, long: float, short: float, view: Any
+    frames: Floats, limb: int, long: float, short: float, view: Vector
 ) -> tuple[float, float, float]:
     """(shear, stretch, half height at depth 1) of a limb's elliptic section in a view."""
     sxx = sxy = syy = 0.0
@@ -97,7 +97,7 @@ def _section(
 
 
 @compiled
-def limb_primitive(frames: Any, body: Any, limb: int, view: Any, out: Any) -> bool:
+def limb_primitive(frames: Floats, body: Vector, limb: int, view: Vector, out: Vector) -> bool:
     """Contour of a placed limb: arms are round-ended, the others flat-ended cylinders (P5).
 
     Args:
@@ -138,7 +138,9 @@ def limb_primitive(frames: Any, body: Any, limb: int, view: Any, out: Any) -> bo
 
 
 @compiled
-def draw_placed(frames: Any, body: Any, view: Any, limbs: int, width: int, bits: Any) -> None:
+def draw_placed(
+    frames: Floats, body: Vector, view: Vector, limbs: int, width: int, bits: Bits
+) -> None:
     """OR some placed limbs (as bits of LIMBS) into packed rows (H, words)."""
     height = bits.shape[0]
     p = np.empty(PRIMITIVE)
@@ -150,7 +152,9 @@ def draw_placed(frames: Any, body: Any, view: Any, limbs: int, width: int, bits:
 
 
 @compiled
-def draw_limbs(body: Any, pose: Any, view: Any, limbs: int, width: int, bits: Any) -> None:
+def draw_limbs(
+    body: Vector, pose: Vector, view: Vector, limbs: int, width: int, bits: Bits
+) -> None:
     """OR some limbs of a posed body into packed rows (H, words)."""
     frames = np.empty((10, FRAME))
     place_limbs(body, pose, limbs, frames)
@@ -159,7 +163,7 @@ def draw_limbs(body: Any, pose: Any, view: Any, limbs: int, width: int, bits: An
 
 @compiled
 def match(
-    body: Any, pose: Any, view: Any, limbs: int, width: int, seen: Any, seen_px: int
+    body: Vector, pose: Vector, view: Vector, limbs: int, width: int, seen: Bits, seen_px: int
 ) -> float:
     """S of a silhouette and some limbs of a posed body.
 
@@ -177,7 +181,14 @@ def match(
 
 @compiled
 def match_over(
-    rest: Any, body: Any, pose: Any, view: Any, limbs: int, width: int, seen: Any, seen_px: int
+    rest: Bits,
+    body: Vector,
+    pose: Vector,
+    view: Vector,
+    limbs: int,
+    width: int,
+    seen: Bits,
+    seen_px: int,
 ) -> float:
     """The same where a rest (H, words) of the body is drawn already; it is left as it was."""
     drawn = rest.copy()

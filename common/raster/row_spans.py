@@ -9,13 +9,19 @@ Source: design: exact pixel-centre rule; requirement P9.
 """
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.compiled import compiled
-from common.raster.bits import ONES, popcount
+from common.raster.bits import ONES, Bits, popcount
+
+Columns = NDArray[np.int32]
+"""(H,): of each row of the picture, the first or the last pixel of an interval."""
+Tangent = tuple[float, float, float, float]
+"""A line that touches both discs: (at, slope, first y, last y), x = at + slope y."""
 
 EDGE: Final = 1e-9
 
@@ -47,7 +53,7 @@ def inside(primitive: Vector, x_px: float, y_px: float) -> bool:
 
 
 @compiled
-def _tangent(p: Any, nx: float, ny: float) -> tuple[float, float, float, float]:
+def _tangent(p: Vector, nx: float, ny: float) -> Tangent:
     """The line that touches both discs where their normal is (nx, ny): x = at + slope y.
 
     Returns:
@@ -62,20 +68,27 @@ def _tangent(p: Any, nx: float, ny: float) -> tuple[float, float, float, float]:
 
 
 @compiled
-def _cut_first(x: float, width: int) -> Any:
+def _cut_first(x: float, width: int) -> np.int32:
     """First pixel of the picture whose centre is not left of x + 0.5; width where there is none."""
     return np.int32(np.ceil(min(max(x, 0.0), float(width))))
 
 
 @compiled
-def _cut_last(x: float, width: int) -> Any:
+def _cut_last(x: float, width: int) -> np.int32:
     """Last pixel whose centre is not right of x + 0.5; -1 where there is none."""
     return np.int32(np.floor(max(min(x, width - 1.0), -1.0)))
 
 
 @compiled
 def _rows_of_steep(
-    p: Any, left: Any, right: Any, begin: int, end: int, width: int, first: Any, last: Any
+    p: Vector,
+    left: Tangent,
+    right: Tangent,
+    begin: int,
+    end: int,
+    width: int,
+    first: Columns,
+    last: Columns,
 ) -> None:
     """Row intervals of a limb with a tangent on either side: that, and each end's disc beyond it.
 
@@ -100,7 +113,14 @@ def _rows_of_steep(
 
 @compiled
 def _rows_of_all(
-    p: Any, one: Any, other: Any, begin: int, end: int, width: int, first: Any, last: Any
+    p: Vector,
+    one: Tangent,
+    other: Tangent,
+    begin: int,
+    end: int,
+    width: int,
+    first: Columns,
+    last: Columns,
 ) -> None:
     """Row intervals of a limb of any shape: the outermost of both discs and both tangents."""
     for row in range(begin, end):
@@ -120,7 +140,7 @@ def _rows_of_all(
 
 
 @compiled
-def spans(p: Any, width: int, height: int, first: Any, last: Any) -> tuple[int, int]:
+def spans(p: Vector, width: int, height: int, first: Columns, last: Columns) -> tuple[int, int]:
     """Row intervals of a limb: first and last pixel of each row, cut to the picture.
 
     A limb is mostly so steep that rows lie between its tangents: then one of these is its left
@@ -159,7 +179,7 @@ def spans(p: Any, width: int, height: int, first: Any, last: Any) -> tuple[int, 
 
 
 @compiled
-def draw(first: Any, last: Any, top: int, bottom: int, bits: Any) -> None:
+def draw(first: Columns, last: Columns, top: int, bottom: int, bits: Bits) -> None:
     """OR row intervals into packed rows (H, words)."""
     for row in range(top, bottom):
         a, b = first[row], last[row]
@@ -172,7 +192,9 @@ def draw(first: Any, last: Any, top: int, bottom: int, bits: Any) -> None:
 
 
 @compiled
-def gain(first: Any, last: Any, top: int, bottom: int, base: Any, seen: Any) -> tuple[int, int]:
+def gain(
+    first: Columns, last: Columns, top: int, bottom: int, base: Bits, seen: Bits
+) -> tuple[int, int]:
     """What a limb adds to a drawn rest: (pixels newly drawn, those of them that are seen).
 
     Args:
@@ -200,7 +222,7 @@ def gain(first: Any, last: Any, top: int, bottom: int, base: Any, seen: Any) -> 
 
 
 @compiled
-def undraw(top: int, bottom: int, base: Any, bits: Any) -> None:
+def undraw(top: int, bottom: int, base: Bits, bits: Bits) -> None:
     """Bring packed rows from top to bottom - 1 back to what they were before limbs were drawn."""
     for row in range(top, bottom):
         for word in range(base.shape[1]):

@@ -1,7 +1,5 @@
 """A silhouette as a report carries it: its pixels packed, its box, area and middle."""
 
-from typing import Any
-
 import cv2
 import msgspec
 import numpy as np
@@ -47,7 +45,7 @@ def is_cut(box: Box | None, shape: tuple[int, ...]) -> bool:
 
 
 @compiled
-def centroid_px(mask: Any) -> tuple[float, float]:
+def centroid_px(mask: Mask) -> tuple[float, float]:
     """Mean column and row of what is in a mask (H, W), which is not empty.
 
     Compiled: 3 us at 320x240, where cv2.moments takes 185.

@@ -1,16 +1,16 @@
 """The stick body drawn: its parts as primitives, and what some of them add to a drawn rest."""
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from common.body.body import Vector
+from common.body.body import Floats, Vector
 from common.body.stick_body import BREADTH, GIRTH, STATURE, Stickman, place_segments
 from common.compiled import compiled
-from common.raster.bits import blank, count, count_both, unpack_words
+from common.raster.bits import Bits, blank, count, count_both, unpack_words
 from common.raster.kernel import THINNEST, score
-from common.raster.row_spans import PRIMITIVE, draw, gain, spans, undraw
+from common.raster.row_spans import PRIMITIVE, Columns, draw, gain, spans, undraw
 from common.raster.similarity import Mask
 
 ALL_SEGMENTS: Final = 0xFFF
@@ -19,7 +19,7 @@ WITHOUT_ARMS: Final = 0b110000111111
 
 
 @compiled
-def _primitive(ends: Any, part: Any, pose: Any, wide: float, out: Any) -> None:
+def _primitive(ends: Floats, part: Vector, pose: Vector, wide: float, out: Vector) -> None:
     """A part of the placed body as the kernel draws limbs (`spans`)."""
     row = int(part[0])
     ax, ay = ends[row, 0], ends[row, 1]
@@ -50,7 +50,7 @@ def widening(breadth: float, depth: float) -> float:
 
 @compiled
 def draw_segments(
-    ends: Any, pose: Any, parts: Any, depth: float, which: int, width: int, bits: Any
+    ends: Floats, pose: Vector, parts: Floats, depth: float, which: int, width: int, bits: Bits
 ) -> None:
     """OR the parts of some placed segments (as bits) into packed rows (H, words)."""
     height = bits.shape[0]
@@ -66,18 +66,18 @@ def draw_segments(
 
 @compiled
 def added(
-    ends: Any,
-    pose: Any,
-    parts: Any,
+    ends: Floats,
+    pose: Vector,
+    parts: Floats,
     depth: float,
     which: int,
     width: int,
-    rest: Any,
-    seen: Any,
-    scratch: Any,
-    first: Any,
-    last: Any,
-    p: Any,
+    rest: Bits,
+    seen: Bits,
+    scratch: Bits,
+    first: Columns,
+    last: Columns,
+    p: Vector,
 ) -> tuple[int, int]:
     """What placed segments add to the drawn rest: (pixels newly drawn, those that are seen).
 
@@ -101,7 +101,7 @@ def added(
 
 @compiled
 def match_stick(
-    lengths: Any, parts: Any, depth: float, pose: Any, which: int, width: int, seen: Any
+    lengths: Vector, parts: Floats, depth: float, pose: Vector, which: int, width: int, seen: Bits
 ) -> float:
     """S of a silhouette and some segments of the stick body (eq. 3.3)."""
     ends = np.empty((12, 4))

@@ -2,14 +2,14 @@
 
 import math
 from functools import lru_cache
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import Vector
+from common.body.body import Floats, Vector
 from common.compiled import compiled
 
 PAPER_ROTATIONS: Final = (
@@ -145,7 +145,7 @@ def project(camera: Camera, points_m: Vector) -> Vector:
 
 
 @compiled
-def _on_plane(points_m: Any, R: Any, t: Any) -> Any:
+def _on_plane(points_m: Floats, R: Floats, t: Vector) -> Floats:
     """Where the rays from points (n, 3) cross the plane at depth 1, (n, 2); NaN where none does."""
     plane = np.full((len(points_m), 2), np.nan)
     for n in range(len(points_m)):
@@ -187,7 +187,7 @@ def rays(camera: Camera, pixels: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @compiled
-def _turned_back(R: Any, x: float, y: float) -> Any:
+def _turned_back(R: Floats, x: float, y: float) -> Floats:
     """The direction (3,), unit length, of a point on the plane at depth 1."""
     direction = np.empty(3)
     for i in range(3):

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import POSE_INDEX, Vector, rest_pose
+from common.body.body import POSE_INDEX, Floats, Vector, rest_pose
 from common.body.kinematics import ALL_LIMBS, FRAME, hang_limbs, limb_frames, place_limbs
 from common.body.proportions import body_vector, thesis_bdp
 from common.compiled import compiled
@@ -80,7 +80,7 @@ def swayed(pose: Vector, random: np.random.Generator) -> Vector:
 
 
 @compiled
-def match_all(primitives: Any, rests: Any, seen: Any, width: int) -> int:
+def match_all(primitives: Floats, rests: Bits, seen: Bits, width: int) -> int:
     """Match every primitive over its rest; a sum of counts, so that nothing is left out."""
     height, total = seen.shape[0], 0
     first, last = np.empty(height, np.int32), np.empty(height, np.int32)
@@ -94,7 +94,13 @@ def match_all(primitives: Any, rests: Any, seen: Any, width: int) -> int:
 
 @compiled
 def match_placed(
-    limbs: Any, poses: Any, body: Any, view: Any, rests: Any, seen: Any, width: int
+    limbs: NDArray[np.int64],
+    poses: Floats,
+    body: Vector,
+    view: Vector,
+    rests: Bits,
+    seen: Bits,
+    width: int,
 ) -> float:
     """The same from angles to scores: kinematics, contour, rows, counts, S."""
     height, total = seen.shape[0], 0.0

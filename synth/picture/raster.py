@@ -1,10 +1,12 @@
 """Compiled inner loops of the renderer: move a surface, draw it, put it before the room."""
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from common.body.body import Floats, Vector
 from common.compiled import compiled, compiling
 from synth.person.people import PATTERNS
 
@@ -18,7 +20,14 @@ HOOPS, BARS, CHECKS, PRINT = (PATTERNS.index(n) for n in ("hoops", "bars", "chec
 
 
 @compiled
-def skin(vertices: Any, origins: Any, bones: Any, shares: Any, frames: Any, out: Any) -> None:
+def skin(
+    vertices: Floats,
+    origins: Floats,
+    bones: NDArray[np.int64],
+    shares: Vector,
+    frames: Floats,
+    out: Floats,
+) -> None:
     """Place the vertices: each follows its two bones in its share.
 
     Args:
@@ -46,7 +55,9 @@ def skin(vertices: Any, origins: Any, bones: Any, shares: Any, frames: Any, out:
 
 
 @compiled
-def shade(places: Any, faces: Any, light: Any, normals: Any, out: Any) -> None:
+def shade(
+    places: Floats, faces: NDArray[np.int64], light: Vector, normals: Floats, out: Vector
+) -> None:
     """Brightness of each vertex under a distant light and the room's scattered light, (v,)."""
     normals[:] = 0.0
     for f in range(len(faces)):
@@ -76,7 +87,7 @@ def shade(places: Any, faces: Any, light: Any, normals: Any, out: Any) -> None:
 
 
 @compiled
-def cover(pixels: Any, faces: Any, mask: Any) -> None:
+def cover(pixels: Floats, faces: NDArray[np.int64], mask: NDArray[np.uint8]) -> None:
     """Set every pixel of `mask` (h, w) whose centre lies in a face; pixels (v, 2)."""
     height, width = mask.shape
     for f in range(len(faces)):
@@ -105,16 +116,16 @@ def cover(pixels: Any, faces: Any, mask: Any) -> None:
 
 @compiling(error_model="numpy")
 def draw(
-    pixels: Any,
-    depths: Any,
-    light: Any,
-    rest: Any,
-    faces: Any,
-    materials: Any,
-    palette: Any,
-    pattern: Any,
-    nearest: Any,
-    colours: Any,
+    pixels: Floats,
+    depths: Vector,
+    light: Vector,
+    rest: Floats,
+    faces: NDArray[np.int64],
+    materials: NDArray[np.int64],
+    palette: Floats,
+    pattern: tuple[float, float, float],
+    nearest: Floats,
+    colours: NDArray[np.float32],
 ) -> None:
     """Draw a surface with a depth buffer.
 
@@ -186,7 +197,14 @@ def _second(kind: float, pitch: float, x: float, y: float, z: float) -> bool:
 
 
 @compiled
-def gather(nearest: Any, colours: Any, scale: int, body: Any, weight: float, own: Any) -> None:
+def gather(
+    nearest: Floats,
+    colours: NDArray[np.float32],
+    scale: int,
+    body: NDArray[np.float32],
+    weight: float,
+    own: NDArray[np.float32],
+) -> None:
     """Average `scale` x `scale` samples into pixels.
 
     Args:
@@ -219,7 +237,14 @@ def gather(nearest: Any, colours: Any, scale: int, body: Any, weight: float, own
 
 
 @compiled
-def expose(room: Any, shadow: Any, body: Any, gain: float, grain: Any, out: Any) -> None:
+def expose(
+    room: NDArray[np.float32],
+    shadow: NDArray[np.float32],
+    body: NDArray[np.float32],
+    gain: float,
+    grain: NDArray[np.float32],
+    out: NDArray[np.uint8],
+) -> None:
     """The picture: room in its shadow, body over it, gain, sensor noise, 8 bits.
 
     Args:

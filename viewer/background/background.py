@@ -174,7 +174,7 @@ def even_light(frames: Sequence[Image]) -> Floats:
     rows = [
         frame.reshape(height, -1) / np.tile(light_gain(frame, middle), width) for frame in frames
     ]
-    return np.stack(rows).reshape(-1, height, width, 3)
+    return np.asarray(np.stack(rows).reshape(-1, height, width, 3), np.float32)
 
 
 def spread_of(squares: Floats, count: int) -> Floats:

@@ -78,8 +78,8 @@ def _steeper(
         for j in range(contour.shape[1]):
             if contour[i, j]:
                 more = _slope(luma, top + i, left + j) - _slope(background, top + i, left + j)
-                steeper += max(more, np.float32(0))
-                flatter -= min(more, np.float32(0))
+                steeper += float(max(more, np.float32(0)))
+                flatter -= float(min(more, np.float32(0)))
     return steeper, flatter
 
 

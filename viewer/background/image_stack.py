@@ -1,7 +1,7 @@
 """What a stack of pictures says pixel by pixel: mean, median, spread of colours, what moves."""
 
 from collections.abc import Sequence
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,7 +84,7 @@ def squares(deviations: Floats) -> Floats:
 
 
 @compiled
-def _median(pictures: Any) -> Floats:
+def _median(pictures: Bytes | Floats) -> Floats:
     """The median of pictures (n, H, W, 3)."""
     found = np.empty(pictures.shape[1:], np.float32)
     for y in range(len(found)):
@@ -93,7 +93,7 @@ def _median(pictures: Any) -> Floats:
 
 
 @compiled
-def _middle(ranked: Any, out: Floats) -> None:
+def _middle(ranked: Bytes | Floats, out: Floats) -> None:
     """The medians of columns (n, m), which change places.
 
     Whole rows change places until the middle ones are in place: sorting the few values of each
@@ -109,7 +109,7 @@ def _middle(ranked: Any, out: Floats) -> None:
 
 
 @compiled
-def _change_places(one: Any, other: Any) -> None:
+def _change_places(one: Bytes | Floats, other: Bytes | Floats) -> None:
     for j in range(len(one)):
         a, b = one[j], other[j]
         less = a < b

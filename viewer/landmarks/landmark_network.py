@@ -1,12 +1,12 @@
 """What the outputs of the network of landmarks mean: joints in a window, and how sure they are."""
 
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import Vector
+from common.body.body import Floats, Vector
 from common.compiled import compiled
 from viewer.landmarks.landmark_looks import BINS, CELLS, SHIPPED, seen, seen_twice
 from viewer.landmarks.landmark_window import PLANES, SIDE, Planes
@@ -71,7 +71,7 @@ def find(planes: Planes, network: Path = SHIPPED, twice: bool = False) -> Found:
 
 
 @compiled
-def _peaks(maps: Any) -> tuple[Any, Any]:
+def _peaks(maps: Floats | NDArray[np.float32]) -> tuple[Floats, Floats]:
     """Where each map of logits (15, CELLS, CELLS) is highest, and next to that, (15, 2, 2), and
     its shares about there, (15, 2).
 
@@ -95,7 +95,7 @@ def _peaks(maps: Any) -> tuple[Any, Any]:
 
 
 @compiled
-def _highest(shares: Any, row: int, column: int) -> tuple[int, int]:
+def _highest(shares: Floats, row: int, column: int) -> tuple[int, int]:
     """The cell with the largest share of those that are APART from another."""
     best, at = -1.0, (0, 0)
     for i in range(CELLS):
@@ -107,7 +107,7 @@ def _highest(shares: Any, row: int, column: int) -> tuple[int, int]:
 
 
 @compiled
-def _peak(shares: Any, row: int, column: int, place: Any) -> float:
+def _peak(shares: Floats, row: int, column: int, place: Vector) -> float:
     """What lies about a cell; `place` (2,) gets where the bell about it has its peak."""
     near = 0.0
     rows, columns = np.full(3, 1e-9), np.full(3, 1e-9)
@@ -122,7 +122,7 @@ def _peak(shares: Any, row: int, column: int, place: Any) -> float:
 
 
 @compiled
-def _between(three: Any) -> float:
+def _between(three: Vector) -> float:
     """Where a bell through three neighbours has its peak, from the middle one, in cells."""
     low, middle, high = np.log(three[0]), np.log(three[1]), np.log(three[2])
     bent = min(low - 2.0 * middle + high, -1e-3)
@@ -130,7 +130,7 @@ def _between(three: Any) -> float:
 
 
 @compiled
-def _facing(bins: Any) -> tuple[float, float]:
+def _facing(bins: NDArray[np.float32] | Vector) -> tuple[float, float]:
     """The direction and how probably it is less than 45 degrees off, of BINS logits."""
     share, best = np.empty(BINS), bins.argmax()
     for i in range(BINS):
@@ -149,7 +149,9 @@ def _facing(bins: Any) -> tuple[float, float]:
 
 
 @compiled
-def _probable(near: Any, sure: Any, slope: float, share: float, offset: float) -> Any:
+def _probable(
+    near: Vector, sure: NDArray[np.float32] | Vector, slope: float, share: float, offset: float
+) -> Floats:
     """(15,) how probable joints are, of what of their maps lies near, and of logits."""
     found = np.empty(len(near))
     for j in range(len(near)):
@@ -159,5 +161,5 @@ def _probable(near: Any, sure: Any, slope: float, share: float, offset: float) -
 
 
 @compiled
-def _sigmoid(value: float) -> float:
+def _sigmoid(value: float | np.float32) -> float:
     return 1.0 / (1.0 + np.exp(-min(max(float(value), -60.0), 60.0)))

@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Final
 
 import msgspec
 import numpy as np
 
-from common.body.body import POSE_INDEX, Bdp, Round, rest_pose
+from common.body.body import POSE_INDEX, Bdp, Round, Vector, rest_pose
 from common.body.proportions import (
     ARMS,
     LENGTHS,
@@ -18,7 +18,7 @@ from common.body.proportions import (
     attached,
 )
 from common.compiled import compiled
-from common.raster.bits import count, pack_words
+from common.raster.bits import Bits, count, pack_words
 from common.raster.kernel import match
 from common.raster.similarity import Mask
 from common.rig.camera import PAPER_ROTATIONS
@@ -71,7 +71,13 @@ def fine_tuned(
 
 @compiled
 def _score(
-    values: Any, lengths: Any, pose: Any, view: Any, width: int, seen: Any, seen_px: int
+    values: Vector,
+    lengths: Vector,
+    pose: Vector,
+    view: Vector,
+    width: int,
+    seen: Bits,
+    seen_px: int,
 ) -> float:
     """S of the body with other values; its lengths and its pose are set to them."""
     lengths[TORSO_RADIUS] = values[0]

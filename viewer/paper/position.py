@@ -1,12 +1,13 @@
 """Where the body is in the picture: shifts of the drawn model (section 3.2)."""
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common.body.kinematics import ALL_LIMBS
 from common.compiled import compiled
-from common.raster.bits import ONES, popcount
+from common.raster.bits import ONES, Bits, popcount
 from common.raster.kernel import CENTRE_X, CENTRE_Y, draw_limbs, score
 from viewer.paper.posed_model import PosedModel
 
@@ -22,7 +23,7 @@ MOST_PASSES: Final = 3
 
 
 @compiled
-def extent(bits: Any) -> tuple[int, int, int, int]:
+def extent(bits: Bits) -> tuple[int, int, int, int]:
     """Where packed rows have pixels: first row and one past the last, words likewise."""
     top, bottom, begin, end = bits.shape[0], 0, bits.shape[1], 0
     for row in range(bits.shape[0]):
@@ -35,7 +36,7 @@ def extent(bits: Any) -> tuple[int, int, int, int]:
 
 @compiled
 def shifted_counts(
-    model: Any, within: tuple[int, int, int, int], seen: Any, width: int, right: int, down: int
+    model: Bits, within: tuple[int, int, int, int], seen: Bits, width: int, right: int, down: int
 ) -> tuple[int, int]:
     """Pixels of a shifted model inside the picture, and those of them that are seen.
 
@@ -71,7 +72,7 @@ def shifted_counts(
 
 @compiled
 def best_shift(
-    model: Any, seen: Any, seen_px: int, width: int, shifts: Any, passes: int
+    model: Bits, seen: Bits, seen_px: int, width: int, shifts: NDArray[np.int64], passes: int
 ) -> tuple[int, int, float, int]:
     """(right, down, score, matches) of the best shift of the drawn model: x, then y."""
     within = extent(model)

@@ -1,15 +1,16 @@
 """The overlapped tritree: the one-dimensional search behind every joint angle (section 3.5)."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from common.body.body import Floats, Vector
 from common.body.kinematics import ALL_LIMBS, FRAME, hang_limbs, place_limbs
 from common.compiled import compiled
-from common.raster.bits import count, count_both
+from common.raster.bits import Bits, count, count_both
 from common.raster.kernel import draw_placed, limb_primitive, score
-from common.raster.row_spans import PRIMITIVE, draw, gain, spans, undraw
+from common.raster.row_spans import PRIMITIVE, Columns, draw, gain, spans, undraw
 
 MOST_STAGES = 16
 """A window of 2^16 stops would still end: the guard that M14 asks for."""
@@ -20,6 +21,10 @@ LOW, HIGH, LEFT, MIDDLE, RIGHT, ROUNDS, BEST_ANGLE, BEST_SCORE, MATCHES = range(
 often it was narrowed, and the best that it met."""
 MIDDLE_FIRST = (MIDDLE, LEFT, RIGHT)
 """Order of the probes: what is met first wins a tie, and the middle is the previous angle."""
+
+
+Bound = TypeVar("Bound", int, float)
+"""An end of a window, in stops or in degrees."""
 
 
 class Found(NamedTuple):
@@ -52,8 +57,8 @@ def whole(value: float) -> int:
 
 @compiled
 def narrowed(
-    low: float, high: float, left: float, middle: float, right: float
-) -> tuple[float, float, float, float, float]:
+    low: Bound, high: Bound, left: float, middle: float, right: float
+) -> tuple[Bound, Bound, float, float, float]:
     """The half window around the winner, with the scores that it inherits (NaN: to be matched).
 
     A tie goes to the middle, then to the left: deterministic, and close to the previous angle.
@@ -67,7 +72,7 @@ def narrowed(
 
 
 @compiled
-def begun(low: float, high: float) -> Any:
+def begun(low: float, high: float) -> Floats:
     """A search of a window that has matched nothing: what LOW to MATCHES name."""
     tree = np.full(MATCHES + 1, np.nan)
     tree[LOW], tree[HIGH], tree[ROUNDS] = low, high, 0.0
@@ -76,7 +81,7 @@ def begun(low: float, high: float) -> Any:
 
 
 @compiled
-def probe(tree: Any, stop: float) -> int:
+def probe(tree: Vector, stop: float) -> int:
     """Which of a window's ends and its middle to match next: LEFT, MIDDLE or RIGHT; -1: none.
 
     Each round compares the left end, the middle and the right end of the window and keeps the
@@ -99,13 +104,13 @@ def probe(tree: Any, stop: float) -> int:
 
 
 @compiled
-def angle_of(tree: Any, which: int) -> float:
+def angle_of(tree: Vector, which: int) -> float:
     """The angle of a probe."""
     return tree[LOW] + (which - LEFT) * ((tree[HIGH] - tree[LOW]) // 2)
 
 
 @compiled
-def tell(tree: Any, which: int, score: float) -> None:
+def tell(tree: Vector, which: int, score: float) -> None:
     """Take in what a probe matched."""
     tree[which] = score
     tree[MATCHES] += 1
@@ -140,17 +145,17 @@ def tritree(
 
 @compiled
 def added(
-    frames: Any,
-    body: Any,
-    view: Any,
+    frames: Floats,
+    body: Vector,
+    view: Vector,
     moving: int,
     width: int,
-    rest: Any,
-    seen: Any,
-    scratch: Any,
-    first: Any,
-    last: Any,
-    p: Any,
+    rest: Bits,
+    seen: Bits,
+    scratch: Bits,
+    first: Columns,
+    last: Columns,
+    p: Vector,
 ) -> tuple[int, int]:
     """What placed limbs add to the drawn rest: (pixels newly drawn, those that are seen).
 
@@ -174,13 +179,13 @@ def added(
 
 @compiled
 def search(
-    seen: Any,
+    seen: Bits,
     seen_px: int,
     width: int,
-    body: Any,
-    pose: Any,
-    view: Any,
-    step: Any,
+    body: Vector,
+    pose: Vector,
+    view: Vector,
+    step: Vector,
     moving: int,
     low: int,
     high: int,

@@ -1,10 +1,12 @@
 """An outline held against the landmarks: what is far from the body goes, what is missing comes."""
 
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
+from common.body.body import Floats
 from common.bus.messages import Landmarks
 from common.compiled import compiled
 from viewer.landmarks.body_region import (
@@ -90,7 +92,7 @@ def _without_things(seen: Seen, landmarks: Landmarks) -> tuple[Bytes, Bytes | No
 
 
 @compiled
-def _far_share(mask: Any, ends: Any, reach_px: float) -> float:
+def _far_share(mask: NDArray[np.uint8], ends: Floats, reach_px: float) -> float:
     """Share of an outline (H, W) farther than that from all of the bones (n, 2, 2)."""
     all_of, far = 0, 0
     for y in range(0, mask.shape[0], STRIDE):
@@ -108,7 +110,7 @@ def _far_share(mask: Any, ends: Any, reach_px: float) -> float:
 
 
 @compiled
-def _distance_2(x: float, y: float, ends: Any) -> float:
+def _distance_2(x: float, y: float, ends: Floats) -> float:
     """Squared distance of a place from a bone (2, 2)."""
     along_x, along_y = ends[1, 0] - ends[0, 0], ends[1, 1] - ends[0, 1]
     from_x, from_y = x - ends[0, 0], y - ends[0, 1]
@@ -127,7 +129,7 @@ def _missing(mask: Bytes, landmarks: Landmarks) -> list[int]:
 
 
 @compiled
-def _covered(mask: Any, ends: Any) -> Any:
+def _covered(mask: NDArray[np.uint8], ends: Floats) -> Floats:
     """Share of the axis of each bone (n, 2, 2) that an outline covers; 1 outside of the picture."""
     out = np.ones(len(ends))
     for n in range(len(ends)):

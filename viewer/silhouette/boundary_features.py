@@ -57,8 +57,8 @@ def features_of(
     means = cv2.boxFilter(sides, cv2.CV_32F, size, borderType=cv2.BORDER_REPLICATE)
     shares, places, facts = matte(frame, model, means, reach, (top, left))
     own *= np.uint8(255)
-    counts = [_mean(own, 2 * far * stride + 1) for far in COUNTED]
-    features = _gathered(places, shares, facts, *counts, stride, (top, left))
+    around, wide = (_mean(own, 2 * far * stride + 1) for far in COUNTED)
+    features = _gathered(places, shares, facts, around, wide, stride, (top, left))
     return places, features
 
 

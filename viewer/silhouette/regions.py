@@ -4,6 +4,7 @@ from typing import Any, Final
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from common.compiled import compiled
 from viewer.background.image_stack import Bytes
@@ -53,7 +54,7 @@ def boxes_of(stats: Any) -> Any:
 
 
 @compiled
-def same_body(regions: Any, best: int, rows: int) -> Any:
+def same_body(regions: NDArray[np.int32], best: int, rows: int) -> NDArray[np.bool_]:
     """Which regions stand over or under the best one, or all but touch it.
 
     Clothes of the wall's colour part a body across; people who stand side by side do not overlap.

@@ -1,11 +1,12 @@
 """The contour method: curves of arms and lower legs, elbows, crossed legs (algorithms 2 to 5)."""
 
 import math
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from common.body.body import Floats
 from common.compiled import compiled
 from common.method import Method
 from common.raster.similarity import Mask
@@ -33,7 +34,7 @@ class ArmAngles(NamedTuple):
 
 
 @compiled
-def outer_runs(mask: Any) -> Any:
+def outer_runs(mask: Mask) -> NDArray[np.int64]:
     """Where scan lines are inside a silhouette (H, W): how often, and their outermost runs.
 
     Returns:
@@ -54,7 +55,7 @@ def outer_runs(mask: Any) -> Any:
 
 
 @compiled
-def _line(curve: Any) -> tuple[float, float]:
+def _line(curve: Floats) -> tuple[float, float]:
     """The line of least squared distances through a curve: (angle, sum of these squares)."""
     size = len(curve)
     mean_x, mean_y = curve[:, 0].sum() / size, curve[:, 1].sum() / size
@@ -124,7 +125,7 @@ def turn_deg(one_deg: float, other_deg: float) -> float:
 
 
 @compiled
-def elbow_corner(curve: Any) -> int:
+def elbow_corner(curve: Floats) -> int:
     """Algorithm 4: the point that parts a curve into the two lines of the most different
     directions; -1: nowhere do they differ by more than CORNER_DEG.
 
@@ -139,7 +140,7 @@ def elbow_corner(curve: Any) -> int:
 
 
 @compiled
-def steady_corner(curve: Any) -> int:
+def steady_corner(curve: Floats) -> int:
     """The point at which two lines of different directions fit a curve best; -1: none.
 
     A departure from algorithm 4, whose largest difference noise at an end decides (T16).

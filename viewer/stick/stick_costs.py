@@ -1,9 +1,10 @@
 """What a stick pose costs before it is matched: haste, unseen depth, joints bent wrongly."""
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
+from common.body.body import Floats, Vector
 from common.body.stick_body import ANGLE, BREADTH, GIRTH, HEAD, RATIO, STATURE, TORSO
 from common.compiled import compiled
 
@@ -36,7 +37,7 @@ STIFF_NECK: Final = 3.0
 
 
 @compiled
-def limb_cost(pose: Any, expected: Any, limb: int, trust: float, costs: Any) -> float:
+def limb_cost(pose: Vector, expected: Vector, limb: int, trust: float, costs: Vector) -> float:
     """What a limb's place costs: how far it turned in space since it was expected, and its depth.
 
     Both signs of its depth are alike here, so that is how far it is from the nearer one.
@@ -52,7 +53,7 @@ def limb_cost(pose: Any, expected: Any, limb: int, trust: float, costs: Any) -> 
 
 
 @compiled
-def bend_cost(pose: Any, upper: int, costs: Any) -> float:
+def bend_cost(pose: Vector, upper: int, costs: Vector) -> float:
     """What the bend of an elbow or a knee costs, as far as it lies in the plane."""
     bend = np.radians(pose[ANGLE + upper + 2] - pose[ANGLE + upper])
     share = costs[BEND] * pose[RATIO + upper] * pose[RATIO + upper + 2] * (1.0 - np.cos(bend))
@@ -60,7 +61,7 @@ def bend_cost(pose: Any, upper: int, costs: Any) -> float:
 
 
 @compiled
-def cross_cost(ends: Any, pose: Any, costs: Any) -> float:
+def cross_cost(ends: Floats, pose: Vector, costs: Vector) -> float:
     """What knees and feet on the wrong sides cost."""
     wrong = 0.0
     for limb in (2, 4):
@@ -69,7 +70,7 @@ def cross_cost(ends: Any, pose: Any, costs: Any) -> float:
 
 
 @compiled
-def pose_cost(pose: Any, ends: Any, expected: Any, trust: float, costs: Any) -> float:
+def pose_cost(pose: Vector, ends: Floats, expected: Vector, trust: float, costs: Vector) -> float:
     """What a whole pose costs; `ends` are its segments."""
     wider, taller = pose[BREADTH] - expected[BREADTH], pose[STATURE] / expected[STATURE] - 1.0
     total = costs[BREADTH_CHANGE] * wider * wider + costs[STATURE_CHANGE] * taller * taller

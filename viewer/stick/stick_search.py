@@ -1,15 +1,16 @@
 """The search of a stick pose for its best match: limbs by beam, then every number by tritree."""
 
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from common.body.body import Vector
+from common.body.body import Floats, Vector
 from common.body.stick_body import ANGLE, POSE_SIZE, RATIO, place_chain, place_segments
 from common.compiled import compiled
 from common.raster.bits import Bits, count, count_both
 from common.raster.kernel import score
-from common.raster.row_spans import PRIMITIVE
+from common.raster.row_spans import PRIMITIVE, Columns
 from common.raster.stick_raster import added, draw_segments
 from viewer.paper.tritree import MOST_STAGES, narrowed
 from viewer.stick.stick_costs import bend_cost, cross_cost, limb_cost, pose_cost
@@ -41,13 +42,18 @@ class Task(NamedTuple):
     costs: Vector
 
 
+Canvas = tuple[Bits, Bits, Floats, Columns, Columns, Vector]
+"""What a search draws on: the drawn rest and a scratch (H, words), the segments' ends (12, 4), the
+first and the last pixel of each row (H,), a part's primitive (PRIMITIVE,)."""
+
+
 class Moves(NamedTuple):
     """Directions in which a pose is searched, one after the other."""
 
-    rows: Any
+    rows: Floats
     """(k, POSE_SIZE): what a move adds to the pose, times a whole number of its unit."""
     units: Vector
-    moving: Any
+    moving: NDArray[np.int64]
     """(k,) segments that move, as bits: the others are drawn once."""
     lows: Vector
     highs: Vector
@@ -55,7 +61,7 @@ class Moves(NamedTuple):
 
 
 @compiled
-def worth(task: Any, pose: Any, which: int, ends: Any, bits: Any) -> float:
+def worth(task: Task, pose: Vector, which: int, ends: Floats, bits: Bits) -> float:
     """S of some segments less what the pose costs; `ends` and `bits` are overwritten."""
     place_segments(task.lengths, pose, ends)
     bits[:] = np.uint64(0)
@@ -66,7 +72,7 @@ def worth(task: Any, pose: Any, which: int, ends: Any, bits: Any) -> float:
 
 @compiled
 def refined(
-    task: Any, pose: Any, moves: Any, how_many: int, half: int, stop: int, which: int
+    task: Task, pose: Vector, moves: Moves, how_many: int, half: int, stop: int, which: int
 ) -> tuple[float, int]:
     """The first moves, each in turn to its best by the overlapped tritree around where it is.
 
@@ -117,7 +123,7 @@ def refined(
 
 
 @compiled
-def _moved(trial: Any, start: Any, moves: Any, k: int, by: float) -> None:
+def _moved(trial: Vector, start: Vector, moves: Moves, k: int, by: float) -> None:
     """Write where a move leads, kept within the bounds."""
     for n in range(POSE_SIZE):
         at = start[n] + by * moves.rows[k, n]
@@ -125,13 +131,15 @@ def _moved(trial: Any, start: Any, moves: Any, k: int, by: float) -> None:
 
 
 @compiled
-def _rows(height: int) -> Any:
+def _rows(height: int) -> tuple[NDArray[np.int32], NDArray[np.int32], Floats]:
     """Room for the row intervals of a part, and for the part."""
     return np.empty(height, np.int32), np.empty(height, np.int32), np.empty(PRIMITIVE)
 
 
 @compiled
-def _similar(task: Any, pose: Any, which: int, over: Any, rest_px: int, rest_hit: int) -> float:
+def _similar(
+    task: Task, pose: Vector, which: int, over: Canvas, rest_px: int, rest_hit: int
+) -> float:
     """S of some placed segments over a drawn rest, of which the pixels and the hits are known."""
     rest, scratch, ends, first, last, p = over
     drawn, hit = added(
@@ -142,7 +150,9 @@ def _similar(task: Any, pose: Any, which: int, over: Any, rest_px: int, rest_hit
 
 
 @compiled
-def _limb_of(pose: Any, limb: int, was: Any, n: int, first_deg: float, step_deg: float) -> None:
+def _limb_of(
+    pose: Vector, limb: int, was: Vector, n: int, first_deg: float, step_deg: float
+) -> None:
     """Set a limb to the n-th of the beam's angles and shortenings; n = -1: to what it was."""
     if n < 0:
         pose[ANGLE + limb], pose[RATIO + limb] = was[ANGLE + limb], was[RATIO + limb]
@@ -153,8 +163,8 @@ def _limb_of(pose: Any, limb: int, was: Any, n: int, first_deg: float, step_deg:
 
 @compiled
 def _uppers(
-    task: Any, pose: Any, was: Any, upper: int, over: Any, low_deg: float, high_deg: float
-) -> tuple[Any, int]:
+    task: Task, pose: Vector, was: Vector, upper: int, over: Canvas, low_deg: float, high_deg: float
+) -> tuple[Floats, int]:
     """The best places of an upper limb alone: ((BEAM, 2): worth, number), matches."""
     rest, ends = over[0], over[2]
     rest_px, rest_hit = count(rest), count_both(rest, task.seen)
@@ -173,7 +183,13 @@ def _uppers(
 
 @compiled
 def beamed(
-    task: Any, pose: Any, upper: int, low_deg: float, high_deg: float, bend_deg: float, which: int
+    task: Task,
+    pose: Vector,
+    upper: int,
+    low_deg: float,
+    high_deg: float,
+    bend_deg: float,
+    which: int,
 ) -> int:
     """An upper and its lower limb found together, anywhere in their ranges.
 
@@ -223,7 +239,7 @@ def beamed(
 
 
 @compiled
-def covered(task: Any, pose: Any, shares: Any) -> None:
+def covered(task: Task, pose: Vector, shares: Vector) -> None:
     """How much of each limb the rest of the body covers, or is covered by: (10,), written."""
     ends, own, rest = np.empty((12, 4)), np.zeros_like(task.seen), np.zeros_like(task.seen)
     place_segments(task.lengths, pose, ends)

@@ -1,7 +1,7 @@
 """The stick body fitted as the thesis prints it: its order of segments, frame by frame (T11)."""
 
 from collections.abc import Sequence
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,10 @@ from viewer.stick.subdivision import angle_found, ratio_found
 
 LIMITS_DEG: Final = {"neck": (45.0, 135.0), "waist": (45.0, 135.0), "hip": (240.0, 300.0)}
 """Table 3.3 (T6)."""
+
+
+Span = tuple[float, float]
+"""From where to where along the rows or down the columns, pixels."""
 
 
 class ThesisFit(NamedTuple):
@@ -181,7 +185,7 @@ def _around(fit: _Fit, limb: int) -> Bits:
     return _box(fit, (low[0], high[0]), (low[1], high[1]))
 
 
-def _box(fit: _Fit, columns: Any, rows: Any) -> Bits:
+def _box(fit: _Fit, columns: Span, rows: Span) -> Bits:
     inside = np.zeros((fit.seen.shape[0], fit.width), np.bool_)
     first_x, last_x = (max(0, round(value)) for value in columns)
     first_y, last_y = (max(0, round(value)) for value in rows)
