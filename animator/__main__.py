@@ -5,7 +5,7 @@ import os
 import threading
 import time
 from multiprocessing.connection import Connection
-from typing import Any, Final
+from typing import Final
 
 from animator.page.door import Entrance, entrance_of, invitation_of
 from animator.page.inset import limb_contours, limb_ends
@@ -20,6 +20,7 @@ from common.bus.messages import Body, Performance, Picture, Posture, Report
 from common.bus.process import READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config.settings import Settings
+from common.npz_file import Facts
 from common.rig.camera import paper_rig
 from common.settled import settle
 
@@ -85,9 +86,7 @@ class Subscriber:
         return list(self._by_process.values()) if new else []
 
 
-def run(
-    page: LivePage, bus: Bus, stop: threading.Event, ending: Connection | None
-) -> dict[str, Any] | None:
+def run(page: LivePage, bus: Bus, stop: threading.Event, ending: Connection | None) -> Facts | None:
     """Show every body that is published, newest only when late; hand on what browsers ask for.
 
     Returns:
@@ -140,9 +139,9 @@ def _exchange(page: LivePage, subscriber: Subscriber, bus: Bus) -> None:
         page.show_health(pulses)
 
 
-def _told(ending: Connection) -> dict[str, Any]:
+def _told(ending: Connection) -> Facts:
     try:
-        facts: dict[str, Any] = ending.recv()
+        facts: Facts = ending.recv()
     except EOFError:  # the supervisor is gone
         facts = {}
     return facts
@@ -204,7 +203,7 @@ def main(
 
 def _shown(
     page: LivePage, settings: Settings, stop: threading.Event, ending: Connection | None
-) -> dict[str, Any] | None:
+) -> Facts | None:
     """Show a run, from the moment when its bus is there: as long as that takes where there is a
     supervisor, who ends this process in time. A first run compiles for minutes before it."""
     most_s = READY_S if ending is None else HEAR_S

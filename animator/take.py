@@ -1,7 +1,7 @@
 """What a run of one camera decided by itself, how sure it was, and what notes make of it."""
 
 from collections.abc import Mapping
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
 from common.nearest_rows import nearest
 from common.notes.notes import Depth, Held, Notes, held
+from common.npz_file import Arrays
 from common.rig.camera import PAPER_ROTATIONS, TOWARDS
 
 CONFIDENT: Final = 0.7
@@ -64,9 +65,7 @@ class Doubt(NamedTuple):
     confidence: float
 
 
-def take_of(
-    poses: Mapping[str, Any], px_scale: float = 1.0, turn: ArrayLike = PAPER_ROTATIONS[0]
-) -> Take:
+def take_of(poses: Arrays, px_scale: float = 1.0, turn: ArrayLike = PAPER_ROTATIONS[0]) -> Take:
     """A run as its `poses.npz` has it.
 
     Args:
@@ -90,7 +89,7 @@ def take_of(
     )
 
 
-def _nearest_posed(poses: Mapping[str, Any]) -> NDArray[np.int64]:
+def _nearest_posed(poses: Arrays) -> NDArray[np.int64]:
     """(n,) the row whose pose a frame opens with: its own, but where the body was lost."""
     rows = np.arange(len(poses["frame"]))
     posed = np.flatnonzero(np.isfinite(poses["joints_m"]).all(axis=(1, 2)))

@@ -14,6 +14,8 @@ from common.atomic_file import replacing
 
 Arrays = dict[str, NDArray[Any]]
 """What an npz file holds, by name."""
+Facts = dict[str, Any]
+"""What a summary, a report or an answer says, by name: all that JSON holds."""
 
 DAMAGE: Final = (
     *(ValueError, KeyError, EOFError, RecursionError, MemoryError, NotImplementedError),

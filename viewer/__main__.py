@@ -5,7 +5,7 @@ import math
 import threading
 import time
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from common.bus import clock
 from common.bus.bus import Bus, open_client
@@ -17,6 +17,7 @@ from common.bus.process import BEGIN_S, READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config.settings import Settings
 from common.method import METHODS
+from common.npz_file import Facts
 from common.settled import settle
 from common.video.clip_facts import View, shortfall
 from common.video.clip_sources import footage_of
@@ -257,9 +258,7 @@ def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | No
     return RoomClock(start_s, offset.offset_s)
 
 
-def _news(
-    live: Live, guides: Guides, shedder: LoadShedder, warnings: tuple[str, ...]
-) -> dict[str, Any]:
+def _news(live: Live, guides: Guides, shedder: LoadShedder, warnings: tuple[str, ...]) -> Facts:
     """What is odd and what was lost so far, as a Pulse tells it."""
     return {
         "detail": "\n".join((*warnings, *live.odd)),

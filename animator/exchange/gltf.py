@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from animator.exchange.sticks import COLOUR, Sticks, sticks_of
 from animator.skeleton.bones import BONES, Motion, Skeleton, offset_m, rest_origins_m
 from animator.turns import unbroken
+from common.npz_file import Facts
 
 FLOAT, USHORT, UINT = 5126, 5123, 5125
 VERTICES, INDICES = 34962, 34963
@@ -27,8 +28,8 @@ class _Buffer:
 
     def __init__(self) -> None:
         self.data = bytearray()
-        self.views: list[dict[str, Any]] = []
-        self.accessors: list[dict[str, Any]] = []
+        self.views: list[Facts] = []
+        self.accessors: list[Facts] = []
 
     def add(self, values: NDArray[Any], target: int | None = None) -> int:
         """Lay an array into the buffer; its accessor's number. Its bytes are a multiple of four, as
@@ -88,9 +89,9 @@ def gltf_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
     return _glb(msgspec.json.encode(content), bytes(buffer.data))
 
 
-def _nodes(skeleton: Skeleton) -> list[dict[str, Any]]:
+def _nodes(skeleton: Skeleton) -> list[Facts]:
     """The bones, then a node at the end of each that carries no other, then the skinned mesh."""
-    nodes: list[dict[str, Any]] = []
+    nodes: list[Facts] = []
     for i, bone in enumerate(skeleton.bones):
         children = [n for n, other in enumerate(skeleton.bones) if other.parent == i]
         nodes.append(
@@ -105,7 +106,7 @@ def _nodes(skeleton: Skeleton) -> list[dict[str, Any]]:
     return [*nodes, {"name": "Body", "mesh": 0, "skin": 0}]
 
 
-def _figure(buffer: _Buffer, sticks: Sticks) -> dict[str, Any]:
+def _figure(buffer: _Buffer, sticks: Sticks) -> Facts:
     joints = np.zeros((len(sticks.bones), 4), np.uint16)
     joints[:, 0] = sticks.bones
     weights = np.zeros((len(sticks.bones), 4), np.float32)
@@ -121,7 +122,7 @@ def _figure(buffer: _Buffer, sticks: Sticks) -> dict[str, Any]:
     }
 
 
-def _animation(buffer: _Buffer, motion: Motion, step_s: float) -> dict[str, Any]:
+def _animation(buffer: _Buffer, motion: Motion, step_s: float) -> Facts:
     times = buffer.add((np.arange(len(motion.root_m)) * step_s).astype(np.float32))
     tracks = [(0, "translation", motion.root_m)]
     tracks += [(i, "rotation", unbroken(own.as_quat())) for i, own in enumerate(motion.turns)]

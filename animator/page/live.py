@@ -5,7 +5,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
 import msgspec
 
@@ -16,6 +16,7 @@ from animator.page.shown import shown_frame, shown_room
 from animator.scene import Snapshot
 from common.bus.control_messages import Answer, Pulse
 from common.bus.messages import Performance
+from common.npz_file import Facts
 from common.rig.camera import Rig
 
 MOST_BYTES: Final = 32_000_000
@@ -100,7 +101,7 @@ class LivePage:
                 self._last.pop(Told, None)
         self._server.tell(said)
 
-    def end(self, facts: dict[str, Any]) -> None:
+    def end(self, facts: Facts) -> None:
         """The run is over: the page becomes its player."""
         self._tell(Over(facts))
 

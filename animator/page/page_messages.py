@@ -1,6 +1,6 @@
 """What the page's process and a browser tell each other, as JSON."""
 
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import msgspec
 
@@ -10,6 +10,7 @@ from common.body.extremities import ALL_JOINT_NAMES, EXTREMITY_LINES
 from common.body.kinematics import HEAD
 from common.bus.control_messages import Pulse
 from common.bus.messages import Performance, Status
+from common.npz_file import Facts
 
 CYLINDERS: Final = [i for i in range(len(LIMBS)) if i != HEAD]
 """The limbs that are drawn as cylinders; the head is round."""
@@ -119,7 +120,7 @@ class Told(msgspec.Struct, frozen=True, tag="told", tag_field="kind"):
 class Over(msgspec.Struct, frozen=True, tag="over", tag_field="kind"):
     """The run is over."""
 
-    facts: dict[str, Any]
+    facts: Facts
 
 
 class Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

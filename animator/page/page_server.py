@@ -11,7 +11,7 @@ from contextlib import suppress
 from functools import cache
 from http import HTTPStatus
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.datastructures import Headers
@@ -28,6 +28,7 @@ from animator.page.door import (
     refuse_port,
     unusable,
 )
+from common.npz_file import Facts
 
 SITE: Final = Path(__file__).parent / "site"
 SOCKET: Final = "/live"
@@ -234,7 +235,7 @@ def site(*folders: Path) -> dict[str, File]:
 
 
 def _headers(kind: str, content: bytes) -> Headers:
-    said: dict[str, Any] = {
+    said: Facts = {
         "Content-Type": f"{kind}; charset=utf-8" if kind.startswith("text/") else kind,
         "Content-Length": str(len(content)),
         "Content-Security-Policy": POLICY,

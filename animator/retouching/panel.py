@@ -1,17 +1,17 @@
 """What the retouching page says in pieces of HTML, from templates beside the code."""
 
-from collections.abc import Mapping
-from typing import Any, Final
+from typing import Final
 
 from animator.scene import Colour
 from animator.take import Take, doubts_at
 from common.notes.notes import Notes
+from common.npz_file import Facts
 from common.templates import rendered
 
 ACCENT: Final[Colour] = (62, 142, 126)
 
 
-def piece(name: str, given: Mapping[str, Any]) -> str:
+def piece(name: str, given: Facts) -> str:
     """A template of a page filled in."""
     return rendered(__package__, name, given)
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from calibration.foreign.foreign_camera import ForeignCamera
 from common.body.body import Vector
+from common.npz_file import Facts
 from common.rig.rig_file import CalibrationError
 
 LARGEST: Final = 10_000_000
@@ -68,7 +69,7 @@ def _camera(
     return ForeignCamera(name, size_px, K.reshape(3, 3), place[0], place[1].reshape(3), distortion)
 
 
-def _nodes(path: Path) -> dict[str, Any]:
+def _nodes(path: Path) -> Facts:
     """The nodes at the top of a file, by their names."""
     try:
         if path.stat().st_size > LARGEST:
@@ -109,13 +110,13 @@ def _array(node: cv2.FileNode) -> Vector | None:
     return np.array(numbers).reshape(rows, columns)
 
 
-def _matrix(content: dict[str, Any], names: Sequence[str]) -> Vector | None:
+def _matrix(content: Facts, names: Sequence[str]) -> Vector | None:
     return next(
         (content[name] for name in names if isinstance(content.get(name), np.ndarray)), None
     )
 
 
-def _size(content: dict[str, Any], path: Path) -> tuple[int, int]:
+def _size(content: Facts, path: Path) -> tuple[int, int]:
     said: list[Any] = [[content.get(across), content.get(down)] for across, down in SIZES]
     said += [content.get(name) for name in ("imageSize", "image_size", "size")]
     for size in said:

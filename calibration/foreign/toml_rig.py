@@ -4,13 +4,14 @@ import json
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import cv2
 import numpy as np
 
 from calibration.foreign.foreign_camera import ForeignCamera, with_z_up
 from common.config.toml_fault import toml_fault
+from common.npz_file import Facts
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError
 
@@ -37,7 +38,7 @@ def read_toml(path: Path) -> list[ForeignCamera]:
         ) from error
 
 
-def _tables(content: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+def _tables(content: Facts) -> Iterator[tuple[str, Facts]]:
     """Tables of cameras, wherever they are."""
     for name, table in content.items():
         if isinstance(table, dict) and "matrix" in table:
@@ -46,7 +47,7 @@ def _tables(content: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
             yield from _tables(table)
 
 
-def _camera(section: str, table: dict[str, Any], path: Path) -> ForeignCamera:
+def _camera(section: str, table: Facts, path: Path) -> ForeignCamera:
     missing = [key for key in NEEDED if key not in table]
     if missing:
         raise CalibrationError(f"{path}: [{section}] has no {missing[0]}: calibrate it there first")
@@ -66,7 +67,7 @@ def _camera(section: str, table: dict[str, Any], path: Path) -> ForeignCamera:
     )
 
 
-def _quarters(section: str, table: dict[str, Any], path: Path) -> int:
+def _quarters(section: str, table: Facts, path: Path) -> int:
     """By how many quarter turns clockwise Caliscope shows a picture; the rest is of it unturned."""
     count = table.get("rotation_count", 0)
     if not isinstance(count, int):

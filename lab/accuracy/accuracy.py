@@ -1,13 +1,13 @@
 """How far tracked joints are from the true ones: the yardstick's numbers."""
 
 from collections.abc import Sequence
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from common.body.body import Vector
-from common.npz_file import Arrays
+from common.npz_file import Arrays, Facts
 from lab.accuracy.intervals import intervals
 
 JOINTS: Final = tuple(
@@ -111,7 +111,7 @@ def _refuse_other_shapes(arrays: Arrays, rows: str, places: str) -> None:
         raise Mismatch(f"{places} is {np.shape(arrays[places])}, {rows} {np.shape(arrays[rows])}")
 
 
-def picked(of_all: NDArray[Any], names: NDArray[Any]) -> Vector:
+def picked(of_all: ArrayLike, names: NDArray[np.str_]) -> Vector:
     """The twelve joints, in their order, of an array (n, joints, ...).
 
     Raises:
@@ -120,7 +120,7 @@ def picked(of_all: NDArray[Any], names: NDArray[Any]) -> Vector:
     return np.asarray(of_all, float)[:, _places(names)]
 
 
-def _places(names: NDArray[Any]) -> list[int]:
+def _places(names: NDArray[np.str_]) -> list[int]:
     known = [str(name) for name in names]
     missing = [name for name in JOINTS if name not in known]
     if missing:
@@ -128,7 +128,7 @@ def _places(names: NDArray[Any]) -> list[int]:
     return [known.index(name) for name in JOINTS]
 
 
-def summary(clips: Sequence[Compared]) -> dict[str, Any]:
+def summary(clips: Sequence[Compared]) -> Facts:
     """All clips together, every frame and joint alike; NaN where nothing was to be measured.
 
     `abs_mm` is the distance in the world, `root_mm` after moving the middles of the hips together,
@@ -161,7 +161,7 @@ def summary(clips: Sequence[Compared]) -> dict[str, Any]:
     }
 
 
-def per_joint(clips: Sequence[Compared]) -> dict[str, dict[str, Any]]:
+def per_joint(clips: Sequence[Compared]) -> dict[str, Facts]:
     """Distance in the world of each joint, mm, and its 95 % intervals."""
     told = {}
     for i, name in enumerate(JOINTS):

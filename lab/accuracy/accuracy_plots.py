@@ -1,16 +1,20 @@
 """Pictures of the numbers: how errors are spread, and what confidence is worth."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from common.npz_file import Facts
 from lab.accuracy.accuracy import JOINTS, Compared
 from lab.accuracy.reliability import NEAR_MM, roc
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
-def plot_all(clips: Sequence[Compared], report: Mapping[str, Any], out: Path) -> dict[str, str]:
+
+def plot_all(clips: Sequence[Compared], report: Facts, out: Path) -> dict[str, str]:
     """Write every plot as PNG: what it shows, and its file.
 
     Args:
@@ -36,7 +40,7 @@ def plot_all(clips: Sequence[Compared], report: Mapping[str, Any], out: Path) ->
     return {title: name for title, (name, _) in drawn.items()}
 
 
-def _errors(axes: Any, clips: Sequence[Compared], _report: Mapping[str, Any]) -> None:
+def _errors(axes: "Axes", clips: Sequence[Compared], _report: Facts) -> None:
     off = np.sort(np.concatenate([clip.off_mm.ravel() for clip in clips]))
     axes.plot(off, np.arange(1, off.size + 1) / off.size)
     axes.set(xlim=(0, max(200.0, float(np.percentile(off, 98)))), ylim=(0, 1))
@@ -44,7 +48,7 @@ def _errors(axes: Any, clips: Sequence[Compared], _report: Mapping[str, Any]) ->
     axes.grid(alpha=0.3)
 
 
-def _joints(axes: Any, _clips: Sequence[Compared], report: Mapping[str, Any]) -> None:
+def _joints(axes: "Axes", _clips: Sequence[Compared], report: Facts) -> None:
     for name, mark in (("p95", "_"), ("mean", "o"), ("median", "x")):
         axes.plot(JOINTS, [report["per_joint"][joint][name] for joint in JOINTS], mark, label=name)
     axes.set(ylabel="error, mm", ylim=(0, None))
@@ -53,7 +57,7 @@ def _joints(axes: Any, _clips: Sequence[Compared], report: Mapping[str, Any]) ->
     axes.legend()
 
 
-def _reliability(axes: Any, _clips: Sequence[Compared], report: Mapping[str, Any]) -> None:
+def _reliability(axes: "Axes", _clips: Sequence[Compared], report: Facts) -> None:
     bins = [one for one in report["confidence"]["bins"] if one["count"]]
     counts = np.array([one["count"] for one in bins])
     said = [one["confidence"] for one in bins]
@@ -65,7 +69,7 @@ def _reliability(axes: Any, _clips: Sequence[Compared], report: Mapping[str, Any
     axes.grid(alpha=0.3)
 
 
-def _roc(axes: Any, clips: Sequence[Compared], report: Mapping[str, Any]) -> None:
+def _roc(axes: "Axes", clips: Sequence[Compared], report: Facts) -> None:
     confidence = np.concatenate([clip.confidence for clip in clips])
     near = np.concatenate([clip.off_mm for clip in clips]) < NEAR_MM
     area = report["confidence"]["auc"]["all"]

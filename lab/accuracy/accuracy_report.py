@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
 
+from common.npz_file import Facts
 from common.templates import rendered
 from runtime.terminal import counted
 
 
-def headline(report: Mapping[str, Any]) -> dict[str, Any]:
+def headline(report: Facts) -> Facts:
     """The figures that are looked at first."""
     return {
         **report["all"],
@@ -20,7 +20,7 @@ def headline(report: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def line(report: Mapping[str, Any]) -> str:
+def line(report: Facts) -> str:
     """The headline in words."""
     told = report["all"]
     return (
@@ -32,7 +32,7 @@ def line(report: Mapping[str, Any]) -> str:
     )
 
 
-def page_of(report: Mapping[str, Any]) -> str:
+def page_of(report: Facts) -> str:
     """The report as a page; its pictures stand beside it."""
     given = {**report, "number": _number, "percent": _share, "between": _between}
     return rendered(__package__, "accuracy_report.html", given)

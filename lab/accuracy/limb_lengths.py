@@ -1,13 +1,14 @@
 """How well limbs are measured: their lengths against the true ones."""
 
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from common.body.body import JOINT_NAMES, Bdp, Vector, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector
+from common.npz_file import Facts
 from lab.accuracy.accuracy import JOINTS, Compared, picked
 
 SEGMENTS: Final[dict[str, tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]]] = {
@@ -48,7 +49,7 @@ def body_joints_m(bdp: Bdp) -> Vector:
     return picked(joints(body_vector(bdp), rest_pose())[None], np.array(JOINT_NAMES))
 
 
-def length_errors(clips: Sequence[Compared], bodies: Sequence[Bdp | None]) -> dict[str, Any]:
+def length_errors(clips: Sequence[Compared], bodies: Sequence[Bdp | None]) -> Facts:
     """Mean error of every segment, mm: of the measured body, of joints, of their medians.
 
     The true length of a body's segment is its median over the clip; published joints are held to

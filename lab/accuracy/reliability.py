@@ -1,12 +1,13 @@
 """Whether confidence means something: how often joints are near where they are said to be."""
 
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
+from common.npz_file import Facts
 from lab.accuracy.accuracy import JOINTS, Compared
 
 NEAR_MM: Final = 50.0
@@ -17,7 +18,7 @@ COUNTS: Final = 0.01
 """A bin with less than this share of all joints says nothing certain."""
 
 
-def trust(clips: Sequence[Compared]) -> dict[str, Any]:
+def trust(clips: Sequence[Compared]) -> Facts:
     """Reliability of all joints together and area under the ROC curve of each, for NEAR_MM."""
     confidence = np.concatenate([clip.confidence for clip in clips])
     near = np.concatenate([clip.off_mm for clip in clips]) < NEAR_MM

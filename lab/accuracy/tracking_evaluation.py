@@ -3,10 +3,11 @@
 import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console
 
 from common.body.body import Bdp
@@ -14,7 +15,7 @@ from common.config import config_file
 from common.config.renamed_settings import settings_of
 from common.config.settings import Settings
 from common.method import Mode
-from common.npz_file import Arrays, DamagedFile, read_arrays
+from common.npz_file import Arrays, DamagedFile, Facts, read_arrays
 from lab.accuracy import accuracy_plots, accuracy_report, worst_frames
 from lab.accuracy.accuracy import Compared, Mismatch, compare, per_joint, summary
 from lab.accuracy.limb_lengths import length_errors
@@ -55,7 +56,7 @@ def evaluate_tracking(
     mode: Mode | None,
     size: str | None,
     console: Console,
-) -> dict[str, Any]:
+) -> Facts:
     """Score clips with a truth, and write `report.json`, `report.html` and their pictures.
 
     Args:
@@ -169,9 +170,9 @@ def _arrays(path: Path, needed: Sequence[str]) -> Arrays:
     return held
 
 
-def _report(cases: Mapping[str, Case], out: Path, console: Console) -> dict[str, Any]:
+def _report(cases: Mapping[str, Case], out: Path, console: Console) -> Facts:
     clips = [case.compared for case in cases.values()]
-    report: dict[str, Any] = {
+    report: Facts = {
         "mode": sorted({case.settings.mode for case in cases.values()}),
         "size": sorted({case.settings.size for case in cases.values()}),
         "all": summary(clips),
@@ -199,16 +200,14 @@ def _report(cases: Mapping[str, Case], out: Path, console: Console) -> dict[str,
     return report
 
 
-def _grouped(cases: Mapping[str, Case], key: Callable[[Case], str]) -> dict[str, dict[str, Any]]:
+def _grouped(cases: Mapping[str, Case], key: Callable[[Case], str]) -> dict[str, Facts]:
     groups: dict[str, list[Compared]] = {}
     for case in cases.values():
         groups.setdefault(key(case), []).append(case.compared)
     return {name: summary(group) for name, group in sorted(groups.items())}
 
 
-def _silhouettes(
-    cases: Mapping[str, Case], found: Mapping[str, Mapping[str, Overlap]]
-) -> dict[str, Any]:
+def _silhouettes(cases: Mapping[str, Case], found: Mapping[str, Mapping[str, Overlap]]) -> Facts:
     """Mean IoU of every clip and view, of performers, of all; `worst` is the least of any view.
 
     Clips whose truth has no masks are left out.
@@ -231,5 +230,5 @@ def _silhouettes(
     }
 
 
-def _mean(values: Any) -> float:
+def _mean(values: NDArray[np.float64] | list[float]) -> float:
     return float(np.mean(values)) if len(values) else np.nan

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import msgspec
@@ -10,7 +10,7 @@ import numpy as np
 
 from common.body.body import Vector
 from common.config.settings import Settings
-from common.npz_file import Arrays
+from common.npz_file import Arrays, Facts
 from common.rig.camera import project
 from common.video.clip_facts import View, both_cameras
 from common.video.clips import open_clip
@@ -86,7 +86,7 @@ def draw(
     settings: Mapping[str, Settings],
     out: Path,
     decoders: Decoders,
-) -> list[dict[str, Any]]:
+) -> list[Facts]:
     """Write a picture of each frame, and say what it shows.
 
     Args:
@@ -143,7 +143,7 @@ def _taken(view: View, index: int, decoders: Decoders) -> tuple[Image, float]:
     return cv2.resize(last, size, interpolation=cv2.INTER_CUBIC), enlarged
 
 
-def stick(picture: Image, at_px: Vector, colours: tuple[Any, Any]) -> None:
+def stick(picture: Image, at_px: Vector, colours: Sequence[Sequence[int]]) -> None:
     """Draw a person as lines between joints (12, 2), in place; left and right in their colours."""
     for start, end in STICKS:
         ends = at_px[[INDEX[start], INDEX[end]]]

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import msgspec
 import numpy as np
@@ -21,6 +21,7 @@ from rich.table import Table
 from common.config.part_settings import PageSettings, SearchSettings
 from common.config.settings import Settings
 from common.method import DEFAULT, METHODS, PAPER, Mode
+from common.npz_file import Facts
 from common.packages import ROOT
 from common.source_digest import digest_of
 from common.video.clips import open_clip
@@ -49,7 +50,7 @@ PERFORMER_SEED: Final = 90_002
 FILMED: Final = (320, 240)
 
 
-def bench(quick: bool = False) -> dict[str, Any]:
+def bench(quick: bool = False) -> Facts:
     """Measure one thing after the other: (machine, figures), ready for JSON.
 
     Times are the least of several repeats: what else runs on the machine only adds to them.
@@ -202,7 +203,7 @@ def memory(settings: Settings, folder: Path) -> Iterator[Measured]:
         yield Measured(f"memory of {name}", told["memory_mb"], "MB")
 
 
-def machine() -> dict[str, Any]:
+def machine() -> Facts:
     """What was measured on, and when."""
     try:
         told = Path("/proc/cpuinfo").read_text().splitlines()
@@ -219,7 +220,7 @@ def machine() -> dict[str, Any]:
     }
 
 
-def table_of(result: dict[str, Any]) -> Table:
+def table_of(result: Facts) -> Table:
     """The figures as a table for a person."""
     facts = result["machine"]
     title = f"{facts['cpu']}, {facts['cores']} cores, load {facts['load_average'][0]}"

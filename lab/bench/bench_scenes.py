@@ -1,7 +1,7 @@
 """Synthetic matches to measure: limbs of a standing person over the drawn rest of the body."""
 
 from collections.abc import Callable
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
@@ -44,12 +44,12 @@ class Scene(NamedTuple):
     """(8, H, words): the body without the limb."""
 
     @property
-    def matched(self) -> tuple[Any, ...]:
+    def matched(self) -> tuple[Floats, Bits, Bits, int]:
         """What `match_all` takes."""
         return self.primitives, self.rests, self.seen, self.size[0]
 
     @property
-    def placed(self) -> tuple[Any, ...]:
+    def placed(self) -> tuple[NDArray[np.int64], Floats, Vector, Vector, Bits, Bits, int]:
         """What `match_placed` takes."""
         return self.limbs, self.poses, self.body, self.view, self.rests, self.seen, self.size[0]
 

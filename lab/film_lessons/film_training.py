@@ -4,13 +4,16 @@ import multiprocessing
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
 import torch
 from rich.console import Console
+from rich.progress import TaskID
+from torch import nn
 
+from common.npz_file import Facts
 from lab.film_lessons.film_examples import Looked, looked_through
 from lab.landmark_lessons import landmark_loss, work_of
 from lab.landmark_lessons.landmark_file import fill, weights_of, write_network
@@ -27,6 +30,7 @@ from lab.landmark_lessons.picture_store import Backdrops, Part, PictureStore, dr
 from lab.training.training import TrainingError
 from runtime.terminal import bar
 from synth.picture.composites import Composite, composite
+from synth.picture.picture_examples import PictureExample
 from viewer.landmarks.landmark_looks import SHIPPED
 
 FIRST: Final = 30_000_000
@@ -93,7 +97,7 @@ class Wanted(NamedTuple):
 
 def teach_on_films(
     films: Sequence[Path], teacher: str, out: Path, console: Console, plan: Plan = Plan()
-) -> dict[str, Any]:
+) -> Facts:
     """Teach the shipped network on films and write it, if it became better; what was looked
     through, drawn and learnt is kept in `<out>.work`: the next call goes on from there.
 
@@ -127,7 +131,7 @@ def _looked(films: Sequence[Path], teacher: str, folder: Path, console: Console)
         for n, film in enumerate(films):
             task = progress.add_task(f"looking through {film.name}", total=1.0)
 
-            def tell(share: float, task: Any = task) -> None:
+            def tell(share: float, task: TaskID = task) -> None:
                 progress.update(task, completed=share)
 
             looked.append(looked_through(film, teacher, folder / f"film{n}_{film.stem}", tell))
@@ -178,7 +182,7 @@ def _backdrops(plan: Plan) -> Backdrops:
     return Backdrops.drawn(range(FIRST, FIRST + plan.backdrops))
 
 
-def _shipped() -> Any:
+def _shipped() -> LandmarkNetwork:
     """The shipped network; its normalisations are folded, and stay as they are."""
     network = LandmarkNetwork().to(memory_format=torch.channels_last)
     fill(network, weights_of(SHIPPED))
@@ -201,7 +205,7 @@ def _learnt(wanted: Wanted, kept: Path, console: Console) -> Work:
     return work
 
 
-def _off(network: Any, held: Wanted) -> tuple[float, float]:
+def _off(network: nn.Module, held: Wanted) -> tuple[float, float]:
     """How far joints are off, of the films' ends as they are, and of made-up people."""
     films = _opened(held.films)
     plain = [_plain(films[at]) for at in range(len(films))]
@@ -217,10 +221,10 @@ def _off(network: Any, held: Wanted) -> tuple[float, float]:
     return _mean_off(network, plain), _mean_off(network, spoilt)
 
 
-def _plain(example: Any) -> Composite:
+def _plain(example: PictureExample) -> Composite:
     """An example of a film as it was filmed."""
     joints = example.joints_px
-    inside = ((joints > 0) & (joints < len(example.body))).all(axis=1)
+    inside = np.all((joints > 0) & (joints < len(example.body)), axis=1)
     outline = example.outline * np.uint8(255)
     picture = np.ascontiguousarray(example.body[..., :3])
     return Composite(
@@ -228,7 +232,7 @@ def _plain(example: Any) -> Composite:
     )
 
 
-def _mean_off(network: Any, shown: list[Composite]) -> float:
+def _mean_off(network: nn.Module, shown: list[Composite]) -> float:
     groups = [shown[at : at + GROUP] for at in range(0, len(shown), GROUP)]
     off = np.concatenate([landmark_loss.joints_off(network, group) for group in groups])
     return float(np.minimum(off[np.isfinite(off)], FAR).mean())

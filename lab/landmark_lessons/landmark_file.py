@@ -1,7 +1,7 @@
 """The file of the network of landmarks: weights into one, and out of one."""
 
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import onnx
@@ -21,16 +21,16 @@ WEIGHT: Final = ".weight"
 class _OfBytes(nn.Module):
     """The network as the viewer asks it: by bytes."""
 
-    def __init__(self, network: Any) -> None:
+    def __init__(self, network: nn.Module) -> None:
         super().__init__()
         self.network = network
 
-    def forward(self, planes: Any) -> tuple[Any, Any]:
-        found: tuple[Any, Any] = self.network((planes.float() - GREY) / STEP)
+    def forward(self, planes: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+        found: tuple[torch.Tensor, torch.Tensor] = self.network((planes.float() - GREY) / STEP)
         return found
 
 
-def write_network(network: Any, out: Path) -> None:
+def write_network(network: nn.Module, out: Path) -> None:
     """Write a trained network as the viewer runs it, ONNX, normalisations folded into layers."""
     torch.onnx.export(
         _OfBytes(network).eval(),

@@ -1,8 +1,8 @@
 """The layers of the network of landmarks: a trunk that saw photographs, and what we read of it."""
 
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
-from torch import nn
+from torch import Tensor, nn
 
 from viewer.landmarks.landmark_looks import BINS
 from viewer.landmarks.landmark_window import PLANES
@@ -21,7 +21,7 @@ TRUNK_PACE: Final = 0.1
 class Paced(NamedTuple):
     """Weights that learn alike."""
 
-    weights: list[Any]
+    weights: list[nn.Parameter]
     pace: float
     """How fast, as a share of the rate."""
 
@@ -60,7 +60,7 @@ class Inverted(nn.Module):
         self.apart = Layer(wide, wide, size, stride, apart=True)
         self.narrow = Narrow(wide, outputs)
 
-    def forward(self, x: Any) -> Any:
+    def forward(self, x: Tensor) -> Tensor:
         """Planes in, planes out."""
         found = self.narrow(self.apart(self.wide(x)))
         return x + found if self.adds else found
@@ -122,7 +122,7 @@ class LandmarkNetwork(nn.Module):
         )
         self.up = nn.Upsample(scale_factor=2, mode="bilinear", align_corners=False)
 
-    def forward(self, x: Any) -> tuple[Any, Any]:
+    def forward(self, x: Tensor) -> tuple[Tensor, Tensor]:
         """Planes (n, PLANES, SIDE, SIDE) in; maps (n, 15, CELLS, CELLS), and what is told beside
         them (n, BINS + 1 + 15), out: all of it logits."""
         stages = [self.fine(x[:, :COLOURS]) + self.outline(x[:, COLOURS:])]
@@ -148,7 +148,7 @@ class LandmarkNetwork(nn.Module):
             for parts, pace in ((new, 1.0), (old, TRUNK_PACE))
         ]
 
-    def photographed(self) -> list[Any]:
+    def photographed(self) -> list[Layer | Narrow]:
         """Layers that the file of `photographed_start` holds, in its order."""
         finer = (self.fine, self.eighth, self.sixteenth, self.coarse)
         parts = [part for parts in (*finer, self.asides, self.summed) for part in parts.modules()]

@@ -2,10 +2,12 @@
 
 import copy
 from collections.abc import Callable, Iterator
+from multiprocessing.pool import Pool
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple, TypeVar
 
 import torch
+from torch import nn
 
 from lab.landmark_lessons import landmark_loss
 from lab.landmark_lessons.landmark_layers import Paced
@@ -18,18 +20,22 @@ AHEAD: Final = 4
 """Batches that are made before they are asked for."""
 
 
+Wish = TypeVar("Wish")
+"""What a batch is to be made of."""
+
+
 class Work(NamedTuple):
     """How far a training is."""
 
-    network: Any
-    mean: Any
+    network: nn.Module
+    mean: nn.Module
     """The same, its weights' running mean."""
-    adam: Any
+    adam: torch.optim.AdamW
     batch: int
     """The next one."""
 
 
-def begun(network: Any, parts: list[Paced]) -> Work:
+def begun(network: nn.Module, parts: list[Paced]) -> Work:
     """The start of teaching a network.
 
     Args:
@@ -89,7 +95,7 @@ def learnt_from(work: Work, shown: list[Composite], rate: float, share: float) -
 
 
 def ahead(
-    pool: Any, compose: Callable[[Any], list[Composite]], wishes: Iterator[Any]
+    pool: Pool, compose: Callable[[Wish], list[Composite]], wishes: Iterator[Wish]
 ) -> Iterator[list[Composite]]:
     """Batches in their order, a few made by a pool before they are asked for."""
     coming = []

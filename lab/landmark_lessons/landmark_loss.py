@@ -1,11 +1,12 @@
 """How wrong the network of landmarks is."""
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from torch import nn
 from torch.nn import functional
 
 from lab.landmark_lessons.landmark_planes import planes_of
@@ -25,14 +26,14 @@ UPRIGHT: Final = 0.35
 FACING_SHARPNESS: Final = 6.0
 
 
-def _halved() -> Any:
+def _halved() -> torch.autocast:
     """Numbers of half the length, where the processor reckons with them: without its instructions
     they take fifteen times as long as whole ones."""
     able = torch.cpu._is_avx512_bf16_supported()
     return torch.autocast("cpu", dtype=torch.bfloat16, enabled=able)
 
 
-def loss(network: Any, shown: list[Composite]) -> Any:
+def loss(network: nn.Module, shown: list[Composite]) -> torch.Tensor:
     """Cross entropies of maps, facing, whether somebody is there, and how sure the maps are."""
     with _halved():
         maps, told = network(planes_of(shown))
@@ -54,7 +55,7 @@ def loss(network: Any, shown: list[Composite]) -> Any:
     )
 
 
-def peaks(maps: Any) -> Any:
+def peaks(maps: torch.Tensor) -> torch.Tensor:
     """Joints (n, 15, 2) px of logits (n, 15, CELLS^2): as `landmark_network` reads them."""
     share = torch.softmax(maps, -1)
     best = share.argmax(-1)
@@ -66,19 +67,19 @@ def peaks(maps: Any) -> Any:
     return (cells + between) * (SIDE_PX / CELLS)
 
 
-def _between(three: Any) -> Any:
+def _between(three: torch.Tensor) -> torch.Tensor:
     """Where bells through three neighbours (..., 3) have their peaks, from the middle, in cells."""
     low, middle, high = (three + 1e-9).log().unbind(-1)
     bent = (low - 2.0 * middle + high).clamp(max=-1e-3)
     return (0.5 * (low - high) / bent).clamp(-FARTHEST, FARTHEST)
 
 
-def _places() -> Any:
+def _places() -> torch.Tensor:
     """(CELLS,) middles of the cells, px."""
     return (torch.arange(CELLS) + 0.5) * (SIDE_PX / CELLS)
 
 
-def _maps_due(joints: Any) -> Any:
+def _maps_due(joints: torch.Tensor) -> torch.Tensor:
     """Shares (n, 15, CELLS^2) about the joints."""
     places = _places()
     x = (places - joints[..., 0, None]) ** 2
@@ -87,7 +88,7 @@ def _maps_due(joints: Any) -> Any:
     return torch.softmax((-far / (2 * SPREAD**2)).flatten(2), -1)
 
 
-def _facing_loss(bins: Any, shown: list[Composite]) -> Any:
+def _facing_loss(bins: torch.Tensor, shown: list[Composite]) -> torch.Tensor:
     facing = torch.from_numpy(np.stack([one.facing for one in shown]))
     turn = torch.atan2(facing[:, 0], facing[:, 1])
     told = (facing.norm(dim=1) > UPRIGHT).float()
@@ -97,7 +98,7 @@ def _facing_loss(bins: Any, shown: list[Composite]) -> Any:
     return (wrong * told).sum() / told.sum().clamp(min=1.0)
 
 
-def joints_off(network: Any, shown: list[Composite]) -> NDArray[np.float64]:
+def joints_off(network: nn.Module, shown: list[Composite]) -> NDArray[np.float64]:
     """(n, 15) how far off joints are, in statures; NaN for those that are not in the picture."""
     with torch.no_grad(), _halved():
         maps, _ = network.eval()(planes_of(shown))

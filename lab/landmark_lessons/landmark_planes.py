@@ -1,6 +1,6 @@
 """Composites as the network of landmarks takes them."""
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import torch
@@ -14,7 +14,7 @@ STEP: Final = 64
 """Levels of a byte, from GREY on, that are 1 for the network."""
 
 
-def planes_of(shown: list[Composite]) -> Any:
+def planes_of(shown: list[Composite]) -> torch.Tensor:
     """What the network sees of composites, (n, PLANES, SIDE, SIDE): larger than they were drawn,
     as it sees most people who are filmed."""
     colours = _whole(np.stack([one.picture for one in shown]))
@@ -29,5 +29,5 @@ def planes_of(shown: list[Composite]) -> Any:
     return planes.contiguous(memory_format=torch.channels_last)
 
 
-def _whole(pictures: NDArray[np.uint8]) -> Any:
+def _whole(pictures: NDArray[np.uint8]) -> torch.Tensor:
     return (torch.from_numpy(pictures).permute(0, 3, 1, 2).float() - GREY) / STEP

@@ -3,13 +3,15 @@
 import multiprocessing
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
 import torch
 from rich.console import Console
+from torch import nn
 
+from common.npz_file import Facts
 from lab.landmark_lessons import landmark_loss, work_of
 from lab.landmark_lessons.landmark_file import write_network
 from lab.landmark_lessons.landmark_learning import (
@@ -46,7 +48,7 @@ NEAR: Final = 0.1
 """What is told of how good it is: how many joints are within this share of the stature."""
 
 
-def train_landmarks(out: Path, seed: int, console: Console) -> dict[str, Any]:
+def train_landmarks(out: Path, seed: int, console: Console) -> Facts:
     """Learn the network and write it, two hours on two cores.
 
     What is drawn and learnt is kept beside it in a folder, `<out>.work`, and the next call with the
@@ -154,7 +156,7 @@ def _rate(at: int) -> float:
     return RATE * min(1.0, (at + 1) / WARM, max(left, 0.01))
 
 
-def _right(network: Any, folders: list[Path], seed: int) -> float:
+def _right(network: nn.Module, folders: list[Path], seed: int) -> float:
     """Share of the joints of people who were held back that are nearly right."""
     shown = composed(Wanted(tuple(folders), seed, BATCHES))
     off = landmark_loss.joints_off(network, shown)

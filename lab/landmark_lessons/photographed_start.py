@@ -6,11 +6,12 @@ length. `docs/models.md` says where they were taken from.
 """
 
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from torch import nn
 
 from common.body.body import JOINT_NAMES
 from lab.landmark_lessons.landmark_layers import LandmarkNetwork
@@ -71,11 +72,11 @@ def photographed_start(shown: list[Composite], start: Path = START) -> LandmarkN
     return network
 
 
-def _whole(values: NDArray[np.float16]) -> Any:
+def _whole(values: NDArray[np.float16]) -> torch.Tensor:
     return torch.from_numpy(values.astype(np.float32))
 
 
-def _fill(layer: Any, weights: Any, offsets: Any) -> None:
+def _fill(layer: nn.Sequential, weights: torch.Tensor, offsets: torch.Tensor) -> None:
     """Give a layer weights; its normalisation changes nothing yet."""
     convolution, normal = layer[0], layer[1]
     convolution.weight.copy_(weights)
@@ -85,12 +86,12 @@ def _fill(layer: Any, weights: Any, offsets: Any) -> None:
     normal.running_var.fill_(1.0 - normal.eps)
 
 
-def _normalise(network: LandmarkNetwork, layers: list[Any], planes: Any) -> None:
+def _normalise(network: LandmarkNetwork, layers: list[nn.Sequential], planes: torch.Tensor) -> None:
     """Part each layer into weights of length 1 and a normalisation by what these pictures show:
     it says what it said before, and learns evenly."""
     found = {}
 
-    def note(layer: Any, _: Any, said: Any) -> None:
+    def note(layer: nn.Module, _: object, said: torch.Tensor) -> None:
         found[layer] = said.mean((0, 2, 3)), said.var((0, 2, 3)).clamp(min=LEAST)
 
     watched = [layer[0].register_forward_hook(note) for layer in layers]

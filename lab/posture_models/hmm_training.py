@@ -1,9 +1,9 @@
 """Baum-Welch for one posture of either recogniser, and what keeps few data from narrowing it."""
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Sized
 from contextlib import contextmanager
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,7 +71,7 @@ def train_densities(
     if len(np.unique(shown, axis=0)) < states:
         raise LearningError(f"fewer than {states} different poses in a posture: give more clips")
     state = _clusters(shown, seed, states) if topology == "ergodic" else _stretch(given, states)
-    hmm: Any = GaussianHMM(
+    hmm = GaussianHMM(
         states,
         "diag",
         init_params="",
@@ -101,7 +101,7 @@ def _clusters(shown: Array, seed: int, states: int) -> NDArray[np.int64]:
     return np.asarray(found.labels_, np.int64)
 
 
-def _stretch(given: Sequence[NDArray[Any]], states: int) -> NDArray[np.int64]:
+def _stretch(given: Sequence[Sized], states: int) -> NDArray[np.int64]:
     """Which of equal stretches of its sequence each entry of all sequences stands in."""
     return np.concatenate([np.arange(len(one)) * states // len(one) for one in given])
 
@@ -126,9 +126,7 @@ def train_symbols(
     from hmmlearn.hmm import CategoricalHMM
 
     may = allowed(topology, states)
-    hmm: Any = CategoricalHMM(
-        states, n_features=len(near), init_params="", params="te", n_iter=ROUNDS
-    )
+    hmm = CategoricalHMM(states, n_features=len(near), init_params="", params="te", n_iter=ROUNDS)
     hmm.startprob_ = start(topology, states)
     hmm.transmat_ = _rows(may.astype(np.float64))
     hmm.emissionprob_ = _smooth(_shown_by(given, states, len(near)), near)

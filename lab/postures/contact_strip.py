@@ -1,7 +1,7 @@
 """A clip as one picture: some frames of its motion in both views, with the body's contour."""
 
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import cv2
 import numpy as np
@@ -73,7 +73,7 @@ def _shown(now: Instant, number: ViewerNumber, rig: Rig | None) -> Image:
     return _fitted(image)
 
 
-def _fitted(image: Any) -> Image:
+def _fitted(image: Image) -> Image:
     height = round(image.shape[0] * WIDTH_PX / image.shape[1])
     fitted: Image = cv2.resize(image, (WIDTH_PX, height), interpolation=cv2.INTER_AREA)
     return fitted & np.uint8(LEVELS)

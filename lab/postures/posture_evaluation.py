@@ -3,11 +3,12 @@
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from rich.console import Console
 
 from common.method import Mode
+from common.npz_file import Facts
 from lab.posture_models.evaluation import Outcome, Recording, named_by, refuse_who_was_learnt_from
 from lab.postures.posture_page import page_of
 from lab.postures.posture_pictures import draw_confusion, draw_worst
@@ -56,9 +57,7 @@ class Plan(NamedTuple):
     """A cluster's address; "" for the cores of this machine."""
 
 
-def evaluate_postures(
-    paths: Sequence[Path], out: Path, plan: Plan, console: Console
-) -> dict[str, Any]:
+def evaluate_postures(paths: Sequence[Path], out: Path, plan: Plan, console: Console) -> Facts:
     """Train and test by a split, and write `report.json`, `report.html` and its pictures.
 
     Args:
@@ -82,7 +81,7 @@ def evaluate_postures(
     given = announced(paths, console)
     clips = [Path(one.clip) for one in given]
     _refuse_in_vain(given, models, plan)
-    report: dict[str, Any] = {"split": f"{plan.model} models" if plan.model else plan.split}
+    report: Facts = {"split": f"{plan.model} models" if plan.model else plan.split}
     with spread(plan.dask):
         for kind, model in models.items():
             mode = plan.mode or kind
@@ -128,7 +127,7 @@ def _result(
     model: PostureModel | None,
     plan: Plan,
     console: Console,
-) -> dict[str, Any]:
+) -> Facts:
     """All that is said of one recogniser."""
     began = time.perf_counter()
     groups: dict[str, list[Outcome]]
@@ -144,7 +143,7 @@ def _result(
     }
 
 
-def _swept(given: list[Recording], plan: Plan, console: Console) -> dict[str, Any]:
+def _swept(given: list[Recording], plan: Plan, console: Console) -> Facts:
     """Right names of each size: a row for each number of symbols, a column for states."""
     groups = judged(list(sweep_of(given, plan.split)), console)
     shares = [
@@ -154,7 +153,7 @@ def _swept(given: list[Recording], plan: Plan, console: Console) -> dict[str, An
     return {"symbols": SWEPT_SYMBOLS, "states": SWEPT_STATES, "shares": shares}
 
 
-def _people(given: Sequence[Recording], plan: Plan) -> dict[str, Any]:
+def _people(given: Sequence[Recording], plan: Plan) -> Facts:
     """Who was learnt from, who was tested, and how widely each group's styles are spread."""
     parts = None if plan.model else parts_of(given, plan.split)
     groups = {"tested": given} if parts is None else {"learnt from": parts[0], "tested": parts[1]}
@@ -168,7 +167,7 @@ def _people(given: Sequence[Recording], plan: Plan) -> dict[str, Any]:
     }
 
 
-def _write(report: dict[str, Any], out: Path) -> None:
+def _write(report: Facts, out: Path) -> None:
     for kind, result in report["recognizers"].items():
         result["picture"] = f"confusion_{kind}.png"
         draw_confusion(result, f"{kind} recogniser", out / result["picture"])

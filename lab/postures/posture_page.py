@@ -2,15 +2,16 @@
 
 from base64 import b64encode
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
+from common.npz_file import Facts
 from common.templates import rendered
 
 PAPERS: Final = {"correct": 332, "tested": 360, "share": 332 / 360, "interval_95": (0.890, 0.946)}
 """Table 2 of the paper, all postures."""
 
 
-def page_of(report: dict[str, Any], folder: Path) -> str:
+def page_of(report: Facts, folder: Path) -> str:
     """The whole page.
 
     Args:

@@ -1,19 +1,19 @@
 """Pictures of a posture report: who was taken for what, and the worst clips."""
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from common.method import Mode
+from common.npz_file import Facts
 from lab.postures.contact_strip import contact_strip
 from runtime.offline.lockstep import Decoders
 
 DPI: Final = 110
 
 
-def draw_confusion(result: Mapping[str, Any], title: str, path: Path) -> None:
+def draw_confusion(result: Facts, title: str, path: Path) -> None:
     """Write the confusion matrix of one recogniser as PNG.
 
     Raises:
@@ -35,7 +35,7 @@ def draw_confusion(result: Mapping[str, Any], title: str, path: Path) -> None:
     figure.savefig(path, dpi=DPI)
 
 
-def draw_worst(result: dict[str, Any], mode: Mode | None, folder: Path, prefix: str) -> None:
+def draw_worst(result: Facts, mode: Mode | None, folder: Path, prefix: str) -> None:
     """Write a strip of frames of each of the worst clips, and note its file beside it.
 
     A run folder holds no pictures: it gets no strip.

@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
+from common.npz_file import Facts
 from lab.posture_models.evaluation import Outcome, confusion, table, wilson
 from recognizer.postures import POSTURES
 
@@ -13,7 +14,7 @@ WORST: Final = 6
 """Clips that a report shows pictures of, at most."""
 
 
-def result_of(outcomes: Sequence[Outcome], least_fit: float) -> dict[str, Any]:
+def result_of(outcomes: Sequence[Outcome], least_fit: float) -> Facts:
     """What `report.json` holds of the outcomes of one recogniser.
 
     Args:
@@ -42,7 +43,7 @@ def postures_of(outcomes: Sequence[Outcome]) -> list[str]:
     return [*(name for name in POSTURES if name in seen), *sorted(seen - set(POSTURES))]
 
 
-def share(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+def share(outcomes: Sequence[Outcome]) -> Facts:
     """Correct of tested with Wilson's 95 % interval (P59)."""
     correct, tested = sum(one.truth == one.named for one in outcomes), len(outcomes)
     return {
@@ -61,12 +62,12 @@ def worst_of(outcomes: Sequence[Outcome]) -> list[Outcome]:
 
 def _shares(
     outcomes: Sequence[Outcome], kind: Callable[[Outcome], str], kinds: Sequence[str] = ()
-) -> dict[str, Any]:
+) -> Facts:
     every = kinds or sorted({kind(one) for one in outcomes})
     return {name: share([one for one in outcomes if kind(one) == name]) for name in every}
 
 
-def _margins(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+def _margins(outcomes: Sequence[Outcome]) -> Facts:
     """Of a frame's log-likelihood: how clear the decisions were."""
     margins = np.array([one.margin for one in outcomes if not math.isnan(one.margin)])
     if not len(margins):
@@ -75,7 +76,7 @@ def _margins(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     return {"p5": low, "median": median, "p95": high, "lowest": float(margins.min())}
 
 
-def _rejection(outcomes: Sequence[Outcome], least_fit: float) -> dict[str, Any]:
+def _rejection(outcomes: Sequence[Outcome], least_fit: float) -> Facts:
     """How often what was taught gets no name, and how often each posture would get none, had
     nobody taught it."""
     known = [one for one in outcomes if one.known]
@@ -90,7 +91,7 @@ def _rejection(outcomes: Sequence[Outcome], least_fit: float) -> dict[str, Any]:
     }
 
 
-def _told(one: Outcome) -> dict[str, Any]:
+def _told(one: Outcome) -> Facts:
     return {
         "clip": one.clip,
         "performer": one.performer,

@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from rich.console import Console
 from common.config import config_file
 from common.config.part_settings import RecognizerSettings
 from common.method import Mode
-from common.npz_file import Arrays
+from common.npz_file import Arrays, Facts
 from common.video.clips import meta_of
 from lab.posture_models.evaluation import wilson
 from lab.posture_models.streams import Act, Found, Stream, found, joined
@@ -35,7 +35,7 @@ SEED: Final = 0
 
 def evaluate_spotting(
     paths: Sequence[Path], out: Path, model: Path | None, mode: Mode | None, console: Console
-) -> dict[str, Any]:
+) -> Facts:
     """Find performances in streams, and write `spotting.json`.
 
     Args:
@@ -102,12 +102,12 @@ def _refuse_nameless(path: Path) -> None:
         raise TrainingError(f"{path} names neither acts nor a posture in its meta.json")
 
 
-def _clip(path: Path, mode: Mode | None, decoders: Decoders) -> tuple[dict[str, Any], Arrays]:
+def _clip(path: Path, mode: Mode | None, decoders: Decoders) -> tuple[Facts, Arrays]:
     tracked = track_clip(overridden(config_file.load(path), mode, None), decoders)
     return tracked.facts, poses(tracked.bodies)
 
 
-def _run(path: Path) -> tuple[dict[str, Any], Arrays]:
+def _run(path: Path) -> tuple[Facts, Arrays]:
     try:
         run = open_run(path)
     except PastRunError as error:
@@ -127,7 +127,7 @@ def _rows(arrays: Arrays) -> Rows:
     return np.where(np.isin(arrays["status"], MOVING)[:, np.newaxis], tracked, np.nan)
 
 
-def _report(results: Sequence[Found]) -> dict[str, Any]:
+def _report(results: Sequence[Found]) -> Facts:
     performances = sum(one.performances for one in results)
     delays_s = PERIOD_S * np.array([delay for one in results for delay in one.delays])
     minutes = sum(one.frames for one in results) * PERIOD_S / 60.0
@@ -155,7 +155,7 @@ def _report(results: Sequence[Found]) -> dict[str, Any]:
     return {**report, "table": _table(report)}
 
 
-def _table(report: dict[str, Any]) -> str:
+def _table(report: Facts) -> str:
     lines = []
     for one in report["streams"]:
         lines += [f"{one['name']}: missed {act['name']} at {act['first']}" for act in one["missed"]]

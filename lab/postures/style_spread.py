@@ -3,8 +3,8 @@
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
+from common.npz_file import Facts
 from lab.posture_models.evaluation import Recording
 
 
@@ -22,7 +22,7 @@ def spread_of(given: Sequence[Recording]) -> dict[str, tuple[float, float]]:
     return found
 
 
-def _style(path: Path) -> dict[str, Any]:
+def _style(path: Path) -> Facts:
     try:
         style = json.loads(path.read_text()).get("style", {})
     except (OSError, ValueError, AttributeError):

@@ -2,11 +2,12 @@
 
 import math
 from collections import deque
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from common.body.body import Vector
 from common.bus.messages import Body
 from recognizer.features import Rows
 
@@ -95,12 +96,13 @@ def _with(state: State, look: Look) -> State:
     while state.doing != "moving" and kept[0].time_s < first_s:
         kept.popleft()
     recent = [one for one in kept if one.time_s >= first_s and one.joints_m is not None]
-    moves = len(recent) < 2 or _extent_m([one.joints_m for one in recent]) > MOVES_M
+    places_m = [one.joints_m for one in recent if one.joints_m is not None]
+    moves = len(places_m) < 2 or _extent_m(places_m) > MOVES_M
     since = recent[0].time_s if state.still_s is None and recent else state.still_s
     return state._replace(seen=tuple(kept), still_s=None if moves else since)
 
 
-def _extent_m(joints_m: list[Any]) -> float:
+def _extent_m(joints_m: list[Vector]) -> float:
     return float(np.linalg.norm(np.array(joints_m) - joints_m[-1], axis=2).max())
 
 

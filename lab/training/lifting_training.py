@@ -1,31 +1,29 @@
 """The network that lifts landmarks, trained on motion that is made up and shown by no picture."""
 
-import multiprocessing
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final
+from types import ModuleType
+from typing import Final
 
 import numpy as np
 from rich.console import Console
 
+from common.npz_file import Facts
 from integrator.proposal.landmark_look import INPUTS
-from integrator.proposal.network_weights import LiftingNetwork, save
+from integrator.proposal.network_weights import LiftingNetwork
 from lab.training import torch_network
 from lab.training.lifting_examples import LiftingExample, lifting_examples
-from lab.training.torch_network import Round, torch_or_refuse
-from lab.training.training import TrainingError
-from runtime.terminal import bar
+from lab.training.network_training import Lesson, train_network
+from lab.training.torch_network import Round, Shown, torch_or_refuse
 
 PERFORMANCES: Final = 30_000
 """How many are learnt from, each before one camera and before two: some sixty instants each."""
 UNITS: Final = (320, 320, 320)
 """Units of fc1 and fc2, of the recurrent unit, and of fc3."""
 ROUNDS: Final = (Round(10, 2e-3, 64), Round(6, 1e-3, 64))
-SHORTEST: Final = 8
-"""Instants that a performance must have."""
 
 
-def train_lifting(out: Path, seed: int, console: Console) -> dict[str, Any]:
+def train_lifting(out: Path, seed: int, console: Console) -> Facts:
     """Learn the network afresh and write it: three quarters of an hour on two cores, 4 GB.
 
     Args:
@@ -36,22 +34,8 @@ def train_lifting(out: Path, seed: int, console: Console) -> dict[str, Any]:
     Raises:
         TrainingError: When PyTorch is not installed, or the file cannot be written.
     """
-    torch_or_refuse()
-    if not out.parent.is_dir():
-        raise TrainingError(f"cannot write {out}: there is no folder {out.parent}")
-    with multiprocessing.get_context("spawn").Pool() as pool, bar(console) as progress:
-        drawn = progress.track(
-            pool.imap(lifting_examples, range(seed, seed + PERFORMANCES), chunksize=8),
-            total=PERFORMANCES,
-            description="drawing",
-        )
-        shown = [one for both in drawn for one in both if len(one.due) >= SHORTEST]
-    network = learnt(shown, seed, console)
-    try:
-        save(network, out)
-    except OSError as error:
-        raise TrainingError(f"cannot write {out}: {error.strerror}") from error
-    return {"model": str(out), "instants": sum(len(one.due) for one in shown)}
+    lesson = Lesson(range(seed, seed + PERFORMANCES), lifting_examples, learnt)
+    return train_network(lesson, out, seed, console)
 
 
 def learnt(
@@ -77,7 +61,7 @@ def learnt(
     return LiftingNetwork(*torch_network.layers_of(parts))
 
 
-def _tensors(torch: Any, shown: LiftingExample) -> tuple[Any, ...]:
+def _tensors(torch: ModuleType, shown: LiftingExample) -> Shown:
     """Inputs, what is due, ones, and the stature: as tensors of an example's instants."""
     ones = np.ones(len(shown.due), np.float32)
     parts = (shown.inputs, shown.due, ones, ones * np.float32(shown.stature_m))

@@ -1,7 +1,7 @@
 """Teaching a posture before running cameras: takes are counted in, judged, and done again."""
 
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import msgspec
 import numpy as np
@@ -9,6 +9,7 @@ from rich.console import Console
 
 from common.bus.messages import Body
 from common.config.settings import Settings
+from common.npz_file import Facts
 from lab.posture_models.lesson import LEAST_TAKES, Lesson, taught
 from lab.training import coach
 from lab.training.coach import STAND, Said, State, look_at
@@ -96,7 +97,7 @@ class Teaching:
 
 def teach_live(
     posture: str, settings: Settings, out: Path, plan: Plan, console: Console, count_s: float = 3.0
-) -> dict[str, Any]:
+) -> Facts:
     """Run cameras until three takes of a posture agree, and write the model.
 
     Args:

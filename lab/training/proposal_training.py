@@ -1,23 +1,23 @@
 """The network that proposes poses, trained on silhouettes of synthetic people."""
 
-import multiprocessing
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final
+from types import ModuleType
+from typing import Final
 
 import numpy as np
 import scipy.linalg
 from rich.console import Console
 
-from integrator.proposal.network_weights import PoseNetwork, save, to_bfloat16
+from common.npz_file import Facts
+from integrator.proposal.network_weights import PoseNetwork, to_bfloat16
 from integrator.proposal.pose_network import SEES
 from integrator.proposal.silhouette_window import BESIDE, CELLS, Floats
 from lab.training import torch_network
+from lab.training.network_training import Lesson, train_network
 from lab.training.proposal_examples import Example, example_of
-from lab.training.torch_network import Round, torch_or_refuse
-from lab.training.training import TrainingError
-from runtime.terminal import bar
-from synth.picture.silhouette_examples import AT_LARGE, ORDINARY
+from lab.training.torch_network import Round, Shown, torch_or_refuse
+from synth.picture.silhouette_examples import AT_LARGE, ORDINARY, Manner
 
 PERFORMANCES: Final = {ORDINARY: 12_000, AT_LARGE: 5_000}
 """How many of which manner are learnt from: some sixty instants each."""
@@ -30,11 +30,9 @@ LIFTED: Final = 0.02
 UNITS: Final = (512, 512, 384)
 """Units of fc1 and fc2, of the recurrent unit, and of fc3."""
 ROUNDS: Final = (Round(24, 2e-3, 64), Round(20, 1e-3, 64))
-SHORTEST: Final = 8
-"""Instants that a performance must have."""
 
 
-def train_proposals(out: Path, seed: int, console: Console) -> dict[str, Any]:
+def train_proposals(out: Path, seed: int, console: Console) -> Facts:
     """Learn the network afresh and write it: an hour and a half on two cores, 9 GB.
 
     Args:
@@ -45,23 +43,14 @@ def train_proposals(out: Path, seed: int, console: Console) -> dict[str, Any]:
     Raises:
         TrainingError: When PyTorch is not installed, or the file cannot be written.
     """
-    torch_or_refuse()
-    if not out.parent.is_dir():
-        raise TrainingError(f"cannot write {out}: there is no folder {out.parent}")
-    with multiprocessing.get_context("spawn").Pool() as pool, bar(console) as progress:
-        manners = [manner for manner, count in PERFORMANCES.items() for _ in range(count)]
-        drawn = progress.track(
-            pool.imap(example_of, enumerate(manners, seed), chunksize=8),
-            total=len(manners),
-            description="drawing",
-        )
-        shown = [each for each in drawn if len(each.due) >= SHORTEST]
-    network = learnt(shown, seed, console)
-    try:
-        save(network, out)
-    except OSError as error:
-        raise TrainingError(f"cannot write {out}: {error.strerror}") from error
-    return {"model": str(out), "instants": sum(len(each.due) for each in shown)}
+    manners = [manner for manner, count in PERFORMANCES.items() for _ in range(count)]
+    lesson = Lesson([*enumerate(manners, seed)], _drawn, learnt)
+    return train_network(lesson, out, seed, console)
+
+
+def _drawn(task: tuple[int, Manner]) -> tuple[Example, ...]:
+    """The one example of a seed and a manner."""
+    return (example_of(task),)
 
 
 def learnt(
@@ -105,7 +94,7 @@ def _components(shown: list[Example]) -> tuple[Floats, Floats]:
     return mean, (vectors / (spreads + LIFTED * spreads[-1])).astype(np.float32)
 
 
-def _tensors(torch: Any, mean: Floats, components: Floats, shown: Example) -> tuple[Any, ...]:
+def _tensors(torch: ModuleType, mean: Floats, components: Floats, shown: Example) -> Shown:
     """Inputs, what is due, ones, and the stature: as tensors of an example's instants."""
     windows = shown.cells.astype(np.float32) / np.float32(255)
     seen = (windows - mean) @ components * shown.beside[:, SEES, None]

@@ -4,7 +4,7 @@ import multiprocessing
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
@@ -12,6 +12,7 @@ from rich.console import Console
 
 from common.config.part_settings import SilhouetteSettings
 from common.method import DEFAULT
+from common.npz_file import Facts
 from common.raster.similarity import Mask
 from common.video.pictures import Image
 from lab.training.training import TrainingError
@@ -66,7 +67,7 @@ class LabelledFilm(NamedTuple):
     masks: list[Mask]
 
 
-def train_silhouettes(out: Path, seed: int, console: Console) -> dict[str, Any]:
+def train_silhouettes(out: Path, seed: int, console: Console) -> Facts:
     """Learn the network afresh and write it: some minutes.
 
     Args:

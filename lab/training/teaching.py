@@ -4,10 +4,11 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from rich.console import Console
 
+from common.npz_file import Facts
 from lab.posture_models.lesson import LEAST_TAKES, Lesson, taught
 from lab.training.recordings import recordings
 from lab.training.training import Plan, TrainingError, model_named
@@ -19,9 +20,7 @@ from runtime.terminal import counted
 NAME: Final = re.compile(r"[a-z][a-z0-9_]{0,39}")
 
 
-def teach(
-    posture: str, paths: Sequence[Path], out: Path, plan: Plan, console: Console
-) -> dict[str, Any]:
+def teach(posture: str, paths: Sequence[Path], out: Path, plan: Plan, console: Console) -> Facts:
     """Learn a posture from takes, tell how well they agree, and write the model.
 
     Args:
@@ -96,9 +95,7 @@ def _known_by(out: Path) -> tuple[str, ...]:
         ) from error
 
 
-def kept(
-    lesson: Lesson, posture: str, takes: Sequence[str], out: Path, plan: Plan
-) -> dict[str, Any]:
+def kept(lesson: Lesson, posture: str, takes: Sequence[str], out: Path, plan: Plan) -> Facts:
     """Write what was learnt; what the command tells of it.
 
     Raises:
@@ -124,7 +121,7 @@ def rivals(lesson: Lesson) -> list[str]:
     return list(dict.fromkeys(take.rival for take in near))
 
 
-def line(facts: dict[str, Any]) -> str:
+def line(facts: Facts) -> str:
     """What was learnt, in words."""
     mistaken = [take for take in facts["takes"] if take["margin"] <= 0.0]
     told = [

@@ -1,9 +1,11 @@
 """The networks that propose joints, as PyTorch trains them: their outputs, loss and rounds."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any, Final, NamedTuple
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import Progress
 
@@ -11,6 +13,14 @@ from integrator.proposal.network_weights import JOINTS, to_bfloat16
 from integrator.proposal.silhouette_window import Floats
 from lab.training.training import TrainingError
 from runtime.terminal import bar
+
+if TYPE_CHECKING:
+    from torch import Tensor, nn
+
+Parts: TypeAlias = "list[nn.Module]"
+"""fc1, fc2, the recurrent unit, fc3, out: what `parts_of` gives."""
+Shown: TypeAlias = "tuple[Tensor, ...]"
+"""A performance: its inputs, what is due, ones, its stature; each (instants, ...)."""
 
 CONFIDENCE_SHARE: Final = 0.01
 """Weight of what the network says of its sureness beside a distance in statures."""
@@ -34,7 +44,7 @@ class Round(NamedTuple):
     """Performances that are shown at once."""
 
 
-def torch_or_refuse() -> Any:
+def torch_or_refuse() -> ModuleType:
     """PyTorch, which only learning needs.
 
     Raises:
@@ -49,7 +59,7 @@ def torch_or_refuse() -> Any:
     return torch
 
 
-def parts_of(torch: Any, told: int, units: tuple[int, int, int], mean_due: Floats) -> list[Any]:
+def parts_of(torch: ModuleType, told: int, units: tuple[int, int, int], mean_due: Floats) -> Parts:
     """fc1, fc2, the recurrent unit, fc3, out: untrained layers that put out what is usually due.
 
     Args:
@@ -73,9 +83,9 @@ def parts_of(torch: Any, told: int, units: tuple[int, int, int], mean_due: Float
 
 
 def learn(
-    torch: Any,
-    parts: list[Any],
-    examples: list[tuple[Any, ...]],
+    torch: ModuleType,
+    parts: Parts,
+    examples: list[Shown],
     rounds: Sequence[Round],
     seed: int,
     console: Console,
@@ -102,9 +112,9 @@ def learn(
 
 
 def _round(
-    torch: Any,
-    parts: list[Any],
-    examples: list[tuple[Any, ...]],
+    torch: ModuleType,
+    parts: Parts,
+    examples: list[Shown],
     rng: np.random.Generator,
     how: Round,
     progress: Progress,
@@ -127,7 +137,7 @@ def _round(
             pace.step()
 
 
-def loss(torch: Any, parts: list[Any], examples: list[tuple[Any, ...]]) -> Any:
+def loss(torch: ModuleType, parts: Parts, examples: list[Shown]) -> "Tensor":
     """Mean distance of the joints in statures, and how wrong the sureness about it is.
 
     Args:
@@ -154,7 +164,7 @@ def loss(torch: Any, parts: list[Any], examples: list[tuple[Any, ...]]) -> Any:
     return (wrong * real).sum() / real.sum()
 
 
-def _outputs(torch: Any, parts: list[Any], seen: Any) -> Any:
+def _outputs(torch: ModuleType, parts: Parts, seen: "Tensor") -> "Tensor":
     """What the network says of performances, (performances, instants, outputs)."""
     fc1, fc2, gru, fc3, out = parts
     hidden = torch.relu(fc1(seen))
@@ -162,7 +172,7 @@ def _outputs(torch: Any, parts: list[Any], seen: Any) -> Any:
     return out(torch.relu(fc3(torch.cat([hidden, _hidden_states(torch, gru, hidden)], -1))))
 
 
-def _hidden_states(torch: Any, unit: Any, hidden: Any) -> Any:
+def _hidden_states(torch: ModuleType, unit: "nn.GRU", hidden: "Tensor") -> "Tensor":
     """What a gated recurrent unit remembers after each instant: in half precision, which the
     library's own loop has not."""
     linear, own = torch.nn.functional.linear, unit.hidden_size
@@ -177,7 +187,7 @@ def _hidden_states(torch: Any, unit: Any, hidden: Any) -> Any:
     return torch.stack(found, 1)
 
 
-def layers_of(parts: list[Any]) -> Iterator[Any]:
+def layers_of(parts: Parts) -> Iterator[NDArray[Any]]:
     """Weights and biases of a network as `integrator.proposal.network_weights` keeps them."""
     fc1, fc2, gru, fc3, out = parts
     for weight, bias in (

@@ -1,17 +1,19 @@
 """Posture models from clips or runs."""
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Sized
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from rich.console import Console
 
 from common.method import Mode
+from common.npz_file import Facts
 from lab.posture_models.learning import train
 from lab.posture_models.lesson import LEAST_TAKES
 from lab.training.recordings import recordings
 from recognizer.__main__ import SHIPPED, SHIPPED_PAPER
+from recognizer.features import Rows
 from recognizer.model_file import load, save
 from recognizer.postures import PostureModel, Recognizer
 from runtime.store.cores import spread
@@ -40,9 +42,7 @@ class Plan(NamedTuple):
     """Of teaching: the posture is one of that model's, learnt anew."""
 
 
-def train_postures(
-    paths: Sequence[Path], out: Path, plan: Plan, console: Console
-) -> dict[str, Any]:
+def train_postures(paths: Sequence[Path], out: Path, plan: Plan, console: Console) -> Facts:
     """Learn a model of each posture and write it.
 
     Args:
@@ -57,7 +57,7 @@ def train_postures(
         LearningError: When nothing can be learnt.
         ModelError: When the file cannot be written.
     """
-    learnt: dict[str, list[Any]] = defaultdict(list)
+    learnt: dict[str, list[Rows]] = defaultdict(list)
     performers = set()
     with spread(""):
         given = recordings(paths, plan.mode or plan.recognizer, plan.cache, console)
@@ -75,7 +75,7 @@ def train_postures(
     }
 
 
-def _warn_of_few(learnt: Mapping[str, Sequence[Any]], console: Console) -> None:
+def _warn_of_few(learnt: Mapping[str, Sized], console: Console) -> None:
     """Say what a model learns too little for to tell postures apart."""
     if len(learnt) == 1:
         warn(
